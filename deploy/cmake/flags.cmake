@@ -1,0 +1,31 @@
+# One interface target for warnings, code generation and sanitizers.
+add_library(tessera_flags INTERFACE)
+target_compile_options(tessera_flags INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)
+
+# Bits must not depend on the host that compiled or on contraction: x86-64-v3, no FMA contraction, never fast-math.
+target_compile_options(tessera_flags INTERFACE -march=x86-64-v3 -ffp-contract=off)
+
+if(TESSERA_SANITIZE)
+  target_compile_options(tessera_flags INTERFACE -fsanitize=${TESSERA_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(tessera_flags INTERFACE -fsanitize=${TESSERA_SANITIZE})
+endif()
+
+find_program(TESSERA_MOLD mold)
+if(TESSERA_MOLD)
+  target_link_options(tessera_flags INTERFACE -fuse-ld=mold)
+endif()
+find_program(TESSERA_CCACHE ccache)
+if(TESSERA_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${TESSERA_CCACHE})
+endif()
+if(CMAKE_BUILD_TYPE STREQUAL "Release")
+  set(CMAKE_CXX_FLAGS_RELEASE "-O3 -g1")  # assertions stay on: they cost nothing where it matters
+endif()
+
+# tessera_library(NAME SOURCES ... PUBLIC targets... PRIVATE targets...)
+function(tessera_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_include_directories(${name} PUBLIC ${CMAKE_SOURCE_DIR})
+  target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} tessera_flags)
+endfunction()

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <vector>
+
+#include "mediator/base/error.h"
+#include "mediator/scene/scene.h"
+
+namespace tessera::backend {
+
+// The deep graph made flat (Schwenk 5.4.1): at most one transform above a geometry, sharing kept. Ordered by object
+// ids along the path from the root, never by history, so that equal scenes lower to equal tables.
+struct Instance {
+    ObjectId geometry;
+    glm::dmat4 world_from_object{1.0};
+    scene::MotionHint hint = scene::MotionHint::Unflagged;  // of the geometry or the nearest flagged transform
+    std::vector<ObjectId> path;  // transforms from the root down
+};
+
+struct PlacedLight {
+    ObjectId light;
+    glm::dmat4 world_from_light{1.0};
+    std::vector<ObjectId> path;
+};
+
+struct Lowered {
+    std::vector<Instance> instances;  // by (geometry, path)
+    std::vector<PlacedLight> lights;  // by (light, path)
+};
+
+// InvalidInput for a cycle or when instances exceed `limit`; a missing child is skipped (validation tells of it).
+Expected<Lowered> lower(const scene::Scene& scene, std::size_t limit = 16'000'000);
+
+}  // namespace tessera::backend

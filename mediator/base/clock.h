@@ -1,0 +1,24 @@
+#pragma once
+
+#include <chrono>
+
+namespace tessera {
+
+using Duration = std::chrono::nanoseconds;
+using TimePoint = std::chrono::time_point<std::chrono::steady_clock, Duration>;
+
+// Injected wherever time decides something, so that tests own it. Thread-safe.
+class Clock {
+  public:
+    virtual ~Clock() = default;
+    virtual TimePoint now() const = 0;
+};
+
+class SteadyClock final : public Clock {
+  public:
+    TimePoint now() const override { return std::chrono::steady_clock::now(); }
+};
+
+inline double seconds(Duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+}  // namespace tessera

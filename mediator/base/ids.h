@@ -1,0 +1,38 @@
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <functional>
+
+namespace tessera {
+
+// A number that names one kind of thing; two kinds cannot be mixed up. 0 names nothing.
+template <class Tag>
+struct Id {
+    std::uint64_t value = 0;
+
+    constexpr explicit operator bool() const { return value != 0; }
+    friend constexpr auto operator<=>(Id, Id) = default;
+};
+
+using ObjectId = Id<struct ObjectTag>;    // below 2^32, so that it fits a film plane
+using ViewId = Id<struct ViewTag>;
+using UnitId = Id<struct UnitTag>;
+using NodeId = Id<struct NodeTag>;
+using SessionId = Id<struct SessionTag>;
+using JobId = Id<struct JobTag>;
+
+// The scene's version: the epoch is new at every start of a master, the number grows by one per change list.
+struct Version {
+    std::uint64_t epoch = 0;
+    std::uint64_t number = 0;
+
+    friend constexpr auto operator<=>(const Version&, const Version&) = default;
+};
+
+}  // namespace tessera
+
+template <class Tag>
+struct std::hash<tessera::Id<Tag>> {
+    std::size_t operator()(tessera::Id<Tag> id) const noexcept { return std::hash<std::uint64_t>{}(id.value); }
+};

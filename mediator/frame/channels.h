@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace tessera::frame {
+
+// How values of one pixel become one. Planes are what a channel of c components keeps in a film tile:
+//   Moments  2c planes: means, then M2 = sum of squared deviations   (variance = M2 / (n - 1))
+//   Sum      c planes: the plain sum                                  (resolve divides by n)
+//   Minimum, Maximum  c planes; empty pixels hold +inf, -inf
+//   Nearest  c planes, the first is the key: the record with the smaller key stays, ties to the lower sample
+//   First    c planes: the record of the lowest sample index stays
+enum class MergeRule : std::uint8_t { Moments, Sum, Minimum, Maximum, Nearest, First };
+
+// Values are on the wire: never renumber.
+enum class Channel : std::uint8_t {
+    Radiance = 0,    // all light that reaches the pixel
+    Direct = 1,      // emission and light after at most one scattering (low-variance path class)
+    Indirect = 2,    // the rest (high-variance path class); Radiance = Direct + Indirect per sample
+    Albedo = 3,      // of the first hit; misses count 0
+    Normal = 4,      // shading normal of the first hit, world; misses count 0
+    Depth = 5,       // distance from the eye along the view direction's axis (z), nearest sample; miss = +inf
+    ObjectIndex = 6, // key = depth, value = scene object id of the nearest first hit (bit pattern of a uint32), 0 = miss
+};
+inline constexpr std::size_t ChannelCount = 7;
+
+struct ChannelInfo {
+    Channel channel;
+    std::string_view name;  // EXR layer and option name
+    MergeRule rule;
+    std::uint32_t components;
+    std::uint32_t plane_count() const { return rule == MergeRule::Moments ? 2 * components : components; }
+};
+
+std::span<const ChannelInfo, ChannelCount> channel_table();
+const ChannelInfo& info(Channel channel);
+std::optional<Channel> channel_by_name(std::string_view name);
+
+class ChannelSet {
+  public:
+    constexpr ChannelSet() = default;
+    constexpr ChannelSet(std::initializer_list<Channel> channels) {
+        for (const Channel channel : channels) insert(channel);
+    }
+    static constexpr ChannelSet from_bits(std::uint32_t bits) {
+        ChannelSet set;
+        set.bits_ = bits & ((1u << ChannelCount) - 1u);
+        return set;
+    }
+    constexpr std::uint32_t bits() const { return bits_; }
+    constexpr bool contains(Channel channel) const { return (bits_ >> static_cast<unsigned>(channel)) & 1u; }
+    constexpr void insert(Channel channel) { bits_ |= 1u << static_cast<unsigned>(channel); }
+    constexpr bool empty() const { return bits_ == 0; }
+    std::uint32_t plane_count() const;                 // over all channels in the set
+    std::uint32_t first_plane(Channel channel) const;  // planes are in the order of the enum
+    friend constexpr bool operator==(ChannelSet, ChannelSet) = default;
+
+  private:
+    std::uint32_t bits_ = 0;
+};
+
+}  // namespace tessera::frame

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mediator/base/rect.h"
+#include "mediator/frame/channels.h"
+#include "mediator/frame/sample_block.h"
+
+namespace tessera::frame {
+
+// Statistics of one block of samples over one tile: per pixel a count of accepted samples, and float32 planes, one
+// after another, each in raster order. The only form in which light travels and is merged.
+class FilmTile {
+  public:
+    FilmTile() = default;
+    FilmTile(Rect rect, SampleBlock block, ChannelSet channels);  // no samples yet: empty()
+
+    Rect rect;
+    SampleBlock block;
+    ChannelSet channels;
+    std::vector<std::uint32_t> counts;  // accepted samples per pixel; block.count() less the non-finite ones
+    std::vector<float> planes;          // channels.plane_count() x pixels
+    std::uint64_t nonfinite_samples = 0;
+
+    std::size_t pixel_count() const { return rect.pixel_count(); }
+    std::span<float> plane(std::uint32_t index) {
+        return {planes.data() + index * pixel_count(), pixel_count()};
+    }
+    std::span<const float> plane(std::uint32_t index) const {
+        return {planes.data() + index * pixel_count(), pixel_count()};
+    }
+    std::size_t byte_size() const { return counts.size() * 4 + planes.size() * 4; }
+};
+
+bool identical_bits(const FilmTile& a, const FilmTile& b);
+
+}  // namespace tessera::frame

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "mediator/frame/film_tile.h"
+
+namespace tessera::frame {
+
+// Writes one sample (block of level 0) of one pixel: `values` holds the components of every channel of the tile in
+// the order of the enum. Non-finite radiance (Moments and Sum channels) rejects the whole sample: it is counted in
+// nonfinite_samples, never merged; an infinite depth is legal.
+void put_sample(FilmTile& tile, std::size_t pixel, std::span<const float> values);
+
+// into := merge(into, later). Both cover the same rect and channels; `later` starts where `into` ends or anywhere
+// after it. Siblings with equal counts need no division: mean = (a + b) / 2, M2 = M2a + M2b + (a - b)^2 n / 2 with n
+// samples in each half; other counts use the general form (Chan et al. 1979). The one merge in the system:
+// compiled once, without contraction, so that node and master get the same bits.
+void merge(FilmTile& into, const FilmTile& later);
+
+// The numeric core, exposed for its tests; `Real` is float in a film and double as the reference.
+template <class Real>
+struct Moments {
+    std::uint64_t n = 0;
+    Real mean = 0, m2 = 0;
+};
+template <class Real>
+Moments<Real> merged(const Moments<Real>& a, const Moments<Real>& b);
+
+}  // namespace tessera::frame

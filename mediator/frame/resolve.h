@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "mediator/base/hash.h"
+#include "mediator/frame/film_tile.h"
+#include "mediator/frame/image.h"
+
+namespace tessera::frame {
+
+// The one place that divides by n. Pixels without samples resolve to 0 (+inf for depth).
+Image resolve(const FilmTile& film, Channel channel);            // mean, sum / n, or the value itself
+Image resolve_variance_of_mean(const FilmTile& film, Channel channel);  // M2 / (n (n - 1)); 0 for n < 2
+Image resolve_counts(const FilmTile& film);                      // accepted samples per pixel, 1 component
+
+// BLAKE2b over the merged planes: size, then counts, then each channel's planes in raster order; little-endian.
+// Independent of tiles, nodes and time.
+Hash256 film_hash(const FilmTile& film);
+
+}  // namespace tessera::frame

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "mediator/base/error.h"
+#include "mediator/net/channel.h"
+
+namespace tessera::net {
+
+// A CURVE key pair, Z85 text of 40 characters each.
+struct KeyPair {
+    std::string public_key, secret_key;
+};
+KeyPair make_key_pair();
+
+struct AllowedKey {
+    std::string name;  // unique
+    Role role = Role::None;
+    std::string public_key;
+};
+
+// What a client needs: its own pair and the master's public key.
+struct ClientKeys {
+    KeyPair own;
+    std::string server_public_key;
+};
+
+// A folder: master.public, master.secret (0600), allowed.toml (name, role, key), and per local name NAME.public,
+// NAME.secret (0600). Every read throws Error{Refused} for a secret that others may read, with the chmod that helps.
+class KeyDirectory {
+  public:
+    explicit KeyDirectory(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    void create() const;  // master pair and one pair per role; throws Error when a master pair is there already
+    void add(const std::string& name, Role role, const std::filesystem::path& export_folder) const;
+    void revoke(const std::string& name) const;
+    std::vector<AllowedKey> allowed() const;
+    KeyPair master() const;
+    // NAME's pair with the master's public key, from a full folder or an exported one.
+    ClientKeys client(const std::string& name) const;
+    const std::filesystem::path& folder() const { return folder_; }
+
+  private:
+    std::filesystem::path folder_;
+};
+
+}  // namespace tessera::net

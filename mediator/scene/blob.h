@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mediator/base/hash.h"
+
+namespace tessera::scene {
+
+// Immutable bytes addressed by their BLAKE2b-256; shared by reference, never copied inside a process.
+// The data is followed by 16 readable zero bytes (Embree reads past the last vertex).
+class Blob {
+  public:
+    explicit Blob(std::span<const std::byte> data);       // copies once and hashes
+    Blob(std::vector<std::byte> data, const Hash256& hash);  // takes over; the caller has verified the hash
+
+    const Hash256& hash() const { return hash_; }
+    std::span<const std::byte> bytes() const { return {storage_.data(), byte_size_}; }
+    template <class T>
+    std::span<const T> as() const {  // a trailing partial element is not part of the span
+        return {reinterpret_cast<const T*>(storage_.data()), byte_size_ / sizeof(T)};
+    }
+
+  private:
+    std::vector<std::byte> storage_;
+    std::size_t byte_size_ = 0;
+    Hash256 hash_;
+};
+
+using BlobPtr = std::shared_ptr<const Blob>;
+
+// What a scene object holds instead of the bytes.
+struct BlobRef {
+    Hash256 hash;
+    std::uint64_t byte_size = 0;
+
+    bool empty() const { return byte_size == 0; }
+    friend auto operator<=>(const BlobRef&, const BlobRef&) = default;
+};
+
+inline BlobRef reference(const Blob& blob) { return {blob.hash(), blob.bytes().size()}; }
+
+// Where blobs are found by hash. Thread-safe. In one process all parts share one store, so a blob exists once.
+class BlobStore {
+  public:
+    BlobPtr insert(BlobPtr blob);  // returns the one already there, if any
+    BlobPtr insert(std::span<const std::byte> data);
+    BlobPtr find(const Hash256& hash) const;  // null when absent
+    std::size_t erase_unused();               // drops blobs that only the store holds; returns their bytes
+    std::size_t byte_size() const;
+    std::size_t count() const;
+
+  private:
+    mutable std::mutex mutex_;  // protects everything below
+    std::map<Hash256, BlobPtr> blobs_;
+    std::size_t byte_size_ = 0;
+};
+
+}  // namespace tessera::scene

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "mediator/base/hash.h"
+#include "mediator/base/ids.h"
+#include "mediator/scene/objects.h"
+
+namespace tessera::scene {
+
+struct Create {
+    ObjectId id;
+    Object object;
+};
+// Only the fields in the mask mean anything (see Fields<T>); the object's alternative is the kind.
+struct Update {
+    ObjectId id;
+    std::uint32_t mask = 0;
+    Object fields;
+};
+struct Remove {
+    ObjectId id;
+};
+using Entry = std::variant<Create, Update, Remove>;
+
+ObjectId id(const Entry& entry);
+
+// What leads from one version to the next; a value. A snapshot is a change list from nothing (`from.number` = 0).
+// Each object has at most one entry; their order means nothing, since references are checked on the whole.
+struct ChangeList {
+    Version from, to;
+    std::vector<Entry> entries;
+    Hash128 state_hash;  // of the scene at `to`: the sum over objects of one hash each
+
+    bool is_snapshot() const { return from.number == 0; }
+};
+
+// What a client wants changed. (session, sequence) makes a resent edit harmless.
+struct Edit {
+    SessionId session;
+    std::uint64_t sequence = 0;
+    Version base;
+    std::vector<Entry> entries;
+};
+
+}  // namespace tessera::scene

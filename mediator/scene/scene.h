@@ -1,0 +1,56 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "mediator/base/error.h"
+#include "mediator/base/hash.h"
+#include "mediator/scene/change_list.h"
+
+namespace tessera::scene {
+
+// The state at one version: objects by id, in id order. Copies share objects, so the editor can write v+1 while
+// readers hold v. Not synchronised: one writer, or many readers.
+class Scene {
+  public:
+    Version version() const { return version_; }
+    Hash128 state_hash() const { return state_hash_; }
+    const Object* find(ObjectId id) const;  // null when absent
+    template <class T>
+    const T* find_as(ObjectId id) const {
+        const Object* object = find(id);
+        return object ? std::get_if<T>(object) : nullptr;
+    }
+    const std::map<ObjectId, std::shared_ptr<const Object>>& objects() const { return objects_; }
+
+    // Applies in full or not at all. Fails with InvalidInput when `from` is not this version (a snapshot replaces
+    // everything), an id is missing or taken, a kind differs, or the resulting state hash is not the one promised.
+    Expected<void> apply(const ChangeList& changes);
+
+    // The same without version and hash checks: the authority's and the editor's way.
+    Expected<void> apply_entries(const std::vector<Entry>& entries);
+    void set_version(Version version) { version_ = version; }
+
+  private:
+    Expected<void> apply_entry(const Entry& entry);
+
+    Version version_;
+    Hash128 state_hash_;
+    std::map<ObjectId, std::shared_ptr<const Object>> objects_;
+};
+
+// The hash of one object at its id; the state hash is their sum.
+Hash128 object_hash(ObjectId id, const Object& object);
+
+// A change list from nothing to `scene`: the late joiner's way in, through the same code as every edit.
+ChangeList snapshot(const Scene& scene);
+
+// What leads from a to b, field by field; versions are theirs.
+ChangeList difference(const Scene& a, const Scene& b);
+
+// Blobs that the objects refer to, each once.
+std::vector<BlobRef> referenced_blobs(const Scene& scene);
+std::vector<BlobRef> referenced_blobs(const Object& object);
+
+}  // namespace tessera::scene

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <limits>
+
+#include "mediator/base/ids.h"
+#include "mediator/base/rect.h"
+#include "mediator/frame/channels.h"
+
+namespace tessera::view {
+
+// A pinhole with any frustum: edges of the picture at distance 1 in front of the eye, so off-axis is the normal case.
+struct CameraPose {
+    glm::dmat4 world_from_camera{1.0};  // rigid; camera looks along -z, y up
+    double left = -1.0, right = 1.0, bottom = -1.0, top = 1.0;
+    friend bool operator==(const CameraPose&, const CameraPose&) = default;
+};
+
+CameraPose perspective(const glm::dmat4& world_from_camera, double vertical_fov, double aspect_ratio);
+
+enum class Eye : std::uint8_t { Mono, Left, Right };
+enum class PixelFilterKind : std::uint8_t { Box, Gaussian, BlackmanHarris };
+
+// Done by filter importance sampling: a sample counts for its own pixel alone. Radius in pixels: box 0.5;
+// gaussian 1.5 (sigma = radius / 3); Blackman-Harris 1.5.
+struct PixelFilter {
+    PixelFilterKind kind = PixelFilterKind::Box;
+    float radius = 0.5f;
+    friend bool operator==(const PixelFilter&, const PixelFilter&) = default;
+};
+
+inline constexpr std::uint32_t UnlimitedBounces = std::numeric_limits<std::uint32_t>::max();
+
+// What to render, by value: a sample is a pure function of (scene content, view, pixel, sample index).
+// A new revision means: old film is of no use. A moved camera is a revision, never a scene version.
+struct View {
+    ViewId id;
+    std::uint64_t revision = 1;
+    CameraPose camera;
+    Eye eye = Eye::Mono;
+    std::uint32_t width = 1280, height = 720;  // of the whole picture
+    Rect window{0, 0, 1280, 720};              // the part that is rendered (crop)
+    std::uint64_t seed = 0;
+    std::uint32_t max_bounces = 8;  // as in Cycles: 0 = direct light only
+    PixelFilter pixel_filter;
+    frame::ChannelSet channels;
+    friend bool operator==(const View&, const View&) = default;
+};
+
+}  // namespace tessera::view

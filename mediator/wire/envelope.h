@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "mediator/base/error.h"
+#include "mediator/wire/messages.h"
+
+namespace tessera::wire {
+
+// Bytes of the control link. Decoding takes anything: what is malformed, out of range, over a limit of entries or of
+// another protocol is an Error{InvalidInput} with a phrase that says what. Never throws for content.
+std::vector<std::byte> encode(const ControlMessage& message);
+Expected<ControlMessage> decode_control(std::span<const std::byte> bytes);
+
+// Bytes of the bulk link.
+std::vector<std::byte> encode(const BulkMessage& message);
+Expected<BulkMessage> decode_bulk(std::span<const std::byte> bytes);
+
+// Content of blobs that hold scene changes.
+std::vector<std::byte> encode(const scene::ChangeList& changes);
+Expected<scene::ChangeList> decode_change_list(std::span<const std::byte> bytes);
+std::vector<std::byte> encode(const scene::Edit& edit);
+Expected<scene::Edit> decode_edit(std::span<const std::byte> bytes);
+
+// True when the encoded message fits the control link (64 KiB); else send it as a blob.
+bool fits_control(const ControlMessage& message);
+
+}  // namespace tessera::wire
