@@ -53,10 +53,10 @@ std::string to_hex(const Hash128& hash);
 
 template <>
 struct std::hash<tessera::Hash256> {
-    std::size_t operator()(const tessera::Hash256& hash) const noexcept {
+    std::size_t operator()(const tessera::Hash256& key) const noexcept {
         std::size_t value = 0;
         for (std::size_t i = 0; i < sizeof value; ++i) {
-            value |= static_cast<std::size_t>(hash.bytes[i]) << (8 * i);
+            value |= static_cast<std::size_t>(key.bytes[i]) << (8 * i);
         }
         return value;
     }
