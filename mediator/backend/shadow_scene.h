@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <set>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "mediator/backend/lowering.h"
@@ -14,7 +17,8 @@ struct SceneDelta {
     bool everything = false;         // a snapshot: nothing of before counts
     bool instances_changed = false;  // the flat list has other members; compare by value, not by index
     bool lights_changed = false;     // placed lights: members, places or values
-    std::vector<std::uint32_t> moved_instances;  // indices into lowered().instances, when not instances_changed
+    std::vector<std::uint32_t>
+        moved_instances;  // indices into lowered().instances, when not instances_changed
     struct GeometryChange {
         ObjectId id;
         scene::Fields<scene::Geometry> fields;
@@ -28,22 +32,65 @@ struct SceneDelta {
     std::vector<std::string> ignored_kinds;  // kinds among the entries that no back-end draws (attachments)
 };
 
-// The back-end's mirror: dictionary and dispatch, shared by all back-ends (Schwenk 5.3.2.3). Deltas of consecutive
-// lists add up until take_delta(). The result never depends on how the scene came about.
+// The back-end's mirror: dictionary and dispatch, shared by all back-ends (Schwenk 5.3.2.3). Deltas of
+// consecutive lists add up until take_delta(), and until then rollback() undoes them. The result never
+// depends on how the scene came about: it equals one that was made from a snapshot. Moving a transform costs
+// the instances below it.
 class ShadowScene {
   public:
+    // All of a list or nothing. InvalidInput: what Scene::apply refuses, and what lower() refuses.
     Expected<void> apply(const scene::ChangeList& changes);
     SceneDelta take_delta();
+    void rollback();  // to the state at the last take_delta(); the delta is empty then
 
     const scene::Scene& scene() const { return scene_; }
     const Lowered& lowered() const { return lowered_; }
 
   private:
-    void note(const scene::Entry& entry, const scene::Scene& before);
+    // What one list touches, read off its entries and the scene before it.
+    struct Touched {
+        bool structure = false;  // the flat lists may have other members
+        std::vector<ObjectId> moved_transforms;
+        std::vector<ObjectId> light_values;
+        std::vector<SceneDelta::GeometryChange> changed_geometries;
+        std::vector<ObjectId> created_geometries, removed_geometries, materials, textures;
+        bool background = false, render_origin = false;
+        std::uint32_t entries = 0, relevant = 0;
+        std::set<std::string> ignored_kinds;
+    };
+    // The way back of one list.
+    struct Undo {
+        Version version;
+        std::vector<scene::Entry> inverse;
+        std::vector<ObjectId> moved_transforms;
+        std::optional<scene::Scene> scene;  // instead of the inverse, where everything was replaced
+        std::optional<Lowered> lowered;     // instead of the moves, where the structure changed
+    };
+
+    Touched touch(const scene::ChangeList& changes) const;
+    static void touch_created(Touched& touched, ObjectId id, const scene::Object& object);
+    void touch_updated(Touched& touched, const scene::Update& update) const;
+    static void touch_removed(Touched& touched, ObjectId id, const scene::Object& object);
+    Expected<void> apply_structure(const scene::ChangeList& changes, Undo& undo);
+    void record(const Touched& touched);
+    void record_relowering(const Lowered& before);
+    // Places what hangs below the transforms anew; true when lights are among it.
+    bool move_below(const std::vector<ObjectId>& transforms, std::set<std::uint32_t>& moved);
+    void index_paths();
+    void forget_index();
 
     scene::Scene scene_;
     Lowered lowered_;
     SceneDelta delta_;
+    std::vector<Undo> undo_;
+    std::set<std::uint32_t> moved_;  // becomes delta_.moved_instances
+    std::unordered_map<ObjectId, std::uint32_t>
+        changed_geometries_;  // field bits, since the last take_delta()
+    std::set<ObjectId> created_geometries_, removed_geometries_, materials_, textures_;
+    std::set<std::string> ignored_kinds_;
+
+    bool indexed_ = false;  // the two maps hold, for every transform, what hangs below it
+    std::unordered_map<ObjectId, std::vector<std::uint32_t>> instances_below_, lights_below_;
 };
 
 }  // namespace tessera::backend

@@ -1,0 +1,142 @@
+#include "mediator/backend/lowering.h"
+
+#include <algorithm>
+#include <tuple>
+#include <unordered_map>
+#include <variant>
+
+namespace tessera::backend {
+
+namespace {
+
+using scene::MotionHint;
+
+constexpr std::size_t IdsPerPlacement = 64;  // of paths, on average, before a graph counts as hostile
+
+std::vector<ObjectId> distinct(std::vector<ObjectId> children) {
+    std::sort(children.begin(), children.end());
+    children.erase(std::unique(children.begin(), children.end()), children.end());
+    return children;
+}
+
+// What hangs below a transform, counted once per transform, so that a graph whose sharing doubles at every
+// level is refused before it is unfolded, and branches with nothing to draw are never walked.
+struct Below {
+    double placements = 0;
+    double path_ids = 0;  // elements of all paths, from this transform down
+    std::size_t depth = 0;
+};
+
+class Counting {
+  public:
+    explicit Counting(const scene::Scene& scene) : scene_(scene) {}
+
+    Expected<Below> children(const std::vector<ObjectId>& ids, std::size_t level) {
+        Below sum;
+        for (const ObjectId id : distinct(ids)) {
+            const scene::Object* object = scene_.find(id);
+            if (!object) continue;
+            if (std::holds_alternative<scene::Geometry>(*object) ||
+                std::holds_alternative<scene::Light>(*object)) {
+                sum.placements += 1;
+            } else if (std::holds_alternative<scene::Transform>(*object)) {
+                const Expected<Below> child = transform(id, std::get<scene::Transform>(*object), level + 1);
+                if (!child) return child;
+                sum.placements += child->placements;
+                sum.path_ids += child->path_ids + child->placements;
+                sum.depth = std::max(sum.depth, child->depth + 1);
+            }
+        }
+        if (level + sum.depth > MaxDepth) {
+            return failure(ErrorCode::InvalidInput, "the scene graph is nested deeper than " +
+                                                        std::to_string(MaxDepth) + " transforms; flatten it");
+        }
+        return sum;
+    }
+
+    bool anything_below(ObjectId transform) const { return known_.at(transform).placements > 0; }
+
+  private:
+    Expected<Below> transform(ObjectId id, const scene::Transform& transform, std::size_t level) {
+        const auto [place, fresh] = known_.try_emplace(id, Below{-1});
+        if (!fresh) {
+            if (place->second.placements >= 0) return place->second;
+            return failure(ErrorCode::InvalidInput, "transform " + std::to_string(id.value) + " '" +
+                                                        transform.name +
+                                                        "' contains itself; remove one link of the cycle");
+        }
+        const Expected<Below> below = children(transform.children, level);
+        if (below) known_[id] = *below;
+        return below;
+    }
+
+    const scene::Scene& scene_;
+    std::unordered_map<ObjectId, Below> known_;  // placements < 0: being walked
+};
+
+class Unfolding {
+  public:
+    Unfolding(const scene::Scene& scene, const Counting& counted) : scene_(scene), counted_(counted) {}
+
+    void children(const std::vector<ObjectId>& ids, const glm::dmat4& world, MotionHint hint) {
+        for (const ObjectId id : distinct(ids)) {
+            const scene::Object* object = scene_.find(id);
+            if (!object) continue;
+            if (const auto* geometry = std::get_if<scene::Geometry>(object)) {
+                const MotionHint own = geometry->hint == MotionHint::Unflagged ? hint : geometry->hint;
+                result.instances.push_back({id, world, own, path_});
+            } else if (std::holds_alternative<scene::Light>(*object)) {
+                result.lights.push_back({id, world, path_});
+            } else if (const auto* transform = std::get_if<scene::Transform>(object)) {
+                if (!counted_.anything_below(id)) continue;
+                path_.push_back(id);
+                children(transform->children, world * transform->matrix,
+                         transform->hint == MotionHint::Unflagged ? hint : transform->hint);
+                path_.pop_back();
+            }
+        }
+    }
+
+    Lowered result;
+
+  private:
+    const scene::Scene& scene_;
+    const Counting& counted_;
+    std::vector<ObjectId> path_;
+};
+
+}  // namespace
+
+Expected<Lowered> lower(const scene::Scene& scene, std::size_t limit) {
+    const auto* root = scene.find_as<scene::Root>(scene::RootId);
+    if (!root) return Lowered{};
+
+    Counting counting(scene);
+    const Expected<Below> all = counting.children(root->children, 0);
+    if (!all) return tl::unexpected(all.error());
+    const double most = static_cast<double>(limit);
+    if (all->placements > most || all->path_ids > most * IdsPerPlacement) {
+        return failure(ErrorCode::InvalidInput, "the scene unfolds to more than " + std::to_string(limit) +
+                                                    " instances; share less, or split the scene");
+    }
+    Unfolding unfolding(scene, counting);
+    unfolding.children(root->children, glm::dmat4(1.0), MotionHint::Unflagged);
+    Lowered lowered = std::move(unfolding.result);
+    std::sort(lowered.instances.begin(), lowered.instances.end(), [](const Instance& a, const Instance& b) {
+        return std::tie(a.geometry, a.path) < std::tie(b.geometry, b.path);
+    });
+    std::sort(lowered.lights.begin(), lowered.lights.end(), [](const PlacedLight& a, const PlacedLight& b) {
+        return std::tie(a.light, a.path) < std::tie(b.light, b.path);
+    });
+    return lowered;
+}
+
+glm::dmat4 placement(const scene::Scene& scene, std::span<const ObjectId> path) {
+    glm::dmat4 world(1.0);
+    for (const ObjectId id : path) {
+        if (const auto* transform = scene.find_as<scene::Transform>(id)) world = world * transform->matrix;
+    }
+    return world;
+}
+
+}  // namespace tessera::backend

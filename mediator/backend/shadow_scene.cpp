@@ -1,0 +1,306 @@
+#include "mediator/backend/shadow_scene.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace tessera::backend {
+
+using scene::Fields;
+using scene::Geometry;
+using scene::Object;
+using scene::Root;
+using scene::Transform;
+
+namespace {
+
+template <class Set>
+std::vector<typename Set::value_type> listed(const Set& set) {
+    return {set.begin(), set.end()};
+}
+
+template <class T>
+bool names_only(std::uint32_t mask) {
+    return Fields<T>::from_bits(mask) == Fields<T>(T::Field::Name);
+}
+
+bool is_name_only(const Object& object, std::uint32_t mask) {
+    return std::visit([&]<class T>(const T&) { return names_only<T>(mask); }, object);
+}
+
+std::vector<scene::Entry> inverse(const std::vector<scene::Entry>& entries, const scene::Scene& before) {
+    std::vector<scene::Entry> result;
+    for (const scene::Entry& entry : entries) {
+        const ObjectId id = scene::id(entry);
+        const Object* old = before.find(id);
+        if (std::holds_alternative<scene::Create>(entry)) {
+            result.push_back(scene::Remove{id});
+        } else if (old && std::holds_alternative<scene::Update>(entry)) {
+            result.push_back(scene::Update{id, std::get<scene::Update>(entry).mask, *old});
+        } else if (old) {
+            result.push_back(scene::Create{id, *old});
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+Expected<void> ShadowScene::apply(const scene::ChangeList& changes) {
+    const Touched touched = touch(changes);
+    Undo undo;
+    undo.version = scene_.version();
+    if (touched.structure || changes.is_snapshot()) {
+        if (Expected<void> done = apply_structure(changes, undo); !done) return done;
+    } else {
+        undo.inverse = inverse(changes.entries, scene_);
+        undo.moved_transforms = touched.moved_transforms;
+        if (Expected<void> done = scene_.apply(changes); !done) return done;
+        if (move_below(touched.moved_transforms, moved_)) delta_.lights_changed = true;
+    }
+    record(touched);
+    if (undo.lowered && !changes.is_snapshot()) record_relowering(*undo.lowered);
+    undo_.push_back(std::move(undo));
+    return {};
+}
+
+Expected<void> ShadowScene::apply_structure(const scene::ChangeList& changes, Undo& undo) {
+    if (changes.is_snapshot()) {
+        scene::Scene fresh;
+        if (Expected<void> done = fresh.apply(changes); !done) return done;
+        Expected<Lowered> lowered = lower(fresh);
+        if (!lowered) return tl::unexpected(lowered.error());
+        undo.scene = std::exchange(scene_, std::move(fresh));
+        undo.lowered = std::exchange(lowered_, std::move(*lowered));
+        delta_ = {};
+        delta_.everything = delta_.instances_changed = delta_.lights_changed = true;
+        delta_.background_changed = delta_.render_origin_changed = true;
+        for (auto* ids : {&created_geometries_, &removed_geometries_, &materials_, &textures_}) ids->clear();
+        changed_geometries_.clear();
+        moved_.clear();
+    } else {
+        undo.inverse = inverse(changes.entries, scene_);
+        if (Expected<void> done = scene_.apply(changes); !done) return done;
+        Expected<Lowered> lowered = lower(scene_);
+        if (!lowered) {
+            (void)scene_.apply_entries(undo.inverse);  // what was just there can be restored
+            scene_.set_version(undo.version);
+            return tl::unexpected(lowered.error());
+        }
+        undo.lowered = std::exchange(lowered_, std::move(*lowered));
+    }
+    forget_index();
+    return {};
+}
+
+void ShadowScene::record(const Touched& touched) {
+    for (const ObjectId id : touched.created_geometries) {
+        if (removed_geometries_.erase(id) == 0) created_geometries_.insert(id);
+        changed_geometries_[id] = Fields<Geometry>::all().bits();
+    }
+    for (const SceneDelta::GeometryChange& change : touched.changed_geometries) {
+        changed_geometries_[change.id] |= change.fields.bits();
+    }
+    for (const ObjectId id : touched.removed_geometries) {
+        changed_geometries_.erase(id);
+        if (created_geometries_.erase(id) == 0) removed_geometries_.insert(id);
+    }
+    materials_.insert(touched.materials.begin(), touched.materials.end());
+    textures_.insert(touched.textures.begin(), touched.textures.end());
+    ignored_kinds_.insert(touched.ignored_kinds.begin(), touched.ignored_kinds.end());
+    delta_.background_changed |= touched.background;
+    delta_.render_origin_changed |= touched.render_origin;
+    delta_.entries += touched.entries;
+    delta_.relevant += touched.relevant;
+    for (const ObjectId id : touched.light_values) {
+        delta_.lights_changed |= std::any_of(lowered_.lights.begin(), lowered_.lights.end(),
+                                             [&](const PlacedLight& placed) { return placed.light == id; });
+    }
+}
+
+void ShadowScene::record_relowering(const Lowered& before) {
+    const auto same_member = [](const Instance& a, const Instance& b) {
+        return a.geometry == b.geometry && a.path == b.path && a.hint == b.hint;
+    };
+    const auto same_light = [](const PlacedLight& a, const PlacedLight& b) {
+        return a.light == b.light && a.path == b.path && a.world_from_light == b.world_from_light;
+    };
+    const auto& now = lowered_.instances;
+    if (std::equal(now.begin(), now.end(), before.instances.begin(), before.instances.end(), same_member)) {
+        for (std::uint32_t i = 0; i < now.size(); ++i) {
+            if (now[i].world_from_object != before.instances[i].world_from_object) moved_.insert(i);
+        }
+    } else {
+        delta_.instances_changed = true;
+    }
+    if (!std::equal(lowered_.lights.begin(), lowered_.lights.end(), before.lights.begin(),
+                    before.lights.end(), same_light)) {
+        delta_.lights_changed = true;
+    }
+}
+
+bool ShadowScene::move_below(const std::vector<ObjectId>& transforms, std::set<std::uint32_t>& moved) {
+    if (transforms.empty()) return false;
+    index_paths();
+    bool lights = false;
+    for (const ObjectId transform : transforms) {
+        if (const auto below = instances_below_.find(transform); below != instances_below_.end()) {
+            for (const std::uint32_t i : below->second) {
+                Instance& instance = lowered_.instances[i];
+                instance.world_from_object = placement(scene_, instance.path);
+                moved.insert(i);
+            }
+        }
+        if (const auto below = lights_below_.find(transform); below != lights_below_.end()) {
+            for (const std::uint32_t i : below->second) {
+                lowered_.lights[i].world_from_light = placement(scene_, lowered_.lights[i].path);
+                lights = true;
+            }
+        }
+    }
+    return lights;
+}
+
+void ShadowScene::index_paths() {
+    if (indexed_) return;
+    for (std::uint32_t i = 0; i < lowered_.instances.size(); ++i) {
+        for (const ObjectId id : lowered_.instances[i].path) instances_below_[id].push_back(i);
+    }
+    for (std::uint32_t i = 0; i < lowered_.lights.size(); ++i) {
+        for (const ObjectId id : lowered_.lights[i].path) lights_below_[id].push_back(i);
+    }
+    indexed_ = true;
+}
+
+void ShadowScene::forget_index() {
+    indexed_ = false;
+    instances_below_.clear();
+    lights_below_.clear();
+}
+
+SceneDelta ShadowScene::take_delta() {
+    if (!delta_.instances_changed) delta_.moved_instances = listed(std::exchange(moved_, {}));
+    for (const auto& [id, fields] : changed_geometries_) {
+        delta_.geometries.push_back({id, Fields<Geometry>::from_bits(fields)});
+    }
+    std::sort(delta_.geometries.begin(), delta_.geometries.end(),
+              [](const auto& a, const auto& b) { return a.id < b.id; });
+    delta_.removed_geometries = listed(removed_geometries_);
+    delta_.materials = listed(materials_);
+    delta_.textures = listed(textures_);
+    delta_.ignored_kinds = listed(ignored_kinds_);
+    for (auto* ids : {&created_geometries_, &removed_geometries_, &materials_, &textures_}) ids->clear();
+    ignored_kinds_.clear();
+    changed_geometries_.clear();
+    moved_.clear();
+    undo_.clear();
+    return std::exchange(delta_, {});
+}
+
+void ShadowScene::rollback() {
+    while (!undo_.empty()) {
+        Undo undo = std::move(undo_.back());
+        undo_.pop_back();
+        if (undo.scene) {
+            scene_ = std::move(*undo.scene);
+        } else {
+            (void)scene_.apply_entries(undo.inverse);  // cannot fail: it leads to where we were
+            scene_.set_version(undo.version);
+        }
+        if (undo.lowered) {
+            lowered_ = std::move(*undo.lowered);
+            forget_index();
+        } else {
+            std::set<std::uint32_t> moved;
+            move_below(undo.moved_transforms, moved);
+        }
+    }
+    take_delta();
+}
+
+ShadowScene::Touched ShadowScene::touch(const scene::ChangeList& changes) const {
+    Touched touched;
+    touched.entries = static_cast<std::uint32_t>(changes.entries.size());
+    for (const scene::Entry& entry : changes.entries) {
+        if (const auto* create = std::get_if<scene::Create>(&entry)) {
+            touch_created(touched, create->id, create->object);
+        } else if (const auto* update = std::get_if<scene::Update>(&entry)) {
+            touch_updated(touched, *update);
+        } else if (const Object* object = scene_.find(scene::id(entry))) {
+            touch_removed(touched, scene::id(entry), *object);
+        }
+    }
+    return touched;
+}
+
+void ShadowScene::touch_created(Touched& touched, ObjectId id, const Object& object) {
+    ++touched.relevant;
+    switch (scene::kind(object)) {
+        case scene::ObjectKind::Root:
+            touched.structure = touched.background = touched.render_origin = true;
+            break;
+        case scene::ObjectKind::Geometry:
+            touched.created_geometries.push_back(id);
+            touched.structure = true;
+            break;
+        case scene::ObjectKind::Transform:
+        case scene::ObjectKind::Light:
+            touched.structure = true;
+            break;
+        case scene::ObjectKind::Material:
+            touched.materials.push_back(id);
+            break;
+        case scene::ObjectKind::Texture:
+            touched.textures.push_back(id);
+            break;
+        case scene::ObjectKind::Background:
+            touched.background = true;
+            break;
+        case scene::ObjectKind::Camera:
+            --touched.relevant;
+            break;
+        case scene::ObjectKind::Attachment:
+            --touched.relevant;
+            touched.ignored_kinds.insert(scene::name(scene::ObjectKind::Attachment));
+            break;
+    }
+}
+
+void ShadowScene::touch_removed(Touched& touched, ObjectId id, const Object& object) {
+    touch_created(touched, id, object);
+    if (std::holds_alternative<Geometry>(object)) {
+        touched.created_geometries.pop_back();
+        touched.removed_geometries.push_back(id);
+    }
+}
+
+void ShadowScene::touch_updated(Touched& touched, const scene::Update& update) const {
+    const std::uint32_t mask = update.mask;
+    if (scene::kind(update.fields) == scene::ObjectKind::Attachment) {
+        touched.ignored_kinds.insert(scene::name(scene::ObjectKind::Attachment));
+        return;
+    }
+    if (is_name_only(update.fields, mask) || std::holds_alternative<scene::Camera>(update.fields)) return;
+    ++touched.relevant;
+    if (std::holds_alternative<Root>(update.fields)) {
+        const auto fields = Fields<Root>::from_bits(mask);
+        touched.structure |= fields.contains(Root::Field::Children);
+        touched.background |= fields.contains(Root::Field::Background);
+        touched.render_origin |= fields.contains(Root::Field::RenderOrigin);
+    } else if (std::holds_alternative<Transform>(update.fields)) {
+        const auto fields = Fields<Transform>::from_bits(mask);
+        touched.structure |= fields.intersects({Transform::Field::Children, Transform::Field::Hint});
+        if (fields.contains(Transform::Field::Matrix)) touched.moved_transforms.push_back(update.id);
+    } else if (std::holds_alternative<Geometry>(update.fields)) {
+        const auto fields = Fields<Geometry>::from_bits(mask);
+        touched.structure |= fields.contains(Geometry::Field::Hint);
+        touched.changed_geometries.push_back({update.id, fields});
+    } else if (std::holds_alternative<scene::Light>(update.fields)) {
+        touched.light_values.push_back(update.id);
+    } else {
+        touch_created(touched, update.id, update.fields);
+        --touched.relevant;
+    }
+}
+
+}  // namespace tessera::backend
