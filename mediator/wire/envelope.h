@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,9 @@ Expected<ControlMessage> decode_control(std::span<const std::byte> bytes);
 // Bytes of the bulk link.
 std::vector<std::byte> encode(const BulkMessage& message);
 Expected<BulkMessage> decode_bulk(std::span<const std::byte> bytes);
+// The alternative of BulkMessage that these bytes say they are, by their header alone; none when they are no bulk
+// message. Lets a loop pass film on without decoding it.
+std::optional<std::size_t> bulk_kind(std::span<const std::byte> bytes);
 
 // Content of blobs that hold scene changes.
 std::vector<std::byte> encode(const scene::ChangeList& changes);
