@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mediator/base/clock.h"
+#include "mediator/base/error.h"
 #include "mediator/scene/blob.h"
 #include "mediator/wire/messages.h"
 

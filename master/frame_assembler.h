@@ -1,0 +1,37 @@
+#pragma once
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "mediator/frame/block_forest.h"
+
+namespace tessera::master {
+
+// The film of one view: a block forest per tile. What does not fit the frame (other rect, channels, samples
+// beyond spp) is refused, whoever sent it. One thread.
+class FrameAssembler {
+  public:
+    FrameAssembler(std::vector<Rect> tiles, frame::ChannelSet channels, std::uint64_t spp);
+
+    enum class Outcome { Merged, Duplicate, Contradiction, Misfit };
+    struct Result {
+        Outcome outcome = Outcome::Misfit;
+        std::uint32_t tile = 0;
+    };
+    Result insert(frame::FilmTile block);
+
+    std::uint32_t tile_count() const { return static_cast<std::uint32_t>(tiles_.size()); }
+    frame::FilmTile merged_tile(std::uint32_t tile) const;  // without samples: zero counts
+    std::vector<frame::SampleBlock> roots(std::uint32_t tile) const { return forests_[tile].roots(); }
+    std::uint64_t byte_size() const;
+
+  private:
+    std::vector<Rect> tiles_;
+    frame::ChannelSet channels_;
+    std::uint64_t spp_;
+    std::vector<frame::BlockForest> forests_;
+    std::map<std::pair<std::int32_t, std::int32_t>, std::uint32_t> by_corner_;
+};
+
+}  // namespace tessera::master

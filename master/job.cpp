@@ -1,0 +1,60 @@
+#include "master/job.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mediator/net/channel.h"
+
+namespace tessera::master {
+
+namespace {
+
+constexpr std::uint32_t MaxEdge = 65536;
+constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 28;
+
+bool finite(const view::CameraPose& camera) {
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 4; ++row) {
+            if (!std::isfinite(camera.world_from_camera[column][row])) return false;
+        }
+    }
+    return std::isfinite(camera.left) && std::isfinite(camera.right) && std::isfinite(camera.bottom) &&
+           std::isfinite(camera.top) && camera.left < camera.right && camera.bottom < camera.top;
+}
+
+}  // namespace
+
+std::string problem_of(const wire::StartJob& request) {
+    const view::View& view = request.view;
+    if (view.width == 0 || view.height == 0 || view.width > MaxEdge || view.height > MaxEdge) {
+        return "picture size " + std::to_string(view.width) + "x" + std::to_string(view.height) +
+               " is not between 1x1 and 65536x65536";
+    }
+    const Rect whole{0, 0, static_cast<std::int32_t>(view.width), static_cast<std::int32_t>(view.height)};
+    if (view.window.empty() || intersection(view.window, whole) != view.window) {
+        return "the crop window reaches outside the picture: choose one inside it";
+    }
+    if (view.window.pixel_count() > MaxPixels) return "the window has more than 2^28 pixels: crop it";
+    if (!finite(view.camera)) return "the camera is not finite or has an empty frustum";
+    if (view.channels.empty()) return "no channel is asked for: ask for radiance at least";
+    if (!(view.pixel_filter.radius > 0.0f) || view.pixel_filter.radius > 16.0f) {
+        return "the pixel filter's radius is not between 0 and 16 pixels";
+    }
+    if (request.spp == 0 || request.spp > MaxSamplesPerPixel)
+        return "samples per pixel are not between 1 and 2^31";
+    if (request.time_limit < Duration::zero()) return "the time limit is negative";
+    return {};
+}
+
+std::uint32_t choose_tile_edge(const wire::StartJob& request) {
+    constexpr std::uint32_t Large = 64, Small = 32, EnoughTiles = 64;
+    const view::View& view = request.view;
+    std::uint32_t edge = request.tile;
+    if (edge == 0) edge = view.window.pixel_count() >= EnoughTiles * Large * Large ? Large : Small;
+    const std::size_t bytes_per_pixel = 4 * (view.channels.plane_count() + 1);
+    const auto limit =
+        static_cast<std::uint32_t>(std::sqrt(double(net::BulkLimit - 4096) / double(bytes_per_pixel)));
+    return std::clamp(edge, 1u, limit);
+}
+
+}  // namespace tessera::master

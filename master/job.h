@@ -1,0 +1,50 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "master/schedule/scheduler.h"
+#include "mediator/wire/messages.h"
+
+namespace tessera::master {
+
+// One frame that a client asked for, from StartJob to JobDone.
+struct Job {
+    wire::StartJob request;  // with the view as it is rendered: id, revision
+    SessionId session;
+    Version version;  // of the scene
+    std::uint32_t tile_edge = 32;
+    wire::JobPhase phase = wire::JobPhase::WaitingForNodes;
+    TimePoint started{};  // StartJob came
+    TimePoint without_nodes_since{};
+    TimePoint rendering_since{};
+    std::optional<TimePoint> deadline;
+    std::optional<TimePoint> first_picture;
+    std::optional<TimePoint> ended;
+    std::optional<Scheduler> scheduler;       // from the phase Rendering on
+    std::optional<wire::JobOutcome> outcome;  // decided; units may still be on their way back
+    TimePoint outcome_at{};
+    std::string message;
+    std::map<NodeId, wire::NodeSummary> nodes;  // all that took part, gone ones too
+    std::uint32_t failures = 0;                 // units a back-end failed on
+    std::uint64_t rays = 0, nonfinite_samples = 0;
+    std::uint64_t triangles = 0, instances = 0, lights = 0;
+    wire::WireBytes bytes_before;  // the master's counters at the start
+    TimePoint last_progress_sent{};
+    std::uint32_t tiles_requested = 0, tiles_sent = 0;  // Delivering
+
+    bool rendering() const { return phase == wire::JobPhase::Rendering; }
+};
+
+// Checks what a client asks for: sizes, finite camera, window inside the picture, channels, counts. Empty =
+// fine.
+std::string problem_of(const wire::StartJob& request);
+
+// The edge of the tiles: what was asked for, else 64 for large pictures and 32 for small ones; never so large
+// that the film of one tile exceeds a bulk message.
+std::uint32_t choose_tile_edge(const wire::StartJob& request);
+
+inline constexpr std::uint64_t MaxSamplesPerPixel = std::uint64_t{1} << 31;  // counts are 32 bits
+
+}  // namespace tessera::master

@@ -1,0 +1,343 @@
+#include "master/job_runner.h"
+
+#include <algorithm>
+
+namespace tessera::master {
+
+namespace {
+
+constexpr std::uint64_t UnitsPerJob = std::uint64_t{1} << 40;  // ids of two jobs never meet
+
+void add(wire::UnitCounts& to, const wire::UnitCounts& from) {
+    to.issued += from.issued;
+    to.reissued += from.reissued;
+    to.merged += from.merged;
+    to.duplicate += from.duplicate;
+    to.cancelled += from.cancelled;
+    to.refused += from.refused;
+    to.lost += from.lost;
+}
+
+}  // namespace
+
+JobRunner::JobRunner(const JobSettings& settings, NodeTable& nodes, SessionTable& sessions, Outbox& outbox,
+                     EventSink events, std::function<void()> wake)
+    : settings_(settings),
+      nodes_(nodes),
+      sessions_(sessions),
+      outbox_(outbox),
+      events_(std::move(events)),
+      merger_(std::move(wake)) {}
+
+std::optional<SessionId> JobRunner::session() const {
+    if (!job_) return std::nullopt;
+    return job_->session;
+}
+
+void JobRunner::start(SessionId session, wire::StartJob request, Version version, TimePoint now) {
+    request.view.id = ViewId{next_view_++};
+    request.view.revision = 1;
+    if (request.time_limit > Duration::zero() && request.spp == 0) request.spp = MaxSamplesPerPixel;
+    job_.emplace();
+    job_->request = std::move(request);
+    job_->session = session;
+    job_->version = version;
+    job_->tile_edge = choose_tile_edge(job_->request);
+    job_->started = job_->without_nodes_since = now;
+    job_->bytes_before = bytes_before_;
+    tick(now);
+}
+
+bool JobRunner::suits(const NodeRecord& node) const {
+    const wire::StartJob& request = job_->request;
+    const bool has_channels = (request.view.channels.bits() & ~node.hello.channels.bits()) == 0;
+    return !node.leaving && !node.stuck && node.bulk && has_channels &&
+           (!request.reproducible || node.hello.reproducible);
+}
+
+bool JobRunner::ready(const NodeRecord& node) const {
+    return suits(node) && node.reported == job_->version && node.state.version == job_->version;
+}
+
+void JobRunner::tick(TimePoint now) {
+    take_merger_output(now);
+    if (!job_) return;
+    switch (job_->phase) {
+        case wire::JobPhase::WaitingForNodes:
+        case wire::JobPhase::Syncing:
+            wait_for_nodes(now);
+            break;
+        case wire::JobPhase::Rendering:
+            render(now);
+            break;
+        case wire::JobPhase::Delivering:
+            deliver();
+            break;
+    }
+    if (job_ && job_->phase != wire::JobPhase::Delivering) send_progress(now);
+}
+
+void JobRunner::wait_for_nodes(TimePoint now) {
+    std::uint32_t suitable = 0, prepared = 0;
+    for (const auto& [id, node] : nodes_.all()) {
+        suitable += suits(node) ? 1 : 0;
+        prepared += ready(node) ? 1 : 0;
+    }
+    const std::uint32_t wanted = std::max(1u, job_->request.wait_nodes);
+    if (prepared >= wanted) return begin_rendering(now);
+    if (suitable >= wanted) {
+        job_->phase = wire::JobPhase::Syncing;
+        job_->without_nodes_since = now;
+        return;
+    }
+    job_->phase = wire::JobPhase::WaitingForNodes;
+    if (now - job_->without_nodes_since >= job_->request.wait_limit) {
+        decide(wire::JobOutcome::NoNodes,
+               std::to_string(suitable) + " of " + std::to_string(wanted) +
+                   " nodes came: start more nodes or ask for fewer with --wait-nodes",
+               now);
+        begin_delivery(now);
+    }
+}
+
+void JobRunner::begin_rendering(TimePoint now) {
+    const wire::StartJob& request = job_->request;
+    job_->phase = wire::JobPhase::Rendering;
+    job_->rendering_since = now;
+    if (request.time_limit > Duration::zero()) job_->deadline = now + request.time_limit;
+    // A batch frame shows its first picture at 4 samples; against the clock every round counts.
+    const PlanSettings plan{.window = request.view.window,
+                            .tile = job_->tile_edge,
+                            .spp = request.spp,
+                            .policy = request.policy,
+                            .first_level = job_->deadline ? 0u : 2u};
+    job_->scheduler.emplace(plan, request.view.id, request.view.revision, job_->version, UnitId{next_unit_},
+                            job_->deadline);
+    next_unit_ += UnitsPerJob;
+    merger_.open(request.view.id, request.view.revision,
+                 FrameAssembler(job_->scheduler->tiles(), request.view.channels, request.spp));
+    render(now);
+}
+
+void JobRunner::render(TimePoint now) {
+    Scheduler& scheduler = *job_->scheduler;
+    if (!job_->outcome) {
+        if (scheduler.complete()) {
+            decide(wire::JobOutcome::Complete, {}, now);
+        } else if (job_->deadline && now >= *job_->deadline) {
+            decide(wire::JobOutcome::TimeUp, {}, now);
+        } else {
+            collect_overdue(now);
+            deal(now);
+        }
+    }
+    if (job_->outcome && (scheduler.idle() || now - job_->outcome_at > settings_.stop_grace))
+        begin_delivery(now);
+}
+
+void JobRunner::deal(TimePoint now) {
+    std::vector<NodeCapacity> capacities;
+    for (const auto& [id, node] : nodes_.all()) {
+        if (ready(node)) capacities.push_back(node.capacity());
+    }
+    if (!capacities.empty()) {
+        job_->without_nodes_since = now;
+    } else if (now - job_->without_nodes_since >= job_->request.wait_limit) {
+        return decide(wire::JobOutcome::NoNodes, "all nodes are gone: what was merged so far is delivered",
+                      now);
+    }
+    for (const Assignment& assignment : job_->scheduler->assign(capacities, balancer_, now)) {
+        NodeRecord& node = *nodes_.find(assignment.node);
+        if (node.views.insert(job_->request.view.id).second) {
+            outbox_.control(node.control, wire::OpenView{job_->request.view});
+        }
+        node.pending[assignment.unit.id] = ++node.work_sequence;
+        outbox_.control(node.control, wire::Work{node.work_sequence, assignment.unit});
+    }
+}
+
+void JobRunner::collect_overdue(TimePoint now) {
+    for (auto& [id, node] : nodes_.all()) {
+        const auto held = job_->scheduler->held_by(id);
+        for (const UnitId unit : NodeTable::overdue(node, held, now, settings_.overdue_patience)) {
+            job_->scheduler->released(unit, id, Scheduler::Loss::Lost);
+        }
+        if (node.stuck) job_->scheduler->node_gone(id);
+    }
+}
+
+void JobRunner::film(net::PeerId bulk_peer, net::Bytes message) {
+    merger_.push(bulk_peer, std::move(message));
+}
+
+void JobRunner::take_merger_output(TimePoint now) {
+    for (MergerOutput& output : merger_.take()) {
+        if (const auto* report = std::get_if<MergeReport>(&output)) {
+            take(*report, now);
+            continue;
+        }
+        auto& tile = std::get<EncodedTile>(output);
+        if (!job_ || tile.job != job_->request.job) continue;
+        const SessionRecord* session = sessions_.find(job_->session);
+        if (session == nullptr || !session->bulk) continue;
+        outbox_.bulk(*session->bulk, std::move(tile.bytes), &wire::WireBytes::film);
+        ++job_->tiles_sent;
+    }
+}
+
+void JobRunner::take(const MergeReport& report, TimePoint now) {
+    NodeRecord* node = nodes_.by_bulk(report.peer);
+    if (report.malformed) {
+        ++malformed_film_;
+        events_({wire::Severity::Warning, "malformed film was dropped"});
+        return;
+    }
+    if (report.stale || !job_ || !job_->scheduler || job_->request.view.id != report.view) return;
+    Scheduler& scheduler = *job_->scheduler;
+    switch (report.result.outcome) {
+        case FrameAssembler::Outcome::Misfit:
+            scheduler.count_refused();
+            events_({wire::Severity::Error, "film that does not fit the frame was refused" +
+                                                (node ? " (node " + node->hello.name + ")" : std::string())});
+            return;
+        case FrameAssembler::Outcome::Contradiction: {
+            const auto unit = scheduler.find(report.unit);
+            events_({wire::Severity::Error,
+                     "two nodes gave different bits for samples " + std::to_string(report.block.first) +
+                         ".." + std::to_string(report.block.end()) +
+                         (node ? " (second: " + node->hello.name + ")" : "") +
+                         (unit ? "; replay: tessera probe SCENE --pixel " + std::to_string(unit->tile.x) +
+                                     "," + std::to_string(unit->tile.y) + " --sample " +
+                                     std::to_string(report.block.first)
+                               : "")});
+            scheduler.count_duplicate();
+            break;
+        }
+        case FrameAssembler::Outcome::Duplicate:
+            scheduler.count_duplicate();
+            break;
+        case FrameAssembler::Outcome::Merged:
+            if (node) account(report, *node);
+            job_->rays += report.part == 0 ? report.rays : 0;
+            job_->nonfinite_samples += report.nonfinite;
+            break;
+    }
+    if (node && report.part == 0 && report.parts == 1) {
+        balancer_.measured(node->id, report.pixel_samples, report.busy);
+    }
+    cancel(scheduler.merged(report.unit, report.result.tile, report.block));
+    if (!job_->first_picture && scheduler.tiles_without_samples() == 0) job_->first_picture = now;
+}
+
+void JobRunner::account(const MergeReport& report, NodeRecord& node) {
+    wire::NodeSummary& part = job_->nodes[node.id];
+    part.id = node.id;
+    part.name = node.hello.name;
+    part.host = node.hello.host;
+    part.backend = node.hello.backend;
+    part.kind = node.hello.kind;
+    part.pid = node.hello.pid;
+    part.units += report.part == 0 ? 1 : 0;
+    part.samples += report.pixel_samples;
+    part.seconds_busy += report.part == 0 ? seconds(report.busy) : 0.0;
+}
+
+void JobRunner::cancel(const std::vector<Cancellation>& cancellations) {
+    std::map<NodeId, std::vector<UnitId>> by_node;
+    for (const Cancellation& cancellation : cancellations)
+        by_node[cancellation.node].push_back(cancellation.unit);
+    constexpr std::size_t PerMessage = 1024;
+    for (const auto& [id, units] : by_node) {
+        const NodeRecord* node = nodes_.find(id);
+        for (std::size_t i = 0; node != nullptr && i < units.size(); i += PerMessage) {
+            const auto begin = units.begin() + static_cast<std::ptrdiff_t>(i);
+            const auto end =
+                units.begin() + static_cast<std::ptrdiff_t>(std::min(units.size(), i + PerMessage));
+            outbox_.control(node->control, wire::CancelUnits{{begin, end}});
+        }
+    }
+}
+
+void JobRunner::released(NodeRecord& node, const wire::UnitReleased& release, TimePoint now) {
+    if (!job_ || !job_->scheduler) return;
+    node.pending.erase(release.unit);
+    job_->scheduler->released(release.unit, node.id, Scheduler::Loss::Released);
+    switch (release.reason) {
+        case wire::ReleaseReason::Cancelled:
+        case wire::ReleaseReason::Leaving:
+            return;
+        case wire::ReleaseReason::UnknownView:
+            node.views.erase(job_->request.view.id);  // the message got lost: say it again
+            job_->scheduler->count_refused();
+            return;
+        case wire::ReleaseReason::OtherVersion:
+            job_->scheduler->count_refused();
+            return;
+        case wire::ReleaseReason::Failed:
+            job_->scheduler->count_refused();
+            events_({wire::Severity::Error, "node " + node.hello.name + ": " + release.message});
+            if (++job_->failures >= settings_.failure_limit) {
+                decide(wire::JobOutcome::Failed, release.message, now);
+            }
+            return;
+    }
+}
+
+void JobRunner::goodbye(NodeRecord& node, const wire::Goodbye& goodbye) {
+    if (!job_ || !job_->scheduler) return;
+    for (const UnitId unit : job_->scheduler->held_by(node.id)) {
+        const auto& sent = goodbye.units_sent;
+        // Film that was sent is on its way on the other link; the overdue check catches it if it never comes.
+        if (std::find(sent.begin(), sent.end(), unit) != sent.end()) continue;
+        job_->scheduler->released(unit, node.id, Scheduler::Loss::Released);
+    }
+}
+
+void JobRunner::node_gone(NodeId node) {
+    balancer_.forget(node);
+    if (job_ && job_->scheduler) job_->scheduler->node_gone(node);
+}
+
+void JobRunner::scene_facts(const wire::VersionReport& report) {
+    triangles_ = report.triangles;
+    instances_ = report.instances;
+    lights_ = report.lights;
+}
+
+void JobRunner::stop(JobId job, TimePoint now) {
+    if (!job_ || job_->request.job != job || job_->phase == wire::JobPhase::Delivering) return;
+    decide(wire::JobOutcome::Stopped, "stopped by the client", now);
+    if (!job_->rendering()) begin_delivery(now);
+}
+
+void JobRunner::decide(wire::JobOutcome outcome, std::string message, TimePoint now) {
+    if (job_->outcome) return;
+    job_->outcome = outcome;
+    job_->outcome_at = now;
+    job_->message = std::move(message);
+    if (job_->scheduler) cancel(job_->scheduler->cancel_everything());
+}
+
+void JobRunner::abandon() {
+    if (!job_) return;
+    if (job_->scheduler) {
+        cancel(job_->scheduler->cancel_everything());
+        add(total_, job_->scheduler->counts());
+    }
+    for (auto& [id, node] : nodes_.all()) {
+        if (node.views.erase(job_->request.view.id) > 0) {
+            outbox_.control(node.control, wire::CloseView{job_->request.view.id});
+        }
+    }
+    merger_.close();
+    job_.reset();
+}
+
+TimePoint JobRunner::next_event(TimePoint now) const {
+    if (!job_) return TimePoint::max();
+    TimePoint next = now + settings_.progress_interval;
+    if (job_->deadline && !job_->outcome) next = std::min(next, std::max(now, *job_->deadline));
+    return next;
+}
+
+}  // namespace tessera::master

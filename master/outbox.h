@@ -1,0 +1,47 @@
+#pragma once
+
+#include <deque>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "mediator/net/channel.h"
+#include "mediator/wire/messages.h"
+
+namespace tessera::master {
+
+// Sends in order per peer and link; what a full queue does not take waits here, bounded in bytes. One thread.
+class Outbox {
+  public:
+    explicit Outbox(net::Channel& channel) : channel_(channel) {}
+
+    void control(net::PeerId peer, const wire::ControlMessage& message);
+    void bulk(net::PeerId peer, const wire::BulkMessage& message);
+    void bulk(net::PeerId peer, net::Bytes&& encoded, std::uint64_t wire::WireBytes::*counter);
+
+    void flush();  // tries again what waits
+    bool waiting() const { return !queues_.empty(); }
+    std::size_t waiting_bytes(net::Link link, net::PeerId peer) const;
+    void forget(net::Link link, net::PeerId peer) { queues_.erase({link, peer}); }
+
+    // Peers that cannot be reached or let more than the limit pile up; to be treated as gone. Empties the
+    // list.
+    std::vector<std::pair<net::Link, net::PeerId>> take_lost() { return std::exchange(lost_, {}); }
+
+    wire::WireBytes bytes;  // both directions; the receiving side is counted by whoever receives
+
+  private:
+    void put(net::Link link, net::PeerId peer, net::Bytes&& message);
+
+    struct Queue {
+        std::deque<net::Bytes> messages;
+        std::size_t bytes = 0;
+    };
+    net::Channel& channel_;
+    std::map<std::pair<net::Link, net::PeerId>, Queue> queues_;
+    std::vector<std::pair<net::Link, net::PeerId>> lost_;
+};
+
+inline constexpr std::size_t OutboxLimit = std::size_t{256} << 20;  // bytes that may wait for one peer
+
+}  // namespace tessera::master

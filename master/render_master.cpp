@@ -1,0 +1,273 @@
+#include "master/render_master.h"
+
+#include <algorithm>
+#include <random>
+
+#include "master/roles.h"
+#include "mediator/wire/envelope.h"
+
+namespace tessera::master {
+
+namespace {
+
+std::uint64_t random_nonzero() {
+    std::random_device device;
+    std::uint64_t value = 0;
+    while (value == 0) value = (std::uint64_t{device()} << 32) | device();
+    return value;
+}
+
+wire::Heartbeat heartbeat(TimePoint now, std::int64_t echo_sent_at, TimePoint echo_received) {
+    wire::Heartbeat beat{.sent_at = now.time_since_epoch().count()};
+    if (echo_sent_at != 0) {
+        beat.echo_sent_at = echo_sent_at;
+        beat.echo_delay = (now - echo_received).count();
+    }
+    return beat;
+}
+
+}  // namespace
+
+RenderMaster::RenderMaster(std::unique_ptr<net::Channel> channel, std::shared_ptr<scene::BlobStore> blobs,
+                           const Clock& clock, const MasterSettings& settings, EventSink events)
+    : channel_(std::move(channel)),
+      blobs_(std::move(blobs)),
+      clock_(clock),
+      settings_(settings),
+      events_(std::move(events)),
+      started_(clock.now()),
+      outbox_(*channel_),
+      authority_(settings.epoch != 0 ? settings.epoch : random_nonzero(), blobs_),
+      nodes_(settings.liveness, settings.stuck),
+      distributor_(authority_, *blobs_, outbox_, events_),
+      jobs_(settings.jobs, nodes_, sessions_, outbox_, events_, [this] { channel_->wake(); }),
+      service_(authority_, blobs_, sessions_, jobs_, outbox_,
+               [this](const scene::ChangeList& changes, TimePoint now) { publish(changes, now); }) {}
+
+void RenderMaster::post(std::function<void(net::Channel&)> task) {
+    {
+        const std::scoped_lock lock(mutex_);
+        posted_.push_back(std::move(task));
+    }
+    channel_->wake();
+}
+
+void RenderMaster::run(std::stop_token stop) {
+    const std::stop_callback wake_on_stop(stop, [this] { channel_->wake(); });
+    while (!stop.stop_requested()) step(clock_.now(), stop);
+    say_goodbye();
+}
+
+void RenderMaster::step(TimePoint now, std::stop_token stop) {
+    // A burst is taken in one go, but never so long that heartbeats wait.
+    constexpr int BurstLimit = 256;
+    net::Received received = channel_->receive(next_wake(now));
+    for (int i = 0; i < BurstLimit && std::holds_alternative<net::Message>(received); ++i) {
+        receive(std::move(std::get<net::Message>(received)), clock_.now());
+        if (stop.stop_requested()) return;
+        received = channel_->receive(now);
+    }
+    now = clock_.now();
+    std::vector<std::function<void(net::Channel&)>> posted;
+    {
+        const std::scoped_lock lock(mutex_);
+        posted.swap(posted_);
+    }
+    for (const auto& task : posted) task(*channel_);
+    jobs_.tick(now);
+    service_.tick(now);
+    distributor_.repair(nodes_, now, 3 * settings_.liveness.interval);
+    heartbeats(now);
+    outbox_.flush();
+    drop_lost_peers(now);
+    bury_the_dead(now);
+}
+
+TimePoint RenderMaster::next_wake(TimePoint now) const {
+    TimePoint next = now + settings_.liveness.interval / 4;
+    next = std::min(next, jobs_.next_event(now));
+    if (outbox_.waiting()) next = std::min(next, now + std::chrono::milliseconds(1));
+    return next;
+}
+
+void RenderMaster::drop(const net::Message& message, const std::string& why) {
+    ++dropped_messages_;
+    events_({wire::Severity::Warning,
+             "message of " + (message.user.empty() ? "a peer" : message.user) + " was dropped: " + why});
+}
+
+void RenderMaster::receive(net::Message&& message, TimePoint now) {
+    if (message.link == net::Link::Control) {
+        control(message, now);
+    } else {
+        bulk(message, now);
+    }
+}
+
+void RenderMaster::control(net::Message& message, TimePoint now) {
+    outbox_.bytes.control += message.bytes.size();
+    auto decoded = wire::decode_control(message.bytes);
+    if (!decoded) return drop(message, decoded.error().what());
+    if (!allowed(message.role, *decoded)) {
+        outbox_.control(message.peer, wire::Refusal{std::string("the role ") + net::name(message.role) +
+                                                    " may not do this: use a key with another role"});
+        return drop(message, "its role does not allow it");
+    }
+    if (auto* greeting = std::get_if<wire::Hello>(&*decoded))
+        return hello(message, std::move(*greeting), now);
+    if (NodeRecord* node = nodes_.by_control(message.peer); node && node->user == message.user) {
+        node->liveness.heard(now);
+        return from_node(*node, *decoded, now);
+    }
+    if (SessionRecord* session = sessions_.by_control(message.peer);
+        session && session->user == message.user) {
+        session->liveness.heard(now);
+        return from_client(*session, *decoded, now);
+    }
+    if (!std::holds_alternative<wire::Goodbye>(*decoded)) outbox_.control(message.peer, wire::Unknown{});
+}
+
+void RenderMaster::bulk(net::Message& message, TimePoint now) {
+    const auto kind = wire::bulk_kind(message.bytes);
+    if (!kind) return drop(message, "not a bulk message");
+    if (*kind == wire::BulkMessage(wire::FilmPart{}).index()) {
+        NodeRecord* node = nodes_.by_bulk(message.peer);
+        if (!allowed(message.role, wire::BulkMessage(wire::FilmPart{})) || !node ||
+            node->user != message.user) {
+            return drop(message, "film of a peer that is no node here");
+        }
+        outbox_.bytes.film += message.bytes.size();
+        node->liveness.heard(now);
+        return jobs_.film(message.peer, std::move(message.bytes));
+    }
+    auto decoded = wire::decode_bulk(message.bytes);
+    if (!decoded) return drop(message, decoded.error().what());
+    if (!allowed(message.role, *decoded)) return drop(message, "its role does not allow it");
+    if (const auto* greeting = std::get_if<wire::BulkHello>(&*decoded)) return bulk_hello(message, *greeting);
+    if (NodeRecord* node = nodes_.by_bulk(message.peer); node && node->user == message.user) {
+        node->liveness.heard(now);
+        const auto* request = std::get_if<wire::BlobRequest>(&*decoded);
+        if (request == nullptr) return drop(message, "a node has no business sending this");
+        return outbox_.bulk(message.peer, wire::answer(*request, *blobs_));
+    }
+    if (SessionRecord* session = sessions_.by_bulk(message.peer); session && session->user == message.user) {
+        session->liveness.heard(now);
+        if (auto* chunk = std::get_if<wire::BlobChunk>(&*decoded)) {
+            return service_.chunk(*session, std::move(*chunk), now);
+        }
+        if (const auto* absent = std::get_if<wire::BlobAbsent>(&*decoded)) {
+            return service_.absent(*session, *absent, now);
+        }
+        return drop(message, "a client has no business sending this");
+    }
+    drop(message, "bulk link of nobody: it has to start with its token");
+}
+
+void RenderMaster::bulk_hello(const net::Message& message, const wire::BulkHello& greeting) {
+    if (NodeRecord* node = nodes_.by_token(greeting.token); node && node->user == message.user) {
+        node->bulk = message.peer;
+        return;
+    }
+    if (SessionRecord* session = sessions_.by_token(greeting.token);
+        session && session->user == message.user) {
+        session->bulk = message.peer;
+        return;
+    }
+    drop(message, "its token is not known");
+}
+
+void RenderMaster::welcome(net::PeerId peer, std::uint64_t number, std::uint64_t token) {
+    outbox_.control(
+        peer, wire::Welcome{.peer_number = number,
+                            .token = token,
+                            .epoch = authority_.version().epoch,
+                            .heartbeat_interval = settings_.liveness.interval,
+                            .missed_heartbeats = static_cast<std::uint32_t>(settings_.liveness.missed)});
+}
+
+void RenderMaster::hello(const net::Message& message, wire::Hello hello, TimePoint now) {
+    const auto refuse = [&](const std::string& reason) {
+        outbox_.control(message.peer, wire::Refusal{reason});
+        events_({wire::Severity::Warning, "refused " + hello.name + ": " + reason});
+    };
+    if (hello.protocol != wire::ProtocolVersion) {
+        return refuse("this master speaks protocol " + std::to_string(wire::ProtocolVersion) +
+                      ", you speak " + std::to_string(hello.protocol) +
+                      ": install the same version of Tessera on both");
+    }
+    const bool is_node = hello.peer == wire::PeerKind::Node;
+    if (NodeRecord* node = is_node ? nodes_.by_token(hello.resume_token) : nullptr;
+        node && node->user == message.user) {
+        node->control = message.peer;
+        node->bulk.reset();
+        node->pending.clear();
+        node->views.clear();
+        node->sent = {};
+        node->work_sequence = 0;
+        node->liveness.restarted(now);
+        welcome(message.peer, node->id.value, node->token);
+        return distributor_.joined(*node, now);
+    }
+    if (SessionRecord* session = is_node ? nullptr : sessions_.by_token(hello.resume_token);
+        session && session->user == message.user) {
+        session->control = message.peer;
+        session->bulk.reset();
+        session->liveness.restarted(now);
+        return welcome(message.peer, session->id.value, session->token);
+    }
+    // A repeated hello of a known peer (its first one was answered, the answer got lost) starts it afresh.
+    if (NodeRecord* node = nodes_.by_control(message.peer)) remove_node(node->id, "said hello again");
+    if (SessionRecord* session = sessions_.by_control(message.peer)) remove_session(session->id, now);
+    if (is_node ? nodes_.all().size() >= settings_.max_nodes
+                : sessions_.all().size() >= settings_.max_sessions) {
+        return refuse("the master is full: try again later");
+    }
+    const std::uint64_t number = next_number_++;
+    const std::uint64_t token = random_nonzero();
+    if (is_node) {
+        events_({wire::Severity::Info,
+                 "node " + hello.name + " joined (" + hello.backend + ", " + hello.kind + ")"});
+        NodeRecord& node =
+            nodes_.add(NodeId{number}, token, message.peer, message.user, std::move(hello), now);
+        welcome(message.peer, number, token);
+        return distributor_.joined(node, now);
+    }
+    sessions_.add({.id = SessionId{number},
+                   .token = token,
+                   .control = message.peer,
+                   .bulk = {},
+                   .user = message.user,
+                   .hello = std::move(hello),
+                   .liveness = net::Liveness(settings_.liveness, now),
+                   .fetcher = wire::BlobFetcher(blobs_, settings_.blob_limits),
+                   .edits = {}});
+    welcome(message.peer, number, token);
+}
+
+void RenderMaster::publish(const scene::ChangeList& changes, TimePoint now) {
+    distributor_.published(nodes_, changes, now);
+}
+
+void RenderMaster::heartbeats(TimePoint now) {
+    for (auto& [id, node] : nodes_.all()) {
+        if (!node.liveness.heartbeat_due(now)) continue;
+        node.liveness.sent_heartbeat(now);
+        outbox_.control(node.control, heartbeat(now, node.state.sent_at, node.heartbeat_at));
+    }
+    for (auto& [id, session] : sessions_.all()) {
+        if (!session.liveness.heartbeat_due(now)) continue;
+        session.liveness.sent_heartbeat(now);
+        outbox_.control(session.control, heartbeat(now, session.heartbeat_sent_at, session.heartbeat_at));
+    }
+}
+
+void RenderMaster::say_goodbye() {
+    for (auto& [id, node] : nodes_.all())
+        outbox_.control(node.control, wire::Goodbye{"the master stops", {}});
+    for (auto& [id, session] : sessions_.all()) {
+        outbox_.control(session.control, wire::Goodbye{"the master stops", {}});
+    }
+    outbox_.flush();
+}
+
+}  // namespace tessera::master

@@ -1,0 +1,128 @@
+// What nodes and clients say on the control link, and how they leave.
+#include <algorithm>
+
+#include "master/render_master.h"
+
+namespace tessera::master {
+
+void RenderMaster::from_node(NodeRecord& node, wire::ControlMessage& message, TimePoint now) {
+    if (const auto* beat = std::get_if<wire::Heartbeat>(&message)) {
+        nodes_.heartbeat(node, *beat, now);
+    } else if (const auto* report = std::get_if<wire::VersionReport>(&message)) {
+        switch (distributor_.reported(node, *report, now)) {
+            case SceneDistributor::Verdict::Good:
+                jobs_.scene_facts(*report);
+                for (const std::string& problem : report->problems)
+                    events_({wire::Severity::Warning, problem});
+                break;
+            case SceneDistributor::Verdict::Behind:
+                break;
+            case SceneDistributor::Verdict::TakeOut:
+                outbox_.control(node.control,
+                                wire::Refusal{"your scene differs from the master's: check the build"});
+                return remove_node(node.id, "its scene differs");
+        }
+    } else if (const auto* resync = std::get_if<wire::Resync>(&message)) {
+        distributor_.resync(node, *resync, now);
+    } else if (const auto* release = std::get_if<wire::UnitReleased>(&message)) {
+        jobs_.released(node, *release, now);
+    } else if (const auto* notice = std::get_if<wire::Notice>(&message)) {
+        events_({notice->severity, "node " + node.hello.name + ": " + notice->text});
+    } else if (const auto* goodbye = std::get_if<wire::Goodbye>(&message)) {
+        jobs_.goodbye(node, *goodbye);
+        node.leaving = true;  // stays in the table until it falls silent, since film may be on its way
+        events_({wire::Severity::Info, "node " + node.hello.name + " leaves: " + goodbye->reason});
+    }
+}
+
+void RenderMaster::from_client(SessionRecord& session, wire::ControlMessage& message, TimePoint now) {
+    if (const auto* beat = std::get_if<wire::Heartbeat>(&message)) {
+        session.heartbeat_sent_at = beat->sent_at;
+        session.heartbeat_at = now;
+    } else if (const auto* open = std::get_if<wire::OpenScene>(&message)) {
+        service_.open_scene(session, *open, now);
+    } else if (auto* edit = std::get_if<wire::SubmitEdit>(&message)) {
+        service_.submit(session, std::move(edit->edit), now);
+    } else if (const auto* long_edit = std::get_if<wire::SubmitEditByBlob>(&message)) {
+        service_.submit(session, *long_edit, now);
+    } else if (auto* job = std::get_if<wire::StartJob>(&message)) {
+        service_.start_job(session, std::move(*job), now);
+    } else if (const auto* stop = std::get_if<wire::StopJob>(&message)) {
+        if (jobs_.session() == session.id) jobs_.stop(stop->job, now);
+    } else if (std::holds_alternative<wire::StatusRequest>(message)) {
+        outbox_.control(session.control, status(now));
+    } else if (std::holds_alternative<wire::Goodbye>(message)) {
+        remove_session(session.id, now);
+    }
+}
+
+void RenderMaster::remove_node(NodeId id, const std::string& why) {
+    const NodeRecord* node = nodes_.find(id);
+    if (node == nullptr) return;
+    if (!node->leaving) events_({wire::Severity::Warning, "node " + node->hello.name + " is gone: " + why});
+    outbox_.forget(net::Link::Control, node->control);
+    if (node->bulk) outbox_.forget(net::Link::Bulk, *node->bulk);
+    jobs_.node_gone(id);
+    nodes_.remove(id);
+}
+
+void RenderMaster::remove_session(SessionId id, TimePoint now) {
+    const SessionRecord* session = sessions_.find(id);
+    if (session == nullptr) return;
+    outbox_.forget(net::Link::Control, session->control);
+    if (session->bulk) outbox_.forget(net::Link::Bulk, *session->bulk);
+    service_.closed(id, now);
+}
+
+void RenderMaster::bury_the_dead(TimePoint now) {
+    for (const NodeId id : nodes_.dead(now)) remove_node(id, "silent for too long");
+    std::vector<SessionId> silent;
+    for (const auto& [id, session] : sessions_.all()) {
+        if (session.liveness.dead(now)) silent.push_back(id);
+    }
+    for (const SessionId id : silent) remove_session(id, now);
+}
+
+void RenderMaster::drop_lost_peers(TimePoint now) {
+    for (const auto& [link, peer] : outbox_.take_lost()) {
+        const bool is_control = link == net::Link::Control;
+        if (NodeRecord* node = is_control ? nodes_.by_control(peer) : nodes_.by_bulk(peer)) {
+            remove_node(node->id, "its connection broke");
+        } else if (SessionRecord* session =
+                       is_control ? sessions_.by_control(peer) : sessions_.by_bulk(peer)) {
+            remove_session(session->id, now);
+        }
+    }
+}
+
+wire::StatusReply RenderMaster::status(TimePoint now) const {
+    wire::StatusReply reply{.software = settings_.software,
+                            .version = authority_.version(),
+                            .uptime_seconds = seconds(now - started_),
+                            .blobs = blobs_->count(),
+                            .blob_bytes = blobs_->byte_size(),
+                            .sessions = static_cast<std::uint32_t>(sessions_.all().size()),
+                            .queued = static_cast<std::uint32_t>(sessions_.queue().size()),
+                            .dropped_messages = dropped_messages_ + jobs_.malformed_film(),
+                            .units = jobs_.total_counts(),
+                            .wire_bytes = outbox_.bytes};
+    for (const auto& [id, node] : nodes_.all()) {
+        wire::NodeStatus entry{
+            .summary = {.id = id,
+                        .name = node.hello.name,
+                        .host = node.hello.host,
+                        .backend = node.hello.backend,
+                        .kind = node.hello.kind,
+                        .pid = node.hello.pid},
+            .phase = node.state.phase,
+            .version = node.state.version,
+            .units_in_hand = static_cast<std::uint32_t>(node.state.in_hand.size()),
+            .samples_per_second = jobs_.balancer().rate(id) * std::max(1u, node.hello.concurrent_units),
+            .round_trip_seconds = node.round_trip_seconds,
+            .stuck = node.stuck};
+        reply.nodes.push_back(std::move(entry));
+    }
+    return reply;
+}
+
+}  // namespace tessera::master

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "mediator/net/channel.h"
+#include "mediator/wire/messages.h"
+
+namespace tessera::master {
+
+// Message kind x role, one table: may a peer whose key has this role send this?
+bool allowed(net::Role role, const wire::ControlMessage& message);
+bool allowed(net::Role role, const wire::BulkMessage& message);
+
+}  // namespace tessera::master

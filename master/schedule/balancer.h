@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+
+#include "mediator/base/clock.h"
+#include "mediator/base/ids.h"
+
+namespace tessera::master {
+
+// How fast each node is, measured, and how large its next unit should be. Pure.
+class Balancer {
+  public:
+    struct Settings {
+        double unit_seconds = 0.1;    // what one unit should take one worker
+        double first_samples = 4096;  // a unit for a node nobody has measured
+        double smoothing = 0.3;       // weight of the newest measurement
+    };
+    Balancer() = default;
+    explicit Balancer(const Settings& settings) : settings_(settings) {}
+
+    // A unit of `samples` pixel samples kept one worker busy for `busy`.
+    void measured(NodeId node, std::uint64_t samples, Duration busy);
+    void forget(NodeId node) { rates_.erase(node); }
+
+    double rate(NodeId node) const;  // pixel samples per second of one worker; 0 = not measured
+
+    // Pixel samples for the node's next unit. Shrinks when little is left (`remaining` over `workers` in the
+    // whole cluster), so that all finish together: never more than half of an equal share.
+    std::uint64_t unit_samples(NodeId node, std::uint64_t remaining, std::uint32_t workers) const;
+
+  private:
+    Settings settings_;
+    std::map<NodeId, double> rates_;
+};
+
+}  // namespace tessera::master

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <set>
+#include <vector>
+
+#include "mediator/frame/sample_block.h"
+
+namespace tessera::master {
+
+// Which samples of one tile are there, without the film: disjoint aligned blocks, siblings joined. The
+// scheduler's side of the ledger.
+class BlockSet {
+  public:
+    void insert(const frame::SampleBlock& block);
+    bool covers(const frame::SampleBlock& block) const;
+    std::vector<frame::SampleBlock> missing_in(const frame::SampleBlock& block) const;  // ascending
+    std::uint64_t sample_count() const { return sample_count_; }
+
+  private:
+    std::set<frame::SampleBlock> blocks_;  // ordered by first sample
+    std::uint64_t sample_count_ = 0;
+};
+
+}  // namespace tessera::master

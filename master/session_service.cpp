@@ -1,0 +1,176 @@
+#include "master/session_service.h"
+
+#include "mediator/wire/envelope.h"
+
+namespace tessera::master {
+
+namespace {
+constexpr std::size_t MaxPendingEdits = 256;
+}
+
+SessionService::SessionService(SceneAuthority& authority, std::shared_ptr<scene::BlobStore> blobs,
+                               SessionTable& sessions, JobRunner& jobs, Outbox& outbox,
+                               std::function<void(const scene::ChangeList&, TimePoint)> publish)
+    : authority_(authority),
+      blobs_(std::move(blobs)),
+      sessions_(sessions),
+      jobs_(jobs),
+      outbox_(outbox),
+      publish_(std::move(publish)) {}
+
+void SessionService::open_scene(SessionRecord& session, const wire::OpenScene& request, TimePoint now) {
+    const bool would_wait = !sessions_.stage_is_free() || !sessions_.queue().empty();
+    if (request.no_wait && would_wait && sessions_.on_stage() != session.id) {
+        outbox_.control(session.control,
+                        wire::Refusal{"the cluster is rendering another scene: try again later, "
+                                      "or wait in the queue without --no-wait"});
+        return;
+    }
+    if (sessions_.on_stage() == session.id) {
+        give_stage(session.id);  // a repeated request gets the same answer
+        return;
+    }
+    sessions_.queue_for_stage(session.id);
+    tick(now);
+}
+
+void SessionService::give_stage(SessionId id) {
+    const SessionRecord& session = *sessions_.find(id);
+    const SceneAuthority::IdRange ids = authority_.lend_ids(id);
+    jobs_.scene_opened();
+    outbox_.control(session.control, wire::SceneOpened{authority_.version(), ids.first, ids.count});
+}
+
+void SessionService::submit(SessionRecord& session, scene::Edit edit, TimePoint now) {
+    edit.session = session.id;  // whatever the message claims
+    if (session.edits.size() >= MaxPendingEdits) {
+        return refuse_edit(session, "too many edits wait for their blobs: send the blobs first");
+    }
+    session.edits.push_back({std::nullopt, std::move(edit)});
+    advance(session, now);
+}
+
+void SessionService::submit(SessionRecord& session, const wire::SubmitEditByBlob& message, TimePoint now) {
+    if (session.edits.size() >= MaxPendingEdits) {
+        return refuse_edit(session, "too many edits wait for their blobs: send the blobs first");
+    }
+    scene::Edit placeholder{
+        .session = session.id, .sequence = message.sequence, .base = message.base, .entries = {}};
+    session.edits.push_back({message.blob, std::move(placeholder)});
+    advance(session, now);
+}
+
+void SessionService::refuse_edit(SessionRecord& session, std::string problem) {
+    const std::uint64_t sequence = session.edits.empty() ? 0 : session.edits.front().edit.sequence;
+    outbox_.control(session.control, wire::EditReply{.sequence = sequence,
+                                                     .accepted = false,
+                                                     .version = authority_.version(),
+                                                     .problems = {std::move(problem)}});
+}
+
+bool SessionService::blobs_are_here(SessionRecord& session, SessionRecord::PendingEdit& pending) {
+    const auto want = [&](const scene::BlobRef& blob) {
+        if (auto wanted = session.fetcher.want(blob); !wanted) throw wanted.error();
+    };
+    if (pending.encoded) {
+        const scene::BlobPtr blob = blobs_->find(pending.encoded->hash);
+        if (!blob) {
+            want(*pending.encoded);
+            return false;
+        }
+        auto decoded = wire::decode_edit(blob->bytes());
+        if (!decoded) throw decoded.error();
+        pending.edit.entries = std::move(decoded->entries);
+        pending.encoded.reset();
+    }
+    const std::vector<scene::BlobRef> missing = authority_.missing_blobs(pending.edit);
+    for (const scene::BlobRef& blob : missing) want(blob);
+    return missing.empty();
+}
+
+void SessionService::advance(SessionRecord& session, TimePoint now) {
+    while (!session.edits.empty()) {
+        SessionRecord::PendingEdit& pending = session.edits.front();
+        if (sessions_.on_stage() != session.id) {
+            refuse_edit(session, "this session has no scene open: open one first");
+            session.edits.pop_front();
+            continue;
+        }
+        try {
+            if (!blobs_are_here(session, pending)) break;
+        } catch (const Error& error) {
+            refuse_edit(session, error.what());
+            session.edits.pop_front();
+            continue;
+        }
+        const SceneAuthority::Answer answer = authority_.submit(pending.edit);
+        if (answer.changes) publish_(*answer.changes, now);
+        outbox_.control(session.control, wire::EditReply{.sequence = pending.edit.sequence,
+                                                         .accepted = answer.accepted,
+                                                         .version = answer.version,
+                                                         .problems = answer.problems});
+        session.edits.pop_front();
+    }
+    if (!session.bulk) return;
+    for (const wire::BlobRequest& request : session.fetcher.due(now)) outbox_.bulk(*session.bulk, request);
+}
+
+void SessionService::chunk(SessionRecord& session, wire::BlobChunk&& chunk, TimePoint now) {
+    outbox_.bytes.blobs += chunk.data.size();
+    // A wrong chunk is asked for again; a session that keeps sending them only delays itself.
+    (void)session.fetcher.receive(std::move(chunk), now);
+    advance(session, now);
+}
+
+void SessionService::absent(SessionRecord& session, const wire::BlobAbsent& absent, TimePoint now) {
+    session.fetcher.absent(absent.hash);
+    if (session.edits.empty()) return;
+    refuse_edit(session, "the client does not have blob " + to_hex(absent.hash) + " that its edit refers to");
+    session.edits.pop_front();
+    session.fetcher.forget_all();
+    advance(session, now);
+}
+
+void SessionService::start_job(SessionRecord& session, wire::StartJob request, TimePoint now) {
+    std::string problem = problem_of(request);
+    if (sessions_.on_stage() != session.id) problem = "this session has no scene open: open one first";
+    if (jobs_.busy()) problem = "a frame of this session is being rendered: wait for it or stop it";
+    if (!problem.empty()) {
+        outbox_.control(session.control, wire::JobDone{.job = request.job,
+                                                       .outcome = wire::JobOutcome::Failed,
+                                                       .message = std::move(problem),
+                                                       .version = authority_.version()});
+        return;
+    }
+    if (auto moved = authority_.follow_camera(glm::dvec3(request.view.camera.world_from_camera[3]))) {
+        publish_(*moved, now);
+    }
+    jobs_.start(session.id, std::move(request), authority_.version(), now);
+}
+
+void SessionService::closed(SessionId id, TimePoint now) {
+    const bool had_stage = sessions_.on_stage() == id;
+    sessions_.remove(id);
+    authority_.forget(id);
+    if (!had_stage) return;
+    jobs_.abandon();
+    if (auto cleared = authority_.clear()) publish_(*cleared, now);
+    tick(now);
+}
+
+void SessionService::tick(TimePoint now) {
+    if (const auto next = sessions_.next_on_stage()) give_stage(*next);
+    for (const SessionId id : sessions_.queue()) {
+        SessionRecord& session = *sessions_.find(id);
+        const std::uint32_t place = sessions_.place(id);
+        if (place == session.told_place) continue;
+        session.told_place = place;
+        outbox_.control(session.control, wire::QueuePlace{place});
+    }
+    if (const auto id = sessions_.on_stage()) {
+        SessionRecord& session = *sessions_.find(*id);
+        if (!session.fetcher.idle()) advance(session, now);
+    }
+}
+
+}  // namespace tessera::master

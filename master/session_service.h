@@ -1,0 +1,43 @@
+#pragma once
+
+#include <functional>
+
+#include "master/job_runner.h"
+#include "master/scene_authority.h"
+#include "master/session_table.h"
+
+namespace tessera::master {
+
+// Serves clients: the stage, edits with their blobs, jobs. Told of messages by the render master.
+class SessionService {
+  public:
+    // `publish` hands a change list to all nodes.
+    SessionService(SceneAuthority& authority, std::shared_ptr<scene::BlobStore> blobs, SessionTable& sessions,
+                   JobRunner& jobs, Outbox& outbox,
+                   std::function<void(const scene::ChangeList&, TimePoint)> publish);
+
+    void open_scene(SessionRecord& session, const wire::OpenScene& request, TimePoint now);
+    void submit(SessionRecord& session, scene::Edit edit, TimePoint now);
+    void submit(SessionRecord& session, const wire::SubmitEditByBlob& edit, TimePoint now);
+    void chunk(SessionRecord& session, wire::BlobChunk&& chunk, TimePoint now);
+    void absent(SessionRecord& session, const wire::BlobAbsent& absent, TimePoint now);
+    void start_job(SessionRecord& session, wire::StartJob request, TimePoint now);
+    void closed(SessionId session, TimePoint now);  // said goodbye or is dead: its scene and job go
+
+    void tick(TimePoint now);  // who is next on the stage, chunks to ask for
+
+  private:
+    void advance(SessionRecord& session, TimePoint now);  // edits whose blobs are here
+    bool blobs_are_here(SessionRecord& session, SessionRecord::PendingEdit& edit);
+    void refuse_edit(SessionRecord& session, std::string problem);
+    void give_stage(SessionId session);
+
+    SceneAuthority& authority_;
+    std::shared_ptr<scene::BlobStore> blobs_;
+    SessionTable& sessions_;
+    JobRunner& jobs_;
+    Outbox& outbox_;
+    std::function<void(const scene::ChangeList&, TimePoint)> publish_;
+};
+
+}  // namespace tessera::master

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "mediator/net/channel.h"
+#include "mediator/net/liveness.h"
+#include "mediator/wire/blob_transfer.h"
+#include "mediator/wire/messages.h"
+
+namespace tessera::master {
+
+// What the master knows of one client.
+struct SessionRecord {
+    SessionId id;
+    std::uint64_t token = 0;
+    net::PeerId control = 0;
+    std::optional<net::PeerId> bulk;
+    std::string user;
+    wire::Hello hello;
+    net::Liveness liveness;
+    wire::BlobFetcher fetcher;
+    // Edits in the order they came; the first waits until its blobs are here.
+    struct PendingEdit {
+        std::optional<scene::BlobRef> encoded;  // the edit itself is a blob that is still on its way
+        scene::Edit edit;
+    };
+    std::deque<PendingEdit> edits;
+    std::int64_t heartbeat_sent_at = 0;  // its latest, and when it came: what our next heartbeat echoes
+    TimePoint heartbeat_at{};
+    std::uint32_t told_place = 0;  // in the queue, as last told
+};
+
+// Clients, and who of them has the stage: one batch scene at a time, the others wait in order of arrival.
+class SessionTable {
+  public:
+    SessionRecord& add(SessionRecord record) {
+        const SessionId id = record.id;
+        return sessions_.insert_or_assign(id, std::move(record)).first->second;
+    }
+    void remove(SessionId id);
+    SessionRecord* find(SessionId id);
+    SessionRecord* by_control(net::PeerId peer);
+    SessionRecord* by_bulk(net::PeerId peer);
+    SessionRecord* by_token(std::uint64_t token);
+    std::map<SessionId, SessionRecord>& all() { return sessions_; }
+    const std::map<SessionId, SessionRecord>& all() const { return sessions_; }
+
+    void queue_for_stage(SessionId id);  // harmless when already queued or on stage
+    bool stage_is_free() const { return !on_stage_; }
+    std::optional<SessionId> on_stage() const { return on_stage_; }
+    void leave_stage() { on_stage_.reset(); }
+    std::optional<SessionId> next_on_stage();  // takes the first of the queue, if the stage is free
+    std::uint32_t place(SessionId id) const;   // 1 = next; 0 = not waiting
+    const std::deque<SessionId>& queue() const { return queue_; }
+
+  private:
+    std::map<SessionId, SessionRecord> sessions_;
+    std::deque<SessionId> queue_;
+    std::optional<SessionId> on_stage_;
+};
+
+}  // namespace tessera::master
