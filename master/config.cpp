@@ -1,0 +1,42 @@
+#include "master/config.h"
+
+#include <ostream>
+
+#include "client/cli/cli.h"
+
+namespace tessera::master {
+
+std::optional<int> parse_options(int argc, const char* const* argv, MasterOptions& options, std::ostream& out,
+                                 std::ostream& err) {
+    cli::CommandLine line("tessera-master",
+                          "Owns the scene and the picture; nodes and clients connect to it.");
+    line.option("--listen", "where to listen: tcp://host:port; bulk data use the next port", options.listen);
+    line.option("--keys", "folder of CURVE keys with the allow-list (made by: tessera keys DIR)",
+                options.keys);
+    line.flag("--insecure", "no encryption and no roles; only on a loopback address", options.insecure);
+    line.option("--heartbeat", "seconds between heartbeats; three missed ones mean a peer is gone",
+                options.heartbeat_seconds);
+    line.option("--blob-quota", "MiB of meshes and textures one session may send", options.blob_quota_mib);
+    line.choice("--log-level", "how much to tell", options.log.level, cli::log_levels());
+    line.option("--log-file", "write the log there instead of standard error", options.log.file);
+    line.examples({"tessera keys ~/.tessera && tessera-master --keys ~/.tessera",
+                   "tessera-master --listen tcp://0.0.0.0:7420 --keys ~/.tessera",
+                   "tessera-master --insecure          # this machine only"});
+    if (const auto exit = line.parse(argc, argv, out, err)) return exit;
+    const auto usage = [&](const char* text) {
+        err << "tessera-master: " << text << "\n";
+        return cli::ExitUsage;
+    };
+    if (options.keys.empty() && !options.insecure) {
+        return usage(
+            "no keys: give --keys DIR (make them with 'tessera keys DIR'), or --insecure on a loopback "
+            "address");
+    }
+    if (!options.keys.empty() && options.insecure) return usage("--keys and --insecure exclude each other");
+    if (!(options.heartbeat_seconds >= 0.05 && options.heartbeat_seconds <= 60.0)) {
+        return usage("--heartbeat must lie between 0.05 and 60 seconds");
+    }
+    return std::nullopt;
+}
+
+}  // namespace tessera::master

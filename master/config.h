@@ -1,0 +1,25 @@
+#pragma once
+
+#include <iosfwd>
+#include <optional>
+#include <string>
+
+#include "client/cli/log.h"
+#include "mediator/net/liveness.h"
+
+namespace tessera::master {
+
+struct MasterOptions {
+    std::string listen = "tcp://127.0.0.1:7420";
+    std::string keys;  // a folder; "" only with `insecure`
+    bool insecure = false;
+    double heartbeat_seconds = 1.0;
+    std::uint64_t blob_quota_mib = 16384;  // per session
+    cli::LogSettings log{.program = "tessera-master"};
+};
+
+// Nothing: go on with `options`. Else the exit code.
+std::optional<int> parse_options(int argc, const char* const* argv, MasterOptions& options, std::ostream& out,
+                                 std::ostream& err);
+
+}  // namespace tessera::master
