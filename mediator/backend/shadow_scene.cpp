@@ -34,11 +34,11 @@ std::vector<scene::Entry> inverse(const std::vector<scene::Entry>& entries, cons
         const ObjectId id = scene::id(entry);
         const Object* old = before.find(id);
         if (std::holds_alternative<scene::Create>(entry)) {
-            result.push_back(scene::Remove{id});
+            result.emplace_back(scene::Remove{id});
         } else if (old && std::holds_alternative<scene::Update>(entry)) {
-            result.push_back(scene::Update{id, std::get<scene::Update>(entry).mask, *old});
+            result.emplace_back(scene::Update{id, std::get<scene::Update>(entry).mask, *old});
         } else if (old) {
-            result.push_back(scene::Create{id, *old});
+            result.emplace_back(scene::Create{id, *old});
         }
     }
     return result;

@@ -1,0 +1,34 @@
+#include "mediator/backend/catalog.h"
+
+#include <algorithm>
+#include <array>
+
+#include "backends/null/null_backend.h"
+#ifdef TESSERA_BACKEND_EMBREE
+#include "backends/embree/embree_backend.h"
+#endif
+
+namespace tessera::backend {
+
+std::span<const BackendEntry> catalog() {
+    static const std::array entries{
+#ifdef TESSERA_BACKEND_EMBREE
+        embree::entry(),
+#endif
+        null_backend::entry(),
+    };
+    return entries;
+}
+
+const BackendEntry& find_backend(std::string_view name) {
+    const std::span<const BackendEntry> entries = catalog();
+    const auto found = std::find_if(entries.begin(), entries.end(),
+                                    [&](const BackendEntry& entry) { return entry.name == name; });
+    if (found != entries.end()) return *found;
+    std::string names;
+    for (const BackendEntry& entry : entries) names += (names.empty() ? "" : ", ") + entry.name;
+    throw Error(ErrorCode::InvalidInput,
+                "there is no back-end '" + std::string(name) + "'; choose one of " + names);
+}
+
+}  // namespace tessera::backend

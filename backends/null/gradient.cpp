@@ -1,0 +1,82 @@
+#include "backends/null/gradient.h"
+
+#include <bit>
+#include <limits>
+
+#include "mediator/base/random.h"
+
+namespace tessera::null_backend {
+
+using frame::Channel;
+
+namespace {
+
+std::uint64_t mixed(std::uint64_t key, std::uint64_t value) {
+    return mix(key ^ mix(value + 0x9e3779b97f4a7c15ull));
+}
+std::uint64_t mixed(std::uint64_t key, double value) {
+    return mixed(key, std::bit_cast<std::uint64_t>(value));
+}
+std::uint64_t mixed(std::uint64_t key, const glm::dmat4& matrix) {
+    for (int i = 0; i < 16; ++i) key = mixed(key, matrix[i / 4][i % 4]);
+    return key;
+}
+
+}  // namespace
+
+std::uint64_t content_key(const backend::ShadowScene& shadow) {
+    std::uint64_t key = mixed(shadow.scene().state_hash().high, shadow.scene().state_hash().low);
+    for (const backend::Instance& instance : shadow.lowered().instances) {
+        key = mixed(mixed(key, instance.geometry.value), instance.world_from_object);
+    }
+    for (const backend::PlacedLight& light : shadow.lowered().lights) {
+        key = mixed(mixed(key, light.light.value), light.world_from_light);
+    }
+    return key;
+}
+
+std::uint64_t view_key(std::uint64_t content, const view::View& view) {
+    std::uint64_t key = mixed(mixed(content, view.seed), view.camera.world_from_camera);
+    for (const double edge : {view.camera.left, view.camera.right, view.camera.bottom, view.camera.top}) {
+        key = mixed(key, edge);
+    }
+    return mixed(key, (std::uint64_t{view.width} << 32) | view.height);
+}
+
+Gradient gradient(const view::View& view, const backend::Lowered& lowered, std::uint64_t key, std::int32_t x,
+                  std::int32_t y, std::uint64_t sample) {
+    CounterRandom random(key, mixed((std::uint64_t(std::uint32_t(y)) << 32) | std::uint32_t(x), sample));
+    const float u = static_cast<float>(x) / static_cast<float>(view.width);
+    const float v = static_cast<float>(y) / static_cast<float>(view.height);
+    const float noise = static_cast<float>(random.uniform());
+    const auto& instances = lowered.instances;
+    const std::size_t cell =
+        static_cast<std::size_t>(x / 16 + y / 16 * 7) % (instances.size() + 1);  // the last one is a miss
+    const bool hit = cell < instances.size();
+    const float depth = hit ? 1.0f + u + v + noise : std::numeric_limits<float>::infinity();
+    return {.direct = {u * noise, v * noise, 0.5f * noise},
+            .indirect = {0.1f * static_cast<float>(random.uniform()), 0.05f, 0.025f * noise},
+            .albedo = {hit ? u : 0.0f, hit ? v : 0.0f, hit ? 0.5f : 0.0f},
+            .normal = {0.0f, 0.0f, hit ? 1.0f : 0.0f},
+            .depth = depth,
+            .object = hit ? instances[cell].geometry : ObjectId{}};
+}
+
+void append_values(const Gradient& sample, frame::ChannelSet channels, std::vector<float>& values) {
+    const auto add = [&](Channel channel, const std::array<float, 3>& rgb) {
+        if (channels.contains(channel)) values.insert(values.end(), rgb.begin(), rgb.end());
+    };
+    const auto& [direct, indirect, albedo, normal, depth, object] = sample;
+    add(Channel::Radiance, {direct[0] + indirect[0], direct[1] + indirect[1], direct[2] + indirect[2]});
+    add(Channel::Direct, direct);
+    add(Channel::Indirect, indirect);
+    add(Channel::Albedo, albedo);
+    add(Channel::Normal, normal);
+    if (channels.contains(Channel::Depth)) values.push_back(depth);
+    if (channels.contains(Channel::ObjectIndex)) {
+        values.push_back(depth);
+        values.push_back(std::bit_cast<float>(static_cast<std::uint32_t>(object.value)));
+    }
+}
+
+}  // namespace tessera::null_backend

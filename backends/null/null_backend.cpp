@@ -1,0 +1,141 @@
+#include "backends/null/null_backend.h"
+
+#include <condition_variable>
+#include <mutex>
+#include <shared_mutex>
+#include <thread>
+
+#include "backends/null/gradient.h"
+#include "mediator/backend/shadow_scene.h"
+#include "mediator/frame/block_stack.h"
+#include "mediator/frame/merge.h"
+
+namespace tessera::null_backend {
+
+namespace {
+
+using namespace backend;
+
+constexpr frame::ChannelSet AllChannels = frame::ChannelSet::from_bits((1u << frame::ChannelCount) - 1u);
+
+class NullBackend final : public Backend {
+  public:
+    explicit NullBackend(const BackendSettings& settings) : settings_(settings) {}
+
+    Capabilities capabilities() const override {
+        const std::uint32_t cores = std::max(1u, std::thread::hardware_concurrency());
+        return {.channels = AllChannels,
+                .concurrent_units = settings_.threads ? settings_.threads : cores,
+                .kind = "null-1"};
+    }
+
+    Version version() const override {
+        const std::shared_lock lock(mutex_);
+        return shadow_.scene().version();
+    }
+
+    std::unique_ptr<EditScope> begin_edit() override { return std::make_unique<Edit>(*this); }
+
+    RenderResult render(const view::View& view, const view::WorkUnit& unit, std::stop_token stop) override {
+        const std::shared_lock lock(mutex_);
+        if (unit.version != shadow_.scene().version()) return {};
+        const std::uint64_t key = view_key(content_, view);
+        frame::BlockStack finished;
+        RenderResult result{.status = RenderStatus::Done};
+        for (std::uint64_t sample = unit.block.first; sample < unit.block.end(); ++sample) {
+            frame::FilmTile tile = finished.recycled(unit.tile, {sample, 0}, view.channels);
+            if (!fill(tile, view, key, stop) || !spend_time(tile.pixel_count(), stop)) {
+                result.status = RenderStatus::Stopped;  // the sample in hand is not whole: dropped
+                break;
+            }
+            finished.push(std::move(tile));
+            result.rays += unit.tile.pixel_count();
+        }
+        result.blocks = finished.take();
+        return result;
+    }
+
+    std::vector<std::string> probe(const view::View& view, std::uint32_t x, std::uint32_t y,
+                                   std::uint64_t sample) override {
+        const std::shared_lock lock(mutex_);
+        const Gradient values = gradient(view, shadow_.lowered(), view_key(content_, view),
+                                         static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), sample);
+        return {"hit object " + std::to_string(values.object.value) + " at depth " +
+                std::to_string(values.depth)};
+    }
+
+  private:
+    class Edit final : public EditScope {
+      public:
+        explicit Edit(NullBackend& backend) : backend_(backend), lock_(backend.mutex_) {}
+        ~Edit() override { backend_.shadow_.rollback(); }  // what was committed stays
+
+        Expected<void> apply(const scene::ChangeList& changes) override {
+            return backend_.shadow_.apply(changes);
+        }
+
+        Expected<EditReport> commit() override {
+            SceneDelta delta = backend_.shadow_.take_delta();
+            const Lowered& lowered = backend_.shadow_.lowered();
+            backend_.content_ = content_key(backend_.shadow_);
+            std::uint64_t triangles = 0;
+            ObjectId previous;
+            for (const Instance& instance : lowered.instances) {  // ascending by geometry
+                const auto* geometry = backend_.shadow_.scene().find_as<scene::Geometry>(instance.geometry);
+                if (instance.geometry != previous) triangles += geometry->indices.byte_size / 12;
+                previous = instance.geometry;
+            }
+            return EditReport{.entries = delta.entries,
+                              .relevant = delta.relevant,
+                              .retransformed = static_cast<std::uint32_t>(delta.moved_instances.size()),
+                              .triangles = triangles,
+                              .instances = lowered.instances.size(),
+                              .lights = lowered.lights.size(),
+                              .ignored_kinds = std::move(delta.ignored_kinds)};
+        }
+
+      private:
+        NullBackend& backend_;
+        std::unique_lock<std::shared_mutex> lock_;
+    };
+
+    bool fill(frame::FilmTile& tile, const view::View& view, std::uint64_t key,
+              const std::stop_token& stop) const {
+        std::vector<float> values;
+        std::size_t pixel = 0;
+        for (std::int32_t y = tile.rect.y; y < tile.rect.bottom(); ++y) {
+            if (stop.stop_requested()) return false;
+            for (std::int32_t x = tile.rect.x; x < tile.rect.right(); ++x, ++pixel) {
+                const Gradient sample = gradient(view, shadow_.lowered(), key, x, y, tile.block.first);
+                append_values(sample, tile.channels, values);
+                frame::put_sample(tile, pixel, values);
+                values.clear();
+            }
+        }
+        return true;
+    }
+
+    // The simulated cost, asleep, so that many nodes can pretend on few cores. False: stopped.
+    bool spend_time(std::size_t samples, const std::stop_token& stop) const {
+        if (settings_.simulated_sample_cost.count() == 0) return true;
+        std::mutex mutex;
+        std::unique_lock lock(mutex);
+        std::condition_variable_any stopped;
+        stopped.wait_for(lock, stop, settings_.simulated_sample_cost * samples, [] { return false; });
+        return !stop.stop_requested();
+    }
+
+    const BackendSettings settings_;
+    mutable std::shared_mutex mutex_;  // renders share it, an edit owns it; protects everything below
+    ShadowScene shadow_;
+    std::uint64_t content_ = 0;
+};
+
+}  // namespace
+
+backend::BackendEntry entry() {
+    return {"null", "ids and gradients without tracing anything, for tests of the cluster",
+            [](const BackendSettings& settings) { return std::make_unique<NullBackend>(settings); }};
+}
+
+}  // namespace tessera::null_backend
