@@ -1,0 +1,176 @@
+// Promises that only real processes can keep: other pids, sockets with CURVE, kill -9.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <set>
+
+#include "tests/process/real_cluster.h"
+
+namespace tessera::test {
+namespace {
+
+using nlohmann::json;
+
+const std::vector<std::string> Small{"--size", "160x90", "--spp", "32", "--seed", "5"};
+
+std::vector<std::string> operator+(std::vector<std::string> a, const std::vector<std::string>& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
+void expect_exact_accounting(const json& result) {
+    std::uint64_t samples = 0;
+    for (const json& node : result["nodes"]) samples += node["samples"].get<std::uint64_t>();
+    const std::uint64_t expected = result["width"].get<std::uint64_t>() *
+                                   result["height"].get<std::uint64_t>() * result["spp"].get<std::uint64_t>();
+    EXPECT_GE(samples, expected) << result.dump(1);
+}
+
+TEST(RealProcesses, GiveTheBitsOfOneProcess) {
+    RealCluster cluster;
+    const ChildProcess a = cluster.start_node("a"), b = cluster.start_node("b");
+    const std::string scene = scene_file("room-1.glb");
+    const json two = cluster.render("two", scene, Small + std::vector<std::string>{"--wait-nodes", "2:60"});
+    const json one = render_embedded(cluster.folder(), "one", scene, Small);
+    EXPECT_EQ(two["film_hash"], one["film_hash"]);
+    expect_exact_accounting(two);
+
+    std::set<int> pids;
+    ASSERT_EQ(two["nodes"].size(), 2u);
+    for (const json& node : two["nodes"]) {
+        pids.insert(node["pid"].get<int>());
+        EXPECT_GE(node["samples"].get<double>(), 0.1 * 160 * 90 * 32)
+            << "a living node got less than a tenth";
+    }
+    EXPECT_EQ(pids, (std::set<int>{a.pid(), b.pid()}));
+    // Every pixel's statistics crossed the wire once at least: counts may be left out, planes may not.
+    constexpr double BytesPerPixel = 4 * (6 + 6 + 6 + 3 + 3 + 1 + 2);
+    EXPECT_GE(two["wire_bytes"]["film"].get<double>(), 160 * 90 * BytesPerPixel);
+
+    const json other = cluster.render("other", scene, {"--size", "160x90", "--spp", "32", "--seed", "6"});
+    EXPECT_NE(other["film_hash"], two["film_hash"]) << "another seed, the same bits";
+    EXPECT_LT(other["wire_bytes"]["blobs"].get<double>(), 3 * two["wire_bytes"]["blobs"].get<double>());
+}
+
+// The null back-end with a fixed cost per sample makes the frame last long enough to pull plugs at leisure.
+const std::vector<std::string> SlowNode{"--backend", "null", "--simulate-cost", "20us"};
+const std::vector<std::string> SlowFrame{"--size", "160x120", "--spp", "32", "--seed", "5"};
+
+std::string expected_hash_of_slow_frame(const RealCluster& cluster) {
+    const auto result = render_embedded(cluster.folder(), "expected", scene_file("still.glb"),
+                                        SlowFrame + std::vector<std::string>{"--backend", "null"});
+    return result["film_hash"];
+}
+
+std::uint64_t units_in_hand(const json& status, const std::string& name) {
+    for (const json& node : status["nodes"]) {
+        if (node["name"] == name) return node["units_in_hand"].get<std::uint64_t>();
+    }
+    return 0;
+}
+
+TEST(RealProcesses, ANodeKilledInTheMiddleChangesNothing) {
+    RealCluster cluster;
+    const ChildProcess a = cluster.start_node("a", SlowNode), b = cluster.start_node("b", SlowNode);
+    ChildProcess render =
+        cluster.start_render("frame", scene_file("still.glb"),
+                             SlowFrame + std::vector<std::string>{"--wait-nodes", "2:60", "--json"});
+    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_hand(status, "b") > 0; }))
+        << render.err();
+    b.signal(SIGKILL);
+    ASSERT_EQ(render.wait(std::chrono::minutes(3)).value_or(-1), 0) << render.err();
+    const json result = json::parse(render.out());
+    EXPECT_EQ(result["film_hash"].get<std::string>(), expected_hash_of_slow_frame(cluster));
+    EXPECT_GT(result["units"]["reissued"].get<int>(), 0) << "the killed node held units";
+    EXPECT_GT(result["units"]["lost"].get<int>(), 0);
+}
+
+TEST(RealProcesses, ANodeThatJoinsInTheMiddleHelps) {
+    RealCluster cluster;
+    const ChildProcess a = cluster.start_node("a", SlowNode);
+    ChildProcess render = cluster.start_render("frame", scene_file("still.glb"),
+                                               SlowFrame + std::vector<std::string>{"--json"});
+    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_hand(status, "a") > 0; }))
+        << render.err();
+    const ChildProcess b = cluster.start_node("b", SlowNode);
+    ASSERT_EQ(render.wait(std::chrono::minutes(3)).value_or(-1), 0) << render.err();
+    const json result = json::parse(render.out());
+    EXPECT_EQ(result["film_hash"].get<std::string>(), expected_hash_of_slow_frame(cluster));
+    std::set<int> pids;
+    for (const json& node : result["nodes"]) pids.insert(node["pid"].get<int>());
+    EXPECT_TRUE(pids.contains(b.pid())) << "the late node rendered nothing: " << result.dump(1);
+}
+
+TEST(RealProcesses, ANodeToldToStopHandsItsUnitsBack) {
+    RealCluster cluster;
+    ChildProcess a = cluster.start_node("a", SlowNode), b = cluster.start_node("b", SlowNode);
+    ChildProcess render =
+        cluster.start_render("frame", scene_file("still.glb"),
+                             SlowFrame + std::vector<std::string>{"--wait-nodes", "2:60", "--json"});
+    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_hand(status, "b") > 0; }))
+        << render.err();
+    b.signal(SIGTERM);
+    EXPECT_EQ(b.wait(std::chrono::seconds(30)).value_or(-1), 0) << b.err();
+    ASSERT_EQ(render.wait(std::chrono::minutes(3)).value_or(-1), 0) << render.err();
+    const json result = json::parse(render.out());
+    EXPECT_EQ(result["film_hash"].get<std::string>(), expected_hash_of_slow_frame(cluster));
+    EXPECT_EQ(result["units"]["lost"].get<int>(), 0) << "what it held was handed back, not lost";
+}
+
+TEST(RealProcesses, InterruptingARenderWritesWhatIsThere) {
+    RealCluster cluster;
+    const ChildProcess a = cluster.start_node("a", SlowNode);
+    ChildProcess render = cluster.start_render("frame", scene_file("still.glb"),
+                                               {"--size", "160x120", "--spp", "4096", "--json"});
+    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_hand(status, "a") > 0; }))
+        << render.err();
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    render.signal(SIGINT);
+    EXPECT_EQ(render.wait(std::chrono::seconds(60)).value_or(-1), 130) << render.err();
+    EXPECT_TRUE(std::filesystem::exists(cluster.folder() / "frame.exr"));
+    EXPECT_TRUE(cluster.wait_for([&](const json& status) { return units_in_hand(status, "a") == 0; }))
+        << "the node goes on with what nobody wants";
+}
+
+TEST(RealProcesses, ASecondRenderWaitsItsTurnOrIsToldToComeBack) {
+    RealCluster cluster;
+    const ChildProcess a = cluster.start_node("a", SlowNode);
+    ChildProcess first = cluster.start_render("first", scene_file("still.glb"), SlowFrame);
+    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_hand(status, "a") > 0; }))
+        << first.err();
+    ChildProcess hasty = cluster.start_render("hasty", scene_file("still.glb"), {"--spp", "1", "--no-wait"});
+    EXPECT_EQ(hasty.wait(std::chrono::minutes(1)).value_or(-1), 75) << hasty.err();
+    ChildProcess second =
+        cluster.start_render("second", scene_file("still.glb"), {"--size", "32x32", "--spp", "1", "--json"});
+    EXPECT_EQ(first.wait(std::chrono::minutes(3)).value_or(-1), 0) << first.err();
+    EXPECT_EQ(second.wait(std::chrono::minutes(3)).value_or(-1), 0) << second.err();
+}
+
+TEST(RealProcesses, AnUnknownKeyIsRefusedEverywhere) {
+    RealCluster cluster;
+    ChildProcess foreign_keys(cluster.folder().path(), "foreign", "tessera",
+                              {"keys", cluster.folder() / "foreign"});
+    ASSERT_EQ(foreign_keys.wait(std::chrono::seconds(30)).value_or(-1), 0);
+    // The right master key, so that the handshake itself succeeds, and a pair that the allow-list does not
+    // hold.
+    std::filesystem::copy_file(cluster.folder() / "keys/master.public",
+                               cluster.folder() / "foreign/master.public",
+                               std::filesystem::copy_options::overwrite_existing);
+    ChildProcess node(
+        cluster.folder().path(), "stranger", "tessera-node",
+        {"--master", cluster.endpoint(), "--keys", cluster.folder() / "foreign", "--backend", "null"});
+    ChildProcess client(cluster.folder().path(), "strange-client", "tessera",
+                        {"status", "--master", cluster.endpoint(), "--keys", cluster.folder() / "foreign"});
+    EXPECT_EQ(client.wait(std::chrono::minutes(1)).value_or(-1), 69) << client.err();
+    EXPECT_TRUE(cluster.status()["nodes"].empty());
+}
+
+TEST(RealProcesses, SayWhenNodesDoNotCome) {
+    RealCluster cluster;
+    ChildProcess render = cluster.start_render("lonely", scene_file("still.glb"), {"--wait-nodes", "2:1"});
+    EXPECT_EQ(render.wait(std::chrono::minutes(1)).value_or(-1), 69) << render.err();
+    EXPECT_FALSE(std::filesystem::exists(cluster.folder() / "lonely.exr"));
+}
+
+}  // namespace
+}  // namespace tessera::test

@@ -1,0 +1,76 @@
+#include "tests/process/real_cluster.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace tessera::test {
+
+namespace {
+
+constexpr std::chrono::minutes Patience(3);  // generous: the machine may be busy with other tests
+
+nlohmann::json finished(ChildProcess process, const std::string& label) {
+    const auto exit = process.wait(Patience);
+    EXPECT_EQ(exit.value_or(-1), 0) << label << ": " << process.err();
+    return nlohmann::json::parse(process.out(), nullptr, false);
+}
+
+}  // namespace
+
+TemporaryFolder::TemporaryFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "tessera-test-XXXXXX").string();
+    path_ = mkdtemp(pattern.data());
+}
+
+TemporaryFolder::~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+}
+
+std::string scene_file(const std::string& name) {
+    return std::string(TESSERA_SCENES) + "/" + name;
+}
+
+RealCluster::RealCluster() : endpoint_(free_loopback_endpoint()) {
+    ChildProcess keys_tool(folder_.path(), "keys", "tessera", {"keys", keys()});
+    EXPECT_EQ(keys_tool.wait(Patience).value_or(-1), 0) << keys_tool.err();
+    master_.emplace(folder_.path(), "master", "tessera-master",
+                    std::vector<std::string>{"--listen", endpoint_, "--keys", keys(), "--heartbeat", "0.25"});
+}
+
+ChildProcess RealCluster::start_node(const std::string& name, std::vector<std::string> more) {
+    std::vector<std::string> arguments{"--master", endpoint_, "--keys",    keys(),
+                                       "--name",   name,      "--threads", "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return ChildProcess(folder_.path(), name, "tessera-node", arguments);
+}
+
+ChildProcess RealCluster::start_render(const std::string& label, const std::string& scene,
+                                       std::vector<std::string> more) {
+    std::vector<std::string> arguments{"render", scene,  "--master", endpoint_,
+                                       "--keys", keys(), "-o",       folder_ / (label + ".exr")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return ChildProcess(folder_.path(), label, "tessera", arguments);
+}
+
+nlohmann::json RealCluster::render(const std::string& label, const std::string& scene,
+                                   std::vector<std::string> more) {
+    more.push_back("--json");
+    return finished(start_render(label, scene, std::move(more)), label);
+}
+
+nlohmann::json RealCluster::status() {
+    const std::string label = "status" + std::to_string(next_status_++);
+    return finished(ChildProcess(folder_.path(), label, "tessera",
+                                 {"status", "--master", endpoint_, "--keys", keys(), "--json"}),
+                    label);
+}
+
+nlohmann::json render_embedded(const TemporaryFolder& folder, const std::string& label,
+                               const std::string& scene, std::vector<std::string> more) {
+    std::vector<std::string> arguments{"render", scene, "-o", folder / (label + ".exr"), "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return finished(ChildProcess(folder.path(), label, "tessera", arguments), label);
+}
+
+}  // namespace tessera::test

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/process/child_process.h"
+
+namespace tessera::test {
+
+// A folder of its own that goes with the test.
+class TemporaryFolder {
+  public:
+    TemporaryFolder();
+    ~TemporaryFolder();
+    const std::filesystem::path& path() const { return path_; }
+    std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+
+  private:
+    std::filesystem::path path_;
+};
+
+// A master and nodes as processes of their own: TCP on loopback, CURVE keys made for the test.
+class RealCluster {
+  public:
+    RealCluster();
+
+    ChildProcess start_node(const std::string& name, std::vector<std::string> more = {});
+    // `tessera render` on this cluster; the picture goes to the folder.
+    ChildProcess start_render(const std::string& label, const std::string& scene,
+                              std::vector<std::string> more);
+    // Runs it to the end and parses --json; the test fails when it fails.
+    nlohmann::json render(const std::string& label, const std::string& scene, std::vector<std::string> more);
+    nlohmann::json status();
+    // Asks for the status until `done` says yes; false after the limit.
+    template <class Done>
+    bool wait_for(const Done& done, std::chrono::seconds limit = std::chrono::seconds(60)) {
+        const auto deadline = std::chrono::steady_clock::now() + limit;
+        while (std::chrono::steady_clock::now() < deadline) {
+            if (done(status())) return true;
+        }
+        return false;
+    }
+
+    const std::string& endpoint() const { return endpoint_; }
+    std::string keys() const { return folder_ / "keys"; }
+    const TemporaryFolder& folder() const { return folder_; }
+    ChildProcess& master() { return *master_; }
+
+  private:
+    TemporaryFolder folder_;
+    std::string endpoint_;
+    std::optional<ChildProcess> master_;
+    int next_status_ = 0;
+};
+
+// The embedded cluster: everything in one process.
+nlohmann::json render_embedded(const TemporaryFolder& folder, const std::string& label,
+                               const std::string& scene, std::vector<std::string> more);
+
+std::string scene_file(const std::string& name);
+
+}  // namespace tessera::test
