@@ -10,12 +10,13 @@
 
 namespace tessera::frame {
 
-// Statistics of one block of samples over one tile: per pixel a count of accepted samples, and float32 planes, one
-// after another, each in raster order. The only form in which light travels and is merged.
+// Statistics of one block of samples over one tile: per pixel a count of accepted samples, and float32
+// planes, one after another, each in raster order. The only form in which light travels and is merged.
 class FilmTile {
   public:
     FilmTile() = default;
-    FilmTile(Rect rect, SampleBlock block, ChannelSet channels);  // no samples yet: empty()
+    FilmTile(Rect rect, SampleBlock block, ChannelSet channels);  // no samples yet
+    void reset(SampleBlock block);                                // no samples again, in the same memory
 
     Rect rect;
     SampleBlock block;

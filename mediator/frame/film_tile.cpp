@@ -1,0 +1,52 @@
+#include "mediator/frame/film_tile.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+namespace tessera::frame {
+
+namespace {
+
+void fill_empty(FilmTile& tile, const ChannelInfo& info) {
+    constexpr float Infinity = std::numeric_limits<float>::infinity();
+    const std::uint32_t first = tile.channels.first_plane(info.channel);
+    const auto fill = [&](std::uint32_t plane, float value) {
+        const std::span<float> values = tile.plane(first + plane);
+        std::fill(values.begin(), values.end(), value);
+    };
+    if (info.rule == MergeRule::Nearest) fill(0, Infinity);
+    for (std::uint32_t c = 0; c < info.components; ++c) {
+        if (info.rule == MergeRule::Minimum) fill(c, Infinity);
+        if (info.rule == MergeRule::Maximum) fill(c, -Infinity);
+    }
+}
+
+}  // namespace
+
+FilmTile::FilmTile(Rect tile_rect, SampleBlock sample_block, ChannelSet channel_set)
+    : rect(tile_rect),
+      block(sample_block),
+      channels(channel_set),
+      counts(tile_rect.pixel_count(), 0),
+      planes(channel_set.plane_count() * tile_rect.pixel_count()) {
+    reset(sample_block);
+}
+
+void FilmTile::reset(SampleBlock sample_block) {
+    block = sample_block;
+    nonfinite_samples = 0;
+    std::fill(counts.begin(), counts.end(), 0u);
+    std::fill(planes.begin(), planes.end(), 0.0f);
+    for (const ChannelInfo& info : channel_table()) {
+        if (channels.contains(info.channel)) fill_empty(*this, info);
+    }
+}
+
+bool identical_bits(const FilmTile& a, const FilmTile& b) {
+    return a.rect == b.rect && a.channels == b.channels && a.counts == b.counts &&
+           a.nonfinite_samples == b.nonfinite_samples && a.planes.size() == b.planes.size() &&
+           std::memcmp(a.planes.data(), b.planes.data(), a.planes.size() * sizeof(float)) == 0;
+}
+
+}  // namespace tessera::frame

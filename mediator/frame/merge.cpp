@@ -1,0 +1,174 @@
+#include "mediator/frame/merge.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+
+namespace tessera::frame {
+
+namespace {
+
+// What is known of the counts of two tiles decides how much work a merge is.
+struct Counts {
+    std::span<const std::uint32_t> into, later;
+    bool equal_everywhere = true;  // and not 0: siblings without a rejected sample
+    Counts(const FilmTile& a, const FilmTile& b) : into(a.counts), later(b.counts) {
+        const std::uint32_t n = into.empty() ? 0 : into[0];
+        std::uint32_t differing = n == 0 ? 1u : 0u;
+        for (std::size_t i = 0; i < into.size(); ++i) differing |= (into[i] ^ n) | (later[i] ^ n);
+        equal_everywhere = differing == 0;
+    }
+};
+
+void merge_equal_moments(std::span<float> mean, std::span<float> m2, std::span<const float> later_mean,
+                         std::span<const float> later_m2, std::uint32_t n) {
+    const float half_n = 0.5f * static_cast<float>(n);
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+        const float difference = mean[i] - later_mean[i];
+        m2[i] = (m2[i] + later_m2[i]) + (difference * difference) * half_n;
+        mean[i] = (mean[i] + later_mean[i]) * 0.5f;
+    }
+}
+
+void merge_moments(FilmTile& into, const FilmTile& later, std::uint32_t first, std::uint32_t components,
+                   const Counts& counts) {
+    for (std::uint32_t c = 0; c < components; ++c) {
+        const std::span<float> mean = into.plane(first + c), m2 = into.plane(first + components + c);
+        const std::span<const float> later_mean = later.plane(first + c);
+        const std::span<const float> later_m2 = later.plane(first + components + c);
+        if (counts.equal_everywhere) {
+            merge_equal_moments(mean, m2, later_mean, later_m2, counts.into[0]);
+            continue;
+        }
+        for (std::size_t i = 0; i < mean.size(); ++i) {
+            const auto both = merged<float>({counts.into[i], mean[i], m2[i]},
+                                            {counts.later[i], later_mean[i], later_m2[i]});
+            mean[i] = both.mean;
+            m2[i] = both.m2;
+        }
+    }
+}
+
+// Records go as bits: a payload may look like a signalling NaN.
+void copy_value(std::span<float> into, std::span<const float> from, std::size_t pixel) {
+    std::memcpy(&into[pixel], &from[pixel], sizeof(float));
+}
+
+void merge_nearest(FilmTile& into, const FilmTile& later, std::uint32_t first, std::uint32_t components) {
+    const std::span<const float> key = into.plane(first), later_key = later.plane(first);
+    for (std::size_t i = 0; i < key.size(); ++i) {
+        if (!(later_key[i] < key[i])) continue;
+        for (std::uint32_t c = components; c-- > 0;)
+            copy_value(into.plane(first + c), later.plane(first + c), i);
+    }
+}
+
+void merge_first(FilmTile& into, const FilmTile& later, std::uint32_t first, std::uint32_t components) {
+    for (std::size_t i = 0; i < into.pixel_count(); ++i) {
+        if (into.counts[i] != 0 || later.counts[i] == 0) continue;
+        for (std::uint32_t c = 0; c < components; ++c)
+            copy_value(into.plane(first + c), later.plane(first + c), i);
+    }
+}
+
+template <class Choose>
+void merge_values(FilmTile& into, const FilmTile& later, std::uint32_t first, std::uint32_t components,
+                  const Choose& choose) {
+    for (std::uint32_t c = 0; c < components; ++c) {
+        const std::span<float> values = into.plane(first + c);
+        const std::span<const float> others = later.plane(first + c);
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = choose(values[i], others[i]);
+    }
+}
+
+void merge_channel(FilmTile& into, const FilmTile& later, const ChannelInfo& info, const Counts& counts) {
+    const std::uint32_t first = into.channels.first_plane(info.channel), components = info.components;
+    switch (info.rule) {
+        case MergeRule::Moments:
+            return merge_moments(into, later, first, components, counts);
+        case MergeRule::Sum:
+            return merge_values(into, later, first, components, [](float a, float b) { return a + b; });
+        case MergeRule::Minimum:
+            return merge_values(into, later, first, components,
+                                [](float a, float b) { return b < a ? b : a; });
+        case MergeRule::Maximum:
+            return merge_values(into, later, first, components,
+                                [](float a, float b) { return b > a ? b : a; });
+        case MergeRule::Nearest:
+            return merge_nearest(into, later, first, components);
+        case MergeRule::First:
+            return merge_first(into, later, first, components);
+    }
+}
+
+bool acceptable(const ChannelSet& channels, std::span<const float> values) {
+    std::size_t next = 0;
+    for (const ChannelInfo& info : channel_table()) {
+        if (!channels.contains(info.channel)) continue;
+        for (std::uint32_t c = 0; c < info.components; ++c) {
+            const float value = values[next++];
+            if ((info.rule == MergeRule::Moments || info.rule == MergeRule::Sum) && !std::isfinite(value))
+                return false;
+            const bool is_payload = c > 0 || info.rule == MergeRule::First;
+            if (!is_payload && std::isnan(value)) return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+void put_sample(FilmTile& tile, std::size_t pixel, std::span<const float> values) {
+    if (!acceptable(tile.channels, values)) {
+        ++tile.nonfinite_samples;
+        return;
+    }
+    tile.counts[pixel] = 1;
+    std::size_t next = 0;
+    std::uint32_t plane = 0;
+    for (const ChannelInfo& info : channel_table()) {
+        if (!tile.channels.contains(info.channel)) continue;
+        for (std::uint32_t c = 0; c < info.components; ++c) {
+            std::memcpy(&tile.plane(plane + c)[pixel], &values[next++], sizeof(float));
+        }
+        plane += info.plane_count();  // M2 of a single sample stays 0
+    }
+}
+
+void merge(FilmTile& into, const FilmTile& later) {
+    assert(into.rect == later.rect && into.channels == later.channels &&
+           into.block.end() <= later.block.first);
+    const Counts counts(into, later);
+    for (const ChannelInfo& info : channel_table()) {
+        if (into.channels.contains(info.channel)) merge_channel(into, later, info, counts);
+    }
+    for (std::size_t i = 0; i < into.counts.size(); ++i) into.counts[i] += later.counts[i];
+    into.nonfinite_samples += later.nonfinite_samples;
+    if (into.block.sibling() == later.block) {
+        into.block = into.block.parent();
+    } else {
+        // A fold of unequal roots is no block any more; its extent keeps the order of further merges
+        // checkable.
+        into.block = {later.block.end() - 1, 0};
+    }
+}
+
+template <class Real>
+Moments<Real> merged(const Moments<Real>& a, const Moments<Real>& b) {
+    if (a.n == 0) return b;
+    if (b.n == 0) return a;
+    const Real difference = a.mean - b.mean;
+    if (a.n == b.n) {
+        return {a.n + b.n, (a.mean + b.mean) * Real(0.5),
+                (a.m2 + b.m2) + (difference * difference) * (Real(0.5) * static_cast<Real>(a.n))};
+    }
+    const Real na = static_cast<Real>(a.n), nb = static_cast<Real>(b.n), n = na + nb;
+    return {a.n + b.n, a.mean - difference * (nb / n),
+            (a.m2 + b.m2) + (difference * difference) * (na * (nb / n))};
+}
+
+template Moments<float> merged(const Moments<float>&, const Moments<float>&);
+template Moments<double> merged(const Moments<double>&, const Moments<double>&);
+
+}  // namespace tessera::frame
