@@ -1,0 +1,35 @@
+#pragma once
+
+#include <iosfwd>
+#include <optional>
+#include <string>
+
+#include "client/cli/log.h"
+#include "mediator/base/clock.h"
+#include "mediator/base/error.h"
+
+namespace tessera::node {
+
+struct NodeOptions {
+    std::string master;  // tcp://host:port
+    std::string backend;
+    std::string keys;           // a folder; "" only with `insecure`
+    std::string user = "node";  // whose pair in that folder
+    bool insecure = false;
+    std::uint32_t threads = 0;
+    std::string isa;
+    std::string cache;                                  // "" = none
+    std::uint64_t cache_mib = 4096, memory_mib = 8192;  // of blobs, on disk and in memory
+    std::string name, host;
+    Duration simulated_cost{0};
+    cli::LogSettings log{.program = "tessera-node"};
+};
+
+// Nothing: go on with `options`. Else the exit code.
+std::optional<int> parse_options(int argc, const char* const* argv, NodeOptions& options, std::ostream& out,
+                                 std::ostream& err);
+
+// "20us", "1.5ms", "2s", "300ns".
+Expected<Duration> parse_duration(const std::string& text);
+
+}  // namespace tessera::node

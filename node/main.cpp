@@ -1,0 +1,96 @@
+#include <signal.h>
+#include <unistd.h>
+
+#include <iostream>
+#include <thread>
+
+#include "client/cli/cli.h"
+#include "mediator/backend/catalog.h"
+#include "mediator/net/zmq_channel.h"
+#include "node/config.h"
+#include "node/render_node.h"
+
+namespace {
+
+using namespace tessera;
+
+void tell(const cli::Log& log, const node::Report& report) {
+    switch (report.severity) {
+        case wire::Severity::Info:
+            return log.info(report.text);
+        case wire::Severity::Warning:
+            return log.warning(report.text);
+        case wire::Severity::Error:
+            return log.error(report.text);
+    }
+}
+
+node::NodeSettings node_settings(const node::NodeOptions& options) {
+    node::NodeSettings settings{.name = options.name,
+                                .host = options.host,
+                                .software = "tessera " + cli::version(),
+                                .pid = static_cast<std::uint64_t>(::getpid()),
+                                .backend = options.backend,
+                                .reproducible = options.isa == "avx2" || options.backend == "null",
+                                .workers = options.threads,
+                                .store_limit = options.memory_mib << 20};
+    if (!options.cache.empty()) settings.cache = options.cache;
+    settings.cache_limit = options.cache_mib << 20;
+    return settings;
+}
+
+// First signal: drain. Second: leave at once. SIGUSR1 comes from ourselves when there is nothing left to wait
+// for.
+void wait_for_signals(const sigset_t& signals, std::stop_source& drain, std::stop_source& at_once) {
+    int signal = 0;
+    while (sigwait(&signals, &signal) == 0 && signal != SIGUSR1) {
+        if (!drain.request_stop()) at_once.request_stop();
+    }
+}
+
+int serve(const node::NodeOptions& options, const sigset_t& signals) {
+    const cli::Log log(options.log);
+    const auto blobs = std::make_shared<scene::BlobStore>();
+    auto backend = backend::find_backend(options.backend)
+                       .make({.threads = options.threads,
+                              .isa = options.isa,
+                              .simulated_sample_cost = options.simulated_cost,
+                              .blobs = blobs});
+    net::ClientSettings client{.endpoint = options.master};
+    if (!options.keys.empty()) client.keys = net::KeyDirectory(options.keys).client(options.user);
+    const auto context = net::make_zmq_context();
+    auto channel = net::make_zmq_client(context, client);
+    net::ZmqClient* const sockets = channel.get();  // owned by the node, which calls this on its own thread
+    log.info("back-end " + options.backend + " (" + backend->capabilities().kind + ") for " + options.master);
+
+    const SteadyClock clock;
+    node::RenderNode node(std::move(channel), std::move(backend), blobs, clock, node_settings(options),
+                          {.event = [&log](const node::Report& report) { tell(log, report); },
+                           .reconnect = [sockets] { sockets->reconnect(); }});
+    std::stop_source drain, at_once;
+    std::thread signal_thread([&] { wait_for_signals(signals, drain, at_once); });
+    const node::NodeResult result = node.run(drain.get_token(), at_once.get_token());
+    ::pthread_kill(signal_thread.native_handle(), SIGUSR1);
+    signal_thread.join();
+    log.info("left after " + std::to_string(result.counters.units_done) + " units");
+    return result.failure.empty() ? 0 : cli::ExitRefused;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    // Before any thread starts, so that none of them is interrupted: one thread waits for signals.
+    sigset_t signals;
+    sigemptyset(&signals);
+    for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaddset(&signals, signal);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+
+    node::NodeOptions options;
+    if (const auto exit = node::parse_options(argc, argv, options, std::cout, std::cerr)) return *exit;
+    try {
+        return serve(options, signals);
+    } catch (const Error& error) {
+        std::cerr << "tessera-node: " << error.what() << "\n";
+        return error.code() == ErrorCode::InvalidInput ? 2 : cli::ExitUnavailable;
+    }
+}

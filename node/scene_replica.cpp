@@ -1,0 +1,178 @@
+#include "node/scene_replica.h"
+
+#include <algorithm>
+#include <set>
+
+#include "mediator/wire/envelope.h"
+
+namespace tessera::node {
+
+namespace {
+
+constexpr std::size_t MaxListsUnderWay = 4096;
+
+}  // namespace
+
+void SceneReplica::start_epoch(std::uint64_t epoch) {
+    if (epoch == epoch_) return;
+    epoch_ = epoch;
+    scene_ = {};
+    announced_ = built_ = {};
+    built_hash_ = {};
+    announced_lists_.clear();
+    applied_lists_.clear();
+    building_target_.reset();  // what is being built is of the old epoch
+    awaits_snapshot_ = scene_lost_ = false;
+}
+
+SceneReplica::Verdict SceneReplica::judge(Version from, Version to) const {
+    if (to.epoch != epoch_ || to.number == 0) return Verdict::Gap;
+    if (to.number < announced_.number) return Verdict::Duplicate;
+    if (from.number == 0) {
+        return to.number > announced_.number || scene_lost_ ? Verdict::Accepted : Verdict::Duplicate;
+    }
+    if (to.number == announced_.number && !scene_lost_) return Verdict::Duplicate;
+    const bool follows = from == announced_ && to.number == from.number + 1;
+    return follows && !awaits_snapshot_ ? Verdict::Accepted : Verdict::Gap;
+}
+
+SceneReplica::Verdict SceneReplica::announce(Announced item) {
+    const Verdict verdict = judge(item.from, item.to);
+    const bool snapshot = item.from.number == 0;
+    if (snapshot && verdict != Verdict::Gap) awaits_snapshot_ = scene_lost_ && verdict == Verdict::Duplicate;
+    if (verdict != Verdict::Accepted) return verdict;
+    if (snapshot) {  // nothing before it matters any more
+        announced_lists_.clear();
+        applied_lists_.clear();
+        scene_lost_ = false;
+    } else if (announced_lists_.size() + applied_lists_.size() >= MaxListsUnderWay) {
+        return Verdict::Gap;
+    }
+    announced_ = item.to;
+    announced_lists_.push_back(std::move(item));
+    return Verdict::Accepted;
+}
+
+SceneReplica::Verdict SceneReplica::offer(scene::ChangeList list) {
+    const Version from = list.from, to = list.to;
+    return announce({from, to, std::move(list)});
+}
+
+SceneReplica::Verdict SceneReplica::offer(const wire::ChangesByBlob& announced) {
+    return announce({announced.from, announced.to, announced.blob});
+}
+
+Expected<void> SceneReplica::advance() {
+    while (!announced_lists_.empty()) {
+        Announced& item = announced_lists_.front();
+        Expected<scene::ChangeList> list = scene::ChangeList{};
+        if (auto* here = std::get_if<scene::ChangeList>(&item.content)) {
+            list = std::move(*here);
+        } else {
+            const scene::BlobPtr blob = blobs_->find(std::get<scene::BlobRef>(item.content).hash);
+            if (!blob) break;
+            list = wire::decode_change_list(blob->bytes());
+            if (list && (list->from.number != item.from.number || list->to != item.to)) {
+                list = failure(ErrorCode::InvalidInput, "the change list leads elsewhere than was announced");
+            }
+        }
+        refused_ = item.to;
+        announced_lists_.pop_front();
+        const Expected<void> done = list ? apply(std::move(*list)) : tl::unexpected(list.error());
+        if (!done) {
+            discard();
+            return done;
+        }
+    }
+    return {};
+}
+
+Expected<void> SceneReplica::apply(scene::ChangeList list) {
+    if (Expected<void> done = scene_.apply(list); !done) return done;
+    std::set<scene::BlobRef> blobs;
+    for (const scene::Entry& entry : list.entries) {
+        const scene::Object* object = scene_.find(scene::id(entry));
+        if (!object) continue;
+        for (const scene::BlobRef& blob : scene::referenced_blobs(*object)) blobs.insert(blob);
+    }
+    applied_lists_.push_back({std::move(list), {blobs.begin(), blobs.end()}});
+    return {};
+}
+
+std::vector<scene::BlobRef> SceneReplica::missing() const {
+    std::set<scene::BlobRef> missing;
+    for (const Announced& item : announced_lists_) {
+        const auto* blob = std::get_if<scene::BlobRef>(&item.content);
+        if (blob && !here(*blob)) missing.insert(*blob);
+    }
+    for (const Applied& applied : applied_lists_) {
+        for (const scene::BlobRef& blob : applied.blobs) {
+            if (!here(blob)) missing.insert(blob);
+        }
+    }
+    return {missing.begin(), missing.end()};
+}
+
+std::optional<SceneReplica::Build> SceneReplica::take_build() {
+    if (building_) return std::nullopt;
+    Build build;
+    std::set<ObjectId> touched;
+    while (!applied_lists_.empty()) {
+        Applied& applied = applied_lists_.front();
+        const auto is_here = [&](const scene::BlobRef& blob) { return here(blob); };
+        if (!std::all_of(applied.blobs.begin(), applied.blobs.end(), is_here)) break;
+        for (const scene::Entry& entry : applied.list.entries) {
+            if (!std::holds_alternative<scene::Remove>(entry)) touched.insert(scene::id(entry));
+        }
+        build.to = applied.list.to;
+        build.state_hash = applied.list.state_hash;
+        build.lists.push_back(std::move(applied.list));
+        applied_lists_.pop_front();
+    }
+    if (build.lists.empty()) return std::nullopt;
+    for (const ObjectId id : touched) {
+        const scene::Object* object = scene_.find(id);
+        if (!object) continue;
+        const std::vector<scene::BlobRef> blobs = scene::referenced_blobs(*object);
+        const bool all_here =
+            std::all_of(blobs.begin(), blobs.end(), [&](const auto& blob) { return here(blob); });
+        if (!blobs.empty() && all_here) build.unchecked.emplace_back(id, *object);
+    }
+    building_ = true;
+    building_target_.emplace(build.to, build.state_hash);
+    return build;
+}
+
+bool SceneReplica::built() {
+    building_ = false;
+    if (!building_target_) return false;
+    built_ = building_target_->first;
+    built_hash_ = building_target_->second;
+    building_target_.reset();
+    return true;
+}
+
+bool SceneReplica::failed() {
+    building_ = false;
+    if (!building_target_) return false;
+    building_target_.reset();
+    built_ = {};
+    built_hash_ = {};
+    discard();
+    return true;
+}
+
+void SceneReplica::discard() {
+    announced_lists_.clear();
+    applied_lists_.clear();
+    scene_ = {};
+    scene_lost_ = true;
+    announced_ = building_target_ ? building_target_->first : built_;
+    await_snapshot();
+}
+
+void SceneReplica::await_snapshot() {
+    awaits_snapshot_ = true;
+}
+
+}  // namespace tessera::node

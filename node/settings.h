@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "mediator/net/liveness.h"
+#include "mediator/wire/blob_transfer.h"
+
+namespace tessera::node {
+
+struct NodeSettings {
+    std::string name = "node", host, software = "tessera";
+    std::uint64_t pid = 0;
+    std::string backend;             // its name in the catalog
+    bool reproducible = false;       // pinned to AVX2, or needs no pinning (design 1.6)
+    std::uint32_t workers = 0;       // units at a time; 0 = as many as the back-end recommends
+    net::LivenessSettings liveness;  // until the master's welcome tells its own
+    wire::BlobLimits blob_limits;
+    std::optional<std::filesystem::path> cache;  // folder for blobs; none = no disk cache
+    std::uint64_t cache_limit = 4ull << 30;      // bytes
+    std::uint64_t store_limit =
+        0;  // bytes of blobs above which unused ones are dropped; 0 = never (a shared store)
+};
+
+struct NodeCounters {
+    std::uint64_t samples = 0;  // of pixels, finished since the start
+    std::uint64_t units_done = 0, units_released = 0;
+    std::uint64_t malformed_messages = 0, resyncs = 0, reconnects = 0;
+};
+
+}  // namespace tessera::node

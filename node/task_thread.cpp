@@ -1,0 +1,31 @@
+#include "node/task_thread.h"
+
+namespace tessera::node {
+
+TaskThread::TaskThread() : thread_([this](std::stop_token end) { work(end); }) {}
+
+TaskThread::~TaskThread() {
+    thread_.request_stop();
+    thread_.join();
+}
+
+void TaskThread::post(std::function<void()> task) {
+    {
+        const std::scoped_lock lock(mutex_);
+        tasks_.push_back(std::move(task));
+    }
+    wake_.notify_one();
+}
+
+void TaskThread::work(std::stop_token end) {
+    std::unique_lock lock(mutex_);
+    while (wake_.wait(lock, end, [this] { return !tasks_.empty(); }) && !end.stop_requested()) {
+        const std::function<void()> task = std::move(tasks_.front());
+        tasks_.pop_front();
+        lock.unlock();
+        task();
+        lock.lock();
+    }
+}
+
+}  // namespace tessera::node
