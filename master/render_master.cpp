@@ -97,10 +97,15 @@ void RenderMaster::drop(const net::Message& message, const std::string& why) {
 }
 
 void RenderMaster::receive(net::Message&& message, TimePoint now) {
-    if (message.link == net::Link::Control) {
-        control(message, now);
-    } else {
-        bulk(message, now);
+    // Whatever a message leads to, the master goes on: the policy for what handlers throw is here.
+    try {
+        if (message.link == net::Link::Control) {
+            control(message, now);
+        } else {
+            bulk(message, now);
+        }
+    } catch (const std::exception& error) {
+        drop(message, error.what());
     }
 }
 

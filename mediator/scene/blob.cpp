@@ -23,7 +23,9 @@ BlobPtr BlobStore::insert(BlobPtr blob) {
     return place->second;
 }
 
-BlobPtr BlobStore::insert(std::span<const std::byte> data) { return insert(std::make_shared<const Blob>(data)); }
+BlobPtr BlobStore::insert(std::span<const std::byte> data) {
+    return insert(std::make_shared<const Blob>(data));
+}
 
 BlobPtr BlobStore::find(const Hash256& hash) const {
     const std::scoped_lock lock(mutex_);

@@ -17,7 +17,7 @@ namespace tessera::scene {
 // The data is followed by 16 readable zero bytes (Embree reads past the last vertex).
 class Blob {
   public:
-    explicit Blob(std::span<const std::byte> data);       // copies once and hashes
+    explicit Blob(std::span<const std::byte> data);          // copies once and hashes
     Blob(std::vector<std::byte> data, const Hash256& hash);  // takes over; the caller has verified the hash
 
     const Hash256& hash() const { return hash_; }
@@ -44,9 +44,12 @@ struct BlobRef {
     friend auto operator<=>(const BlobRef&, const BlobRef&) = default;
 };
 
-inline BlobRef reference(const Blob& blob) { return {blob.hash(), blob.bytes().size()}; }
+inline BlobRef reference(const Blob& blob) {
+    return {blob.hash(), blob.bytes().size()};
+}
 
-// Where blobs are found by hash. Thread-safe. In one process all parts share one store, so a blob exists once.
+// Where blobs are found by hash. Thread-safe. In one process all parts share one store, so a blob exists
+// once.
 class BlobStore {
   public:
     BlobPtr insert(BlobPtr blob);  // returns the one already there, if any

@@ -27,8 +27,9 @@ using Entry = std::variant<Create, Update, Remove>;
 
 ObjectId id(const Entry& entry);
 
-// What leads from one version to the next; a value. A snapshot is a change list from nothing (`from.number` = 0).
-// Each object has at most one entry; their order means nothing, since references are checked on the whole.
+// What leads from one version to the next; a value. A snapshot is a change list from nothing (`from.number` =
+// 0). Each object has at most one entry; their order means nothing, since references are checked on the
+// whole.
 struct ChangeList {
     Version from, to;
     std::vector<Entry> entries;

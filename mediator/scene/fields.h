@@ -9,7 +9,8 @@
 
 namespace tessera::scene {
 
-// Which fields of a T are meant; bit i is T::Field(i). Typed, so that a mask of one kind cannot reach another.
+// Which fields of a T are meant; bit i is T::Field(i). Typed, so that a mask of one kind cannot reach
+// another.
 template <class T>
 class Fields {
   public:
@@ -19,12 +20,12 @@ class Fields {
         for (const auto field : fields) bits_ |= 1u << static_cast<unsigned>(field);
     }
     static constexpr Fields from_bits(std::uint32_t bits) { return Fields(bits & all().bits_, 0); }
-    static constexpr Fields all() {
-        return Fields((1u << std::tuple_size_v<decltype(T::fields())>) - 1u, 0);
-    }
+    static constexpr Fields all() { return Fields((1u << std::tuple_size_v<decltype(T::fields())>)-1u, 0); }
     constexpr std::uint32_t bits() const { return bits_; }
     constexpr bool empty() const { return bits_ == 0; }
-    constexpr bool contains(typename T::Field field) const { return (bits_ >> static_cast<unsigned>(field)) & 1u; }
+    constexpr bool contains(typename T::Field field) const {
+        return (bits_ >> static_cast<unsigned>(field)) & 1u;
+    }
     constexpr bool intersects(Fields other) const { return (bits_ & other.bits_) != 0; }
     constexpr Fields operator|(Fields other) const { return Fields(bits_ | other.bits_, 0); }
     friend constexpr bool operator==(Fields, Fields) = default;
@@ -39,7 +40,8 @@ template <class T, class Visitor>
 constexpr void for_each_field(Visitor&& visit) {
     [&]<std::size_t... I>(std::index_sequence<I...>) {
         (visit(static_cast<unsigned>(I), std::get<I>(T::fields())), ...);
-    }(std::make_index_sequence<std::tuple_size_v<decltype(T::fields())>>{});
+    }
+    (std::make_index_sequence<std::tuple_size_v<decltype(T::fields())>>{});
 }
 
 // The untyped forms, for lists that hold all kinds. `from` must be of `to`'s kind (asserted).

@@ -13,8 +13,8 @@
 #include "mediator/base/ids.h"
 #include "mediator/scene/blob.h"
 
-// The minimal set of scene objects (Schwenk 5.3.2.1). Plain values; `fields()` lists the members in the order of
-// `Field`, and everything that treats fields alike (masks, comparison, hashing) is derived from it.
+// The minimal set of scene objects (Schwenk 5.3.2.1). Plain values; `fields()` lists the members in the order
+// of `Field`, and everything that treats fields alike (masks, comparison, hashing) is derived from it.
 // Metres, radians, linear Rec. 709; world right-handed, y up.
 namespace tessera::scene {
 
@@ -22,8 +22,8 @@ namespace tessera::scene {
 // unflagged starts as static and changes over at its first move.
 enum class MotionHint : std::uint8_t { Unflagged, Static, Animated };
 
-// The graph's inner node. Children may be transforms, geometries, lights, cameras and attachments; shared children
-// are instances. No cycles.
+// The graph's inner node. Children may be transforms, geometries, lights, cameras and attachments; shared
+// children are instances. No cycles.
 struct Transform {
     enum class Field : std::uint8_t { Name, Matrix, Children, Hint };
     std::string name;
@@ -37,7 +37,17 @@ struct Transform {
 
 // Indexed triangles. Arrays are blobs of little-endian 32-bit elements; empty = not there.
 struct Geometry {
-    enum class Field : std::uint8_t { Name, Material, Hint, Indices, Positions, Normals, Tangents, TexCoords, Colors };
+    enum class Field : std::uint8_t {
+        Name,
+        Material,
+        Hint,
+        Indices,
+        Positions,
+        Normals,
+        Tangents,
+        TexCoords,
+        Colors
+    };
     std::string name;
     ObjectId material;  // 0 = the default grey
     MotionHint hint = MotionHint::Unflagged;
@@ -49,12 +59,13 @@ struct Geometry {
     BlobRef colors;      // float x 4 per vertex, linear
     static constexpr auto fields() {
         return std::tuple(&Geometry::name, &Geometry::material, &Geometry::hint, &Geometry::indices,
-                          &Geometry::positions, &Geometry::normals, &Geometry::tangents, &Geometry::tex_coords,
-                          &Geometry::colors);
+                          &Geometry::positions, &Geometry::normals, &Geometry::tangents,
+                          &Geometry::tex_coords, &Geometry::colors);
     }
 };
 
-// A texture as a material uses it: uv' = translate(offset) rotate(rotation) scale(scale) uv (KHR_texture_transform).
+// A texture as a material uses it: uv' = translate(offset) rotate(rotation) scale(scale) uv
+// (KHR_texture_transform).
 struct TextureSlot {
     ObjectId texture;  // 0 = none: the factor alone
     glm::vec2 offset{0.0f}, scale{1.0f};
@@ -67,8 +78,21 @@ enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
 // glTF 2.0 metallic-roughness: every value is factor x texture.
 struct Material {
     enum class Field : std::uint8_t {
-        Name, BaseColor, BaseColorTexture, Metallic, Roughness, MetallicRoughnessTexture, NormalTexture,
-        NormalScale, Emission, EmissionTexture, AlphaMode, AlphaCutoff, DoubleSided, Unlit, IndexOfRefraction,
+        Name,
+        BaseColor,
+        BaseColorTexture,
+        Metallic,
+        Roughness,
+        MetallicRoughnessTexture,
+        NormalTexture,
+        NormalScale,
+        Emission,
+        EmissionTexture,
+        AlphaMode,
+        AlphaCutoff,
+        DoubleSided,
+        Unlit,
+        IndexOfRefraction,
         Transmission
     };
     std::string name;
@@ -79,7 +103,7 @@ struct Material {
     TextureSlot metallic_roughness_texture;  // g = roughness, b = metallic
     TextureSlot normal_texture;              // tangent space, rgb = (n + 1) / 2
     float normal_scale = 1.0f;
-    glm::vec3 emission{0.0f};  // radiance, strength included
+    glm::vec3 emission{0.0f};      // radiance, strength included
     TextureSlot emission_texture;  // sRGB
     AlphaMode alpha_mode = AlphaMode::Opaque;
     float alpha_cutoff = 0.5f;
@@ -111,15 +135,15 @@ struct Texture {
     TextureFilter filter = TextureFilter::Linear;
     BlobRef texels;
     static constexpr auto fields() {
-        return std::tuple(&Texture::name, &Texture::width, &Texture::height, &Texture::format, &Texture::wrap_s,
-                          &Texture::wrap_t, &Texture::filter, &Texture::texels);
+        return std::tuple(&Texture::name, &Texture::width, &Texture::height, &Texture::format,
+                          &Texture::wrap_s, &Texture::wrap_t, &Texture::filter, &Texture::texels);
     }
 };
 
 enum class LightKind : std::uint8_t { Point, Spot, Directional };
 
-// KHR_lights_punctual, in the frame of its parent transform: shines along -z. Lights with an extent are emissive
-// geometry. Intensity: W/sr (point, spot), W/m2 (directional).
+// KHR_lights_punctual, in the frame of its parent transform: shines along -z. Lights with an extent are
+// emissive geometry. Intensity: W/sr (point, spot), W/m2 (directional).
 struct Light {
     enum class Field : std::uint8_t { Name, Kind, Intensity, InnerConeAngle, OuterConeAngle };
     std::string name;
@@ -133,7 +157,8 @@ struct Light {
     }
 };
 
-// Pinhole, in the frame of its parent transform: looks along -z, y up. A view takes its values; it is no node's business.
+// Pinhole, in the frame of its parent transform: looks along -z, y up. A view takes its values; it is no
+// node's business.
 struct Camera {
     enum class Field : std::uint8_t { Name, VerticalFov, AspectRatio };
     std::string name;
@@ -144,8 +169,8 @@ struct Camera {
     }
 };
 
-// Light from infinitely far: color + strength x environment. Latitude-longitude map, row 0 is +y, column centre
-// of the map is -z at rotation 0 (u grows to +x), turned about y.
+// Light from infinitely far: color + strength x environment. Latitude-longitude map, row 0 is +y, column
+// centre of the map is -z at rotation 0 (u grows to +x), turned about y.
 struct Background {
     enum class Field : std::uint8_t { Name, Color, Environment, Strength, Rotation };
     std::string name;
@@ -154,8 +179,8 @@ struct Background {
     float strength = 1.0f;
     float rotation = 0.0f;
     static constexpr auto fields() {
-        return std::tuple(&Background::name, &Background::color, &Background::environment, &Background::strength,
-                          &Background::rotation);
+        return std::tuple(&Background::name, &Background::color, &Background::environment,
+                          &Background::strength, &Background::rotation);
     }
 };
 
@@ -183,11 +208,22 @@ struct Root {
 
 inline constexpr ObjectId RootId{1};
 
-using Object = std::variant<Root, Transform, Geometry, Material, Texture, Light, Camera, Background, Attachment>;
+using Object =
+    std::variant<Root, Transform, Geometry, Material, Texture, Light, Camera, Background, Attachment>;
 enum class ObjectKind : std::uint8_t {
-    Root, Transform, Geometry, Material, Texture, Light, Camera, Background, Attachment
+    Root,
+    Transform,
+    Geometry,
+    Material,
+    Texture,
+    Light,
+    Camera,
+    Background,
+    Attachment
 };
-inline ObjectKind kind(const Object& object) { return static_cast<ObjectKind>(object.index()); }
+inline ObjectKind kind(const Object& object) {
+    return static_cast<ObjectKind>(object.index());
+}
 const char* name(ObjectKind kind);
 const std::string& name(const Object& object);
 

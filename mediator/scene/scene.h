@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "mediator/base/error.h"
@@ -10,8 +11,8 @@
 
 namespace tessera::scene {
 
-// The state at one version: objects by id, in id order. Copies share objects, so the editor can write v+1 while
-// readers hold v. Not synchronised: one writer, or many readers.
+// The state at one version: objects by id, in id order. Copies share objects, so the editor can write v+1
+// while readers hold v. Not synchronised: one writer, or many readers.
 class Scene {
   public:
     Version version() const { return version_; }
@@ -24,8 +25,9 @@ class Scene {
     }
     const std::map<ObjectId, std::shared_ptr<const Object>>& objects() const { return objects_; }
 
-    // Applies in full or not at all. Fails with InvalidInput when `from` is not this version (a snapshot replaces
-    // everything), an id is missing or taken, a kind differs, or the resulting state hash is not the one promised.
+    // Applies in full or not at all. Fails with InvalidInput when `from` is not this version (a snapshot
+    // replaces everything), an id is missing or taken, a kind differs, or the resulting state hash is not the
+    // one promised.
     Expected<void> apply(const ChangeList& changes);
 
     // The same without version and hash checks: the authority's and the editor's way.
@@ -33,7 +35,12 @@ class Scene {
     void set_version(Version version) { version_ = version; }
 
   private:
+    // What was there before each entry, so that a refused list costs its own objects, not a copy of the
+    // scene.
+    using Journal = std::vector<std::pair<ObjectId, std::shared_ptr<const Object>>>;
+    Expected<void> apply_entries(const std::vector<Entry>& entries, Journal& journal);
     Expected<void> apply_entry(const Entry& entry);
+    void undo(const Journal& journal, Hash128 state_hash);
 
     Version version_;
     Hash128 state_hash_;

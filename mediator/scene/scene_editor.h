@@ -8,8 +8,8 @@
 namespace tessera::scene {
 
 // Records what is written, where it is written, and coalesces at once: k writes of one field are one entry,
-// create + update is a create, create + remove is nothing, remove + create of the same kind is an update of what
-// differs. `base` must outlive the editor and not change meanwhile.
+// create + update is a create, create + remove is nothing, remove + create of the same kind is an update of
+// what differs. `base` must outlive the editor and not change meanwhile.
 class SceneEditor {
   public:
     explicit SceneEditor(const Scene& base) : base_(base) {}
@@ -21,7 +21,8 @@ class SceneEditor {
     void update(ObjectId id, Fields<T> mask, const T& fields) {
         write(id, mask.bits(), Object(fields));
     }
-    void write(ObjectId id, std::uint32_t mask, const Object& fields);  // throws Error when absent or another kind
+    void write(ObjectId id, std::uint32_t mask,
+               const Object& fields);  // throws Error when absent or another kind
     void apply(const Entry& entry);
 
     const Object* find(ObjectId id) const;  // as the edit would leave it
@@ -31,12 +32,10 @@ class SceneEditor {
     std::vector<Entry> take();
 
   private:
+    // The state an object has after the edit; none: it goes. What changed is found by comparing with the base.
     struct Pending {
-        bool removed = false;      // the base's object goes
-        bool created = false;      // `object` is new
-        std::uint32_t mask = 0;    // fields written, of a base object that stays
-        Object object;             // the state after the edit, unless only removed
         bool has_object = false;
+        Object object;
     };
     const Scene& base_;
     std::map<ObjectId, Pending> pending_;

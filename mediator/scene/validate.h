@@ -13,12 +13,13 @@ struct Problem {
     std::string message;  // names object, cause and remedy
 };
 
-// Checks the objects alone and against each other: finite numbers, ranges of enums and angles, sizes of arrays
-// against each other, references that exist and have the right kind, no cycles, ids below 2^32, one Root.
-// Does not look into blobs. Empty = valid.
+// Checks the objects alone and against each other: finite numbers, ranges of enums and angles, sizes of
+// arrays against each other, references that exist and have the right kind, no cycles, ids below 2^32, one
+// Root. Does not look into blobs. Empty = valid.
 std::vector<Problem> validate(const Scene& scene);
 
-// Only what `entries` touch and the objects that refer to it; `scene` is the state after them. Cost is theirs.
+// Only what `entries` touch and the objects that refer to it; `scene` is the state after them. Cost is
+// theirs.
 std::vector<Problem> validate_entries(const Scene& scene, const std::vector<Entry>& entries);
 
 // Looks into a geometry's or texture's blobs: indices in range, finite positions and normals, enough texels.

@@ -1,0 +1,90 @@
+#include <cmath>
+
+#include "mediator/scene/validate.h"
+#include "mediator/scene/validate_object.h"
+
+namespace tessera::scene {
+
+namespace {
+
+class BlobCheck {
+  public:
+    BlobCheck(ObjectId id, const Object& object, const BlobStore& blobs)
+        : id_(id), object_(object), blobs_(blobs) {}
+
+    // Null with a problem when the blob is absent or shorter than said.
+    BlobPtr get(const BlobRef& reference, const std::string& what) {
+        if (reference.empty()) return nullptr;
+        BlobPtr blob = blobs_.find(reference.hash);
+        if (!blob || blob->bytes().size() != reference.byte_size) {
+            add("the blob of its " + what + " is missing or has another size than said");
+            return nullptr;
+        }
+        return blob;
+    }
+
+    void finite(const BlobRef& reference, std::size_t components, const std::string& what) {
+        const BlobPtr blob = get(reference, what);
+        if (!blob) return;
+        const auto values = blob->as<float>();
+        std::uint64_t bad = 0, first = 0;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (std::isfinite(values[i])) continue;
+            if (bad++ == 0) first = i / components;
+        }
+        if (bad > 0) {
+            add(std::to_string(bad) + " numbers of its " + what + " are not finite, the first in element " +
+                std::to_string(first) + ": mend the file or the exporter");
+        }
+    }
+
+    void indices(const Geometry& geometry) {
+        const BlobPtr blob = get(geometry.indices, "indices");
+        if (!blob) return;
+        const std::uint64_t vertices = geometry.positions.byte_size / 12;
+        const auto values = blob->as<std::uint32_t>();
+        std::uint64_t bad = 0, first = 0;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (values[i] < vertices) continue;
+            if (bad++ == 0) first = i / 3;
+        }
+        if (bad > 0) {
+            add(std::to_string(bad) + " indices point beyond its " + std::to_string(vertices) +
+                " vertices, the first in triangle " + std::to_string(first) +
+                ": mend the file or the exporter");
+        }
+    }
+
+    std::vector<Problem> take() { return std::move(problems_); }
+
+  private:
+    void add(const std::string& cause) { problems_.push_back({id_, describe(id_, object_) + ": " + cause}); }
+
+    ObjectId id_;
+    const Object& object_;
+    const BlobStore& blobs_;
+    std::vector<Problem> problems_;
+};
+
+}  // namespace
+
+std::vector<Problem> validate_blobs(ObjectId id, const Object& object, const BlobStore& blobs) {
+    BlobCheck check(id, object, blobs);
+    if (const auto* geometry = std::get_if<Geometry>(&object)) {
+        check.finite(geometry->positions, 3, "positions");
+        check.finite(geometry->normals, 3, "normals");
+        check.finite(geometry->tangents, 4, "tangents");
+        check.finite(geometry->tex_coords, 2, "texture coordinates");
+        check.finite(geometry->colors, 4, "vertex colours");
+        check.indices(*geometry);
+    } else if (const auto* texture = std::get_if<Texture>(&object)) {
+        if (texture->format == TexelFormat::RgbFloat) {
+            check.finite(texture->texels, 3, "texels");
+        } else {
+            check.get(texture->texels, "texels");
+        }
+    }
+    return check.take();
+}
+
+}  // namespace tessera::scene

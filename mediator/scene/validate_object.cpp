@@ -1,0 +1,175 @@
+#include "mediator/scene/validate_object.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace tessera::scene {
+
+namespace {
+
+constexpr std::size_t MaxName = 4096;
+constexpr std::uint64_t MaxElements = std::uint64_t{1} << 31;
+constexpr double MaxCoordinate = 1e15;  // beyond, double transforms lose the centimetre
+constexpr double Pi = std::numbers::pi;
+
+class Check {
+  public:
+    Check(ObjectId id, const Object& object) : id_(id), object_(object) {}
+    void that(bool holds, const std::string& cause) {
+        if (!holds) problems_.push_back(describe(id_, object_) + ": " + cause);
+    }
+    template <class V>
+    void finite(const V& value, const std::string& what) {
+        if constexpr (std::is_floating_point_v<V>) {
+            that(std::isfinite(value), what + " is not a finite number");
+        } else {
+            for (glm::length_t i = 0; i < value.length(); ++i) {
+                if (std::isfinite(value[i])) continue;
+                return that(false, what + " is not a finite number");
+            }
+        }
+    }
+    template <class V>
+    void not_negative(const V& value, const std::string& what) {
+        for (glm::length_t i = 0; i < value.length(); ++i) {
+            if (value[i] >= 0 && std::isfinite(value[i])) continue;
+            return that(false, what + " is negative or not finite");
+        }
+    }
+    void range(double value, double low, double high, const std::string& what) {
+        that(value >= low && value <= high,
+             what + " lies outside " + std::to_string(low) + " .. " + std::to_string(high));
+    }
+    template <class Enum>
+    void known(Enum value, Enum last, const std::string& what) {
+        that(static_cast<unsigned>(value) <= static_cast<unsigned>(last), what + " is unknown");
+    }
+    std::vector<std::string> take() { return std::move(problems_); }
+
+  private:
+    ObjectId id_;
+    const Object& object_;
+    std::vector<std::string> problems_;
+};
+
+void check(const Root& root, Check& check) {
+    check.finite(root.render_origin, "the render origin");
+    check.that(glm::all(glm::lessThan(glm::abs(root.render_origin), glm::dvec3(MaxCoordinate))),
+               "the render origin is farther away than 1e15 m");
+}
+
+void check(const Transform& transform, Check& check) {
+    check.known(transform.hint, MotionHint::Animated, "the motion hint");
+    const glm::dmat4& m = transform.matrix;
+    for (glm::length_t column = 0; column < 4; ++column) check.finite(m[column], "the matrix");
+    check.that(m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == 0.0 && m[3][3] == 1.0,
+               "the matrix is not affine: its last row has to be 0 0 0 1");
+    check.that(glm::all(glm::lessThan(glm::abs(glm::dvec3(m[3])), glm::dvec3(MaxCoordinate))),
+               "the translation is longer than 1e15 m");
+}
+
+// Byte sizes that fit together; what is in the arrays is validate_blobs' matter.
+void check(const Geometry& geometry, Check& check) {
+    check.known(geometry.hint, MotionHint::Animated, "the motion hint");
+    check.that(!geometry.positions.empty() && !geometry.indices.empty(),
+               "it has no positions or no indices: a mesh needs both");
+    check.that(geometry.indices.byte_size % 12 == 0, "the indices are no whole triangles");
+    check.that(geometry.positions.byte_size % 12 == 0, "the positions are no whole vectors");
+    const std::uint64_t vertices = geometry.positions.byte_size / 12;
+    check.that(vertices <= MaxElements && geometry.indices.byte_size / 12 <= MaxElements,
+               "it has more than 2^31 vertices or triangles: split it");
+    const auto per_vertex = [&](const BlobRef& blob, std::uint64_t bytes, const std::string& what) {
+        check.that(blob.empty() || (blob.byte_size == vertices * bytes),
+                   "the " + what + " are " + std::to_string(blob.byte_size) + " bytes, not one per vertex (" +
+                       std::to_string(vertices * bytes) + ")");
+    };
+    per_vertex(geometry.normals, 12, "normals");
+    per_vertex(geometry.tangents, 16, "tangents");
+    per_vertex(geometry.tex_coords, 8, "texture coordinates");
+    per_vertex(geometry.colors, 16, "vertex colours");
+}
+
+void check(const TextureSlot& slot, const std::string& what, Check& check) {
+    check.finite(slot.offset, what + "'s offset");
+    check.finite(slot.scale, what + "'s scale");
+    check.finite(slot.rotation, what + "'s rotation");
+}
+
+void check(const Material& material, Check& check) {
+    for (glm::length_t i = 0; i < 4; ++i) check.range(material.base_color[i], 0.0, 1.0, "the base colour");
+    check.range(material.metallic, 0.0, 1.0, "metallic");
+    check.range(material.roughness, 0.0, 1.0, "roughness");
+    check.finite(material.normal_scale, "the normal scale");
+    check.not_negative(material.emission, "the emission");
+    check.known(material.alpha_mode, AlphaMode::Blend, "the alpha mode");
+    check.range(material.alpha_cutoff, 0.0, std::numeric_limits<float>::max(), "the alpha cutoff");
+    check.that(material.index_of_refraction == 0.0f ||
+                   (material.index_of_refraction >= 1.0f && material.index_of_refraction <= 100.0f),
+               "the index of refraction is neither 0 nor between 1 and 100");
+    check.range(material.transmission, 0.0, 1.0, "transmission");
+    scene::check(material.base_color_texture, "the base colour texture", check);
+    scene::check(material.metallic_roughness_texture, "the metallic-roughness texture", check);
+    scene::check(material.normal_texture, "the normal texture", check);
+    scene::check(material.emission_texture, "the emission texture", check);
+}
+
+void check(const Texture& texture, Check& check) {
+    check.known(texture.format, TexelFormat::RgbFloat, "the texel format");
+    check.known(texture.wrap_s, Wrap::Clamp, "the wrap mode");
+    check.known(texture.wrap_t, Wrap::Clamp, "the wrap mode");
+    check.known(texture.filter, TextureFilter::Nearest, "the filter");
+    constexpr std::uint32_t MaxEdge = 65536;
+    check.that(
+        texture.width >= 1 && texture.height >= 1 && texture.width <= MaxEdge && texture.height <= MaxEdge,
+        "its size is not between 1x1 and 65536x65536");
+    const std::uint64_t texel = texture.format == TexelFormat::RgbFloat ? 12 : 4;
+    check.that(texture.texels.byte_size == std::uint64_t{texture.width} * texture.height * texel,
+               "its texels are " + std::to_string(texture.texels.byte_size) +
+                   " bytes, not width x height x " + std::to_string(texel));
+}
+
+void check(const Light& light, Check& check) {
+    check.known(light.kind, LightKind::Directional, "the kind of light");
+    check.not_negative(light.intensity, "the intensity");
+    check.range(light.inner_cone_angle, 0.0, Pi / 2 + 1e-6, "the inner cone angle");
+    check.range(light.outer_cone_angle, 0.0, Pi / 2 + 1e-6, "the outer cone angle");
+    check.that(light.kind != LightKind::Spot || light.inner_cone_angle <= light.outer_cone_angle,
+               "the inner cone is wider than the outer");
+}
+
+void check(const Camera& camera, Check& check) {
+    check.that(camera.vertical_fov > 0.0 && camera.vertical_fov < Pi,
+               "the field of view is not between 0 and pi");
+    check.that(camera.aspect_ratio >= 0.0 && std::isfinite(camera.aspect_ratio),
+               "the aspect ratio is negative");
+}
+
+void check(const Background& background, Check& check) {
+    check.not_negative(background.color, "the colour");
+    check.range(background.strength, 0.0, std::numeric_limits<float>::max(), "the strength");
+    check.finite(background.rotation, "the rotation");
+}
+
+void check(const Attachment& attachment, Check& check) {
+    constexpr std::size_t MaxValue = 1 << 20;
+    check.that(attachment.key.size() <= MaxName && attachment.value.size() <= MaxValue,
+               "its key or value is longer than 4 KiB or 1 MiB");
+}
+
+}  // namespace
+
+std::string describe(ObjectId id, const Object& object) {
+    std::string text = std::string(name(kind(object))) + " " + std::to_string(id.value);
+    if (const std::string& given = name(object); !given.empty()) text += " ('" + given.substr(0, 64) + "')";
+    return text;
+}
+
+std::vector<std::string> problems_of(ObjectId id, const Object& object) {
+    Check checks(id, object);
+    checks.that(name(object).size() <= MaxName, "its name is longer than 4096 bytes");
+    std::visit([&](const auto& value) { check(value, checks); }, object);
+    return checks.take();
+}
+
+}  // namespace tessera::scene

@@ -1,0 +1,16 @@
+#include "mediator/view/view.h"
+
+#include <cmath>
+
+namespace tessera::view {
+
+CameraPose perspective(const glm::dmat4& world_from_camera, double vertical_fov, double aspect_ratio) {
+    const double top = std::tan(0.5 * vertical_fov);
+    return {.world_from_camera = world_from_camera,
+            .left = -top * aspect_ratio,
+            .right = top * aspect_ratio,
+            .bottom = -top,
+            .top = top};
+}
+
+}  // namespace tessera::view
