@@ -32,6 +32,7 @@ class Counting {
     explicit Counting(const scene::Scene& scene) : scene_(scene) {}
 
     Expected<Below> children(const std::vector<ObjectId>& ids, std::size_t level) {
+        if (level > MaxDepth) return too_deep();
         Below sum;
         for (const ObjectId id : distinct(ids)) {
             const scene::Object* object = scene_.find(id);
@@ -47,16 +48,19 @@ class Counting {
                 sum.depth = std::max(sum.depth, child->depth + 1);
             }
         }
-        if (level + sum.depth > MaxDepth) {
-            return failure(ErrorCode::InvalidInput, "the scene graph is nested deeper than " +
-                                                        std::to_string(MaxDepth) + " transforms; flatten it");
-        }
+        if (level + sum.depth > MaxDepth)
+            return too_deep();  // a shared branch, counted where it was higher up
         return sum;
     }
 
     bool anything_below(ObjectId transform) const { return known_.at(transform).placements > 0; }
 
   private:
+    static tl::unexpected<Error> too_deep() {
+        return failure(ErrorCode::InvalidInput, "the scene graph is nested deeper than " +
+                                                    std::to_string(MaxDepth) + " transforms; flatten it");
+    }
+
     Expected<Below> transform(ObjectId id, const scene::Transform& transform, std::size_t level) {
         const auto [place, fresh] = known_.try_emplace(id, Below{-1});
         if (!fresh) {

@@ -1,0 +1,189 @@
+#include "mediator/backend/shadow_scene.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/backend/scene_builder.h"
+
+namespace tessera::backend {
+namespace {
+
+using scene::Create;
+using scene::Geometry;
+using scene::Remove;
+using scene::Transform;
+using test::moved;
+using test::SceneBuilder;
+using test::transform;
+
+constexpr ObjectId Left{10}, Right{11}, Inner{12}, Mesh{20}, Lamp{30}, Paint{40};
+
+std::vector<scene::Entry> start() {
+    return {Create{scene::RootId, scene::Root{.name = {}, .children = {Left, Right}}},
+            Create{Left, transform(moved(1, 0, 0), {Inner})},
+            Create{Right, transform(moved(0, 2, 0), {Inner, Lamp})},
+            Create{Inner, transform(moved(0, 0, 3), {Mesh})},
+            Create{Mesh, Geometry{.name = {}, .material = Paint}},
+            Create{Lamp, scene::Light{}},
+            Create{Paint, scene::Material{}}};
+}
+
+void expect_like_rebuilt(const ShadowScene& shadow) {
+    ShadowScene rebuilt;
+    ASSERT_TRUE(rebuilt.apply(snapshot(shadow.scene())));
+    EXPECT_EQ(shadow.scene().state_hash(), rebuilt.scene().state_hash());
+    const Lowered &a = shadow.lowered(), &b = rebuilt.lowered();
+    ASSERT_EQ(a.instances.size(), b.instances.size());
+    for (std::size_t i = 0; i < a.instances.size(); ++i) {
+        EXPECT_EQ(a.instances[i].geometry, b.instances[i].geometry);
+        EXPECT_EQ(a.instances[i].path, b.instances[i].path);
+        EXPECT_EQ(a.instances[i].hint, b.instances[i].hint);
+        EXPECT_EQ(a.instances[i].world_from_object, b.instances[i].world_from_object);
+    }
+    ASSERT_EQ(a.lights.size(), b.lights.size());
+    for (std::size_t i = 0; i < a.lights.size(); ++i) {
+        EXPECT_EQ(a.lights[i].world_from_light, b.lights[i].world_from_light);
+    }
+}
+
+struct ShadowSceneTest : testing::Test {
+    ShadowSceneTest() {
+        EXPECT_TRUE(shadow.apply(builder.edit(start())));
+        shadow.take_delta();
+    }
+    SceneDelta edit(std::vector<scene::Entry> entries) {
+        EXPECT_TRUE(shadow.apply(builder.edit(std::move(entries))));
+        expect_like_rebuilt(shadow);
+        return shadow.take_delta();
+    }
+    SceneBuilder builder;
+    ShadowScene shadow;
+};
+
+TEST_F(ShadowSceneTest, AMatrixMovesOnlyWhatHangsBelowIt) {
+    ASSERT_TRUE(shadow.apply(builder.move(Left, moved(5, 0, 0))));
+    expect_like_rebuilt(shadow);
+    SceneDelta delta = shadow.take_delta();
+    EXPECT_EQ(delta.moved_instances, (std::vector<std::uint32_t>{0}));
+    EXPECT_FALSE(delta.instances_changed);
+    EXPECT_FALSE(delta.lights_changed);
+
+    ASSERT_TRUE(shadow.apply(builder.move(Right, moved(6, 0, 0))));
+    delta = shadow.take_delta();
+    EXPECT_EQ(delta.moved_instances, (std::vector<std::uint32_t>{1}));
+    EXPECT_TRUE(delta.lights_changed);
+
+    ASSERT_TRUE(shadow.apply(builder.move(Inner, moved(7, 0, 0))));
+    expect_like_rebuilt(shadow);
+    EXPECT_EQ(shadow.take_delta().moved_instances, (std::vector<std::uint32_t>{0, 1}));
+}
+
+TEST_F(ShadowSceneTest, DeltasOfSeveralListsAddUp) {
+    ASSERT_TRUE(shadow.apply(builder.move(Left, moved(5, 0, 0))));
+    ASSERT_TRUE(shadow.apply(
+        builder.edit({SceneBuilder::update<Geometry>(Mesh, Geometry::Field::Material, Geometry{})})));
+    ASSERT_TRUE(shadow.apply(builder.move(Right, moved(6, 0, 0))));
+    const SceneDelta delta = shadow.take_delta();
+    EXPECT_EQ(delta.moved_instances, (std::vector<std::uint32_t>{0, 1}));
+    ASSERT_EQ(delta.geometries.size(), 1u);
+    EXPECT_EQ(delta.geometries[0].fields, scene::Fields<Geometry>(Geometry::Field::Material));
+    EXPECT_EQ(delta.entries, 3u);
+    EXPECT_EQ(delta.relevant, 3u);
+    EXPECT_TRUE(shadow.take_delta().moved_instances.empty());
+}
+
+TEST_F(ShadowSceneTest, NamesCamerasAndAttachmentsAreNotRelevant) {
+    const SceneDelta delta =
+        edit({SceneBuilder::update<Geometry>(Mesh, Geometry::Field::Name, Geometry{.name = "m"}),
+              Create{ObjectId{50}, scene::Camera{}}, Create{ObjectId{51}, scene::Attachment{}}});
+    EXPECT_EQ(delta.entries, 3u);
+    EXPECT_EQ(delta.relevant, 0u);
+    EXPECT_TRUE(delta.geometries.empty());
+    EXPECT_EQ(delta.ignored_kinds.size(), 1u);
+}
+
+TEST_F(ShadowSceneTest, AddingAnInstanceChangesTheListButNotTheGeometry) {
+    const SceneDelta delta = edit(
+        {SceneBuilder::update<Transform>(Left, Transform::Field::Children, transform({}, {Inner, Mesh}))});
+    EXPECT_TRUE(delta.instances_changed);
+    EXPECT_TRUE(delta.geometries.empty());
+    EXPECT_EQ(shadow.lowered().instances.size(), 3u);
+}
+
+TEST_F(ShadowSceneTest, ReparentingThatKeepsTheMembersIsNoChangeOfTheList) {
+    const SceneDelta delta = edit(
+        {SceneBuilder::update<Transform>(Left, Transform::Field::Children, transform({}, {Inner, Inner}))});
+    EXPECT_FALSE(delta.instances_changed);
+    EXPECT_TRUE(delta.moved_instances.empty());
+}
+
+TEST_F(ShadowSceneTest, ARemovedAndANewGeometryAreTold) {
+    SceneDelta delta = edit({Remove{Mesh}, Create{ObjectId{21}, Geometry{}}});
+    EXPECT_EQ(delta.removed_geometries, std::vector{Mesh});
+    ASSERT_EQ(delta.geometries.size(), 1u);
+    EXPECT_EQ(delta.geometries[0].id, ObjectId{21});
+    EXPECT_TRUE(delta.instances_changed);
+
+    ASSERT_TRUE(shadow.apply(builder.edit({Create{ObjectId{22}, Geometry{}}})));
+    ASSERT_TRUE(shadow.apply(builder.edit({Remove{ObjectId{22}}})));
+    delta = shadow.take_delta();
+    EXPECT_TRUE(delta.geometries.empty());
+    EXPECT_TRUE(delta.removed_geometries.empty());
+}
+
+TEST_F(ShadowSceneTest, ALightThatHangsNowhereChangesNoPlacedLight) {
+    edit({Create{ObjectId{31}, scene::Light{}}});
+    EXPECT_FALSE(edit({SceneBuilder::update<scene::Light>(ObjectId{31}, scene::Light::Field::Intensity, {})})
+                     .lights_changed);
+    EXPECT_TRUE(edit({SceneBuilder::update<scene::Light>(Lamp, scene::Light::Field::Intensity,
+                                                         {.name = {}, .intensity = glm::vec3(3.0f)})})
+                    .lights_changed);
+}
+
+TEST_F(ShadowSceneTest, ASnapshotReplacesEverything) {
+    ASSERT_TRUE(shadow.apply(builder.move(Left, moved(5, 0, 0))));
+    SceneBuilder other;
+    other.edit(start());
+    ASSERT_TRUE(shadow.apply(snapshot(other.scene())));
+    const SceneDelta delta = shadow.take_delta();
+    EXPECT_TRUE(delta.everything);
+    EXPECT_EQ(delta.geometries.size(), 1u);
+    EXPECT_TRUE(delta.moved_instances.empty());
+    EXPECT_TRUE(delta.removed_geometries.empty());
+}
+
+TEST_F(ShadowSceneTest, AGapAndACycleLeaveTheLastState) {
+    const scene::Scene before = builder.scene();
+    builder.move(Left, moved(8, 0, 0));
+    EXPECT_FALSE(shadow.apply(builder.move(Left, moved(9, 0, 0))));  // one list was skipped
+    EXPECT_EQ(shadow.scene().version(), before.version());
+    EXPECT_EQ(shadow.lowered().instances[0].world_from_object, moved(1, 0, 3));
+
+    SceneBuilder cyclic;
+    cyclic.edit(start());
+    EXPECT_FALSE(shadow.apply(cyclic.edit(
+        {SceneBuilder::update<Transform>(Inner, Transform::Field::Children, transform({}, {Mesh, Left}))})));
+    EXPECT_EQ(shadow.scene().version(), before.version());
+    EXPECT_EQ(shadow.scene().state_hash(), before.state_hash());
+    expect_like_rebuilt(shadow);
+    EXPECT_EQ(shadow.take_delta().entries, 0u);
+}
+
+TEST_F(ShadowSceneTest, RollbackUndoesEveryListSinceTheLastDelta) {
+    const Hash128 hash = shadow.scene().state_hash();
+    const Version version = shadow.scene().version();
+    ASSERT_TRUE(shadow.apply(builder.move(Left, moved(5, 0, 0))));
+    ASSERT_TRUE(shadow.apply(builder.edit({Remove{Mesh}, Remove{Lamp}})));
+    ASSERT_TRUE(shadow.apply(builder.move(Right, moved(5, 5, 0))));
+    ASSERT_TRUE(shadow.apply(snapshot(builder.scene())));
+    ASSERT_TRUE(shadow.apply(builder.edit({Create{ObjectId{23}, Geometry{}}})));
+    shadow.rollback();
+    EXPECT_EQ(shadow.scene().state_hash(), hash);
+    EXPECT_EQ(shadow.scene().version(), version);
+    ASSERT_EQ(shadow.lowered().instances.size(), 2u);
+    EXPECT_EQ(shadow.lowered().instances[0].world_from_object, moved(1, 0, 3));
+    expect_like_rebuilt(shadow);
+    EXPECT_FALSE(shadow.take_delta().everything);
+}
+
+}  // namespace
+}  // namespace tessera::backend
