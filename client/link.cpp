@@ -1,0 +1,258 @@
+#include "client/link.h"
+
+#include <algorithm>
+
+#include "mediator/wire/blob_transfer.h"
+#include "mediator/wire/envelope.h"
+
+namespace tessera::client {
+
+namespace {
+
+// Chunks that wait for a slow line; the master asks again for what is dropped beyond.
+constexpr std::size_t MaxWaitingMessages = 64;
+
+net::LivenessSettings liveness_settings(Duration interval, std::uint32_t missed) {
+    net::LivenessSettings settings;
+    settings.interval = interval;
+    settings.missed = static_cast<int>(missed);
+    return settings;
+}
+
+}  // namespace
+
+Link::Link(std::unique_ptr<net::Channel> channel, std::function<void()> reconnect,
+           std::shared_ptr<scene::BlobStore> blobs, const Clock& clock, const SessionSettings& settings)
+    : channel_(std::move(channel)),
+      reconnect_(std::move(reconnect)),
+      blobs_(std::move(blobs)),
+      clock_(clock),
+      settings_(settings),
+      liveness_(liveness_settings(settings.heartbeat, 3), clock.now()),
+      last_heard_(clock.now()),
+      thread_([this](std::stop_token stop) { run(stop); }) {}
+
+Link::~Link() {
+    thread_.request_stop();
+    channel_->wake();
+    thread_.join();
+}
+
+void Link::send(wire::ControlMessage message) {
+    {
+        const std::scoped_lock lock(mutex_);
+        to_send_.push_back(std::move(message));
+    }
+    channel_->wake();
+}
+
+std::uint64_t Link::join() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return joined_ != 0 || failure_; });
+    if (failure_) throw *failure_;
+    return joined_;
+}
+
+std::optional<Incoming> Link::next(TimePoint deadline, std::stop_token stop) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_until(lock, stop, deadline, [&] { return !inbox_.empty() || failure_; });
+    if (!inbox_.empty()) {
+        Incoming incoming = std::move(inbox_.front());
+        inbox_.pop_front();
+        return incoming;
+    }
+    if (failure_) throw *failure_;
+    return std::nullopt;
+}
+
+void Link::run(std::stop_token stop) {
+    try {
+        greet(clock_.now());
+        while (!stop.stop_requested() && step(stop)) {
+        }
+        if (state_ == State::Joined) {
+            push(wire::Goodbye{"done", {}});
+            flush();
+        }
+    } catch (const Error& error) {
+        fail(error);
+    } catch (const std::exception& error) {
+        fail(Error(ErrorCode::Internal, error.what()));
+    }
+}
+
+bool Link::step(std::stop_token stop) {
+    constexpr int BurstLimit = 256;  // so that heartbeats never wait for a flood
+    net::Received received = channel_->receive(next_wake(clock_.now()));
+    for (int i = 0; i < BurstLimit && std::holds_alternative<net::Message>(received); ++i) {
+        receive(std::get<net::Message>(received), clock_.now());
+        if (stop.stop_requested()) return false;
+        received = channel_->receive(clock_.now());
+    }
+    if (const auto* nothing = std::get_if<net::NoMessage>(&received);
+        nothing && *nothing == net::NoMessage::Closed) {
+        fail(Error(ErrorCode::Unavailable, "the connection to the master was closed"));
+        return false;
+    }
+    std::vector<wire::ControlMessage> to_send;
+    {
+        const std::scoped_lock lock(mutex_);
+        if (failure_) return false;
+        if (state_ == State::Joined) to_send.swap(to_send_);  // what nobody can take yet stays
+    }
+    for (const wire::ControlMessage& message : to_send) push(message);
+    watch(clock_.now());
+    flush();
+    return true;
+}
+
+void Link::receive(const net::Message& message, TimePoint now) {
+    liveness_.heard(now);
+    last_heard_ = now;
+    // What cannot be read is as good as lost; the calls that wait for it have their own deadlines.
+    if (message.link == net::Link::Control) {
+        if (auto decoded = wire::decode_control(message.bytes)) control(std::move(*decoded), now);
+        return;
+    }
+    auto decoded = wire::decode_bulk(message.bytes);
+    if (!decoded) return;
+    if (const auto* request = std::get_if<wire::BlobRequest>(&*decoded)) serve(*request);
+    if (auto* tile = std::get_if<wire::FrameTile>(&*decoded)) deliver(std::move(*tile));
+}
+
+void Link::control(wire::ControlMessage&& message, TimePoint now) {
+    if (const auto* greeting = std::get_if<wire::Welcome>(&message)) return welcome(*greeting, now);
+    if (const auto* beat = std::get_if<wire::Heartbeat>(&message)) {
+        master_sent_at_ = beat->sent_at;
+        master_heard_at_ = now;
+        return;
+    }
+    if (std::holds_alternative<wire::Unknown>(message)) {
+        if (state_ != State::Away && now - last_greeting_ >= settings_.heartbeat) greet(now);
+        return;
+    }
+    if (const auto* goodbye = std::get_if<wire::Goodbye>(&message)) {
+        return fail(Error(ErrorCode::Unavailable, "the master left: " + goodbye->reason));
+    }
+    if (const auto* refusal = std::get_if<wire::Refusal>(&message); refusal && number_ == 0) {
+        return fail(Error(ErrorCode::Refused, "the master refuses: " + refusal->reason));
+    }
+    deliver(std::move(message));
+}
+
+void Link::welcome(const wire::Welcome& welcome, TimePoint now) {
+    const bool first = number_ == 0;
+    const bool same = welcome.peer_number == number_;
+    const bool repeated = same && state_ == State::Joined;
+    number_ = welcome.peer_number;
+    token_ = welcome.token;
+    state_ = State::Joined;
+    const Duration interval = std::clamp<Duration>(welcome.heartbeat_interval, std::chrono::milliseconds(10),
+                                                   std::chrono::minutes(1));
+    settings_.heartbeat = interval;
+    liveness_ = net::Liveness(liveness_settings(interval, std::max(1u, welcome.missed_heartbeats)), now);
+    beat(now);
+    if (first) {
+        const std::scoped_lock lock(mutex_);
+        joined_ = number_;
+        changed_.notify_all();
+    } else if (!repeated) {
+        deliver(Rejoined{.same_session = same});
+    }
+}
+
+void Link::serve(const wire::BlobRequest& request) {
+    if (outbox_.size() >= MaxWaitingMessages) return;
+    outbox_.push_back({net::Link::Bulk, wire::encode(wire::answer(request, *blobs_))});
+}
+
+void Link::greet(TimePoint now) {
+    state_ = State::Greeting;
+    last_greeting_ = now;
+    push(wire::Hello{.peer = wire::PeerKind::Client,
+                     .name = settings_.name,
+                     .host = settings_.host,
+                     .software = settings_.software,
+                     .pid = settings_.pid,
+                     .resume_token = token_});
+}
+
+// The token on the bulk link goes with every heartbeat: it is harmless when known, and heals when it got
+// lost.
+void Link::beat(TimePoint now) {
+    wire::Heartbeat heartbeat{.sent_at = now.time_since_epoch().count()};
+    if (master_sent_at_ != 0) {
+        heartbeat.echo_sent_at = master_sent_at_;
+        heartbeat.echo_delay = (now - master_heard_at_).count();
+    }
+    push(heartbeat);
+    outbox_.push_back({net::Link::Bulk, wire::encode(wire::BulkMessage(wire::BulkHello{token_}))});
+    liveness_.sent_heartbeat(now);
+}
+
+void Link::watch(TimePoint now) {
+    const bool never_joined = number_ == 0;
+    if (state_ != State::Joined &&
+        now - last_heard_ >= (never_joined ? settings_.connect_limit : settings_.lost_limit)) {
+        return fail(Error(ErrorCode::Unavailable,
+                          never_joined
+                              ? "the master does not answer: is it running there, and is this key in "
+                                "its allow-list?"
+                              : "the master has fallen silent: is it still running?"));
+    }
+    if (state_ == State::Away) {
+        if (now < return_at_) return;
+        if (reconnect_) reconnect_();
+        liveness_.restarted(now);
+        return greet(now);
+    }
+    if (liveness_.dead(now)) {
+        outbox_.clear();  // belongs to the old sockets
+        state_ = State::Away;
+        return_at_ = now + liveness_.next_backoff();
+    } else if (state_ == State::Joined && liveness_.heartbeat_due(now)) {
+        beat(now);
+    }
+}
+
+void Link::push(const wire::ControlMessage& message) {
+    outbox_.push_back({net::Link::Control, wire::encode(message)});
+}
+
+void Link::flush() {
+    bool blocked[2] = {false, false};
+    for (auto next = outbox_.begin(); next != outbox_.end();) {
+        bool& is_blocked = blocked[static_cast<std::size_t>(next->link)];
+        const bool gone =
+            !is_blocked && channel_->send(next->link, net::ServerPeer, std::move(next->bytes)) !=
+                               net::SendResult::WouldBlock;
+        if (gone) {
+            next = outbox_.erase(next);
+        } else {
+            is_blocked = true;
+            ++next;
+        }
+    }
+}
+
+TimePoint Link::next_wake(TimePoint now) const {
+    TimePoint next = now + settings_.heartbeat / 4;
+    if (state_ == State::Joined) next = liveness_.next_event();
+    if (state_ == State::Away) next = return_at_;
+    if (!outbox_.empty()) next = std::min(next, now + std::chrono::milliseconds(2));
+    return next;
+}
+
+void Link::deliver(Incoming incoming) {
+    const std::scoped_lock lock(mutex_);
+    inbox_.push_back(std::move(incoming));
+    changed_.notify_all();
+}
+
+void Link::fail(Error error) {
+    const std::scoped_lock lock(mutex_);
+    if (!failure_) failure_ = std::move(error);
+    changed_.notify_all();
+}
+
+}  // namespace tessera::client

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "client/session.h"
+#include "mediator/net/channel.h"
+#include "mediator/net/liveness.h"
+#include "mediator/wire/messages.h"
+
+namespace tessera::client {
+
+// The connection was away and is back. Same session: the master kept everything, but messages may be lost.
+// Otherwise the master took us for somebody new.
+struct Rejoined {
+    bool same_session = false;
+};
+using Incoming = std::variant<wire::ControlMessage, wire::FrameTile, Rejoined>;
+
+// The session's thread: says hello, keeps heartbeats, reconnects after silence, serves blobs. What is meant
+// for the session waits in an inbox, in order per link. Its states:
+//
+//   Greeting   hello sent                 Welcome → Joined · silence → Away · Refusal → Over
+//   Joined     everything goes            silence → Away · Unknown → Greeting · Goodbye → Over
+//   Away       until the back-off ends    → new sockets → Greeting
+//   Over       failed for good: every call throws the reason
+//
+// Over also after `connect_limit` without a first welcome, later after `lost_limit` without a sign of life.
+class Link {
+  public:
+    Link(std::unique_ptr<net::Channel> channel, std::function<void()> reconnect,
+         std::shared_ptr<scene::BlobStore> blobs, const Clock& clock, const SessionSettings& settings);
+    ~Link();
+
+    // Any thread. `send` takes what waits for the connection, too.
+    void send(wire::ControlMessage message);
+    std::uint64_t join();  // blocks until welcome; the session's number. Throws Error.
+    // The next one; nothing at the deadline or when stopped. Throws Error when the link is over.
+    std::optional<Incoming> next(TimePoint deadline, std::stop_token stop);
+
+  private:
+    enum class State { Greeting, Joined, Away };
+    struct Outgoing {
+        net::Link link;
+        net::Bytes bytes;
+    };
+
+    void run(std::stop_token stop);
+    bool step(std::stop_token stop);
+    void receive(const net::Message& message, TimePoint now);
+    void control(wire::ControlMessage&& message, TimePoint now);
+    void welcome(const wire::Welcome& welcome, TimePoint now);
+    void serve(const wire::BlobRequest& request);
+    void greet(TimePoint now);
+    void beat(TimePoint now);
+    void watch(TimePoint now);  // silence, back-off, limits
+    void push(const wire::ControlMessage& message);
+    void flush();
+    TimePoint next_wake(TimePoint now) const;
+    void deliver(Incoming incoming);
+    void fail(Error error);
+
+    // Of the thread alone:
+    std::unique_ptr<net::Channel> channel_;
+    std::function<void()> reconnect_;
+    std::shared_ptr<scene::BlobStore> blobs_;
+    const Clock& clock_;
+    SessionSettings settings_;
+    State state_ = State::Greeting;
+    net::Liveness liveness_;
+    std::deque<Outgoing> outbox_;
+    std::uint64_t number_ = 0, token_ = 0;  // of the latest welcome
+    TimePoint last_heard_, return_at_{}, last_greeting_{};
+    std::int64_t master_sent_at_ = 0;
+    TimePoint master_heard_at_{};
+
+    std::mutex mutex_;  // protects what stands below
+    std::condition_variable_any changed_;
+    std::vector<wire::ControlMessage> to_send_;
+    std::deque<Incoming> inbox_;
+    std::optional<Error> failure_;
+    std::uint64_t joined_ = 0;  // number of the first welcome
+
+    std::jthread thread_;  // last: starts when everything else is there
+};
+
+}  // namespace tessera::client
