@@ -1,0 +1,282 @@
+// What every back-end in the catalog owes the cluster.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "mediator/backend/catalog.h"
+#include "mediator/frame/merge.h"
+#include "tests/contract/contract_scene.h"
+
+namespace tessera::backend {
+namespace {
+
+using frame::FilmTile;
+using frame::SampleBlock;
+
+struct BackendContract : testing::TestWithParam<std::string> {
+    BackendContract() : backend(fresh()) {
+        test::commit(*backend, {builder.edit(test::contract_scene(*blobs))});
+        view = test::contract_view(backend->capabilities().channels);
+    }
+
+    std::unique_ptr<Backend> fresh() const {
+        return find_backend(GetParam()).make({.threads = 2, .isa = {}, .blobs = blobs});
+    }
+
+    view::WorkUnit unit(Rect tile, SampleBlock block) const {
+        return {.id = UnitId{1},
+                .view = view.id,
+                .revision = view.revision,
+                .version = backend->version(),
+                .tile = tile,
+                .block = block};
+    }
+
+    FilmTile render(Backend& with, Rect tile, SampleBlock block) const {
+        view::WorkUnit work = unit(tile, block);
+        work.version = with.version();
+        RenderResult result = with.render(view, work, {});
+        EXPECT_EQ(result.status, RenderStatus::Done);
+        EXPECT_EQ(result.blocks.size(), 1u);
+        EXPECT_EQ(result.blocks.at(0).block, block);
+        return std::move(result.blocks.at(0));
+    }
+
+    std::shared_ptr<scene::BlobStore> blobs = std::make_shared<scene::BlobStore>();
+    test::SceneBuilder builder;
+    std::unique_ptr<Backend> backend;
+    view::View view;
+    Rect whole{0, 0, 48, 32};
+};
+
+TEST_P(BackendContract, TellsWhatItCan) {
+    const Capabilities capabilities = backend->capabilities();
+    EXPECT_TRUE(capabilities.channels.contains(frame::Channel::Radiance));
+    EXPECT_GE(capabilities.preferred_tile, 1u);
+    EXPECT_GE(capabilities.concurrent_units, 1u);
+    EXPECT_FALSE(capabilities.kind.empty());
+    EXPECT_EQ(fresh()->capabilities().kind, capabilities.kind);
+}
+
+TEST_P(BackendContract, RefusesAUnitOfAnotherVersion) {
+    view::WorkUnit work = unit(whole, {0, 0});
+    ++work.version.number;
+    EXPECT_EQ(backend->render(view, work, {}).status, RenderStatus::Refused);
+    work.version = backend->version();
+    ++work.version.epoch;
+    EXPECT_EQ(backend->render(view, work, {}).status, RenderStatus::Refused);
+}
+
+TEST_P(BackendContract, CountsEverySampleOnce) {
+    const FilmTile film = render(*backend, whole, {16, 3});
+    ASSERT_EQ(film.counts.size(), whole.pixel_count());
+    std::uint64_t counted = film.nonfinite_samples;
+    for (const std::uint32_t count : film.counts) counted += count;
+    EXPECT_EQ(counted, whole.pixel_count() * 8);
+    EXPECT_EQ(film.channels, view.channels);
+    EXPECT_EQ(film.rect, whole);
+}
+
+TEST_P(BackendContract, ABlockIsTheMergeOfItsSingleSamplesBitForBit) {
+    const FilmTile block = render(*backend, {8, 8, 16, 16}, {32, 4});
+    std::vector<FilmTile> level;
+    for (std::uint64_t i = 0; i < 16; ++i) level.push_back(render(*backend, {8, 8, 16, 16}, {32 + i, 0}));
+    while (level.size() > 1) {
+        std::vector<FilmTile> next;
+        for (std::size_t i = 0; i < level.size(); i += 2) {
+            frame::merge(level[i], level[i + 1]);
+            next.push_back(std::move(level[i]));
+        }
+        level = std::move(next);
+    }
+    EXPECT_TRUE(frame::identical_bits(block, level[0]));
+}
+
+TEST_P(BackendContract, ThePixelsOfATileDoNotDependOnItsShape) {
+    const FilmTile big = render(*backend, whole, {0, 2});
+    for (const Rect part : {Rect{0, 0, 7, 5}, Rect{7, 5, 41, 27}, Rect{47, 31, 1, 1}, Rect{3, 0, 1, 32}}) {
+        const FilmTile small = render(*backend, part, {0, 2});
+        for (std::uint32_t plane = 0; plane < view.channels.plane_count(); ++plane) {
+            for (std::int32_t y = 0; y < part.height; ++y) {
+                const float* a = small.plane(plane).data() + y * part.width;
+                const float* b = big.plane(plane).data() + (part.y + y) * whole.width + part.x;
+                ASSERT_EQ(std::memcmp(a, b, sizeof(float) * static_cast<std::size_t>(part.width)), 0)
+                    << "plane " << plane << " row " << y;
+            }
+        }
+    }
+}
+
+TEST_P(BackendContract, AnotherSeedIsAnotherPicture) {
+    const FilmTile one = render(*backend, whole, {0, 2});
+    ++view.seed;
+    EXPECT_FALSE(frame::identical_bits(one, render(*backend, whole, {0, 2})));
+}
+
+TEST_P(BackendContract, AStopLeavesTheWholeAlignedBlocksOfAPrefix) {
+    const std::uint64_t first = std::uint64_t{1} << 20;
+    const SampleBlock endless{first, 20};
+    std::size_t with_blocks = 0;
+    for (int attempt = 0; attempt < 8; ++attempt) {
+        std::stop_source stop;
+        RenderResult result;
+        std::chrono::steady_clock::time_point asked;
+        {
+            const std::jthread stopper([&] {
+                std::this_thread::sleep_for(std::chrono::milliseconds(5 + 10 * attempt));
+                asked = std::chrono::steady_clock::now();
+                stop.request_stop();
+            });
+            result = backend->render(view, unit({0, 0, 16, 16}, endless), stop.get_token());
+        }
+        EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(2));
+        ASSERT_EQ(result.status, RenderStatus::Stopped);
+        std::vector<SampleBlock> blocks;
+        for (const FilmTile& tile : result.blocks) blocks.push_back(tile.block);
+        const std::uint64_t end = blocks.empty() ? first : blocks.back().end();
+        EXPECT_EQ(blocks, frame::aligned_blocks(first, end));
+        with_blocks += blocks.empty() ? 0 : 1;
+        if (!result.blocks.empty()) {
+            const FilmTile& last = result.blocks.back();
+            EXPECT_TRUE(frame::identical_bits(last, render(*backend, last.rect, last.block)));
+        }
+    }
+    EXPECT_GT(with_blocks, 0u);
+}
+
+TEST_P(BackendContract, AStopBeforeTheStartLeavesNothing) {
+    std::stop_source stop;
+    stop.request_stop();
+    const RenderResult result = backend->render(view, unit(whole, {0, 4}), stop.get_token());
+    EXPECT_EQ(result.status, RenderStatus::Stopped);
+    EXPECT_TRUE(result.blocks.empty());
+}
+
+TEST_P(BackendContract, ManyRendersAtATimeGiveTheSameBits) {
+    const FilmTile alone = render(*backend, whole, {0, 3});
+    std::atomic<int> differing = 0;
+    {
+        std::vector<std::jthread> threads;
+        for (int i = 0; i < 4; ++i) {
+            threads.emplace_back([&] {
+                for (int k = 0; k < 3; ++k) {
+                    if (!frame::identical_bits(alone, render(*backend, whole, {0, 3}))) ++differing;
+                }
+            });
+        }
+    }
+    EXPECT_EQ(differing, 0);
+}
+
+TEST_P(BackendContract, AnEditWithoutCommitLeavesTheLastGoodVersion) {
+    const FilmTile before = render(*backend, whole, {0, 2});
+    const Version version = backend->version();
+    {
+        const auto scope = backend->begin_edit();
+        ASSERT_TRUE(scope->apply(builder.move(test::BlockAt, test::moved(0.2, 0, -1.5))));
+        ASSERT_TRUE(scope->apply(builder.edit({scene::Remove{test::Floor}})));
+    }
+    EXPECT_EQ(backend->version(), version);
+    EXPECT_TRUE(frame::identical_bits(before, render(*backend, whole, {0, 2})));
+}
+
+TEST_P(BackendContract, AListThatDoesNotFollowIsRefused) {
+    const Version version = backend->version();
+    const FilmTile before = render(*backend, whole, {0, 1});
+    builder.move(test::BlockAt, test::moved(0.2, 0, -1.5));  // never told
+    {
+        const auto scope = backend->begin_edit();
+        const auto done = scope->apply(builder.move(test::BlockAt, test::moved(0.1, 0, -1.5)));
+        ASSERT_FALSE(done);
+        EXPECT_EQ(done.error().code(), ErrorCode::InvalidInput);
+    }
+    EXPECT_EQ(backend->version(), version);
+    EXPECT_TRUE(frame::identical_bits(before, render(*backend, whole, {0, 1})));
+}
+
+TEST_P(BackendContract, SeveralListsInOneEditEqualOneAtATime) {
+    const auto stepwise = fresh();
+    test::commit(*stepwise, {snapshot(builder.scene())});
+    const std::vector<scene::ChangeList> lists{builder.move(test::BlockAt, test::moved(0.2, 0.1, -1.5)),
+                                               builder.edit({test::SceneBuilder::update<scene::Light>(
+                                                   test::Lamp, scene::Light::Field::Intensity, {})}),
+                                               builder.move(test::LampAt, test::moved(0.5, 0.5, 0.5))};
+    for (const scene::ChangeList& list : lists) test::commit(*stepwise, {list});
+    test::commit(*backend, lists);
+    EXPECT_EQ(backend->version(), stepwise->version());
+    EXPECT_TRUE(frame::identical_bits(render(*backend, whole, {0, 3}), render(*stepwise, whole, {0, 3})));
+}
+
+TEST_P(BackendContract, AnEditReportTellsWhatWasTouched) {
+    const auto scope = backend->begin_edit();
+    ASSERT_TRUE(scope->apply(builder.move(test::BlockAt, test::moved(0.2, 0.1, -1.5))));
+    const Expected<EditReport> report = scope->commit();
+    ASSERT_TRUE(report);
+    EXPECT_EQ(report->entries, 1u);
+    EXPECT_EQ(report->relevant, 1u);
+    EXPECT_EQ(report->rebuilt, 0u);
+    EXPECT_EQ(report->instances, 3u);
+    EXPECT_EQ(report->triangles, 4u);
+    EXPECT_TRUE(report->problems.empty());
+}
+
+TEST_P(BackendContract, AnEditWaitsForWhatIsBeingRendered) {
+    std::stop_source stop;
+    std::atomic<bool> rendering = true;
+    std::jthread renderer([&] {
+        (void)backend->render(view, unit({0, 0, 16, 16}, {0, 30}), stop.get_token());
+        rendering = false;
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    const scene::ChangeList list = builder.move(test::BlockAt, test::moved(0.2, 0.1, -1.5));
+    std::jthread stopper([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        stop.request_stop();
+    });
+    test::commit(*backend, {list});
+    // render() gave its hold back before the flag was set: allow for that moment.
+    for (int i = 0; i < 1000 && rendering; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    EXPECT_FALSE(rendering);
+    EXPECT_TRUE(stop.stop_requested());
+    EXPECT_EQ(backend->version(), list.to);
+}
+
+TEST_P(BackendContract, AProbeTellsSomethingAndLeavesThePictureAlone) {
+    const FilmTile before = render(*backend, whole, {0, 1});
+    EXPECT_FALSE(backend->probe(view, 20, 16, 3).empty());
+    EXPECT_TRUE(frame::identical_bits(before, render(*backend, whole, {0, 1})));
+}
+
+TEST_P(BackendContract, AnEmptySceneRenders) {
+    const auto empty = fresh();
+    test::SceneBuilder nothing;
+    test::commit(*empty, {nothing.edit({scene::Create{scene::RootId, scene::Root{}}})});
+    const FilmTile film = render(*empty, whole, {0, 0});
+    EXPECT_EQ(film.counts.at(0), 1u);
+}
+
+std::vector<std::string> names() {
+    std::vector<std::string> result;
+    for (const BackendEntry& entry : catalog()) result.push_back(entry.name);
+    return result;
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalog, BackendContract, testing::ValuesIn(names()),
+                         [](const auto& entry) { return entry.param; });
+
+TEST(Catalog, FindsByNameAndNamesTheChoicesOtherwise) {
+    EXPECT_EQ(find_backend("null").name, "null");
+    try {
+        find_backend("nul");
+        FAIL() << "an unknown back-end was found";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::InvalidInput);
+        EXPECT_NE(std::string(error.what()).find("null"), std::string::npos);
+    }
+}
+
+}  // namespace
+}  // namespace tessera::backend
