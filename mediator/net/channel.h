@@ -14,8 +14,8 @@ namespace tessera::net {
 
 using Bytes = std::vector<std::byte>;
 
-// A peer has two links on consecutive ports: control (small, in order) and bulk (large). Nothing is assumed about
-// the order between the two.
+// A peer has two links on consecutive ports: control (small, in order) and bulk (large). Nothing is assumed
+// about the order between the two.
 enum class Link : std::uint8_t { Control, Bulk };
 
 // One remote end of one link, as this channel numbers it. A client channel has the one peer ServerPeer.
@@ -37,14 +37,14 @@ enum class SendResult { Sent, WouldBlock, Closed };
 enum class NoMessage { Timeout, Woken, Closed };
 using Received = std::variant<Message, NoMessage>;
 
-// Moves bytes between one server end and many client ends; one part a message. All calls from one thread, except
-// wake(). ZeroMQ and the loopback pass the same contract tests.
+// Moves bytes between one server end and many client ends; one part a message. All calls from one thread,
+// except wake(). ZeroMQ and the loopback pass the same contract tests.
 class Channel {
   public:
     virtual ~Channel() = default;
 
-    // Never blocks. WouldBlock: the peer's queue is full, nothing was taken from `bytes`. Closed: no such peer, or
-    // longer than the link's limit.
+    // Never blocks. WouldBlock: the peer's queue is full, nothing was taken from `bytes`. Closed: no such
+    // peer, or longer than the link's limit.
     virtual SendResult send(Link link, PeerId peer, Bytes&& bytes) = 0;
     virtual Received receive(TimePoint deadline) = 0;
     virtual void wake() = 0;  // thread-safe: a receive() under way or the next one returns Woken

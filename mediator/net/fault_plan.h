@@ -6,7 +6,8 @@
 
 namespace tessera::net {
 
-// What goes wrong, by chance but repeatable: one seed, one history of decisions per channel. Probabilities per message.
+// What goes wrong, by chance but repeatable: one seed, one history of decisions per channel. Probabilities
+// per message.
 struct FaultPlan {
     std::uint64_t seed = 0;
     double lose = 0, duplicate = 0, reorder = 0;

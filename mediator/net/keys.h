@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -28,22 +27,29 @@ struct ClientKeys {
     std::string server_public_key;
 };
 
-// A folder: master.public, master.secret (0600), allowed.toml (name, role, key), and per local name NAME.public,
-// NAME.secret (0600). Every read throws Error{Refused} for a secret that others may read, with the chmod that helps.
+// A folder: master.public, master.secret (0600), allowed.keys (a line per key: name, role, public key), and
+// per local name NAME.public, NAME.secret (0600). Or one file that `add` exported for another machine: it can
+// be a client() only. Every read throws Error{Refused} for a secret that others may read, with the chmod that
+// helps.
 class KeyDirectory {
   public:
     explicit KeyDirectory(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    void create() const;  // master pair and one pair per role; throws Error when a master pair is there already
-    void add(const std::string& name, Role role, const std::filesystem::path& export_folder) const;
+    void create()
+        const;  // master pair and one pair per role; throws Error when a master pair is there already
+    void add(const std::string& name, Role role, const std::filesystem::path& export_file) const;
     void revoke(const std::string& name) const;
     std::vector<AllowedKey> allowed() const;
     KeyPair master() const;
-    // NAME's pair with the master's public key, from a full folder or an exported one.
+    // NAME's pair with the master's public key; an exported file has one name only, whatever is asked for.
     ClientKeys client(const std::string& name) const;
     const std::filesystem::path& folder() const { return folder_; }
 
   private:
+    void store(const std::string& name, const KeyPair& pair) const;
+    KeyPair load(const std::string& name) const;
+    void write_allowed(const std::vector<AllowedKey>& keys) const;
+
     std::filesystem::path folder_;
 };
 

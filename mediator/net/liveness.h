@@ -6,7 +6,7 @@ namespace tessera::net {
 
 struct LivenessSettings {
     Duration interval = std::chrono::seconds(1);
-    int missed = 3;                                   // silent for interval x missed = dead
+    int missed = 3;  // silent for interval x missed = dead
     Duration min_backoff = std::chrono::milliseconds(100), max_backoff = std::chrono::seconds(5);
 };
 

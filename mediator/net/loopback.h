@@ -6,7 +6,8 @@
 
 namespace tessera::net {
 
-// Channels inside one process without sockets, for tests: every queue is bounded, order within a link is kept.
+// Channels inside one process without sockets, for tests: every queue is bounded, order within a link is
+// kept.
 class LoopbackHub {
   public:
     struct Limits {
@@ -19,8 +20,9 @@ class LoopbackHub {
     std::unique_ptr<Channel> server();           // once
     std::unique_ptr<Channel> client(Role role);  // any number
 
-  private:
     struct State;
+
+  private:
     std::shared_ptr<State> state_;
 };
 

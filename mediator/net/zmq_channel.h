@@ -17,7 +17,8 @@ std::shared_ptr<ZmqContext> make_zmq_context();
 // "tcp://host:port" (bulk on port + 1; port 0 is not allowed) or "inproc://name".
 struct ServerSettings {
     std::string endpoint;
-    std::optional<KeyDirectory> keys;  // CURVE + allow-list; without: loopback addresses and inproc only, everyone is Operator
+    std::optional<KeyDirectory>
+        keys;  // CURVE + allow-list; without: loopback addresses and inproc only, everyone is Operator
 };
 
 struct ClientSettings {
@@ -25,20 +26,23 @@ struct ClientSettings {
     std::optional<ClientKeys> keys;
 };
 
-// ROUTER pair behind a ZAP handler that was up before the bind. Throws Error{Refused} for a TCP endpoint without keys
-// that is not loopback, Error{Unavailable} when the port is taken.
+// ROUTER pair behind a ZAP handler that was up before the bind. Throws Error{Refused} for a TCP endpoint
+// without keys that is not loopback, Error{Unavailable} when the port is taken.
 class ZmqServer : public Channel {
   public:
-    virtual void reload_keys() = 0;  // after SIGHUP; messages of revoked users are dropped unread from then on
+    virtual void
+    reload_keys() = 0;  // after SIGHUP; messages of revoked users are dropped unread from then on
     virtual std::uint64_t refused_handshakes() const = 0;
 };
-std::unique_ptr<ZmqServer> make_zmq_server(std::shared_ptr<ZmqContext> context, const ServerSettings& settings);
+std::unique_ptr<ZmqServer> make_zmq_server(std::shared_ptr<ZmqContext> context,
+                                           const ServerSettings& settings);
 
 // DEALER pair. Connects in the background; reconnect() closes both sockets and opens new ones.
 class ZmqClient : public Channel {
   public:
     virtual void reconnect() = 0;
 };
-std::unique_ptr<ZmqClient> make_zmq_client(std::shared_ptr<ZmqContext> context, const ClientSettings& settings);
+std::unique_ptr<ZmqClient> make_zmq_client(std::shared_ptr<ZmqContext> context,
+                                           const ClientSettings& settings);
 
 }  // namespace tessera::net

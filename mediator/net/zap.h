@@ -1,0 +1,58 @@
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+#include <zmq.hpp>
+
+#include "mediator/net/keys.h"
+
+namespace tessera::net {
+
+// Answers libzmq's question whether a CURVE key may connect (RFC 27), for all servers of one context, each a
+// domain of its own. Runs on a thread; must be up before the first bind, since without a handler libzmq lets
+// every key in.
+class ZapHandler {
+  public:
+    explicit ZapHandler(zmq::context_t& context);
+    ~ZapHandler();
+
+    // The allow-list of a domain; again: replaced. Thread-safe.
+    void allow(const std::string& domain, const std::vector<AllowedKey>& keys);
+    void forget(const std::string& domain);
+    // Is this User-Id still on the list? Thread-safe.
+    bool stands(const std::string& domain, const std::string& user_id) const;
+    std::uint64_t refused() const { return refused_; }
+
+  private:
+    void run();
+    std::optional<std::string> user_id_of(const std::string& domain, const std::string& public_key) const;
+
+    zmq::socket_t socket_, stop_sender_, stop_receiver_;
+    std::atomic<std::uint64_t> refused_{0};
+
+    mutable std::mutex mutex_;  // protects what stands below
+    struct Domain {
+        std::map<std::string, std::string> user_id_by_key;
+        std::set<std::string> user_ids;
+    };
+    std::map<std::string, Domain> domains_;
+
+    std::thread thread_;
+};
+
+// "role:name:KEY", so that a name given to another key is another user. Parsed where messages come in.
+struct User {
+    Role role = Role::None;
+    std::string name;
+};
+std::string user_id(const AllowedKey& key);
+User user_of(const std::string& user_id);
+
+}  // namespace tessera::net

@@ -1,0 +1,104 @@
+#include "mediator/net/zmq_channel.h"
+#include "mediator/net/zmq_context.h"
+#include "mediator/net/zmq_link.h"
+
+namespace tessera::net {
+
+namespace {
+
+class DealerPair final : public ZmqClient {
+  public:
+    DealerPair(std::shared_ptr<ZmqContext> context, const ClientSettings& settings)
+        : context_(std::move(context)), addresses_(addresses_of(settings.endpoint)), keys_(settings.keys) {
+        open();
+    }
+
+    SendResult send(Link link, PeerId peer, Bytes&& bytes) override {
+        if (closed_ || peer != ServerPeer || bytes.size() > limit_of(link)) return SendResult::Closed;
+        const auto sent = socket(link).send(zmq::buffer(bytes), zmq::send_flags::dontwait);
+        return sent ? SendResult::Sent : SendResult::WouldBlock;
+    }
+
+    Received receive(TimePoint deadline) override {
+        while (!closed_) {
+            for (int i = 0; i < 2; ++i) {
+                const Link link = turn_ == Link::Control ? Link::Bulk : Link::Control;
+                turn_ = link;
+                if (auto message = take(link)) return std::move(*message);
+            }
+            if (signal_.take()) return NoMessage::Woken;
+            if (std::chrono::steady_clock::now() >= deadline) return NoMessage::Timeout;
+            wait_readable(sockets_, signal_, deadline);
+        }
+        return NoMessage::Closed;
+    }
+
+    void wake() override { signal_.raise(); }
+
+    void close() override {
+        closed_ = true;
+        for (zmq::socket_t& socket : sockets_) socket.close();
+    }
+
+    void reconnect() override {
+        for (zmq::socket_t& socket : sockets_) {
+            socket.set(zmq::sockopt::linger,
+                       0);  // what the dead link did not take is of no use to the new one
+            socket.close();
+        }
+        open();
+    }
+
+  private:
+    zmq::socket_t& socket(Link link) { return sockets_[static_cast<std::size_t>(link)]; }
+
+    void open() {
+        for (const Link link : {Link::Control, Link::Bulk}) {
+            socket(link) = zmq::socket_t(context_->zmq(), zmq::socket_type::dealer);
+            configure(socket(link), link);
+            if (keys_ && addresses_.is_tcp) {
+                socket(link).set(zmq::sockopt::curve_serverkey, keys_->server_public_key);
+                socket(link).set(zmq::sockopt::curve_publickey, keys_->own.public_key);
+                socket(link).set(zmq::sockopt::curve_secretkey, keys_->own.secret_key);
+            }
+            const std::string& address = link == Link::Control ? addresses_.control : addresses_.bulk;
+            try {
+                socket(link).connect(address);
+            } catch (const zmq::error_t& error) {
+                throw Error(ErrorCode::InvalidInput, "cannot connect to " + address + ": " + error.what());
+            }
+        }
+    }
+
+    std::optional<Message> take(Link link) {
+        zmq::message_t payload;
+        while (socket(link).recv(payload, zmq::recv_flags::dontwait)) {
+            bool single = true;
+            for (; socket(link).get(zmq::sockopt::rcvmore); single = false) {
+                if (!socket(link).recv(payload, zmq::recv_flags::dontwait)) break;
+            }
+            if (!single || payload.size() > limit_of(link)) continue;
+            const auto* data = payload.data<std::byte>();
+            // What comes here comes from the master: its key was checked by the handshake.
+            return Message{.link = link, .role = Role::Operator, .bytes = Bytes(data, data + payload.size())};
+        }
+        return std::nullopt;
+    }
+
+    std::shared_ptr<ZmqContext> context_;
+    Addresses addresses_;
+    std::optional<ClientKeys> keys_;
+    std::array<zmq::socket_t, 2> sockets_;  // by link
+    Link turn_ = Link::Bulk;
+    WakeSignal signal_;
+    bool closed_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<ZmqClient> make_zmq_client(std::shared_ptr<ZmqContext> context,
+                                           const ClientSettings& settings) {
+    return std::make_unique<DealerPair>(std::move(context), settings);
+}
+
+}  // namespace tessera::net
