@@ -1,6 +1,6 @@
 # One interface target for warnings, code generation and sanitizers.
 add_library(tessera_flags INTERFACE)
-target_compile_options(tessera_flags INTERFACE -Wall -Wextra -Wno-missing-field-initializers -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
+target_compile_options(tessera_flags INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
   -Wno-missing-field-initializers)  # designated initialisers name what differs from the default
 
 # Bits must not depend on the host that compiled or on contraction: x86-64-v3, no FMA contraction, never fast-math.
