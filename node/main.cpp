@@ -39,14 +39,25 @@ node::NodeSettings node_settings(const node::NodeOptions& options) {
     return settings;
 }
 
-// First signal: drain. Second: leave at once. SIGUSR1 comes from ourselves when there is nothing left to wait
-// for.
-void wait_for_signals(const sigset_t& signals, std::stop_source& drain, std::stop_source& at_once) {
-    int signal = 0;
-    while (sigwait(&signals, &signal) == 0 && signal != SIGUSR1) {
-        if (!drain.request_stop()) at_once.request_stop();
+// First signal: drain. Second: leave at once. Our own SIGUSR1 ends the waiting.
+class SignalThread {
+  public:
+    explicit SignalThread(const sigset_t& signals) : thread_([this, signals] { wait(signals); }) {}
+    ~SignalThread() {
+        ::pthread_kill(thread_.native_handle(), SIGUSR1);
+        thread_.join();
     }
-}
+    std::stop_source drain, at_once;
+
+  private:
+    void wait(const sigset_t& signals) {
+        int signal = 0;
+        while (sigwait(&signals, &signal) == 0 && signal != SIGUSR1) {
+            if (!drain.request_stop()) at_once.request_stop();
+        }
+    }
+    std::thread thread_;
+};
 
 int serve(const node::NodeOptions& options, const sigset_t& signals) {
     const cli::Log log(options.log);
@@ -56,7 +67,8 @@ int serve(const node::NodeOptions& options, const sigset_t& signals) {
                               .isa = options.isa,
                               .simulated_sample_cost = options.simulated_cost,
                               .blobs = blobs});
-    net::ClientSettings client{.endpoint = options.master};
+    net::ClientSettings client;
+    client.endpoint = options.master;
     if (!options.keys.empty()) client.keys = net::KeyDirectory(options.keys).client(options.user);
     const auto context = net::make_zmq_context();
     auto channel = net::make_zmq_client(context, client);
@@ -67,11 +79,8 @@ int serve(const node::NodeOptions& options, const sigset_t& signals) {
     node::RenderNode node(std::move(channel), std::move(backend), blobs, clock, node_settings(options),
                           {.event = [&log](const node::Report& report) { tell(log, report); },
                            .reconnect = [sockets] { sockets->reconnect(); }});
-    std::stop_source drain, at_once;
-    std::thread signal_thread([&] { wait_for_signals(signals, drain, at_once); });
-    const node::NodeResult result = node.run(drain.get_token(), at_once.get_token());
-    ::pthread_kill(signal_thread.native_handle(), SIGUSR1);
-    signal_thread.join();
+    SignalThread waiting(signals);
+    const node::NodeResult result = node.run(waiting.drain.get_token(), waiting.at_once.get_token());
     log.info("left after " + std::to_string(result.counters.units_done) + " units");
     return result.failure.empty() ? 0 : cli::ExitRefused;
 }

@@ -11,15 +11,15 @@
 namespace tessera::node {
 
 struct NodeSettings {
-    std::string name = "node", host, software = "tessera";
+    std::string name = "node", host{}, software = "tessera";
     std::uint64_t pid = 0;
-    std::string backend;             // its name in the catalog
-    bool reproducible = false;       // pinned to AVX2, or needs no pinning (design 1.6)
-    std::uint32_t workers = 0;       // units at a time; 0 = as many as the back-end recommends
-    net::LivenessSettings liveness;  // until the master's welcome tells its own
-    wire::BlobLimits blob_limits;
-    std::optional<std::filesystem::path> cache;  // folder for blobs; none = no disk cache
-    std::uint64_t cache_limit = 4ull << 30;      // bytes
+    std::string backend{};             // its name in the catalog
+    bool reproducible = false;         // pinned to AVX2, or needs no pinning (design 1.6)
+    std::uint32_t workers = 0;         // units at a time; 0 = as many as the back-end recommends
+    net::LivenessSettings liveness{};  // until the master's welcome tells its own
+    wire::BlobLimits blob_limits{};
+    std::optional<std::filesystem::path> cache{};  // folder for blobs; none = no disk cache
+    std::uint64_t cache_limit = 4ull << 30;        // bytes
     std::uint64_t store_limit =
         0;  // bytes of blobs above which unused ones are dropped; 0 = never (a shared store)
 };

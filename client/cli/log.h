@@ -10,7 +10,7 @@ namespace tessera::cli {
 struct LogSettings {
     std::string program;
     std::string level = "info";  // one of log_levels()
-    std::string file;            // "" = standard error
+    std::string file{};          // "" = standard error
 };
 
 std::vector<std::string> log_levels();

@@ -1,0 +1,185 @@
+// Joining, keeping the link, leaving.
+#include "tests/node/machine_fixture.h"
+
+namespace tessera::node {
+namespace {
+
+using State = NodeMachine::State;
+using test::milliseconds;
+using test::seconds;
+struct MachineLinkTest : test::MachineTest {};
+
+TEST_F(MachineLinkTest, SaysHelloFirstAndAnswersTheWelcomeWithItsTokenAndAHeartbeat) {
+    EXPECT_EQ(machine->state(), State::Joining);
+    const auto hellos = sent<wire::Hello>();
+    ASSERT_EQ(hellos.size(), 1u);
+    EXPECT_EQ(hellos[0].peer, wire::PeerKind::Node);
+    EXPECT_EQ(hellos[0].concurrent_units, 2u);
+    EXPECT_EQ(hellos[0].resume_token, 0u);
+    welcome();
+    EXPECT_EQ(machine->state(), State::Syncing);
+    const auto bulk = take<OpenBulk>();
+    ASSERT_EQ(bulk.size(), 1u);
+    EXPECT_EQ(bulk[0].token, 101u);
+    const wire::Heartbeat beat = last_heartbeat();
+    EXPECT_EQ(beat.phase, wire::NodePhase::Syncing);
+    EXPECT_EQ(beat.free_places, 4u);
+}
+
+TEST_F(MachineLinkTest, GoesThroughItsStates) {
+    synced();
+    EXPECT_EQ(machine->state(), State::Idle);
+    work(1);
+    EXPECT_EQ(machine->state(), State::Working);
+    finish(1);
+    EXPECT_EQ(machine->state(), State::Working);  // until the film is out
+    machine->film_sent(UnitId{1});
+    EXPECT_EQ(machine->state(), State::Idle);
+    tell(wire::Leave{});
+    EXPECT_EQ(machine->state(), State::Left);
+}
+
+TEST_F(MachineLinkTest, SilenceMeansNewSocketsWithGrowingPausesAndAHelloThatResumes) {
+    synced();
+    pass(milliseconds(3001));
+    EXPECT_EQ(machine->state(), State::Joining);
+    EXPECT_TRUE(take<Reconnect>().empty());
+    std::vector<Duration> pauses;
+    for (int i = 0; i < 4; ++i) {
+        const TimePoint lost = now;
+        while (take<Reconnect>().empty()) pass(milliseconds(10));
+        pauses.push_back(now - lost);
+        const auto hellos = sent<wire::Hello>();
+        ASSERT_EQ(hellos.size(), 1u);
+        EXPECT_EQ(hellos[0].resume_token, 101u);
+        pass(milliseconds(3001));
+    }
+    for (std::size_t i = 1; i < pauses.size(); ++i) EXPECT_GT(pauses[i], pauses[i - 1]);
+}
+
+TEST_F(MachineLinkTest, BackUnderTheSameNumberItKeepsItsUnits) {
+    synced();
+    work(1);
+    tell(wire::Unknown{});
+    EXPECT_EQ(machine->state(), State::Joining);
+    EXPECT_EQ(take<HoldBulk>().size(), 1u);
+    EXPECT_EQ(sent<wire::Hello>().size(), 1u);
+    tell(wire::Unknown{});
+    EXPECT_TRUE(sent<wire::Hello>().empty());  // the answer is on its way
+    actions.clear();
+    welcome();
+    const wire::Heartbeat beat = last_heartbeat();
+    EXPECT_EQ(beat.in_hand, std::vector{UnitId{1}});
+    EXPECT_EQ(beat.version, builder.scene().version());
+    EXPECT_TRUE(take<StopUnit>().empty());
+    sequence = 0;  // numbers start again
+    work(2);
+    EXPECT_EQ(last_heartbeat().in_hand, (std::vector{UnitId{1}, UnitId{2}}));
+}
+
+TEST_F(MachineLinkTest, AnotherNumberDropsUnitsAndFilmButKeepsTheScene) {
+    synced();
+    work(1);
+    actions.clear();
+    welcome(2);
+    EXPECT_EQ(take<DropFilm>().size(), 1u);
+    EXPECT_EQ(take<StopUnit>().size(), 1u);
+    const wire::Heartbeat beat = last_heartbeat();
+    EXPECT_TRUE(beat.in_hand.empty());
+    EXPECT_EQ(beat.version, builder.scene().version());
+    finish(1);  // comes late and is nobody's
+    EXPECT_TRUE(take<SendFilm>().empty());
+    EXPECT_TRUE(sent<wire::UnitReleased>().empty());
+}
+
+TEST_F(MachineLinkTest, AnotherEpochDropsTheSceneToo) {
+    synced();
+    welcome(2, Epoch + 1);
+    EXPECT_EQ(last_heartbeat().version, Version{});
+    EXPECT_EQ(machine->state(), State::Syncing);
+}
+
+TEST_F(MachineLinkTest, ALateWelcomeUnderALowerNumberIsIgnored) {
+    welcome(5);
+    actions.clear();
+    welcome(4);
+    EXPECT_TRUE(take<OpenBulk>().empty());
+}
+
+TEST_F(MachineLinkTest, HeartbeatsComeInTimeAndEchoTheMasters) {
+    synced();
+    pass(milliseconds(900));
+    EXPECT_TRUE(sent<wire::Heartbeat>().empty());
+    tell(wire::Heartbeat{.sent_at = 77});
+    pass(milliseconds(150));
+    const wire::Heartbeat beat = last_heartbeat();
+    EXPECT_EQ(beat.echo_sent_at, 77);
+    EXPECT_EQ(beat.echo_delay, Duration(milliseconds(150)).count());
+    const auto bulk = take<SendBulk>();
+    ASSERT_EQ(bulk.size(), 1u);  // the token again, in case it got lost
+    EXPECT_TRUE(std::holds_alternative<wire::BulkHello>(bulk[0].message));
+}
+
+TEST_F(MachineLinkTest, ARefusalEndsItWithTheReason) {
+    tell(wire::Refusal{"protocol 2 is spoken here"});
+    EXPECT_EQ(machine->state(), State::Left);
+    EXPECT_NE(machine->failure_text().find("protocol 2 is spoken here"), std::string::npos);
+}
+
+TEST_F(MachineLinkTest, DrainingFinishesWhatIsRenderedAndHandsBackTheRest) {
+    synced();
+    for (std::uint64_t id = 1; id <= 4; ++id) work(id);
+    EXPECT_EQ(take<Render>().size(), 2u);
+    actions.clear();
+    machine->leave("asked to stop", now);
+    collect();
+    const auto released = sent<wire::UnitReleased>();
+    ASSERT_EQ(released.size(), 2u);
+    EXPECT_EQ(released[0].unit, UnitId{3});
+    EXPECT_EQ(released[0].reason, wire::ReleaseReason::Leaving);
+    const wire::Heartbeat beat = last_heartbeat();
+    EXPECT_EQ(beat.phase, wire::NodePhase::Leaving);
+    EXPECT_EQ(beat.free_places, 0u);
+    EXPECT_TRUE(take<StopUnit>().empty());
+
+    work(5);
+    EXPECT_EQ(sent<wire::UnitReleased>().at(0).reason, wire::ReleaseReason::Leaving);
+    finish(1);
+    finish(2);
+    EXPECT_EQ(take<SendFilm>().size(), 2u);
+    EXPECT_TRUE(sent<wire::Goodbye>().empty());
+    machine->film_sent(UnitId{1});
+    machine->film_sent(UnitId{2});
+    collect();
+    const auto goodbyes = sent<wire::Goodbye>();
+    ASSERT_EQ(goodbyes.size(), 1u);
+    EXPECT_EQ(goodbyes[0].units_sent, (std::vector{UnitId{1}, UnitId{2}}));
+    EXPECT_EQ(machine->state(), State::Left);
+}
+
+TEST_F(MachineLinkTest, AskedTwiceItLeavesAtOnce) {
+    synced();
+    work(1);
+    actions.clear();
+    machine->leave("asked to stop", now);
+    machine->leave("asked again", now);
+    collect();
+    EXPECT_EQ(take<StopUnit>().size(), 1u);
+    const auto goodbyes = sent<wire::Goodbye>();
+    ASSERT_EQ(goodbyes.size(), 1u);
+    EXPECT_TRUE(goodbyes[0].units_sent.empty());
+    EXPECT_EQ(machine->state(), State::Left);
+}
+
+TEST_F(MachineLinkTest, WhatNoMasterSendsIsCountedAndHarmless) {
+    synced();
+    tell(wire::Hello{});
+    tell(wire::StatusReply{});
+    machine->bulk(wire::BlobRequest{}, now);
+    machine->malformed("nonsense", now);
+    EXPECT_EQ(machine->counters().malformed_messages, 4u);
+    EXPECT_EQ(machine->state(), State::Idle);
+}
+
+}  // namespace
+}  // namespace tessera::node

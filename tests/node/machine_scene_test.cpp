@@ -1,0 +1,225 @@
+// Keeping the scene: change lists, blobs, builds.
+#include "mediator/wire/envelope.h"
+#include "tests/node/machine_fixture.h"
+
+namespace tessera::node {
+namespace {
+
+using State = NodeMachine::State;
+using test::seconds;
+
+struct MachineSceneTest : test::MachineTest {
+    scene::ChangeList camera(std::uint64_t id) {
+        return builder.edit({scene::Create{ObjectId{id}, scene::Camera{}}});
+    }
+};
+
+TEST_F(MachineSceneTest, ReportsAVersionWhenItIsBuilt) {
+    welcome();
+    tell(wire::Changes{builder.edit({scene::Create{scene::RootId, scene::Root{}}})});
+    EXPECT_TRUE(sent<wire::VersionReport>().empty());
+    EXPECT_EQ(last_heartbeat().phase, wire::NodePhase::Building);
+    ASSERT_EQ(take<BuildScene>().size(), 1u);
+    BuildOutcome outcome;
+    outcome.report = backend::EditReport{.entries = 1, .triangles = 12, .problems = {"a", "b"}};
+    outcome.problems = {"b", "c"};
+    machine->built(std::move(outcome), now);
+    collect();
+    const auto reports = sent<wire::VersionReport>();
+    ASSERT_EQ(reports.size(), 1u);
+    EXPECT_EQ(reports[0].version, builder.scene().version());
+    EXPECT_EQ(reports[0].state_hash, builder.scene().state_hash());
+    EXPECT_EQ(reports[0].triangles, 12u);
+    EXPECT_EQ(reports[0].problems, (std::vector<std::string>{"b", "c", "a"}));
+    EXPECT_EQ(machine->state(), State::Idle);
+}
+
+TEST_F(MachineSceneTest, HeartbeatsGoOnDuringABuild) {
+    welcome();
+    tell(wire::Changes{builder.edit({scene::Create{scene::RootId, scene::Root{}}})});
+    actions.clear();
+    for (int i = 0; i < 5; ++i) {
+        tell(wire::Heartbeat{.sent_at = 1});
+        pass(seconds(1));
+        EXPECT_EQ(last_heartbeat().phase, wire::NodePhase::Building);
+    }
+}
+
+TEST_F(MachineSceneTest, AGapAsksForASnapshotOnceAndTheSnapshotHealsIt) {
+    synced();
+    camera(50);  // gets lost
+    tell(wire::Changes{camera(51)});
+    const auto resyncs = sent<wire::Resync>();
+    ASSERT_EQ(resyncs.size(), 1u);
+    EXPECT_EQ(resyncs[0].version.number, 1u);
+    tell(wire::Changes{camera(52)});
+    EXPECT_TRUE(sent<wire::Resync>().empty());
+    for (int i = 0; i < 4; ++i) {
+        tell(wire::Heartbeat{.sent_at = 1});
+        pass(seconds(1));
+    }
+    EXPECT_EQ(sent<wire::Resync>().size(), 1u);  // the request may have got lost too
+    tell(wire::Changes{snapshot(builder.scene())});
+    build();
+    EXPECT_EQ(sent<wire::VersionReport>().back().state_hash, builder.scene().state_hash());
+    tell(wire::Changes{camera(53)});
+    build();
+    EXPECT_EQ(machine->counters().resyncs, 2u);
+}
+
+TEST_F(MachineSceneTest, AnotherEpochIsAResync) {
+    synced();
+    scene::ChangeList list = camera(50);
+    list.from.epoch = list.to.epoch = Epoch + 5;
+    tell(wire::Changes{list});
+    EXPECT_EQ(sent<wire::Resync>().size(), 1u);
+    EXPECT_TRUE(take<BuildScene>().empty());
+}
+
+TEST_F(MachineSceneTest, ADuplicateIsHarmlessAndReportedAgain) {
+    synced();
+    const scene::ChangeList list = camera(50);
+    tell(wire::Changes{list});
+    build();
+    actions.clear();
+    tell(wire::Changes{list});
+    EXPECT_TRUE(take<BuildScene>().empty());
+    EXPECT_TRUE(sent<wire::Resync>().empty());
+    EXPECT_EQ(sent<wire::VersionReport>().size(), 1u);
+}
+
+TEST_F(MachineSceneTest, AWrongHashIsAResyncAndTheSecondAtTheSameVersionTheEnd) {
+    synced();
+    scene::ChangeList list = camera(50);
+    list.state_hash.low ^= 1;
+    tell(wire::Changes{list});
+    EXPECT_EQ(sent<wire::Resync>().size(), 1u);
+    scene::ChangeList wrong = snapshot(builder.scene());
+    wrong.state_hash.low ^= 1;
+    tell(wire::Changes{wrong});
+    EXPECT_EQ(machine->state(), State::Left);
+    EXPECT_EQ(sent<wire::Goodbye>().size(), 1u);
+    EXPECT_NE(machine->failure_text().find("twice at version 2"), std::string::npos);
+}
+
+TEST_F(MachineSceneTest, AFailedBuildStartsOverFromASnapshot) {
+    synced();
+    tell(wire::Changes{camera(50)});
+    ASSERT_EQ(take<BuildScene>().size(), 1u);
+    BuildOutcome outcome;
+    outcome.report = failure(ErrorCode::OutOfMemory, "no memory");
+    machine->built(std::move(outcome), now);
+    collect();
+    ASSERT_EQ(sent<wire::Resync>().size(), 1u);
+    EXPECT_EQ(last_heartbeat().version, Version{});  // nobody knows what the back-end holds
+    tell(wire::Changes{snapshot(builder.scene())});
+    build();
+    EXPECT_EQ(last_heartbeat().version, builder.scene().version());
+}
+
+TEST_F(MachineSceneTest, ListsThatCameDuringABuildAreBuiltTogether) {
+    synced();
+    tell(wire::Changes{camera(50)});
+    ASSERT_EQ(take<BuildScene>().size(), 1u);
+    tell(wire::Changes{camera(51)});
+    tell(wire::Changes{camera(52)});
+    EXPECT_TRUE(take<BuildScene>().empty());
+    machine->built({}, now);
+    collect();
+    const auto builds = take<BuildScene>();
+    ASSERT_EQ(builds.size(), 1u);
+    EXPECT_EQ(builds[0].build.lists.size(), 2u);
+}
+
+TEST_F(MachineSceneTest, BlobsAreFetchedBeforeTheBuildAndTheOldVersionIsRenderedMeanwhile) {
+    synced();
+    const auto blob = std::make_shared<const scene::Blob>(std::vector<std::byte>(300));
+    scene::Geometry geometry;
+    geometry.positions = reference(*blob);
+    const Version old = builder.scene().version();
+    tell(wire::Changes{builder.edit({scene::Create{ObjectId{60}, geometry}})});
+    EXPECT_TRUE(take<BuildScene>().empty());
+    EXPECT_EQ(last_heartbeat().phase, wire::NodePhase::Syncing);
+    const auto requests = take<SendBulk>();
+    ASSERT_EQ(requests.size(), 1u);
+    EXPECT_EQ(std::get<wire::BlobRequest>(requests[0].message).hash, blob->hash());
+
+    tell(wire::Work{++sequence, unit(1, old)});
+    EXPECT_EQ(take<Render>().size(), 1u);
+
+    machine->bulk(wire::BlobChunk{blob->hash(), 300, 0, {blob->bytes().begin(), blob->bytes().end()}}, now);
+    collect();
+    const auto builds = take<BuildScene>();
+    ASSERT_EQ(builds.size(), 1u);
+    ASSERT_EQ(builds[0].build.unchecked.size(), 1u);
+    EXPECT_EQ(builds[0].build.unchecked[0].first, ObjectId{60});
+}
+
+TEST_F(MachineSceneTest, ABlobThatTheMasterLacksIsAskedForAgain) {
+    synced();
+    const auto blob = std::make_shared<const scene::Blob>(std::vector<std::byte>(300));
+    scene::Geometry geometry;
+    geometry.positions = reference(*blob);
+    tell(wire::Changes{builder.edit({scene::Create{ObjectId{60}, geometry}})});
+    ASSERT_EQ(take<SendBulk>().size(), 1u);
+    machine->bulk(wire::BlobAbsent{blob->hash()}, now);
+    collect();
+    EXPECT_TRUE(take<SendBulk>().empty());
+    tell(wire::Heartbeat{.sent_at = 1});
+    pass(seconds(1));
+    std::size_t requests = 0;
+    for (const SendBulk& send : take<SendBulk>())
+        requests += std::holds_alternative<wire::BlobRequest>(send.message);
+    ASSERT_EQ(requests, 1u);
+    machine->bulk(wire::BlobChunk{blob->hash(), 300, 0, {blob->bytes().begin(), blob->bytes().end()}}, now);
+    collect();
+    EXPECT_EQ(take<BuildScene>().size(), 1u);
+}
+
+TEST_F(MachineSceneTest, ASnapshotByBlobIsFetchedReadAndBuilt) {
+    welcome();
+    builder.edit({scene::Create{scene::RootId, scene::Root{}}});
+    camera(50);
+    const auto blob = std::make_shared<const scene::Blob>(wire::encode(snapshot(builder.scene())));
+    const wire::ChangesByBlob announced{{Epoch, 0}, builder.scene().version(), reference(*blob)};
+    tell(announced);
+    EXPECT_TRUE(take<BuildScene>().empty());
+    tell(wire::Changes{camera(51)});  // overtakes nothing: its turn comes after the blob's
+    blobs->insert(blob);
+    pass(Duration(1));
+    const auto builds = take<BuildScene>();
+    ASSERT_EQ(builds.size(), 1u);
+    EXPECT_EQ(builds[0].build.lists.size(), 2u);
+    EXPECT_EQ(builds[0].build.to, builder.scene().version());
+}
+
+TEST_F(MachineSceneTest, ABlobThatHoldsNoChangeListIsAResync) {
+    welcome();
+    const auto blob = std::make_shared<const scene::Blob>(std::vector<std::byte>(100, std::byte{0xee}));
+    blobs->insert(blob);
+    tell(wire::ChangesByBlob{{Epoch, 0}, {Epoch, 7}, reference(*blob)});
+    EXPECT_EQ(sent<wire::Resync>().size(), 1u);
+}
+
+TEST_F(MachineSceneTest, WithACacheItLooksThereFirst) {
+    settings.cache = "somewhere";
+    restart();
+    synced();
+    const auto blob = std::make_shared<const scene::Blob>(std::vector<std::byte>(300));
+    scene::Geometry geometry;
+    geometry.positions = reference(*blob);
+    tell(wire::Changes{builder.edit({scene::Create{ObjectId{60}, geometry}})});
+    const auto loads = take<LoadBlobs>();
+    ASSERT_EQ(loads.size(), 1u);
+    EXPECT_TRUE(take<SendBulk>().empty());
+    machine->looked_up(loads[0].blobs, now);
+    collect();
+    ASSERT_EQ(take<SendBulk>().size(), 1u);
+    machine->bulk(wire::BlobChunk{blob->hash(), 300, 0, {blob->bytes().begin(), blob->bytes().end()}}, now);
+    collect();
+    EXPECT_EQ(take<SaveBlob>().size(), 1u);
+    EXPECT_EQ(take<BuildScene>().size(), 1u);
+}
+
+}  // namespace
+}  // namespace tessera::node
