@@ -10,8 +10,8 @@
 #include "mediator/scene/blob.h"
 #include "mediator/wire/messages.h"
 
-// Blobs go by want: whoever lacks one asks for a byte range, whoever has it answers with chunks of 1 MiB, so a
-// transfer resumes where it broke off. Pure state, no sockets.
+// Blobs go by want: whoever lacks one asks for a byte range, whoever has it answers with chunks of 1 MiB, so
+// a transfer resumes where it broke off. Pure state, no sockets.
 namespace tessera::wire {
 
 struct BlobLimits {
@@ -24,13 +24,14 @@ struct BlobLimits {
 // The receiving side.
 class BlobFetcher {
   public:
-    BlobFetcher(std::shared_ptr<scene::BlobStore> store, BlobLimits limits) : store_(std::move(store)), limits_(limits) {}
+    BlobFetcher(std::shared_ptr<scene::BlobStore> store, BlobLimits limits)
+        : store_(std::move(store)), limits_(limits) {}
 
     // Refused when over a limit; a blob that is in the store already is not wanted.
     Expected<void> want(const scene::BlobRef& blob);
     std::vector<BlobRequest> due(TimePoint now);  // to send now: next ranges, and those that got no answer
-    // A verified whole blob goes into the store. InvalidInput: not asked for, beyond the size, or the wrong hash
-    // (what was received is dropped and asked for again).
+    // A verified whole blob goes into the store. InvalidInput: not asked for, beyond the size, or the wrong
+    // hash (what was received is dropped and asked for again).
     Expected<void> receive(BlobChunk&& chunk, TimePoint now);
     void absent(const Hash256& hash);  // the peer does not have it
     void forget_all();
@@ -41,15 +42,15 @@ class BlobFetcher {
   private:
     struct Partial {
         std::uint64_t total = 0;
-        std::vector<std::byte> data;         // grows with what came, never ahead of it
-        std::uint64_t requested = 0;         // end of what was asked for
+        std::vector<std::byte> data;  // grows with what came, never ahead of it
+        std::uint64_t requested = 0;  // end of what was asked for
         TimePoint last_activity{};
         bool absent = false;
     };
     std::shared_ptr<scene::BlobStore> store_;
     BlobLimits limits_;
     std::map<Hash256, Partial> partial_;
-    std::uint64_t received_bytes_ = 0;
+    std::uint64_t wanted_bytes_ = 0, received_bytes_ = 0;
 };
 
 // The giving side: BlobChunk for a range that exists, else BlobAbsent.

@@ -10,16 +10,17 @@
 
 namespace tessera::wire {
 
-// Bytes of the control link. Decoding takes anything: what is malformed, out of range, over a limit of entries or of
-// another protocol is an Error{InvalidInput} with a phrase that says what. Never throws for content.
+// Bytes of the control link. Decoding takes anything: what is malformed, out of range, over a limit of
+// entries or of another protocol is an Error{InvalidInput} with a phrase that says what. Never throws for
+// content.
 std::vector<std::byte> encode(const ControlMessage& message);
 Expected<ControlMessage> decode_control(std::span<const std::byte> bytes);
 
 // Bytes of the bulk link.
 std::vector<std::byte> encode(const BulkMessage& message);
 Expected<BulkMessage> decode_bulk(std::span<const std::byte> bytes);
-// The alternative of BulkMessage that these bytes say they are, by their header alone; none when they are no bulk
-// message. Lets a loop pass film on without decoding it.
+// The alternative of BulkMessage that these bytes say they are, by their header alone; none when they are no
+// bulk message. Lets a loop pass film on without decoding it.
 std::optional<std::size_t> bulk_kind(std::span<const std::byte> bytes);
 
 // Content of blobs that hold scene changes.

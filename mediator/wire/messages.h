@@ -13,8 +13,9 @@
 #include "mediator/view/view.h"
 #include "mediator/view/work_unit.h"
 
-// What goes over the control link, as plain values; `envelope.h` turns them into bytes and back. A message arrives
-// complete and checked, or as an Error, never half. Numbers of the protocol live in proto/, structures live here.
+// What goes over the control link, as plain values; `envelope.h` turns them into bytes and back. A message
+// arrives complete and checked, or as an Error, never half. Numbers of the protocol live in proto/,
+// structures live here.
 namespace tessera::wire {
 
 inline constexpr std::uint32_t ProtocolVersion = 1;
@@ -128,7 +129,8 @@ struct Notice {
 
 // ---- sessions, client and master ----
 
-// Asks for the stage: one batch scene at a time. Answered by QueuePlace until SceneOpened (or Refusal with no_wait).
+// Asks for the stage: one batch scene at a time. Answered by QueuePlace until SceneOpened (or Refusal with
+// no_wait).
 struct OpenScene {
     std::string title;
     bool no_wait = false;
@@ -158,8 +160,8 @@ struct EditReply {
 
 enum class Policy : std::uint8_t { Tiled, Cooperative, Mixed };
 struct StartJob {
-    JobId job;          // the client's number
-    view::View view;    // id and revision are the master's to choose
+    JobId job;        // the client's number
+    view::View view;  // id and revision are the master's to choose
     std::uint64_t spp = 64;
     Duration time_limit{0};  // 0 = spp decides
     Policy policy = Policy::Mixed;
@@ -233,8 +235,8 @@ struct StatusReply {
 using ControlMessage =
     std::variant<Hello, Welcome, Refusal, Unknown, Heartbeat, Changes, ChangesByBlob, VersionReport, Resync,
                  OpenView, CloseView, Work, CancelUnits, UnitReleased, Leave, Goodbye, Notice, OpenScene,
-                 QueuePlace, SceneOpened, SubmitEdit, SubmitEditByBlob, EditReply, StartJob, StopJob, JobProgress,
-                 JobDone, StatusRequest, StatusReply>;
+                 QueuePlace, SceneOpened, SubmitEdit, SubmitEditByBlob, EditReply, StartJob, StopJob,
+                 JobProgress, JobDone, StatusRequest, StatusReply>;
 
 // ---- bulk link: fixed little-endian header, then raw planes ----
 
@@ -260,8 +262,8 @@ struct FilmPart {
     std::uint64_t revision = 0;
     Version version;
     std::uint16_t part = 0, parts = 1;
-    std::uint64_t rays = 0;      // of the whole unit, in part 0
-    std::uint64_t busy_ns = 0;   // likewise
+    std::uint64_t rays = 0;     // of the whole unit, in part 0
+    std::uint64_t busy_ns = 0;  // likewise
     frame::FilmTile film;
 };
 // Master to client: the merged film of one tile.

@@ -1,0 +1,111 @@
+#include "mediator/wire/blob_transfer.h"
+
+#include <algorithm>
+
+namespace tessera::wire {
+
+namespace {
+
+constexpr std::uint64_t ChunkBytes = std::uint64_t{1} << 20;
+
+}  // namespace
+
+Expected<void> BlobFetcher::want(const scene::BlobRef& blob) {
+    if (blob.empty() || store_->find(blob.hash) || partial_.contains(blob.hash)) return {};
+    if (blob.byte_size > limits_.bytes_per_blob) {
+        return failure(ErrorCode::Refused,
+                       "blob " + to_hex(blob.hash).substr(0, 12) + " has " + std::to_string(blob.byte_size) +
+                           " bytes, more than the limit of " + std::to_string(limits_.bytes_per_blob));
+    }
+    if (wanted_bytes_ + blob.byte_size > limits_.bytes_total) {
+        return failure(ErrorCode::Refused, "the blobs of this session exceed its quota of " +
+                                               std::to_string(limits_.bytes_total) +
+                                               " bytes: raise --blob-quota");
+    }
+    wanted_bytes_ += blob.byte_size;
+    partial_[blob.hash].total = blob.byte_size;
+    return {};
+}
+
+std::vector<BlobRequest> BlobFetcher::due(TimePoint now) {
+    std::vector<BlobRequest> requests;
+    std::uint32_t in_flight = 0;
+    for (auto& [hash, partial] : partial_) {
+        // Silence: whatever was asked for is asked for again, from where the data end.
+        if (partial.requested > partial.data.size() && now - partial.last_activity > limits_.retry_after) {
+            partial.requested = partial.data.size();
+        }
+        in_flight += static_cast<std::uint32_t>(
+            (partial.requested - std::min<std::uint64_t>(partial.requested, partial.data.size()) +
+             ChunkBytes - 1) /
+            ChunkBytes);
+    }
+    for (auto& [hash, partial] : partial_) {
+        if (partial.absent) continue;
+        for (; partial.requested < partial.total && in_flight < limits_.requests_in_flight; ++in_flight) {
+            requests.push_back({hash, partial.requested});
+            partial.requested = std::min(partial.total, partial.requested + ChunkBytes);
+            partial.last_activity = now;
+        }
+    }
+    return requests;
+}
+
+Expected<void> BlobFetcher::receive(BlobChunk&& chunk, TimePoint now) {
+    const auto place = partial_.find(chunk.hash);
+    if (place == partial_.end()) {
+        if (store_->find(chunk.hash)) return {};  // a late duplicate
+        return failure(ErrorCode::InvalidInput, "a blob that nobody asked for");
+    }
+    Partial& partial = place->second;
+    if (chunk.total != partial.total || chunk.offset + chunk.data.size() > partial.total) {
+        return failure(ErrorCode::InvalidInput, "a blob of another size than announced");
+    }
+    partial.last_activity = now;
+    // In order only: what comes early is asked for again, what comes twice is known already.
+    if (chunk.offset != partial.data.size()) {
+        if (chunk.offset > partial.data.size()) partial.requested = partial.data.size();
+        return {};
+    }
+    received_bytes_ += chunk.data.size();
+    partial.data.insert(partial.data.end(), chunk.data.begin(), chunk.data.end());
+    partial.requested = std::max<std::uint64_t>(partial.requested, partial.data.size());
+    if (partial.data.size() < partial.total) return {};
+    if (blake2b(partial.data) != chunk.hash) {
+        partial.data = {};
+        partial.requested = 0;
+        return failure(ErrorCode::InvalidInput,
+                       "blob " + to_hex(chunk.hash).substr(0, 12) + " has the wrong hash");
+    }
+    store_->insert(std::make_shared<const scene::Blob>(std::move(partial.data), chunk.hash));
+    partial_.erase(place);
+    return {};
+}
+
+void BlobFetcher::absent(const Hash256& hash) {
+    const auto place = partial_.find(hash);
+    if (place != partial_.end()) place->second.absent = true;
+}
+
+void BlobFetcher::forget_all() {
+    for (const auto& [hash, partial] : partial_) wanted_bytes_ -= partial.total;
+    partial_.clear();
+}
+
+std::vector<Hash256> BlobFetcher::absent_blobs() const {
+    std::vector<Hash256> hashes;
+    for (const auto& [hash, partial] : partial_) {
+        if (partial.absent) hashes.push_back(hash);
+    }
+    return hashes;
+}
+
+BulkMessage answer(const BlobRequest& request, const scene::BlobStore& store) {
+    const scene::BlobPtr blob = store.find(request.hash);
+    if (!blob || request.offset > blob->bytes().size()) return BlobAbsent{request.hash};
+    const auto range = blob->bytes().subspan(request.offset);
+    const auto data = range.first(std::min<std::size_t>(range.size(), ChunkBytes));
+    return BlobChunk{request.hash, blob->bytes().size(), request.offset, {data.begin(), data.end()}};
+}
+
+}  // namespace tessera::wire

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "mediator/wire/mapping.h"
+
+// Private to wire/*.cpp: little-endian numbers one after another. The reader checks before it looks; it
+// throws Error{InvalidInput}.
+namespace tessera::wire {
+
+class ByteWriter {
+  public:
+    explicit ByteWriter(std::size_t expected) { bytes_.reserve(expected); }
+    template <class T>
+    requires std::is_trivially_copyable_v<T>
+    void put(const T& value) { put_all(std::span(&value, 1)); }
+    template <class T, std::size_t N>
+    void put_all(std::span<T, N> values) {
+        const auto raw = std::as_bytes(values);
+        bytes_.insert(bytes_.end(), raw.begin(), raw.end());
+    }
+    std::vector<std::byte> take() { return std::move(bytes_); }
+
+  private:
+    std::vector<std::byte> bytes_;
+};
+
+class ByteReader {
+  public:
+    explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+    template <class T>
+    requires std::is_trivially_copyable_v<T> T get() {
+        T value;
+        fill(std::span(&value, 1));
+        return value;
+    }
+    template <class T>
+    void fill(std::span<T> values) {
+        if (bytes_.size() < values.size_bytes()) malformed("it ends too early");
+        std::memcpy(values.data(), bytes_.data(), values.size_bytes());
+        bytes_ = bytes_.subspan(values.size_bytes());
+    }
+    std::span<const std::byte> rest() const { return bytes_; }
+    void expect_end() const {
+        if (!bytes_.empty()) malformed("bytes are left over");
+    }
+
+  private:
+    std::span<const std::byte> bytes_;
+};
+
+}  // namespace tessera::wire
