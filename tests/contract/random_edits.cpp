@@ -1,0 +1,170 @@
+#include "tests/contract/random_edits.h"
+
+#include <algorithm>
+
+#include "mediator/backend/lowering.h"
+
+namespace tessera::test {
+
+using scene::Geometry;
+using scene::ObjectKind;
+using scene::Transform;
+
+namespace {
+
+constexpr std::size_t ManyInstances = 200;
+
+}  // namespace
+
+scene::ChangeList RandomEdits::next() {
+    scene::SceneEditor editor(builder_.scene());
+    while (editor.empty()) {
+        const std::uint64_t changes = 1 + random_.below(4);
+        for (std::uint64_t i = 0; i < changes; ++i) change(editor);
+    }
+    return builder_.edit(editor.take());
+}
+
+void RandomEdits::change(scene::SceneEditor& editor) {
+    const bool crowded = backend::lower(builder_.scene())->instances.size() > ManyInstances;
+    switch (random_.below(12)) {
+        case 0:
+        case 1:
+            return crowded ? unhook(editor) : grow(editor);
+        case 2:
+            return unhook(editor);
+        case 3:
+            return crowded ? unhook(editor) : share(editor);
+        case 4:
+        case 5:
+            return bend(editor);
+        case 6:
+        case 7:
+            return tint(editor);
+        default:
+            if (const ObjectId id = any(ObjectKind::Transform); editor.find(id)) {
+                editor.update<Transform>(id, Transform::Field::Matrix, transform(placement(), {}));
+            }
+    }
+}
+
+void RandomEdits::grow(scene::SceneEditor& editor) {
+    const ObjectId transform_id{next_id_++}, content_id{next_id_++};
+    if (random_.below(4) == 0) {
+        scene::Light light;
+        light.intensity = {5 * unit(), 5 * unit(), 5 * unit()};
+        editor.create(content_id, light);
+    } else {
+        editor.create(content_id, square(blobs_, 0.1f + 0.4f * unit(), any(ObjectKind::Material)));
+    }
+    Transform made = transform(placement(), {content_id});
+    made.hint = static_cast<scene::MotionHint>(random_.below(3));
+    editor.create(transform_id, made);
+    hook(editor, any(ObjectKind::Transform), transform_id);
+}
+
+void RandomEdits::unhook(scene::SceneEditor& editor) {
+    const ObjectId victim = any(random_.below(3) == 0 ? ObjectKind::Geometry : ObjectKind::Transform);
+    if (!victim || ids(ObjectKind::Geometry).size() < 3 || !editor.find(victim)) return;
+    for (const ObjectId parent : ids(ObjectKind::Transform)) {
+        const scene::Object* object = editor.find(parent);
+        const auto* holder = object ? std::get_if<Transform>(object) : nullptr;
+        if (!holder || parent == victim) continue;
+        Transform without = *holder;
+        if (std::erase(without.children, victim) != 0) {
+            editor.update<Transform>(parent, Transform::Field::Children, without);
+        }
+    }
+    scene::Root root = std::get<scene::Root>(*editor.find(scene::RootId));
+    if (std::erase(root.children, victim) != 0) {
+        editor.update<scene::Root>(scene::RootId, scene::Root::Field::Children, root);
+    }
+    editor.remove(victim);
+}
+
+void RandomEdits::share(scene::SceneEditor& editor) {
+    const ObjectId a = any(ObjectKind::Transform);
+    const ObjectId b = any(random_.below(2) == 0 ? ObjectKind::Geometry : ObjectKind::Transform);
+    if (a < b) hook(editor, a, b);
+}
+
+void RandomEdits::bend(scene::SceneEditor& editor) {
+    const ObjectId id = any(ObjectKind::Geometry);
+    if (!id || !editor.find(id)) return;
+    Geometry bent = square(blobs_, 0.1f + 0.4f * unit(), any(ObjectKind::Material));
+    bent.hint = static_cast<scene::MotionHint>(random_.below(3));
+    switch (random_.below(4)) {
+        case 0:
+            return editor.update<Geometry>(id, Geometry::Field::Positions, bent);
+        case 1:
+            return editor.update<Geometry>(id, Geometry::Field::Material, bent);
+        case 2:
+            return editor.update<Geometry>(id, Geometry::Field::Hint, bent);
+        default:
+            bent.indices = array_blob<std::uint32_t>(blobs_, {0, 1, 2});
+            return editor.update<Geometry>(id, {Geometry::Field::Indices, Geometry::Field::Name}, bent);
+    }
+}
+
+void RandomEdits::tint(scene::SceneEditor& editor) {
+    switch (random_.below(4)) {
+        case 0: {
+            scene::Material material;
+            material.base_color = {unit(), unit(), unit(), 1.0f};
+            if (random_.below(3) == 0) material.emission = {unit(), unit(), unit()};
+            return editor.update<scene::Material>(
+                any(ObjectKind::Material),
+                {scene::Material::Field::BaseColor, scene::Material::Field::Emission}, material);
+        }
+        case 1:
+            if (const ObjectId id = any(ObjectKind::Light)) {
+                scene::Light light;
+                light.intensity = {5 * unit(), 5 * unit(), 5 * unit()};
+                editor.update<scene::Light>(id, scene::Light::Field::Intensity, light);
+            }
+            return;
+        case 2: {
+            scene::Background sky;
+            sky.color = {unit(), unit(), unit()};
+            return editor.update<scene::Background>(Sky, scene::Background::Field::Color, sky);
+        }
+        default: {
+            scene::Root root;
+            root.render_origin = {static_cast<double>(random_.below(3)), 0.0, 0.0};
+            return editor.update<scene::Root>(scene::RootId, scene::Root::Field::RenderOrigin, root);
+        }
+    }
+}
+
+std::vector<ObjectId> RandomEdits::ids(ObjectKind kind) const {
+    std::vector<ObjectId> found;
+    for (const auto& [id, object] : builder_.scene().objects()) {
+        if (scene::kind(*object) == kind) found.push_back(id);
+    }
+    return found;
+}
+
+ObjectId RandomEdits::any(ObjectKind kind) {
+    const std::vector<ObjectId> all = ids(kind);
+    return all.empty() ? ObjectId{} : all[random_.below(all.size())];
+}
+
+glm::dmat4 RandomEdits::placement() {
+    const auto spread = [&] { return 2.0 * random_.uniform() - 1.0; };
+    return glm::rotate(moved(spread(), spread(), -2.0 + spread()), spread(), glm::dvec3(0.2, 1.0, 0.1));
+}
+
+void RandomEdits::hook(scene::SceneEditor& editor, ObjectId parent, ObjectId child) {
+    const scene::Object* object = parent ? editor.find(parent) : nullptr;
+    if (object && std::holds_alternative<Transform>(*object)) {
+        Transform more = std::get<Transform>(*object);
+        more.children.push_back(child);
+        editor.update<Transform>(parent, Transform::Field::Children, more);
+    } else {
+        scene::Root root = std::get<scene::Root>(*editor.find(scene::RootId));
+        root.children.push_back(child);
+        editor.update<scene::Root>(scene::RootId, scene::Root::Field::Children, root);
+    }
+}
+
+}  // namespace tessera::test

@@ -1,0 +1,122 @@
+// Incremental == rebuilt, for every back-end and for the shadow scene that they share.
+#include "tests/contract/random_edits.h"
+
+#include <gtest/gtest.h>
+
+#include "mediator/backend/catalog.h"
+#include "mediator/backend/shadow_scene.h"
+
+namespace tessera::backend {
+namespace {
+
+void expect_equal(const Lowered& a, const Lowered& b, int step) {
+    ASSERT_EQ(a.instances.size(), b.instances.size()) << "step " << step;
+    for (std::size_t i = 0; i < a.instances.size(); ++i) {
+        ASSERT_EQ(a.instances[i].geometry, b.instances[i].geometry) << "step " << step;
+        ASSERT_EQ(a.instances[i].path, b.instances[i].path) << "step " << step;
+        ASSERT_EQ(a.instances[i].hint, b.instances[i].hint) << "step " << step;
+        ASSERT_EQ(a.instances[i].world_from_object, b.instances[i].world_from_object) << "step " << step;
+    }
+    ASSERT_EQ(a.lights.size(), b.lights.size()) << "step " << step;
+    for (std::size_t i = 0; i < a.lights.size(); ++i) {
+        ASSERT_EQ(a.lights[i].light, b.lights[i].light) << "step " << step;
+        ASSERT_EQ(a.lights[i].path, b.lights[i].path) << "step " << step;
+        ASSERT_EQ(a.lights[i].world_from_light, b.lights[i].world_from_light) << "step " << step;
+    }
+}
+
+TEST(ShadowSceneAtRandom, EqualsARebuiltOneAfterEveryEditAndEveryRollback) {
+    for (const std::uint64_t seed : {1u, 2u, 3u}) {
+        scene::BlobStore blobs;
+        test::RandomEdits edits(seed, blobs);
+        ShadowScene shadow;
+        ASSERT_TRUE(shadow.apply(edits.start()));
+        shadow.take_delta();
+        std::vector<scene::ChangeList> since;  // the last delta
+        for (int step = 0; step < 400; ++step) {
+            since.push_back(edits.next());
+            ASSERT_TRUE(shadow.apply(since.back()));
+            ShadowScene rebuilt;
+            ASSERT_TRUE(rebuilt.apply(snapshot(edits.scene())));
+            expect_equal(shadow.lowered(), rebuilt.lowered(), step);
+            if (step % 7 == 6) {  // back and forth again
+                shadow.rollback();
+                for (const scene::ChangeList& list : since)
+                    ASSERT_TRUE(shadow.apply(list)) << "step " << step;
+                expect_equal(shadow.lowered(), rebuilt.lowered(), step);
+                EXPECT_EQ(shadow.scene().state_hash(), edits.scene().state_hash());
+            }
+            if (step % 3 == 0) {
+                shadow.take_delta();
+                since.clear();
+            }
+        }
+    }
+}
+
+// What the delta says, applied to a table of instances by hand, is the new table.
+TEST(ShadowSceneAtRandom, TheDeltaNamesEverythingThatMoved) {
+    scene::BlobStore blobs;
+    test::RandomEdits edits(4, blobs);
+    ShadowScene shadow;
+    ASSERT_TRUE(shadow.apply(edits.start()));
+    shadow.take_delta();
+    Lowered known = shadow.lowered();
+    for (int step = 0; step < 300; ++step) {
+        for (int i = 0; i <= step % 3; ++i) ASSERT_TRUE(shadow.apply(edits.next()));
+        const SceneDelta delta = shadow.take_delta();
+        if (delta.instances_changed) known.instances = shadow.lowered().instances;
+        for (const std::uint32_t i : delta.moved_instances)
+            known.instances.at(i) = shadow.lowered().instances.at(i);
+        if (delta.lights_changed) known.lights = shadow.lowered().lights;
+        expect_equal(known, shadow.lowered(), step);
+    }
+}
+
+struct EditedBackend : testing::TestWithParam<std::string> {};
+
+TEST_P(EditedBackend, RendersTheSameBitsAsOneThatWasBuiltAnew) {
+    const std::shared_ptr<scene::BlobStore> blobs = std::make_shared<scene::BlobStore>();
+    const auto make = [&] {
+        return find_backend(GetParam()).make({.threads = 2, .isa = {}, .blobs = blobs});
+    };
+    const auto picture = [](Backend& backend) {
+        view::View view = test::contract_view(backend.capabilities().channels);
+        const view::WorkUnit unit{.id = UnitId{1},
+                                  .view = view.id,
+                                  .revision = view.revision,
+                                  .version = backend.version(),
+                                  .tile = view.window,
+                                  .block = {0, 1}};
+        return backend.render(view, unit, {});
+    };
+    for (const std::uint64_t seed : {5u, 6u}) {
+        test::RandomEdits edits(seed, *blobs);
+        const auto edited = make();
+        test::commit(*edited, {edits.start()});
+        for (int step = 0; step < 200; ++step) {
+            std::vector<scene::ChangeList> lists;
+            for (int i = 0; i <= step % 3; ++i) lists.push_back(edits.next());
+            test::commit(*edited, lists);
+            if (step % 4 != 0) continue;
+            const auto rebuilt = make();
+            test::commit(*rebuilt, {snapshot(edits.scene())});
+            const RenderResult a = picture(*edited), b = picture(*rebuilt);
+            ASSERT_EQ(a.status, RenderStatus::Done);
+            ASSERT_TRUE(frame::identical_bits(a.blocks.at(0), b.blocks.at(0)))
+                << "seed " << seed << " step " << step;
+        }
+    }
+}
+
+std::vector<std::string> names() {
+    std::vector<std::string> result;
+    for (const BackendEntry& entry : catalog()) result.push_back(entry.name);
+    return result;
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalog, EditedBackend, testing::ValuesIn(names()),
+                         [](const auto& entry) { return entry.param; });
+
+}  // namespace
+}  // namespace tessera::backend
