@@ -61,9 +61,8 @@ Session::Session(std::unique_ptr<net::Channel> channel, std::function<void()> re
 
 Session::~Session() = default;
 
-std::optional<OpenedScene> Session::open_scene(const std::string& title, WhenBusy when_busy,
-                                               const std::function<void(std::uint32_t)>& on_place,
-                                               std::stop_token stop) {
+OpenOutcome Session::open_scene(const std::string& title, WhenBusy when_busy,
+                                const std::function<void(std::uint32_t)>& on_place, std::stop_token stop) {
     Implementation& self = *implementation_;
     const wire::OpenScene request{.title = title, .no_wait = when_busy == WhenBusy::GiveUp};
     self.link.send(request);
@@ -81,11 +80,11 @@ std::optional<OpenedScene> Session::open_scene(const std::string& title, WhenBus
             on_place(place->place);
         if (const auto* refusal = std::get_if<wire::Refusal>(message);
             refusal && when_busy == WhenBusy::GiveUp) {
-            throw Error(ErrorCode::Unavailable, refusal->reason);
+            return Busy{refusal->reason};
         }
         throw_refusal(*message);
     }
-    return std::nullopt;
+    return Stopped{};
 }
 
 std::optional<SubmitResult> Session::submit(std::vector<scene::Entry> entries, std::stop_token stop) {

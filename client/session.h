@@ -5,6 +5,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "client/job.h"
@@ -46,6 +47,11 @@ struct SubmitResult {
 };
 
 enum class WhenBusy { Queue, GiveUp };
+struct Busy {
+    std::string reason;
+};
+struct Stopped {};
+using OpenOutcome = std::variant<OpenedScene, Busy, Stopped>;
 
 // One client of a master. A thread of its own keeps the link, its heartbeats and the blobs that the master
 // asks for, so the caller may be away for long. The calls below come from one thread and block. They throw
@@ -60,11 +66,9 @@ class Session {
             std::shared_ptr<scene::BlobStore> blobs, const Clock& clock, SessionSettings settings);
     ~Session();
 
-    // Waits for the stage. Nothing when stopped before. `on_place` hears the place in the queue, 1 = next.
-    // With GiveUp a cluster that is busy throws Error{Unavailable}.
-    std::optional<OpenedScene> open_scene(const std::string& title, WhenBusy when_busy,
-                                          const std::function<void(std::uint32_t place)>& on_place,
-                                          std::stop_token stop);
+    // Waits for the stage. `on_place` hears the place in the queue, 1 = next. Busy only with GiveUp.
+    OpenOutcome open_scene(const std::string& title, WhenBusy when_busy,
+                           const std::function<void(std::uint32_t place)>& on_place, std::stop_token stop);
 
     // Returns when the master holds the edit and all its blobs. Nothing when stopped before.
     std::optional<SubmitResult> submit(std::vector<scene::Entry> entries, std::stop_token stop);
