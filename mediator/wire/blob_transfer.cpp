@@ -11,7 +11,13 @@ constexpr std::uint64_t ChunkBytes = std::uint64_t{1} << 20;
 }  // namespace
 
 Expected<void> BlobFetcher::want(const scene::BlobRef& blob) {
-    if (blob.empty() || store_->find(blob.hash) || partial_.contains(blob.hash)) return {};
+    if (blob.empty() || store_->find(blob.hash)) return {};
+    if (const auto known = partial_.find(blob.hash); known != partial_.end()) {
+        Partial& partial = known->second;
+        if (partial.absent) partial.requested = partial.data.size();  // the peer may have it by now
+        partial.absent = false;
+        return {};
+    }
     if (blob.byte_size > limits_.bytes_per_blob) {
         return failure(ErrorCode::Refused,
                        "blob " + to_hex(blob.hash).substr(0, 12) + " has " + std::to_string(blob.byte_size) +

@@ -27,7 +27,8 @@ class BlobFetcher {
     BlobFetcher(std::shared_ptr<scene::BlobStore> store, BlobLimits limits)
         : store_(std::move(store)), limits_(limits) {}
 
-    // Refused when over a limit; a blob that is in the store already is not wanted.
+    // Refused when over a limit; a blob that is in the store already is not wanted. One that was absent is
+    // asked for again.
     Expected<void> want(const scene::BlobRef& blob);
     std::vector<BlobRequest> due(TimePoint now);  // to send now: next ranges, and those that got no answer
     // A verified whole blob goes into the store. InvalidInput: not asked for, beyond the size, or the wrong
