@@ -59,6 +59,7 @@ void NodeMachine::on(wire::Work& work, TimePoint) {
     if (!welcomed_) return;
     switch (queue_.offer(work.sequence, work.unit)) {
         case WorkQueue::Verdict::Duplicate:
+            changed_ = true;  // the sequence number may be new
             return;
         case WorkQueue::Verdict::Full:
             changed_ = true;
