@@ -1,0 +1,140 @@
+#include "client/import/assimp_import.h"
+
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <array>
+#include <assimp/Importer.hpp>
+#include <map>
+
+#include "client/import/assimp_files.h"
+#include "client/import/assimp_materials.h"
+#include "client/import/limits.h"
+
+namespace tessera::import {
+namespace {
+
+template <class To, class From>
+To vector(const From& from) {
+    To to;
+    for (unsigned i = 0; i < static_cast<unsigned>(To::length()); ++i) to[static_cast<int>(i)] = from[i];
+    return to;
+}
+
+MeshData mesh_data(const aiMesh& source) {
+    MeshData mesh;
+    for (unsigned i = 0; i < source.mNumVertices; ++i) {
+        mesh.positions.push_back(vector<glm::vec3>(source.mVertices[i]));
+        if (source.HasNormals()) mesh.normals.push_back(vector<glm::vec3>(source.mNormals[i]));
+        if (source.HasTextureCoords(0))
+            mesh.tex_coords.push_back(vector<glm::vec2>(source.mTextureCoords[0][i]));
+        if (source.HasVertexColors(0)) mesh.colors.push_back(vector<glm::vec4>(source.mColors[0][i]));
+    }
+    for (unsigned i = 0; i < source.mNumFaces; ++i) {
+        const aiFace& face = source.mFaces[i];
+        if (face.mNumIndices == 3) mesh.indices.insert(mesh.indices.end(), face.mIndices, face.mIndices + 3);
+    }
+    return mesh;
+}
+
+class AssimpScene {
+  public:
+    AssimpScene(const aiScene& source, const LocalFolder& folder, SceneBuilder& builder)
+        : source_(source), builder_(builder), materials_(source, folder, builder) {}
+
+    void build() {
+        struct Visit {
+            const aiNode* node;
+            ObjectId parent;
+            std::size_t depth;
+        };
+        std::map<ObjectId, std::vector<ObjectId>> children;  // of each transform; 0 = the root
+        std::vector<Visit> stack{{source_.mRootNode, {}, 1}};
+        while (!stack.empty()) {
+            const Visit visit = stack.back();
+            stack.pop_back();
+            if (visit.depth > MaxNesting) {
+                builder_.notice("nodes nested more than " + std::to_string(MaxNesting) +
+                                " deep are not drawn");
+                continue;
+            }
+            scene::Transform transform;
+            transform.name = visit.node->mName.C_Str();
+            for (unsigned row = 0; row < 4; ++row) {
+                for (unsigned column = 0; column < 4; ++column) {
+                    transform.matrix[static_cast<int>(column)][static_cast<int>(row)] =
+                        static_cast<double>(visit.node->mTransformation[row][column]);
+                }
+            }
+            const ObjectId id = builder_.add(std::move(transform));
+            children[visit.parent].push_back(id);
+            for (unsigned i = 0; i < visit.node->mNumMeshes; ++i) {
+                if (const ObjectId mesh = geometry(visit.node->mMeshes[i])) children[id].push_back(mesh);
+            }
+            for (unsigned i = visit.node->mNumChildren; i > 0; --i) {
+                stack.push_back({visit.node->mChildren[i - 1], id, visit.depth + 1});
+            }
+        }
+        for (auto& [id, ids] : children) {
+            (id ? builder_.get<scene::Transform>(id).children : builder_.result().root.children) =
+                std::move(ids);
+        }
+    }
+
+  private:
+    ObjectId geometry(unsigned index) {
+        const auto [place, is_new] = geometries_.try_emplace(index);
+        if (!is_new || index >= source_.mNumMeshes) return place->second;
+        const aiMesh& mesh = *source_.mMeshes[index];
+        std::string name = mesh.mName.C_Str();
+        if (name.empty()) name = "mesh " + std::to_string(index);
+        if (!(mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE)) {
+            builder_.notice("mesh '" + name + "': points and lines are not drawn");
+            return {};
+        }
+        MeshData data = mesh_data(mesh);
+        try {
+            for (const std::string& repair : check_and_repair(data)) {
+                builder_.notice("mesh '" + name + "': " + repair);
+            }
+            place->second = builder_.add_geometry(name, materials_.material(mesh), data);
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::InvalidInput) throw;
+            builder_.notice("mesh '" + name + "' is bad (" + error.what() + "): a magenta box stands for it");
+            place->second = builder_.placeholder_geometry();
+        }
+        return place->second;
+    }
+
+    const aiScene& source_;
+    SceneBuilder& builder_;
+    AssimpMaterials materials_;
+    std::map<unsigned, ObjectId> geometries_;
+};
+
+}  // namespace
+
+bool is_assimp_extension(std::string_view extension) {
+    constexpr std::array<std::string_view, 7> Known{".obj", ".ply", ".stl", ".off", ".dae", ".fbx", ".3ds"};
+    return std::find(Known.begin(), Known.end(), extension) != Known.end();
+}
+
+void import_with_assimp(const std::filesystem::path& file, SceneBuilder& builder) {
+    Assimp::Importer importer;
+    importer.SetIOHandler(new AssimpFiles(file));  // owned by the importer
+    importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 45.0f);
+    // Texture coordinates come with v up; ours point down.
+    const aiScene* scene = importer.ReadFile(
+        file.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType |
+                           aiProcess_GenSmoothNormals | aiProcess_FlipUVs);
+    if (!scene || !scene->mRootNode) {
+        std::string cause = importer.GetErrorString();
+        throw Error(ErrorCode::InvalidInput,
+                    "it cannot be read (" + cause.substr(0, 300) + "): export it again");
+    }
+    const LocalFolder folder(file);
+    AssimpScene(*scene, folder, builder).build();
+}
+
+}  // namespace tessera::import

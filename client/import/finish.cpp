@@ -1,0 +1,69 @@
+#include "client/import/finish.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "client/import/environment.h"
+#include "client/import/survey.h"
+
+namespace tessera::import {
+namespace {
+
+constexpr glm::vec3 SoftSky{0.8f, 0.9f, 1.0f};  // radiance
+
+// From the front right and above, as far as the bounding sphere asks for.
+glm::dmat4 framing_pose(const Bounds& bounds, double vertical_fov) {
+    const glm::dvec3 center = 0.5 * (bounds.lower + bounds.upper);
+    const double extent = 0.5 * glm::length(bounds.upper - bounds.lower);
+    const double radius = extent > 0.0 ? extent : 1.0;
+    const glm::dvec3 z = glm::normalize(glm::dvec3(0.6, 0.45, 1.0));
+    const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(0.0, 1.0, 0.0), z));
+    const glm::dvec3 eye = center + z * (1.05 * radius / std::sin(0.5 * vertical_fov));
+    return {glm::dvec4(x, 0.0), glm::dvec4(glm::cross(z, x), 0.0), glm::dvec4(z, 0.0), glm::dvec4(eye, 1.0)};
+}
+
+void add_framing_camera(SceneBuilder& builder, const Bounds& bounds) {
+    scene::Camera camera;
+    camera.name = "framing";
+    scene::Transform transform;
+    transform.name = "framing camera";
+    transform.matrix = framing_pose(bounds, camera.vertical_fov);
+    const double fov = camera.vertical_fov;
+    const ObjectId id = builder.add(std::move(camera));
+    const std::string name = builder.get<scene::Camera>(id).name;
+    transform.children = {id};
+    builder.result().cameras.push_back({name, transform.matrix, fov, 0.0});
+    builder.result().root.children.push_back(builder.add(std::move(transform)));
+    builder.notice("no camera: one that frames everything was added");
+}
+
+}  // namespace
+
+void finish(SceneBuilder& builder) {
+    Survey found = survey(builder);
+    ImportedScene& result = builder.result();
+    const ImportOptions& options = builder.options();
+    if (result.counts.instances == 0) {
+        throw Error(ErrorCode::InvalidInput, "it places no triangles: there is nothing to draw");
+    }
+    result.cameras = std::move(found.cameras);
+    if (result.cameras.empty()) add_framing_camera(builder, found.bounds);
+
+    scene::Background background;
+    background.name = "background";
+    background.color = options.background.value_or(glm::vec3(0.0f));
+    if (!options.environment.empty()) {
+        background.environment = add_environment(options.environment, builder);
+        background.strength = options.environment_strength;
+    }
+    const bool lit = result.counts.lights > 0 || result.counts.emissive_geometries > 0 ||
+                     background.color != glm::vec3(0.0f) || background.environment;
+    if (!lit && !options.background) {
+        background.color = SoftSky;
+        builder.notice("no light: a soft sky was added");
+    }
+    result.root.background = builder.add(std::move(background));
+    result.root.name = "root";
+}
+
+}  // namespace tessera::import

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <span>
+#include <vector>
+
+namespace tinygltf {
+class Model;
+}
+
+namespace tessera::import {
+
+// Elements of accessors, every number of the file checked before it is used: references, component types,
+// offsets, lengths, strides, counts, sparse indices. Integers become floats as glTF 3.11 says when
+// normalized, else by value (KHR_mesh_quantization). All throw Error{InvalidInput} that names the accessor.
+class GltfAccessors {
+  public:
+    explicit GltfAccessors(const tinygltf::Model& model) : model_(model) {}
+
+    std::uint64_t count(int accessor) const;
+    std::vector<std::uint32_t> indices(int accessor) const;  // unsigned 8, 16 or 32 bit scalars
+    std::vector<glm::vec2> vec2(int accessor) const;
+    std::vector<glm::vec3> vec3(int accessor) const;
+    std::vector<glm::vec4> vec4(int accessor) const;
+    std::vector<glm::vec4> color(int accessor) const;  // three or four components; alpha 1 where absent
+
+    std::span<const unsigned char> view(int buffer_view) const;
+
+  private:
+    const tinygltf::Model& model_;
+};
+
+}  // namespace tessera::import

@@ -1,0 +1,67 @@
+#include "client/import/gltf_draco.h"
+
+#include <draco/compression/decode.h>
+#include <draco/mesh/mesh.h>
+
+#include "client/import/limits.h"
+#include "mediator/base/error.h"
+
+namespace tessera::import {
+namespace {
+
+[[noreturn]] void reject(const std::string& cause) {
+    throw Error(ErrorCode::InvalidInput, "its Draco data " + cause);
+}
+
+template <class Vector>
+std::vector<Vector> values_of(const draco::Mesh& mesh, const std::map<std::string, int>& ids,
+                              const std::string& name) {
+    const auto found = ids.find(name);
+    if (found == ids.end()) return {};
+    if (found->second < 0) reject("has no attribute " + name);
+    const draco::PointAttribute* attribute =
+        mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(found->second));
+    if (!attribute) reject("has no attribute " + name);
+    const int given = attribute->num_components();
+    if (given != Vector::length() && !(given == 3 && Vector::length() == 4)) {
+        reject("has " + std::to_string(given) + " components in " + name);
+    }
+    std::vector<Vector> values(mesh.num_points(), Vector(1.0f));  // alpha of a colour without one
+    for (std::uint32_t i = 0; i < mesh.num_points(); ++i) {
+        const draco::AttributeValueIndex index = attribute->mapped_index(draco::PointIndex(i));
+        if (index.value() >= attribute->size() ||
+            !attribute->ConvertValue<float>(index, static_cast<std::int8_t>(given), &values[i][0])) {
+            reject("lacks a value of " + name);
+        }
+    }
+    return values;
+}
+
+}  // namespace
+
+MeshData decode_draco(std::span<const unsigned char> bytes, const std::map<std::string, int>& attribute_ids,
+                      const std::string& tex_coord) {
+    draco::DecoderBuffer buffer;
+    buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    draco::Decoder decoder;
+    auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
+    if (!decoded.ok()) reject("cannot be decoded (" + decoded.status().error_msg_string() + ")");
+    const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
+    if (mesh->num_points() > MaxElements || mesh->num_faces() > MaxElements / 3)
+        reject("claims too many elements");
+
+    MeshData result;
+    result.indices.reserve(std::size_t{mesh->num_faces()} * 3);
+    for (std::uint32_t i = 0; i < mesh->num_faces(); ++i) {
+        const draco::Mesh::Face& face = mesh->face(draco::FaceIndex(i));
+        for (int k = 0; k < 3; ++k) result.indices.push_back(face[static_cast<std::size_t>(k)].value());
+    }
+    result.positions = values_of<glm::vec3>(*mesh, attribute_ids, "POSITION");
+    result.normals = values_of<glm::vec3>(*mesh, attribute_ids, "NORMAL");
+    result.tangents = values_of<glm::vec4>(*mesh, attribute_ids, "TANGENT");
+    result.tex_coords = values_of<glm::vec2>(*mesh, attribute_ids, tex_coord);
+    result.colors = values_of<glm::vec4>(*mesh, attribute_ids, "COLOR_0");
+    return result;
+}
+
+}  // namespace tessera::import

@@ -1,0 +1,126 @@
+#include "client/import/gltf_meshes.h"
+
+#include <tiny_gltf.h>
+
+#include <numeric>
+
+#include "client/import/gltf_draco.h"
+#include "client/import/gltf_text.h"
+#include "client/import/limits.h"
+
+namespace tessera::import {
+namespace {
+
+constexpr const char* Draco = "KHR_draco_mesh_compression";
+
+std::map<std::string, int> draco_attributes(const tinygltf::Value& extension) {
+    std::map<std::string, int> ids;
+    if (!extension.Has("attributes")) return ids;
+    const tinygltf::Value& attributes = extension.Get("attributes");
+    for (const std::string& name : attributes.Keys()) ids[name] = index_member(attributes, name.c_str());
+    return ids;
+}
+
+bool draws_triangles(int mode) {
+    return mode == TINYGLTF_MODE_TRIANGLES || mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
+           mode == TINYGLTF_MODE_TRIANGLE_FAN;
+}
+
+bool draws_points_or_lines(int mode) {
+    return mode >= TINYGLTF_MODE_POINTS && mode <= TINYGLTF_MODE_LINE_STRIP;
+}
+
+}  // namespace
+
+const std::vector<ObjectId>& GltfMeshes::geometries(int index) {
+    const auto [place, is_new] = made_.try_emplace(index);
+    std::vector<ObjectId>& geometries = place->second;
+    if (!is_new) return geometries;
+    if (index < 0 || static_cast<std::size_t>(index) >= model_.meshes.size()) {
+        builder_.notice("mesh " + std::to_string(index) + " is missing: a magenta box stands for it");
+        geometries.push_back(builder_.placeholder_geometry());
+        return geometries;
+    }
+    const tinygltf::Mesh& mesh = model_.meshes[static_cast<std::size_t>(index)];
+    const std::string name = mesh.name.empty() ? "mesh " + std::to_string(index) : mesh.name;
+    std::string first_cause;
+    std::size_t bad = 0;
+    for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+        const tinygltf::Primitive& primitive = mesh.primitives[i];
+        if (draws_points_or_lines(primitive.mode)) {
+            builder_.notice("mesh '" + name + "': points and lines are not drawn");
+            continue;
+        }
+        const std::string part = i == 0 ? name : name + " part " + std::to_string(i);
+        try {
+            geometries.push_back(make(primitive, name, part));
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::InvalidInput) throw;
+            if (bad++ == 0) first_cause = "primitive " + std::to_string(i) + ": " + error.what();
+        }
+        if (!primitive.targets.empty()) {
+            builder_.notice("mesh '" + name + "': its morph targets are ignored, the base shape is drawn");
+        }
+    }
+    if (bad > 0) {
+        builder_.notice("mesh '" + name + "' is bad (" + first_cause + (bad > 1 ? "; and others" : "") +
+                        "): a magenta box stands for it; export the mesh again");
+        geometries.push_back(builder_.placeholder_geometry());
+    }
+    return geometries;
+}
+
+GltfMeshes::Source GltfMeshes::read(const tinygltf::Primitive& primitive, const std::string& mesh_name) {
+    const auto& attributes = primitive.attributes;
+    if (!draws_triangles(primitive.mode)) {
+        throw Error(ErrorCode::InvalidInput, "its mode " + std::to_string(primitive.mode) + " is unknown");
+    }
+    if (!attributes.contains("POSITION")) throw Error(ErrorCode::InvalidInput, "it has no positions");
+
+    Source source;
+    source.material = materials_.material(primitive.material);
+    std::string tex_coord = "TEXCOORD_" + std::to_string(source.material.tex_coord_set);
+    if (!attributes.contains(tex_coord)) {
+        if (source.material.tex_coord_set > 0) {
+            builder_.notice("mesh '" + mesh_name + "': it lacks the texture coordinates " + tex_coord);
+        }
+        tex_coord = "TEXCOORD_0";
+    }
+    MeshData& mesh = source.mesh;
+    if (const auto draco = primitive.extensions.find(Draco); draco != primitive.extensions.end()) {
+        mesh = decode_draco(accessors_.view(index_member(draco->second, "bufferView")),
+                            draco_attributes(draco->second), tex_coord);
+        return source;
+    }
+    mesh.positions = accessors_.vec3(attributes.at("POSITION"));
+    if (attributes.contains("NORMAL")) mesh.normals = accessors_.vec3(attributes.at("NORMAL"));
+    if (attributes.contains("TANGENT")) mesh.tangents = accessors_.vec4(attributes.at("TANGENT"));
+    if (attributes.contains("COLOR_0")) mesh.colors = accessors_.color(attributes.at("COLOR_0"));
+    if (attributes.contains(tex_coord)) mesh.tex_coords = accessors_.vec2(attributes.at(tex_coord));
+
+    if (const auto indices = attributes.find(IndicesAttribute); indices != attributes.end()) {
+        mesh.indices = accessors_.indices(indices->second);
+    } else {
+        mesh.indices.resize(mesh.positions.size());
+        std::iota(mesh.indices.begin(), mesh.indices.end(), 0u);
+    }
+    if (primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP) mesh.indices = triangles_of_strip(mesh.indices);
+    if (primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN) mesh.indices = triangles_of_fan(mesh.indices);
+    return source;
+}
+
+ObjectId GltfMeshes::make(const tinygltf::Primitive& primitive, const std::string& mesh_name,
+                          const std::string& name) {
+    Source source = read(primitive, mesh_name);
+    MeshData& mesh = source.mesh;
+    for (const std::string& repair : check_and_repair(mesh))
+        builder_.notice("mesh '" + name + "': " + repair);
+    if (mesh.normals.empty()) mesh.tangents.clear();  // glTF 3.7.2.1: given tangents belong to given normals
+    if (source.material.wants_tangents && mesh.tangents.empty() && !mesh.tex_coords.empty()) {
+        if (mesh.normals.empty()) make_flat(mesh);
+        generate_tangents(mesh);
+    }
+    return builder_.add_geometry(name, source.material.id, mesh);
+}
+
+}  // namespace tessera::import

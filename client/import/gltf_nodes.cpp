@@ -1,0 +1,216 @@
+#include "client/import/gltf_nodes.h"
+
+#include <tiny_gltf.h>
+
+#include <algorithm>
+
+#include "client/import/gltf_document.h"
+#include "client/import/gltf_placement.h"
+#include "client/import/limits.h"
+
+namespace tessera::import {
+namespace {
+
+constexpr const char* Instancing = "EXT_mesh_gpu_instancing";
+constexpr const char* Lights = "KHR_lights_punctual";
+
+std::string display_name(const tinygltf::Model& model, int node) {
+    const std::string& name = model.nodes[static_cast<std::size_t>(node)].name;
+    return name.empty() ? "node " + std::to_string(node) : name;
+}
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& values) {
+    to.insert(to.end(), values.begin(), values.end());
+}
+
+}  // namespace
+
+std::vector<int> GltfNodes::scene_roots() {
+    if (!model_.scenes.empty()) {
+        int chosen = std::max(model_.defaultScene, 0);
+        if (static_cast<std::size_t>(chosen) >= model_.scenes.size()) {
+            builder_.notice("scene " + std::to_string(chosen) + " is missing: scene 0 is drawn");
+            chosen = 0;
+        }
+        if (model_.scenes.size() > 1) {
+            builder_.notice("of " + std::to_string(model_.scenes.size()) + " scenes only scene " +
+                            std::to_string(chosen) + " is drawn");
+        }
+        return model_.scenes[static_cast<std::size_t>(chosen)].nodes;
+    }
+    std::vector<bool> is_child(model_.nodes.size(), false);
+    for (const tinygltf::Node& node : model_.nodes) {
+        for (const int child : node.children) {
+            if (child >= 0 && static_cast<std::size_t>(child) < is_child.size()) {
+                is_child[static_cast<std::size_t>(child)] = true;
+            }
+        }
+    }
+    std::vector<int> roots;
+    for (std::size_t i = 0; i < is_child.size(); ++i) {
+        if (!is_child[i]) roots.push_back(static_cast<int>(i));
+    }
+    return roots;
+}
+
+GltfNodes::Tree GltfNodes::reach() {
+    struct Visit {
+        int node;
+        std::size_t depth;
+    };
+    Tree tree;
+    std::vector<Visit> stack;
+    const auto enter = [&](int node, std::size_t depth, std::vector<int>& siblings) {
+        const std::string number = std::to_string(node);
+        if (node < 0 || static_cast<std::size_t>(node) >= model_.nodes.size()) {
+            builder_.notice("node " + number + " is missing: the reference to it is ignored");
+        } else if (depth > MaxNesting) {
+            builder_.notice("nodes nested more than " + std::to_string(MaxNesting) + " deep are not drawn");
+        } else if (!tree.children.try_emplace(node).second) {
+            builder_.notice("node " + number + " has several parents or is inside itself: it is drawn once");
+        } else {
+            siblings.push_back(node);
+            stack.push_back({node, depth});
+        }
+    };
+    for (const int root : scene_roots()) enter(root, 1, tree.roots);
+    while (!stack.empty()) {
+        const Visit visit = stack.back();
+        stack.pop_back();
+        for (const int child : model_.nodes[static_cast<std::size_t>(visit.node)].children) {
+            enter(child, visit.depth + 1, tree.children[visit.node]);
+        }
+    }
+    return tree;
+}
+
+std::vector<ObjectId> GltfNodes::build() {
+    const Tree tree = reach();
+    std::map<int, ObjectId> ids;
+    for (const auto& [node, unused] : tree.children) {
+        scene::Transform transform;
+        transform.name = display_name(model_, node);
+        const auto matrix = node_matrix(model_.nodes[static_cast<std::size_t>(node)]);
+        if (matrix) {
+            transform.matrix = *matrix;
+        } else {
+            builder_.notice("node '" + transform.name + "': " + matrix.error().what() +
+                            "; it is drawn unmoved");
+        }
+        ids[node] = builder_.add(std::move(transform));
+    }
+    for (const auto& [index, below] : tree.children) {
+        const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(index)];
+        const std::string name = display_name(model_, index);
+        std::vector<ObjectId> children;
+        for (const int child : below) children.push_back(ids.at(child));
+        if (node.mesh != -1) add_mesh(node, name, children);
+        add_light(node, name, children);
+        if (node.camera != -1) add_camera(node, name, children);
+        builder_.get<scene::Transform>(ids.at(index)).children = std::move(children);
+    }
+    std::vector<ObjectId> roots;
+    for (const int root : tree.roots) roots.push_back(ids.at(root));
+    return roots;
+}
+
+void GltfNodes::add_mesh(const tinygltf::Node& node, const std::string& name,
+                         std::vector<ObjectId>& children) {
+    const std::vector<ObjectId> geometries = meshes_.geometries(node.mesh);
+    if (node.skin != -1)
+        builder_.notice("node '" + name + "': its skin is ignored, the unposed mesh is drawn");
+    std::vector<glm::dmat4> matrices;
+    if (node.extensions.contains(Instancing)) {
+        try {
+            matrices = instance_matrices(node);
+        } catch (const Error& error) {
+            builder_.notice("node '" + name + "': its instances are bad (" + error.what() +
+                            "); one is drawn");
+        }
+    }
+    instances_ += geometries.size() * std::max<std::uint64_t>(matrices.size(), 1);
+    if (instances_ > MaxInstances) {
+        throw Error(ErrorCode::InvalidInput,
+                    "it places more than " + std::to_string(MaxInstances) + " meshes: split the scene");
+    }
+    if (matrices.empty()) {
+        append(children, geometries);
+        return;
+    }
+    for (std::size_t i = 0; i < matrices.size(); ++i) {
+        scene::Transform instance;
+        instance.name = name + " instance " + std::to_string(i);
+        instance.matrix = matrices[i];
+        instance.children = geometries;
+        children.push_back(builder_.add(std::move(instance)));
+    }
+}
+
+std::vector<glm::dmat4> GltfNodes::instance_matrices(const tinygltf::Node& node) {
+    const tinygltf::Value& extension = node.extensions.at(Instancing);
+    const tinygltf::Value none;
+    const tinygltf::Value& attributes = extension.Has("attributes") ? extension.Get("attributes") : none;
+    const int translation = index_member(attributes, "TRANSLATION");
+    const int rotation = index_member(attributes, "ROTATION");
+    const int scale = index_member(attributes, "SCALE");
+    std::vector<glm::vec3> translations, scales;
+    std::vector<glm::vec4> rotations;
+    if (translation >= 0) translations = accessors_.vec3(translation);
+    if (rotation >= 0) rotations = accessors_.vec4(rotation);
+    if (scale >= 0) scales = accessors_.vec3(scale);
+    const std::size_t count = std::max({translations.size(), rotations.size(), scales.size()});
+    for (const std::size_t size : {translations.size(), rotations.size(), scales.size()}) {
+        if (size != 0 && size != count) throw Error(ErrorCode::InvalidInput, "its arrays differ in length");
+    }
+    if (count > MaxInstances) throw Error(ErrorCode::InvalidInput, "there are too many");
+    std::vector<glm::dmat4> matrices;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto matrix =
+            placement(translations.empty() ? glm::dvec3(0.0) : glm::dvec3(translations[i]),
+                      rotations.empty() ? glm::dvec4(0.0, 0.0, 0.0, 1.0) : glm::dvec4(rotations[i]),
+                      scales.empty() ? glm::dvec3(1.0) : glm::dvec3(scales[i]));
+        if (!matrix) throw matrix.error();
+        matrices.push_back(*matrix);
+    }
+    return matrices;
+}
+
+void GltfNodes::add_light(const tinygltf::Node& node, const std::string& name,
+                          std::vector<ObjectId>& children) {
+    const auto extension = node.extensions.find(Lights);
+    if (extension == node.extensions.end()) return;
+    const int index = index_member(extension->second, "light");
+    if (index < 0 || static_cast<std::size_t>(index) >= model_.lights.size()) {
+        builder_.notice("node '" + name + "': its light " + std::to_string(index) + " is missing");
+        return;
+    }
+    ObjectId& id = lights_[index];
+    if (!id) {
+        auto light = punctual_light(model_.lights[static_cast<std::size_t>(index)]);
+        if (!light) {
+            builder_.notice("node '" + name + "': its light is left out, " + light.error().what());
+            return;
+        }
+        if (light->name.empty()) light->name = name;
+        id = builder_.add(std::move(*light));
+    }
+    children.push_back(id);
+}
+
+void GltfNodes::add_camera(const tinygltf::Node& node, const std::string& name,
+                           std::vector<ObjectId>& children) {
+    if (node.camera < 0 || static_cast<std::size_t>(node.camera) >= model_.cameras.size()) {
+        builder_.notice("node '" + name + "': its camera " + std::to_string(node.camera) + " is missing");
+        return;
+    }
+    auto camera = perspective_camera(model_.cameras[static_cast<std::size_t>(node.camera)]);
+    if (!camera) {
+        builder_.notice("node '" + name + "': its camera is left out, " + camera.error().what());
+        return;
+    }
+    if (!node.name.empty() || camera->name.empty()) camera->name = name;
+    children.push_back(builder_.add(std::move(*camera)));
+}
+
+}  // namespace tessera::import

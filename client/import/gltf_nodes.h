@@ -1,0 +1,44 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "client/import/gltf_meshes.h"
+
+namespace tinygltf {
+class Node;
+}
+
+namespace tessera::import {
+
+// Makes the graph: a Transform per node of the default scene, in file order, with its geometries, light and
+// camera. Cycles, second parents and too deep nesting are cut, each with a notice.
+class GltfNodes {
+  public:
+    GltfNodes(const tinygltf::Model& model, SceneBuilder& builder)
+        : model_(model), builder_(builder), accessors_(model), meshes_(model, builder) {}
+
+    std::vector<ObjectId> build();  // the root's children
+
+  private:
+    struct Tree {
+        std::vector<int> roots;
+        std::map<int, std::vector<int>> children;  // of each node that is reached, file order
+    };
+    Tree reach();
+    std::vector<int> scene_roots();
+    void add_mesh(const tinygltf::Node& node, const std::string& name, std::vector<ObjectId>& children);
+    void add_light(const tinygltf::Node& node, const std::string& name, std::vector<ObjectId>& children);
+    void add_camera(const tinygltf::Node& node, const std::string& name, std::vector<ObjectId>& children);
+    std::vector<glm::dmat4> instance_matrices(const tinygltf::Node& node);
+
+    const tinygltf::Model& model_;
+    SceneBuilder& builder_;
+    GltfAccessors accessors_;
+    GltfMeshes meshes_;
+    std::map<int, ObjectId> lights_;
+    std::uint64_t instances_ = 0;
+};
+
+}  // namespace tessera::import

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "mediator/base/error.h"
+#include "mediator/scene/objects.h"
+
+namespace tinygltf {
+class Node;
+struct Camera;
+struct Light;
+}  // namespace tinygltf
+
+namespace tessera::import {
+
+// Values of a node, light or camera of a file; InvalidInput says why there is none, without naming the
+// object.
+
+// Translation x rotation (a quaternion x, y, z, w of any length) x scale.
+Expected<glm::dmat4> placement(const glm::dvec3& translation, const glm::dvec4& rotation,
+                               const glm::dvec3& scale);
+
+// The node's matrix, or that of its translation, rotation and scale.
+Expected<glm::dmat4> node_matrix(const tinygltf::Node& node);
+
+Expected<scene::Light> punctual_light(const tinygltf::Light& light);
+Expected<scene::Camera> perspective_camera(const tinygltf::Camera& camera);
+
+}  // namespace tessera::import

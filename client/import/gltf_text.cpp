@@ -1,0 +1,195 @@
+#include "client/import/gltf_text.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "client/import/limits.h"
+
+namespace tessera::import {
+namespace {
+
+struct Range {
+    std::size_t begin = 0, end = 0;
+    bool empty() const { return begin == end; }
+};
+
+struct Edit {
+    std::size_t position = 0;
+    std::string insertion;
+};
+
+// One open array or object.
+struct Level {
+    bool is_object = false;
+    Range key;                   // the last string, a key once a colon follows
+    bool has_key = false;        // a value for `key` is expected
+    Range indices_key, indices;  // "indices": <number>, both as they stand
+    std::size_t attributes = 0;  // just behind the brace of "attributes": {
+};
+
+constexpr bool is_space(char c) {
+    return c == ' ' || c == '\t' || c == '\n' || c == '\r';
+}
+constexpr bool is_number(char c) {
+    return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.' || c == 'e' || c == 'E';
+}
+
+class Scanner {
+  public:
+    explicit Scanner(std::string_view json) : json_(json) {}
+
+    Expected<std::vector<Edit>> edits() {
+        while (at_ < json_.size()) {
+            const char c = json_[at_];
+            if (c == '"') {
+                string();
+            } else if (c == '{' || c == '[') {
+                if (levels_.size() >= MaxTextNesting) {
+                    return failure(ErrorCode::InvalidInput, "its JSON is nested more than " +
+                                                                std::to_string(MaxTextNesting) +
+                                                                " deep: export the scene again");
+                }
+                open(c == '{');
+            } else if (c == '}' || c == ']') {
+                close();
+            } else if (is_number(c)) {
+                number();
+            } else {
+                if (!levels_.empty() && c == ':') levels_.back().has_key = true;
+                if (!levels_.empty() && c == ',') levels_.back().has_key = false;
+                ++at_;
+            }
+        }
+        std::sort(edits_.begin(), edits_.end(),
+                  [](const Edit& a, const Edit& b) { return a.position < b.position; });
+        return std::move(edits_);
+    }
+
+  private:
+    std::string_view text(Range range) const { return json_.substr(range.begin, range.end - range.begin); }
+
+    void string() {
+        const std::size_t begin = ++at_;
+        while (at_ < json_.size() && json_[at_] != '"') at_ += json_[at_] == '\\' ? 2 : 1;
+        at_ = std::min(at_, json_.size());
+        if (!levels_.empty() && !levels_.back().has_key) levels_.back().key = {begin, at_};
+        ++at_;
+    }
+
+    void open(bool is_object) {
+        ++at_;
+        if (is_object && !levels_.empty() && levels_.back().has_key &&
+            text(levels_.back().key) == "attributes") {
+            levels_.back().attributes = at_;
+        }
+        levels_.emplace_back();
+        levels_.back().is_object = is_object;
+    }
+
+    void close() {
+        ++at_;
+        if (levels_.empty()) return;
+        const Level level = levels_.back();
+        levels_.pop_back();
+        if (!level.is_object || level.indices.empty() || level.attributes == 0) return;
+        std::size_t next = level.attributes;
+        while (next < json_.size() && is_space(json_[next])) ++next;
+        const bool alone = next < json_.size() && json_[next] == '}';
+        edits_.push_back({level.indices_key.begin, "_"});
+        edits_.push_back({level.attributes, '"' + std::string(IndicesAttribute) + "\":" +
+                                                std::string(text(level.indices)) + (alone ? "" : ",")});
+    }
+
+    void number() {
+        const std::size_t begin = at_;
+        while (at_ < json_.size() && is_number(json_[at_])) ++at_;
+        if (levels_.empty() || !levels_.back().has_key || text(levels_.back().key) != "indices") return;
+        levels_.back().indices_key = levels_.back().key;
+        levels_.back().indices = {begin, at_};
+    }
+
+    std::string_view json_;
+    std::size_t at_ = 0;
+    std::vector<Level> levels_;
+    std::vector<Edit> edits_;
+};
+
+std::uint32_t read_u32(std::span<const unsigned char> bytes, std::size_t offset) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + offset, sizeof value);
+    return value;
+}
+
+void append_u32(std::string& to, std::size_t value) {
+    const auto narrow = static_cast<std::uint32_t>(value);
+    to.append(reinterpret_cast<const char*>(&narrow), sizeof narrow);
+}
+
+tl::unexpected<Error> damaged(const std::string& what) {
+    return failure(ErrorCode::InvalidInput, what + ": it is damaged or was cut off; copy or export it again");
+}
+
+}  // namespace
+
+Expected<std::string> prepare_gltf_text(std::string_view json) {
+    const Expected<std::vector<Edit>> edits = Scanner(json).edits();
+    if (!edits) return tl::unexpected<Error>(edits.error());
+    std::string prepared;
+    prepared.reserve(json.size() + edits->size() * 24);
+    std::size_t done = 0;
+    for (const Edit& edit : *edits) {
+        prepared.append(json.substr(done, edit.position - done));
+        prepared.append(edit.insertion);
+        done = edit.position;
+    }
+    prepared.append(json.substr(done));
+    return prepared;
+}
+
+bool is_glb(std::span<const unsigned char> bytes) {
+    return bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
+}
+
+Expected<std::string> prepare_glb(std::span<const unsigned char> bytes) {
+    constexpr std::size_t Header = 12, ChunkHeader = 8;
+    constexpr std::uint32_t Json = 0x4e4f534a;
+    if (bytes.size() < Header + ChunkHeader) return damaged("the GLB ends inside its header");
+    const std::uint32_t version = read_u32(bytes, 4);
+    if (version != 2) {
+        return failure(ErrorCode::InvalidInput,
+                       "it is a GLB of version " + std::to_string(version) + ": convert it to glTF 2.0");
+    }
+    const std::size_t length = read_u32(bytes, 8);
+    if (length > bytes.size()) {
+        return damaged("the GLB says that it has " + std::to_string(length) + " bytes, the file has " +
+                       std::to_string(bytes.size()));
+    }
+    const std::size_t json_length = read_u32(bytes, 12);
+    if (length < Header + ChunkHeader || read_u32(bytes, 16) != Json ||
+        json_length > length - Header - ChunkHeader) {
+        return damaged("the GLB has no complete JSON chunk");
+    }
+    const auto* text = reinterpret_cast<const char*>(bytes.data() + Header + ChunkHeader);
+    Expected<std::string> json = prepare_gltf_text({text, json_length});
+    if (!json) return json;
+    json->resize((json->size() + 3) / 4 * 4, ' ');
+    const auto rest =
+        bytes.subspan(Header + ChunkHeader + json_length, length - Header - ChunkHeader - json_length);
+    const std::size_t total = Header + ChunkHeader + json->size() + rest.size();
+    if (total > std::numeric_limits<std::uint32_t>::max()) {
+        return failure(ErrorCode::InvalidInput, "the GLB is larger than 4 GiB: split it");
+    }
+    std::string glb = "glTF";
+    append_u32(glb, 2);
+    append_u32(glb, total);
+    append_u32(glb, json->size());
+    append_u32(glb, Json);
+    glb += *json;
+    glb.append(reinterpret_cast<const char*>(rest.data()), rest.size());
+    return glb;
+}
+
+}  // namespace tessera::import

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <tuple>
+
+#include "client/import/gltf_document.h"
+#include "client/import/scene_builder.h"
+
+namespace tessera::import {
+
+enum class TextureUse {
+    Color,  // sRGB; a magenta checker stands for a bad one
+    Data    // linear; a bad one is left out, the factor alone stays
+};
+
+// Makes Texture objects on demand: one per image, sampler and colour space. Each image is decoded once, so an
+// image used both ways is two objects over one blob.
+class GltfTextures {
+  public:
+    GltfTextures(const tinygltf::Model& model, SceneBuilder& builder) : model_(model), builder_(builder) {}
+
+    ObjectId texture(int index, TextureUse use);  // 0 for bad data
+
+  private:
+    struct Texels {
+        std::uint32_t width = 0, height = 0;
+        scene::BlobRef blob;
+    };
+    const std::optional<Texels>& decoded(int image);  // empty after a notice
+
+    const tinygltf::Model& model_;
+    SceneBuilder& builder_;
+    std::map<int, std::optional<Texels>> images_;
+    std::map<std::tuple<int, scene::TexelFormat, scene::Wrap, scene::Wrap, scene::TextureFilter>, ObjectId>
+        made_;
+};
+
+}  // namespace tessera::import

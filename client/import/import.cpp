@@ -1,0 +1,88 @@
+#include "client/import/import.h"
+
+#include <algorithm>
+#include <cctype>
+#include <exception>
+#include <new>
+
+#include "client/import/assimp_import.h"
+#include "client/import/finish.h"
+#include "client/import/gltf_import.h"
+#include "client/import/local_files.h"
+#include "mediator/scene/fields.h"
+
+namespace tessera::import {
+namespace {
+
+std::string lower_case_extension(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+void check_options(const ImportOptions& options) {
+    if (options.first_id <= scene::RootId || options.first_id >= options.end_id ||
+        options.end_id.value > 1ull << 32) {
+        throw Error(ErrorCode::InvalidInput,
+                    "the range of object ids is empty, above 2^32 or holds the root's");
+    }
+    const glm::vec3 color = options.background.value_or(glm::vec3(0.0f));
+    for (const float value : {color.x, color.y, color.z, options.environment_strength}) {
+        if (!(value >= 0.0f && value <= 1e12f)) {
+            throw Error(ErrorCode::InvalidInput,
+                        "background and environment strength must be finite and not negative");
+        }
+    }
+}
+
+void read_into(const std::filesystem::path& file, SceneBuilder& builder) {
+    const std::string extension = lower_case_extension(file);
+    if (extension == ".gltf" || extension == ".glb") {
+        import_gltf(file, builder);
+    } else if (is_assimp_extension(extension)) {
+        import_with_assimp(file, builder);
+    } else {
+        throw Error(ErrorCode::InvalidInput,
+                    "its name does not end in .gltf, .glb, .obj, .ply, .stl, .off, .dae, "
+                    ".fbx or .3ds: convert it to glTF 2.0");
+    }
+}
+
+}  // namespace
+
+Expected<ImportedScene> import_scene(const std::filesystem::path& file, const ImportOptions& options) {
+    const std::string named = "scene '" + file.string() + "': ";
+    try {
+        check_options(options);
+        if (std::error_code error; !std::filesystem::exists(file, error)) {
+            return failure(ErrorCode::NotFound, named + "there is no such file: check the name");
+        }
+        SceneBuilder builder(options);
+        read_into(file, builder);
+        finish(builder);
+        return std::move(builder.result());
+    } catch (const Error& error) {
+        return failure(error.code(), named + error.what());
+    } catch (const std::bad_alloc&) {
+        return failure(ErrorCode::OutOfMemory, named + "not enough memory to read it: split the scene");
+    } catch (const std::exception& error) {  // of the libraries that parse
+        return failure(ErrorCode::InvalidInput,
+                       named + "it cannot be read (" + error.what() + "): export it again");
+    }
+}
+
+std::vector<scene::Entry> entries(const ImportedScene& scene, RootEntry root) {
+    std::vector<scene::Entry> result;
+    result.reserve(scene.objects.size() + 1);
+    if (root == RootEntry::Create) {
+        result.push_back(scene::Create{scene::RootId, scene.root});
+    } else {
+        const scene::Fields<scene::Root> fields{scene::Root::Field::Children, scene::Root::Field::Background};
+        result.push_back(scene::Update{scene::RootId, fields.bits(), scene.root});
+    }
+    result.insert(result.end(), scene.objects.begin(), scene.objects.end());
+    return result;
+}
+
+}  // namespace tessera::import

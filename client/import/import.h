@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mediator/base/error.h"
+#include "mediator/scene/blob.h"
+#include "mediator/scene/change_list.h"
+
+namespace tessera::import {
+
+struct ImportOptions {
+    ObjectId first_id{2};                 // objects get consecutive ids from here
+    ObjectId end_id{1ull << 32};          // one past the last id that may be used
+    std::optional<glm::vec3> background;  // linear radiance; counts as light when not black
+    std::filesystem::path environment;    // latitude-longitude .exr or .hdr; empty = none
+    float environment_strength = 1.0f;
+};
+
+// A place to look from; the Camera object is in the scene, too.
+struct CameraInfo {
+    std::string name;                   // unique
+    glm::dmat4 world_from_camera{1.0};  // rigid; looks along -z, y up
+    double vertical_fov = 0.7;          // radians
+    double aspect = 0.0;                // width / height; 0 = the picture's
+};
+
+struct ImportCounts {
+    std::uint64_t triangles = 0;             // of all geometries, each once
+    std::uint64_t degenerate_triangles = 0;  // among them: kept, without area
+    std::uint64_t geometries = 0;
+    std::uint64_t instances = 0;  // geometries as placed
+    std::uint64_t lights = 0;     // as placed: point, spot and directional
+    std::uint64_t emissive_geometries = 0;
+    std::uint64_t textures = 0;
+    std::uint64_t placeholders = 0;  // meshes and textures that were bad and are shown in magenta
+};
+
+// What a file becomes: values, nothing shared with the file. The same file and options give the same ids and
+// bytes.
+struct ImportedScene {
+    scene::Root root;                    // children and background; its id is scene::RootId
+    std::vector<scene::Create> objects;  // all others, ids ascending and consecutive from first_id
+    std::vector<scene::BlobPtr> blobs;   // all that the objects refer to, each once
+    std::vector<CameraInfo> cameras;   // never empty; the file's own in file order, else one that frames all
+    std::vector<std::string> notices;  // what was added, replaced or ignored; lower-case phrases, each once
+    ImportCounts counts;
+};
+
+// glTF 2.0 (.gltf, .glb) or, through assimp, .obj .ply .stl .off .dae .fbx .3ds. A scene without any light
+// gets a soft sky, one without a camera gets one. A bad mesh or texture becomes a placeholder and a notice.
+// Photometric units of KHR_lights_punctual are taken one to one as radiometric ones (1 cd = 1 W/sr, 1 lx = 1
+// W/m2), as most renderers do. NotFound: no such file. InvalidInput: damaged, another format, an unknown
+// required extension, or nothing to draw; the message names file, object and remedy. Opens only files inside
+// the scene's own folder, and the environment. Any thread; reads, decodes and allocates on the caller's.
+Expected<ImportedScene> import_scene(const std::filesystem::path& file, const ImportOptions& options = {});
+
+// The edit that brings the scene in. Root is created, or updated (name aside) where the scene already has
+// one.
+enum class RootEntry { Create, Update };
+std::vector<scene::Entry> entries(const ImportedScene& scene, RootEntry root);
+
+}  // namespace tessera::import

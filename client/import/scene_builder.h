@@ -1,0 +1,64 @@
+#pragma once
+
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "client/import/import.h"
+#include "client/import/mesh_data.h"
+
+namespace tessera::import {
+
+// Collects objects, blobs and notices while a file is read. Ids ascend in order of creation, names become
+// unique per kind, equal arrays become one blob. Throws Error{InvalidInput} when ids or the budget of decoded
+// bytes run out.
+class SceneBuilder {
+  public:
+    explicit SceneBuilder(const ImportOptions& options) : options_(options) {}
+
+    const ImportOptions& options() const { return options_; }
+    ImportedScene& result() { return result_; }
+
+    // An empty name becomes "<kind> <number>"; one already taken by this kind gets ".2", ".3" and so on.
+    ObjectId add(scene::Object object);
+    template <class T>
+    T& get(ObjectId id) {  // of an object that was added; until the next add
+        return std::get<T>(result_.objects[id.value - options_.first_id.value].object);
+    }
+
+    template <class T>
+    scene::BlobRef blob(const std::vector<T>& values) {
+        return blob(std::as_bytes(std::span(values)));
+    }
+    scene::BlobRef blob(std::span<const std::byte> bytes);  // empty gives an empty reference
+
+    // Counts and adds a mesh that passed check_and_repair.
+    ObjectId add_geometry(std::string name, ObjectId material, const MeshData& mesh);
+
+    // What stands for something bad, made at its first use: a magenta box of edge 1 around the origin, and a
+    // checker.
+    ObjectId placeholder_geometry();
+    ObjectId placeholder_texture();
+
+    void notice(const std::string& text);  // each once
+    const Bounds& bounds(ObjectId geometry) const { return bounds_.at(geometry); }
+
+  private:
+    std::string unique_name(scene::ObjectKind kind, const std::string& wanted);
+
+    const ImportOptions& options_;
+    ImportedScene result_;
+    std::set<std::pair<scene::ObjectKind, std::string>> names_;
+    std::map<std::pair<scene::ObjectKind, std::string>, std::uint64_t> last_suffix_;
+    std::map<scene::ObjectKind, std::uint64_t> added_;
+    std::unordered_map<Hash256, scene::BlobRef> blobs_;
+    std::unordered_map<ObjectId, Bounds> bounds_;
+    std::set<std::string> notices_;
+    std::uint64_t decoded_bytes_ = 0;
+    ObjectId placeholder_geometry_, placeholder_texture_;
+};
+
+}  // namespace tessera::import

@@ -1,0 +1,119 @@
+#include "client/import/survey.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <set>
+
+#include "client/import/limits.h"
+
+namespace tessera::import {
+namespace {
+
+bool has_volume(const glm::dmat4& matrix) {
+    const glm::dmat3 linear(matrix);
+    const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+    const double volume = std::abs(glm::determinant(linear));
+    const bool far = !(glm::length(glm::dvec3(matrix[3])) < 1e18) || !(lengths < 1e36);
+    return !far && lengths > 1e-36 && volume > 1e-12 * lengths;
+}
+
+bool emits(SceneBuilder& builder, ObjectId geometry) {
+    const ObjectId material = builder.get<scene::Geometry>(geometry).material;
+    return material && builder.get<scene::Material>(material).emission != glm::vec3(0.0f);
+}
+
+class Walk {
+  public:
+    explicit Walk(SceneBuilder& builder) : builder_(builder) {}
+
+    Survey run() {
+        for (const ObjectId child : builder_.result().root.children)
+            stack_.push_back({child, glm::dmat4(1.0)});
+        while (!stack_.empty()) {
+            const Place place = stack_.back();
+            stack_.pop_back();
+            visit(place);
+        }
+        std::sort(cameras_.begin(), cameras_.end(),
+                  [](const auto& a, const auto& b) { return a.first < b.first; });
+        for (auto& [unused, camera] : cameras_) survey_.cameras.push_back(std::move(camera));
+        builder_.result().counts.emissive_geometries = emissive_.size();
+        return std::move(survey_);
+    }
+
+  private:
+    struct Place {
+        ObjectId transform;
+        glm::dmat4 parent{1.0};
+    };
+
+    void visit(const Place& place) {
+        auto& transform = builder_.get<scene::Transform>(place.transform);
+        const glm::dmat4 world = place.parent * transform.matrix;
+        const bool visible = has_volume(world);
+        const auto& objects = builder_.result().objects;
+        const std::uint64_t first = builder_.options().first_id.value;
+        const auto invisible_geometry = [&](ObjectId id) {
+            return !visible && std::holds_alternative<scene::Geometry>(objects[id.value - first].object);
+        };
+        if (std::erase_if(transform.children, invisible_geometry) > 0) {
+            builder_.notice("node '" + transform.name +
+                            "': its mesh is not drawn, since the node's transform leaves it no volume");
+        }
+        for (const ObjectId child : transform.children) {
+            const scene::Object& object = objects[child.value - first].object;
+            if (std::holds_alternative<scene::Transform>(object)) stack_.push_back({child, world});
+            if (std::holds_alternative<scene::Geometry>(object)) place_geometry(child, world);
+            if (std::holds_alternative<scene::Light>(object)) ++builder_.result().counts.lights;
+            if (const auto* camera = std::get_if<scene::Camera>(&object)) place_camera(child, *camera, world);
+        }
+    }
+
+    void place_geometry(ObjectId id, const glm::dmat4& world) {
+        if (++builder_.result().counts.instances > MaxInstances) {
+            throw Error(ErrorCode::InvalidInput,
+                        "it places more than " + std::to_string(MaxInstances) + " meshes: split the scene");
+        }
+        survey_.bounds.add(builder_.bounds(id), world);
+        if (emits(builder_, id)) emissive_.insert(id);
+    }
+
+    void place_camera(ObjectId id, const scene::Camera& camera, glm::dmat4 world) {
+        if (make_rigid(world)) {
+            cameras_.emplace_back(id,
+                                  CameraInfo{camera.name, world, camera.vertical_fov, camera.aspect_ratio});
+        } else {
+            builder_.notice("camera '" + camera.name + "' is not used: its transform has no direction");
+        }
+    }
+
+    SceneBuilder& builder_;
+    Survey survey_;
+    std::vector<Place> stack_;
+    std::vector<std::pair<ObjectId, CameraInfo>> cameras_;
+    std::set<ObjectId> emissive_;
+};
+
+}  // namespace
+
+bool make_rigid(glm::dmat4& matrix) {
+    const glm::dvec3 up(matrix[1]), back(matrix[2]), place(matrix[3]);
+    const glm::dvec3 right = glm::cross(up, back);
+    const double size = glm::length(back) * glm::length(up);
+    if (!(size > 0.0) || !std::isfinite(size) || !(glm::length(right) > 1e-9 * size) ||
+        !(glm::length(place) < 1e18)) {
+        return false;
+    }
+    const glm::dvec3 z = glm::normalize(back), x = glm::normalize(right);
+    matrix = glm::dmat4(glm::dvec4(x, 0.0), glm::dvec4(glm::cross(z, x), 0.0), glm::dvec4(z, 0.0),
+                        glm::dvec4(place, 1.0));
+    return true;
+}
+
+Survey survey(SceneBuilder& builder) {
+    return Walk(builder).run();
+}
+
+}  // namespace tessera::import

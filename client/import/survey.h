@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "client/import/scene_builder.h"
+
+namespace tessera::import {
+
+// What a walk over the finished graph finds.
+struct Survey {
+    Bounds bounds;                    // of all geometries as placed
+    std::vector<CameraInfo> cameras;  // by object id, that is in file order
+};
+
+// Fills the counts of instances, lights and emissive geometries. Takes geometries out of transforms that
+// leave them without volume or are not finite (nothing could be seen or inverted), with a notice. Throws when
+// there are too many instances. The graph below the root must be a tree of transforms.
+Survey survey(SceneBuilder& builder);
+
+// The rigid part of a transform: where it looks (-z) and what is up (y). False when it has none.
+bool make_rigid(glm::dmat4& matrix);
+
+}  // namespace tessera::import

@@ -1,0 +1,120 @@
+#include <draco/attributes/geometry_attribute.h>
+#include <draco/compression/encode.h>
+#include <draco/mesh/triangle_soup_mesh_builder.h>
+
+#include <glm/geometric.hpp>
+
+#include "mediator/base/random.h"
+#include "tests/import/inspect.h"
+#include "tests/import/scene_file.h"
+
+namespace tessera::import {
+namespace {
+
+struct Compressed {
+    std::string bytes;
+    std::uint32_t position = 0, normal = 0, tex_coord = 0;  // unique ids
+};
+
+// A unit square of two triangles that faces +z.
+Compressed compressed_square() {
+    draco::TriangleSoupMeshBuilder builder;
+    builder.Start(2);
+    const int position = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+    const int normal = builder.AddAttribute(draco::GeometryAttribute::NORMAL, 3, draco::DT_FLOAT32);
+    const int tex_coord = builder.AddAttribute(draco::GeometryAttribute::TEX_COORD, 2, draco::DT_FLOAT32);
+    const glm::vec3 corners[2][3] = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 0}, {1, 0, 0}, {1, 1, 0}}};
+    const glm::vec3 up(0, 0, 1);
+    for (std::uint32_t i = 0; i < 2; ++i) {
+        const auto& [a, b, c] = corners[i];
+        const glm::vec2 ta(a), tb(b), tc(c);
+        builder.SetAttributeValuesForFace(position, draco::FaceIndex(i), &a, &b, &c);
+        builder.SetAttributeValuesForFace(normal, draco::FaceIndex(i), &up, &up, &up);
+        builder.SetAttributeValuesForFace(tex_coord, draco::FaceIndex(i), &ta, &tb, &tc);
+    }
+    const std::unique_ptr<draco::Mesh> mesh = builder.Finalize();
+    draco::Encoder encoder;
+    encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, 14);
+    draco::EncoderBuffer buffer;
+    EXPECT_TRUE(encoder.EncodeMeshToBuffer(*mesh, &buffer).ok());
+    return {std::string(buffer.data(), buffer.size()), mesh->attribute(position)->unique_id(),
+            mesh->attribute(normal)->unique_id(), mesh->attribute(tex_coord)->unique_id()};
+}
+
+// As exporters write it: accessors without buffer views, the data in the extension.
+SceneFile draco_file(const Compressed& square, std::uint32_t position_id) {
+    SceneFile file;
+    file.set("extensionsRequired", R"(["KHR_draco_mesh_compression"])");
+    const int view = file.view_of_bytes(square.bytes);
+    const int indices = file.add("accessors", R"({"componentType":5123,"type":"SCALAR","count":6})");
+    const int position = file.add("accessors", R"({"componentType":5126,"type":"VEC3","count":4})");
+    const int uv = file.add("accessors", R"({"componentType":5126,"type":"VEC2","count":4})");
+    file.add("meshes", R"({"name":"bad","primitives":[{"attributes":{"POSITION":)" +
+                           std::to_string(position) + R"(,"NORMAL":)" + std::to_string(position) +
+                           R"(,"TEXCOORD_0":)" + std::to_string(uv) + R"(},"indices":)" +
+                           std::to_string(indices) +
+                           R"(,"extensions":{"KHR_draco_mesh_compression":{"bufferView":)" +
+                           std::to_string(view) + R"(,"attributes":{"POSITION":)" +
+                           std::to_string(position_id) + R"(,"NORMAL":)" + std::to_string(square.normal) +
+                           R"(,"TEXCOORD_0":)" + std::to_string(square.tex_coord) + "}}}}]}");
+    file.add("nodes", R"({"mesh":0})");
+    file.add("scenes", R"({"nodes":[0]})");
+    return file;
+}
+
+TEST(Draco, ACompressedMeshIsDecoded) {
+    const Compressed square = compressed_square();
+    const TestFolder folder;
+    const ImportedScene scene = loaded(folder.write("scene.glb", draco_file(square, square.position).glb()));
+    expect_sound(scene);
+    EXPECT_EQ(scene.counts.triangles, 2u);
+    EXPECT_EQ(scene.counts.placeholders, 0u);
+    const scene::Geometry& mesh = *all<scene::Geometry>(scene).front();
+    const auto positions = values<glm::vec3>(scene, mesh.positions);
+    const auto tex_coords = values<glm::vec2>(scene, mesh.tex_coords);
+    const auto indices = values<std::uint32_t>(scene, mesh.indices);
+    ASSERT_EQ(positions.size(), 4u);
+    float area = 0.0f;
+    for (std::size_t i = 0; i < 6; i += 3) {
+        const glm::vec3 a = positions[indices[i]], b = positions[indices[i + 1]],
+                        c = positions[indices[i + 2]];
+        area += 0.5f * glm::cross(b - a, c - a).z;
+    }
+    EXPECT_NEAR(area, 1.0f, 1e-3f);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_NEAR(glm::distance(glm::vec2(positions[i]), tex_coords[i]), 0.0f, 1e-2f);
+    }
+    EXPECT_NEAR(values<glm::vec3>(scene, mesh.normals)[0].z, 1.0f, 1e-2f);
+}
+
+TEST(Draco, AnAttributeThatIsNotThereIsAPlaceholder) {
+    const TestFolder folder;
+    const ImportedScene scene = loaded(folder.write("scene.glb", draco_file(compressed_square(), 77).glb()));
+    EXPECT_TRUE(has_notice(scene, "its Draco data has no attribute POSITION"));
+    EXPECT_EQ(scene.counts.placeholders, 1u);
+}
+
+TEST(Draco, DamagedDataIsAPlaceholderOrAMesh) {
+    const Compressed square = compressed_square();
+    const TestFolder folder;
+    CounterRandom random(99);
+    std::uint64_t placeholders = 0;
+    for (int round = 0; round < 300; ++round) {
+        Compressed damaged = square;
+        if (round % 3 == 0) {
+            damaged.bytes.resize(random.below(damaged.bytes.size()) + 1);
+        } else {
+            char& byte = damaged.bytes[random.below(damaged.bytes.size())];
+            byte = static_cast<char>(byte ^ (1 << random.below(8)));
+        }
+        SCOPED_TRACE("round " + std::to_string(round));
+        const ImportedScene scene =
+            loaded(folder.write("scene.glb", draco_file(damaged, square.position).glb()));
+        expect_sound(scene);
+        placeholders += scene.counts.placeholders;
+    }
+    EXPECT_GT(placeholders, 50u);
+}
+
+}  // namespace
+}  // namespace tessera::import

@@ -1,0 +1,235 @@
+#include "tests/import/inspect.h"
+#include "tests/import/scene_file.h"
+
+namespace tessera::import {
+namespace {
+
+using scene::Material;
+using scene::Texture;
+using testing::ElementsAre;
+
+// One triangle with two sets of texture coordinates per material of the file.
+ImportedScene with_materials(SceneFile& file, const std::vector<std::string>& materials) {
+    const int at = file.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    const int uv0 =
+        file.accessor(file.view(std::vector<glm::vec2>{{0, 0}, {1, 0}, {0, 1}}), Component::Float, "VEC2", 3);
+    const int uv1 =
+        file.accessor(file.view(std::vector<glm::vec2>{{5, 5}, {6, 5}, {5, 6}}), Component::Float, "VEC2", 3);
+    std::string primitives;
+    for (const std::string& material : materials) {
+        const int index = file.add("materials", material);
+        primitives += std::string(primitives.empty() ? "" : ",") + R"({"attributes":{"POSITION":)" +
+                      std::to_string(at) + R"(,"TEXCOORD_0":)" + std::to_string(uv0) + R"(,"TEXCOORD_1":)" +
+                      std::to_string(uv1) + R"(},"material":)" + std::to_string(index) + "}";
+    }
+    file.add("meshes", R"({"name":"it","primitives":[)" + primitives + "]}");
+    file.add("nodes", R"({"mesh":0})");
+    file.add("scenes", R"({"nodes":[0]})");
+    const TestFolder folder;
+    ImportedScene scene = loaded(folder.write("scene.glb", file.glb()));
+    expect_sound(scene);
+    return scene;
+}
+
+TEST(GltfMaterial, FactorsAndExtensionsAreRead) {
+    SceneFile file;
+    const ImportedScene scene = with_materials(file, {R"({"name":"full","doubleSided":true,"alphaMode":"MASK",
+        "alphaCutoff":0.25,"emissiveFactor":[1,0.5,0],
+        "pbrMetallicRoughness":{"baseColorFactor":[0.1,0.2,0.3,0.4],"metallicFactor":0.6,"roughnessFactor":0.7},
+        "extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":8},"KHR_materials_unlit":{},
+        "KHR_materials_ior":{"ior":1.33},"KHR_materials_transmission":{"transmissionFactor":0.9}}})",
+                                                      R"({"name":"plain","alphaMode":"BLEND"})"});
+    const Material& full = named<Material>(scene, "full");
+    EXPECT_EQ(full.base_color, glm::vec4(0.1f, 0.2f, 0.3f, 0.4f));
+    EXPECT_EQ(full.metallic, 0.6f);
+    EXPECT_EQ(full.roughness, 0.7f);
+    EXPECT_EQ(full.emission, glm::vec3(8, 4, 0));
+    EXPECT_EQ(full.alpha_mode, scene::AlphaMode::Mask);
+    EXPECT_EQ(full.alpha_cutoff, 0.25f);
+    EXPECT_TRUE(full.double_sided);
+    EXPECT_TRUE(full.unlit);
+    EXPECT_EQ(full.index_of_refraction, 1.33f);
+    EXPECT_EQ(full.transmission, 0.9f);
+
+    const Material& plain = named<Material>(scene, "plain");
+    EXPECT_EQ(plain.base_color, glm::vec4(1));
+    EXPECT_EQ(plain.metallic, 1.0f);
+    EXPECT_EQ(plain.roughness, 1.0f);
+    EXPECT_EQ(plain.emission, glm::vec3(0));
+    EXPECT_EQ(plain.alpha_mode, scene::AlphaMode::Blend);
+    EXPECT_FALSE(plain.double_sided);
+    EXPECT_FALSE(plain.unlit);
+}
+
+TEST(GltfMaterial, NumbersOutOfRangeAreClampedWithANotice) {
+    SceneFile file;
+    const ImportedScene scene = with_materials(file, {R"({"name":"wild","emissiveFactor":[-1,1e300,0],
+        "pbrMetallicRoughness":{"baseColorFactor":[2,-1,0.5,1],"metallicFactor":-3,"roughnessFactor":7}})"});
+    const Material& wild = named<Material>(scene, "wild");
+    EXPECT_EQ(wild.base_color, glm::vec4(1.0f, 0.0f, 0.5f, 1.0f));
+    EXPECT_EQ(wild.metallic, 0.0f);
+    EXPECT_EQ(wild.roughness, 1.0f);
+    EXPECT_TRUE(has_notice(scene, "material 'wild': numbers out of range"));
+}
+
+TEST(GltfMaterial, AMissingMaterialIsTheDefaultOne) {
+    SceneFile file;
+    const int at = file.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    file.add("meshes",
+             R"({"primitives":[{"attributes":{"POSITION":)" + std::to_string(at) + R"(},"material":7}]})");
+    file.add("nodes", R"({"mesh":0})");
+    file.add("scenes", R"({"nodes":[0]})");
+    const TestFolder folder;
+    const ImportedScene scene = loaded(folder.write("scene.glb", file.glb()));
+    EXPECT_EQ(named<Material>(scene, "default").base_color, glm::vec4(1));
+    EXPECT_TRUE(has_notice(scene, "material 7 is missing"));
+}
+
+TEST(GltfTexture, IsDecodedToTexelsFromTheTop) {
+    SceneFile file;
+    file.image(png(3, 2, {10, 20, 30, 40}));
+    const ImportedScene scene =
+        with_materials(file, {R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})"});
+    ASSERT_EQ(all<Texture>(scene).size(), 1u);
+    const Texture& texture = *all<Texture>(scene)[0];
+    EXPECT_EQ(texture.width, 3u);
+    EXPECT_EQ(texture.height, 2u);
+    EXPECT_EQ(texture.format, scene::TexelFormat::Rgba8Srgb);
+    const auto texels = values<std::uint8_t>(scene, texture.texels);
+    ASSERT_EQ(texels.size(), 24u);
+    EXPECT_THAT(std::vector<int>(texels.begin() + 20, texels.end()), ElementsAre(10, 20, 30, 40));
+    EXPECT_EQ(scene.counts.textures, 1u);
+}
+
+TEST(GltfTexture, UsedBothWaysIsTwoObjectsOverOneBlob) {
+    SceneFile file;
+    file.image(png(1, 1, {1, 2, 3, 4}));
+    const ImportedScene scene = with_materials(file, {R"({"name":"both","pbrMetallicRoughness":{
+        "baseColorTexture":{"index":0},"metallicRoughnessTexture":{"index":0}}})"});
+    const Material& both = named<Material>(scene, "both");
+    const Texture& color = object<Texture>(scene, both.base_color_texture.texture);
+    const Texture& data = object<Texture>(scene, both.metallic_roughness_texture.texture);
+    EXPECT_EQ(color.format, scene::TexelFormat::Rgba8Srgb);
+    EXPECT_EQ(data.format, scene::TexelFormat::Rgba8);
+    EXPECT_EQ(color.texels, data.texels);
+}
+
+TEST(GltfTexture, SamplersAndSharingAreKept) {
+    SceneFile file;
+    file.image(png(1, 1, {1, 2, 3, 4}));
+    file.add("samplers", R"({"wrapS":33071,"wrapT":33648,"magFilter":9728})");
+    file.add("textures", R"({"source":0,"sampler":0})");
+    const ImportedScene scene =
+        with_materials(file, {R"({"name":"a","pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})",
+                              R"({"name":"b","pbrMetallicRoughness":{"baseColorTexture":{"index":1}}})",
+                              R"({"name":"c","pbrMetallicRoughness":{"baseColorTexture":{"index":1}}})"});
+    const auto texture_of = [&](const char* name) {
+        return named<Material>(scene, name).base_color_texture.texture;
+    };
+    EXPECT_NE(texture_of("a"), texture_of("b"));
+    EXPECT_EQ(texture_of("b"), texture_of("c"));
+    const Texture& plain = object<Texture>(scene, texture_of("a"));
+    EXPECT_EQ(plain.wrap_s, scene::Wrap::Repeat);
+    EXPECT_EQ(plain.filter, scene::TextureFilter::Linear);
+    const Texture& special = object<Texture>(scene, texture_of("b"));
+    EXPECT_EQ(special.wrap_s, scene::Wrap::Clamp);
+    EXPECT_EQ(special.wrap_t, scene::Wrap::Mirror);
+    EXPECT_EQ(special.filter, scene::TextureFilter::Nearest);
+}
+
+TEST(GltfTexture, TransformsAndCoordinateSetsAreKept) {
+    SceneFile file;
+    file.image(png(1, 1, {1, 2, 3, 4}));
+    const ImportedScene scene =
+        with_materials(file, {R"({"name":"moved","pbrMetallicRoughness":{"baseColorTexture":
+        {"index":0,"extensions":{"KHR_texture_transform":{"offset":[0.5,0.25],"scale":[2,3],"rotation":1.5,
+        "texCoord":1}}}}})"});
+    const scene::TextureSlot& slot = named<Material>(scene, "moved").base_color_texture;
+    EXPECT_EQ(slot.offset, glm::vec2(0.5f, 0.25f));
+    EXPECT_EQ(slot.scale, glm::vec2(2, 3));
+    EXPECT_EQ(slot.rotation, 1.5f);
+    EXPECT_EQ(values<glm::vec2>(scene, named<scene::Geometry>(scene, "it").tex_coords)[0], glm::vec2(5, 5));
+}
+
+TEST(GltfTexture, SeveralCoordinateSetsInOneMaterialAreNoticed) {
+    SceneFile file;
+    file.image(png(1, 1, {1, 2, 3, 4}));
+    const ImportedScene scene = with_materials(file, {R"({"name":"mixed","pbrMetallicRoughness":{
+        "baseColorTexture":{"index":0},"metallicRoughnessTexture":{"index":0,"texCoord":1}}})"});
+    EXPECT_TRUE(has_notice(scene, "material 'mixed': its textures use several sets"));
+}
+
+// A material whose colour and normals come from the one image of the file.
+ImportedScene with_image(SceneFile& file) {
+    ImportedScene scene = with_materials(file, {R"({"name":"shown","pbrMetallicRoughness":{
+        "baseColorTexture":{"index":0}},"normalTexture":{"index":0}})"});
+    const Material& shown = named<Material>(scene, "shown");
+    const Texture& checker = object<Texture>(scene, shown.base_color_texture.texture);
+    const auto texels = values<std::uint8_t>(scene, checker.texels);
+    EXPECT_THAT(std::vector<int>(texels.begin(), texels.begin() + 8),
+                ElementsAre(255, 0, 255, 255, 0, 0, 0, 255));
+    EXPECT_FALSE(shown.normal_texture.texture) << "a checker of normals would be nonsense";
+    EXPECT_EQ(scene.counts.placeholders, 1u);
+    return scene;
+}
+
+TEST(GltfTexture, AMissingFileIsAMagentaChecker) {
+    SceneFile file;
+    file.add("images", R"({"uri":"nowhere.png"})");
+    file.add("textures", R"({"source":0})");
+    const ImportedScene scene = with_image(file);
+    EXPECT_TRUE(has_notice(scene, "there is no file 'nowhere.png'"));
+    EXPECT_TRUE(has_notice(scene, "texture 'nowhere.png' cannot be used"));
+}
+
+TEST(GltfTexture, AMissingTextureIsAMagentaChecker) {
+    SceneFile file;
+    EXPECT_TRUE(has_notice(with_image(file), "image -1 is missing"));
+}
+
+TEST(GltfTexture, NoiseIsAMagentaChecker) {
+    SceneFile file;
+    file.image("this is no picture at all, whatever its type says");
+    EXPECT_TRUE(has_notice(with_image(file), "cannot be used"));
+}
+
+TEST(GltfTexture, ACutOffImageIsAMagentaChecker) {
+    SceneFile file;
+    const std::string whole = png(16, 16, {1, 2, 3, 4});
+    file.image(std::string_view(whole).substr(0, whole.size() / 2));
+    EXPECT_TRUE(has_notice(with_image(file), "damaged"));
+}
+
+TEST(GltfTexture, ImagesThatLieAboutTheirSizeAreRefusedBeforeDecoding) {
+    {
+        SceneFile file;
+        file.image(png(2, 2, {1, 2, 3, 4}, 16000, 8000));
+        EXPECT_TRUE(has_notice(with_image(file), "claims 16000 x 8000 pixels, but has only"));
+    }
+    {
+        SceneFile file;
+        file.image(png(2, 2, {1, 2, 3, 4}, 16384, 16384));
+        EXPECT_TRUE(has_notice(with_image(file), "claims 16384 x 16384 pixels, more than"));
+    }
+    {
+        SceneFile file;
+        file.image(png(2, 2, {1, 2, 3, 4}, 0x7fffffff, 0x7fffffff));
+        EXPECT_TRUE(has_notice(with_image(file), "cannot be used"));
+    }
+    {
+        SceneFile file;
+        file.image(png(2, 2, {1, 2, 3, 4}, 40, 40));
+        EXPECT_TRUE(has_notice(with_image(file), "damaged"));
+    }
+}
+
+TEST(GltfTexture, AViewBeyondItsBufferIsAMagentaChecker) {
+    SceneFile file;
+    file.add("bufferViews", R"({"buffer":0,"byteOffset":4000000000,"byteLength":4000000000})");
+    file.add("images", R"({"bufferView":0,"mimeType":"image/png"})");
+    file.add("textures", R"({"source":0})");
+    EXPECT_TRUE(has_notice(with_image(file), "reaches beyond its buffer"));
+}
+
+}  // namespace
+}  // namespace tessera::import

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "client/import/import.h"
+#include "mediator/scene/objects.h"
+
+// Looks into imported scenes.
+namespace tessera::import {
+
+// Fails the test with the error's text and gives an empty scene.
+inline ImportedScene loaded(const std::filesystem::path& file, const ImportOptions& options = {}) {
+    Expected<ImportedScene> scene = import_scene(file, options);
+    if (scene) return std::move(*scene);
+    ADD_FAILURE() << scene.error().what();
+    return {};
+}
+
+template <class T>
+std::vector<const T*> all(const ImportedScene& scene) {
+    std::vector<const T*> found;
+    for (const scene::Create& create : scene.objects) {
+        if (const T* object = std::get_if<T>(&create.object)) found.push_back(object);
+    }
+    return found;
+}
+
+template <class T>
+const T& named(const ImportedScene& scene, const std::string& name) {
+    for (const T* object : all<T>(scene)) {
+        if (object->name == name) return *object;
+    }
+    ADD_FAILURE() << "no object is named " << name;
+    static const T none{};
+    return none;
+}
+
+template <class T>
+const T& object(const ImportedScene& scene, ObjectId id) {
+    for (const scene::Create& create : scene.objects) {
+        if (create.id == id) return std::get<T>(create.object);
+    }
+    ADD_FAILURE() << "no object has the id " << id.value;
+    static const T none{};
+    return none;
+}
+
+template <class T>
+std::vector<T> values(const ImportedScene& scene, const scene::BlobRef& reference) {
+    for (const scene::BlobPtr& blob : scene.blobs) {
+        if (blob->hash() == reference.hash) {
+            const auto span = blob->as<T>();
+            return {span.begin(), span.end()};
+        }
+    }
+    EXPECT_TRUE(reference.empty()) << "a blob is missing";
+    return {};
+}
+
+inline testing::AssertionResult has_notice(const ImportedScene& scene, const std::string& part) {
+    std::string seen;
+    for (const std::string& notice : scene.notices) {
+        if (notice.find(part) != std::string::npos) return testing::AssertionSuccess();
+        seen += "\n  " + notice;
+    }
+    return testing::AssertionFailure() << "no notice says '" << part << "'; there are:" << seen;
+}
+
+// What every imported scene owes: consecutive ids, unique names, blobs that are there and no larger than
+// said, references to objects that exist, geometry in range.
+void expect_sound(const ImportedScene& scene, const ImportOptions& options = {});
+
+}  // namespace tessera::import
