@@ -1,0 +1,32 @@
+#include <algorithm>
+#include <exception>
+#include <iostream>
+#include <vector>
+
+#include "client/cli/cli.h"
+#include "client/tools/doctor.h"
+#include "client/tools/probe.h"
+#include "client/tools/render.h"
+#include "client/tools/status.h"
+
+int main(int argc, char** argv) {
+    using namespace tessera;
+    cli::CommandLine line(
+        "tessera", "Tessera, a distributed path tracer: one master owns scene and picture, nodes render.");
+    const std::vector<tools::Command> commands{tools::render_command(line), tools::status_command(line),
+                                               tools::probe_command(line), tools::doctor_command(line)};
+    line.examples(
+        {"tessera render room.glb -o room.exr -o room.png", "tessera doctor", "tessera render --help"});
+    if (const auto exit = line.parse(argc, argv, std::cout, std::cerr)) return *exit;
+
+    const std::string chosen = line.chosen();
+    const std::string first = chosen.substr(0, chosen.find(' '));
+    const auto command = std::find_if(commands.begin(), commands.end(), [&](const tools::Command& candidate) {
+        return candidate.name == first;
+    });
+    try {
+        return command->run(chosen);
+    } catch (const std::exception& error) {
+        return tools::complain(first, tools::ExitInternal, error.what());
+    }
+}

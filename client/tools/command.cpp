@@ -1,0 +1,30 @@
+#include "client/tools/command.h"
+
+#include <iostream>
+
+namespace tessera::tools {
+
+int complain(std::string_view command, int code, std::string_view message) {
+    std::cerr << "tessera " << command << ": " << message << "\n";
+    return code;
+}
+
+int exit_code(ErrorCode code) {
+    switch (code) {
+        case ErrorCode::InvalidInput:
+        case ErrorCode::NotFound:
+            return ExitBadInput;
+        case ErrorCode::Unavailable:
+        case ErrorCode::OutOfMemory:
+            return cli::ExitUnavailable;
+        case ErrorCode::Refused:
+            return cli::ExitRefused;
+        case ErrorCode::Io:
+            return ExitCannotWrite;
+        case ErrorCode::Internal:
+            break;
+    }
+    return ExitInternal;
+}
+
+}  // namespace tessera::tools

@@ -1,0 +1,69 @@
+#include "client/tools/progress_line.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace tessera::tools {
+
+namespace {
+
+template <class... Values>
+std::string formatted(const char* format, Values... values) {
+    char text[160];
+    std::snprintf(text, sizeof text, format, values...);
+    return text;
+}
+
+std::string time_left(double left) {
+    const auto whole = static_cast<unsigned long>(std::ceil(left));
+    if (whole < 100) return formatted("%lu s left", whole);
+    if (whole < 6000) return formatted("%lu:%02lu min left", whole / 60, whole % 60);
+    return formatted("%lu:%02lu h left", whole / 3600, whole / 60 % 60);
+}
+
+}  // namespace
+
+std::string describe(const client::Progress& progress, const client::JobRequest& request) {
+    switch (progress.phase) {
+        case client::Phase::WaitingForNodes:
+            return formatted("waiting for nodes: %u of %u", progress.nodes, request.wait_nodes);
+        case client::Phase::Syncing:
+            return formatted("the scene is on its way to the nodes: %u ready", progress.nodes);
+        case client::Phase::Delivering:
+            return "fetching the picture";
+        case client::Phase::Rendering:
+            break;
+    }
+    const bool by_time = request.time_limit > Duration::zero();
+    const double elapsed = std::max(seconds(progress.elapsed), 1e-3);
+    const double expected = double(std::max<std::uint64_t>(progress.samples_expected, 1));
+    const double done =
+        std::min(1.0, by_time ? elapsed / seconds(request.time_limit) : double(progress.samples) / expected);
+    const double spp =
+        double(progress.samples) / double(std::max<std::size_t>(request.view.window.pixel_count(), 1));
+    std::string text = formatted("%3.0f %%   ", 100.0 * done);
+    text += by_time ? formatted("%.1f spp", spp)
+                    : formatted("%.0f of %llu spp", spp, static_cast<unsigned long long>(request.spp));
+    text += formatted("   %.1f Mrays/s   %u node%s", double(progress.rays) / elapsed * 1e-6, progress.nodes,
+                      progress.nodes == 1 ? "" : "s");
+    if (done > 0.0) text += "   " + time_left(elapsed * (1.0 - done) / done);
+    return text;
+}
+
+ProgressLine::ProgressLine() : is_terminal_(::isatty(STDERR_FILENO) == 1) {}
+
+ProgressLine::~ProgressLine() {
+    if (is_shown_) std::fputs("\r\033[K", stderr);
+}
+
+void ProgressLine::show(const std::string& text) {
+    if (!is_terminal_) return;
+    is_shown_ = true;
+    std::fprintf(stderr, "\r\033[K%s", text.c_str());
+    std::fflush(stderr);
+}
+
+}  // namespace tessera::tools

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "client/tools/command.h"
+
+namespace tessera::tools {
+
+// tessera render SCENE -o PICTURE…
+Command render_command(cli::CommandLine& program);
+
+}  // namespace tessera::tools

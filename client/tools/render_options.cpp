@@ -1,0 +1,147 @@
+#include "client/tools/render_options.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "client/tools/pictures.h"
+#include "mediator/backend/catalog.h"
+
+namespace tessera::tools {
+
+namespace {
+
+constexpr std::uint64_t MaxSpp = std::uint64_t{1} << 31;
+constexpr std::uint64_t MaxNodes = 64, MaxThreads = 1024;
+
+tl::unexpected<Error> wrong(const std::string& message) {
+    return failure(ErrorCode::InvalidInput, message);
+}
+
+std::vector<std::string> backend_names() {
+    std::vector<std::string> names;
+    for (const backend::BackendEntry& entry : backend::catalog()) names.push_back(entry.name);
+    return names;
+}
+
+Expected<void> check_outputs(const std::vector<std::string>& outputs) {
+    if (outputs.empty())
+        return wrong("no output: say where the picture goes with -o FILE.exr or -o FILE.png");
+    for (const std::string& output : outputs) {
+        if (!picture_format(output)) {
+            return wrong("-o: '" + output + "' is no picture that can be written; end it with .exr or .png");
+        }
+        const std::filesystem::path folder = std::filesystem::path(output).parent_path();
+        if (!folder.empty() && !std::filesystem::is_directory(folder)) {
+            return wrong("-o: there is no folder '" + folder.string() + "'; make it first");
+        }
+        if (std::filesystem::is_directory(output)) return wrong("-o: '" + output + "' is a folder");
+    }
+    return {};
+}
+
+Expected<EmbeddedSettings> embedded_settings(const RenderOptions& options) {
+    EmbeddedSettings settings{.backend = options.backend.value_or(backend_names().front())};
+    const auto names = backend_names();
+    if (std::find(names.begin(), names.end(), settings.backend) == names.end()) {
+        const auto near = cli::nearest(settings.backend, names);
+        return wrong("--backend: there is no '" + settings.backend + "'" +
+                     (near ? "; did you mean '" + *near + "'?" : "; see tessera doctor"));
+    }
+    const std::uint64_t nodes = options.nodes.value_or(1), threads = options.threads.value_or(0);
+    if (nodes == 0 || nodes > MaxNodes) return wrong("--nodes: between 1 and 64");
+    if (threads > MaxThreads) return wrong("--threads: at most 1024; 0 = all cores");
+    settings.nodes = static_cast<std::uint32_t>(nodes);
+    settings.threads = static_cast<std::uint32_t>(threads);
+    if (options.reproducible) settings.isa = "avx2";
+    return settings;
+}
+
+Expected<void> set_amount(const RenderOptions& options, client::JobRequest& job) {
+    if (options.spp && options.time) return wrong("--spp and --time exclude each other");
+    if (options.time) {
+        const auto limit = parse_duration(*options.time);
+        if (!limit) return wrong(std::string("--time: ") + limit.error().what());
+        job.time_limit = *limit;
+        job.spp = MaxSpp;
+    } else {
+        job.spp = options.spp.value_or(job.spp);
+    }
+    if (job.spp == 0 || job.spp > MaxSpp) return wrong("--spp: between 1 and 2^31");
+    return {};
+}
+
+// What goes to an EXR is asked for only when there is one.
+frame::ChannelSet channels_for(const std::vector<std::string>& outputs) {
+    using enum frame::Channel;
+    const bool any_exr = std::any_of(outputs.begin(), outputs.end(), [](const std::string& output) {
+        return picture_format(output) == PictureFormat::Exr;
+    });
+    if (any_exr) return {Radiance, Direct, Indirect, Albedo, Normal, Depth, ObjectIndex};
+    return {Radiance};
+}
+
+}  // namespace
+
+void RenderOptions::add_to(cli::CommandLine& command) {
+    view.add_to(command);
+    command.option("-o,--output", "picture to write, .exr or .png; may be given several times", outputs);
+    command.option("--spp", "samples per pixel (64)", spp);
+    command.option("--time", "render for so long instead, as 800ms or 10s", time);
+    command.choice("--policy", "how frames are cut into work", policy, {"tiled", "cooperative", "mixed"});
+    command.flag("--reproducible", "the same bits on every x86-64-v3 machine: AVX2 only", reproducible);
+    command.option("--backend", "back-end of the embedded nodes", backend);
+    command.option("--nodes", "number of embedded nodes (1)", nodes);
+    command.option("--threads", "threads of all embedded nodes together (all cores)", threads);
+    command.option("--master", "use a running cluster: tcp://host:port", master);
+    command.option("--keys", "folder of keys for that cluster", keys);
+    command.option("--user", "whose keys in that folder", user);
+    command.option("--wait-nodes", "begin when N nodes are ready, give up after seconds: N[:seconds]",
+                   wait_nodes);
+    command.flag("--no-wait", "exit with 75 when the cluster is busy, instead of waiting", no_wait);
+    command.flag("--json", "print one JSON object with everything measured", json);
+    command.choice("--log-level", "how much to tell", log.level, cli::log_levels());
+    command.option("--log-file", "write the log there instead of standard error", log.file);
+    command.examples({"tessera render room.glb -o room.exr -o room.png --spp 256",
+                      "tessera render still.glb --env studio.exr -o still.png --time 10s",
+                      "tessera render room.glb -o room.exr --nodes 2 --policy cooperative --json",
+                      "tessera render room.glb -o room.exr --master tcp://render-1:7420 --keys ~/.tessera"});
+}
+
+Expected<RenderPlan> understand(const RenderOptions& options) {
+    auto view = understand(options.view);
+    if (!view) return tl::unexpected(view.error());
+    RenderPlan plan{.view = *view, .outputs = options.outputs};
+    if (auto fine = check_outputs(options.outputs); !fine) return tl::unexpected(fine.error());
+    auto embedded = embedded_settings(options);
+    if (!embedded) return tl::unexpected(embedded.error());
+    plan.embedded = *embedded;
+    plan.job.wait_nodes = plan.embedded.nodes;
+    if (options.master) {
+        if (options.backend || options.nodes || options.threads) {
+            return wrong(
+                "--backend, --nodes and --threads are for the embedded cluster; with --master the nodes "
+                "decide");
+        }
+        plan.address = {*options.master, options.keys.value_or(""), options.user};
+        plan.job.wait_nodes = 1;
+        if (options.wait_nodes) {
+            const auto wait = parse_node_wait(*options.wait_nodes);
+            if (!wait) return wrong(std::string("--wait-nodes: ") + wait.error().what());
+            plan.job.wait_nodes = wait->nodes;
+            plan.job.wait_limit = wait->limit;
+        }
+    } else if (options.keys || options.wait_nodes) {
+        return wrong("--keys and --wait-nodes are for a running cluster; name it with --master");
+    }
+    if (options.no_wait) plan.when_busy = client::WhenBusy::GiveUp;
+    if (auto fine = set_amount(options, plan.job); !fine) return tl::unexpected(fine.error());
+    plan.job.policy = options.policy == "tiled"         ? client::Policy::Tiled
+                      : options.policy == "cooperative" ? client::Policy::Cooperative
+                                                        : client::Policy::Mixed;
+    plan.job.reproducible = options.reproducible;
+    plan.view.view.channels = channels_for(options.outputs);
+    return plan;
+}
+
+}  // namespace tessera::tools

@@ -1,0 +1,109 @@
+#include "client/tools/render_report.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "client/tools/this_machine.h"
+
+namespace tessera::tools {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double per_second(std::uint64_t amount, double time) {
+    return time > 0.0 ? static_cast<double>(amount) / time : 0.0;
+}
+
+// A whole number where it is one: what was asked for and reached.
+Json spp_value(const client::JobRequest& request, const client::JobResult& result) {
+    if (result.outcome == client::Outcome::Complete) return request.spp;
+    return samples_per_pixel(request, result);
+}
+
+Json nodes_value(const client::JobResult& result) {
+    Json nodes = Json::array();
+    for (const client::NodeShare& node : result.nodes) {
+        nodes.push_back({{"id", node.id},
+                         {"pid", node.pid},
+                         {"host", node.host},
+                         {"kind", node.kind},
+                         {"units", node.units},
+                         {"samples", node.samples},
+                         {"seconds_busy", node.seconds_busy}});
+    }
+    return nodes;
+}
+
+}  // namespace
+
+double samples_per_pixel(const client::JobRequest& request, const client::JobResult& result) {
+    return static_cast<double>(result.samples) /
+           static_cast<double>(std::max<std::size_t>(request.view.window.pixel_count(), 1));
+}
+
+std::string as_json(const RenderReport& report) {
+    const client::JobResult& result = report.result;
+    const client::UnitCounts& units = result.units;
+    const Json object{
+        {"width", report.request.view.window.width},
+        {"height", report.request.view.window.height},
+        {"spp", spp_value(report.request, result)},
+        {"seconds_total", report.seconds_total},
+        {"seconds_render", result.seconds_render},
+        {"first_picture_seconds", result.first_picture_seconds},
+        {"rays", result.rays},
+        {"mrays_per_second", per_second(result.rays, result.seconds_render) * 1e-6},
+        {"samples_per_second", per_second(result.samples, result.seconds_render)},
+        {"triangles", result.triangles},
+        {"instances", result.instances},
+        {"lights", result.lights},
+        {"nonfinite_samples", result.nonfinite_samples},
+        {"peak_memory_bytes", peak_memory_bytes()},
+        {"film_hash", report.film_hash},
+        {"nodes", nodes_value(result)},
+        {"units",
+         {{"issued", units.issued},
+          {"reissued", units.reissued},
+          {"merged", units.merged},
+          {"duplicate", units.duplicate},
+          {"cancelled", units.cancelled},
+          {"refused", units.refused},
+          {"lost", units.lost}}},
+        {"wire_bytes",
+         {{"control", result.wire_bytes.control},
+          {"blobs", result.wire_bytes.blobs},
+          {"film", result.wire_bytes.film}}},
+    };
+    return object.dump(2);
+}
+
+std::string as_text(const RenderReport& report, const std::vector<std::string>& outputs) {
+    const client::JobResult& result = report.result;
+    const Rect& window = report.request.view.window;
+    std::string text;
+    const auto line = [&](const char* format, auto... values) {
+        char buffer[256];
+        std::snprintf(buffer, sizeof buffer, format, values...);
+        text += std::string(text.empty() ? "" : "\n") + buffer;
+    };
+    line("%dx%d pixels, %.4g samples per pixel", window.width, window.height,
+         samples_per_pixel(report.request, result));
+    line("%.2f s in all, %.2f s rendering: %.2f Mrays/s, %.3f Msamples/s", report.seconds_total,
+         result.seconds_render, per_second(result.rays, result.seconds_render) * 1e-6,
+         per_second(result.samples, result.seconds_render) * 1e-6);
+    std::set<std::string> kinds;
+    for (const client::NodeShare& node : result.nodes) kinds.insert(node.kind);
+    line("%zu node%s took part", result.nodes.size(), result.nodes.size() == 1 ? "" : "s");
+    for (const std::string& kind : kinds) line("  %s", kind.c_str());
+    if (result.nonfinite_samples != 0) {
+        line("%llu samples were not finite and left out",
+             static_cast<unsigned long long>(result.nonfinite_samples));
+    }
+    for (const std::string& output : outputs) text += "\nwrote " + output;
+    return text;
+}
+
+}  // namespace tessera::tools

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "client/job.h"
+
+namespace tessera::tools {
+
+struct RenderReport {
+    const client::JobRequest& request;
+    const client::JobResult& result;  // with film
+    double seconds_total = 0;
+    std::string film_hash;
+};
+
+double samples_per_pixel(const client::JobRequest& request, const client::JobResult& result);
+
+// The one object of --json, and the few lines for a person.
+std::string as_json(const RenderReport& report);
+std::string as_text(const RenderReport& report, const std::vector<std::string>& outputs);
+
+}  // namespace tessera::tools

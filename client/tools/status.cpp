@@ -1,0 +1,130 @@
+#include "client/tools/status.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "client/session.h"
+#include "client/tools/this_machine.h"
+
+namespace tessera::tools {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr const char* Name = "status";
+
+struct StatusOptions {
+    client::Address address{.endpoint = "tcp://127.0.0.1:7420"};
+    bool json = false;
+};
+
+Json version_value(const Version& version) {
+    return {{"epoch", version.epoch}, {"number", version.number}};
+}
+
+std::string as_json(const client::ClusterStatus& status) {
+    Json nodes = Json::array();
+    for (const client::NodeState& node : status.nodes) {
+        nodes.push_back({{"id", node.share.id},
+                         {"name", node.share.name},
+                         {"host", node.share.host},
+                         {"pid", node.share.pid},
+                         {"backend", node.share.backend},
+                         {"kind", node.share.kind},
+                         {"phase", node.phase},
+                         {"version", version_value(node.version)},
+                         {"units_in_hand", node.units_in_hand},
+                         {"samples_per_second", node.samples_per_second},
+                         {"round_trip_seconds", node.round_trip_seconds},
+                         {"stuck", node.stuck}});
+    }
+    const client::UnitCounts& units = status.units;
+    const Json object{
+        {"software", status.software},
+        {"version", version_value(status.version)},
+        {"uptime_seconds", status.uptime_seconds},
+        {"blobs", status.blobs},
+        {"blob_bytes", status.blob_bytes},
+        {"sessions", status.sessions},
+        {"queued", status.queued},
+        {"dropped_messages", status.dropped_messages},
+        {"units",
+         {{"issued", units.issued},
+          {"reissued", units.reissued},
+          {"merged", units.merged},
+          {"duplicate", units.duplicate},
+          {"cancelled", units.cancelled},
+          {"refused", units.refused},
+          {"lost", units.lost}}},
+        {"wire_bytes",
+         {{"control", status.wire_bytes.control},
+          {"blobs", status.wire_bytes.blobs},
+          {"film", status.wire_bytes.film}}},
+        {"nodes", nodes},
+    };
+    return object.dump(2);
+}
+
+void print_table(const client::ClusterStatus& status) {
+    std::printf("%s, up %.0f s, scene version %llu, %llu blobs (%.1f MiB)\n", status.software.c_str(),
+                status.uptime_seconds, static_cast<unsigned long long>(status.version.number),
+                static_cast<unsigned long long>(status.blobs), double(status.blob_bytes) / 1048576.0);
+    std::printf("%u sessions, %u waiting; units: %llu issued, %llu merged, %llu reissued, %llu lost\n",
+                status.sessions, status.queued, static_cast<unsigned long long>(status.units.issued),
+                static_cast<unsigned long long>(status.units.merged),
+                static_cast<unsigned long long>(status.units.reissued),
+                static_cast<unsigned long long>(status.units.lost));
+    if (status.nodes.empty()) {
+        std::printf("no nodes: start some with tessera-node --master ...\n");
+        return;
+    }
+    std::printf("%-16s %-16s %-9s %-10s %8s %6s %14s %9s\n", "node", "host", "back-end", "phase", "version",
+                "units", "Msamples/s", "ping ms");
+    for (const client::NodeState& node : status.nodes) {
+        std::printf("%-16.16s %-16.16s %-9.9s %-10s %8llu %6u %14.3f %9.2f%s\n", node.share.name.c_str(),
+                    node.share.host.c_str(), node.share.backend.c_str(), node.phase.c_str(),
+                    static_cast<unsigned long long>(node.version.number), node.units_in_hand,
+                    node.samples_per_second * 1e-6, node.round_trip_seconds * 1e3,
+                    node.stuck ? "  stuck" : "");
+    }
+}
+
+int run(const StatusOptions& options) {
+    try {
+        const SteadyClock clock;
+        const auto session = client::connect(options.address, std::make_shared<scene::BlobStore>(), clock,
+                                             {.name = "tessera status",
+                                              .host = host_name(),
+                                              .software = "tessera " + cli::version(),
+                                              .pid = static_cast<std::uint64_t>(::getpid())});
+        const client::ClusterStatus status = session->status();
+        if (options.json) {
+            std::cout << as_json(status) << std::endl;
+        } else {
+            print_table(status);
+        }
+        return 0;
+    } catch (const Error& error) {
+        return complain(Name, exit_code(error.code()), error.what());
+    }
+}
+
+}  // namespace
+
+Command status_command(cli::CommandLine& program) {
+    const auto options = std::make_shared<StatusOptions>();
+    cli::CommandLine& command = program.command(Name, "Show a cluster's nodes, versions, units and rates.");
+    command.option("--master", "where the cluster is: tcp://host:port", options->address.endpoint);
+    command.option("--keys", "folder of keys for that cluster", options->address.keys);
+    command.option("--user", "whose keys in that folder", options->address.user);
+    command.flag("--json", "print one JSON object", options->json);
+    command.examples({"tessera status --master tcp://render-1:7420 --keys ~/.tessera",
+                      "tessera status --master tcp://127.0.0.1:7420 --json"});
+    return {Name, [options](std::string_view) { return run(*options); }};
+}
+
+}  // namespace tessera::tools

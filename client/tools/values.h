@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <string_view>
+
+#include "mediator/base/clock.h"
+#include "mediator/base/error.h"
+#include "mediator/base/rect.h"
+
+// Values of options as people type them. A failure says what was wrong and shows one that works.
+namespace tessera::tools {
+
+struct Size {
+    std::uint32_t width = 0, height = 0;
+};
+struct PixelPlace {
+    std::uint32_t x = 0, y = 0;
+};
+struct NodeWait {
+    std::uint32_t nodes = 1;
+    Duration limit = std::chrono::seconds(60);
+};
+
+Expected<Size> parse_size(std::string_view text);                // "1280x720", edges of 1 to 65536
+Expected<Rect> parse_crop(std::string_view text, Size picture);  // "X,Y,W,H" inside the picture
+Expected<glm::vec3> parse_color(std::string_view text);     // "R,G,B", finite and not negative; or one number
+Expected<Duration> parse_duration(std::string_view text);   // "800ms", "2.5s", "3m", "1h", above zero
+Expected<NodeWait> parse_node_wait(std::string_view text);  // "N" or "N:seconds"
+Expected<PixelPlace> parse_pixel(std::string_view text, Size picture);  // "X,Y" inside the picture
+
+}  // namespace tessera::tools

@@ -1,0 +1,91 @@
+#include "client/tools/view_options.h"
+
+#include <cmath>
+
+namespace tessera::tools {
+
+namespace {
+
+view::PixelFilter pixel_filter(const std::string& name) {
+    if (name == "gaussian") return {view::PixelFilterKind::Gaussian, 1.5f};
+    if (name == "blackman-harris") return {view::PixelFilterKind::BlackmanHarris, 1.5f};
+    return {view::PixelFilterKind::Box, 0.5f};
+}
+
+tl::unexpected<Error> wrong(const std::string& option, const Error& error) {
+    return failure(ErrorCode::InvalidInput, option + ": " + error.what());
+}
+
+}  // namespace
+
+void ViewOptions::add_to(cli::CommandLine& command) {
+    command.positional("SCENE", "scene file: .gltf, .glb, .obj, .ply", scene);
+    command.option("--size", "picture size in pixels", size);
+    command.option("--camera", "camera of the scene: its name, or its number from 0", camera);
+    command.option("--background", "uniform light from all around: linear R,G,B", background);
+    command.option("--env", "environment map, latitude-longitude .exr or .hdr", environment);
+    command.option("--env-strength", "factor on the environment map", environment_strength);
+    command.option("--bounces", "how often light is scattered on; 0 = direct light only", bounces);
+    command.option("--crop", "render only the part X,Y,W,H of the picture", crop);
+    command.choice("--pixel-filter", "reconstruction filter", pixel_filter,
+                   {"box", "gaussian", "blackman-harris"});
+    command.option("--seed", "another seed, other noise", seed);
+}
+
+Expected<ViewPlan> understand(const ViewOptions& options) {
+    ViewPlan plan{.scene = options.scene, .camera = options.camera};
+    const auto size = parse_size(options.size);
+    if (!size) return wrong("--size", size.error());
+    plan.size = *size;
+    plan.view.width = size->width;
+    plan.view.height = size->height;
+    plan.view.window = {0, 0, static_cast<std::int32_t>(size->width),
+                        static_cast<std::int32_t>(size->height)};
+    if (options.crop) {
+        const auto crop = parse_crop(*options.crop, *size);
+        if (!crop) return wrong("--crop", crop.error());
+        plan.view.window = *crop;
+    }
+    if (options.background) {
+        const auto color = parse_color(*options.background);
+        if (!color) return wrong("--background", color.error());
+        plan.import.background = *color;
+    }
+    if (options.environment) plan.import.environment = *options.environment;
+    if (!std::isfinite(options.environment_strength) || options.environment_strength < 0.0) {
+        return failure(ErrorCode::InvalidInput, "--env-strength: must be a finite number from 0");
+    }
+    plan.import.environment_strength = static_cast<float>(options.environment_strength);
+    plan.view.seed = options.seed;
+    plan.view.max_bounces = options.bounces;
+    plan.view.pixel_filter = pixel_filter(options.pixel_filter);
+    return plan;
+}
+
+Expected<import::CameraInfo> choose_camera(const std::vector<import::CameraInfo>& cameras,
+                                           const std::optional<std::string>& choice) {
+    if (!choice) return cameras.front();
+    std::vector<std::string> names;
+    std::string list;
+    for (const import::CameraInfo& camera : cameras) {
+        if (camera.name == *choice) return camera;
+        list += (list.empty() ? "" : ", ") + std::to_string(names.size()) + " '" + camera.name + "'";
+        names.push_back(camera.name);
+    }
+    const bool is_number = !choice->empty() && choice->find_first_not_of("0123456789") == std::string::npos;
+    if (is_number && choice->size() < 9 && std::stoul(*choice) < cameras.size())
+        return cameras[std::stoul(*choice)];
+    const auto near = cli::nearest(*choice, names);
+    return failure(ErrorCode::InvalidInput, "--camera: the scene has no camera '" + *choice + "'" +
+                                                (near ? "; did you mean '" + *near + "'?" : "") +
+                                                " It has: " + list);
+}
+
+view::View view_from(const ViewPlan& plan, const import::CameraInfo& camera) {
+    view::View view = plan.view;
+    view.camera = view::perspective(camera.world_from_camera, camera.vertical_fov,
+                                    double(plan.size.width) / double(plan.size.height));
+    return view;
+}
+
+}  // namespace tessera::tools

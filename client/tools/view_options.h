@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/cli/cli.h"
+#include "client/import/import.h"
+#include "client/tools/values.h"
+#include "mediator/view/view.h"
+
+namespace tessera::tools {
+
+// What render and probe have in common: which scene is seen, and how. As typed.
+struct ViewOptions {
+    std::string scene;
+    std::string size = "1280x720";
+    std::optional<std::string> camera, background, environment, crop;
+    double environment_strength = 1.0;
+    std::uint32_t bounces = 8;
+    std::string pixel_filter = "box";
+    std::uint64_t seed = 0;
+
+    void add_to(cli::CommandLine& command);
+};
+
+// The same, understood.
+struct ViewPlan {
+    std::string scene;
+    import::ImportOptions import;
+    std::optional<std::string> camera;
+    Size size;
+    view::View view;  // without camera and channels
+};
+Expected<ViewPlan> understand(const ViewOptions& options);
+
+// By name, else by number from 0; without a choice the first. The failure names the nearest.
+Expected<import::CameraInfo> choose_camera(const std::vector<import::CameraInfo>& cameras,
+                                           const std::optional<std::string>& choice);
+
+// plan.view with the camera.
+view::View view_from(const ViewPlan& plan, const import::CameraInfo& camera);
+
+}  // namespace tessera::tools
