@@ -38,6 +38,7 @@ TEST_F(MachineWorkTest, CreditsAreAbsolute) {
     finish(1);
     beat = last_heartbeat();
     EXPECT_EQ(beat.in_hand.size(), 3u);  // its film is not out yet
+    EXPECT_EQ(beat.free_places, 1u);
     EXPECT_EQ(beat.progress, 8u * 64u);
     EXPECT_EQ(take<Render>().size(), 1u);
     machine->film_sent(UnitId{1});
