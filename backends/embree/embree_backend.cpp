@@ -1,0 +1,150 @@
+#include "backends/embree/embree_backend.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <shared_mutex>
+#include <thread>
+
+#include "backends/embree/path_tracer.h"
+#include "backends/embree/world.h"
+#include "mediator/frame/block_stack.h"
+#include "mediator/frame/merge.h"
+
+namespace tessera::embree {
+
+namespace {
+
+using namespace backend;
+using frame::Channel;
+
+constexpr frame::ChannelSet Supported{Channel::Radiance,   Channel::Direct, Channel::Indirect,
+                                      Channel::Albedo,     Channel::Normal, Channel::Depth,
+                                      Channel::ObjectIndex};
+
+// The values of a sample in the order of the channels (frame::put_sample), only those that are asked for.
+class SampleValues {
+  public:
+    explicit SampleValues(frame::ChannelSet channels) : channels_(channels) {}
+
+    std::span<const float> of(const PathSample& sample) {
+        count_ = 0;
+        add(Channel::Radiance, sample.direct + sample.indirect);
+        add(Channel::Direct, sample.direct);
+        add(Channel::Indirect, sample.indirect);
+        add(Channel::Albedo, sample.albedo);
+        add(Channel::Normal, sample.normal);
+        if (channels_.contains(Channel::Depth)) values_[count_++] = sample.depth;
+        if (channels_.contains(Channel::ObjectIndex)) {
+            values_[count_++] = sample.depth;
+            std::memcpy(&values_[count_++], &sample.object, sizeof(float));
+        }
+        return {values_.data(), count_};
+    }
+
+  private:
+    void add(Channel channel, const glm::vec3& value) {
+        if (!channels_.contains(channel)) return;
+        for (int i = 0; i < 3; ++i) values_[count_++] = value[i];
+    }
+    frame::ChannelSet channels_;
+    std::array<float, 18> values_{};
+    std::size_t count_ = 0;
+};
+
+class EmbreeBackend final : public Backend {
+  public:
+    explicit EmbreeBackend(const BackendSettings& settings)
+        : settings_(settings), device_(make_device(settings)), world_(device_.get(), settings.blobs) {}
+
+    Capabilities capabilities() const override {
+        const std::uint32_t cores = std::max(1u, std::thread::hardware_concurrency());
+        return {.channels = Supported,
+                .preferred_tile = 32,
+                .concurrent_units = settings_.threads != 0 ? settings_.threads : cores,
+                .deterministic = true,
+                .kind = kind_of(settings_)};
+    }
+
+    Version version() const override {
+        const std::shared_lock lock(mutex_);
+        return world_.version();
+    }
+
+    std::unique_ptr<EditScope> begin_edit() override { return std::make_unique<Edit>(*this); }
+
+    RenderResult render(const view::View& view, const view::WorkUnit& unit, std::stop_token stop) override {
+        const std::shared_lock lock(mutex_);
+        if (unit.version != world_.version()) return {};
+        const PathTracer tracer(world_.tables(), world_.scene(), view);
+        SampleValues values(view.channels);
+        frame::BlockStack finished;
+        RenderResult result{.status = RenderStatus::Done};
+        for (std::uint64_t sample = unit.block.first; sample < unit.block.end(); ++sample) {
+            frame::FilmTile tile = finished.recycled(unit.tile, {sample, 0}, view.channels);
+            if (!fill(tile, tracer, values, result.rays, stop)) {
+                result.status = RenderStatus::Stopped;  // the sample in hand is not whole: dropped
+                break;
+            }
+            finished.push(std::move(tile));
+        }
+        result.blocks = finished.take();
+        return result;
+    }
+
+    std::vector<std::string> probe(const view::View& view, std::uint32_t x, std::uint32_t y,
+                                   std::uint64_t sample) override {
+        const std::shared_lock lock(mutex_);
+        const PathTracer tracer(world_.tables(), world_.scene(), view);
+        std::vector<std::string> story;
+        std::uint64_t rays = 0;
+        const PathSample found = tracer.trace(x, y, sample, rays, &story);
+        const glm::vec3 radiance = found.direct + found.indirect;
+        story.push_back("radiance (" + std::to_string(radiance.x) + ", " + std::to_string(radiance.y) + ", " +
+                        std::to_string(radiance.z) + ") from " + std::to_string(rays) + " rays");
+        return story;
+    }
+
+  private:
+    class Edit final : public EditScope {
+      public:
+        explicit Edit(EmbreeBackend& backend) : backend_(backend), lock_(backend.mutex_) {}
+        ~Edit() override { backend_.world_.rollback(); }  // what was committed stays
+        Expected<void> apply(const scene::ChangeList& changes) override {
+            return backend_.world_.apply(changes);
+        }
+        Expected<EditReport> commit() override { return backend_.world_.commit(); }
+
+      private:
+        EmbreeBackend& backend_;
+        std::unique_lock<std::shared_mutex> lock_;
+    };
+
+    static bool fill(frame::FilmTile& tile, const PathTracer& tracer, SampleValues& values,
+                     std::uint64_t& rays, const std::stop_token& stop) {
+        std::size_t pixel = 0;
+        for (std::int32_t y = tile.rect.y; y < tile.rect.bottom(); ++y) {
+            if (stop.stop_requested()) return false;
+            for (std::int32_t x = tile.rect.x; x < tile.rect.right(); ++x, ++pixel) {
+                const PathSample sample = tracer.trace(static_cast<std::uint32_t>(x),
+                                                       static_cast<std::uint32_t>(y), tile.block.first, rays);
+                frame::put_sample(tile, pixel, values.of(sample));
+            }
+        }
+        return true;
+    }
+
+    const BackendSettings settings_;
+    DeviceHandle device_;
+    mutable std::shared_mutex mutex_;  // renders share it, an edit owns it; protects the world
+    World world_;
+};
+
+}  // namespace
+
+backend::BackendEntry entry() {
+    return {"embree", "path tracing on the CPU with Intel Embree",
+            [](const BackendSettings& settings) { return std::make_unique<EmbreeBackend>(settings); }};
+}
+
+}  // namespace tessera::embree

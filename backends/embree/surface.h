@@ -1,0 +1,43 @@
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include "backends/embree/scene_tables.h"
+#include "mediator/shading/bsdf.h"
+
+namespace tessera::embree {
+
+// What a path needs to know of the point it has reached.
+struct Surface {
+    glm::vec3 position{0.0f};
+    glm::vec3 error{0.0f};             // bound of the position's rounding error, per axis
+    glm::vec3 geometric_normal{0.0f};  // of unit length, to the side the path came from
+    glm::mat3 frame{1.0f};             // shading frame, third axis = shading normal, same side
+    glm::vec3 albedo{0.0f}, emission{0.0f};
+    shading::Bsdf bsdf{};
+    const InstanceData* instance = nullptr;
+    std::uint32_t triangle = 0;
+    bool scatters = true;
+
+    glm::vec3 to_local(const glm::vec3& world) const { return world * frame; }
+    glm::vec3 to_world(const glm::vec3& local) const { return frame * local; }
+};
+
+// `direction`: of the ray that hit, unit length.
+Surface make_surface(const SceneTables& tables, const RTCHit& hit, const glm::vec3& direction);
+
+// A point of an instance's triangle and the bound of its rounding error: interpolation in the object's frame
+// takes 5 roundings per axis, the way to the world 6 more, and Embree's way back to the object's frame as
+// many again (gamma_n = n u / (1 - n u), u = 2^-24; Higham 2002).
+struct PointWithError {
+    glm::vec3 position, error;
+};
+PointWithError point_on(const InstanceData& instance, std::uint32_t triangle, const glm::vec2& barycentric);
+
+// Moves the point along the normal out of its error box, to the side `direction` leads to.
+glm::vec3 leave_surface(const PointWithError& point, const glm::vec3& normal, const glm::vec3& direction);
+
+}  // namespace tessera::embree

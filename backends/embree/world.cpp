@@ -1,0 +1,93 @@
+#include "backends/embree/world.h"
+
+#include <array>
+#include <set>
+
+namespace tessera::embree {
+
+World::World(RTCDevice device, std::shared_ptr<scene::BlobStore> blobs)
+    : device_(device), blobs_(std::move(blobs)), meshes_(device, blobs_), top_(rtcNewScene(device)) {
+    rtcCommitScene(top_.get());
+}
+
+Expected<backend::EditReport> World::commit() {
+    backend::SceneDelta delta = shadow_.take_delta();
+    const MeshStore::Result meshes = meshes_.update(shadow_.scene(), delta);
+    tables_ = make_tables(shadow_.scene(), shadow_.lowered(), meshes_, *blobs_);
+    mark_alpha_tested();
+    backend::EditReport edit = report(delta, meshes);
+    if (delta.everything || delta.instances_changed || delta.render_origin_changed || meshes.rebuilt > 0) {
+        rebuild_top();
+    } else {
+        edit.retransformed = retransform(delta);
+        if (edit.retransformed > 0 || meshes.refitted > 0) rtcCommitScene(top_.get());
+    }
+    check(device_, "building the top level");
+    version_ = shadow_.scene().version();
+    return edit;
+}
+
+void World::set_transform(std::uint32_t instance) {
+    const InstanceData& data = tables_.instances[instance];
+    const std::array<float, 12> columns{data.linear[0].x,   data.linear[0].y,   data.linear[0].z,
+                                        data.linear[1].x,   data.linear[1].y,   data.linear[1].z,
+                                        data.linear[2].x,   data.linear[2].y,   data.linear[2].z,
+                                        data.translation.x, data.translation.y, data.translation.z};
+    const RTCGeometry geometry = rtcGetGeometry(top_.get(), instance);
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
+    rtcCommitGeometry(geometry);
+}
+
+void World::rebuild_top() {
+    top_.reset(rtcNewScene(device_));
+    rtcSetSceneFlags(top_.get(), RTC_SCENE_FLAG_ROBUST);
+    for (std::uint32_t i = 0; i < tables_.instances.size(); ++i) {
+        const GeometryHandle geometry(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE));
+        rtcSetGeometryInstancedScene(geometry.get(), tables_.instances[i].mesh->scene.get());
+        rtcSetGeometryTimeStepCount(geometry.get(), 1);
+        rtcAttachGeometryByID(top_.get(), geometry.get(), i);
+        set_transform(i);
+    }
+    rtcCommitScene(top_.get());
+}
+
+std::uint32_t World::retransform(const backend::SceneDelta& delta) {
+    for (const std::uint32_t instance : delta.moved_instances) set_transform(instance);
+    if (!delta.geometries.empty()) {
+        // Instances of a refitted mesh have other bounds.
+        std::set<ObjectId> changed;
+        for (const auto& change : delta.geometries) changed.insert(change.id);
+        for (std::uint32_t i = 0; i < tables_.instances.size(); ++i) {
+            if (changed.contains(ObjectId{tables_.instances[i].object})) {
+                rtcCommitGeometry(rtcGetGeometry(top_.get(), i));
+            }
+        }
+    }
+    return static_cast<std::uint32_t>(delta.moved_instances.size());
+}
+
+void World::mark_alpha_tested() {
+    for (const InstanceData& instance : tables_.instances) {
+        const MaterialData& material = tables_.materials[instance.material];
+        const bool tested = material.alpha_mode != scene::AlphaMode::Opaque;
+        meshes_.set_alpha_tested(ObjectId{instance.object}, tested ? AlphaTest::On : AlphaTest::Off);
+    }
+}
+
+backend::EditReport World::report(const backend::SceneDelta& delta, const MeshStore::Result& meshes) const {
+    backend::EditReport edit{.entries = delta.entries,
+                             .relevant = delta.relevant,
+                             .rebuilt = meshes.rebuilt,
+                             .refitted = meshes.refitted,
+                             .instances = tables_.instances.size(),
+                             .lights = tables_.lights.lights.size(),
+                             .ignored_kinds = delta.ignored_kinds,
+                             .problems = meshes.problems};
+    for (const auto& [id, mesh] : meshes_.all()) {
+        edit.triangles += mesh->triangles.size();
+        edit.degenerate_triangles += mesh->degenerate_triangles;
+    }
+    return edit;
+}
+
+}  // namespace tessera::embree

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+
+#include "backends/embree/mesh.h"
+#include "backends/embree/scene_tables.h"
+#include "mediator/backend/backend.h"
+
+namespace tessera::embree {
+
+// The scene adapter: mirrors the scene in Embree at the cheapest level that can hold each change. Shading
+// data are tables; a moved instance is retransformed, moved vertices of an animated mesh are refitted,
+// everything else about a mesh is rebuilt. The top level is Embree's own affair: it rebuilds it at each
+// commit.
+class World {
+  public:
+    World(RTCDevice device, std::shared_ptr<scene::BlobStore> blobs);
+
+    Expected<void> apply(const scene::ChangeList& changes) { return shadow_.apply(changes); }
+    void rollback() { shadow_.rollback(); }
+    Expected<backend::EditReport> commit();
+
+    Version version() const { return version_; }
+    const SceneTables& tables() const { return tables_; }
+    RTCScene scene() const { return top_.get(); }
+
+  private:
+    void rebuild_top();
+    std::uint32_t retransform(const backend::SceneDelta& delta);
+    void set_transform(std::uint32_t instance);
+    void mark_alpha_tested();
+    backend::EditReport report(const backend::SceneDelta& delta, const MeshStore::Result& meshes) const;
+
+    RTCDevice device_;
+    std::shared_ptr<scene::BlobStore> blobs_;
+    backend::ShadowScene shadow_;
+    Version version_;
+    MeshStore meshes_;
+    SceneTables tables_;
+    SceneHandle top_;
+};
+
+}  // namespace tessera::embree

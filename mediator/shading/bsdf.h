@@ -1,0 +1,113 @@
+#pragma once
+
+#include "mediator/shading/sampling.h"
+
+// The surface model: glTF metallic-roughness as a diffuse lobe under a microfacet lobe. All directions are in
+// the shading frame (z = normal) and point away from the surface.
+//   specular  GGX, height-correlated Smith, Schlick's Fresnel with F0 = mix(((n-1)/(n+1))^2, base colour,
+//   metallic) diffuse   (1 - metallic) base colour / pi (1 - F(cos i)) (1 - F(cos o)), F of the dielectric
+//   part: light that the
+//             coat reflects on its way in or out does not reach the base (as in Ashikhmin and Shirley 2000,
+//             without their rescaling). Reciprocal; the sum never reflects more than comes in.
+// Multiple scattering between facets is not modelled: rough metals are a little dark.
+namespace tessera::shading {
+
+struct Bsdf {
+    glm::vec3 diffuse;     // albedo of the base
+    glm::vec3 f0;          // specular reflectance at normal incidence
+    float coat_f0;         // of the dielectric part: what the diffuse lobe loses
+    float alpha;           // roughness^2
+    float specular_share;  // probability of sampling the specular lobe
+};
+
+// A mirror within float accuracy: below, D overflows. Its energy is unchanged, only the lobe's width is.
+inline constexpr float MinAlpha = 1e-4f;
+
+inline float schlick_weight(float cosine) {
+    const float m = std::fmin(std::fmax(1.0f - cosine, 0.0f), 1.0f);
+    const float m2 = m * m;
+    return m2 * m2 * m;
+}
+
+inline Bsdf make_bsdf(const glm::vec3& base_color, float metallic, float roughness, float index_of_refraction,
+                      float cos_out) {
+    Bsdf bsdf;
+    const float r =
+        index_of_refraction == 0.0f ? 1.0f : (index_of_refraction - 1.0f) / (index_of_refraction + 1.0f);
+    bsdf.coat_f0 = r * r;
+    bsdf.diffuse = base_color * (1.0f - metallic);
+    bsdf.f0 = glm::vec3(bsdf.coat_f0) * (1.0f - metallic) + base_color * metallic;
+    bsdf.alpha = std::fmax(roughness * roughness, MinAlpha);
+    const float fresnel = schlick_weight(cos_out);
+    const float specular = luminance(bsdf.f0 + (1.0f - bsdf.f0) * fresnel);
+    const float diffuse = luminance(bsdf.diffuse) * (1.0f - bsdf.coat_f0) * (1.0f - fresnel);
+    const float sum = specular + diffuse;
+    // Never 0 or 1 while both lobes are there, so that no light is out of reach.
+    bsdf.specular_share = sum > 0.0f ? std::fmin(std::fmax(specular / sum, 0.1f), 0.9f) : 0.5f;
+    if (!(largest(bsdf.diffuse) > 0.0f)) bsdf.specular_share = 1.0f;
+    if (!(largest(bsdf.f0) > 0.0f)) bsdf.specular_share = std::fmin(bsdf.specular_share, 0.5f);
+    return bsdf;
+}
+
+// D of the half vector. In a form that does not cancel: 1 - cos^2 comes from x and y.
+inline float ggx_distribution(const glm::vec3& h, float alpha) {
+    const float a2 = alpha * alpha;
+    const float slope = h.x * h.x + h.y * h.y + a2 * h.z * h.z;
+    return a2 / (Pi * slope * slope);
+}
+
+inline float smith_lambda(const glm::vec3& w, float alpha) {
+    const float cos2 = w.z * w.z;
+    if (!(cos2 > 0.0f)) return 1e20f;
+    const float tan2 = (w.x * w.x + w.y * w.y) / cos2;
+    return 0.5f * (std::sqrt(1.0f + alpha * alpha * tan2) - 1.0f);
+}
+
+// Half vectors in proportion to what is visible from `out` (Heitz 2018).
+inline glm::vec3 sample_visible_normal(const glm::vec3& out, float alpha, const glm::vec2& u) {
+    const glm::vec3 stretched = normalize(glm::vec3(alpha * out.x, alpha * out.y, out.z));
+    const float length2 = stretched.x * stretched.x + stretched.y * stretched.y;
+    const glm::vec3 t1 = length2 > 0.0f ? glm::vec3(-stretched.y, stretched.x, 0.0f) / std::sqrt(length2)
+                                        : glm::vec3(1.0f, 0.0f, 0.0f);
+    const glm::vec3 t2 = cross(stretched, t1);
+    glm::vec2 p = sample_disk(u);
+    const float s = 0.5f * (1.0f + stretched.z);
+    p.y = (1.0f - s) * std::sqrt(std::fmax(0.0f, 1.0f - p.x * p.x)) + s * p.y;
+    const float z = std::sqrt(std::fmax(0.0f, 1.0f - dot(p, p)));
+    const glm::vec3 h = p.x * t1 + p.y * t2 + z * stretched;
+    return normalize(glm::vec3(alpha * h.x, alpha * h.y, std::fmax(1e-12f, h.z)));
+}
+
+struct BsdfValue {
+    glm::vec3 value;  // f cos(in)
+    float pdf;        // per solid angle, of sample_bsdf
+};
+
+inline BsdfValue evaluate_bsdf(const Bsdf& bsdf, const glm::vec3& out, const glm::vec3& in) {
+    BsdfValue result{glm::vec3(0.0f), 0.0f};
+    if (!(in.z > 0.0f) || !(out.z > 0.0f)) return result;
+    const glm::vec3 sum = in + out;
+    const float length2 = dot(sum, sum);
+    if (length2 > 0.0f) {
+        const glm::vec3 h = sum / std::sqrt(length2);
+        const float distribution = ggx_distribution(h, bsdf.alpha);
+        const float lambda_out = smith_lambda(out, bsdf.alpha), lambda_in = smith_lambda(in, bsdf.alpha);
+        const glm::vec3 fresnel = bsdf.f0 + (1.0f - bsdf.f0) * schlick_weight(dot(in, h));
+        result.value = fresnel * (distribution / (4.0f * out.z * (1.0f + lambda_out + lambda_in)));
+        result.pdf = bsdf.specular_share * distribution / (4.0f * out.z * (1.0f + lambda_out));
+    }
+    const float keeps_in = 1.0f - (bsdf.coat_f0 + (1.0f - bsdf.coat_f0) * schlick_weight(in.z));
+    const float keeps_out = 1.0f - (bsdf.coat_f0 + (1.0f - bsdf.coat_f0) * schlick_weight(out.z));
+    result.value += bsdf.diffuse * (keeps_in * keeps_out * in.z / Pi);
+    result.pdf += (1.0f - bsdf.specular_share) * in.z / Pi;
+    return result;
+}
+
+// A direction; may point below the surface, where the value is 0.
+inline glm::vec3 sample_bsdf(const Bsdf& bsdf, const glm::vec3& out, float choice, const glm::vec2& u) {
+    if (choice >= bsdf.specular_share) return sample_cosine_hemisphere(u);
+    const glm::vec3 h = sample_visible_normal(out, bsdf.alpha, u);
+    return 2.0f * dot(out, h) * h - out;
+}
+
+}  // namespace tessera::shading

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+
+// Random numbers of a path. Owen-scrambled Sobol points by absolute sample index (Burley 2020: hash-based
+// nested uniform scrambling; constants of the permutation: Vegdahl's improvement of Laine and Karras 2011).
+// Dimensions come in pairs: each pair is a (0,2)-sequence of its own, its index and its two coordinates
+// scrambled by hashes of (pixel, pair), so that pairs and pixels are independent of each other and every
+// aligned power-of-two block of samples is stratified.
+namespace tessera::shading {
+
+inline std::uint32_t hash_u32(std::uint32_t x) {
+    x ^= x >> 16;
+    x *= 0x7feb352du;
+    x ^= x >> 15;
+    x *= 0x846ca68bu;
+    return x ^ (x >> 16);
+}
+
+inline std::uint32_t hash_combine(std::uint32_t seed, std::uint32_t value) {
+    return hash_u32(seed ^ (value + 0x9e3779b9u + (seed << 6) + (seed >> 2)));
+}
+
+inline std::uint32_t reverse_bits(std::uint32_t x) {
+    x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+    x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+    x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+    x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
+    return (x >> 16) | (x << 16);
+}
+
+inline std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
+    x = reverse_bits(x);
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= (seed >> 16) | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return reverse_bits(x);
+}
+
+// The second Sobol dimension (x + 1); the first is the bit reversal.
+inline std::uint32_t sobol_second(std::uint32_t index) {
+    std::uint32_t result = 0;
+    for (std::uint32_t direction = 0x80000000u; index != 0u; index >>= 1, direction ^= direction >> 1) {
+        if ((index & 1u) != 0u) result ^= direction;
+    }
+    return result;
+}
+
+inline float unit_float(std::uint32_t bits) {
+    return float(bits >> 8) * 5.9604644775390625e-8f;
+}  // [0, 1 - 2^-24]
+
+// Where the numbers of one sample of one pixel come from.
+struct Sampler {
+    std::uint32_t index;  // of the sample, low 32 bits
+    std::uint32_t seed;   // of (pixel, view's seed, high bits of the index)
+};
+
+inline Sampler make_sampler(std::uint32_t x, std::uint32_t y, std::uint64_t seed, std::uint64_t sample) {
+    std::uint32_t s = hash_combine(hash_u32(x), y);
+    s = hash_combine(s, std::uint32_t(seed));
+    s = hash_combine(s, std::uint32_t(seed >> 32));
+    return Sampler{std::uint32_t(sample), hash_combine(s, std::uint32_t(sample >> 32))};
+}
+
+inline glm::vec2 sample_pair(const Sampler& sampler, std::uint32_t pair) {
+    const std::uint32_t seed = hash_combine(sampler.seed, pair);
+    const std::uint32_t index = owen_scramble(sampler.index, seed);
+    const std::uint32_t x = owen_scramble(reverse_bits(index), hash_combine(seed, 1u));
+    const std::uint32_t y = owen_scramble(sobol_second(index), hash_combine(seed, 2u));
+    return glm::vec2(unit_float(x), unit_float(y));
+}
+
+}  // namespace tessera::shading
