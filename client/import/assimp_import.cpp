@@ -116,7 +116,7 @@ class AssimpScene {
 }  // namespace
 
 bool is_assimp_extension(std::string_view extension) {
-    constexpr std::array<std::string_view, 7> Known{".obj", ".ply", ".stl", ".off", ".dae", ".fbx", ".3ds"};
+    constexpr std::array<std::string_view, 2> Known{".obj", ".stl"};
     return std::find(Known.begin(), Known.end(), extension) != Known.end();
 }
 

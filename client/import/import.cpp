@@ -8,7 +8,7 @@
 #include "client/import/assimp_import.h"
 #include "client/import/finish.h"
 #include "client/import/gltf_import.h"
-#include "client/import/local_files.h"
+#include "client/import/ply_import.h"
 #include "mediator/scene/fields.h"
 
 namespace tessera::import {
@@ -40,12 +40,13 @@ void read_into(const std::filesystem::path& file, SceneBuilder& builder) {
     const std::string extension = lower_case_extension(file);
     if (extension == ".gltf" || extension == ".glb") {
         import_gltf(file, builder);
+    } else if (extension == ".ply") {
+        import_ply(file, builder);
     } else if (is_assimp_extension(extension)) {
         import_with_assimp(file, builder);
     } else {
         throw Error(ErrorCode::InvalidInput,
-                    "its name does not end in .gltf, .glb, .obj, .ply, .stl, .off, .dae, "
-                    ".fbx or .3ds: convert it to glTF 2.0");
+                    "its name ends in none of .gltf, .glb, .obj, .ply and .stl: convert it to glTF 2.0");
     }
 }
 

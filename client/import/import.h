@@ -53,7 +53,7 @@ struct ImportedScene {
     ImportCounts counts;
 };
 
-// glTF 2.0 (.gltf, .glb) or, through assimp, .obj .ply .stl .off .dae .fbx .3ds. A scene without any light
+// glTF 2.0 (.gltf, .glb), PLY or, through assimp, .obj and .stl. A scene without any light
 // gets a soft sky, one without a camera gets one. A bad mesh or texture becomes a placeholder and a notice.
 // Photometric units of KHR_lights_punctual are taken one to one as radiometric ones (1 cd = 1 W/sr, 1 lx = 1
 // W/m2), as most renderers do. NotFound: no such file. InvalidInput: damaged, another format, an unknown

@@ -144,17 +144,12 @@ TEST(GltfHostile, IndicesOutOfRangeAreAPlaceholder) {
 }
 
 TEST(GltfHostile, AMissingIndexAccessorIsAPlaceholder) {
-    for (const std::string index : {"77", "-3", "4294967295", "99999999999999999999"}) {
+    for (const std::string index : {"77", "-3", "4294967295"}) {
         SceneFile file;
         const int at = file.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
         const std::string primitive =
             R"({"indices":)" + index + R"(,"attributes":{"POSITION":)" + std::to_string(at) + "}}";
-        if (index.size() > 12) {  // beyond any integer: tinygltf refuses the file
-            file.add("meshes", R"({"primitives":[)" + primitive + "]}");
-            EXPECT_THAT(error_of("scene.glb", file.glb()).what(), HasSubstr("no complete glTF"));
-        } else {
-            expect_placeholder(beside_good(file, primitive), "is missing");
-        }
+        expect_placeholder(beside_good(file, primitive), "is missing");
     }
 }
 

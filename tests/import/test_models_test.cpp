@@ -33,7 +33,7 @@ TEST(TestModels, TheSameBoxInEveryEncoding) {
         EXPECT_EQ(scene.counts.triangles, 12u);
         EXPECT_EQ(scene.counts.textures, 1u);
         EXPECT_EQ(scene.counts.placeholders, 0u);
-        EXPECT_EQ(all<scene::Texture>(scene)[0]->width, 256u);
+        EXPECT_EQ(all<scene::Texture>(scene)[0]->width, 211u);
         EXPECT_TRUE(has_notice(scene, "no camera"));
     }
 }
@@ -44,7 +44,8 @@ TEST(TestModels, TheEngineIsTheSameWithDracoAndWithout) {
     EXPECT_EQ(plain.counts.geometries, draco.counts.geometries);
     EXPECT_EQ(plain.counts.instances, draco.counts.instances);
     EXPECT_GT(plain.counts.triangles, 60'000u);
-    EXPECT_EQ(plain.counts.triangles, draco.counts.triangles);
+    // The compressor has dropped the triangles without area.
+    EXPECT_EQ(plain.counts.triangles - plain.counts.degenerate_triangles, draco.counts.triangles);
     EXPECT_EQ(draco.counts.placeholders, 0u);
 }
 
@@ -104,7 +105,9 @@ TEST(TestModels, FilesThatCannotBeReadAreOneClearError) {
     expect_refused("glTF2/MissingBin/BoxTextured.gltf", "there is no file 'BoxTextured0.bin'");
     expect_refused("glTF2/SchemaFailures/sceneWrongType.gltf", ":");
     expect_refused("invalid/empty.obj", "cannot be read");
-    expect_refused("invalid/empty.ply", "cannot be read");
+    expect_refused("invalid/empty.ply", "no complete PLY");
+    expect_refused("PLY/points.ply", "only points");
+    expect_refused("invalid/OutOfMemory.off", "convert it to glTF 2.0");
 }
 
 TEST(TestModels, EveryGltfOfThePackageEndsInASoundSceneOrAnError) {
