@@ -113,6 +113,7 @@ std::optional<scene::ChangeList> SceneAuthority::clear() {
     scene::Scene empty;
     (void)empty.apply_entries({scene::Create{scene::RootId, scene::Root{}}});
     auto cleared = advance(scene::difference(scene_, empty).entries);
+    next_id_ = FirstLentId;  // ids are part of a frame's bits: the same scene again gets the same ones
     blobs_->erase_unused();
     return cleared;
 }

@@ -74,6 +74,8 @@ TEST_F(SceneAuthorityTest, ClearLeavesWhatABatchFound) {
     EXPECT_EQ(authority.scene().state_hash(), empty);
     EXPECT_EQ(blobs->count(), 0u);
     EXPECT_FALSE(authority.clear());
+    EXPECT_EQ(authority.lend_ids(SessionId{99}).first, ids.first)
+        << "the next batch gets the same ids, so the same bits";
 }
 
 TEST_F(SceneAuthorityTest, TheRenderOriginMovesInCoarseStepsOnly) {
