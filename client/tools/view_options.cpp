@@ -77,8 +77,8 @@ Expected<import::CameraInfo> choose_camera(const std::vector<import::CameraInfo>
         return cameras[std::stoul(*choice)];
     const auto near = cli::nearest(*choice, names);
     return failure(ErrorCode::InvalidInput, "--camera: the scene has no camera '" + *choice + "'" +
-                                                (near ? "; did you mean '" + *near + "'?" : "") +
-                                                " It has: " + list);
+                                                (near ? "; did you mean '" + *near + "'" : "") +
+                                                "; it has: " + list);
 }
 
 view::View view_from(const ViewPlan& plan, const import::CameraInfo& camera) {
