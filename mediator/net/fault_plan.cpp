@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <optional>
-#include <vector>
 
 #include "mediator/base/random.h"
 
@@ -11,85 +11,95 @@ namespace tessera::net {
 
 namespace {
 
-// Messages of one link in one direction, on their way through the trouble.
+constexpr std::size_t MaxWaiting = 4096;  // messages of one pipe
+constexpr Duration BlockedPause = std::chrono::milliseconds(1);
+constexpr Duration ReorderSpan = std::chrono::milliseconds(1);
+
+// Messages of one peer on one link in one direction, on their way through the trouble.
 class FaultyPipe {
   public:
     FaultyPipe(const FaultPlan& plan, std::uint64_t stream) : plan_(plan), random_(plan.seed, stream) {}
 
     void enter(Message message, TimePoint now) {
-        if (plan_.cut_after_messages != 0 && ++entered_ > plan_.cut_after_messages) return;
-        if (random_.uniform() < plan_.lose) return;
+        const bool lost = random_.uniform() < plan_.lose;
         const bool twice = random_.uniform() < plan_.duplicate;
+        if (lost) return;
         if (twice) delay(message, now);
         delay(std::move(message), now);
     }
 
-    std::optional<Message> leave(TimePoint now) {
-        if (waiting_.empty() || waiting_.front().due > now) return std::nullopt;
-        Message message = std::move(waiting_.front().message);
-        waiting_.erase(waiting_.begin());
-        return message;
+    // The first message whose time has come, until it is popped.
+    Message* due(TimePoint now) {
+        if (waiting_.empty() || waiting_.begin()->first > now) return nullptr;
+        return &waiting_.begin()->second;
     }
-    void put_back(Message message) { waiting_.insert(waiting_.begin(), {TimePoint{}, std::move(message)}); }
+    void pop() {
+        waiting_.erase(waiting_.begin());
+        blocked_until_.reset();
+    }
+    void block(TimePoint until) { blocked_until_ = until; }
+    bool full() const { return blocked_until_.has_value() || waiting_.size() >= MaxWaiting; }
     std::optional<TimePoint> next_due() const {
         if (waiting_.empty()) return std::nullopt;
-        return waiting_.front().due;
+        return blocked_until_.value_or(waiting_.begin()->first);
     }
 
   private:
-    struct Waiting {
-        TimePoint due;
-        Message message;
-    };
-
     void delay(Message message, TimePoint now) {
-        const auto spread = static_cast<std::uint64_t>((plan_.max_delay - plan_.min_delay).count());
-        TimePoint due = now + plan_.min_delay +
-                        Duration(spread == 0 ? 0 : static_cast<std::int64_t>(random_.below(spread)));
-        auto place = waiting_.end();
+        const Duration waits = plan_.min_delay + part_of(plan_.max_delay - plan_.min_delay);
         if (random_.uniform() < plan_.reorder) {
-            // Somewhere among those that wait, at once if nobody does.
-            place = waiting_.begin() + static_cast<std::ptrdiff_t>(random_.below(waiting_.size() + 1));
-        } else if (!waiting_.empty()) {
-            due = std::max(due, waiting_.back().due);  // order is kept: nobody overtakes
+            // Held back without holding up those behind it.
+            const Duration held = part_of(std::max(plan_.max_delay, ReorderSpan));
+            waiting_.emplace(now + waits + held, std::move(message));
+        } else {
+            in_order_ = std::max(in_order_, now + waits);  // nobody overtakes
+            waiting_.emplace(in_order_, std::move(message));
         }
-        if (place != waiting_.end()) due = std::min(due, place->due);
-        waiting_.insert(place, {due, std::move(message)});
+    }
+    Duration part_of(Duration span) {
+        return Duration(static_cast<std::int64_t>(random_.uniform() * static_cast<double>(span.count())));
     }
 
     FaultPlan plan_;
     CounterRandom random_;
-    std::uint64_t entered_ = 0;
-    std::vector<Waiting> waiting_;  // in the order of leaving
+    TimePoint in_order_;
+    std::multimap<TimePoint, Message> waiting_;  // equal times leave as they came
+    std::optional<TimePoint> blocked_until_;
 };
 
 class FaultyChannel final : public Channel {
   public:
     FaultyChannel(std::unique_ptr<Channel> inner, const FaultPlan& control, const FaultPlan& bulk)
-        : inner_(std::move(inner)),
-          out_{FaultyPipe(control, 1), FaultyPipe(bulk, 2)},
-          in_{FaultyPipe(control, 3), FaultyPipe(bulk, 4)} {}
+        : inner_(std::move(inner)), links_{FaultyLink{.plan = control}, FaultyLink{.plan = bulk}} {}
 
     SendResult send(Link link, PeerId peer, Bytes&& bytes) override {
-        if (bytes.size() > (link == Link::Control ? ControlLimit : BulkLimit)) return SendResult::Closed;
-        pipe(out_, link).enter({.link = link, .peer = peer, .bytes = std::move(bytes)}, now());
-        return flush() ? SendResult::Sent : SendResult::Closed;
+        if (closed_ || bytes.size() > (link == Link::Control ? ControlLimit : BulkLimit)) {
+            return SendResult::Closed;
+        }
+        FaultyLink& faulty = links_[static_cast<std::size_t>(link)];
+        const auto out = pipe(faulty.out, peer, faulty.plan, 2 * peer);
+        if (!flush(out->second)) {
+            faulty.out.erase(out);
+            return SendResult::Closed;
+        }
+        if (out->second.full()) return SendResult::WouldBlock;
+        if (cut(faulty)) return SendResult::Sent;
+        out->second.enter({.link = link, .peer = peer, .bytes = std::move(bytes)}, now());
+        if (flush(out->second)) return SendResult::Sent;
+        faulty.out.erase(out);
+        return SendResult::Closed;
     }
 
     Received receive(TimePoint deadline) override {
         while (true) {
-            flush();
-            for (FaultyPipe& pipe : in_) {
-                if (auto message = pipe.leave(now())) return std::move(*message);
-            }
-            TimePoint until = deadline;
-            for (const auto* pipes : {&in_, &out_}) {
-                for (const FaultyPipe& pipe : *pipes)
-                    until = std::min(until, pipe.next_due().value_or(until));
-            }
-            Received received = inner_->receive(until);
+            flush_all();
+            if (auto message = arrived()) return std::move(*message);
+            Received received = inner_->receive(std::min(deadline, next_due().value_or(deadline)));
             if (auto* message = std::get_if<Message>(&received)) {
-                pipe(in_, message->link).enter(std::move(*message), now());
+                FaultyLink& faulty = links_[static_cast<std::size_t>(message->link)];
+                if (cut(faulty)) continue;
+                const auto in = pipe(faulty.in, message->peer, faulty.plan, 2 * message->peer + 1);
+                in->second.enter(std::move(*message), now());
                 continue;
             }
             if (std::get<NoMessage>(received) != NoMessage::Timeout || now() >= deadline) return received;
@@ -97,31 +107,86 @@ class FaultyChannel final : public Channel {
     }
 
     void wake() override { inner_->wake(); }
-    void close() override { inner_->close(); }
+    void close() override {
+        closed_ = true;
+        inner_->close();
+    }
 
   private:
-    using Pipes = std::array<FaultyPipe, 2>;
-    static FaultyPipe& pipe(Pipes& pipes, Link link) { return pipes[static_cast<std::size_t>(link)]; }
+    using Pipes = std::map<PeerId, FaultyPipe>;
+    struct FaultyLink {
+        FaultPlan plan;
+        std::uint64_t messages = 0;  // of both directions
+        Pipes out = {}, in = {};
+    };
+
     static TimePoint now() { return std::chrono::steady_clock::now(); }
 
-    // False when a peer is gone.
-    bool flush() {
-        bool reachable = true;
-        for (FaultyPipe& pipe : out_) {
-            while (auto message = pipe.leave(now())) {
-                const SendResult result =
-                    inner_->send(message->link, message->peer, std::move(message->bytes));
-                reachable = reachable && result != SendResult::Closed;
-                if (result != SendResult::WouldBlock) continue;
-                pipe.put_back(std::move(*message));
-                break;
+    static Pipes::iterator pipe(Pipes& pipes, PeerId peer, const FaultPlan& plan, std::uint64_t stream) {
+        return pipes.try_emplace(peer, plan, stream).first;
+    }
+
+    // One more message for the link; true when it is dead, and with it whatever was under way.
+    static bool cut(FaultyLink& faulty) {
+        if (faulty.plan.cut_after_messages == 0 || ++faulty.messages <= faulty.plan.cut_after_messages) {
+            return false;
+        }
+        faulty.in.clear();
+        faulty.out.clear();
+        return true;
+    }
+
+    std::optional<Message> arrived() {
+        for (FaultyLink& faulty : links_) {
+            for (auto& [peer, in] : faulty.in) {
+                Message* due = in.due(now());
+                if (due == nullptr) continue;
+                Message message = std::move(*due);
+                in.pop();
+                return message;
             }
         }
-        return reachable;
+        return std::nullopt;
+    }
+
+    std::optional<TimePoint> next_due() const {
+        std::optional<TimePoint> next;
+        for (const FaultyLink& faulty : links_) {
+            for (const Pipes* pipes : {&faulty.in, &faulty.out}) {
+                for (const auto& [peer, waiting] : *pipes) {
+                    const auto due = waiting.next_due();
+                    if (due && (!next || *due < *next)) next = due;
+                }
+            }
+        }
+        return next;
+    }
+
+    // False when the peer is gone.
+    bool flush(FaultyPipe& out) {
+        while (Message* due = out.due(now())) {
+            const SendResult result = inner_->send(due->link, due->peer, std::move(due->bytes));
+            if (result == SendResult::Closed) return false;
+            if (result == SendResult::WouldBlock) {
+                out.block(now() + BlockedPause);
+                return true;
+            }
+            out.pop();
+        }
+        return true;
+    }
+
+    void flush_all() {
+        for (FaultyLink& faulty : links_) {
+            for (auto out = faulty.out.begin(); out != faulty.out.end();) {
+                out = flush(out->second) ? std::next(out) : faulty.out.erase(out);
+            }
+        }
     }
 
     std::unique_ptr<Channel> inner_;
-    Pipes out_, in_;
+    std::array<FaultyLink, 2> links_;
+    bool closed_ = false;
 };
 
 }  // namespace

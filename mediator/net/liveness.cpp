@@ -24,7 +24,7 @@ bool Liveness::heartbeat_due(TimePoint now) const {
 }
 
 bool Liveness::dead(TimePoint now) const {
-    return now - last_heard_ > settings_.interval * settings_.missed;
+    return now - last_heard_ >= settings_.interval * settings_.missed;
 }
 
 TimePoint Liveness::next_event() const {

@@ -19,7 +19,7 @@ class Liveness {
     void sent_heartbeat(TimePoint now);
     bool heartbeat_due(TimePoint now) const;
     bool dead(TimePoint now) const;
-    TimePoint next_event() const;  // when to look again
+    TimePoint next_event() const;  // when a heartbeat is due or the peer is dead, whichever comes first
 
     // After death: doubles from min_backoff to max_backoff until heard() resets it.
     Duration next_backoff();

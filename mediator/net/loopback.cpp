@@ -21,18 +21,25 @@ std::size_t limit(Link link) {
 struct LoopbackHub::State {
     struct Inbox {
         std::array<std::deque<Message>, 2> queues;  // by link
+        std::size_t turn = 0;
         bool woken = false, closed = false;
     };
-    Limits limits;
+    struct Client {
+        Role role = Role::None;
+        Inbox inbox;
+    };
+
+    explicit State(Limits queue_limits) : limits(queue_limits) {}
+
+    const Limits limits;
     std::mutex mutex;  // protects what stands below
     std::condition_variable changed;
     Inbox server;
-    std::map<PeerId, Inbox> clients;
-    std::map<PeerId, Role> roles;
-    PeerId next_peer = 1;
+    std::map<std::uint64_t, Client> clients;  // by number, from 1
+    std::uint64_t next_client = 1;
 
-    SendResult put(Inbox& inbox, Link link, Message&& message, Bytes& bytes) {
-        auto& queue = inbox.queues[static_cast<std::size_t>(link)];
+    SendResult put(Inbox& inbox, Message&& message, Bytes& bytes) {
+        auto& queue = inbox.queues[static_cast<std::size_t>(message.link)];
         if (inbox.closed) return SendResult::Closed;
         if (queue.size() >= limits.messages_per_queue) return SendResult::WouldBlock;
         message.bytes = std::move(bytes);
@@ -43,18 +50,21 @@ struct LoopbackHub::State {
 
     Received take(Inbox& inbox, TimePoint deadline) {
         std::unique_lock lock(mutex);
-        const auto ready = [&] {
+        changed.wait_until(lock, deadline, [&] {
             return inbox.closed || inbox.woken || !inbox.queues[0].empty() || !inbox.queues[1].empty();
-        };
-        changed.wait_until(lock, deadline, ready);
+        });
         if (inbox.closed) return NoMessage::Closed;
-        for (auto& queue : inbox.queues) {
+        if (std::exchange(inbox.woken, false)) return NoMessage::Woken;
+        // Turns between the links, so that neither starves.
+        for (int i = 0; i < 2; ++i) {
+            auto& queue = inbox.queues[inbox.turn];
+            inbox.turn = 1 - inbox.turn;
             if (queue.empty()) continue;
             Message message = std::move(queue.front());
             queue.pop_front();
             return message;
         }
-        return std::exchange(inbox.woken, false) ? NoMessage::Woken : NoMessage::Timeout;
+        return NoMessage::Timeout;
     }
 
     void wake(Inbox& inbox) {
@@ -66,11 +76,17 @@ struct LoopbackHub::State {
     void close(Inbox& inbox) {
         const std::scoped_lock lock(mutex);
         inbox.closed = true;
+        for (auto& queue : inbox.queues) queue.clear();
         changed.notify_all();
     }
 };
 
 namespace {
+
+// As over sockets, the two links of a client are two peers.
+PeerId peer_of(std::uint64_t client, Link link) {
+    return 2 * client + static_cast<PeerId>(link);
+}
 
 class LoopbackServer final : public Channel {
   public:
@@ -80,9 +96,12 @@ class LoopbackServer final : public Channel {
     SendResult send(Link link, PeerId peer, Bytes&& bytes) override {
         if (bytes.size() > limit(link)) return SendResult::Closed;
         const std::scoped_lock lock(state_->mutex);
-        const auto client = state_->clients.find(peer);
-        if (client == state_->clients.end() || state_->server.closed) return SendResult::Closed;
-        return state_->put(client->second, link, {.link = link, .role = Role::Operator}, bytes);
+        const auto client = state_->clients.find(peer / 2);
+        if (client == state_->clients.end() || peer != peer_of(client->first, link) ||
+            state_->server.closed) {
+            return SendResult::Closed;
+        }
+        return state_->put(client->second.inbox, {.link = link, .role = Role::Operator}, bytes);
     }
     Received receive(TimePoint deadline) override { return state_->take(state_->server, deadline); }
     void wake() override { state_->wake(state_->server); }
@@ -94,33 +113,35 @@ class LoopbackServer final : public Channel {
 
 class LoopbackClient final : public Channel {
   public:
-    LoopbackClient(std::shared_ptr<LoopbackHub::State> state, PeerId peer, LoopbackHub::State::Inbox& inbox)
-        : state_(std::move(state)), peer_(peer), inbox_(inbox) {}
-    ~LoopbackClient() override { state_->close(inbox_); }
+    LoopbackClient(std::shared_ptr<LoopbackHub::State> state, std::uint64_t number,
+                   LoopbackHub::State::Client& client)
+        : state_(std::move(state)), number_(number), client_(client) {}
+    ~LoopbackClient() override {
+        const std::scoped_lock lock(state_->mutex);
+        state_->clients.erase(number_);
+    }
 
     SendResult send(Link link, PeerId peer, Bytes&& bytes) override {
         if (peer != ServerPeer || bytes.size() > limit(link)) return SendResult::Closed;
         const std::scoped_lock lock(state_->mutex);
-        if (inbox_.closed) return SendResult::Closed;
-        return state_->put(state_->server, link, {.link = link, .peer = peer_, .role = state_->roles[peer_]},
-                           bytes);
+        if (client_.inbox.closed) return SendResult::Closed;
+        return state_->put(state_->server,
+                           {.link = link, .peer = peer_of(number_, link), .role = client_.role}, bytes);
     }
-    Received receive(TimePoint deadline) override { return state_->take(inbox_, deadline); }
-    void wake() override { state_->wake(inbox_); }
-    void close() override { state_->close(inbox_); }
+    Received receive(TimePoint deadline) override { return state_->take(client_.inbox, deadline); }
+    void wake() override { state_->wake(client_.inbox); }
+    void close() override { state_->close(client_.inbox); }
 
   private:
     std::shared_ptr<LoopbackHub::State> state_;
-    PeerId peer_;
-    LoopbackHub::State::Inbox& inbox_;  // a map's element: stays where it is
+    std::uint64_t number_;
+    LoopbackHub::State::Client& client_;  // a map's element: stays where it is
 };
 
 }  // namespace
 
 LoopbackHub::LoopbackHub() : LoopbackHub(Limits{}) {}
-LoopbackHub::LoopbackHub(Limits limits) : state_(std::make_shared<State>()) {
-    state_->limits = limits;
-}
+LoopbackHub::LoopbackHub(Limits limits) : state_(std::make_shared<State>(limits)) {}
 LoopbackHub::~LoopbackHub() = default;
 
 std::unique_ptr<Channel> LoopbackHub::server() {
@@ -129,9 +150,10 @@ std::unique_ptr<Channel> LoopbackHub::server() {
 
 std::unique_ptr<Channel> LoopbackHub::client(Role role) {
     const std::scoped_lock lock(state_->mutex);
-    const PeerId peer = state_->next_peer++;
-    state_->roles[peer] = role;
-    return std::make_unique<LoopbackClient>(state_, peer, state_->clients[peer]);
+    const std::uint64_t number = state_->next_client++;
+    State::Client& client = state_->clients[number];
+    client.role = role;
+    return std::make_unique<LoopbackClient>(state_, number, client);
 }
 
 }  // namespace tessera::net

@@ -1,5 +1,6 @@
 #include "mediator/net/zap.h"
 
+#include <signal.h>
 #include <zmq.h>
 
 #include <array>
@@ -45,7 +46,12 @@ ZapHandler::ZapHandler(zmq::context_t& context)
     const std::string stop = "inproc://zap-stop";
     stop_receiver_.bind(stop);
     stop_sender_.connect(stop);
+    // Signals are for the program's own threads.
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
     thread_ = std::thread([this] { run(); });
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
 ZapHandler::~ZapHandler() {
@@ -59,33 +65,41 @@ void ZapHandler::run() {
     while (true) {
         zmq::poll(items.data(), items.size(), std::chrono::milliseconds(-1));
         if ((items[1].revents & ZMQ_POLLIN) != 0) return;
-        // version, request id, domain, address, identity, mechanism, credentials
         std::vector<zmq::message_t> request;
-        if (!zmq::recv_multipart(socket_, std::back_inserter(request))) continue;
-        std::optional<std::string> user;
-        if (request.size() == 7 && request[0].to_string_view() == "1.0" &&
-            request[5].to_string_view() == "CURVE") {
-            user = user_id_of(request[2].to_string(), z85(request[6]));
-        }
-        if (!user) ++refused_;
-        const std::string request_id = request.size() > 1 ? request[1].to_string() : std::string();
-        const std::array<std::string, 6> reply{
-            "1.0", request_id, user ? "200" : "400", user ? "OK" : "unknown key", user.value_or(""), ""};
-        for (std::size_t i = 0; i < reply.size(); ++i) {
-            socket_.send(zmq::buffer(reply[i]),
-                         i + 1 < reply.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
-        }
+        if (zmq::recv_multipart(socket_, std::back_inserter(request))) answer(request);
     }
 }
 
-std::optional<std::string> ZapHandler::user_id_of(const std::string& domain,
-                                                  const std::string& public_key) const {
+// A request is: version, request id, domain, address, identity, mechanism, credentials.
+void ZapHandler::answer(const std::vector<zmq::message_t>& request) {
+    std::optional<std::string> user;
+    if (request.size() == 7 && request[0].to_string_view() == "1.0" &&
+        request[5].to_string_view() == "CURVE") {
+        user = admit(request[2].to_string(), z85(request[6]));
+    }
+    const std::string request_id = request.size() > 1 ? request[1].to_string() : std::string();
+    const std::array<std::string, 6> reply{
+        "1.0", request_id, user ? "200" : "400", user ? "OK" : "unknown key", user.value_or(""), ""};
+    for (std::size_t i = 0; i < reply.size(); ++i) {
+        socket_.send(zmq::buffer(reply[i]),
+                     i + 1 < reply.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
+    }
+}
+
+std::optional<std::string> ZapHandler::admit(const std::string& domain, const std::string& public_key) {
     const std::scoped_lock lock(mutex_);
     const auto list = domains_.find(domain);
     if (list == domains_.end()) return std::nullopt;
     const auto user = list->second.user_id_by_key.find(public_key);
-    if (user == list->second.user_id_by_key.end()) return std::nullopt;
-    return user->second;
+    if (user != list->second.user_id_by_key.end()) return user->second;
+    ++list->second.refused;
+    return std::nullopt;
+}
+
+std::uint64_t ZapHandler::refused(const std::string& domain) const {
+    const std::scoped_lock lock(mutex_);
+    const auto list = domains_.find(domain);
+    return list == domains_.end() ? 0 : list->second.refused;
 }
 
 void ZapHandler::allow(const std::string& domain, const std::vector<AllowedKey>& keys) {
@@ -95,6 +109,7 @@ void ZapHandler::allow(const std::string& domain, const std::vector<AllowedKey>&
         list.user_ids.insert(user_id(key));
     }
     const std::scoped_lock lock(mutex_);
+    list.refused = domains_[domain].refused;
     domains_[domain] = std::move(list);
 }
 

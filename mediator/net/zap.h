@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -28,19 +27,21 @@ class ZapHandler {
     void forget(const std::string& domain);
     // Is this User-Id still on the list? Thread-safe.
     bool stands(const std::string& domain, const std::string& user_id) const;
-    std::uint64_t refused() const { return refused_; }
+    std::uint64_t refused(const std::string& domain) const;
 
   private:
     void run();
-    std::optional<std::string> user_id_of(const std::string& domain, const std::string& public_key) const;
+    void answer(const std::vector<zmq::message_t>& request);
+    // The User-Id of a key; nothing and counted when it is not on the domain's list.
+    std::optional<std::string> admit(const std::string& domain, const std::string& public_key);
 
     zmq::socket_t socket_, stop_sender_, stop_receiver_;
-    std::atomic<std::uint64_t> refused_{0};
 
     mutable std::mutex mutex_;  // protects what stands below
     struct Domain {
         std::map<std::string, std::string> user_id_by_key;
         std::set<std::string> user_ids;
+        std::uint64_t refused = 0;
     };
     std::map<std::string, Domain> domains_;
 

@@ -30,14 +30,23 @@ struct ClientSettings {
 // without keys that is not loopback, Error{Unavailable} when the port is taken.
 class ZmqServer : public Channel {
   public:
-    virtual void
-    reload_keys() = 0;  // after SIGHUP; messages of revoked users are dropped unread from then on
+    // After SIGHUP. Who is no longer on the list cannot connect; libzmq cannot cut off who is connected, so
+    // their messages are dropped unread and sending to them is Closed. Throws Error when the list cannot be
+    // read; the old one stands then.
+    virtual void reload_keys() = 0;
     virtual std::uint64_t refused_handshakes() const = 0;
+    // Messages that came and were dropped unread.
+    struct Dropped {
+        std::uint64_t revoked = 0;    // of users who are no longer on the list
+        std::uint64_t malformed = 0;  // not exactly one part, or too long
+    };
+    virtual Dropped dropped() const = 0;
 };
 std::unique_ptr<ZmqServer> make_zmq_server(std::shared_ptr<ZmqContext> context,
                                            const ServerSettings& settings);
 
-// DEALER pair. Connects in the background; reconnect() closes both sockets and opens new ones.
+// DEALER pair. Connects in the background; reconnect() closes both sockets and opens new ones: what was not
+// sent yet is lost. Throws Error{Refused} like the server.
 class ZmqClient : public Channel {
   public:
     virtual void reconnect() = 0;

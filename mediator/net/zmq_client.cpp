@@ -10,23 +10,23 @@ class DealerPair final : public ZmqClient {
   public:
     DealerPair(std::shared_ptr<ZmqContext> context, const ClientSettings& settings)
         : context_(std::move(context)), addresses_(addresses_of(settings.endpoint)), keys_(settings.keys) {
+        require_keys(settings.endpoint, addresses_, keys_ ? Keys::Present : Keys::Absent);
         open();
     }
 
     SendResult send(Link link, PeerId peer, Bytes&& bytes) override {
         if (closed_ || peer != ServerPeer || bytes.size() > limit_of(link)) return SendResult::Closed;
-        const auto sent = socket(link).send(zmq::buffer(bytes), zmq::send_flags::dontwait);
-        return sent ? SendResult::Sent : SendResult::WouldBlock;
+        return send_message(socket(link), nullptr, bytes);
     }
 
     Received receive(TimePoint deadline) override {
         while (!closed_) {
+            if (signal_.take()) return NoMessage::Woken;
             for (int i = 0; i < 2; ++i) {
                 const Link link = turn_ == Link::Control ? Link::Bulk : Link::Control;
                 turn_ = link;
                 if (auto message = take(link)) return std::move(*message);
             }
-            if (signal_.take()) return NoMessage::Woken;
             if (std::chrono::steady_clock::now() >= deadline) return NoMessage::Timeout;
             wait_readable(sockets_, signal_, deadline);
         }
@@ -41,9 +41,10 @@ class DealerPair final : public ZmqClient {
     }
 
     void reconnect() override {
+        if (closed_) return;
         for (zmq::socket_t& socket : sockets_) {
-            socket.set(zmq::sockopt::linger,
-                       0);  // what the dead link did not take is of no use to the new one
+            // What the dead link did not take is of no use to the new one.
+            socket.set(zmq::sockopt::linger, 0);
             socket.close();
         }
         open();
@@ -55,7 +56,7 @@ class DealerPair final : public ZmqClient {
     void open() {
         for (const Link link : {Link::Control, Link::Bulk}) {
             socket(link) = zmq::socket_t(context_->zmq(), zmq::socket_type::dealer);
-            configure(socket(link), link);
+            configure(socket(link), link, addresses_);
             if (keys_ && addresses_.is_tcp) {
                 socket(link).set(zmq::sockopt::curve_serverkey, keys_->server_public_key);
                 socket(link).set(zmq::sockopt::curve_publickey, keys_->own.public_key);
@@ -71,13 +72,10 @@ class DealerPair final : public ZmqClient {
     }
 
     std::optional<Message> take(Link link) {
-        zmq::message_t payload;
-        while (socket(link).recv(payload, zmq::recv_flags::dontwait)) {
-            bool single = true;
-            for (; socket(link).get(zmq::sockopt::rcvmore); single = false) {
-                if (!socket(link).recv(payload, zmq::recv_flags::dontwait)) break;
-            }
-            if (!single || payload.size() > limit_of(link)) continue;
+        Parts<1> parts;
+        while (receive_message(socket(link), parts)) {
+            const zmq::message_t& payload = parts.kept[0];
+            if (parts.count != 1 || payload.size() > limit_of(link)) continue;
             const auto* data = payload.data<std::byte>();
             // What comes here comes from the master: its key was checked by the handshake.
             return Message{.link = link, .role = Role::Operator, .bytes = Bytes(data, data + payload.size())};
