@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -24,6 +25,7 @@ inline constexpr PeerId ServerPeer = 0;
 
 enum class Role : std::uint8_t { None, Viewer, Editor, Node, Operator };
 const char* name(Role role);
+Role role_named(std::string_view text);  // None for what is no role's name
 
 struct Message {
     Link link = Link::Control;

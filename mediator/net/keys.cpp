@@ -4,66 +4,25 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <sstream>
 
+#include "mediator/net/key_file.h"
 #include "mediator/net/secret_file.h"
 
 namespace tessera::net {
 
 namespace {
 
-constexpr std::size_t Z85Length = 40;
 constexpr const char* Master = "master";
-constexpr const char* ExportHeader = "tessera-keys 1";
+constexpr std::array Roles{Role::Viewer, Role::Editor, Role::Node, Role::Operator};
 
-bool is_name(const std::string& name) {
-    return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), [](unsigned char c) {
-        return std::isalnum(c) != 0 || c == '-' || c == '_';
-    });
-}
-
-Role role_by_name(const std::string& text) {
-    for (const Role role : {Role::Viewer, Role::Editor, Role::Node, Role::Operator}) {
-        if (text == name(role)) return role;
-    }
-    return Role::None;
-}
-
-std::string key_in(const std::filesystem::path& path, std::string text) {
-    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.pop_back();
-    std::array<std::uint8_t, 32> binary{};
-    if (text.size() != Z85Length || zmq_z85_decode(binary.data(), text.c_str()) == nullptr) {
-        throw Error(ErrorCode::InvalidInput,
-                    "'" + path.string() + "' holds no key: make new ones with 'tessera keys'");
-    }
-    return text;
-}
-
-ClientKeys read_export(const std::filesystem::path& file) {
-    require_private(file);
-    std::istringstream lines(read_text(file));
-    std::string header;
-    std::getline(lines, header);
-    ClientKeys keys;
-    for (std::string what, value; lines >> what >> value;) {
-        if (what == "public") keys.own.public_key = key_in(file, value);
-        if (what == "secret") keys.own.secret_key = key_in(file, value);
-        if (what == "master") keys.server_public_key = key_in(file, value);
-    }
-    if (header != ExportHeader || keys.own.public_key.empty() || keys.own.secret_key.empty() ||
-        keys.server_public_key.empty()) {
-        throw Error(ErrorCode::InvalidInput,
-                    "'" + file.string() +
-                        "' is no exported key file: make one with 'tessera keys add NAME --export FILE'");
-    }
-    return keys;
+std::string key_in(const std::filesystem::path& file) {
+    return parse_key(file, read_text(file));
 }
 
 }  // namespace
 
 KeyPair make_key_pair() {
-    std::array<char, Z85Length + 1> public_key{}, secret_key{};
+    std::array<char, 41> public_key{}, secret_key{};
     if (zmq_curve_keypair(public_key.data(), secret_key.data()) != 0) {
         throw Error(ErrorCode::Internal, "libzmq cannot make CURVE keys: it was built without libsodium");
     }
@@ -76,9 +35,11 @@ void KeyDirectory::store(const std::string& name, const KeyPair& pair) const {
 }
 
 KeyPair KeyDirectory::load(const std::string& name) const {
-    const auto secret = folder_ / (name + ".secret"), open = folder_ / (name + ".public");
+    const auto secret = folder_ / (name + ".secret");
     require_private(secret);
-    return {key_in(open, read_text(open)), key_in(secret, read_text(secret))};
+    KeyPair pair{key_in(folder_ / (name + ".public")), key_in(secret)};
+    require_pair(secret, pair);
+    return pair;
 }
 
 void KeyDirectory::create() const {
@@ -88,81 +49,71 @@ void KeyDirectory::create() const {
                         "' holds a master key already: choose another folder or remove it first");
     }
     std::error_code error;
-    std::filesystem::create_directories(folder_, error);
-    if (error)
+    const bool is_new = std::filesystem::create_directories(folder_, error);
+    if (error) {
         throw Error(ErrorCode::Io, "cannot make folder '" + folder_.string() + "': " + error.message());
-    std::filesystem::permissions(folder_, std::filesystem::perms::owner_all);
-    store(Master, make_key_pair());
+    }
+    if (is_new) std::filesystem::permissions(folder_, std::filesystem::perms::owner_all);
     std::vector<AllowedKey> keys;
-    for (const Role role : {Role::Viewer, Role::Editor, Role::Node, Role::Operator}) {
+    for (const Role role : Roles) {
         const KeyPair pair = make_key_pair();
         store(net::name(role), pair);
         keys.push_back({net::name(role), role, pair.public_key});
     }
     write_allowed(keys);
+    store(Master, make_key_pair());  // last: a folder with it is whole
 }
 
 std::vector<AllowedKey> KeyDirectory::allowed() const {
     const auto file = folder_ / "allowed.keys";
-    std::istringstream lines(read_text(file));
-    std::vector<AllowedKey> keys;
-    int number = 0;
-    for (std::string line; std::getline(lines, line);) {
-        ++number;
-        if (line.empty() || line[0] == '#') continue;
-        std::istringstream words(line);
-        AllowedKey key;
-        std::string role, rest;
-        words >> key.name >> role >> key.public_key;
-        key.role = role_by_name(role);
-        const bool twice = std::any_of(keys.begin(), keys.end(), [&](const AllowedKey& other) {
-            return other.name == key.name || other.public_key == key.public_key;
-        });
-        if (!is_name(key.name) || key.role == Role::None || (words >> rest) || twice) {
-            throw Error(ErrorCode::InvalidInput,
-                        "'" + file.string() + "' line " + std::to_string(number) +
-                            ": expected a new name, a role (viewer, editor, node, operator) "
-                            "and a new public key");
-        }
-        key.public_key = key_in(file, key.public_key);
-        keys.push_back(std::move(key));
-    }
-    return keys;
+    return parse_allowed(file, read_text(file));
 }
 
 void KeyDirectory::write_allowed(const std::vector<AllowedKey>& keys) const {
-    std::string text = "# name role public-key; read again on SIGHUP\n";
-    for (const AllowedKey& key : keys)
-        text += key.name + " " + net::name(key.role) + " " + key.public_key + "\n";
-    write_text(folder_ / "allowed.keys", text, Visibility::Owner);
+    write_text(folder_ / "allowed.keys", allowed_text(keys), Visibility::Owner);
 }
 
 void KeyDirectory::add(const std::string& name, Role role, const std::filesystem::path& export_file) const {
-    if (!is_name(name) || name == Master) {
+    if (!is_key_name(name) || name == Master) {
         throw Error(ErrorCode::InvalidInput,
-                    "'" + name + "' is no good name: use letters, digits, '-' and '_'");
+                    "'" + name + "' is no good name: use letters, digits, '-' and '_', but not 'master'");
+    }
+    if (role == Role::None) {
+        throw Error(ErrorCode::InvalidInput, "a key needs a role: viewer, editor, node or operator");
     }
     std::vector<AllowedKey> keys = allowed();
     for (const AllowedKey& key : keys) {
-        if (key.name == name)
+        if (key.name == name) {
             throw Error(ErrorCode::Refused, "'" + name + "' is there already: revoke it first");
+        }
+    }
+    if (std::filesystem::exists(export_file)) {
+        throw Error(ErrorCode::Refused,
+                    "'" + export_file.string() + "' is there already: choose another file");
     }
     const KeyPair pair = make_key_pair();
-    const std::string master_key = key_in(folder_ / "master.public", read_text(folder_ / "master.public"));
-    write_text(export_file,
-               std::string(ExportHeader) + "\nname " + name + "\npublic " + pair.public_key + "\nsecret " +
-                   pair.secret_key + "\nmaster " + master_key + "\n",
-               Visibility::Owner);
+    const KeyExport exported{.name = name, .role = role, .keys = {pair, key_in(folder_ / "master.public")}};
+    write_text(export_file, export_text(exported), Visibility::Owner);
     keys.push_back({name, role, pair.public_key});
-    write_allowed(keys);
+    try {
+        write_allowed(keys);
+    } catch (const Error&) {
+        std::error_code ignored;
+        std::filesystem::remove(export_file, ignored);  // a key that nobody lets in only misleads
+        throw;
+    }
 }
 
 void KeyDirectory::revoke(const std::string& name) const {
     std::vector<AllowedKey> keys = allowed();
     if (std::erase_if(keys, [&](const AllowedKey& key) { return key.name == name; }) == 0) {
-        throw Error(ErrorCode::NotFound, "no key is called '" + name + "': see 'tessera keys list'");
+        throw Error(ErrorCode::NotFound, "no key is called '" + name + "': see 'tessera keys DIR list'");
     }
     write_allowed(keys);
+    for (const char* ending : {".secret", ".public"}) {
+        std::error_code ignored;  // most have no pair here
+        std::filesystem::remove(folder_ / (name + ending), ignored);
+    }
 }
 
 KeyPair KeyDirectory::master() const {
@@ -170,9 +121,15 @@ KeyPair KeyDirectory::master() const {
 }
 
 ClientKeys KeyDirectory::client(const std::string& name) const {
-    if (std::filesystem::is_regular_file(folder_)) return read_export(folder_);
-    const auto master_key = folder_ / "master.public";
-    return {load(name), key_in(master_key, read_text(master_key))};
+    if (std::filesystem::is_regular_file(folder_)) {
+        require_private(folder_);
+        return parse_export(folder_, read_text(folder_)).keys;
+    }
+    if (!is_key_name(name)) {
+        throw Error(ErrorCode::InvalidInput,
+                    "'" + name + "' is no name of a key: see 'tessera keys DIR list'");
+    }
+    return {load(name), key_in(folder_ / "master.public")};
 }
 
 }  // namespace tessera::net

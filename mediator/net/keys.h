@@ -28,16 +28,19 @@ struct ClientKeys {
 };
 
 // A folder: master.public, master.secret (0600), allowed.keys (a line per key: name, role, public key), and
-// per local name NAME.public, NAME.secret (0600). Or one file that `add` exported for another machine: it can
-// be a client() only. Every read throws Error{Refused} for a secret that others may read, with the chmod that
-// helps.
+// per local name NAME.public, NAME.secret (0600). Or one file that add() exported for another machine: of it
+// only client() is possible. Every read throws Error: Refused for a secret that others may read, with the
+// chmod that helps, NotFound and InvalidInput with the file's name.
 class KeyDirectory {
   public:
     explicit KeyDirectory(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    void create()
-        const;  // master pair and one pair per role; throws Error when a master pair is there already
+    // Master pair and one pair per role; throws Error{Refused} when a master pair is there already.
+    void create() const;
+    // A new key for another machine: `export_file` (0600, must not exist) gets its pair and the master's
+    // public key, the folder only its public key. Throws Error{Refused} for a name that is there already.
     void add(const std::string& name, Role role, const std::filesystem::path& export_file) const;
+    // Takes it off the list, and its local pair away. A running master has to read the list again.
     void revoke(const std::string& name) const;
     std::vector<AllowedKey> allowed() const;
     KeyPair master() const;

@@ -27,9 +27,15 @@ void write_text(const std::filesystem::path& path, const std::string& text, Visi
     const mode_t mode = visibility == Visibility::Owner ? 0600 : 0644;
     const int file = open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     if (file < 0) fail("write", temporary);
-    const bool written = write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-    if (close(file) != 0 || !written) fail("write", temporary);
-    if (rename(temporary.c_str(), path.c_str()) != 0) fail("write", path);
+    const bool written = write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
+                         fchmod(file, mode) == 0 && fsync(file) == 0;
+    const bool closed = close(file) == 0;
+    if (!written || !closed || rename(temporary.c_str(), path.c_str()) != 0) {
+        const int why = errno;
+        unlink(temporary.c_str());
+        errno = why;
+        fail("write", path);
+    }
 }
 
 std::string read_text(const std::filesystem::path& path) {

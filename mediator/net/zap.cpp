@@ -30,11 +30,8 @@ User user_of(const std::string& user_id) {
     if (first == std::string::npos) return {};
     const std::size_t second = user_id.find(':', first + 1);
     if (second == std::string::npos) return {};
-    const std::string role = user_id.substr(0, first);
-    for (const Role candidate : {Role::Viewer, Role::Editor, Role::Node, Role::Operator}) {
-        if (role == name(candidate)) return {candidate, user_id.substr(first + 1, second - first - 1)};
-    }
-    return {};
+    return {role_named(std::string_view(user_id).substr(0, first)),
+            user_id.substr(first + 1, second - first - 1)};
 }
 
 ZapHandler::ZapHandler(zmq::context_t& context)
