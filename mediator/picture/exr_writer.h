@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "mediator/base/rect.h"
+#include "mediator/frame/film_tile.h"
+#include "mediator/frame/image.h"
+
+namespace tessera::picture {
+
+// One EXR layer: the image's components under the given names; layer "" is what viewers show first.
+struct Layer {
+    std::string name;                     // "direct"
+    std::vector<std::string> components;  // "R", "G", "B": one per component of the image
+    frame::Image image;
+    bool as_integers = false;  // UINT: the image's floats are bit patterns of uint32
+};
+
+// 32-bit channels, ZIP. `window` is the part of the display (width x height) that the images cover.
+// Attributes are text. In full or not at all; throws Error{Io}.
+void write_exr(const std::string& path, std::uint32_t width, std::uint32_t height, const Rect& window,
+               const std::vector<Layer>& layers, const std::map<std::string, std::string>& attributes);
+
+// Resolves every channel of the film: R G B of the radiance and its variance of the mean, direct, indirect,
+// albedo, normal, depth, object id, sample counts; with each channel's merge rule among the attributes.
+void write_film_exr(const std::string& path, std::uint32_t width, std::uint32_t height,
+                    const frame::FilmTile& film, std::map<std::string, std::string> attributes);
+
+}  // namespace tessera::picture

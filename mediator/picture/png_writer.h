@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace tessera::picture {
+
+// 8-bit sRGB, 3 bytes a pixel. In full or not at all; throws Error{Io}.
+void write_png(const std::string& path, std::uint32_t width, std::uint32_t height,
+               std::span<const std::uint8_t> rgb);
+
+}  // namespace tessera::picture
