@@ -31,7 +31,7 @@ struct SessionSettings {
 // Where a cluster is, and who we are to it.
 struct Address {
     std::string endpoint;         // "tcp://host:port"
-    std::string keys;             // folder; "" = not encrypted
+    std::string keys;             // folder or exported file; "" = not encrypted
     std::string user = "editor";  // whose pair in that folder
 };
 

@@ -21,7 +21,10 @@ constexpr std::uint32_t PatientHeartbeats = 600;
 
 EmbeddedCluster::EmbeddedCluster(const EmbeddedSettings& settings, std::shared_ptr<scene::BlobStore> blobs,
                                  const Clock& clock, master::EventSink events)
-    : context_(net::make_zmq_context()), events_(std::move(events)) {
+    : context_(net::make_zmq_context()),
+      events_([this, events = std::move(events)](const master::Event& event) {
+          if (!is_stopping_) events(event);
+      }) {
     master::MasterSettings master_settings{.software = "tessera " + cli::version()};
     master_settings.liveness.missed = PatientHeartbeats;
     master_ = std::make_unique<master::RenderMaster>(
@@ -38,7 +41,9 @@ EmbeddedCluster::EmbeddedCluster(const EmbeddedSettings& settings, std::shared_p
     }
 }
 
-EmbeddedCluster::~EmbeddedCluster() = default;
+EmbeddedCluster::~EmbeddedCluster() {
+    is_stopping_ = true;
+}
 
 std::unique_ptr<net::Channel> EmbeddedCluster::client() {
     return net::make_zmq_client(context_, {.endpoint = Endpoint, .keys = {}});

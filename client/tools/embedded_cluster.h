@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -39,6 +40,7 @@ class EmbeddedCluster {
     std::jthread guarded(Body body);
 
     std::shared_ptr<net::ZmqContext> context_;
+    std::atomic<bool> is_stopping_ = false;  // from then on nobody cares who is gone
     master::EventSink events_;
     std::unique_ptr<master::RenderMaster> master_;
     std::vector<std::unique_ptr<node::RenderNode>> nodes_;

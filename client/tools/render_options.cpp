@@ -94,8 +94,8 @@ void RenderOptions::add_to(cli::CommandLine& command) {
     command.option("--nodes", "number of embedded nodes (1)", nodes);
     command.option("--threads", "threads of all embedded nodes together (all cores)", threads);
     command.option("--master", "use a running cluster: tcp://host:port", master);
-    command.option("--keys", "folder of keys for that cluster", keys);
-    command.option("--user", "whose keys in that folder", user);
+    command.option("--keys", "keys for that cluster: a folder, or an exported file", keys);
+    command.option("--user", "whose pair in a folder of keys", user);
     command.option("--wait-nodes", "begin when N nodes are ready, give up after seconds: N[:seconds]",
                    wait_nodes);
     command.flag("--no-wait", "exit with 75 when the cluster is busy, instead of waiting", no_wait);

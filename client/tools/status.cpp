@@ -119,8 +119,8 @@ Command status_command(cli::CommandLine& program) {
     const auto options = std::make_shared<StatusOptions>();
     cli::CommandLine& command = program.command(Name, "Show a cluster's nodes, versions, units and rates.");
     command.option("--master", "where the cluster is: tcp://host:port", options->address.endpoint);
-    command.option("--keys", "folder of keys for that cluster", options->address.keys);
-    command.option("--user", "whose keys in that folder", options->address.user);
+    command.option("--keys", "keys for that cluster: a folder, or an exported file", options->address.keys);
+    command.option("--user", "whose pair in a folder of keys", options->address.user);
     command.flag("--json", "print one JSON object", options->json);
     command.examples({"tessera status --master tcp://render-1:7420 --keys ~/.tessera",
                       "tessera status --master tcp://127.0.0.1:7420 --json"});
