@@ -1,7 +1,10 @@
 #include <cmath>
+#include <fstream>
 
+#include "mediator/base/random.h"
 #include "mediator/scene/validate.h"
 #include "tests/import/inspect.h"
+#include "tests/import/scene_file.h"
 
 // The scenes and environments that come with the project.
 namespace tessera::import {
@@ -84,6 +87,51 @@ TEST(Scenes, AnEnvironmentThatIsNoPictureIsAnErrorThatNamesIt) {
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code(), ErrorCode::InvalidInput);
     EXPECT_THAT(refused.error().what(), testing::HasSubstr("environment"));
+}
+
+TEST(Scenes, ARadiancePictureIsAnEnvironmentToo) {
+    const TestFolder folder;
+    ImportOptions options;
+    std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n";
+    for (int i = 0; i < 8; ++i) hdr += "\x80\x40\x20\x82";  // 2^(130 - 136) * (128, 64, 32)
+    options.environment = folder.write("sky.hdr", hdr);
+    const ImportedScene scene = loaded(Scenes / "still.glb", options);
+    expect_sound(scene);
+    const auto& map = object<scene::Texture>(scene, all<scene::Background>(scene)[0]->environment);
+    EXPECT_EQ(map.width, 4u);
+    EXPECT_EQ(map.height, 2u);
+    EXPECT_THAT(values<glm::vec3>(scene, map.texels), testing::Each(glm::vec3(2.0f, 1.0f, 0.5f)));
+}
+
+TEST(Scenes, DamagedEnvironmentsAreErrorsOrMaps) {
+    std::ifstream stream(Scenes / "env-studio.exr", std::ios::binary);
+    const std::string whole((std::istreambuf_iterator<char>(stream)), {});
+    ASSERT_GT(whole.size(), 1000u);
+    const TestFolder folder;
+    ImportOptions options;
+    const auto survives = [&](const std::string& bytes) {
+        options.environment = folder.write("sky.exr", bytes);
+        const auto scene = import_scene(Scenes / "still.glb", options);
+        if (!scene) {
+            EXPECT_THAT(scene.error().what(), testing::HasSubstr("sky.exr"));
+            EXPECT_EQ(scene.error().code(), ErrorCode::InvalidInput);
+        }
+        return scene.has_value();
+    };
+    EXPECT_TRUE(survives(whole));
+    for (const std::size_t length : {std::size_t{0}, std::size_t{10}, std::size_t{200}, whole.size() / 2}) {
+        EXPECT_FALSE(survives(whole.substr(0, length))) << length;
+    }
+    CounterRandom random(31);
+    int refused = 0;
+    for (int round = 0; round < 60; ++round) {
+        std::string damaged = whole;
+        char& byte = damaged[random.below(round % 2 ? 600 : damaged.size())];  // the header, or anywhere
+        byte = static_cast<char>(byte ^ (1 << random.below(8)));
+        SCOPED_TRACE("round " + std::to_string(round));
+        refused += survives(damaged) ? 0 : 1;
+    }
+    EXPECT_GT(refused, 5);
 }
 
 }  // namespace
