@@ -15,6 +15,9 @@ namespace {
 using shading::Sampler;
 
 constexpr float Infinity = std::numeric_limits<float>::infinity();
+// Where the error bound is zero (an axis-aligned plane through the origin) a path starts on the surface exactly: only a hit
+// at distance 0 has to be kept out.
+constexpr float Near = std::numeric_limits<float>::min();
 constexpr std::uint32_t RouletteFrom = 3;  // vertices that are never cut short
 
 // Pairs of random numbers: the first is the camera's, then each vertex has its own.
@@ -90,7 +93,7 @@ bool PathTracer::intersect(const Ray& ray, const Path& path, RTCHit& hit, float&
     query.ray = {ray.origin.x,
                  ray.origin.y,
                  ray.origin.z,
-                 0.0f,
+                 Near,
                  ray.direction.x,
                  ray.direction.y,
                  ray.direction.z,
@@ -114,7 +117,7 @@ bool PathTracer::occluded(const glm::vec3& origin, const glm::vec3& to_target, f
     rtcInitIntersectContext(&context.embree);
     context.tables = &tables_;
     context.seed = path.ray_seed(1);
-    RTCRay ray{origin.x,    origin.y, origin.z, 0.0f, to_target.x, to_target.y,
+    RTCRay ray{origin.x,    origin.y, origin.z, Near, to_target.x, to_target.y,
                to_target.z, 0.0f,     far,      ~0u,  0,           0};
     rtcOccluded1(scene_, &context.embree, &ray);
     return ray.tfar < 0.0f;

@@ -61,11 +61,12 @@ PointWithError point_on(const InstanceData& instance, std::uint32_t triangle, co
     const glm::vec3 object = interpolate(p, corners, b);
     const glm::vec3 sizes = glm::abs(p[corners.x]) * std::fabs(1.0f - b.x - b.y) +
                             glm::abs(p[corners.y]) * b.x + glm::abs(p[corners.z]) * b.y;
-    const glm::mat3 linear(glm::abs(instance.linear[0]), glm::abs(instance.linear[1]),
-                           glm::abs(instance.linear[2]));
-    const glm::vec3 interpolation = linear * sizes;
+    const glm::vec3 extent = glm::max(glm::max(glm::abs(p[corners.x] - object), glm::abs(p[corners.y] - object)),
+                                      glm::abs(p[corners.z] - object));
+    const glm::mat3 linear(glm::abs(instance.linear[0]), glm::abs(instance.linear[1]), glm::abs(instance.linear[2]));
+    const glm::vec3 in_object = linear * (gamma(5) * sizes + gamma(8) * extent);
     const glm::vec3 transform = linear * glm::abs(object) + glm::abs(instance.translation);
-    return {instance.to_world(object), gamma(5) * interpolation + 2.0f * gamma(6) * transform};
+    return {instance.to_world(object), in_object + 2.0f * gamma(6) * transform};
 }
 
 Surface make_surface(const SceneTables& tables, const RTCHit& hit, const glm::vec3& direction) {

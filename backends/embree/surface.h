@@ -29,9 +29,10 @@ struct Surface {
 // `direction`: of the ray that hit, unit length.
 Surface make_surface(const SceneTables& tables, const RTCHit& hit, const glm::vec3& direction);
 
-// A point of an instance's triangle and the bound of its rounding error: interpolation in the object's frame
-// takes 5 roundings per axis, the way to the world 6 more, and Embree's way back to the object's frame as
-// many again (gamma_n = n u / (1 - n u), u = 2^-24; Higham 2002).
+// A point of an instance's triangle and the bound of the distance, per axis, at which Embree may find the triangle
+// around it. In the object's frame: interpolation, 5 roundings of the corners' coordinates; Embree's distance to the
+// plane, 8 roundings (differences, cross product, dot product) of the triangle's extent. Then 6 roundings of the way to
+// the world and as many of Embree's way back. gamma_n = n u / (1 - n u), u = 2^-24 (Higham 2002).
 struct PointWithError {
     glm::vec3 position, error;
 };
