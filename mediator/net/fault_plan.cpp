@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "mediator/base/random.h"
 
@@ -21,12 +22,21 @@ class FaultyPipe {
     FaultyPipe(const FaultPlan& plan, std::uint64_t stream) : plan_(plan), random_(plan.seed, stream) {}
 
     void enter(Message message, TimePoint now) {
-        const bool lost = random_.uniform() < plan_.lose;
-        const bool twice = random_.uniform() < plan_.duplicate;
-        if (lost) return;
-        if (twice) delay(message, now);
-        delay(std::move(message), now);
+        const std::vector<Passage> passages = std::move(fate().passages);
+        taken();
+        for (const Passage& passage : passages) {
+            TimePoint due = now + passage.waits;
+            // Held back without holding up those behind it, or so that nobody overtakes.
+            if (!passage.reordered) due = in_order_ = std::max(in_order_, due);
+            waiting_.emplace(due, message);
+        }
     }
+
+    // Would the next message pass as if there was no pipe? Then it may, and is told to be taken().
+    bool passes_at_once() {
+        return waiting_.empty() && fate().passages.size() == 1 && fate().passages[0].waits.count() == 0;
+    }
+    void taken() { fate_.reset(); }
 
     // The first message whose time has come, until it is popped.
     Message* due(TimePoint now) {
@@ -45,16 +55,27 @@ class FaultyPipe {
     }
 
   private:
-    void delay(Message message, TimePoint now) {
-        const Duration waits = plan_.min_delay + part_of(plan_.max_delay - plan_.min_delay);
-        if (random_.uniform() < plan_.reorder) {
-            // Held back without holding up those behind it.
-            const Duration held = part_of(std::max(plan_.max_delay, ReorderSpan));
-            waiting_.emplace(now + waits + held, std::move(message));
-        } else {
-            in_order_ = std::max(in_order_, now + waits);  // nobody overtakes
-            waiting_.emplace(in_order_, std::move(message));
+    struct Passage {
+        Duration waits{0};
+        bool reordered = false;
+    };
+    struct Fate {
+        std::vector<Passage> passages;  // none: lost
+    };
+
+    // Of the next message: drawn once, however often it is tried.
+    Fate& fate() {
+        if (fate_) return *fate_;
+        fate_.emplace();
+        const bool lost = random_.uniform() < plan_.lose;
+        const bool twice = random_.uniform() < plan_.duplicate;
+        for (int i = 0; i < (lost ? 0 : twice ? 2 : 1); ++i) {
+            Passage passage{plan_.min_delay + part_of(plan_.max_delay - plan_.min_delay),
+                            random_.uniform() < plan_.reorder};
+            if (passage.reordered) passage.waits += part_of(std::max(plan_.max_delay, ReorderSpan));
+            fate_->passages.push_back(passage);
         }
+        return *fate_;
     }
     Duration part_of(Duration span) {
         return Duration(static_cast<std::int64_t>(random_.uniform() * static_cast<double>(span.count())));
@@ -62,6 +83,7 @@ class FaultyPipe {
 
     FaultPlan plan_;
     CounterRandom random_;
+    std::optional<Fate> fate_;
     TimePoint in_order_;
     std::multimap<TimePoint, Message> waiting_;  // equal times leave as they came
     std::optional<TimePoint> blocked_until_;
@@ -77,17 +99,12 @@ class FaultyChannel final : public Channel {
             return SendResult::Closed;
         }
         FaultyLink& faulty = links_[static_cast<std::size_t>(link)];
+        if (is_cut(faulty)) return SendResult::Sent;
         const auto out = pipe(faulty.out, peer, faulty.plan, 2 * peer);
-        if (!flush(out->second)) {
-            faulty.out.erase(out);
-            return SendResult::Closed;
-        }
-        if (out->second.full()) return SendResult::WouldBlock;
-        if (cut(faulty)) return SendResult::Sent;
-        out->second.enter({.link = link, .peer = peer, .bytes = std::move(bytes)}, now());
-        if (flush(out->second)) return SendResult::Sent;
-        faulty.out.erase(out);
-        return SendResult::Closed;
+        const SendResult result = send_through(out->second, {link, peer, Role::None, {}, {}}, bytes);
+        if (result == SendResult::Sent) ++faulty.messages;
+        if (result == SendResult::Closed) faulty.out.erase(out);
+        return result;
     }
 
     Received receive(TimePoint deadline) override {
@@ -97,7 +114,8 @@ class FaultyChannel final : public Channel {
             Received received = inner_->receive(std::min(deadline, next_due().value_or(deadline)));
             if (auto* message = std::get_if<Message>(&received)) {
                 FaultyLink& faulty = links_[static_cast<std::size_t>(message->link)];
-                if (cut(faulty)) continue;
+                if (is_cut(faulty)) continue;
+                ++faulty.messages;
                 const auto in = pipe(faulty.in, message->peer, faulty.plan, 2 * message->peer + 1);
                 in->second.enter(std::move(*message), now());
                 continue;
@@ -126,14 +144,27 @@ class FaultyChannel final : public Channel {
         return pipes.try_emplace(peer, plan, stream).first;
     }
 
-    // One more message for the link; true when it is dead, and with it whatever was under way.
-    static bool cut(FaultyLink& faulty) {
-        if (faulty.plan.cut_after_messages == 0 || ++faulty.messages <= faulty.plan.cut_after_messages) {
+    // Then whatever was under way is lost, too.
+    static bool is_cut(FaultyLink& faulty) {
+        if (faulty.plan.cut_after_messages == 0 || faulty.messages < faulty.plan.cut_after_messages) {
             return false;
         }
         faulty.in.clear();
         faulty.out.clear();
         return true;
+    }
+
+    SendResult send_through(FaultyPipe& out, Message message, Bytes& bytes) {
+        if (!flush(out)) return SendResult::Closed;
+        if (out.full()) return SendResult::WouldBlock;
+        if (out.passes_at_once()) {
+            const SendResult result = inner_->send(message.link, message.peer, std::move(bytes));
+            if (result == SendResult::Sent) out.taken();
+            return result;
+        }
+        message.bytes = std::move(bytes);
+        out.enter(std::move(message), now());
+        return flush(out) ? SendResult::Sent : SendResult::Closed;
     }
 
     std::optional<Message> arrived() {

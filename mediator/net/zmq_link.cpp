@@ -13,6 +13,7 @@ namespace tessera::net {
 
 namespace {
 
+constexpr std::size_t CurveOverhead = 33;  // of RFC 26's MESSAGE; libzmq counts it when it limits sizes
 constexpr int LingerMilliseconds = 1000;
 constexpr int HandshakeMilliseconds = 5000;
 
@@ -82,7 +83,7 @@ void configure(zmq::socket_t& socket, Link link, const Addresses& addresses) {
     socket.set(zmq::sockopt::sndhwm, queue_limit(link));
     socket.set(zmq::sockopt::rcvhwm, queue_limit(link));
     socket.set(zmq::sockopt::linger, LingerMilliseconds);
-    socket.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(limit_of(link)));
+    socket.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(limit_of(link) + CurveOverhead));
     socket.set(zmq::sockopt::handshake_ivl, HandshakeMilliseconds);
     socket.set(zmq::sockopt::tcp_keepalive, 1);
     socket.set(zmq::sockopt::reconnect_ivl, 100);
