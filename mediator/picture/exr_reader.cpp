@@ -1,0 +1,149 @@
+#include "mediator/picture/exr_reader.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfStdIO.h>
+#include <ImfTileDescription.h>
+#include <ImfTileDescriptionAttribute.h>
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <new>
+#include <set>
+
+#include "mediator/base/error.h"
+
+namespace tessera::picture {
+
+namespace {
+
+Error damaged(const std::string& reason) {
+    return Error(ErrorCode::InvalidInput, reason);
+}
+
+// Before OpenEXR allocates anything by what the header claims.
+Rect checked_window(const Imf::Header& header) {
+    const Imath::Box2i data = header.dataWindow();
+    const std::int64_t width = std::int64_t{data.max.x} - data.min.x + 1;
+    const std::int64_t height = std::int64_t{data.max.y} - data.min.y + 1;
+    constexpr std::int64_t MaxPlace = std::int64_t{1} << 30;
+    if (width < 1 || height < 1 || std::abs(std::int64_t{data.min.x}) > MaxPlace ||
+        std::abs(std::int64_t{data.min.y}) > MaxPlace) {
+        throw damaged("its data window is empty or out of range: write it again");
+    }
+    if (width > MaxPicturePixels || height > MaxPicturePixels || width * height > MaxPicturePixels) {
+        throw damaged("it claims " + std::to_string(width) + " x " + std::to_string(height) +
+                      " pixels, more than the " + std::to_string(MaxPicturePixels) +
+                      " that are read: scale it down");
+    }
+    if (header.hasTileDescription()) {
+        const Imf::TileDescription& tiles = header.tileDescription();
+        if (std::int64_t{tiles.xSize} * tiles.ySize > MaxPicturePixels)
+            throw damaged("its tiles are too large: write it again with smaller ones");
+    }
+    return {data.min.x, data.min.y, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
+}
+
+struct ChannelName {
+    std::string layer, component;
+};
+ChannelName split(const std::string& channel) {
+    const std::size_t dot = channel.rfind('.');
+    if (dot == std::string::npos) return {"", channel};
+    return {channel.substr(0, dot), channel.substr(dot + 1)};
+}
+
+std::string layers_in(const Imf::ChannelList& channels) {
+    std::set<std::string> names;
+    for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+        const std::string layer = split(channel.name()).layer;
+        names.insert(layer.empty() ? "R G B" : layer);
+    }
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text;
+}
+
+// Full names, in the order of the components.
+std::vector<std::string> channels_of(const Imf::ChannelList& channels, const std::string& layer) {
+    std::vector<std::string> components;
+    for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+        const ChannelName name = split(channel.name());
+        if (name.layer == layer) components.push_back(name.component);
+    }
+    if (components.empty()) {
+        throw damaged(
+            (layer.empty() ? "it has no channels without a layer" : "it has no layer '" + layer + "'") +
+            ": it has " + layers_in(channels));
+    }
+    const std::vector<std::string> triples[] = {{"R", "G", "B"}, {"X", "Y", "Z"}};
+    for (const std::vector<std::string>& triple : triples) {
+        const bool all = std::all_of(triple.begin(), triple.end(), [&](const std::string& component) {
+            return std::find(components.begin(), components.end(), component) != components.end();
+        });
+        if (!all) continue;
+        components = triple;
+        break;
+    }
+    if (components.size() > 4) throw damaged("layer '" + layer + "' has more than four components: split it");
+    for (std::string& component : components) component.insert(0, layer.empty() ? "" : layer + ".");
+    return components;
+}
+
+Picture read(const std::string& path, const std::string& layer) {
+    Imf::StdIFStream stream(path.c_str());
+    Imf::Header first_header;
+    int version = 0;
+    first_header.readFrom(stream, version);
+    Picture picture;
+    picture.window = checked_window(first_header);
+    stream.clear();
+    stream.seekg(0);
+
+    Imf::InputFile input(stream, 0);
+    const Rect& window = picture.window;
+    const std::vector<std::string> names = channels_of(input.header().channels(), layer);
+    picture.image =
+        frame::Image(static_cast<std::uint32_t>(window.width), static_cast<std::uint32_t>(window.height),
+                     static_cast<std::uint32_t>(names.size()));
+    // The address that EXR wants is of pixel (0, 0), which may lie outside the window.
+    const auto x_stride = static_cast<std::ptrdiff_t>(names.size() * sizeof(float));
+    const std::ptrdiff_t y_stride = x_stride * window.width;
+    char* origin =
+        reinterpret_cast<char*>(picture.image.values.data()) - window.x * x_stride - window.y * y_stride;
+    Imf::FrameBuffer target;
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        target.insert(names[c],
+                      Imf::Slice(Imf::FLOAT, origin + c * sizeof(float), static_cast<std::size_t>(x_stride),
+                                 static_cast<std::size_t>(y_stride)));
+    }
+    input.setFrameBuffer(target);
+    input.readPixels(window.y, window.bottom() - 1);
+    return picture;
+}
+
+}  // namespace
+
+Picture read_exr(const std::string& path, const std::string& layer) {
+    const std::string named = "picture '" + path + "': ";
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored))
+        throw Error(ErrorCode::NotFound, named + "there is no such file: check the name");
+    if (!std::filesystem::is_regular_file(path, ignored))
+        throw Error(ErrorCode::InvalidInput, named + "it is not a regular file: name a file");
+    try {
+        return read(path, layer);
+    } catch (const Error& error) {
+        throw Error(error.code(), named + error.what());
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorCode::OutOfMemory, named + "it does not fit into memory: scale it down");
+    } catch (const std::exception& error) {  // of OpenEXR
+        throw Error(ErrorCode::InvalidInput,
+                    named + "it cannot be read (" + error.what() + "): write it again");
+    }
+}
+
+}  // namespace tessera::picture
