@@ -15,8 +15,8 @@ namespace {
 using shading::Sampler;
 
 constexpr float Infinity = std::numeric_limits<float>::infinity();
-// Where the error bound is zero (an axis-aligned plane through the origin) a path starts on the surface exactly: only a hit
-// at distance 0 has to be kept out.
+// Where the error bound is zero (an axis-aligned plane through the origin) a path starts on the surface
+// exactly: only a hit at distance 0 has to be kept out.
 constexpr float Near = std::numeric_limits<float>::min();
 constexpr std::uint32_t RouletteFrom = 3;  // vertices that are never cut short
 
@@ -53,8 +53,10 @@ struct PathTracer::Path {
     void add(const glm::vec3& light, std::uint32_t scatterings) {
         (scatterings <= 1 ? sample.direct : sample.indirect) += light;
     }
-    void tell(const std::string& line) const {
-        if (story != nullptr) story->push_back(line);
+    // `line` makes the text, only where somebody listens.
+    template <class Line>
+    void tell(const Line& line) const {
+        if (story != nullptr) story->push_back(line());
     }
 };
 
@@ -143,7 +145,7 @@ void PathTracer::add_emission(Path& path, const Ray& ray, const Surface& surface
         if (strategy_ == Strategy::LightsOnly && other > 0.0f) weight = 0.0f;
     }
     path.add(path.throughput * surface.emission * weight, path.vertex);
-    path.tell("  sees emission " + text(surface.emission) + " along " + text(ray.direction));
+    path.tell([&] { return "  sees emission " + text(surface.emission) + " along " + text(ray.direction); });
 }
 
 void PathTracer::add_lights(Path& path, const Surface& surface, const glm::vec3& out) const {
@@ -163,7 +165,7 @@ void PathTracer::add_lights(Path& path, const Surface& surface, const glm::vec3&
     if (occluded(light.origin, light.segment, light.far, path)) return;
     const glm::vec3 gathered = path.throughput * bsdf.value * light.radiance * (weight / light.pdf);
     path.add(gathered, path.vertex + 1);
-    path.tell("  light " + text(light.direction) + " adds " + text(gathered));
+    path.tell([&] { return "  light " + text(light.direction) + " adds " + text(gathered); });
 }
 
 bool PathTracer::scatter(Path& path, const Surface& surface, const glm::vec3& out, Ray& ray) const {
@@ -192,7 +194,7 @@ PathSample PathTracer::trace(std::uint32_t x, std::uint32_t y, std::uint64_t sam
     Path path{.sampler = shading::make_sampler(x, y, view_.seed, sample), .story = story};
     Ray ray = camera_ray(x, y, shading::sample_pair(path.sampler, CameraPair));
     path.sample.depth = Infinity;
-    path.tell("camera " + text(ray.origin) + " looks along " + text(ray.direction));
+    path.tell([&] { return "camera " + text(ray.origin) + " looks along " + text(ray.direction); });
     // Light scattered up to max_bounces + 1 times is counted, so 0 is direct light (as in Cycles).
     const std::uint64_t max_scatterings = view_.max_bounces == view::UnlimitedBounces
                                               ? ~std::uint64_t{0}
@@ -202,14 +204,16 @@ PathSample PathTracer::trace(std::uint32_t x, std::uint32_t y, std::uint64_t sam
         float distance = 0.0f;
         ++path.rays;
         if (!intersect(ray, path, hit, distance)) {
-            path.tell("leaves the scene");
+            path.tell([&] { return std::string("leaves the scene"); });
             add_sky(path, ray);
             break;
         }
         const Surface surface = make_surface(tables_, hit, ray.direction);
-        path.tell("hits object " + std::to_string(surface.instance->object) + " triangle " +
-                  std::to_string(surface.triangle) + " at " + text(surface.position) + " with normal " +
-                  text(surface.frame[2]) + ", carries " + text(path.throughput));
+        path.tell([&] {
+            return "hits object " + std::to_string(surface.instance->object) + " triangle " +
+                   std::to_string(surface.triangle) + " at " + text(surface.position) + " with normal " +
+                   text(surface.frame[2]) + ", carries " + text(path.throughput);
+        });
         if (path.vertex == 0) {
             path.sample.albedo = surface.albedo;
             path.sample.normal = surface.frame[2];
