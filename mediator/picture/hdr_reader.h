@@ -1,13 +1,20 @@
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
 
 #include "mediator/frame/image.h"
 
 namespace tessera::picture {
 
-// A Radiance picture (.hdr, .pic): three linear components. At most MaxPicturePixels (exr_reader.h). Throws
-// Error{NotFound} without such a file and Error{InvalidInput} when it is damaged or too large for what it is.
+// A Radiance picture (.hdr, .pic; format 32-bit_rle_rgbe, rows from the top): three linear components. At
+// most MaxPicturePixels (exr_reader.h). Throws Error{NotFound} without such a file and Error{InvalidInput}
+// when it is damaged, truncated or too large. The decoder of stb_image 2.27 never returns from a truncated
+// run, hence our own. Source: Ward, "Real Pixels", Graphics Gems II (1991), and its reference reader.
 frame::Image read_hdr(const std::string& path);
+
+// The same from memory; the message does not name the file.
+frame::Image decode_hdr(std::span<const std::byte> bytes);
 
 }  // namespace tessera::picture

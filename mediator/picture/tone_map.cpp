@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "mediator/picture/color.h"
+
 namespace tessera::picture {
 
 namespace {
@@ -12,8 +14,8 @@ double usable(float value) {
     return std::isfinite(value) && value > 0.0f ? static_cast<double>(value) : 0.0;
 }
 
-double luminance(const std::array<double, 3>& c) {
-    return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+double luminance_of(const std::array<double, 3>& c) {
+    return luminance(c[0], c[1], c[2]);
 }
 
 std::array<double, 3> pixel(const frame::Image& image, std::size_t i) {
@@ -22,9 +24,7 @@ std::array<double, 3> pixel(const frame::Image& image, std::size_t i) {
 }
 
 std::uint8_t encode(double linear) {
-    const double c = std::clamp(linear, 0.0, 1.0);
-    const double s = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
-    return static_cast<std::uint8_t>(std::lround(s * 255.0));
+    return static_cast<std::uint8_t>(std::lround(srgb_from_linear(std::clamp(linear, 0.0, 1.0)) * 255.0));
 }
 
 // Black pixels say nothing about the exposure: they are left out of the mean instead of being given a made-up
@@ -38,7 +38,7 @@ Range range_of(const frame::Image& image) {
     double sum = 0.0;
     std::size_t count = 0;
     for (std::size_t i = 0; i < image.pixel_count(); ++i) {
-        const double l = luminance(pixel(image, i));
+        const double l = luminance_of(pixel(image, i));
         if (!(l > 0.0)) continue;
         sum += std::log(l);
         range.largest = std::max(range.largest, l);
@@ -55,11 +55,12 @@ std::vector<std::uint8_t> tone_map(const frame::Image& image, const ToneMapping&
     std::vector<std::uint8_t> bytes(image.pixel_count() * 3, 0);
     const Range range = range_of(image);
     if (range.black) return bytes;
-    const double scale = mapping.key / range.log_mean * std::exp2(static_cast<double>(mapping.exposure));
+    const double scale = mapping.key / range.log_mean *
+                         std::exp2(std::clamp(static_cast<double>(mapping.exposure), -100.0, 100.0));
     const double white = mapping.white > 0.0f ? mapping.white : std::max(range.largest * scale, 1.0);
     for (std::size_t i = 0; i < image.pixel_count(); ++i) {
         const std::array<double, 3> color = pixel(image, i);
-        const double l = luminance(color) * scale;
+        const double l = luminance_of(color) * scale;
         const double factor = scale * (1.0 + l / (white * white)) / (1.0 + l);
         for (std::size_t c = 0; c < 3; ++c) bytes[3 * i + c] = encode(color[c] * factor);
     }
