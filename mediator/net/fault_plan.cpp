@@ -100,7 +100,7 @@ class FaultyChannel final : public Channel {
         }
         FaultyLink& faulty = links_[static_cast<std::size_t>(link)];
         if (is_cut(faulty)) return SendResult::Sent;
-        const auto out = pipe(faulty.out, peer, faulty.plan, 2 * peer);
+        const auto out = pipe(faulty.out, peer, faulty.plan, stream(link, Outward, peer));
         const SendResult result = send_through(out->second, {link, peer, Role::None, {}, {}}, bytes);
         if (result == SendResult::Sent) ++faulty.messages;
         if (result == SendResult::Closed) faulty.out.erase(out);
@@ -116,7 +116,8 @@ class FaultyChannel final : public Channel {
                 FaultyLink& faulty = links_[static_cast<std::size_t>(message->link)];
                 if (is_cut(faulty)) continue;
                 ++faulty.messages;
-                const auto in = pipe(faulty.in, message->peer, faulty.plan, 2 * message->peer + 1);
+                const auto in =
+                    pipe(faulty.in, message->peer, faulty.plan, stream(message->link, Inward, message->peer));
                 in->second.enter(std::move(*message), now());
                 continue;
             }
@@ -139,6 +140,12 @@ class FaultyChannel final : public Channel {
     };
 
     static TimePoint now() { return std::chrono::steady_clock::now(); }
+
+    // Every pipe has chances of its own.
+    enum Direction : std::uint64_t { Outward, Inward };
+    static std::uint64_t stream(Link link, Direction direction, PeerId peer) {
+        return 4 * peer + 2 * direction + static_cast<std::uint64_t>(link);
+    }
 
     static Pipes::iterator pipe(Pipes& pipes, PeerId peer, const FaultPlan& plan, std::uint64_t stream) {
         return pipes.try_emplace(peer, plan, stream).first;
