@@ -1,66 +1,87 @@
 #!/usr/bin/env bash
-# Sets up and does the main job: a master and two nodes as processes of their own (TCP on loopback, CURVE keys made for this
-# run) render a glTF scene by tiles and cooperative samples into out/demo.exr and out/demo.png.
+# Sets up, then renders a glTF scene through a master and two nodes of their own processes, encrypted, and
+# writes out/demo.exr and out/demo.png. Arguments go to the render, as in: deploy/demo.sh --spp 16
 set -euo pipefail
-cd "$(dirname "$0")/.."
-deploy/setup.sh release
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+deploy/setup.sh
 
 bin=build/release/bin
-port=${TESSERA_DEMO_PORT:-7420}
-master=tcp://127.0.0.1:$port
-work=$(mktemp -d)
-started=()
+folder=$(mktemp -d)
+children=()
 
+# Whatever was started ends here, asked first and then made to.
 stop_everything() {
-    trap - EXIT INT TERM
-    # Nodes first, so that they can say goodbye; then whoever does not listen.
-    for ((i = ${#started[@]} - 1; i >= 0; --i)); do kill -TERM "${started[i]}" 2>/dev/null || true; done
-    for _ in $(seq 50); do
-        local left=0
-        for pid in "${started[@]}"; do kill -0 "$pid" 2>/dev/null && left=1; done
-        ((left)) || break
-        sleep 0.1
+    trap '' INT TERM
+    local child waited
+    for child in "${children[@]}"; do kill -TERM "$child" 2>/dev/null || true; done
+    for child in "${children[@]}"; do
+        for ((waited = 0; waited < 50; ++waited)); do
+            kill -0 "$child" 2>/dev/null || break
+            sleep 0.1
+        done
+        kill -KILL "$child" 2>/dev/null || true
+        wait "$child" 2>/dev/null || true
     done
-    for pid in "${started[@]}"; do kill -KILL "$pid" 2>/dev/null || true; done
-    wait 2>/dev/null || true
-    rm -rf "$work"
+    rm -rf "$folder"
 }
 trap stop_everything EXIT
 trap 'exit 130' INT
 trap 'exit 143' TERM
 
-start() {  # start NAME COMMAND...: in the background, with its log
+start() {
     local name=$1
     shift
-    "$@" >"$work/$name.log" 2>&1 &
-    started+=($!)
+    "$@" >"$folder/$name.log" 2>&1 &
+    children+=("$!")
+}
+
+fail() {
+    echo "demo: $1" >&2
+    tail -n 20 "$folder"/*.log >&2 || true
+    exit 1
 }
 
 mkdir -p out
-"$bin/tessera" keys "$work/keys" >/dev/null
-start master "$bin/tessera-master" --listen "$master" --keys "$work/keys"
-start node-1 "$bin/tessera-node" --master "$master" --keys "$work/keys" --name node-1 --threads 1
-start node-2 "$bin/tessera-node" --master "$master" --keys "$work/keys" --name node-2 --threads 1
+keys=$folder/keys
+"$bin/tessera" keys "$keys" >"$folder/keys.log"
 
-# In the background too, so that Ctrl-C reaches this script at once.
-"$bin/tessera" render tests/scenes/studio-1.glb --master "$master" --keys "$work/keys" --wait-nodes 2:60 \
-    --env tests/scenes/env-studio.exr --size 1280x720 --spp "${TESSERA_DEMO_SPP:-64}" --policy mixed \
-    -o out/demo.exr -o out/demo.png --json >"$work/demo.json" &
-started+=($!)
-status=0
-wait "${started[-1]}" || status=$?
-if ((status != 0)); then
-    tail -n 5 "$work"/*.log >&2
-    exit "$status"
-fi
+# Two ports in a row that nobody has; another program may be quicker, then the next are tried.
+for ((attempt = 0; ; ++attempt)); do
+    [ "$attempt" -lt 20 ] || fail "found no free port"
+    endpoint=tcp://127.0.0.1:$((20000 + RANDOM % 12000))
+    start master "$bin/tessera-master" --listen "$endpoint" --keys "$keys"
+    master=${children[-1]}
+    for ((question = 0; question < 20; ++question)); do
+        "$bin/tessera" status --master "$endpoint" --keys "$keys" >"$folder/status.log" 2>&1 && break 2
+        kill -0 "$master" 2>/dev/null || continue 2
+    done
+    fail "the master does not answer"
+done
+for node in 1 2; do
+    start "node-$node" "$bin/tessera-node" --master "$endpoint" --keys "$keys" --threads 1
+done
 
-mv "$work/demo.json" out/demo.json
+echo "demo: rendering tests/scenes/studio-1.glb with two nodes"
+rm -f out/demo.exr out/demo.png out/demo.json
+# In the background, so that a signal is answered at once.
+"$bin/tessera" render tests/scenes/studio-1.glb --master "$endpoint" --keys "$keys" --wait-nodes 2:30 \
+    -o out/demo.exr -o out/demo.png --spp 64 --size 1280x720 --policy mixed --json "$@" >"$folder/demo.json" &
+render=$!
+children+=("$render")
+wait "$render" || fail "the render failed"
+mv "$folder/demo.json" out/demo.json
+
 jq -r '
-  "rendered  \(.width)x\(.height), \(.spp) samples per pixel, \(.triangles) triangles, \(.lights) lights",
-  "time      \(.seconds_render * 100 | round / 100) s rendering, first picture after \(.first_picture_seconds * 100 | round / 100) s",
-  "speed     \(.mrays_per_second * 100 | round / 100) Mrays/s, \(.samples_per_second / 1e4 | round / 100) Msamples/s",
-  (.nodes[] | "node      pid \(.pid): \(.units) units, \(.samples) samples (\(.kind))"),
-  "units     \(.units.merged) merged, \(.units.reissued) reissued, \(.units.duplicate) duplicate, \(.units.lost) lost",
-  "wire      \(.wire_bytes.film / 1e6 | round) MB film, \(.wire_bytes.blobs / 1e3 | round) kB scene, \(.wire_bytes.control / 1e3 | round) kB control",
-  "film      \(.film_hash)",
-  "pictures  out/demo.exr, out/demo.png; figures in out/demo.json"' out/demo.json
+    def rounded(digits): . * pow(10; digits) | round / pow(10; digits);
+    def mib: . / 1048576 | rounded(1);
+    "",
+    "  picture     \(.width) x \(.height), \(.spp) samples per pixel, \(.triangles) triangles, \(.instances) instances, \(.lights) lights",
+    "  time        \(.seconds_render | rounded(2)) s rendering, \(.seconds_total | rounded(2)) s in all, first picture after \(.first_picture_seconds | rounded(2)) s",
+    "  speed       \(.mrays_per_second | rounded(2)) Mray/s, \(.samples_per_second / 1e6 | rounded(3)) Msamples/s",
+    (.samples_total = ([.nodes[].samples] | add) | .samples_total as $all | .nodes[] |
+    "  node \(.id)      pid \(.pid), \(.kind): \(.units) units, \(100 * .samples / ([$all, 1] | max) | rounded(1)) % of the samples"),
+    "  units       \(.units.issued) issued, \(.units.merged) merged, \(.units.reissued) reissued, \(.units.lost) lost",
+    "  network     \(.wire_bytes.film | mib) MiB film, \(.wire_bytes.blobs | mib) MiB scene, \(.wire_bytes.control | mib) MiB control, encrypted with CURVE",
+    "  film hash   \(.film_hash)"
+' out/demo.json
+echo "  files       out/demo.exr  out/demo.png  out/demo.json"

@@ -1,29 +1,52 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that are missing, then configures and builds the preset (default: release).
-# A second run installs and builds nothing. Usage: deploy/setup.sh [PRESET]
+# Installs the Debian packages that are missing, configures and builds the release. Again: does nothing.
 set -euo pipefail
-cd "$(dirname "$0")/.."
-preset=${1:-release}
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-missing=()
-while read -r package; do
-    status=$(dpkg-query -W -f='${db:Status-Abbrev}' "$package" 2>/dev/null || true)
-    [[ $status == ii* ]] || missing+=("$package")
-done < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' deploy/packages.txt)
+missing_packages() {
+    local package
+    while read -r package; do
+        if ! dpkg-query -W -f='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed; then
+            printf '%s\n' "$package"
+        fi
+    done < <(sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' deploy/packages.txt)
+}
 
-if ((${#missing[@]} > 0)); then
-    sudo=()
-    if ((EUID != 0)); then
-        command -v sudo >/dev/null || { echo "setup: run as root or install sudo; missing: ${missing[*]}" >&2; exit 1; }
-        sudo=(sudo)
+as_root() {
+    if [ "$(id -u)" -eq 0 ]; then
+        "$@"
+    elif command -v sudo >/dev/null; then
+        sudo "$@"
+    else
+        echo "setup: packages are missing (${missing[*]}): run this as root, or install sudo" >&2
+        exit 1
     fi
-    echo "setup: installing ${missing[*]}"
-    "${sudo[@]}" apt-get update -qq
-    "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+}
+
+# Silent unless it fails.
+quietly() {
+    local log
+    log=$(mktemp)
+    if ! "$@" >"$log" 2>&1; then
+        cat "$log" >&2
+        rm -f "$log"
+        echo "setup: failed: $*" >&2
+        exit 1
+    fi
+    rm -f "$log"
+}
+
+if ! command -v dpkg-query >/dev/null; then
+    echo "setup: this is no Debian: install what deploy/packages.txt lists in your system's way" >&2
+    exit 1
+fi
+mapfile -t missing < <(missing_packages)
+if [ "${#missing[@]}" -gt 0 ]; then
+    echo "setup: installing ${#missing[@]} packages"
+    quietly as_root apt-get -qq update
+    quietly as_root env DEBIAN_FRONTEND=noninteractive \
+        apt-get -qq install -y --no-install-recommends "${missing[@]}"
 fi
 
-# Configuring tells of a Python library that Imath's package names and nobody here needs; only errors matter.
-log=$(mktemp)
-trap 'rm -f "$log"' EXIT
-cmake --preset "$preset" >"$log" 2>&1 || { cat "$log" >&2; exit 1; }
-cmake --build --preset "$preset" --parallel "${TESSERA_BUILD_JOBS:-$(nproc)}"
+quietly cmake --preset release
+cmake --build --preset release --parallel "$(nproc)"
