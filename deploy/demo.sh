@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Sets up, then renders a glTF scene through a master and two nodes of their own processes, encrypted, and
-# writes out/demo.exr and out/demo.png. Arguments go to the render, as in: deploy/demo.sh --spp 16
+# Sets up and does the main job: a master and two nodes as processes of their own (TCP on loopback, CURVE keys
+# made for this run) render a glTF scene by tiles and cooperative samples into out/demo.exr and out/demo.png.
+# Arguments go to the render, as in: deploy/demo.sh --spp 16
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-deploy/setup.sh
+deploy/setup.sh release
 
 bin=build/release/bin
 folder=$(mktemp -d)
@@ -12,8 +13,9 @@ children=()
 # Whatever was started ends here, asked first and then made to.
 stop_everything() {
     trap '' INT TERM
-    local child waited
-    for child in "${children[@]}"; do kill -TERM "$child" 2>/dev/null || true; done
+    local i child waited
+    # Nodes before the master, so that they can say goodbye.
+    for ((i = ${#children[@]} - 1; i >= 0; --i)); do kill -TERM "${children[i]}" 2>/dev/null || true; done
     for child in "${children[@]}"; do
         for ((waited = 0; waited < 50; ++waited)); do
             kill -0 "$child" 2>/dev/null || break
@@ -37,8 +39,8 @@ start() {
 
 fail() {
     echo "demo: $1" >&2
-    tail -n 20 "$folder"/*.log >&2 || true
-    exit 1
+    tail -n 5 "$folder"/*.log >&2 || true
+    exit "${2:-1}"
 }
 
 mkdir -p out
@@ -48,7 +50,7 @@ keys=$folder/keys
 # Two ports in a row that nobody has; another program may be quicker, then the next are tried.
 for ((attempt = 0; ; ++attempt)); do
     [ "$attempt" -lt 20 ] || fail "found no free port"
-    endpoint=tcp://127.0.0.1:$((20000 + RANDOM % 12000))
+    endpoint=tcp://127.0.0.1:${TESSERA_DEMO_PORT:-$((20000 + RANDOM % 12000))}
     start master "$bin/tessera-master" --listen "$endpoint" --keys "$keys"
     master=${children[-1]}
     for ((question = 0; question < 20; ++question)); do
@@ -58,17 +60,21 @@ for ((attempt = 0; ; ++attempt)); do
     fail "the master does not answer"
 done
 for node in 1 2; do
-    start "node-$node" "$bin/tessera-node" --master "$endpoint" --keys "$keys" --threads 1
+    start "node-$node" "$bin/tessera-node" --master "$endpoint" --keys "$keys" \
+        --name "node-$node" --threads 1
 done
 
 echo "demo: rendering tests/scenes/studio-1.glb with two nodes"
 rm -f out/demo.exr out/demo.png out/demo.json
 # In the background, so that a signal is answered at once.
-"$bin/tessera" render tests/scenes/studio-1.glb --master "$endpoint" --keys "$keys" --wait-nodes 2:30 \
-    -o out/demo.exr -o out/demo.png --spp 64 --size 1280x720 --policy mixed --json "$@" >"$folder/demo.json" &
+"$bin/tessera" render tests/scenes/studio-1.glb --master "$endpoint" --keys "$keys" --wait-nodes 2:60 \
+    --env tests/scenes/env-studio.exr --size 1280x720 --spp "${TESSERA_DEMO_SPP:-64}" --policy mixed \
+    -o out/demo.exr -o out/demo.png --json "$@" >"$folder/demo.json" &
 render=$!
 children+=("$render")
-wait "$render" || fail "the render failed"
+status=0
+wait "$render" || status=$?
+((status == 0)) || fail "the render failed" "$status"
 mv "$folder/demo.json" out/demo.json
 
 jq -r '

@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that are missing, configures and builds the release. Again: does nothing.
+# Installs the Debian packages that are missing, then configures and builds the preset (default: release).
+# A second run installs and builds nothing. Usage: deploy/setup.sh [PRESET]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+preset=${1:-release}
 
 missing_packages() {
     local package
@@ -48,5 +50,6 @@ if [ "${#missing[@]}" -gt 0 ]; then
         apt-get -qq install -y --no-install-recommends "${missing[@]}"
 fi
 
-quietly cmake --preset release
-cmake --build --preset release --parallel "$(nproc)"
+# Configuring tells of a Python library that Imath's package names and nobody here needs; only errors matter.
+quietly cmake --preset "$preset"
+cmake --build --preset "$preset" --parallel "${TESSERA_BUILD_JOBS:-$(nproc)}"

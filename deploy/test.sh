@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Sets up, builds and runs every test. Arguments go to ctest, as in: deploy/test.sh -L unit
+# Sets up, builds and runs every test. Usage: deploy/test.sh [ctest options], for example: deploy/test.sh -L numerics
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-deploy/setup.sh
-exec ctest --test-dir build/release --output-on-failure --no-tests=error -j2 "$@"
+deploy/setup.sh release
+exec ctest --test-dir build/release --output-on-failure --no-tests=error --parallel "$(nproc)" "$@"
