@@ -1,0 +1,179 @@
+#!/usr/bin/env python3
+"""Checks the include arrows, file sizes and a few conventions that the README promises.
+
+Usage: check_rules.py ROOT. Prints one line per violation and exits 1 if there is any.
+"""
+
+import os
+import re
+import sys
+
+CORE = ["mediator/base", "mediator/scene", "mediator/view", "mediator/frame", "mediator/filter"]
+KIT = CORE + ["mediator/backend", "mediator/shading"]
+LINK = ["mediator/net", "mediator/wire"]
+
+# Folder or file -> what its sources may include, besides their own folder. The longest match counts; "" is
+# the permission to include everything.
+ARROWS = {
+    "mediator/base": [],
+    "mediator/scene": ["mediator/base"],
+    "mediator/frame": ["mediator/base", "mediator/scene"],
+    "mediator/view": ["mediator/base", "mediator/scene", "mediator/frame"],
+    "mediator/filter": CORE,
+    "mediator/shading": CORE,
+    "mediator/backend": KIT,
+    "mediator/picture": CORE,
+    "mediator/net": CORE,
+    "mediator/wire": CORE + ["proto"],
+    "backends": KIT + ["backends"],
+    "backends/null": KIT,
+    "backends/embree": KIT,
+    "backends/vulkan": KIT,
+    "node": KIT + LINK,
+    "node/config.h": KIT + LINK + ["client/cli"],
+    "node/config.cpp": KIT + LINK + ["client/cli"],
+    "node/main.cpp": KIT + LINK + ["client/cli"],
+    "master": CORE + LINK + ["mediator/picture"],
+    "master/schedule": CORE + ["mediator/wire"],
+    "master/filter": KIT,
+    "master/config.h": CORE + LINK + ["client/cli"],
+    "master/config.cpp": CORE + LINK + ["client/cli"],
+    "master/main.cpp": CORE + LINK + ["mediator/picture", "client/cli"],
+    "client": CORE + LINK + ["client/import", "mediator/picture"],
+    "client/session.h": CORE + ["client/import", "mediator/picture"],
+    "client/import": CORE + ["mediator/picture"],
+    "client/cli": ["mediator/base"],
+    "client/main.cpp": [""],
+    "client/tools": [""],
+    "client/display": [""],
+    "client/web": [""],
+    "tests": [""],
+}
+
+PROGRAMS = ["client/cli/", "client/tools/", "client/main.cpp", "master/main.cpp", "node/main.cpp"]
+EVERYWHERE = r"\.(h|cpp)$"
+SOURCES = r"\.cpp$"
+
+# Outside library (as included) -> where it may be included, in which files.
+LIBRARIES = [
+    (r"zmq.*\.h(pp)?$", ["mediator/net/", "tests/net/"], EVERYWHERE),
+    (r"sodium", ["mediator/base/"], SOURCES),
+    (r"google/protobuf/|.*\.pb\.h$", ["mediator/wire/", "tests/wire/"], EVERYWHERE),
+    (r"(spdlog|CLI|nlohmann|toml\+\+)/", PROGRAMS + ["tests/"], SOURCES),
+    (r"embree\d/", ["backends/embree/"], EVERYWHERE),
+    (r"vulkan/", ["backends/vulkan/", "client/tools/"], EVERYWHERE),
+    (r"(OpenEXR/|Imath/)?(Imf|Imath|Iex|half)\w*\.h$", ["mediator/picture/", "client/import/", "tests/"],
+     EVERYWHERE),
+    (r"png\.h$|jpeglib\.h$|turbojpeg\.h$", ["mediator/picture/", "tests/"], EVERYWHERE),
+    (r"stb/", ["mediator/picture/", "client/import/", "tests/"], SOURCES),
+    (r"tiny_gltf|assimp/|draco/|pugi", ["client/import/", "tests/"], EVERYWHERE),
+    (r"(gtest|gmock|benchmark)/", ["tests/"], EVERYWHERE),
+]
+
+TOP_FOLDERS = {"mediator", "backends", "node", "master", "client", "tests", "proto", "deploy"}
+LIMIT, TEST_LIMIT = 450, 600
+CODE = (".h", ".cpp")
+MEASURED = CODE + (".proto", ".py", ".sh", ".cmake", "CMakeLists.txt", ".comp", ".glsl")
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+
+def rule_for(path):
+    """The entry of ARROWS that stands for a path, longest first; None when no rule knows the folder."""
+    while path:
+        if path in ARROWS:
+            return path
+        path = os.path.dirname(path)
+    return None
+
+
+def may_include(path, included):
+    if "/" not in included or included.split("/")[0] not in TOP_FOLDERS:
+        return "is not written from the repository root"
+    rule = rule_for(path)
+    if rule is None:
+        return f"has no rule in tests/rules for {os.path.dirname(path)}"
+    own = os.path.dirname(path)
+    target = os.path.dirname(included)
+    if target == own:
+        return None
+    for allowed in ARROWS[rule]:
+        if allowed == "" or target == allowed or target.startswith(allowed + "/"):
+            return None
+    # A folder may use what lies below it only when it is one target with it.
+    if own == "master" and target in ("master/schedule", "master/filter"):
+        return None
+    return f"is not allowed for {rule}"
+
+
+def may_use_library(path, included):
+    for pattern, places, files in LIBRARIES:
+        if re.match(pattern, included):
+            if not any(path.startswith(place) for place in places):
+                return "belongs only into " + ", ".join(places)
+            if not path.startswith("tests/") and not re.search(files, path):
+                return "belongs only into .cpp files"
+    return None
+
+
+def check_code(path, lines):
+    for number, line in enumerate(lines, 1):
+        found = INCLUDE.match(line)
+        if found:
+            quoted, included = found.group(1) == '"', found.group(2)
+            reason = may_use_library(path, included)
+            if reason is None and quoted:
+                reason = may_include(path, included)
+            if reason:
+                yield f"{path}:{number}: include of {included} {reason}"
+        elif path.endswith(".h") and re.match(r"\s*using\s+namespace\b", line):
+            yield f"{path}:{number}: using namespace in a header"
+    if path.endswith(".h") and not any(line.strip() == "#pragma once" for line in lines):
+        yield f"{path}: header without #pragma once"
+
+
+def check_file(path, text):
+    lines = text.splitlines()
+    limit = TEST_LIMIT if path.startswith("tests/") else LIMIT
+    if path.endswith(MEASURED) and len(lines) > limit:
+        yield f"{path}: {len(lines)} lines, more than {limit}: it holds more than one idea"
+    if path.endswith(CODE):
+        yield from check_code(path, lines)
+    if path.endswith(("CMakeLists.txt", ".cmake")):
+        for number, line in enumerate(lines, 1):
+            if re.search(r"\bfile\s*\(\s*GLOB", line, re.IGNORECASE):
+                yield f"{path}:{number}: file(GLOB): list the sources"
+
+
+def files_below(root):
+    for folder, folders, names in os.walk(root):
+        below = os.path.relpath(folder, root)
+        folders[:] = sorted(name for name in folders
+                            if not name.startswith(".") and not (below == "." and name in ("build", "out")))
+        for name in sorted(names):
+            if name.endswith(MEASURED):
+                yield os.path.normpath(os.path.join(below, name)).replace(os.sep, "/")
+
+
+def check_tree(root):
+    """All violations below `root`, and the number of files that were looked at."""
+    violations, count = [], 0
+    for path in files_below(root):
+        with open(os.path.join(root, path), encoding="utf-8") as file:
+            violations += check_file(path, file.read())
+        count += 1
+    return violations, count
+
+
+def main():
+    if len(sys.argv) != 2:
+        print(__doc__, file=sys.stderr)
+        return 64
+    violations, count = check_tree(sys.argv[1])
+    for violation in violations:
+        print(violation)
+    print(f"{count} files, {len(violations)} violations")
+    return 1 if violations or count == 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
