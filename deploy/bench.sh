@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# Sets up, builds and runs the benchmarks, one after the other; each figure stands next to the limit that bounds it.
+# Usage: deploy/bench.sh [Google Benchmark options]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+deploy/setup.sh release
+for bench in film embree; do
+    echo "== $bench"
+    "build/release/bin/tessera_${bench}_bench" "$@"
+done

@@ -1,0 +1,134 @@
+// The path tracer next to its limit: Embree's bare ray rate on the same scene, one ray at a time, on one
+// thread.
+#include <benchmark/benchmark.h>
+#include <embree3/rtcore.h>
+
+#include <limits>
+
+#include "backends/embree/path_tracer.h"
+#include "backends/embree/surface.h"
+#include "backends/embree/world.h"
+#include "client/import/import.h"
+#include "mediator/shading/sampling.h"
+
+namespace {
+
+using namespace tessera;
+
+constexpr std::uint32_t Size = 256;
+
+struct Bed {
+    std::shared_ptr<scene::BlobStore> blobs = std::make_shared<scene::BlobStore>();
+    embree::DeviceHandle device = embree::make_device({.threads = 1, .blobs = blobs});
+    embree::World world{device.get(), blobs};
+    view::View view;
+
+    explicit Bed(const std::string& file) {
+        auto imported = import::import_scene(std::string(TESSERA_SCENES) + "/" + file, {});
+        if (!imported) throw imported.error();
+        for (const auto& blob : imported->blobs) blobs->insert(blob);
+        scene::Scene scene;
+        if (auto applied = scene.apply_entries(import::entries(*imported, import::RootEntry::Create));
+            !applied) {
+            throw applied.error();
+        }
+        scene.set_version({1, 1});
+        if (auto applied = world.apply(scene::snapshot(scene)); !applied) throw applied.error();
+        if (auto committed = world.commit(); !committed) throw committed.error();
+        const auto& camera = imported->cameras.at(0);
+        view.width = view.height = Size;
+        view.camera = view::perspective(camera.world_from_camera, camera.vertical_fov, 1.0);
+        view.channels = {frame::Channel::Radiance};
+    }
+};
+
+const Bed& bed() {
+    static const Bed room("room-1.glb");
+    return room;
+}
+
+RTCRayHit ray_hit(const glm::vec3& origin, const glm::vec3& direction) {
+    RTCRayHit query{};
+    query.ray = {origin.x,    origin.y,    origin.z,
+                 0.0f,        direction.x, direction.y,
+                 direction.z, 0.0f,        std::numeric_limits<float>::infinity(),
+                 ~0u,         0,           0};
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    return query;
+}
+
+std::vector<RTCRayHit> camera_rays() {
+    const glm::dmat4& m = bed().view.camera.world_from_camera;
+    std::vector<RTCRayHit> rays;
+    for (std::uint32_t y = 0; y < Size; ++y) {
+        for (std::uint32_t x = 0; x < Size; ++x) {
+            const auto& c = bed().view.camera;
+            const glm::dvec3 local(c.left + (c.right - c.left) * (x + 0.5) / Size,
+                                   c.top + (c.bottom - c.top) * (y + 0.5) / Size, -1.0);
+            rays.push_back(ray_hit(glm::vec3(m[3]), glm::vec3(glm::normalize(glm::dmat3(m) * local))));
+        }
+    }
+    return rays;
+}
+
+std::vector<RTCRayHit> bounce_rays() {
+    std::vector<RTCRayHit> bounces;
+    std::uint32_t index = 0;
+    for (RTCRayHit query : camera_rays()) {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        rtcIntersect1(bed().world.scene(), &context, &query);
+        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
+        const glm::vec3 direction(query.ray.dir_x, query.ray.dir_y, query.ray.dir_z);
+        const embree::Surface surface = embree::make_surface(bed().world.tables(), query.hit, direction);
+        const glm::vec2 u = shading::sample_pair({index, shading::hash_u32(index)}, 0);
+        ++index;
+        const glm::vec3 out = surface.to_world(shading::sample_cosine_hemisphere(u));
+        bounces.push_back(ray_hit(
+            embree::leave_surface({surface.position, surface.error}, surface.geometric_normal, out), out));
+    }
+    return bounces;
+}
+
+void trace_bare(benchmark::State& state, const std::vector<RTCRayHit>& rays) {
+    for (auto _ : state) {
+        for (RTCRayHit query : rays) {
+            RTCIntersectContext context;
+            rtcInitIntersectContext(&context);
+            rtcIntersect1(bed().world.scene(), &context, &query);
+            benchmark::DoNotOptimize(query);
+        }
+    }
+    state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * rays.size()));
+}
+
+void bare_camera_rays(benchmark::State& state) {
+    trace_bare(state, camera_rays());
+}
+void bare_bounce_rays(benchmark::State& state) {
+    trace_bare(state, bounce_rays());
+}
+BENCHMARK(bare_camera_rays)->Unit(benchmark::kMillisecond);
+BENCHMARK(bare_bounce_rays)->Unit(benchmark::kMillisecond);
+
+// items = rays: divide by bare_bounce_rays for the share of the limit.
+void path_tracer_rays(benchmark::State& state) {
+    const embree::PathTracer tracer(bed().world.tables(), bed().world.scene(), bed().view);
+    std::uint64_t rays = 0, sample = 0;
+    for (auto _ : state) {
+        for (std::uint32_t y = 0; y < Size; ++y) {
+            for (std::uint32_t x = 0; x < Size; ++x)
+                benchmark::DoNotOptimize(tracer.trace(x, y, sample, rays));
+        }
+        ++sample;
+    }
+    state.SetItemsProcessed(static_cast<std::int64_t>(rays));
+    state.counters["samples/s"] =
+        benchmark::Counter(static_cast<double>(sample) * Size * Size, benchmark::Counter::kIsRate);
+}
+BENCHMARK(path_tracer_rays)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();
