@@ -4,9 +4,6 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
-#include <ImfStdIO.h>
-#include <ImfTileDescription.h>
-#include <ImfTileDescriptionAttribute.h>
 
 #include <algorithm>
 #include <exception>
@@ -15,6 +12,7 @@
 #include <set>
 
 #include "mediator/base/error.h"
+#include "mediator/picture/exr_header.h"
 
 namespace tessera::picture {
 
@@ -22,29 +20,6 @@ namespace {
 
 Error damaged(const std::string& reason) {
     return Error(ErrorCode::InvalidInput, reason);
-}
-
-// Before OpenEXR allocates anything by what the header claims.
-Rect checked_window(const Imf::Header& header) {
-    const Imath::Box2i data = header.dataWindow();
-    const std::int64_t width = std::int64_t{data.max.x} - data.min.x + 1;
-    const std::int64_t height = std::int64_t{data.max.y} - data.min.y + 1;
-    constexpr std::int64_t MaxPlace = std::int64_t{1} << 30;
-    if (width < 1 || height < 1 || std::abs(std::int64_t{data.min.x}) > MaxPlace ||
-        std::abs(std::int64_t{data.min.y}) > MaxPlace) {
-        throw damaged("its data window is empty or out of range: write it again");
-    }
-    if (width > MaxPicturePixels || height > MaxPicturePixels || width * height > MaxPicturePixels) {
-        throw damaged("it claims " + std::to_string(width) + " x " + std::to_string(height) +
-                      " pixels, more than the " + std::to_string(MaxPicturePixels) +
-                      " that are read: scale it down");
-    }
-    if (header.hasTileDescription()) {
-        const Imf::TileDescription& tiles = header.tileDescription();
-        if (std::int64_t{tiles.xSize} * tiles.ySize > MaxPicturePixels)
-            throw damaged("its tiles are too large: write it again with smaller ones");
-    }
-    return {data.min.x, data.min.y, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
 }
 
 struct ChannelName {
@@ -94,16 +69,9 @@ std::vector<std::string> channels_of(const Imf::ChannelList& channels, const std
 }
 
 Picture read(const std::string& path, const std::string& layer) {
-    Imf::StdIFStream stream(path.c_str());
-    Imf::Header first_header;
-    int version = 0;
-    first_header.readFrom(stream, version);
     Picture picture;
-    picture.window = checked_window(first_header);
-    stream.clear();
-    stream.seekg(0);
-
-    Imf::InputFile input(stream, 0);
+    picture.window = checked_exr_window(path);
+    Imf::InputFile input(path.c_str(), 0);
     const Rect& window = picture.window;
     const std::vector<std::string> names = channels_of(input.header().channels(), layer);
     picture.image =

@@ -17,10 +17,8 @@ struct Picture {
 // One layer of an OpenEXR file, scan lines or tiles (of the finest level), half, float or integer, as floats;
 // layer "" is the channels without a layer's name. Components come as R G B where the layer has these three
 // (A is left out), else as X Y Z, else every channel of the layer in the order of its name. At most
-// MaxPicturePixels. Throws Error{NotFound} without such a file, Error{InvalidInput} when it is damaged, too
-// large or has no such layer (the message lists those it has).
+// MaxPicturePixels (exr_header.h). Throws Error{NotFound} without such a file, Error{InvalidInput} when it is
+// damaged, too large or has no such layer (the message lists those it has).
 Picture read_exr(const std::string& path, const std::string& layer = "");
-
-inline constexpr std::int64_t MaxPicturePixels = std::int64_t{64} << 20;
 
 }  // namespace tessera::picture

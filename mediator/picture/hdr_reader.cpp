@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "mediator/base/error.h"
-#include "mediator/picture/exr_reader.h"
+#include "mediator/picture/exr_header.h"
 
 namespace tessera::picture {
 

@@ -9,7 +9,7 @@
 namespace tessera::picture {
 
 // A Radiance picture (.hdr, .pic; format 32-bit_rle_rgbe, rows from the top): three linear components. At
-// most MaxPicturePixels (exr_reader.h). Throws Error{NotFound} without such a file and Error{InvalidInput}
+// most MaxPicturePixels (exr_header.h). Throws Error{NotFound} without such a file and Error{InvalidInput}
 // when it is damaged, truncated or too large. The decoder of stb_image 2.27 never returns from a truncated
 // run, hence our own. Source: Ward, "Real Pixels", Graphics Gems II (1991), and its reference reader.
 frame::Image read_hdr(const std::string& path);
