@@ -30,23 +30,23 @@ inline std::uint32_t reverse_bits(std::uint32_t x) {
     return (x >> 16) | (x << 16);
 }
 
-inline std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
-    x = reverse_bits(x);
+// Owen scrambling of a number whose bits are reversed: a bit is flipped by a hash of the lower ones.
+inline std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) {
     x ^= x * 0x3d20adeau;
     x += seed;
     x *= (seed >> 16) | 1u;
     x ^= x * 0x05526c56u;
-    x ^= x * 0x53a22864u;
-    return reverse_bits(x);
+    return x ^ x * 0x53a22864u;
 }
 
-// The second Sobol dimension (x + 1); the first is the bit reversal.
-inline std::uint32_t sobol_second(std::uint32_t index) {
-    std::uint32_t result = 0;
-    for (std::uint32_t direction = 0x80000000u; index != 0u; index >>= 1, direction ^= direction >> 1) {
-        if ((index & 1u) != 0u) result ^= direction;
-    }
-    return result;
+// The second Sobol dimension (x + 1) of a reversed index: Pascal's triangle modulo 2, doubled five times
+// (Ahmed 2024). The first dimension is the reversed index itself.
+inline std::uint32_t sobol_second(std::uint32_t reversed) {
+    reversed ^= reversed << 16;
+    reversed ^= (reversed & 0x00ff00ffu) << 8;
+    reversed ^= (reversed & 0x0f0f0f0fu) << 4;
+    reversed ^= (reversed & 0x33333333u) << 2;
+    return reversed ^ (reversed & 0x55555555u) << 1;
 }
 
 inline float unit_float(std::uint32_t bits) {
@@ -68,9 +68,10 @@ inline Sampler make_sampler(std::uint32_t x, std::uint32_t y, std::uint64_t seed
 
 inline glm::vec2 sample_pair(const Sampler& sampler, std::uint32_t pair) {
     const std::uint32_t seed = hash_combine(sampler.seed, pair);
-    const std::uint32_t index = owen_scramble(sampler.index, seed);
-    const std::uint32_t x = owen_scramble(reverse_bits(index), hash_combine(seed, 1u));
-    const std::uint32_t y = owen_scramble(sobol_second(index), hash_combine(seed, 2u));
+    const std::uint32_t reversed = scramble_reversed(reverse_bits(sampler.index), seed);
+    const std::uint32_t x = reverse_bits(scramble_reversed(reverse_bits(reversed), hash_combine(seed, 1u)));
+    const std::uint32_t y =
+        reverse_bits(scramble_reversed(reverse_bits(sobol_second(reversed)), hash_combine(seed, 2u)));
     return glm::vec2(unit_float(x), unit_float(y));
 }
 
