@@ -21,7 +21,7 @@ def commands(readme: str) -> list[str]:
 
 
 def main() -> int:
-    source, programs = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    source, programs = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
     lines = commands((source / "README.md").read_text())
     if not lines:
         print("the README shows no command any more")
