@@ -16,6 +16,7 @@ struct Bsdf {
     glm::vec3 diffuse;     // albedo of the base
     glm::vec3 f0;          // specular reflectance at normal incidence
     float coat_f0;         // of the dielectric part: what the diffuse lobe loses
+    float f90, coat_f90;   // reflectance at grazing: 1, or 0 where there is no interface (index of refraction 1)
     float alpha;           // roughness^2
     float specular_share;  // probability of sampling the specular lobe
 };
@@ -37,15 +38,17 @@ inline Bsdf make_bsdf(const glm::vec3& base_color, float metallic, float roughne
     bsdf.coat_f0 = r * r;
     bsdf.diffuse = base_color * (1.0f - metallic);
     bsdf.f0 = glm::vec3(bsdf.coat_f0) * (1.0f - metallic) + base_color * metallic;
+    bsdf.f90 = largest(bsdf.f0) > 0.0f ? 1.0f : 0.0f;
+    bsdf.coat_f90 = bsdf.coat_f0 > 0.0f ? 1.0f : 0.0f;
     bsdf.alpha = std::fmax(roughness * roughness, MinAlpha);
     const float fresnel = schlick_weight(cos_out);
-    const float specular = luminance(bsdf.f0 + (1.0f - bsdf.f0) * fresnel);
-    const float diffuse = luminance(bsdf.diffuse) * (1.0f - bsdf.coat_f0) * (1.0f - fresnel);
+    const float specular = luminance(bsdf.f0 + (bsdf.f90 - bsdf.f0) * fresnel);
+    const float diffuse = luminance(bsdf.diffuse) * (1.0f - bsdf.coat_f0) * (1.0f - bsdf.coat_f90 * fresnel);
     const float sum = specular + diffuse;
     // Never 0 or 1 while both lobes are there, so that no light is out of reach.
     bsdf.specular_share = sum > 0.0f ? std::fmin(std::fmax(specular / sum, 0.1f), 0.9f) : 0.5f;
     if (!(largest(bsdf.diffuse) > 0.0f)) bsdf.specular_share = 1.0f;
-    if (!(largest(bsdf.f0) > 0.0f)) bsdf.specular_share = std::fmin(bsdf.specular_share, 0.5f);
+    if (!(bsdf.f90 > 0.0f)) bsdf.specular_share = 0.0f;
     return bsdf;
 }
 
@@ -92,12 +95,12 @@ inline BsdfValue evaluate_bsdf(const Bsdf& bsdf, const glm::vec3& out, const glm
         const glm::vec3 h = sum / std::sqrt(length2);
         const float distribution = ggx_distribution(h, bsdf.alpha);
         const float lambda_out = smith_lambda(out, bsdf.alpha), lambda_in = smith_lambda(in, bsdf.alpha);
-        const glm::vec3 fresnel = bsdf.f0 + (1.0f - bsdf.f0) * schlick_weight(dot(in, h));
+        const glm::vec3 fresnel = bsdf.f0 + (bsdf.f90 - bsdf.f0) * schlick_weight(dot(in, h));
         result.value = fresnel * (distribution / (4.0f * out.z * (1.0f + lambda_out + lambda_in)));
         result.pdf = bsdf.specular_share * distribution / (4.0f * out.z * (1.0f + lambda_out));
     }
-    const float keeps_in = 1.0f - (bsdf.coat_f0 + (1.0f - bsdf.coat_f0) * schlick_weight(in.z));
-    const float keeps_out = 1.0f - (bsdf.coat_f0 + (1.0f - bsdf.coat_f0) * schlick_weight(out.z));
+    const float keeps_in = 1.0f - (bsdf.coat_f0 + (bsdf.coat_f90 - bsdf.coat_f0) * schlick_weight(in.z));
+    const float keeps_out = 1.0f - (bsdf.coat_f0 + (bsdf.coat_f90 - bsdf.coat_f0) * schlick_weight(out.z));
     result.value += bsdf.diffuse * (keeps_in * keeps_out * in.z / Pi);
     result.pdf += (1.0f - bsdf.specular_share) * in.z / Pi;
     return result;
