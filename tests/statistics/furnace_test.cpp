@@ -1,0 +1,113 @@
+// White furnace: in a closed box whose walls emit 1 and reflect the share a, radiance is the geometric
+// series.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "backends/embree/path_tracer.h"
+#include "backends/embree/world.h"
+
+namespace tessera::embree {
+namespace {
+
+using namespace scene;
+
+struct Furnace {
+    std::shared_ptr<BlobStore> blobs = std::make_shared<BlobStore>();
+    DeviceHandle device = make_device({.threads = 1, .blobs = blobs});
+    World world{device.get(), blobs};
+
+    explicit Furnace(float albedo) {
+        std::array<glm::vec3, 8> corners;
+        for (unsigned i = 0; i < 8; ++i) {
+            corners[i] = {(i & 1u) ? 1.0f : -1.0f, (i & 2u) ? 1.0f : -1.0f, (i & 4u) ? 1.0f : -1.0f};
+        }
+        constexpr std::array<std::uint32_t, 36> Triangles{0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6,
+                                                          0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7,
+                                                          0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+        const BlobPtr positions = blobs->insert(std::as_bytes(std::span(corners)));
+        const BlobPtr indices = blobs->insert(std::as_bytes(std::span(Triangles)));
+        const Root root{.children = {ObjectId{2}}};
+        const Geometry box{
+            .material = ObjectId{3}, .indices = reference(*indices), .positions = reference(*positions)};
+        // Index of refraction 1: no interface, so nothing but the diffuse lobe.
+        const Material walls{.base_color = {albedo, albedo, albedo, 1.0f},
+                             .emission = glm::vec3(1.0f),
+                             .double_sided = true,
+                             .index_of_refraction = 1.0f};
+        Scene scene;
+        EXPECT_TRUE(scene.apply_entries(
+            {Create{RootId, root}, Create{ObjectId{2}, box}, Create{ObjectId{3}, walls}}));
+        scene.set_version({1, 1});
+        EXPECT_TRUE(world.apply(snapshot(scene)));
+        EXPECT_TRUE(world.commit());
+    }
+};
+
+struct Estimate {
+    double mean = 0, standard_error = 0;
+};
+
+Estimate radiance(const Furnace& furnace, std::uint32_t max_bounces, Strategy strategy, std::uint64_t spp) {
+    view::View view;
+    view.width = view.height = 64;
+    view.seed = 7;
+    view.camera = view::perspective(glm::dmat4(1.0), 1.0, 1.0);
+    view.max_bounces = max_bounces;
+    const PathTracer tracer(furnace.world.tables(), furnace.world.scene(), view, strategy);
+    double sum = 0, squares = 0, count = 0;
+    std::uint64_t rays = 0;
+    for (std::uint64_t sample = 0; sample < spp; ++sample) {
+        for (std::uint32_t y = 0; y < view.height; ++y) {
+            for (std::uint32_t x = 0; x < view.width; ++x) {
+                const PathSample found = tracer.trace(x, y, sample, rays);
+                const double value = found.direct.x + found.indirect.x;
+                sum += value;
+                squares += value * value;
+                ++count;
+            }
+        }
+    }
+    const double mean = sum / count;
+    return {mean, std::sqrt(std::max(0.0, squares / count - mean * mean) / count)};
+}
+
+// 18 tests at 4 standard errors: 0.1 % of fixed seeds would fail a right tracer.
+constexpr double Threshold = 4.0;
+constexpr double Rounding = 1e-5;  // float throughput over a few hundred vertices
+
+void expect_value(const Estimate& estimate, double expected) {
+    EXPECT_LE(estimate.standard_error, 0.003 * expected) << "too few samples to see 1 % of missing energy";
+    EXPECT_NEAR(estimate.mean, expected, Threshold * estimate.standard_error + Rounding * expected);
+}
+
+class WhiteFurnace : public testing::TestWithParam<float> {};
+
+TEST_P(WhiteFurnace, WithoutLimitGivesTheWholeSeries) {
+    const Furnace furnace(GetParam());
+    const std::uint64_t spp = GetParam() > 0.95f ? 48 : 32;
+    for (const Strategy strategy : {Strategy::Both, Strategy::BsdfOnly}) {
+        expect_value(radiance(furnace, view::UnlimitedBounces, strategy, spp),
+                     1.0 / (1.0 - double(GetParam())));
+    }
+}
+
+// max_bounces = 0 is direct light, one scattering: N scatterings give (1 - a^(N + 1)) / (1 - a).
+TEST_P(WhiteFurnace, WithALimitGivesItsBeginning) {
+    const Furnace furnace(GetParam());
+    for (const std::uint32_t scatterings : {1u, 2u, 5u}) {
+        const double a = GetParam(), expected = (1.0 - std::pow(a, scatterings + 1.0)) / (1.0 - a);
+        expect_value(radiance(furnace, scatterings - 1, Strategy::Both, 16), expected);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Albedos, WhiteFurnace, testing::Values(0.5f, 0.9f, 0.99f));
+
+TEST(WhiteFurnace, LightsAloneAgreeWithTheRest) {
+    const Furnace furnace(0.5f);
+    expect_value(radiance(furnace, 3, Strategy::LightsOnly, 48), (1.0 - std::pow(0.5, 5.0)) / 0.5);
+}
+
+}  // namespace
+}  // namespace tessera::embree
