@@ -1,0 +1,60 @@
+#include "tests/cluster/loopback_cluster.h"
+
+#include "mediator/backend/catalog.h"
+
+namespace tessera::test {
+
+namespace {
+
+// Short, so that a dead node is noticed within a test's patience; long enough for a busy machine.
+net::LivenessSettings quick_heartbeats() {
+    return {.interval = std::chrono::milliseconds(100), .missed = 10};
+}
+
+}  // namespace
+
+LoopbackCluster::LoopbackCluster() : hub_(net::LoopbackHub::Limits{.messages_per_queue = 4096}) {
+    master::MasterSettings settings{.software = "test"};
+    settings.liveness = quick_heartbeats();
+    settings.jobs.overdue_patience = std::chrono::seconds(1);
+    master_ = std::make_unique<master::RenderMaster>(hub_.server(), std::make_shared<scene::BlobStore>(),
+                                                     clock_, settings, [this](const master::Event& event) {
+                                                         const std::scoped_lock lock(mutex_);
+                                                         events_.push_back(event.text);
+                                                     });
+    master_thread_ = std::jthread([this](std::stop_token stop) { master_->run(stop); });
+}
+
+LoopbackCluster::~LoopbackCluster() {
+    for (std::jthread& thread : node_threads_) thread.request_stop();
+    node_threads_.clear();
+}
+
+void LoopbackCluster::add_node(const std::string& backend, const NodeFaults& faults, Duration cost) {
+    auto blobs = std::make_shared<scene::BlobStore>();
+    auto made =
+        backend::find_backend(backend).make({.threads = 1, .simulated_sample_cost = cost, .blobs = blobs});
+    node::NodeSettings settings{
+        .name = "node-" + std::to_string(nodes_.size() + 1), .backend = backend, .workers = 1};
+    settings.liveness = quick_heartbeats();
+    nodes_.push_back(std::make_unique<node::RenderNode>(
+        net::with_faults(hub_.client(net::Role::Node), faults.control, faults.bulk), std::move(made), blobs,
+        clock_, settings, node::NodeCallbacks{.event = [](const node::Report&) {}, .reconnect = {}}));
+    node::RenderNode& node = *nodes_.back();
+    node_threads_.emplace_back([&node](std::stop_token stop) {
+        // At once: a node whose channel is cut could wait for ever for its goodbye to be heard.
+        node.run(stop, stop);
+    });
+}
+
+std::unique_ptr<client::Session> LoopbackCluster::session(std::shared_ptr<scene::BlobStore> blobs) {
+    return std::make_unique<client::Session>(hub_.client(net::Role::Editor), nullptr, std::move(blobs),
+                                             clock_, client::SessionSettings{.name = "test"});
+}
+
+std::vector<std::string> LoopbackCluster::events() const {
+    const std::scoped_lock lock(mutex_);
+    return events_;
+}
+
+}  // namespace tessera::test

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "client/session.h"
+#include "master/render_master.h"
+#include "mediator/net/fault_plan.h"
+#include "mediator/net/loopback.h"
+#include "node/render_node.h"
+
+namespace tessera::test {
+
+// A master, nodes and clients in threads of this process, over the loopback, each with its own blob store.
+// Whatever a node's channel suffers by its fault plans, the picture must not change.
+class LoopbackCluster {
+  public:
+    struct NodeFaults {
+        net::FaultPlan control, bulk;
+    };
+
+    LoopbackCluster();
+    ~LoopbackCluster();
+
+    // `cost`: simulated time per sample of the null back-end.
+    void add_node(const std::string& backend, const NodeFaults& faults = {}, Duration cost = {});
+    std::unique_ptr<client::Session> session(std::shared_ptr<scene::BlobStore> blobs);
+    std::vector<std::string> events() const;
+
+  private:
+    SteadyClock clock_;
+    net::LoopbackHub hub_;
+    mutable std::mutex mutex_;  // protects events_
+    std::vector<std::string> events_;
+    std::unique_ptr<master::RenderMaster> master_;
+    std::jthread master_thread_;
+    std::vector<std::unique_ptr<node::RenderNode>> nodes_;
+    std::vector<std::jthread> node_threads_;
+};
+
+}  // namespace tessera::test

@@ -1,0 +1,178 @@
+// One picture, to the bit, for any number of nodes, any policy, and whatever happens to messages and nodes on
+// the way.
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "mediator/frame/resolve.h"
+#include "mediator/scene/fields.h"
+#include "tests/cluster/loopback_cluster.h"
+
+namespace tessera::test {
+namespace {
+
+using client::Policy;
+using namespace scene;
+using namespace std::chrono_literals;
+
+constexpr std::uint64_t Spp = 13;  // no power of two: several roots per tile
+
+client::JobRequest request_for(Policy policy, std::uint64_t seed) {
+    client::JobRequest request{.spp = Spp, .policy = policy};
+    request.view.width = 100;
+    request.view.height = 70;
+    request.view.window = {0, 0, 100, 70};
+    request.view.seed = seed;
+    request.view.camera = view::perspective(glm::dmat4(1.0), 0.8, 100.0 / 70.0);
+    request.view.channels = {frame::Channel::Radiance, frame::Channel::Albedo, frame::Channel::Depth,
+                             frame::Channel::ObjectIndex};
+    return request;
+}
+
+// Two triangles that coincide, under one transform.
+std::vector<Entry> scene_entries(ObjectId first, BlobStore& blobs) {
+    constexpr std::array<glm::vec3, 3> Corners{glm::vec3(-1, -1, -3), glm::vec3(1, -1, -3),
+                                               glm::vec3(0, 1, -3)};
+    constexpr std::array<std::uint32_t, 3> Triangle{0, 1, 2};
+    const BlobPtr positions = blobs.insert(std::as_bytes(std::span(Corners)));
+    const BlobPtr indices = blobs.insert(std::as_bytes(std::span(Triangle)));
+    const ObjectId material{first.value + 1}, a{first.value + 2}, b{first.value + 3};
+    Geometry geometry{
+        .material = material, .indices = reference(*indices), .positions = reference(*positions)};
+    Transform transform{.children = {a, b}};
+    const Root root{.children = {first}};
+    return {Create{first, transform}, Create{material, Material{.emission = glm::vec3(1.0f)}},
+            Create{a, geometry}, Create{b, geometry},
+            Update{RootId, Fields<Root>(Root::Field::Children).bits(), root}};
+}
+
+client::JobResult render(LoopbackCluster& cluster, const client::JobRequest& request) {
+    auto blobs = std::make_shared<BlobStore>();
+    const auto session = cluster.session(blobs);
+    const auto opened = session->open_scene("test", client::WhenBusy::Queue, [](std::uint32_t) {}, {});
+    const auto submitted =
+        session->submit(scene_entries(std::get<client::OpenedScene>(opened).first_id, *blobs), {});
+    EXPECT_TRUE(submitted && submitted->accepted);
+    client::JobResult result = session->render(request, [](const client::Progress&) {}, {});
+    EXPECT_EQ(result.outcome, client::Outcome::Complete) << result.message;
+    return result;
+}
+
+std::string hash_of(const client::JobResult& result) {
+    return to_hex(frame::film_hash(*result.film));
+}
+
+std::string reference_hash(std::uint64_t seed, const std::string& backend = "null") {
+    LoopbackCluster cluster;
+    cluster.add_node(backend);
+    return hash_of(render(cluster, request_for(Policy::Tiled, seed)));
+}
+
+struct Trouble {
+    const char* name;
+    LoopbackCluster::NodeFaults faults;
+};
+
+void PrintTo(const Trouble& trouble, std::ostream* out) {
+    *out << trouble.name;
+}
+
+const std::array<Trouble, 3> Troubles{{
+    {"none", {}},
+    {"late, twice, out of order",
+     {{.seed = 3, .duplicate = 0.05, .max_delay = 2ms},
+      {.seed = 4, .duplicate = 0.2, .reorder = 0.3, .max_delay = 4ms}}},
+    {"some film is lost",
+     {{.seed = 5, .max_delay = 1ms}, {.seed = 6, .lose = 0.05, .reorder = 0.2, .max_delay = 2ms}}},
+}};
+
+class SameBits : public testing::TestWithParam<std::tuple<int, Policy, Trouble>> {};
+
+TEST_P(SameBits, WhateverTheClusterAndItsTroubles) {
+    const auto& [nodes, policy, trouble] = GetParam();
+    LoopbackCluster cluster;
+    for (int i = 0; i < nodes; ++i) {
+        LoopbackCluster::NodeFaults faults = trouble.faults;
+        faults.control.seed += 100 * static_cast<std::uint64_t>(i);
+        faults.bulk.seed += 100 * static_cast<std::uint64_t>(i);
+        cluster.add_node("null", faults);
+    }
+    client::JobRequest request = request_for(policy, 1);
+    request.wait_nodes = static_cast<std::uint32_t>(nodes);
+    const client::JobResult result = render(cluster, request);
+    EXPECT_EQ(hash_of(result), reference_hash(1));
+    std::uint64_t counted = result.nonfinite_samples;
+    for (const std::uint32_t count : result.film->counts) counted += count;
+    EXPECT_EQ(counted, 100u * 70u * Spp);
+}
+
+INSTANTIATE_TEST_SUITE_P(Clusters, SameBits,
+                         testing::Combine(testing::Values(1, 2, 7),
+                                          testing::Values(Policy::Tiled, Policy::Cooperative, Policy::Mixed),
+                                          testing::ValuesIn(Troubles)));
+
+TEST(Cluster, AnotherSeedGivesOtherBits) {
+    EXPECT_NE(reference_hash(1), reference_hash(2));
+}
+
+TEST(Cluster, EmbreeGivesTheSameBitsOnOneNodeAndOnThree) {
+    LoopbackCluster cluster;
+    for (int i = 0; i < 3; ++i) cluster.add_node("embree");
+    client::JobRequest request = request_for(Policy::Cooperative, 1);
+    request.wait_nodes = 3;
+    EXPECT_EQ(hash_of(render(cluster, request)), reference_hash(1, "embree"));
+}
+
+TEST(Cluster, ANodeCutOffInTheMiddleChangesNothing) {
+    LoopbackCluster cluster;
+    cluster.add_node("null", {}, 2us);
+    cluster.add_node("null", {.control = {}, .bulk = {.cut_after_messages = 25}}, 2us);
+    client::JobRequest request = request_for(Policy::Mixed, 1);
+    request.wait_nodes = 2;
+    const client::JobResult result = render(cluster, request);
+    EXPECT_EQ(hash_of(result), reference_hash(1));
+    EXPECT_GT(result.units.reissued, 0u) << "film of the cut node never came: somebody had to do it again";
+}
+
+TEST(Cluster, ANodeThatComesLateHelps) {
+    LoopbackCluster cluster;
+    cluster.add_node("null", {}, 20us);
+    std::jthread late([&cluster] {
+        std::this_thread::sleep_for(300ms);
+        cluster.add_node("null", {}, 20us);
+    });
+    const client::JobResult result = render(cluster, request_for(Policy::Mixed, 1));
+    late.join();
+    EXPECT_EQ(hash_of(result), reference_hash(1));
+    EXPECT_EQ(result.nodes.size(), 2u);
+}
+
+TEST(Cluster, SaysThatNobodyCame) {
+    LoopbackCluster cluster;
+    auto blobs = std::make_shared<BlobStore>();
+    const auto session = cluster.session(blobs);
+    session->open_scene("test", client::WhenBusy::Queue, [](std::uint32_t) {}, {});
+    client::JobRequest request = request_for(Policy::Mixed, 1);
+    request.wait_limit = 300ms;
+    EXPECT_EQ(session->render(request, [](const client::Progress&) {}, {}).outcome, client::Outcome::NoNodes);
+}
+
+TEST(Cluster, ATimeLimitEndsTheFrameWithItsCounts) {
+    LoopbackCluster cluster;
+    cluster.add_node("null", {}, 2us);
+    client::JobRequest request = request_for(Policy::Mixed, 1);
+    request.spp = 1u << 20;
+    request.time_limit = 500ms;
+    auto blobs = std::make_shared<BlobStore>();
+    const auto session = cluster.session(blobs);
+    session->open_scene("test", client::WhenBusy::Queue, [](std::uint32_t) {}, {});
+    const client::JobResult result = session->render(request, [](const client::Progress&) {}, {});
+    EXPECT_EQ(result.outcome, client::Outcome::TimeUp);
+    std::uint64_t counted = 0;
+    for (const std::uint32_t count : result.film->counts) counted += count;
+    EXPECT_EQ(counted, result.samples);
+    EXPECT_GT(counted, 0u);
+}
+
+}  // namespace
+}  // namespace tessera::test
