@@ -1,7 +1,6 @@
 // The path tracer next to its limit: Embree's bare ray rate on the same scene, one ray at a time, on one
 // thread.
 #include <benchmark/benchmark.h>
-#include <embree3/rtcore.h>
 
 #include <limits>
 
