@@ -1,0 +1,254 @@
+// Every sampling routine draws what its density says (chi-squared), and the surface model keeps its promises.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <vector>
+
+#include "backends/embree/environment.h"
+#include "mediator/base/random.h"
+#include "mediator/shading/bsdf.h"
+#include "mediator/shading/sobol.h"
+
+namespace tessera::shading {
+namespace {
+
+constexpr double DoublePi = 3.14159265358979323846;
+
+// Largest plausible chi-squared with k degrees of freedom: 5 standard deviations of its cube root (Wilson and
+// Hilferty 1931), one in a million for each of some thirty tests.
+double critical(double k) {
+    const double c = 2.0 / (9.0 * k);
+    return k * std::pow(1.0 - c + 5.0 * std::sqrt(c), 3.0);
+}
+
+void expect_fit(const std::vector<double>& observed, const std::vector<double>& expected) {
+    double statistic = 0.0, pooled_observed = 0.0, pooled_expected = 0.0;
+    int cells = 0;
+    for (std::size_t i = 0; i < observed.size(); ++i) {
+        if (expected[i] < 5.0) {  // too few for the statistic: pooled
+            pooled_observed += observed[i];
+            pooled_expected += expected[i];
+            continue;
+        }
+        statistic += (observed[i] - expected[i]) * (observed[i] - expected[i]) / expected[i];
+        ++cells;
+    }
+    if (pooled_expected > 5.0) {
+        statistic +=
+            (pooled_observed - pooled_expected) * (pooled_observed - pooled_expected) / pooled_expected;
+        ++cells;
+    } else {
+        EXPECT_LT(pooled_observed, 40.0) << "samples where the density is nearly 0";
+    }
+    EXPECT_LT(statistic, critical(cells - 1)) << cells << " cells";
+}
+
+constexpr int Rows = 24, Columns = 24, Samples = 200'000;
+
+std::size_t cell(const glm::vec3& w) {
+    const double phi = std::atan2(double(w.y), double(w.x)) / (2.0 * DoublePi) + 0.5;
+    const int row = std::min(Rows - 1, static_cast<int>((double(w.z) + 1.0) / 2.0 * Rows));
+    const int column = std::min(Columns - 1, static_cast<int>(phi * Columns));
+    return static_cast<std::size_t>(row * Columns + column);
+}
+
+// Integrates the density over cells equal in cos theta and phi, by midpoints fine enough for the narrowest
+// lobe here.
+std::vector<double> integrate(const std::function<double(const glm::vec3&)>& pdf) {
+    constexpr int Fine = 40;
+    std::vector<double> cells(Rows * Columns);
+    for (int r = 0; r < Rows * Fine; ++r) {
+        const double z = -1.0 + 2.0 * (r + 0.5) / (Rows * Fine), s = std::sqrt(1.0 - z * z);
+        for (int c = 0; c < Columns * Fine; ++c) {
+            const double phi = 2.0 * DoublePi * ((c + 0.5) / (Columns * Fine) - 0.5);
+            const glm::vec3 w(s * std::cos(phi), s * std::sin(phi), z);
+            cells[static_cast<std::size_t>(r / Fine * Columns + c / Fine)] += pdf(w);
+        }
+    }
+    const double step = 4.0 * DoublePi / (double(Rows) * Columns * Fine * Fine);
+    for (double& value : cells) value *= step;
+    return cells;
+}
+
+void expect_directions(const std::function<glm::vec3(CounterRandom&)>& sample,
+                       const std::function<double(const glm::vec3&)>& pdf) {
+    CounterRandom random(5);
+    std::vector<double> observed(Rows * Columns), expected = integrate(pdf);
+    for (int i = 0; i < Samples; ++i) observed[cell(sample(random))] += 1.0;
+    for (double& value : expected) value *= Samples;
+    expect_fit(observed, expected);
+}
+
+glm::vec2 pair(CounterRandom& random) {
+    return {static_cast<float>(random.uniform()) * 0.99999994f,
+            static_cast<float>(random.uniform()) * 0.99999994f};
+}
+
+TEST(Sampling, CosineHemisphere) {
+    expect_directions([](CounterRandom& r) { return sample_cosine_hemisphere(pair(r)); },
+                      [](const glm::vec3& w) { return std::max(0.0, double(w.z)) / DoublePi; });
+}
+
+TEST(Sampling, Sphere) {
+    expect_directions([](CounterRandom& r) { return sample_sphere(pair(r)); },
+                      [](const glm::vec3&) { return 1.0 / (4.0 * DoublePi); });
+}
+
+TEST(Sampling, TriangleIsUniform) {
+    CounterRandom random(6);
+    constexpr int Edge = 10;
+    std::vector<double> observed(Edge * Edge), expected(Edge * Edge);
+    for (int i = 0; i < Samples; ++i) {
+        const glm::vec2 b = sample_triangle(pair(random));
+        ASSERT_TRUE(b.x >= 0.0f && b.y >= 0.0f && b.x + b.y <= 1.000001f);
+        ++observed[static_cast<std::size_t>(std::min(9, int(b.x * Edge)) * Edge +
+                                            std::min(9, int(b.y * Edge)))];
+    }
+    for (int x = 0; x < Edge; ++x) {
+        for (int y = 0; y < Edge; ++y) {
+            const double part = x + y < Edge - 1 ? 1.0 : (x + y == Edge - 1 ? 0.5 : 0.0);
+            expected[static_cast<std::size_t>(x * Edge + y)] = part * 2.0 / (Edge * Edge) * Samples;
+        }
+    }
+    expect_fit(observed, expected);
+}
+
+void expect_offsets(float (*offset)(float, float), const std::function<double(double)>& density) {
+    constexpr int Cells = 50, Fine = 200;
+    constexpr float Radius = 1.5f;
+    CounterRandom random(7);
+    std::vector<double> observed(Cells), expected(Cells);
+    double total = 0.0;
+    for (int i = 0; i < Samples; ++i) {
+        const float x = offset(static_cast<float>(random.uniform()), Radius);
+        ASSERT_LE(std::fabs(x), Radius * 1.0001f);
+        ++observed[static_cast<std::size_t>(
+            std::clamp(int((x / Radius + 1.0f) / 2.0f * Cells), 0, Cells - 1))];
+    }
+    for (int i = 0; i < Cells * Fine; ++i) {
+        const double value = density(-1.0 + 2.0 * (i + 0.5) / (Cells * Fine));
+        expected[static_cast<std::size_t>(i / Fine)] += value;
+        total += value;
+    }
+    for (double& value : expected) value *= Samples / total;
+    expect_fit(observed, expected);
+}
+
+TEST(Sampling, GaussianPixelFilter) {
+    expect_offsets(gaussian_offset, [](double t) { return std::exp(-0.5 * 9.0 * t * t); });
+}
+
+TEST(Sampling, BlackmanHarrisPixelFilter) {
+    expect_offsets(blackman_harris_offset, [](double t) {
+        const double x = DoublePi * (t + 1.0);
+        return 0.35875 - 0.48829 * std::cos(x) + 0.14128 * std::cos(2.0 * x) - 0.01168 * std::cos(3.0 * x);
+    });
+}
+
+TEST(Sampling, EnvironmentMap) {
+    constexpr std::uint32_t Width = 16, Height = 8;
+    std::vector<glm::vec3> texels(Width * Height, glm::vec3(0.2f));
+    texels[3 * Width + 5] = glm::vec3(40.0f);
+    texels[6 * Width + 0] = glm::vec3(5.0f);
+    const auto blob = std::make_shared<const scene::Blob>(std::as_bytes(std::span(texels)));
+    const embree::TextureData map{blob, Width, Height, scene::TexelFormat::RgbFloat};
+    const embree::Environment sky({.strength = 1.0f, .rotation = 0.7f}, &map);
+    expect_directions([&](CounterRandom& r) { return sky.sample(pair(r)).direction; },
+                      [&](const glm::vec3& w) { return double(sky.pdf(w)); });
+}
+
+class SurfaceModel : public testing::TestWithParam<std::tuple<float, float, float>> {
+  protected:
+    float roughness = std::get<0>(GetParam()), metallic = std::get<1>(GetParam()),
+          cosine = std::get<2>(GetParam());
+    glm::vec3 out{std::sqrt(1.0f - cosine * cosine), 0.0f, cosine};
+    Bsdf bsdf = make_bsdf(glm::vec3(1.0f), metallic, roughness, 1.5f, cosine);
+};
+
+// Lobes that are wide against the cells.
+class WideSurfaceModel : public SurfaceModel {};
+
+TEST_P(WideSurfaceModel, DrawsWhatItsDensitySays) {
+    // Directions below the surface are drawn and give nothing: they are a cell of their own, by what is left
+    // of 1.
+    CounterRandom random(8);
+    std::vector<double> observed(Rows * Columns + 1);
+    std::vector<double> expected =
+        integrate([&](const glm::vec3& w) { return double(evaluate_bsdf(bsdf, out, w).pdf); });
+    double above = 0.0;
+    for (double& value : expected) {
+        above += value;
+        value *= Samples;
+    }
+    EXPECT_LE(above, 1.002);
+    expected.push_back((1.0 - std::min(above, 1.0)) * Samples);
+    for (int i = 0; i < Samples; ++i) {
+        const float choice = static_cast<float>(random.uniform());
+        const glm::vec3 in = sample_bsdf(bsdf, out, choice, pair(random));
+        ++observed[in.z > 0.0f ? cell(in) : observed.size() - 1];
+    }
+    expect_fit(observed, expected);
+}
+
+// White furnace: a white surface under light 1 from everywhere never gives back more than 1.
+TEST_P(SurfaceModel, NeverReflectsMoreThanComesIn) {
+    CounterRandom random(9);
+    double sum = 0.0, squares = 0.0;
+    for (int i = 0; i < Samples; ++i) {
+        const glm::vec3 in = sample_bsdf(bsdf, out, static_cast<float>(random.uniform()), pair(random));
+        const BsdfValue value = evaluate_bsdf(bsdf, out, in);
+        const double weight = value.pdf > 0.0f ? double(value.value.x) / double(value.pdf) : 0.0;
+        sum += weight;
+        squares += weight * weight;
+    }
+    const double mean = sum / Samples,
+                 error = std::sqrt(std::max(0.0, squares / Samples - mean * mean) / Samples);
+    std::printf("roughness %.3f metallic %.0f cos %.2f: reflects %.4f +- %.4f\n", double(roughness),
+                double(metallic), double(cosine), mean, error);
+    EXPECT_LE(mean, 1.0 + 4.0 * error + 1e-5);
+    EXPECT_GT(mean, 0.3);
+}
+
+TEST_P(SurfaceModel, IsReciprocal) {
+    CounterRandom random(10);
+    for (int i = 0; i < 1000; ++i) {
+        const glm::vec3 in = sample_cosine_hemisphere(pair(random));
+        if (!(in.z > 1e-3f)) continue;
+        const Bsdf back = make_bsdf(glm::vec3(1.0f), metallic, roughness, 1.5f, in.z);
+        const double there = evaluate_bsdf(bsdf, out, in).value.x / in.z;
+        const double again = evaluate_bsdf(back, in, out).value.x / out.z;
+        EXPECT_NEAR(there, again, 1e-4 * std::max(there, again) + 1e-6);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Surfaces, SurfaceModel,
+                         testing::Combine(testing::Values(0.0f, 0.1f, 0.35f, 0.6f, 1.0f),
+                                          testing::Values(0.0f, 1.0f), testing::Values(1.0f, 0.5f, 0.1f)));
+
+INSTANTIATE_TEST_SUITE_P(Surfaces, WideSurfaceModel,
+                         testing::Combine(testing::Values(0.35f, 0.6f, 1.0f), testing::Values(0.0f, 1.0f),
+                                          testing::Values(1.0f, 0.5f, 0.1f)));
+
+// Any aligned power-of-two block of a pair's points has one point in each elementary interval of its size.
+TEST(Sobol, EveryAlignedBlockIsStratified) {
+    const auto at = [](std::uint64_t index) { return sample_pair(make_sampler(17, 4, 99, index), 5); };
+    constexpr std::uint32_t Level = 6;
+    for (const std::uint64_t first : {0u, 64u, 1024u, 4096u + 64u}) {
+        for (std::uint32_t split = 0; split <= Level; ++split) {
+            std::array<int, 64> hits{};
+            const auto wide = static_cast<float>(1u << split), high = static_cast<float>(64u >> split);
+            for (std::uint64_t i = first; i < first + 64; ++i) {
+                const glm::vec2 u = at(i);
+                ++hits[static_cast<std::size_t>(u.x * wide) * static_cast<std::size_t>(high) +
+                       static_cast<std::size_t>(u.y * high)];
+            }
+            for (const int count : hits) EXPECT_EQ(count, 1);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace tessera::shading
