@@ -1,49 +1,15 @@
 // White furnace: in a closed box whose walls emit 1 and reflect the share a, radiance is the geometric
 // series.
+#include "tests/statistics/furnace.h"
+
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 
 #include "backends/embree/path_tracer.h"
-#include "backends/embree/world.h"
 
 namespace tessera::embree {
 namespace {
-
-using namespace scene;
-
-struct Furnace {
-    std::shared_ptr<BlobStore> blobs = std::make_shared<BlobStore>();
-    DeviceHandle device = make_device({.threads = 1, .blobs = blobs});
-    World world{device.get(), blobs};
-
-    explicit Furnace(float albedo) {
-        std::array<glm::vec3, 8> corners;
-        for (unsigned i = 0; i < 8; ++i) {
-            corners[i] = {(i & 1u) ? 1.0f : -1.0f, (i & 2u) ? 1.0f : -1.0f, (i & 4u) ? 1.0f : -1.0f};
-        }
-        constexpr std::array<std::uint32_t, 36> Triangles{0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6,
-                                                          0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7,
-                                                          0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
-        const BlobPtr positions = blobs->insert(std::as_bytes(std::span(corners)));
-        const BlobPtr indices = blobs->insert(std::as_bytes(std::span(Triangles)));
-        const Root root{.children = {ObjectId{2}}};
-        const Geometry box{
-            .material = ObjectId{3}, .indices = reference(*indices), .positions = reference(*positions)};
-        // Index of refraction 1: no interface, so nothing but the diffuse lobe.
-        const Material walls{.base_color = {albedo, albedo, albedo, 1.0f},
-                             .emission = glm::vec3(1.0f),
-                             .double_sided = true,
-                             .index_of_refraction = 1.0f};
-        Scene scene;
-        EXPECT_TRUE(scene.apply_entries(
-            {Create{RootId, root}, Create{ObjectId{2}, box}, Create{ObjectId{3}, walls}}));
-        scene.set_version({1, 1});
-        EXPECT_TRUE(world.apply(snapshot(scene)));
-        EXPECT_TRUE(world.commit());
-    }
-};
 
 struct Estimate {
     double mean = 0, standard_error = 0;

@@ -1,0 +1,231 @@
+// Whatever arrives, decoding gives a value or an Error: it neither crashes nor throws, and what it accepts
+// encodes back to the same message.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+#include <functional>
+#include <limits>
+
+#include "mediator/base/random.h"
+#include "mediator/scene/fields.h"
+#include "mediator/wire/envelope.h"
+
+namespace tessera::wire {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+view::View some_view() {
+    view::View view{.id = ViewId{3}, .revision = 9, .seed = 77, .max_bounces = view::UnlimitedBounces};
+    view.camera.left = -0.25;
+    view.camera.world_from_camera[3][0] = 1e6;
+    view.channels = {frame::Channel::Radiance, frame::Channel::Depth};
+    return view;
+}
+
+scene::ChangeList some_changes() {
+    scene::Geometry geometry{.name = "chair \xff", .material = ObjectId{9}};
+    geometry.positions = {blake2b({}), 36};
+    geometry.indices = {blake2b({}), 12};
+    scene::Transform moved;
+    moved.matrix[3][1] = -0.0;
+    moved.matrix[2][2] = std::numeric_limits<double>::quiet_NaN();
+    return {.from = {5, 1},
+            .to = {5, 2},
+            .entries = {scene::Create{ObjectId{7}, geometry},
+                        scene::Update{ObjectId{8},
+                                      scene::Fields<scene::Transform>(scene::Transform::Field::Matrix).bits(),
+                                      moved},
+                        scene::Create{ObjectId{9}, scene::Material{}},
+                        scene::Create{ObjectId{10}, scene::Light{}},
+                        scene::Create{ObjectId{11}, scene::Texture{.width = 1, .height = 1}},
+                        scene::Create{ObjectId{12}, scene::Camera{}},
+                        scene::Create{ObjectId{13}, scene::Background{}},
+                        scene::Create{ObjectId{14}, scene::Attachment{.key = "k", .value = "v"}},
+                        scene::Remove{ObjectId{6}}},
+            .state_hash = {1, ~0ull}};
+}
+
+std::vector<ControlMessage> control_messages() {
+    const view::WorkUnit unit{UnitId{4}, ViewId{3}, 9, {5, 2}, {32, 64, 32, 32}, {8, 3}};
+    const NodeSummary node{NodeId{1}, "n", "host", "embree", "embree/avx2", 4711, 3, 4096, 1.5};
+    return {
+        Hello{.peer = PeerKind::Node,
+              .name = "n",
+              .host = "h",
+              .pid = 5,
+              .channels = {frame::Channel::Albedo},
+              .reproducible = true,
+              .resume_token = 8},
+        Welcome{7, 8, 9, std::chrono::seconds(1), 3},
+        Refusal{"no"},
+        Unknown{},
+        Heartbeat{-5, 6, 7, NodePhase::Building, 8, {5, 2}, {UnitId{1}, UnitId{2}}, 3, 4},
+        Changes{some_changes()},
+        ChangesByBlob{{5, 1}, {5, 2}, {blake2b({}), 100}},
+        VersionReport{{5, 2}, {1, 2}, 3, 4, 5, 6, 7, 8, 9, 10, 11, {"attachment"}, {"broken"}},
+        Resync{{5, 1}, "gap"},
+        OpenView{some_view()},
+        CloseView{ViewId{3}},
+        Work{12, unit},
+        CancelUnits{{UnitId{4}}},
+        UnitReleased{UnitId{4}, ReleaseReason::Failed, "why"},
+        Leave{},
+        Goodbye{"bye", {UnitId{4}}},
+        Notice{Severity::Error, "text"},
+        OpenScene{"title", true},
+        QueuePlace{2},
+        SceneOpened{{5, 1}, 65536, 100},
+        SubmitEdit{{SessionId{2}, 3, {5, 1}, some_changes().entries}},
+        SubmitEditByBlob{SessionId{2}, 3, {5, 1}, {blake2b({}), 5}},
+        EditReply{3, true, {5, 2}, {"p"}},
+        StartJob{.job = JobId{1}, .view = some_view(), .spp = 5, .policy = Policy::Cooperative, .tile = 64},
+        StopJob{JobId{1}},
+        JobProgress{JobId{1}, JobPhase::Delivering, 1, 2, 3, 4, std::chrono::milliseconds(5)},
+        JobDone{.job = JobId{1},
+                .outcome = JobOutcome::TimeUp,
+                .tiles = 3,
+                .seconds_render = 0.25,
+                .nodes = {node}},
+        StatusRequest{},
+        StatusReply{.software = "s",
+                    .nodes = {{.summary = node, .phase = NodePhase::Leaving, .stuck = true}}}};
+}
+
+std::vector<BulkMessage> bulk_messages() {
+    frame::FilmTile film({0, 32, 3, 2}, {4, 2}, {frame::Channel::Radiance, frame::Channel::ObjectIndex});
+    std::fill(film.counts.begin(), film.counts.end(), 4u);
+    frame::FilmTile uneven = film;
+    uneven.counts[2] = 3;
+    uneven.nonfinite_samples = 1;
+    return {BulkHello{5},
+            BlobRequest{blake2b({}), 7},
+            BlobChunk{blake2b({}), 100, 10, std::vector<std::byte>(50)},
+            BlobAbsent{blake2b({})},
+            FilmPart{UnitId{1}, ViewId{2}, 3, {4, 5}, 0, 2, 6, 7, film},
+            FilmPart{UnitId{1}, ViewId{2}, 3, {4, 5}, 1, 2, 6, 7, uneven},
+            FrameTile{JobId{1}, 2, 3, uneven}};
+}
+
+TEST(ControlMessages, EveryKindIsHere) {
+    const auto messages = control_messages();
+    ASSERT_EQ(messages.size(), std::variant_size_v<ControlMessage>);
+    for (std::size_t i = 0; i < messages.size(); ++i) EXPECT_EQ(messages[i].index(), i);
+}
+
+TEST(ControlMessages, ComeBackAsTheyWent) {
+    for (const ControlMessage& message : control_messages()) {
+        const Bytes bytes = encode(message);
+        const auto decoded = decode_control(bytes);
+        ASSERT_TRUE(decoded) << message.index() << ": " << decoded.error().what();
+        EXPECT_EQ(decoded->index(), message.index());
+        EXPECT_EQ(encode(*decoded), bytes) << "kind " << message.index();
+    }
+}
+
+TEST(ControlMessages, AnUpdateCarriesTheFieldsOfItsMaskOnly) {
+    scene::Transform moved;
+    moved.name = std::string(500, 'x');
+    moved.children.assign(1000, ObjectId{5});
+    const scene::Update update{
+        ObjectId{8}, scene::Fields<scene::Transform>(scene::Transform::Field::Matrix).bits(), moved};
+    EXPECT_LT(encode(ControlMessage(Changes{{.entries = {update}}})).size(), 300u);
+}
+
+TEST(BulkMessages, ComeBackAsTheyWent) {
+    for (const BulkMessage& message : bulk_messages()) {
+        const Bytes bytes = encode(message);
+        EXPECT_EQ(bulk_kind(bytes), message.index());
+        const auto decoded = decode_bulk(bytes);
+        ASSERT_TRUE(decoded) << message.index() << ": " << decoded.error().what();
+        EXPECT_EQ(encode(*decoded), bytes);
+    }
+}
+
+TEST(BulkMessages, EqualCountsTakeNoPlane) {
+    const auto messages = bulk_messages();
+    EXPECT_EQ(encode(messages[4]).size() + 5 * sizeof(std::uint32_t), encode(messages[5]).size());
+}
+
+template <class Decode>
+void attack(const Bytes& good, CounterRandom& random, const Decode& decode) {
+    for (std::size_t size = 0; size < good.size(); size += 1 + size / 16) {
+        decode(std::span(good).first(size));
+    }
+    for (int i = 0; i < 2000; ++i) {
+        Bytes bad = good;
+        const std::uint64_t flips = 1 + random.below(4);
+        for (std::uint64_t f = 0; f < flips && !bad.empty(); ++f) {
+            bad[random.below(bad.size())] ^= static_cast<std::byte>(1u << random.below(8));
+        }
+        if (random.below(4) == 0) bad.resize(random.below(bad.size() + 9));
+        decode(std::span<const std::byte>(bad));
+    }
+}
+
+// What gets through has to survive another round: a decoder that lets nonsense in would not.
+TEST(HostileBytes, OnTheControlLinkAreAValueOrAnError) {
+    CounterRandom random(1);
+    for (const ControlMessage& message : control_messages()) {
+        attack(encode(message), random, [](std::span<const std::byte> bytes) {
+            const auto decoded = decode_control(bytes);
+            if (decoded) EXPECT_TRUE(decode_control(encode(*decoded)));
+        });
+    }
+    EXPECT_FALSE(decode_control(Bytes(64 * 1024 + 1)));
+}
+
+TEST(HostileBytes, OnTheBulkLinkAreAValueOrAnError) {
+    CounterRandom random(2);
+    for (const BulkMessage& message : bulk_messages()) {
+        attack(encode(message), random, [](std::span<const std::byte> bytes) {
+            const auto decoded = decode_bulk(bytes);
+            if (decoded) EXPECT_TRUE(decode_bulk(encode(*decoded)));
+        });
+    }
+}
+
+TEST(HostileBytes, InChangeListsAreAValueOrAnError) {
+    CounterRandom random(3);
+    attack(encode(some_changes()), random,
+           [](std::span<const std::byte> bytes) { (void)decode_change_list(bytes); });
+    attack(encode(scene::Edit{SessionId{1}, 2, {3, 4}, some_changes().entries}), random,
+           [](std::span<const std::byte> bytes) { (void)decode_edit(bytes); });
+}
+
+// Film that would poison the frame does not decode.
+TEST(HostileBytes, FilmThatLiesIsRefused) {
+    const auto refused = [](const std::function<void(FilmPart&)>& forge) {
+        FilmPart part = std::get<FilmPart>(bulk_messages()[4]);
+        forge(part);
+        return !decode_bulk(encode(BulkMessage(part)));
+    };
+    EXPECT_FALSE(refused([](FilmPart&) {}));
+    EXPECT_TRUE(refused([](FilmPart& part) { part.film.counts[0] = 5; }))
+        << "more samples than the block has";
+    EXPECT_TRUE(refused([](FilmPart& part) { part.film.counts[0] = 3; })) << "a sample is missing";
+    EXPECT_TRUE(
+        refused([](FilmPart& part) { part.film.planes[1] = std::numeric_limits<float>::quiet_NaN(); }));
+    EXPECT_TRUE(refused([](FilmPart& part) { part.film.block = {5, 2}; })) << "not aligned";
+    EXPECT_TRUE(refused([](FilmPart& part) { part.part = 2; })) << "the third of two parts";
+    EXPECT_TRUE(refused([](FilmPart& part) { part.film.rect.x = -1; }));
+    EXPECT_TRUE(refused([](FilmPart& part) { part.film.planes.pop_back(); }));
+}
+
+// Sizes in a header are checked before anything is allocated by them.
+TEST(HostileBytes, AnAbsurdSizeIsNoReasonToAllocate) {
+    Bytes bytes = encode(bulk_messages()[4]);
+    const std::size_t rect = bytes.size() - (4 + 4 * 6 * (6 + 2)) - 1 - 8 - 4 - 4 - 8 - 16;
+    Rect there;
+    std::memcpy(&there, bytes.data() + rect, sizeof there);
+    ASSERT_EQ(there, std::get<FilmPart>(bulk_messages()[4]).film.rect)
+        << "the header has changed: look for it";
+    const std::array<std::int32_t, 2> huge{65536, 65536};
+    std::memcpy(bytes.data() + rect + 8, huge.data(), sizeof huge);
+    EXPECT_FALSE(decode_bulk(bytes));
+    EXPECT_FALSE(decode_bulk(encode(BulkMessage(BlobChunk{blake2b({}), ~0ull, ~0ull - 5, Bytes(50)}))));
+}
+
+}  // namespace
+}  // namespace tessera::wire
