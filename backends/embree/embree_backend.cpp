@@ -18,8 +18,8 @@ namespace {
 using namespace backend;
 using frame::Channel;
 
-constexpr frame::ChannelSet Supported{Channel::Radiance,   Channel::Direct, Channel::Indirect,
-                                      Channel::Albedo,     Channel::Normal, Channel::Depth,
+constexpr frame::ChannelSet Supported{Channel::Radiance,   Channel::LowVariance, Channel::HighVariance,
+                                      Channel::Albedo,     Channel::Normal,      Channel::Depth,
                                       Channel::ObjectIndex};
 
 // The values of a sample in the order of the channels (frame::put_sample), only those that are asked for.
@@ -30,8 +30,8 @@ class SampleValues {
     std::span<const float> of(const PathSample& sample) {
         count_ = 0;
         add(Channel::Radiance, sample.direct + sample.indirect);
-        add(Channel::Direct, sample.direct);
-        add(Channel::Indirect, sample.indirect);
+        add(Channel::LowVariance, sample.direct);
+        add(Channel::HighVariance, sample.indirect);
         add(Channel::Albedo, sample.albedo);
         add(Channel::Normal, sample.normal);
         if (channels_.contains(Channel::Depth)) values_[count_++] = sample.depth;

@@ -62,20 +62,32 @@ Gradient gradient(const view::View& view, const backend::Lowered& lowered, std::
             .object = hit ? instances[cell].geometry : ObjectId{}};
 }
 
-void append_values(const Gradient& sample, frame::ChannelSet channels, std::vector<float>& values) {
+void append_values(const Gradient& sample, std::uint64_t index, frame::ChannelSet channels,
+                   std::vector<float>& values) {
     const auto add = [&](Channel channel, const std::array<float, 3>& rgb) {
         if (channels.contains(channel)) values.insert(values.end(), rgb.begin(), rgb.end());
     };
     const auto& [direct, indirect, albedo, normal, depth, object] = sample;
-    add(Channel::Radiance, {direct[0] + indirect[0], direct[1] + indirect[1], direct[2] + indirect[2]});
-    add(Channel::Direct, direct);
-    add(Channel::Indirect, indirect);
+    const std::array<float, 3> radiance{direct[0] + indirect[0], direct[1] + indirect[1],
+                                        direct[2] + indirect[2]};
+    add(Channel::Radiance, radiance);
+    add(Channel::LowVariance, direct);
+    add(Channel::HighVariance, indirect);
     add(Channel::Albedo, albedo);
     add(Channel::Normal, normal);
     if (channels.contains(Channel::Depth)) values.push_back(depth);
     if (channels.contains(Channel::ObjectIndex)) {
         values.push_back(depth);
         values.push_back(std::bit_cast<float>(static_cast<std::uint32_t>(object.value)));
+    }
+    if (channels.contains(Channel::Alpha)) values.push_back(object.value != 0 ? 1.0f : 0.0f);
+    add(Channel::Range, albedo);
+    if (channels.contains(Channel::ShadingFeature)) values.push_back(direct[1] + indirect[1]);
+    add(Channel::Irradiance, direct);
+    if (channels.contains(Channel::EvenHalf)) {
+        const bool even = index % 2 == 0;
+        for (const float value : radiance) values.push_back(even ? value : 0.0f);
+        values.push_back(even ? 1.0f : 0.0f);
     }
 }
 

@@ -25,7 +25,8 @@ std::uint64_t view_key(std::uint64_t content, const view::View& view);
 Gradient gradient(const view::View& view, const backend::Lowered& lowered, std::uint64_t key, std::int32_t x,
                   std::int32_t y, std::uint64_t sample);
 
-// In the order in which frame::put_sample wants them.
-void append_values(const Gradient& sample, frame::ChannelSet channels, std::vector<float>& values);
+// In the order in which frame::put_sample wants them; `index` is the sample's.
+void append_values(const Gradient& sample, std::uint64_t index, frame::ChannelSet channels,
+                   std::vector<float>& values);
 
 }  // namespace tessera::null_backend

@@ -93,11 +93,11 @@ Command compare_command(cli::CommandLine& program) {
     cli::CommandLine& line = program.command(Name, "how far a picture is from a reference");
     line.positional("picture", "OpenEXR file", options->picture);
     line.positional("reference", "OpenEXR file of the same size", options->reference);
-    line.option("--layer", "layer to compare, as direct or albedo (default: R G B)", options->layer);
+    line.option("--layer", "layer to compare, as albedo or raw (default: R G B)", options->layer);
     line.flag("--json", "one JSON object instead of a table", options->json);
     line.option("--max-relmse", "exit with 1 when relmse is larger", options->max_relmse);
     line.examples({"tessera compare out.exr reference.exr",
-                   "tessera compare out.exr reference.exr --layer indirect --max-relmse 0.01"});
+                   "tessera compare out.exr reference.exr --layer high_variance --max-relmse 0.01"});
     return {Name, [options](std::string_view) {
                 try {
                     return run_compare(*options, std::cout);

@@ -77,7 +77,7 @@ frame::ChannelSet channels_for(const std::vector<std::string>& outputs) {
     const bool any_exr = std::any_of(outputs.begin(), outputs.end(), [](const std::string& output) {
         return picture_format(output) == PictureFormat::Exr;
     });
-    if (any_exr) return {Radiance, Direct, Indirect, Albedo, Normal, Depth, ObjectIndex};
+    if (any_exr) return {Radiance, LowVariance, HighVariance, Albedo, Normal, Depth, ObjectIndex};
     return {Radiance};
 }
 

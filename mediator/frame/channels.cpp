@@ -6,12 +6,17 @@ namespace {
 
 constexpr std::array<ChannelInfo, ChannelCount> Table{{
     {Channel::Radiance, "radiance", MergeRule::Moments, 3},
-    {Channel::Direct, "direct", MergeRule::Moments, 3},
-    {Channel::Indirect, "indirect", MergeRule::Moments, 3},
+    {Channel::LowVariance, "low_variance", MergeRule::Moments, 3},
+    {Channel::HighVariance, "high_variance", MergeRule::Moments, 3},
     {Channel::Albedo, "albedo", MergeRule::Sum, 3},
     {Channel::Normal, "normal", MergeRule::Sum, 3},
     {Channel::Depth, "depth", MergeRule::Minimum, 1},
     {Channel::ObjectIndex, "object_id", MergeRule::Nearest, 2},
+    {Channel::Alpha, "alpha", MergeRule::Sum, 1},
+    {Channel::Range, "range", MergeRule::Sum, 3},
+    {Channel::ShadingFeature, "shading", MergeRule::Moments, 1},
+    {Channel::Irradiance, "irradiance", MergeRule::Moments, 3},
+    {Channel::EvenHalf, "even_half", MergeRule::Sum, 4},
 }};
 
 }  // namespace

@@ -19,15 +19,21 @@ enum class MergeRule : std::uint8_t { Moments, Sum, Minimum, Maximum, Nearest, F
 
 // Values are on the wire: never renumber.
 enum class Channel : std::uint8_t {
-    Radiance = 0,    // all light that reaches the pixel
-    Direct = 1,      // emission and light after at most one scattering (low-variance path class)
-    Indirect = 2,    // the rest (high-variance path class); Radiance = Direct + Indirect per sample
-    Albedo = 3,      // of the first hit; misses count 0
-    Normal = 4,      // shading normal of the first hit, world; misses count 0
-    Depth = 5,       // distance from the eye along the view direction's axis (z), nearest sample; miss = +inf
-    ObjectIndex = 6, // key = depth, value = scene object id of the nearest first hit (bit pattern of a uint32), 0 = miss
+    Radiance = 0,      // all light that reaches the pixel
+    LowVariance = 1,   // paths outside the view's path class (Schwenk 3.3)
+    HighVariance = 2,  // paths of the view's path class; Radiance = LowVariance + HighVariance per sample
+    Albedo = 3,        // of the first non-delta hit times the weight of the way to it; misses count 0
+    Normal = 4,        // mapped shading normal of the first non-delta hit, world; misses count 0
+    Depth = 5,  // distance of the first hit along the view direction's axis (z), nearest sample; miss = +inf
+    ObjectIndex =
+        6,      // key = depth, value = scene object id of the nearest first hit (bits of a uint32), 0 = miss
+    Alpha = 7,  // 1 where the camera's ray hits something, 0 where it leaves the scene
+    Range = 8,  // head light and ambient at the first non-delta hits, in [0, 1] (Schwenk 3.3.3)
+    ShadingFeature = 9,  // light found by the path, in grey, without the surface's colour (Lardinoije 4.2)
+    Irradiance = 10,     // light of the diffuse lobe at the first non-delta hit: times albedo = its radiance
+    EvenHalf = 11,       // r, g, b of the samples of even index, and 1 for each of them
 };
-inline constexpr std::size_t ChannelCount = 7;
+inline constexpr std::size_t ChannelCount = 12;
 
 struct ChannelInfo {
     Channel channel;

@@ -105,8 +105,8 @@ void write_film_exr(const std::string& path, std::uint32_t width, std::uint32_t 
         layers.push_back({name, components, frame::resolve(film, channel)});
     };
     add(Channel::Radiance, "", rgb);
-    add(Channel::Direct, "direct", rgb);
-    add(Channel::Indirect, "indirect", rgb);
+    add(Channel::LowVariance, "low_variance", rgb);
+    add(Channel::HighVariance, "high_variance", rgb);
     add(Channel::Albedo, "albedo", rgb);
     add(Channel::Normal, "normal", {"X", "Y", "Z"});
     add(Channel::Depth, "depth", {"Z"});

@@ -13,7 +13,7 @@ namespace tessera::picture {
 
 // One EXR layer: the image's components under the given names; layer "" is what viewers show first.
 struct Layer {
-    std::string name;                     // "direct"
+    std::string name;                     // "albedo"
     std::vector<std::string> components;  // "R", "G", "B": one per component of the image
     frame::Image image;
     bool as_integers = false;  // UINT: the image's floats are bit patterns of uint32

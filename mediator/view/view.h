@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <limits>
+#include <string>
 
 #include "mediator/base/ids.h"
 #include "mediator/base/rect.h"
@@ -10,7 +11,8 @@
 
 namespace tessera::view {
 
-// A pinhole with any frustum: edges of the picture at distance 1 in front of the eye, so off-axis is the normal case.
+// A pinhole with any frustum: edges of the picture at distance 1 in front of the eye, so off-axis is the
+// normal case.
 struct CameraPose {
     glm::dmat4 world_from_camera{1.0};  // rigid; camera looks along -z, y up
     double left = -1.0, right = 1.0, bottom = -1.0, top = 1.0;
@@ -30,6 +32,28 @@ struct PixelFilter {
     friend bool operator==(const PixelFilter&, const PixelFilter&) = default;
 };
 
+enum class Renderer : std::uint8_t {
+    PathTracing,
+    Whitted,  // direct light and perfect speculars, every branch of them followed (Whitted 1980)
+};
+
+// Which paths go to the channel HighVariance (Schwenk 3.3). A path's scatterings are counted from the eye;
+// perfect speculars in front of the first other hit only show it somewhere else.
+enum class PathClass : std::uint8_t {
+    Indirect,  // more than one scattering from the first non-delta hit on
+    Caustics,  // the last scattering before the light is a perfect specular behind the first non-delta hit
+    Diffuse,   // light of the diffuse lobe at the first non-delta hit
+    All,
+    None,
+};
+
+// What a sample adds to the shading feature, which was defined for paths that end at a light
+// (Lardinoije 4.2).
+enum class FeatureRule : std::uint8_t {
+    Demodulated,  // grey of the diffuse irradiance, and of all light of other lobes
+    Connections,  // grey of the intensity of each light that next-event estimation or the path itself reaches
+};
+
 inline constexpr std::uint32_t UnlimitedBounces = std::numeric_limits<std::uint32_t>::max();
 
 // What to render, by value: a sample is a pure function of (scene content, view, pixel, sample index).
@@ -44,7 +68,12 @@ struct View {
     std::uint64_t seed = 0;
     std::uint32_t max_bounces = 8;  // as in Cycles: 0 = direct light only
     PixelFilter pixel_filter;
+    Renderer renderer = Renderer::PathTracing;
+    PathClass path_class = PathClass::Indirect;
+    FeatureRule feature_rule = FeatureRule::Demodulated;
+    bool transparent_background = false;  // camera rays that leave the scene bring no light (alpha 0)
     frame::ChannelSet channels;
+    std::string filter;  // NAME[:key=value,...] of the reconstruction, done on the master; empty = none
     friend bool operator==(const View&, const View&) = default;
 };
 

@@ -16,6 +16,18 @@ constexpr view::PixelFilterKind last_of() {
     return view::PixelFilterKind::BlackmanHarris;
 }
 template <>
+constexpr view::Renderer last_of() {
+    return view::Renderer::Whitted;
+}
+template <>
+constexpr view::PathClass last_of() {
+    return view::PathClass::None;
+}
+template <>
+constexpr view::FeatureRule last_of() {
+    return view::FeatureRule::Connections;
+}
+template <>
 constexpr ReleaseReason last_of() {
     return ReleaseReason::Failed;
 }
@@ -56,7 +68,12 @@ void map(const Io& io, typename Io::template Ref<view::View> s, proto::View& p) 
     io(s.max_bounces, p, &P::max_bounces, &P::set_max_bounces);
     io(s.pixel_filter.kind, p, &P::pixel_filter, &P::set_pixel_filter);
     io(s.pixel_filter.radius, p, &P::filter_radius, &P::set_filter_radius);
+    io(s.renderer, p, &P::renderer, &P::set_renderer);
+    io(s.path_class, p, &P::path_class, &P::set_path_class);
+    io(s.feature_rule, p, &P::feature_rule, &P::set_feature_rule);
+    io(s.transparent_background, p, &P::transparent_background, &P::set_transparent_background);
     map_channels(io, s.channels, p, &P::channels, &P::set_channels);
+    io.text(s.filter, p.mutable_filter());
 }
 
 template <class Io>

@@ -15,8 +15,9 @@ namespace {
 using namespace tessera;
 using namespace tessera::frame;
 
-constexpr ChannelSet AllChannels{Channel::Radiance, Channel::Direct, Channel::Indirect,   Channel::Albedo,
-                                 Channel::Normal,   Channel::Depth,  Channel::ObjectIndex};
+constexpr ChannelSet AllChannels{Channel::Radiance,   Channel::LowVariance, Channel::HighVariance,
+                                 Channel::Albedo,     Channel::Normal,      Channel::Depth,
+                                 Channel::ObjectIndex};
 constexpr Rect Tile{0, 0, 64, 64};
 
 FilmTile filled(SampleBlock block, std::uint64_t seed) {

@@ -203,8 +203,8 @@ TEST(FilmMoments, UnequalCountsInOnePixelLeaveTheOthersBits) {
 
 // Direct and indirect light of one sample each have their own: one with all the spread, the other with none.
 TEST(FilmMoments, OfDisjointChannelsDoNotMix) {
-    FilmTile film(OnePixel, {0, 0}, {Channel::Direct, Channel::Indirect});
-    FilmTile later(OnePixel, {1, 0}, {Channel::Direct, Channel::Indirect});
+    FilmTile film(OnePixel, {0, 0}, {Channel::LowVariance, Channel::HighVariance});
+    FilmTile later(OnePixel, {1, 0}, {Channel::LowVariance, Channel::HighVariance});
     put_sample(film, 0, std::array{1.0f, 2.0f, 3.0f, 1e6f, 1e6f, 1e6f});
     put_sample(later, 0, std::array{3.0f, 2.0f, 1.0f, 1e6f, 1e6f, 1e6f});
     merge(film, later);

@@ -1,0 +1,18 @@
+#include "master/filter/catalog.h"
+
+#include <array>
+
+#include "master/filter/gauss.h"
+#include "master/filter/none.h"
+
+namespace tessera::filter {
+
+std::span<const FilterEntry> catalog() {
+    static const std::array Table{
+        none_entry(),
+        gauss_entry(),
+    };
+    return Table;
+}
+
+}  // namespace tessera::filter

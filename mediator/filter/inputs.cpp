@@ -1,0 +1,76 @@
+#include "mediator/filter/inputs.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "mediator/frame/resolve.h"
+
+namespace tessera::filter {
+
+namespace {
+
+using frame::Channel;
+
+Planes planar(const frame::Image& image) {
+    Planes planes(image.width, image.height, image.components);
+    for (std::uint32_t c = 0; c < image.components; ++c) {
+        const std::span<float> plane = planes.plane(c);
+        for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = image.values[i * image.components + c];
+    }
+    return planes;
+}
+
+// Even samples are a sum with a count of its own; the odd ones are what is left of the whole.
+void split_halves(const frame::FilmTile& film, Inputs& inputs) {
+    const std::uint32_t even = film.channels.first_plane(Channel::EvenHalf);
+    const std::uint32_t all = film.channels.first_plane(Channel::Radiance);
+    for (int half = 0; half < 2; ++half) {
+        inputs.halves[half] = Planes(inputs.width, inputs.height, 3);
+        inputs.half_counts[half] = Planes(inputs.width, inputs.height, 1);
+    }
+    for (std::size_t i = 0; i < inputs.pixel_count(); ++i) {
+        const float n = static_cast<float>(film.counts[i]);
+        const float n_even = film.plane(even + 3)[i], n_odd = n - n_even;
+        inputs.half_counts[0].plane(0)[i] = n_even;
+        inputs.half_counts[1].plane(0)[i] = n_odd;
+        for (std::uint32_t c = 0; c < 3; ++c) {
+            const float mean = film.plane(all + c)[i], sum = film.plane(even + c)[i];
+            inputs.halves[0].plane(c)[i] = n_even > 0.0f ? sum / n_even : mean;
+            inputs.halves[1].plane(c)[i] = n_odd > 0.0f ? (n * mean - sum) / n_odd : mean;
+        }
+    }
+}
+
+}  // namespace
+
+Inputs make_inputs(const frame::FilmTile& film, const view::View& view) {
+    Inputs inputs;
+    inputs.width = static_cast<std::uint32_t>(film.rect.width);
+    inputs.height = static_cast<std::uint32_t>(film.rect.height);
+    inputs.camera = view.camera;
+    inputs.path_class = view.path_class;
+    inputs.counts = planar(frame::resolve_counts(film));
+    for (const frame::ChannelInfo& entry : frame::channel_table()) {
+        if (!film.channels.contains(entry.channel)) continue;
+        const auto index = static_cast<std::size_t>(entry.channel);
+        if (entry.channel == Channel::ObjectIndex) {
+            const std::span<const float> ids = film.plane(film.channels.first_plane(entry.channel) + 1);
+            inputs.object_ids.resize(ids.size());
+            for (std::size_t i = 0; i < ids.size(); ++i) {
+                inputs.object_ids[i] = std::bit_cast<std::uint32_t>(ids[i]);
+            }
+            continue;
+        }
+        if (entry.channel == Channel::EvenHalf) continue;
+        inputs.means[index] = planar(frame::resolve(film, entry.channel));
+        if (entry.rule == frame::MergeRule::Moments) {
+            inputs.variances[index] = planar(frame::resolve_variance_of_mean(film, entry.channel));
+        }
+    }
+    if (film.channels.contains(Channel::EvenHalf) && film.channels.contains(Channel::Radiance)) {
+        split_halves(film, inputs);
+    }
+    return inputs;
+}
+
+}  // namespace tessera::filter

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "mediator/filter/planes.h"
+#include "mediator/frame/film_tile.h"
+#include "mediator/view/view.h"
+
+namespace tessera::filter {
+
+// What happened to the scene since the run before, for filters with a history. A film that goes on (same view
+// revision, same version) has none of it.
+struct Changes {
+    bool film_restarted = false;       // the samples are new: the run before saw another film
+    bool lights_or_materials = false;  // light may differ anywhere
+    bool geometry = false;             // surfaces may have moved; object ids tell where
+};
+
+// The assembled frame of one view as a filter reads it: means, variances of the means and sample counts, all
+// of one size. Channels that the film lacks are empty. Everything is finite but Depth, which is +inf at
+// misses.
+struct Inputs {
+    std::uint32_t width = 0, height = 0;
+    Planes counts;                                      // 1 component: accepted samples n; 0 = hole
+    std::array<Planes, frame::ChannelCount> means;      // n = 0: 0 (Depth +inf)
+    std::array<Planes, frame::ChannelCount> variances;  // of the mean, of Moments channels: M2 / (n (n - 1));
+                                                        // 0 where n < 2: unknown there, not small
+    std::array<Planes, 2> halves;                       // radiance of even and of odd samples, with EvenHalf
+    std::array<Planes, 2> half_counts;                  // samples in each
+    std::vector<std::uint32_t> object_ids;              // with ObjectIndex; 0 = miss
+    view::CameraPose camera;                            // of the whole picture
+    view::PathClass path_class = view::PathClass::Indirect;
+    Changes changes;
+
+    bool has(frame::Channel channel) const { return !mean(channel).empty(); }
+    const Planes& mean(frame::Channel channel) const { return means[static_cast<std::size_t>(channel)]; }
+    const Planes& variance(frame::Channel channel) const {
+        return variances[static_cast<std::size_t>(channel)];
+    }
+    std::size_t pixel_count() const { return std::size_t{width} * height; }
+
+    // The picture to be filtered: r, g, b of the radiance and, when there is one, premultiplied alpha.
+    std::uint32_t color_components() const { return has(frame::Channel::Alpha) ? 4 : 3; }
+    std::span<const float> color(std::uint32_t component) const {
+        return component < 3 ? mean(frame::Channel::Radiance).plane(component)
+                             : mean(frame::Channel::Alpha).plane(0);
+    }
+};
+
+// Divides by n (frame::resolve); the film covers the window of the view.
+Inputs make_inputs(const frame::FilmTile& film, const view::View& view);
+
+}  // namespace tessera::filter

@@ -1,0 +1,75 @@
+// What is typed after --filter.
+#include "mediator/filter/choice.h"
+
+#include <gtest/gtest.h>
+
+#include "master/filter/catalog.h"
+#include "tests/filter/synthetic.h"
+
+namespace tessera::filter {
+namespace {
+
+TEST(FilterChoice, NamesAndValues) {
+    const auto choice = parse_choice("gauss:sigma=3.5", catalog());
+    ASSERT_TRUE(choice);
+    EXPECT_EQ(choice->entry->description.name, "gauss");
+    EXPECT_EQ(choice->values, Values{3.5});
+    EXPECT_EQ(to_text(*choice), "gauss:sigma=3.5");
+    EXPECT_EQ(to_text(*parse_choice("gauss:sigma=2", catalog())), "gauss");
+    EXPECT_EQ(parse_choice("", catalog())->entry->description.name, "none");
+}
+
+TEST(FilterChoice, RefusesWithTheReasonAndTheRemedy) {
+    const auto message = [](std::string_view text) {
+        const auto choice = parse_choice(text, catalog());
+        return choice ? std::string("accepted") : std::string(choice.error().what());
+    };
+    EXPECT_NE(message("gaus").find("gauss"), std::string::npos);
+    EXPECT_NE(message("gauss:radius=3").find("it has sigma"), std::string::npos);
+    EXPECT_NE(message("gauss:sigma").find("sigma=VALUE"), std::string::npos);
+    EXPECT_NE(message("gauss:sigma=1e9").find("from 0.1 to 64"), std::string::npos);
+    for (const char* text : {"gauss:sigma=nan", "gauss:sigma=inf", "gauss:sigma=", "gauss:sigma=2x",
+                             "gauss:=", "gauss:,", ":", "none:x=1", "gauss:sigma=2:sigma=3"}) {
+        EXPECT_NE(message(text), "accepted") << text;
+    }
+}
+
+TEST(FilterChoice, EveryDescriptionIsUsable) {
+    for (const FilterEntry& entry : catalog()) {
+        const Description& filter = entry.description;
+        EXPECT_FALSE(filter.summary.empty()) << filter.name;
+        for (const Parameter& parameter : filter.parameters) {
+            EXPECT_FALSE(parameter.meaning.empty()) << filter.name << " " << parameter.name;
+            if (parameter.choices.empty()) {
+                EXPECT_LE(parameter.least, parameter.standard) << filter.name << " " << parameter.name;
+                EXPECT_LE(parameter.standard, parameter.most) << filter.name << " " << parameter.name;
+            } else {
+                EXPECT_LT(parameter.standard, double(parameter.choices.size())) << filter.name;
+            }
+        }
+        EXPECT_TRUE(filter.channels(standard_values(filter)).contains(frame::Channel::Radiance))
+            << filter.name;
+    }
+}
+
+TEST(Gauss, HasTheVarianceOfItsWeights) {
+    const Inputs inputs =
+        synthetic_inputs(64, 64, 4, [](auto x, auto y, auto i) { return shadowed_texture(64, 64, x, y, i); });
+    Inputs impulse = inputs;
+    for (auto& plane : impulse.means) std::ranges::fill(plane.values(), 0.0f);
+    impulse.means[0].row(0, 32)[32] = 1.0f;
+    const Output out = run_filter("gauss:sigma=3", impulse);
+    double sum = 0.0, second = 0.0;
+    for (std::uint32_t y = 0; y < 64; ++y) {
+        for (std::uint32_t x = 0; x < 64; ++x) {
+            const double v = out.picture.row(0, y)[x];
+            sum += v;
+            second += v * (double(x) - 32) * (double(x) - 32);
+        }
+    }
+    EXPECT_NEAR(sum, 1.0, 1e-5);
+    EXPECT_NEAR(second, 9.0, 0.3);  // cut at 3 sigma
+}
+
+}  // namespace
+}  // namespace tessera::filter
