@@ -15,7 +15,7 @@ class FilmCollector {
   public:
     FilmCollector(JobId job, Rect window, frame::ChannelSet channels);
 
-    // InvalidInput: the tile reaches outside the window, has other channels, or is one too many. Tiles of
+    // InvalidInput: the tile reaches outside the window, lacks a channel, or is one too many. Tiles of
     // other jobs are ignored.
     Expected<void> add(const wire::FrameTile& tile);
     std::uint32_t count() const { return count_; }  // different tiles
@@ -23,6 +23,7 @@ class FilmCollector {
 
   private:
     JobId job_;
+    frame::ChannelSet wanted_;
     frame::FilmTile film_;
     std::vector<bool> seen_;  // by index
     std::uint32_t count_ = 0;

@@ -15,6 +15,8 @@ namespace tessera::client {
 
 enum class Policy : std::uint8_t { Tiled, Cooperative, Mixed };
 
+enum class PictureEncoding : std::uint8_t { None, Planes, Png, Jpeg, Exr };
+
 struct JobRequest {
     view::View view;  // id and revision are the master's to choose
     std::uint64_t spp = 64;
@@ -23,9 +25,13 @@ struct JobRequest {
     bool reproducible = false;     // only nodes pinned to AVX2
     std::uint32_t wait_nodes = 1;  // begin when so many are ready
     Duration wait_limit = std::chrono::seconds(60);
+    PictureEncoding picture = PictureEncoding::None;  // what the master makes of the film with view.filter
+    bool film = true;                                 // the statistics, too
+    Duration budget{0};  // not 0: the picture is there so long after the start, filter and encoding included
+    bool adapts_size = false;  // with a budget that is too small for 2 samples per pixel: half or a quarter of the size
 };
 
-enum class Phase : std::uint8_t { WaitingForNodes, Syncing, Rendering, Delivering };
+enum class Phase : std::uint8_t { WaitingForNodes, Syncing, Rendering, Delivering, Filtering };
 struct Progress {
     Phase phase = Phase::WaitingForNodes;
     std::uint64_t samples = 0, samples_expected = 0;  // of pixels
@@ -49,11 +55,30 @@ struct WireBytes {
     std::uint64_t control = 0, blobs = 0, film = 0;
 };
 
+struct FilterPass {
+    std::string name;
+    double seconds = 0, bytes_per_pixel = 0;
+};
+// Made by the master. Planes: float32, one component after another, each in raster order; otherwise a file.
+struct Picture {
+    PictureEncoding encoding = PictureEncoding::None;
+    std::uint32_t width = 0, height = 0, components = 0;
+    std::vector<std::byte> bytes;
+    std::string filter;       // as it ran: name and values
+    std::uint32_t scale = 1;  // 2, 4: rendered at this part of the size and upsampled
+    double seconds_filter = 0, seconds_encode = 0;
+    double seconds_predicted = 0;  // with a budget: what was set aside for filter and encoding
+    std::vector<FilterPass> passes;
+    std::vector<std::string> notes;
+};
+
 struct JobResult {
     Outcome outcome = Outcome::Complete;
     std::string message;  // why, unless complete
     // The whole window; pixels without samples have count 0. Empty when nothing was rendered.
     std::optional<frame::FilmTile> film;
+    std::optional<Picture> picture;                     // as asked for
+    std::uint64_t samples_least = 0, samples_most = 0;  // of a pixel; with a picture
     Version version;
     double seconds_render = 0, first_picture_seconds = 0;
     std::uint64_t rays = 0, samples = 0, nonfinite_samples = 0;

@@ -118,6 +118,7 @@ void Link::receive(const net::Message& message, TimePoint now) {
     if (!decoded) return;
     if (const auto* request = std::get_if<wire::BlobRequest>(&*decoded)) serve(*request);
     if (auto* tile = std::get_if<wire::FrameTile>(&*decoded)) deliver(std::move(*tile));
+    if (auto* chunk = std::get_if<wire::PictureChunk>(&*decoded)) deliver(std::move(*chunk));
 }
 
 void Link::control(wire::ControlMessage&& message, TimePoint now) {

@@ -23,7 +23,7 @@ namespace tessera::client {
 struct Rejoined {
     bool same_session = false;
 };
-using Incoming = std::variant<wire::ControlMessage, wire::FrameTile, Rejoined>;
+using Incoming = std::variant<wire::ControlMessage, wire::FrameTile, wire::PictureChunk, Rejoined>;
 
 // The session's thread: says hello, keeps heartbeats, reconnects after silence, serves blobs. What is meant
 // for the session waits in an inbox, in order per link. Its states:

@@ -4,6 +4,7 @@
 
 #include "client/film_collector.h"
 #include "client/link.h"
+#include "client/picture_collector.h"
 #include "client/wire_values.h"
 #include "mediator/net/zmq_channel.h"
 #include "mediator/wire/envelope.h"
@@ -123,14 +124,15 @@ JobResult Session::render(const JobRequest& request, const std::function<void(co
     Implementation& self = *implementation_;
     const JobId job{++self.last_job};
     FilmCollector film(job, request.view.window, request.view.channels);
+    PictureCollector picture(job);
     const std::stop_callback ask_to_stop(stop, [&] { self.link.send(wire::StopJob{job}); });
     self.link.send(to_wire(request, job));
     if (stop.stop_requested()) self.link.send(wire::StopJob{job});  // after the start, whoever came first
 
     std::optional<wire::JobDone> done;
     TimePoint last_sign = self.clock.now();
-    while (!done || film.count() < done->tiles) {
-        const auto incoming = self.link.next(self.clock.now() + std::chrono::seconds(1), {});
+    while (!done || film.count() < done->tiles || picture.byte_size() < done->picture.byte_size) {
+        auto incoming = self.link.next(self.clock.now() + std::chrono::seconds(1), {});
         if (!incoming) {
             if (self.clock.now() - last_sign < self.settings.lost_limit) continue;
             throw Error(ErrorCode::Unavailable,
@@ -143,6 +145,8 @@ JobResult Session::render(const JobRequest& request, const std::function<void(co
             if (stop.stop_requested()) self.link.send(wire::StopJob{job});
         } else if (const auto* tile = std::get_if<wire::FrameTile>(&*incoming)) {
             if (auto added = film.add(*tile); !added) throw added.error();
+        } else if (auto* chunk = std::get_if<wire::PictureChunk>(&*incoming)) {
+            if (auto added = picture.add(std::move(*chunk)); !added) throw added.error();
         } else {
             const auto& message = std::get<wire::ControlMessage>(*incoming);
             throw_refusal(message);
@@ -156,6 +160,7 @@ JobResult Session::render(const JobRequest& request, const std::function<void(co
     }
     JobResult result = from_wire(*done);
     if (done->tiles > 0) result.film = film.take();
+    if (result.picture) result.picture->bytes = picture.take();
     return result;
 }
 

@@ -2,6 +2,10 @@
 
 namespace tessera::client {
 
+// Both count the same things in the same order.
+static_assert(int(PictureEncoding::None) == int(wire::PictureEncoding::None));
+static_assert(int(PictureEncoding::Exr) == int(wire::PictureEncoding::Exr));
+
 namespace {
 
 NodeShare from_wire(const wire::NodeSummary& node) {
@@ -45,6 +49,8 @@ Phase from_wire(wire::JobPhase phase) {
             return Phase::Syncing;
         case wire::JobPhase::Rendering:
             return Phase::Rendering;
+        case wire::JobPhase::Filtering:
+            return Phase::Filtering;
         case wire::JobPhase::Delivering:
             break;
     }
@@ -93,7 +99,11 @@ wire::StartJob to_wire(const JobRequest& request, JobId job) {
             .policy = to_wire(request.policy),
             .reproducible = request.reproducible,
             .wait_nodes = request.wait_nodes,
-            .wait_limit = request.wait_limit};
+            .wait_limit = request.wait_limit,
+            .picture = static_cast<wire::PictureEncoding>(request.picture),
+            .film = request.film,
+            .budget = request.budget,
+            .adapts_size = request.adapts_size};
 }
 
 Progress from_wire(const wire::JobProgress& progress) {
@@ -119,6 +129,24 @@ JobResult from_wire(const wire::JobDone& done) {
                      .lights = done.lights,
                      .units = from_wire(done.units),
                      .wire_bytes = from_wire(done.wire_bytes)};
+    result.samples_least = done.samples_least;
+    result.samples_most = done.samples_most;
+    if (const wire::PictureSummary& made = done.picture; made.encoding != wire::PictureEncoding::None) {
+        Picture picture{.encoding = static_cast<PictureEncoding>(made.encoding),
+                        .width = made.width,
+                        .height = made.height,
+                        .components = made.components,
+                        .filter = made.filter,
+                        .scale = made.scale,
+                        .seconds_filter = made.seconds_filter,
+                        .seconds_encode = made.seconds_encode,
+                        .seconds_predicted = made.seconds_predicted,
+                        .notes = made.notes};
+        for (const wire::FilterPass& pass : made.passes) {
+            picture.passes.push_back({pass.name, pass.seconds, pass.bytes_per_pixel});
+        }
+        result.picture = std::move(picture);
+    }
     for (const wire::NodeSummary& node : done.nodes) result.nodes.push_back(from_wire(node));
     return result;
 }

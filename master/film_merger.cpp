@@ -1,5 +1,7 @@
 #include "master/film_merger.h"
 
+#include <algorithm>
+
 #include "mediator/wire/envelope.h"
 
 namespace tessera::master {
@@ -24,6 +26,10 @@ void FilmMerger::push(net::PeerId peer, net::Bytes film_message) {
 
 void FilmMerger::deliver(JobId job, std::uint32_t first_tile, std::uint32_t last_tile) {
     enqueue(Deliver{job, first_tile, last_tile}, 0);
+}
+
+void FilmMerger::reconstruct(JobId job, const view::View& view, wire::PictureEncoding encoding) {
+    enqueue(Reconstruct{job, view, encoding}, 0);
 }
 
 std::vector<MergerOutput> FilmMerger::take() {
@@ -103,6 +109,15 @@ void FilmMerger::perform(Deliver& task) {
                                    .film = assembler_->merged_tile(tile)};
         put(EncodedTile{task.job, wire::encode(wire::BulkMessage(std::move(frame_tile)))});
     }
+}
+
+void FilmMerger::perform(Reconstruct& task) {
+    if (!assembler_) return;
+    const frame::FilmTile film = assembler_->whole();
+    const auto [least, most] = std::minmax_element(film.counts.begin(), film.counts.end());
+    Reconstructed output{.job = task.job, .samples_least = *least, .samples_most = *most};
+    output.picture = reconstructor_.reconstruct(film, task.view, task.encoding);
+    put(std::move(output));
 }
 
 void FilmMerger::put(MergerOutput output) {

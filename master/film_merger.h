@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "master/frame_assembler.h"
+#include "master/reconstruction.h"
 #include "mediator/net/channel.h"
 #include "mediator/wire/messages.h"
 
@@ -34,9 +35,15 @@ struct EncodedTile {
     JobId job;
     net::Bytes bytes;
 };
-using MergerOutput = std::variant<MergeReport, EncodedTile>;
+// The picture of a job, or why there is none.
+struct Reconstructed {
+    JobId job;
+    Reconstruction picture;
+    std::uint64_t samples_least = 0, samples_most = 0;
+};
+using MergerOutput = std::variant<MergeReport, EncodedTile, Reconstructed>;
 
-// Decodes and merges film on a thread of its own, so that the loop that keeps heartbeats never merges. Tasks
+// Decodes, merges and filters film on a thread of its own, so that the loop that keeps heartbeats never does. Tasks
 // run in the order given; `wake` is called (from the merger's thread) whenever output is there.
 class FilmMerger {
   public:
@@ -47,6 +54,8 @@ class FilmMerger {
     void close();  // drops the film
     void push(net::PeerId peer, net::Bytes film_message);
     void deliver(JobId job, std::uint32_t first_tile, std::uint32_t last_tile);  // encodes [first, last)
+
+    void reconstruct(JobId job, const view::View& view, wire::PictureEncoding encoding);
 
     std::vector<MergerOutput> take();
     std::size_t queued_bytes() const;
@@ -66,7 +75,12 @@ class FilmMerger {
         JobId job;
         std::uint32_t first, last;
     };
-    using Task = std::variant<Open, Close, Film, Deliver>;
+    struct Reconstruct {
+        JobId job;
+        view::View view;
+        wire::PictureEncoding encoding;
+    };
+    using Task = std::variant<Open, Close, Film, Deliver, Reconstruct>;
 
     void enqueue(Task task, std::size_t bytes);
     void run(std::stop_token stop);
@@ -74,6 +88,7 @@ class FilmMerger {
     void perform(Close& task);
     void perform(Film& task);
     void perform(Deliver& task);
+    void perform(Reconstruct& task);
     void put(MergerOutput output);
 
     std::function<void()> wake_;
@@ -81,6 +96,7 @@ class FilmMerger {
     ViewId view_;
     std::uint64_t revision_ = 0;
     std::shared_ptr<FrameAssembler> assembler_;
+    Reconstructor reconstructor_;
 
     mutable std::mutex mutex_;  // protects what stands below
     std::condition_variable_any changed_;

@@ -1,5 +1,7 @@
 #include "master/frame_assembler.h"
 
+#include <algorithm>
+
 namespace tessera::master {
 
 FrameAssembler::FrameAssembler(std::vector<Rect> tiles, frame::ChannelSet channels, std::uint64_t spp)
@@ -29,6 +31,21 @@ FrameAssembler::Result FrameAssembler::insert(frame::FilmTile block) {
 frame::FilmTile FrameAssembler::merged_tile(std::uint32_t tile) const {
     if (forests_[tile].blocks().empty()) return frame::FilmTile(tiles_[tile], {}, channels_);
     return forests_[tile].merged();
+}
+
+frame::FilmTile FrameAssembler::whole() const {
+    Rect bounds = tiles_.front();
+    for (const Rect& tile : tiles_) {
+        const std::int32_t right = std::max(bounds.right(), tile.right());
+        const std::int32_t bottom = std::max(bounds.bottom(), tile.bottom());
+        bounds.x = std::min(bounds.x, tile.x);
+        bounds.y = std::min(bounds.y, tile.y);
+        bounds.width = right - bounds.x;
+        bounds.height = bottom - bounds.y;
+    }
+    frame::FilmTile film(bounds, {}, channels_);
+    for (std::uint32_t i = 0; i < tile_count(); ++i) frame::paste(film, merged_tile(i));
+    return film;
 }
 
 std::uint64_t FrameAssembler::byte_size() const {

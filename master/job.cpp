@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "master/filter/catalog.h"
+#include "mediator/filter/choice.h"
 #include "mediator/net/channel.h"
 
 namespace tessera::master {
@@ -42,8 +44,22 @@ std::string problem_of(const wire::StartJob& request) {
     }
     if (request.spp == 0 || request.spp > MaxSamplesPerPixel)
         return "samples per pixel are not between 1 and 2^31";
+    const auto filter = filter::parse_choice(view.filter, filter::catalog());
+    if (!filter) return filter.error().what();
+    if (request.picture == wire::PictureEncoding::None && !request.film) {
+        return "neither a picture nor the film is asked for: ask for one of them";
+    }
+    if (request.budget < Duration::zero()) return "the time budget is negative";
     if (request.time_limit < Duration::zero()) return "the time limit is negative";
     return {};
+}
+
+void complete(view::View& view) {
+    const auto filter = filter::parse_choice(view.filter, filter::catalog());
+    view.channels = frame::ChannelSet::from_bits(view.channels.bits() | filter->channels().bits());
+    if (view.transparent_background) view.channels.insert(frame::Channel::Alpha);
+    const view::PathClass wanted = filter->entry->description.path_class;
+    if (wanted != view::PathClass::Indirect) view.path_class = wanted;
 }
 
 std::uint32_t choose_tile_edge(const wire::StartJob& request) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "master/reconstruction.h"
 #include "master/schedule/scheduler.h"
 #include "mediator/wire/messages.h"
 
@@ -32,6 +33,9 @@ struct Job {
     std::uint64_t triangles = 0, instances = 0, lights = 0;
     wire::WireBytes bytes_before;  // the master's counters at the start
     TimePoint last_progress_sent{};
+    std::optional<Reconstruction> picture;              // from the phase Delivering on, if one was asked for
+    std::uint64_t samples_least = 0, samples_most = 0;  // of a pixel, with a picture
+    std::uint64_t picture_sent = 0;                     // bytes; Delivering
     std::uint32_t tiles_requested = 0, tiles_sent = 0;  // Delivering
 
     bool rendering() const { return phase == wire::JobPhase::Rendering; }
@@ -40,6 +44,9 @@ struct Job {
 // Checks what a client asks for: sizes, finite camera, window inside the picture, channels, counts. Empty =
 // fine.
 std::string problem_of(const wire::StartJob& request);
+
+// Adds what the view's filter needs: channels, and the path class where the filter is made for one.
+void complete(view::View& view);
 
 // The edge of the tiles: what was asked for, else 64 for large pictures and 32 for small ones; never so large
 // that the film of one tile exceeds a bulk message.

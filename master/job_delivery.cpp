@@ -1,5 +1,6 @@
-// The end of a job: the summary, and the merged film on its way to the client.
+// The end of a job: the picture is made, then the summary, the picture and the merged film go to the client.
 #include <algorithm>
+#include <span>
 
 #include "master/job_runner.h"
 
@@ -7,8 +8,30 @@ namespace tessera::master {
 
 namespace {
 constexpr std::uint32_t TilesAhead = 32;                   // encoded by the merger and not yet sent
+constexpr std::size_t PictureChunk = std::size_t{1} << 20;
 constexpr std::size_t BytesAhead = std::size_t{32} << 20;  // waiting for a slow client
 }  // namespace
+
+void JobRunner::begin_filtering(TimePoint now) {
+    const wire::StartJob& request = job_->request;
+    if (request.picture == wire::PictureEncoding::None || job_->scheduler->merged_samples() == 0) {
+        return begin_delivery(now);
+    }
+    job_->phase = wire::JobPhase::Filtering;
+    job_->last_progress_sent = {};
+    merger_.reconstruct(request.job, request.view, request.picture);
+}
+
+void JobRunner::take(Reconstructed&& made, TimePoint now) {
+    job_->picture = std::move(made.picture);
+    job_->samples_least = made.samples_least;
+    job_->samples_most = made.samples_most;
+    if (!job_->picture->error.empty()) {
+        job_->outcome = wire::JobOutcome::Failed;
+        job_->message = job_->picture->error;
+    }
+    begin_delivery(now);
+}
 
 void JobRunner::begin_delivery(TimePoint now) {
     job_->phase = wire::JobPhase::Delivering;
@@ -22,16 +45,32 @@ void JobRunner::begin_delivery(TimePoint now) {
 }
 
 void JobRunner::deliver() {
-    const auto count = job_->scheduler ? static_cast<std::uint32_t>(job_->scheduler->tiles().size()) : 0u;
-    if (job_->tiles_sent == count) return abandon();  // all done: close views and film
+    const std::uint32_t count = tiles_to_deliver();
+    const std::uint64_t picture_size = job_->picture ? job_->picture->bytes->size() : 0;
+    if (job_->tiles_sent == count && job_->picture_sent == picture_size) return abandon();  // all done
     const SessionRecord* session = sessions_.find(job_->session);
     if (session == nullptr || !session->bulk) return;
+    while (job_->picture_sent < picture_size) {  // what somebody is waiting for goes first
+        if (outbox_.waiting_bytes(net::Link::Bulk, *session->bulk) > BytesAhead) return;
+        const auto piece = std::span(*job_->picture->bytes).subspan(job_->picture_sent).first(
+            std::min<std::uint64_t>(PictureChunk, picture_size - job_->picture_sent));
+        outbox_.bulk(*session->bulk, wire::PictureChunk{.job = job_->request.job,
+                                                        .total = picture_size,
+                                                        .offset = job_->picture_sent,
+                                                        .data = {piece.begin(), piece.end()}});
+        job_->picture_sent += piece.size();
+    }
+    if (job_->tiles_sent == count) return abandon();
     if (outbox_.waiting_bytes(net::Link::Bulk, *session->bulk) > BytesAhead) return;
     const std::uint32_t until = std::min(count, job_->tiles_sent + TilesAhead);
     if (until > job_->tiles_requested) {
         merger_.deliver(job_->request.job, job_->tiles_requested, until);
         job_->tiles_requested = until;
     }
+}
+
+std::uint32_t JobRunner::tiles_to_deliver() const {
+    return job_->scheduler && job_->request.film ? static_cast<std::uint32_t>(job_->scheduler->tiles().size()) : 0u;
 }
 
 void JobRunner::send_progress(TimePoint now) {
@@ -65,10 +104,15 @@ wire::JobDone JobRunner::summary() const {
                        .instances = instances_,
                        .lights = lights_};
     if (job.scheduler) {
-        done.tiles = static_cast<std::uint32_t>(job.scheduler->tiles().size());
+        done.tiles = tiles_to_deliver();
         done.seconds_render = seconds(*job.ended - job.rendering_since);
         done.samples = job.scheduler->merged_samples();
         done.units = job.scheduler->counts();
+    }
+    if (job.picture) {
+        done.picture = job.picture->summary;
+        done.samples_least = job.samples_least;
+        done.samples_most = job.samples_most;
     }
     if (job.first_picture) done.first_picture_seconds = seconds(*job.first_picture - job.started);
     for (const auto& [id, node] : job.nodes) done.nodes.push_back(node);

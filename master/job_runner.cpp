@@ -40,6 +40,7 @@ void JobRunner::start(SessionId session, wire::StartJob request, Version version
     if (request.time_limit > Duration::zero() && request.spp == 0) request.spp = MaxSamplesPerPixel;
     job_.emplace();
     job_->request = std::move(request);
+    complete(job_->request.view);
     job_->session = session;
     job_->version = version;
     job_->tile_edge = choose_tile_edge(job_->request);
@@ -70,6 +71,8 @@ void JobRunner::tick(TimePoint now) {
         case wire::JobPhase::Rendering:
             render(now);
             break;
+        case wire::JobPhase::Filtering:
+            break;  // until the merger answers
         case wire::JobPhase::Delivering:
             deliver();
             break;
@@ -131,8 +134,7 @@ void JobRunner::render(TimePoint now) {
             deal(now);
         }
     }
-    if (job_->outcome && (scheduler.idle() || now - job_->outcome_at > settings_.stop_grace))
-        begin_delivery(now);
+    if (job_->outcome && (scheduler.idle() || now - job_->outcome_at > settings_.stop_grace)) begin_filtering(now);
 }
 
 void JobRunner::deal(TimePoint now) {
@@ -149,7 +151,9 @@ void JobRunner::deal(TimePoint now) {
     for (const Assignment& assignment : job_->scheduler->assign(capacities, balancer_, now)) {
         NodeRecord& node = *nodes_.find(assignment.node);
         if (node.views.insert(job_->request.view.id).second) {
-            outbox_.control(node.control, wire::OpenView{job_->request.view});
+            view::View view = job_->request.view;
+            view.filter.clear();  // the master's affair
+            outbox_.control(node.control, wire::OpenView{std::move(view)});
         }
         node.pending[assignment.unit.id] = ++node.work_sequence;
         outbox_.control(node.control, wire::Work{node.work_sequence, assignment.unit});
@@ -174,6 +178,11 @@ void JobRunner::take_merger_output(TimePoint now) {
     for (MergerOutput& output : merger_.take()) {
         if (const auto* report = std::get_if<MergeReport>(&output)) {
             take(*report, now);
+            continue;
+        }
+        if (auto* made = std::get_if<Reconstructed>(&output)) {
+            if (!job_ || made->job != job_->request.job || job_->phase != wire::JobPhase::Filtering) continue;
+            take(std::move(*made), now);
             continue;
         }
         auto& tile = std::get<EncodedTile>(output);
@@ -305,7 +314,7 @@ void JobRunner::scene_facts(const wire::VersionReport& report) {
 }
 
 void JobRunner::stop(JobId job, TimePoint now) {
-    if (!job_ || job_->request.job != job || job_->phase == wire::JobPhase::Delivering) return;
+    if (!job_ || job_->request.job != job || job_->outcome) return;
     decide(wire::JobOutcome::Stopped, "stopped by the client", now);
     if (!job_->rendering()) begin_delivery(now);
 }

@@ -60,8 +60,11 @@ class JobRunner {
     void account(const MergeReport& report, NodeRecord& node);
     void cancel(const std::vector<Cancellation>& cancellations);
     void decide(wire::JobOutcome outcome, std::string message, TimePoint now);
+    void begin_filtering(TimePoint now);
+    void take(Reconstructed&& made, TimePoint now);
     void begin_delivery(TimePoint now);
     void deliver();
+    std::uint32_t tiles_to_deliver() const;
     void send_progress(TimePoint now);
     wire::JobDone summary() const;
 

@@ -11,7 +11,8 @@ void Outbox::control(net::PeerId peer, const wire::ControlMessage& message) {
 }
 
 void Outbox::bulk(net::PeerId peer, const wire::BulkMessage& message) {
-    const bool is_film = std::holds_alternative<wire::FrameTile>(message);
+    const bool is_film = std::holds_alternative<wire::FrameTile>(message) ||
+                         std::holds_alternative<wire::PictureChunk>(message);
     bulk(peer, wire::encode(message), is_film ? &wire::WireBytes::film : &wire::WireBytes::blobs);
 }
 

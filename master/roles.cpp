@@ -55,6 +55,7 @@ struct SendersOf {
     unsigned operator()(const wire::BlobAbsent&) const { return Editors; }
     unsigned operator()(const wire::FilmPart&) const { return Nodes; }
     unsigned operator()(const wire::FrameTile&) const { return Nobody; }
+    unsigned operator()(const wire::PictureChunk&) const { return Nobody; }
 };
 
 }  // namespace

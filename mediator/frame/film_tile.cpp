@@ -22,6 +22,19 @@ void fill_empty(FilmTile& tile, const ChannelInfo& info) {
     }
 }
 
+// Copies the rows of a tile's plane to their place in the window's plane.
+template <class T>
+void place(std::span<const T> from, const Rect& tile, std::span<T> to, const Rect& window) {
+    for (std::int32_t row = 0; row < tile.height; ++row) {
+        const auto source = from.subspan(static_cast<std::size_t>(row) * static_cast<std::size_t>(tile.width),
+                                         static_cast<std::size_t>(tile.width));
+        const std::size_t offset =
+            static_cast<std::size_t>(tile.y + row - window.y) * static_cast<std::size_t>(window.width) +
+            static_cast<std::size_t>(tile.x - window.x);
+        std::copy(source.begin(), source.end(), to.begin() + static_cast<std::ptrdiff_t>(offset));
+    }
+}
+
 }  // namespace
 
 FilmTile::FilmTile(Rect tile_rect, SampleBlock sample_block, ChannelSet channel_set)
@@ -41,6 +54,14 @@ void FilmTile::reset(SampleBlock sample_block) {
     for (const ChannelInfo& info : channel_table()) {
         if (channels.contains(info.channel)) fill_empty(*this, info);
     }
+}
+
+void paste(FilmTile& film, const FilmTile& tile) {
+    place<std::uint32_t>(tile.counts, tile.rect, film.counts, film.rect);
+    for (std::uint32_t plane = 0; plane < tile.channels.plane_count(); ++plane) {
+        place<float>(tile.plane(plane), tile.rect, film.plane(plane), film.rect);
+    }
+    film.nonfinite_samples += tile.nonfinite_samples;
 }
 
 bool identical_bits(const FilmTile& a, const FilmTile& b) {

@@ -35,6 +35,9 @@ class FilmTile {
     std::size_t byte_size() const { return counts.size() * 4 + planes.size() * 4; }
 };
 
+// Copies `tile`, which lies inside of `film` and has its channels, to its place.
+void paste(FilmTile& film, const FilmTile& tile);
+
 bool identical_bits(const FilmTile& a, const FilmTile& b);
 
 }  // namespace tessera::frame

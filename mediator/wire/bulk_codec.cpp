@@ -125,6 +125,12 @@ struct Encoder {
         out.put(tile.count);
         put(out, tile.film);
     }
+    void operator()(const PictureChunk& chunk) const {
+        out.put(chunk.job.value);
+        out.put(chunk.total);
+        out.put(chunk.offset);
+        out.put_all(std::span(chunk.data));
+    }
 };
 
 struct Decoder {
@@ -140,14 +146,7 @@ struct Decoder {
     }
     void operator()(BlobChunk& chunk) const {
         chunk.hash.bytes = in.get<decltype(chunk.hash.bytes)>();
-        chunk.total = in.get<std::uint64_t>();
-        chunk.offset = in.get<std::uint64_t>();
-        const auto rest = in.rest();
-        if (rest.size() > MaxChunk) malformed("a chunk is longer than 1 MiB");
-        if (chunk.offset > chunk.total || rest.size() > chunk.total - chunk.offset) {
-            malformed("a chunk reaches beyond its blob");
-        }
-        chunk.data.assign(rest.begin(), rest.end());
+        get_piece(chunk);
     }
     void operator()(BlobAbsent& absent) const {
         absent.hash.bytes = in.get<decltype(absent.hash.bytes)>();
@@ -174,6 +173,23 @@ struct Decoder {
         if (tile.index >= tile.count) malformed("a tile is not one of its frame");
         tile.film = get_film(in);
     }
+    void operator()(PictureChunk& chunk) const {
+        chunk.job.value = in.get<std::uint64_t>();
+        get_piece(chunk);
+    }
+
+  private:
+    template <class Chunk>
+    void get_piece(Chunk& chunk) const {
+        chunk.total = in.get<std::uint64_t>();
+        chunk.offset = in.get<std::uint64_t>();
+        const auto rest = in.rest();
+        if (rest.size() > MaxChunk) malformed("a chunk is longer than 1 MiB");
+        if (chunk.offset > chunk.total || rest.size() > chunk.total - chunk.offset) {
+            malformed("a chunk reaches beyond its whole");
+        }
+        chunk.data.assign(rest.begin(), rest.end());
+    }
 };
 
 template <std::size_t... I>
@@ -185,6 +201,7 @@ BulkMessage alternative(std::size_t index, std::index_sequence<I...>) {
 
 std::size_t size_of_data(const BulkMessage& message) {
     if (const auto* chunk = std::get_if<BlobChunk>(&message)) return chunk->data.size();
+    if (const auto* piece = std::get_if<PictureChunk>(&message)) return piece->data.size();
     if (const auto* part = std::get_if<FilmPart>(&message)) return part->film.byte_size();
     if (const auto* tile = std::get_if<FrameTile>(&message)) return tile->film.byte_size();
     return 0;

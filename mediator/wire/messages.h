@@ -159,6 +159,8 @@ struct EditReply {
 };
 
 enum class Policy : std::uint8_t { Tiled, Cooperative, Mixed };
+// What the master makes of the film: nothing, the filtered picture as float32 planes one after another, or a file.
+enum class PictureEncoding : std::uint8_t { None, Planes, Png, Jpeg, Exr };
 struct StartJob {
     JobId job;        // the client's number
     view::View view;  // id and revision are the master's to choose
@@ -169,11 +171,15 @@ struct StartJob {
     std::uint32_t tile = 0;  // edge in pixels; 0 = the nodes' preference
     std::uint32_t wait_nodes = 1;
     Duration wait_limit{std::chrono::seconds(60)};
+    PictureEncoding picture = PictureEncoding::None;
+    bool film = true;      // deliver the statistics, too
+    Duration budget{0};    // not 0: the picture is ready so long after the start, filter and encoding included
+    bool adapts_size = false;  // with a budget: a half or a quarter of the size, where it is too small for 2 samples
 };
 struct StopJob {
     JobId job;  // deliver what is merged so far
 };
-enum class JobPhase : std::uint8_t { WaitingForNodes, Syncing, Rendering, Delivering };
+enum class JobPhase : std::uint8_t { WaitingForNodes, Syncing, Rendering, Delivering, Filtering };
 struct JobProgress {
     JobId job;
     JobPhase phase = JobPhase::WaitingForNodes;
@@ -195,6 +201,22 @@ struct UnitCounts {
 struct WireBytes {
     std::uint64_t control = 0, blobs = 0, film = 0;
 };
+struct FilterPass {
+    std::string name;
+    double seconds = 0, bytes_per_pixel = 0;
+};
+// The picture that PictureChunks bring.
+struct PictureSummary {
+    PictureEncoding encoding = PictureEncoding::None;
+    std::uint32_t width = 0, height = 0, components = 0;
+    std::uint64_t byte_size = 0;
+    std::string filter;  // as it ran: name and values
+    std::uint32_t scale = 1;  // 2, 4: rendered at this part of the size and upsampled
+    double seconds_filter = 0, seconds_encode = 0;
+    double seconds_predicted = 0;  // with a budget: what was set aside for filter and encoding
+    std::vector<FilterPass> passes;
+    std::vector<std::string> notes;  // for a person
+};
 struct JobDone {
     JobId job;
     JobOutcome outcome = JobOutcome::Complete;
@@ -208,6 +230,8 @@ struct JobDone {
     std::vector<NodeSummary> nodes;
     UnitCounts units;
     WireBytes wire_bytes;
+    PictureSummary picture;
+    std::uint64_t samples_least = 0, samples_most = 0;  // of a pixel
 };
 
 struct StatusRequest {};
@@ -272,6 +296,13 @@ struct FrameTile {
     std::uint32_t index = 0, count = 0;
     frame::FilmTile film;  // block means nothing here: the counts say all
 };
-using BulkMessage = std::variant<BulkHello, BlobRequest, BlobChunk, BlobAbsent, FilmPart, FrameTile>;
+// Master to client: a piece of the picture, as JobDone describes it.
+struct PictureChunk {
+    JobId job;
+    std::uint64_t total = 0, offset = 0;
+    std::vector<std::byte> data;  // at most 1 MiB
+};
+using BulkMessage =
+    std::variant<BulkHello, BlobRequest, BlobChunk, BlobAbsent, FilmPart, FrameTile, PictureChunk>;
 
 }  // namespace tessera::wire

@@ -13,7 +13,11 @@ constexpr Policy last_of() {
 }
 template <>
 constexpr JobPhase last_of() {
-    return JobPhase::Delivering;
+    return JobPhase::Filtering;
+}
+template <>
+constexpr PictureEncoding last_of() {
+    return PictureEncoding::Exr;
 }
 template <>
 constexpr JobOutcome last_of() {
@@ -82,6 +86,10 @@ void map(const Io& io, typename Io::template Ref<StartJob> s, proto::StartJob& p
     io(s.tile, p, &P::tile, &P::set_tile);
     io(s.wait_nodes, p, &P::wait_nodes, &P::set_wait_nodes);
     io(s.wait_limit, p, &P::wait_limit, &P::set_wait_limit);
+    io(s.picture, p, &P::picture, &P::set_picture);
+    io(s.film, p, &P::film, &P::set_film);
+    io(s.budget, p, &P::budget, &P::set_budget);
+    io(s.adapts_size, p, &P::adapts_size, &P::set_adapts_size);
 }
 
 template <class Io>
@@ -137,6 +145,31 @@ void map(const Io& io, typename Io::template Ref<WireBytes> s, proto::WireBytes&
 }
 
 template <class Io>
+void map(const Io& io, typename Io::template Ref<FilterPass> s, proto::FilterPass& p) {
+    using P = proto::FilterPass;
+    io.text(s.name, p.mutable_name());
+    io(s.seconds, p, &P::seconds, &P::set_seconds);
+    io(s.bytes_per_pixel, p, &P::bytes_per_pixel, &P::set_bytes_per_pixel);
+}
+
+template <class Io>
+void map(const Io& io, typename Io::template Ref<PictureSummary> s, proto::PictureSummary& p) {
+    using P = proto::PictureSummary;
+    io(s.encoding, p, &P::encoding, &P::set_encoding);
+    io(s.width, p, &P::width, &P::set_width);
+    io(s.height, p, &P::height, &P::set_height);
+    io(s.components, p, &P::components, &P::set_components);
+    io(s.byte_size, p, &P::byte_size, &P::set_byte_size);
+    io.text(s.filter, p.mutable_filter());
+    io(s.scale, p, &P::scale, &P::set_scale);
+    io(s.seconds_filter, p, &P::seconds_filter, &P::set_seconds_filter);
+    io(s.seconds_encode, p, &P::seconds_encode, &P::set_seconds_encode);
+    io(s.seconds_predicted, p, &P::seconds_predicted, &P::set_seconds_predicted);
+    io.messages(s.passes, p.mutable_passes(), MaxList);
+    io.texts(s.notes, p.mutable_notes(), MaxList);
+}
+
+template <class Io>
 void map(const Io& io, typename Io::template Ref<JobDone> s, proto::JobDone& p) {
     using P = proto::JobDone;
     io(s.job, p, &P::job, &P::set_job);
@@ -156,6 +189,9 @@ void map(const Io& io, typename Io::template Ref<JobDone> s, proto::JobDone& p) 
     io.messages(s.nodes, p.mutable_nodes(), MaxList);
     io.message(s.units, p.mutable_units());
     io.message(s.wire_bytes, p.mutable_wire_bytes());
+    io.message(s.picture, p.mutable_picture());
+    io(s.samples_least, p, &P::samples_least, &P::set_samples_least);
+    io(s.samples_most, p, &P::samples_most, &P::set_samples_most);
 }
 
 template <class Io>

@@ -20,6 +20,11 @@ view::View some_view() {
     view::View view{.id = ViewId{3}, .revision = 9, .seed = 77, .max_bounces = view::UnlimitedBounces};
     view.camera.left = -0.25;
     view.camera.world_from_camera[3][0] = 1e6;
+    view.renderer = view::Renderer::Whitted;
+    view.path_class = view::PathClass::Caustics;
+    view.feature_rule = view::FeatureRule::Connections;
+    view.transparent_background = true;
+    view.filter = "fdf:radius=4";
     view.channels = {frame::Channel::Radiance, frame::Channel::Depth};
     return view;
 }
@@ -80,14 +85,32 @@ std::vector<ControlMessage> control_messages() {
         SubmitEdit{{SessionId{2}, 3, {5, 1}, some_changes().entries}},
         SubmitEditByBlob{SessionId{2}, 3, {5, 1}, {blake2b({}), 5}},
         EditReply{3, true, {5, 2}, {"p"}},
-        StartJob{.job = JobId{1}, .view = some_view(), .spp = 5, .policy = Policy::Cooperative, .tile = 64},
+        StartJob{.job = JobId{1},
+                 .view = some_view(),
+                 .spp = 5,
+                 .policy = Policy::Cooperative,
+                 .tile = 64,
+                 .picture = PictureEncoding::Png,
+                 .film = false,
+                 .budget = std::chrono::milliseconds(800),
+                 .adapts_size = true},
         StopJob{JobId{1}},
         JobProgress{JobId{1}, JobPhase::Delivering, 1, 2, 3, 4, std::chrono::milliseconds(5)},
         JobDone{.job = JobId{1},
                 .outcome = JobOutcome::TimeUp,
                 .tiles = 3,
                 .seconds_render = 0.25,
-                .nodes = {node}},
+                .nodes = {node},
+                .picture = {.encoding = PictureEncoding::Planes,
+                            .width = 3,
+                            .height = 2,
+                            .components = 4,
+                            .byte_size = 96,
+                            .filter = "gauss:sigma=3",
+                            .passes = {{"gauss", 0.5, 40.0}},
+                            .notes = {"upsampled"}},
+                .samples_least = 3,
+                .samples_most = 9},
         StatusRequest{},
         StatusReply{.software = "s",
                     .nodes = {{.summary = node, .phase = NodePhase::Leaving, .stuck = true}}}};
@@ -105,7 +128,8 @@ std::vector<BulkMessage> bulk_messages() {
             BlobAbsent{blake2b({})},
             FilmPart{UnitId{1}, ViewId{2}, 3, {4, 5}, 0, 2, 6, 7, film},
             FilmPart{UnitId{1}, ViewId{2}, 3, {4, 5}, 1, 2, 6, 7, uneven},
-            FrameTile{JobId{1}, 2, 3, uneven}};
+            FrameTile{JobId{1}, 2, 3, uneven},
+            PictureChunk{JobId{1}, 100, 10, std::vector<std::byte>(50)}};
 }
 
 TEST(ControlMessages, EveryKindIsHere) {

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "mediator/filter/choice.h"
+#include "mediator/frame/film_tile.h"
+#include "mediator/wire/messages.h"
+
+namespace tessera::master {
+
+// A picture made of a film, and how.
+struct Reconstruction {
+    wire::PictureSummary summary;
+    std::shared_ptr<const std::vector<std::byte>> bytes;  // never null; empty when it failed
+    std::string error;
+};
+
+// Filters whole films and encodes them; each picture for itself, without history. Keeps the memory of the last
+// filter as long as filter and size stay the same. One thread calls; the work runs on all cores.
+class Reconstructor {
+  public:
+    Reconstruction reconstruct(const frame::FilmTile& film, const view::View& view, wire::PictureEncoding encoding);
+
+    // Seconds that the same takes on a made-up film of about `pixels`: for the first prediction.
+    double rehearse(const view::View& view, wire::PictureEncoding encoding, std::uint32_t width, std::uint32_t height);
+
+  private:
+    struct Instance {
+        std::string name;
+        std::uint32_t width = 0, height = 0;
+        std::unique_ptr<filter::Filter> filter;
+    };
+    filter::Filter& instance(const filter::Choice& choice, std::uint32_t width, std::uint32_t height);
+
+    tbb::task_arena arena_;
+    Instance instance_;
+    filter::Output output_;
+};
+
+}  // namespace tessera::master
