@@ -28,7 +28,8 @@ struct JobRequest {
     PictureEncoding picture = PictureEncoding::None;  // what the master makes of the film with view.filter
     bool film = true;                                 // the statistics, too
     Duration budget{0};  // not 0: the picture is there so long after the start, filter and encoding included
-    bool adapts_size = false;  // with a budget that is too small for 2 samples per pixel: half or a quarter of the size
+    bool adapts_size =
+        false;  // with a budget that is too small for 2 samples per pixel: half or a quarter of the size
 };
 
 enum class Phase : std::uint8_t { WaitingForNodes, Syncing, Rendering, Delivering, Filtering };

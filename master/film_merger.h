@@ -43,8 +43,8 @@ struct Reconstructed {
 };
 using MergerOutput = std::variant<MergeReport, EncodedTile, Reconstructed>;
 
-// Decodes, merges and filters film on a thread of its own, so that the loop that keeps heartbeats never does. Tasks
-// run in the order given; `wake` is called (from the merger's thread) whenever output is there.
+// Decodes, merges and filters film on a thread of its own, so that the loop that keeps heartbeats never does.
+// Tasks run in the order given; `wake` is called (from the merger's thread) whenever output is there.
 class FilmMerger {
   public:
     explicit FilmMerger(std::function<void()> wake);

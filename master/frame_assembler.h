@@ -23,7 +23,7 @@ class FrameAssembler {
 
     std::uint32_t tile_count() const { return static_cast<std::uint32_t>(tiles_.size()); }
     frame::FilmTile merged_tile(std::uint32_t tile) const;  // without samples: zero counts
-    frame::FilmTile whole() const;  // all tiles in one; the block means nothing
+    frame::FilmTile whole() const;                          // all tiles in one; the block means nothing
     std::vector<frame::SampleBlock> roots(std::uint32_t tile) const { return forests_[tile].roots(); }
     std::uint64_t byte_size() const;
 

@@ -7,7 +7,7 @@
 namespace tessera::master {
 
 namespace {
-constexpr std::uint32_t TilesAhead = 32;                   // encoded by the merger and not yet sent
+constexpr std::uint32_t TilesAhead = 32;  // encoded by the merger and not yet sent
 constexpr std::size_t PictureChunk = std::size_t{1} << 20;
 constexpr std::size_t BytesAhead = std::size_t{32} << 20;  // waiting for a slow client
 }  // namespace
@@ -52,8 +52,10 @@ void JobRunner::deliver() {
     if (session == nullptr || !session->bulk) return;
     while (job_->picture_sent < picture_size) {  // what somebody is waiting for goes first
         if (outbox_.waiting_bytes(net::Link::Bulk, *session->bulk) > BytesAhead) return;
-        const auto piece = std::span(*job_->picture->bytes).subspan(job_->picture_sent).first(
-            std::min<std::uint64_t>(PictureChunk, picture_size - job_->picture_sent));
+        const auto piece =
+            std::span(*job_->picture->bytes)
+                .subspan(job_->picture_sent)
+                .first(std::min<std::uint64_t>(PictureChunk, picture_size - job_->picture_sent));
         outbox_.bulk(*session->bulk, wire::PictureChunk{.job = job_->request.job,
                                                         .total = picture_size,
                                                         .offset = job_->picture_sent,
@@ -70,7 +72,8 @@ void JobRunner::deliver() {
 }
 
 std::uint32_t JobRunner::tiles_to_deliver() const {
-    return job_->scheduler && job_->request.film ? static_cast<std::uint32_t>(job_->scheduler->tiles().size()) : 0u;
+    return job_->scheduler && job_->request.film ? static_cast<std::uint32_t>(job_->scheduler->tiles().size())
+                                                 : 0u;
 }
 
 void JobRunner::send_progress(TimePoint now) {

@@ -80,6 +80,24 @@ void JobRunner::tick(TimePoint now) {
     if (job_ && job_->phase != wire::JobPhase::Delivering) send_progress(now);
 }
 
+// "the back-ends of 2 nodes do not give alpha, range; ", or nothing when channels are not the trouble.
+std::string JobRunner::missing_channels() const {
+    const std::uint32_t wanted = job_->request.view.channels.bits();
+    std::uint32_t lacking = 0, missing = 0;
+    for (const auto& [id, node] : nodes_.all()) {
+        const std::uint32_t lacks = wanted & ~node.hello.channels.bits();
+        lacking += lacks != 0 ? 1 : 0;
+        missing |= lacks;
+    }
+    if (lacking == 0) return {};
+    std::string names;
+    for (const frame::ChannelInfo& entry : frame::channel_table()) {
+        if (!frame::ChannelSet::from_bits(missing).contains(entry.channel)) continue;
+        names += (names.empty() ? "" : ", ") + std::string(entry.name);
+    }
+    return "the back-ends of " + std::to_string(lacking) + " nodes do not give " + names + "; ";
+}
+
 void JobRunner::wait_for_nodes(TimePoint now) {
     std::uint32_t suitable = 0, prepared = 0;
     for (const auto& [id, node] : nodes_.all()) {
@@ -96,7 +114,7 @@ void JobRunner::wait_for_nodes(TimePoint now) {
     job_->phase = wire::JobPhase::WaitingForNodes;
     if (now - job_->without_nodes_since >= job_->request.wait_limit) {
         decide(wire::JobOutcome::NoNodes,
-               std::to_string(suitable) + " of " + std::to_string(wanted) +
+               missing_channels() + std::to_string(suitable) + " of " + std::to_string(wanted) +
                    " nodes came: start more nodes or ask for fewer with --wait-nodes",
                now);
         begin_delivery(now);
@@ -134,7 +152,8 @@ void JobRunner::render(TimePoint now) {
             deal(now);
         }
     }
-    if (job_->outcome && (scheduler.idle() || now - job_->outcome_at > settings_.stop_grace)) begin_filtering(now);
+    if (job_->outcome && (scheduler.idle() || now - job_->outcome_at > settings_.stop_grace))
+        begin_filtering(now);
 }
 
 void JobRunner::deal(TimePoint now) {

@@ -50,6 +50,7 @@ class JobRunner {
   private:
     bool suits(const NodeRecord& node) const;  // could take part, at whatever version
     bool ready(const NodeRecord& node) const;  // suits, and holds the version
+    std::string missing_channels() const;
     void wait_for_nodes(TimePoint now);
     void begin_rendering(TimePoint now);
     void render(TimePoint now);

@@ -43,9 +43,11 @@ std::vector<std::byte> encode(const filter::Planes& picture, wire::PictureEncodi
 
 }  // namespace
 
-filter::Filter& Reconstructor::instance(const filter::Choice& choice, std::uint32_t width, std::uint32_t height) {
+filter::Filter& Reconstructor::instance(const filter::Choice& choice, std::uint32_t width,
+                                        std::uint32_t height) {
     const std::string name(choice.entry->description.name);
-    if (!instance_.filter || instance_.name != name || instance_.width != width || instance_.height != height) {
+    if (!instance_.filter || instance_.name != name || instance_.width != width ||
+        instance_.height != height) {
         instance_ = {name, width, height, choice.entry->make(width, height)};
     }
     return *instance_.filter;

@@ -16,14 +16,16 @@ struct Reconstruction {
     std::string error;
 };
 
-// Filters whole films and encodes them; each picture for itself, without history. Keeps the memory of the last
-// filter as long as filter and size stay the same. One thread calls; the work runs on all cores.
+// Filters whole films and encodes them; each picture for itself, without history. Keeps the memory of the
+// last filter as long as filter and size stay the same. One thread calls; the work runs on all cores.
 class Reconstructor {
   public:
-    Reconstruction reconstruct(const frame::FilmTile& film, const view::View& view, wire::PictureEncoding encoding);
+    Reconstruction reconstruct(const frame::FilmTile& film, const view::View& view,
+                               wire::PictureEncoding encoding);
 
     // Seconds that the same takes on a made-up film of about `pixels`: for the first prediction.
-    double rehearse(const view::View& view, wire::PictureEncoding encoding, std::uint32_t width, std::uint32_t height);
+    double rehearse(const view::View& view, wire::PictureEncoding encoding, std::uint32_t width,
+                    std::uint32_t height);
 
   private:
     struct Instance {

@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <set>
+#include <span>
 
 #include "client/cli/cli.h"
+#include "client/tools/view_attributes.h"
 #include "mediator/frame/resolve.h"
-#include "mediator/picture/exr_writer.h"
-#include "mediator/picture/png_writer.h"
-#include "mediator/picture/tone_map.h"
+#include "mediator/picture/atomic_file.h"
+#include "mediator/picture/picture_encoder.h"
 
 namespace tessera::tools {
 
@@ -56,25 +59,62 @@ std::string kinds_of(const client::JobResult& result) {
 std::map<std::string, std::string> provenance(const client::JobRequest& request,
                                               const client::JobResult& result, const Origin& origin) {
     const auto [fewest, most] = std::minmax_element(result.film->counts.begin(), result.film->counts.end());
-    return {{"tessera.software", "tessera " + cli::version()},
-            {"tessera.scene", origin.scene},
-            {"tessera.camera", origin.camera},
-            {"tessera.filmHash", origin.film_hash},
-            {"tessera.outcome", name(result.outcome)},
-            {"tessera.kinds", kinds_of(result)},
-            {"tessera.nodes", std::to_string(result.nodes.size())},
-            {"tessera.seed", std::to_string(request.view.seed)},
-            {"tessera.maxBounces", std::to_string(request.view.max_bounces)},
-            {"tessera.pixelFilter", name(request.view.pixel_filter.kind)},
-            {"tessera.samples", std::to_string(result.samples)},
-            {"tessera.nonfiniteSamples", std::to_string(result.film->nonfinite_samples)},
-            {"tessera.samplesPerPixelLeast", std::to_string(*fewest)},
-            {"tessera.samplesPerPixelMost", std::to_string(*most)}};
+    std::map<std::string, std::string> attributes = view_attributes(request.view);
+    if (result.picture) attributes["tessera.filter"] = result.picture->filter;
+    attributes.insert({{"tessera.software", "tessera " + cli::version()},
+                       {"tessera.scene", origin.scene},
+                       {"tessera.camera", origin.camera},
+                       {"tessera.filmHash", origin.film_hash},
+                       {"tessera.outcome", name(result.outcome)},
+                       {"tessera.kinds", kinds_of(result)},
+                       {"tessera.nodes", std::to_string(result.nodes.size())},
+                       {"tessera.seed", std::to_string(request.view.seed)},
+                       {"tessera.maxBounces", std::to_string(request.view.max_bounces)},
+                       {"tessera.pixelFilter", name(request.view.pixel_filter.kind)},
+                       {"tessera.samples", std::to_string(result.samples)},
+                       {"tessera.nonfiniteSamples", std::to_string(result.film->nonfinite_samples)},
+                       {"tessera.samplesPerPixelLeast", std::to_string(*fewest)},
+                       {"tessera.samplesPerPixelMost", std::to_string(*most)}});
+    return attributes;
 }
 
-void write_png(const std::string& path, const frame::FilmTile& film) {
-    const frame::Image image = frame::resolve(film, frame::Channel::Radiance);
-    picture::write_png(path, image.width, image.height, picture::tone_map(image));
+// The radiance as sampled, with alpha where the film has it.
+frame::Image unfiltered(const frame::FilmTile& film) {
+    const frame::Image radiance = frame::resolve(film, frame::Channel::Radiance);
+    if (!film.channels.contains(frame::Channel::Alpha)) return radiance;
+    const frame::Image alpha = frame::resolve(film, frame::Channel::Alpha);
+    frame::Image image(radiance.width, radiance.height, 4);
+    for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+        std::copy_n(radiance.pixel(i).begin(), 3, image.pixel(i).begin());
+        image.pixel(i)[3] = alpha.values[i];
+    }
+    return image;
+}
+
+// Throws Error{Unavailable} for a picture of another size than it says.
+frame::Image interleaved(const client::Picture& picture) {
+    frame::Image image(picture.width, picture.height, picture.components);
+    if (picture.components < 3 || picture.components > 4 ||
+        picture.bytes.size() != image.values.size() * sizeof(float)) {
+        throw Error(ErrorCode::Unavailable,
+                    "the master's picture is damaged: check that master and client are of the same version");
+    }
+    for (std::uint32_t c = 0; c < image.components; ++c) {
+        for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+            std::memcpy(&image.values[i * image.components + c],
+                        &picture.bytes[(c * image.pixel_count() + i) * sizeof(float)], sizeof(float));
+        }
+    }
+    return image;
+}
+
+void write_bytes(const std::string& path, std::span<const std::byte> bytes) {
+    picture::write_atomically(path, [&](const std::string& temporary) {
+        std::ofstream file(temporary, std::ios::binary);
+        file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        file.close();
+        if (!file) throw Error(ErrorCode::Io, "cannot write '" + path + "': is the disk full?");
+    });
 }
 
 }  // namespace
@@ -85,17 +125,36 @@ std::optional<PictureFormat> picture_format(const std::string& path) {
                    [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
     if (extension == ".exr") return PictureFormat::Exr;
     if (extension == ".png") return PictureFormat::Png;
+    if (extension == ".jpg" || extension == ".jpeg") return PictureFormat::Jpeg;
     return std::nullopt;
 }
 
+void write_picture(const std::string& path, const frame::Image& image) {
+    using picture::FileFormat;
+    const PictureFormat format = picture_format(path).value_or(PictureFormat::Exr);
+    write_bytes(path, picture::encode_picture(image, format == PictureFormat::Png    ? FileFormat::Png
+                                                     : format == PictureFormat::Jpeg ? FileFormat::Jpeg
+                                                                                     : FileFormat::Exr));
+}
+
 void write_pictures(const std::vector<std::string>& paths, const client::JobRequest& request,
-                    const client::JobResult& result, const Origin& origin) {
-    const auto attributes = provenance(request, result, origin);
+                    const client::JobResult& result, const Origin& origin, picture::Statistics statistics) {
+    std::optional<frame::Image> filtered;
+    if (result.picture && result.picture->encoding == client::PictureEncoding::Planes) {
+        filtered = interleaved(*result.picture);
+    }
     for (const std::string& path : paths) {
-        if (picture_format(path) == PictureFormat::Png) {
-            write_png(path, *result.film);
+        if (result.picture && !filtered) {
+            write_bytes(path, result.picture->bytes);  // encoded by the master
+        } else if (picture_format(path) == PictureFormat::Exr) {
+            picture::write_film_exr(path,
+                                    {.width = request.view.width,
+                                     .height = request.view.height,
+                                     .film = *result.film,
+                                     .attributes = provenance(request, result, origin)},
+                                    filtered, statistics);
         } else {
-            picture::write_film_exr(path, request.view.width, request.view.height, *result.film, attributes);
+            write_picture(path, filtered ? *filtered : unfiltered(*result.film));
         }
     }
 }

@@ -5,10 +5,11 @@
 #include <vector>
 
 #include "client/job.h"
+#include "mediator/picture/film_exr.h"
 
 namespace tessera::tools {
 
-enum class PictureFormat { Exr, Png };
+enum class PictureFormat { Exr, Png, Jpeg };
 
 // By the end of the name; nothing for what cannot be written.
 std::optional<PictureFormat> picture_format(const std::string& path);
@@ -20,8 +21,13 @@ struct Origin {
     std::string film_hash;
 };
 
-// Resolves the film and writes it to every path. A file is there in full or not at all. Throws Error{Io}.
+// Writes what the result holds to every path: the master's picture where there is one, else the resolved
+// radiance; an EXR gets the film's channels, too, and its statistics if they are to be saved. A file is there
+// in full or not at all. Throws Error{Io}.
 void write_pictures(const std::vector<std::string>& paths, const client::JobRequest& request,
-                    const client::JobResult& result, const Origin& origin);
+                    const client::JobResult& result, const Origin& origin, picture::Statistics statistics);
+
+// An EXR without a film or a tone-mapped file, of linear R, G, B (A).
+void write_picture(const std::string& path, const frame::Image& image);
 
 }  // namespace tessera::tools

@@ -32,6 +32,8 @@ std::string describe(const client::Progress& progress, const client::JobRequest&
             return formatted("waiting for nodes: %u of %u", progress.nodes, request.wait_nodes);
         case client::Phase::Syncing:
             return formatted("the scene is on its way to the nodes: %u ready", progress.nodes);
+        case client::Phase::Filtering:
+            return "filtering";
         case client::Phase::Delivering:
             return "fetching the picture";
         case client::Phase::Rendering:

@@ -128,15 +128,16 @@ class Render {
         using client::Outcome;
         const bool is_failed = result_.outcome == Outcome::Failed;
         if (is_failed) return complain(Name, ExitInternal, "the frame failed: " + result_.message);
-        if (!result_.film || result_.samples == 0) {
+        if ((!result_.film && !result_.picture) || result_.samples == 0) {
             if (result_.outcome == Outcome::Stopped) return interrupted("nothing was rendered yet");
             return complain(Name, cli::ExitUnavailable,
                             result_.message.empty() ? "no sample was finished in the time given: give it more"
                                                     : result_.message);
         }
-        const std::string hash = to_hex(frame::film_hash(*result_.film));
+        const std::string hash = result_.film ? to_hex(frame::film_hash(*result_.film)) : std::string();
         write_pictures(plan_.outputs, plan_.job, result_,
-                       {std::filesystem::path(plan_.view.scene).filename().string(), camera_.name, hash});
+                       {std::filesystem::path(plan_.view.scene).filename().string(), camera_.name, hash},
+                       plan_.statistics);
         const RenderReport report{plan_.job, result_, seconds(clock_.now() - started_), hash};
         std::cout << (json_ ? as_json(report) : as_text(report, plan_.outputs)) << std::endl;
         if (result_.outcome == Outcome::Stopped) return interrupted("what was merged so far is written");

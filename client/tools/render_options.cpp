@@ -5,7 +5,9 @@
 #include <filesystem>
 
 #include "client/tools/pictures.h"
+#include "master/filter/catalog.h"
 #include "mediator/backend/catalog.h"
+#include "mediator/filter/choice.h"
 
 namespace tessera::tools {
 
@@ -29,7 +31,8 @@ Expected<void> check_outputs(const std::vector<std::string>& outputs) {
         return wrong("no output: say where the picture goes with -o FILE.exr or -o FILE.png");
     for (const std::string& output : outputs) {
         if (!picture_format(output)) {
-            return wrong("-o: '" + output + "' is no picture that can be written; end it with .exr or .png");
+            return wrong("-o: '" + output +
+                         "' is no picture that can be written; end it with .exr, .png or .jpg");
         }
         const std::filesystem::path folder = std::filesystem::path(output).parent_path();
         if (!folder.empty() && !std::filesystem::is_directory(folder)) {
@@ -72,22 +75,53 @@ Expected<void> set_amount(const RenderOptions& options, client::JobRequest& job)
 }
 
 // What goes to an EXR is asked for only when there is one.
-frame::ChannelSet channels_for(const std::vector<std::string>& outputs) {
-    using enum frame::Channel;
-    const bool any_exr = std::any_of(outputs.begin(), outputs.end(), [](const std::string& output) {
+bool any_exr(const std::vector<std::string>& outputs) {
+    return std::any_of(outputs.begin(), outputs.end(), [](const std::string& output) {
         return picture_format(output) == PictureFormat::Exr;
     });
-    if (any_exr) return {Radiance, LowVariance, HighVariance, Albedo, Normal, Depth, ObjectIndex};
+}
+
+frame::ChannelSet channels_for(const RenderOptions& options) {
+    using enum frame::Channel;
+    if (options.save_statistics) return frame::ChannelSet::from_bits(~0u);
+    if (any_exr(options.outputs))
+        return {Radiance, LowVariance, HighVariance, Albedo, Normal, Depth, ObjectIndex};
     return {Radiance};
+}
+
+// One picture file is encoded by the master, within the time given; for anything else the numbers come here.
+Expected<void> set_filter(const RenderOptions& options, client::JobRequest& job) {
+    if (options.save_statistics && !any_exr(options.outputs)) {
+        return wrong("--save-statistics needs an EXR to save them in: add -o FILE.exr");
+    }
+    if (options.filter.empty()) return {};
+    const auto choice = filter::parse_choice(options.filter, filter::catalog());
+    if (!choice) return wrong(std::string("--filter: ") + choice.error().what() + "; see tessera filters");
+    job.view.filter = filter::to_text(*choice);
+    job.film = any_exr(options.outputs);
+    const PictureFormat format = *picture_format(options.outputs.front());
+    job.picture = options.outputs.size() > 1 || job.film ? client::PictureEncoding::Planes
+                  : format == PictureFormat::Png         ? client::PictureEncoding::Png
+                                                         : client::PictureEncoding::Jpeg;
+    if (job.time_limit > Duration::zero()) {
+        job.budget = job.time_limit;
+        job.adapts_size = !job.film;
+    }
+    return {};
 }
 
 }  // namespace
 
 void RenderOptions::add_to(cli::CommandLine& command) {
     view.add_to(command);
-    command.option("-o,--output", "picture to write, .exr or .png; may be given several times", outputs);
+    command.option("-o,--output", "picture to write, .exr, .png or .jpg; may be given several times",
+                   outputs);
     command.option("--spp", "samples per pixel (64)", spp);
-    command.option("--time", "render for so long instead, as 800ms or 10s", time);
+    command.option("--time",
+                   "render for so long instead, as 800ms or 10s; with --filter, filter and encoding included",
+                   time);
+    command.option("--filter", "reconstruction, NAME[:key=value,...]; tessera filters lists them", filter);
+    command.flag("--save-statistics", "keep all channels in the EXR, for tessera filter", save_statistics);
     command.choice("--policy", "how frames are cut into work", policy, {"tiled", "cooperative", "mixed"});
     command.flag("--reproducible", "the same bits on every x86-64-v3 machine: AVX2 only", reproducible);
     command.option("--backend", "back-end of the embedded nodes", backend);
@@ -103,7 +137,8 @@ void RenderOptions::add_to(cli::CommandLine& command) {
     command.choice("--log-level", "how much to tell", log.level, cli::log_levels());
     command.option("--log-file", "write the log there instead of standard error", log.file);
     command.examples({"tessera render room.glb -o room.exr -o room.png --spp 256",
-                      "tessera render still.glb --env studio.exr -o still.png --time 10s",
+                      "tessera render room.glb -o room.exr --spp 8 --filter fdf",
+                      "tessera render still.glb --env studio.exr -o still.png --time 800ms --filter fdf",
                       "tessera render room.glb -o room.exr --nodes 2 --policy cooperative --json",
                       "tessera render room.glb -o room.exr --master tcp://render-1:7420 --keys ~/.tessera"});
 }
@@ -140,7 +175,11 @@ Expected<RenderPlan> understand(const RenderOptions& options) {
                       : options.policy == "cooperative" ? client::Policy::Cooperative
                                                         : client::Policy::Mixed;
     plan.job.reproducible = options.reproducible;
-    plan.view.view.channels = channels_for(options.outputs);
+    if (auto fine = set_filter(options, plan.job); !fine) return tl::unexpected(fine.error());
+    plan.view.view.filter = plan.job.view.filter;
+    plan.view.view.channels =
+        frame::ChannelSet::from_bits(plan.view.view.channels.bits() | channels_for(options).bits());
+    if (options.save_statistics) plan.statistics = picture::Statistics::Saved;
     return plan;
 }
 

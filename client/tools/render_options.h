@@ -9,6 +9,7 @@
 #include "client/session.h"
 #include "client/tools/embedded_cluster.h"
 #include "client/tools/view_options.h"
+#include "mediator/picture/film_exr.h"
 
 namespace tessera::tools {
 
@@ -20,7 +21,8 @@ struct RenderOptions {
     std::optional<std::string> time, backend, master, keys, wait_nodes;
     std::string user = "editor";
     std::string policy = "mixed";
-    bool reproducible = false, no_wait = false, json = false;
+    std::string filter;
+    bool reproducible = false, no_wait = false, json = false, save_statistics = false;
     cli::LogSettings log{.program = "tessera"};
 
     void add_to(cli::CommandLine& command);
@@ -34,6 +36,7 @@ struct RenderPlan {
     std::optional<client::Address> address;  // none: embedded
     EmbeddedSettings embedded;
     client::WhenBusy when_busy = client::WhenBusy::Queue;
+    picture::Statistics statistics = picture::Statistics::Left;
 };
 Expected<RenderPlan> understand(const RenderOptions& options);
 

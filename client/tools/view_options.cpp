@@ -1,6 +1,9 @@
 #include "client/tools/view_options.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "client/tools/view_attributes.h"
 
 namespace tessera::tools {
 
@@ -27,9 +30,15 @@ void ViewOptions::add_to(cli::CommandLine& command) {
     command.option("--env-strength", "factor on the environment map", environment_strength);
     command.option("--bounces", "how often light is scattered on; 0 = direct light only", bounces);
     command.option("--crop", "render only the part X,Y,W,H of the picture", crop);
-    command.choice("--pixel-filter", "reconstruction filter", pixel_filter,
+    command.choice("--pixel-filter", "how a sample counts for the pixels around it", pixel_filter,
                    {"box", "gaussian", "blackman-harris"});
     command.option("--seed", "another seed, other noise", seed);
+    command.choice("--renderer", "path tracing, or direct light and perfect speculars only", renderer,
+                   {"path", "whitted"});
+    command.choice("--path-class", "paths that the pixel filter may blur", path_class, path_class_names());
+    command.choice("--feature-rule", "what the shading feature of the filter fdf counts", feature_rule,
+                   {"demodulated", "connections"});
+    command.flag("--transparent", "nothing behind the scene: write alpha", transparent);
 }
 
 Expected<ViewPlan> understand(const ViewOptions& options) {
@@ -58,6 +67,15 @@ Expected<ViewPlan> understand(const ViewOptions& options) {
     plan.import.environment_strength = static_cast<float>(options.environment_strength);
     plan.view.seed = options.seed;
     plan.view.max_bounces = options.bounces;
+    plan.view.renderer =
+        options.renderer == "whitted" ? view::Renderer::Whitted : view::Renderer::PathTracing;
+    const auto& classes = path_class_names();
+    plan.view.path_class = static_cast<view::PathClass>(
+        std::find(classes.begin(), classes.end(), options.path_class) - classes.begin());
+    plan.view.feature_rule = options.feature_rule == "connections" ? view::FeatureRule::Connections
+                                                                   : view::FeatureRule::Demodulated;
+    plan.view.transparent_background = options.transparent;
+    if (options.transparent) plan.view.channels.insert(frame::Channel::Alpha);
     plan.view.pixel_filter = pixel_filter(options.pixel_filter);
     return plan;
 }

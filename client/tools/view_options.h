@@ -21,6 +21,8 @@ struct ViewOptions {
     std::uint32_t bounces = 8;
     std::string pixel_filter = "box";
     std::uint64_t seed = 0;
+    std::string renderer = "path", path_class = "indirect", feature_rule = "demodulated";
+    bool transparent = false;
 
     void add_to(cli::CommandLine& command);
 };

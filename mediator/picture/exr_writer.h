@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "mediator/base/rect.h"
-#include "mediator/frame/film_tile.h"
 #include "mediator/frame/image.h"
 
 namespace tessera::picture {
@@ -23,10 +22,5 @@ struct Layer {
 // Attributes are text. In full or not at all; throws Error{Io}.
 void write_exr(const std::string& path, std::uint32_t width, std::uint32_t height, const Rect& window,
                const std::vector<Layer>& layers, const std::map<std::string, std::string>& attributes);
-
-// Resolves every channel of the film: R G B of the radiance and its variance of the mean, direct, indirect,
-// albedo, normal, depth, object id, sample counts; with each channel's merge rule among the attributes.
-void write_film_exr(const std::string& path, std::uint32_t width, std::uint32_t height,
-                    const frame::FilmTile& film, std::map<std::string, std::string> attributes);
 
 }  // namespace tessera::picture

@@ -30,7 +30,8 @@ std::vector<std::byte> bytes_of(const void* data, std::size_t size) {
 
 frame::Image colors(const frame::Image& image) {
     frame::Image rgb(image.width, image.height, 3);
-    for (std::size_t i = 0; i < image.pixel_count(); ++i) std::copy_n(image.pixel(i).begin(), 3, rgb.pixel(i).begin());
+    for (std::size_t i = 0; i < image.pixel_count(); ++i)
+        std::copy_n(image.pixel(i).begin(), 3, rgb.pixel(i).begin());
     return rgb;
 }
 
@@ -125,7 +126,8 @@ std::vector<std::byte> exr(const frame::Image& image) {
         const std::size_t stride = image.components * sizeof(float);
         for (std::uint32_t c = 0; c < image.components; ++c) {
             header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
-            buffer.insert(names[c], Imf::Slice(Imf::FLOAT, first + c * sizeof(float), stride, stride * image.width));
+            buffer.insert(names[c],
+                          Imf::Slice(Imf::FLOAT, first + c * sizeof(float), stride, stride * image.width));
         }
         Imf::StdOSStream stream;
         {

@@ -14,6 +14,7 @@
 #include "mediator/frame/resolve.h"
 #include "mediator/picture/exr_reader.h"
 #include "mediator/picture/exr_writer.h"
+#include "mediator/picture/film_exr.h"
 #include "mediator/picture/hdr_reader.h"
 #include "mediator/picture/png_writer.h"
 #include "mediator/picture/tone_map.h"
@@ -64,7 +65,7 @@ frame::FilmTile some_film(const Rect& window) {
 TEST_F(PictureTest, ExrComesBackToTheBitInItsWindow) {
     const Rect window{5, 7, 13, 9};
     const frame::FilmTile film = some_film(window);
-    write_film_exr(file("a.exr"), 64, 32, film, {{"tessera/seed", "5"}});
+    write_film_exr(file("a.exr"), {64, 32, film, {{"tessera/seed", "5"}}});
     const Picture radiance = read_exr(file("a.exr"));
     EXPECT_EQ(radiance.window, window);
     EXPECT_EQ(radiance.image.values, frame::resolve(film, frame::Channel::Radiance).values);
@@ -81,7 +82,7 @@ TEST_F(PictureTest, ExrComesBackToTheBitInItsWindow) {
 }
 
 TEST_F(PictureTest, DamagedExrIsAnErrorAndNeverACrash) {
-    write_film_exr(file("a.exr"), 16, 16, some_film({0, 0, 16, 16}), {});
+    write_film_exr(file("a.exr"), {16, 16, some_film({0, 0, 16, 16}), {}});
     const std::string good = bytes_of(file("a.exr"));
     CounterRandom random(11);
     for (int i = 0; i < 400; ++i) {
@@ -117,7 +118,7 @@ TEST_F(PictureTest, DamagedHdrIsAnError) {
 }
 
 TEST_F(PictureTest, WhatCannotBeWrittenLeavesNothing) {
-    EXPECT_THROW(write_film_exr(file("no/folder/a.exr"), 4, 4, some_film({0, 0, 4, 4}), {}), Error);
+    EXPECT_THROW(write_film_exr(file("no/folder/a.exr"), {4, 4, some_film({0, 0, 4, 4}), {}}), Error);
     EXPECT_THROW(write_png(file("no/folder/a.png"), 1, 1, std::array<std::uint8_t, 3>{}), Error);
     EXPECT_EQ(files(), 0u);
 }

@@ -1,0 +1,213 @@
+#include "mediator/picture/film_exr.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfStringAttribute.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <new>
+
+#include "mediator/base/error.h"
+#include "mediator/frame/resolve.h"
+#include "mediator/picture/exr_header.h"
+#include "mediator/picture/exr_writer.h"
+
+namespace tessera::picture {
+
+namespace {
+
+const std::string Prefix = "statistics";
+
+const char* text(frame::MergeRule rule) {
+    switch (rule) {
+        case frame::MergeRule::Moments:
+            return "moments";
+        case frame::MergeRule::Sum:
+            return "sum";
+        case frame::MergeRule::Minimum:
+            return "minimum";
+        case frame::MergeRule::Maximum:
+            return "maximum";
+        case frame::MergeRule::Nearest:
+            return "nearest";
+        case frame::MergeRule::First:
+            return "first";
+    }
+    return "";
+}
+
+Layer counts_layer(const frame::FilmTile& film) {
+    Layer layer{"samples", {"count"}, frame::resolve_counts(film), true};
+    std::memcpy(layer.image.values.data(), film.counts.data(), film.counts.size() * sizeof(std::uint32_t));
+    return layer;
+}
+
+Layer object_layer(const frame::FilmTile& film) {
+    const frame::Image nearest = frame::resolve(film, frame::Channel::ObjectIndex);
+    Layer layer{"object_id", {"id"}, frame::Image(nearest.width, nearest.height, 1), true};
+    for (std::size_t i = 0; i < nearest.pixel_count(); ++i) {
+        std::memcpy(&layer.image.values[i], &nearest.values[2 * i + 1], sizeof(float));
+    }
+    return layer;
+}
+
+std::string plane_name(std::uint32_t plane) {
+    return "p" + std::to_string(plane);
+}
+
+// The planes of a channel as they are merged, in the order of the film.
+Layer statistics_layer(const frame::FilmTile& film, const frame::ChannelInfo& entry) {
+    const std::uint32_t count = entry.plane_count(), first = film.channels.first_plane(entry.channel);
+    Layer layer{
+        Prefix + "." + std::string(entry.name), {}, frame::Image(film.rect.width, film.rect.height, count)};
+    for (std::uint32_t plane = 0; plane < count; ++plane) {
+        layer.components.push_back(plane_name(plane));
+        const auto values = film.plane(first + plane);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            std::memcpy(&layer.image.values[i * count + plane], &values[i], sizeof(float));
+        }
+    }
+    return layer;
+}
+
+std::vector<std::string> component_names(const frame::ChannelInfo& entry) {
+    if (entry.channel == frame::Channel::Normal) return {"X", "Y", "Z"};
+    if (entry.channel == frame::Channel::Depth) return {"Z"};
+    if (entry.components == 1) return {"Y"};
+    return {"R", "G", "B"};
+}
+
+// Puts a channel of the file into a plane; the address that EXR wants is of pixel (0, 0).
+void take(Imf::FrameBuffer& target, const std::string& name, Imf::PixelType type, void* values,
+          const Rect& window) {
+    constexpr std::ptrdiff_t X = sizeof(float);
+    const std::ptrdiff_t y = X * window.width;
+    char* origin = static_cast<char*>(values) - window.x * X - window.y * y;
+    target.insert(name, Imf::Slice(type, origin, X, static_cast<std::size_t>(y)));
+}
+
+FilmFile read(const std::string& path) {
+    FilmFile result;
+    const Rect window = checked_exr_window(path);
+    Imf::InputFile input(path.c_str(), 0);
+    const Imf::Header& header = input.header();
+    result.width = static_cast<std::uint32_t>(header.displayWindow().max.x + 1);
+    result.height = static_cast<std::uint32_t>(header.displayWindow().max.y + 1);
+    const auto holds = [&](const std::string& name, Imf::PixelType type) {
+        const Imf::Channel* channel = header.channels().findChannel(name);
+        return channel != nullptr && channel->type == type && channel->xSampling == 1 &&
+               channel->ySampling == 1;
+    };
+    frame::ChannelSet channels;
+    for (const frame::ChannelInfo& entry : frame::channel_table()) {
+        bool all = true;
+        for (std::uint32_t plane = 0; plane < entry.plane_count(); ++plane) {
+            all = all && holds(Prefix + "." + std::string(entry.name) + "." + plane_name(plane), Imf::FLOAT);
+        }
+        if (all) channels.insert(entry.channel);
+    }
+    if (!channels.contains(frame::Channel::Radiance) || !holds("samples.count", Imf::UINT)) {
+        throw Error(ErrorCode::InvalidInput,
+                    "it holds no statistics: render it again with --save-statistics");
+    }
+    result.film = frame::FilmTile(window, {}, channels);
+    Imf::FrameBuffer target;
+    take(target, "samples.count", Imf::UINT, result.film.counts.data(), window);
+    for (const frame::ChannelInfo& entry : frame::channel_table()) {
+        if (!channels.contains(entry.channel)) continue;
+        const std::uint32_t first = channels.first_plane(entry.channel);
+        for (std::uint32_t plane = 0; plane < entry.plane_count(); ++plane) {
+            take(target, Prefix + "." + std::string(entry.name) + "." + plane_name(plane), Imf::FLOAT,
+                 result.film.plane(first + plane).data(), window);
+        }
+    }
+    input.setFrameBuffer(target);
+    input.readPixels(window.y, window.bottom() - 1);
+    for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
+        const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute());
+        if (text != nullptr) result.attributes[attribute.name()] = text->value();
+    }
+    return result;
+}
+
+// A file may say anything; what a filter reads must be what it is promised (mediator/filter/inputs.h).
+void check(const frame::FilmTile& film) {
+    for (const frame::ChannelInfo& entry : frame::channel_table()) {
+        if (!film.channels.contains(entry.channel) || entry.rule == frame::MergeRule::Nearest) continue;
+        const std::uint32_t first = film.channels.first_plane(entry.channel);
+        const bool may_be_infinite = entry.rule == frame::MergeRule::Minimum;
+        for (std::uint32_t plane = 0; plane < entry.plane_count(); ++plane) {
+            const bool is_square = plane >= entry.components;  // sums of squared deviations
+            for (const float value : film.plane(first + plane)) {
+                const bool fine = std::isfinite(value) || (may_be_infinite && value > 0.0f);
+                if (!fine || (is_square && value < 0.0f)) {
+                    throw Error(ErrorCode::InvalidInput,
+                                "channel " + std::string(entry.name) +
+                                    " holds a number that cannot be there: it is damaged");
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+
+void write_film_exr(const std::string& path, const FilmFile& file,
+                    const std::optional<frame::Image>& filtered, Statistics statistics) {
+    using frame::Channel;
+    const frame::FilmTile& film = file.film;
+    const std::vector<std::string> rgb{"R", "G", "B"};
+    std::vector<Layer> layers;
+    if (filtered) {
+        layers.push_back(
+            {"", filtered->components == 4 ? std::vector<std::string>{"R", "G", "B", "A"} : rgb, *filtered});
+    }
+    std::map<std::string, std::string> attributes = file.attributes;
+    for (const frame::ChannelInfo& entry : frame::channel_table()) {
+        if (!film.channels.contains(entry.channel)) continue;
+        attributes["tessera/merge/" + std::string(entry.name)] = text(entry.rule);
+        if (statistics == Statistics::Saved) layers.push_back(statistics_layer(film, entry));
+        if (entry.channel == Channel::ObjectIndex) {
+            layers.push_back(object_layer(film));
+        } else if (entry.channel == Channel::Radiance) {
+            layers.push_back({filtered ? "raw" : "", rgb, frame::resolve(film, Channel::Radiance)});
+            layers.push_back({"variance", rgb, frame::resolve_variance_of_mean(film, Channel::Radiance)});
+        } else if (entry.channel == Channel::Alpha && !filtered) {
+            layers.push_back({"", {"A"}, frame::resolve(film, Channel::Alpha)});
+        } else if (entry.channel != Channel::EvenHalf) {
+            layers.push_back(
+                {std::string(entry.name), component_names(entry), frame::resolve(film, entry.channel)});
+        }
+    }
+    layers.push_back(counts_layer(film));
+    write_exr(path, file.width, file.height, film.rect, layers, attributes);
+}
+
+FilmFile read_film_exr(const std::string& path) {
+    const std::string named = "film '" + path + "': ";
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) {
+        throw Error(ErrorCode::NotFound, named + "there is no such file: check the name");
+    }
+    if (!std::filesystem::is_regular_file(path, ignored)) {
+        throw Error(ErrorCode::InvalidInput, named + "it is not a regular file: name a file");
+    }
+    try {
+        FilmFile file = read(path);
+        check(file.film);
+        return file;
+    } catch (const Error& error) {
+        throw Error(error.code(), named + error.what());
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorCode::OutOfMemory, named + "it does not fit into memory: crop it");
+    } catch (const std::exception& error) {  // of OpenEXR
+        throw Error(ErrorCode::InvalidInput,
+                    named + "it cannot be read (" + error.what() + "): write it again");
+    }
+}
+
+}  // namespace tessera::picture
