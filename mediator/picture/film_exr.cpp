@@ -14,7 +14,6 @@
 #include "mediator/base/error.h"
 #include "mediator/frame/resolve.h"
 #include "mediator/picture/exr_header.h"
-#include "mediator/picture/exr_writer.h"
 
 namespace tessera::picture {
 
@@ -157,7 +156,8 @@ void check(const frame::FilmTile& film) {
 }  // namespace
 
 void write_film_exr(const std::string& path, const FilmFile& file,
-                    const std::optional<frame::Image>& filtered, Statistics statistics) {
+                    const std::optional<frame::Image>& filtered, Statistics statistics,
+                    const std::vector<Layer>& more) {
     using frame::Channel;
     const frame::FilmTile& film = file.film;
     const std::vector<std::string> rgb{"R", "G", "B"};
@@ -184,6 +184,7 @@ void write_film_exr(const std::string& path, const FilmFile& file,
         }
     }
     layers.push_back(counts_layer(film));
+    layers.insert(layers.end(), more.begin(), more.end());
     write_exr(path, file.width, file.height, film.rect, layers, attributes);
 }
 

@@ -4,9 +4,11 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "mediator/frame/film_tile.h"
 #include "mediator/frame/image.h"
+#include "mediator/picture/exr_writer.h"
 
 namespace tessera::picture {
 
@@ -26,7 +28,7 @@ enum class Statistics { Left, Saved };
 // read_film_exr() makes it again, bit by bit. In full or not at all; throws Error{Io}.
 void write_film_exr(const std::string& path, const FilmFile& file,
                     const std::optional<frame::Image>& filtered = {},
-                    Statistics statistics = Statistics::Left);
+                    Statistics statistics = Statistics::Left, const std::vector<Layer>& more = {});
 
 // Throws Error{NotFound, InvalidInput}: no such file, damaged, or written without its statistics.
 FilmFile read_film_exr(const std::string& path);

@@ -1,0 +1,226 @@
+#include "client/tools/filter_tool.h"
+
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "client/tools/pictures.h"
+#include "client/tools/view_attributes.h"
+#include "master/filter/catalog.h"
+#include "master/reconstruction.h"
+
+namespace tessera::tools {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string channels_text(frame::ChannelSet channels) {
+    std::string text;
+    for (const frame::ChannelInfo& entry : frame::channel_table()) {
+        if (channels.contains(entry.channel)) text += (text.empty() ? "" : ", ") + std::string(entry.name);
+    }
+    return text;
+}
+
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
+std::string standard_text(const filter::Parameter& parameter) {
+    return parameter.choices.empty()
+               ? number(parameter.standard)
+               : std::string(parameter.choices[static_cast<std::size_t>(parameter.standard)]);
+}
+
+std::string range_text(const filter::Parameter& parameter) {
+    if (parameter.choices.empty()) return number(parameter.least) + " to " + number(parameter.most);
+    std::string text;
+    for (const std::string_view choice : parameter.choices)
+        text += (text.empty() ? "" : "|") + std::string(choice);
+    return text;
+}
+
+void print_table(const filter::Description& filter) {
+    std::cout << filter.name << "  " << filter.summary << (filter.source.empty() ? "" : " (") << filter.source
+              << (filter.source.empty() ? "" : ")") << "\n    "
+              << (filter.consistent ? "consistent: its error vanishes with the samples" : "biased")
+              << (filter.temporal ? "; keeps a history" : "") << "\n    reads "
+              << channels_text(filter.channels(filter::standard_values(filter))) << "\n";
+    for (const filter::Parameter& parameter : filter.parameters) {
+        std::string head = "    " + std::string(parameter.name) + "=" + standard_text(parameter);
+        if (!parameter.unit.empty()) head += " " + std::string(parameter.unit);
+        head.resize(std::max<std::size_t>(head.size() + 2, 30), ' ');
+        std::cout << head << parameter.meaning << " (" << range_text(parameter) << ")\n";
+    }
+}
+
+Json as_json(const filter::Description& filter) {
+    Json parameters = Json::array();
+    for (const filter::Parameter& parameter : filter.parameters) {
+        Json entry{{"name", parameter.name}, {"unit", parameter.unit}, {"meaning", parameter.meaning}};
+        if (parameter.choices.empty()) {
+            entry.update(
+                {{"default", parameter.standard}, {"least", parameter.least}, {"most", parameter.most}});
+        } else {
+            entry.update({{"default", standard_text(parameter)}, {"choices", parameter.choices}});
+        }
+        parameters.push_back(std::move(entry));
+    }
+    return {{"name", filter.name},
+            {"summary", filter.summary},
+            {"source", filter.source},
+            {"consistent", filter.consistent},
+            {"temporal", filter.temporal},
+            {"path_class", name(filter.path_class)},
+            {"channels", channels_text(filter.channels(filter::standard_values(filter)))},
+            {"parameters", parameters}};
+}
+
+struct FilterOptions {
+    std::string input, output, filter;
+    bool json = false, maps = false;
+};
+
+// What the filter needs and the film lacks is an error: nothing would stand for it.
+Expected<void> check(const filter::Choice& choice, const picture::FilmFile& file, const view::View& view) {
+    const filter::Description& filter = choice.entry->description;
+    const auto missing = frame::ChannelSet::from_bits(choice.channels().bits() & ~file.film.channels.bits());
+    if (!missing.empty()) {
+        return failure(ErrorCode::InvalidInput,
+                       "filter '" + std::string(filter.name) + "' needs " + channels_text(missing) +
+                           ", which the film lacks: render it with --save-statistics");
+    }
+    if (filter.path_class != view::PathClass::Indirect && filter.path_class != view.path_class) {
+        return failure(ErrorCode::InvalidInput,
+                       "filter '" + std::string(filter.name) + "' works on the path class " +
+                           name(filter.path_class) + ", but the film has " + name(view.path_class) +
+                           ": render it with --path-class " + name(filter.path_class));
+    }
+    return {};
+}
+
+frame::Image interleaved(const filter::Planes& planes) {
+    frame::Image image(planes.width(), planes.height(), planes.components());
+    for (std::uint32_t c = 0; c < planes.components(); ++c) {
+        const auto plane = planes.plane(c);
+        for (std::size_t i = 0; i < plane.size(); ++i) image.values[i * planes.components() + c] = plane[i];
+    }
+    return image;
+}
+
+void write(const FilterOptions& options, const picture::FilmFile& file, const filter::Output& output) {
+    const frame::Image picture = interleaved(output.picture);
+    if (picture_format(options.output) == PictureFormat::Exr) {
+        std::vector<picture::Layer> maps;
+        for (const filter::DebugMap& map : output.maps) {
+            static const std::vector<std::string> Names{"R", "G", "B", "A"};
+            const std::uint32_t components = map.planes.components();
+            maps.push_back({map.name,
+                            components == 1
+                                ? std::vector<std::string>{"Y"}
+                                : std::vector<std::string>(Names.begin(), Names.begin() + components),
+                            interleaved(map.planes)});
+        }
+        picture::write_film_exr(options.output, file, picture, picture::Statistics::Left, maps);
+    } else {
+        write_picture(options.output, picture);
+    }
+}
+
+int run_filter(const FilterOptions& options) {
+    const auto wrong = [](std::string_view text) { return complain("filter", cli::ExitUsage, text); };
+    const auto choice = filter::parse_choice(options.filter, filter::catalog());
+    if (!choice) return wrong(std::string("--filter: ") + choice.error().what() + "; see tessera filters");
+    if (!picture_format(options.output)) return wrong("-o: end the picture's name with .exr, .png or .jpg");
+    picture::FilmFile file = picture::read_film_exr(options.input);
+    const auto view = view_from_attributes(file.attributes);
+    if (!view)
+        return complain("filter", ExitBadInput, "film '" + options.input + "': " + view.error().what());
+    if (auto fine = check(*choice, file, *view); !fine)
+        return complain("filter", ExitBadInput, fine.error().what());
+    file.attributes["tessera.filter"] = filter::to_text(*choice);
+
+    const filter::Inputs inputs = filter::make_inputs(file.film, *view);
+    const auto filter = choice->entry->make(inputs.width, inputs.height);
+    filter::Output output{.wants_maps = options.maps};
+    tbb::task_arena arena;
+    const auto started = std::chrono::steady_clock::now();
+    const filter::Report report = filter->run(inputs, choice->values, output, {arena, {}});
+    const double total = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    write(options, file, output);
+
+    if (options.json) {
+        Json passes = Json::array();
+        for (const filter::Pass& pass : report.passes) {
+            passes.push_back({{"name", pass.name},
+                              {"seconds", seconds(pass.time)},
+                              {"bytes_per_pixel", pass.bytes_per_pixel}});
+        }
+        std::cout << Json{{"filter", filter::to_text(*choice)},
+                          {"width", inputs.width},
+                          {"height", inputs.height},
+                          {"seconds", total},
+                          {"passes", passes},
+                          {"notes", report.notes}}
+                         .dump(2)
+                  << "\n";
+        return 0;
+    }
+    char line[160];
+    std::snprintf(line, sizeof line, "%s: %ux%u pixels in %.1f ms\n", filter::to_text(*choice).c_str(),
+                  inputs.width, inputs.height, total * 1e3);
+    std::cout << line;
+    for (const std::string& note : report.notes) std::cout << note << "\n";
+    std::cout << "wrote " << options.output << "\n";
+    return 0;
+}
+
+}  // namespace
+
+Command filter_command(cli::CommandLine& program) {
+    const auto options = std::make_shared<FilterOptions>();
+    cli::CommandLine& line =
+        program.command("filter", "Filter a saved film again, with another filter or other values.");
+    line.positional("FILM", "EXR that was written with --save-statistics", options->input);
+    line.option("-o,--output", "picture to write, .exr, .png or .jpg", options->output);
+    line.required("--output");
+    line.option("--filter", "NAME[:key=value,...]; tessera filters lists them", options->filter);
+    line.required("--filter");
+    line.flag("--maps", "write the filter's debug maps as layers of the EXR", options->maps);
+    line.flag("--json", "print one JSON object with everything measured", options->json);
+    line.examples({"tessera render room.glb -o film.exr --spp 4 --save-statistics",
+                   "tessera filter film.exr -o smooth.png --filter fdf",
+                   "tessera filter film.exr -o pixel.exr --filter pixel:t=0.002 --maps"});
+    return {"filter", [options](std::string_view) {
+                try {
+                    return run_filter(*options);
+                } catch (const Error& error) {
+                    return complain("filter", exit_code(error.code()), error.what());
+                }
+            }};
+}
+
+Command filters_command(cli::CommandLine& program) {
+    const auto json = std::make_shared<bool>(false);
+    cli::CommandLine& line =
+        program.command("filters", "The reconstruction filters: what they do, read and take.");
+    line.flag("--json", "print one JSON array", *json);
+    line.examples({"tessera filters", "tessera filters --json"});
+    return {"filters", [json](std::string_view) {
+                Json all = Json::array();
+                for (const filter::FilterEntry& entry : filter::catalog()) {
+                    if (*json) {
+                        all.push_back(as_json(entry.description));
+                    } else {
+                        print_table(entry.description);
+                    }
+                }
+                if (*json) std::cout << all.dump(2) << "\n";
+                return 0;
+            }};
+}
+
+}  // namespace tessera::tools
