@@ -32,6 +32,10 @@ void FilmMerger::reconstruct(JobId job, const view::View& view, wire::PictureEnc
     enqueue(Reconstruct{job, view, encoding}, 0);
 }
 
+void FilmMerger::rehearse(JobId job, const view::View& view, wire::PictureEncoding encoding) {
+    enqueue(Rehearse{{job, view, encoding}}, 0);
+}
+
 std::vector<MergerOutput> FilmMerger::take() {
     const std::scoped_lock lock(mutex_);
     return std::exchange(output_, {});
@@ -118,6 +122,15 @@ void FilmMerger::perform(Reconstruct& task) {
     Reconstructed output{.job = task.job, .samples_least = *least, .samples_most = *most};
     output.picture = reconstructor_.reconstruct(film, task.view, task.encoding);
     put(std::move(output));
+}
+
+// Small, since somebody is waiting, and a tenth of a megapixel at most.
+void FilmMerger::perform(Rehearse& task) {
+    constexpr std::uint32_t Edge = 256;
+    const auto width = std::min(static_cast<std::uint32_t>(task.view.window.width), Edge);
+    const auto height = std::min(static_cast<std::uint32_t>(task.view.window.height), Edge);
+    const double seconds = reconstructor_.rehearse(task.view, task.encoding, width, height);
+    put(Rehearsed{task.job, std::uint64_t{width} * height, seconds});
 }
 
 void FilmMerger::put(MergerOutput output) {

@@ -41,7 +41,13 @@ struct Reconstructed {
     Reconstruction picture;
     std::uint64_t samples_least = 0, samples_most = 0;
 };
-using MergerOutput = std::variant<MergeReport, EncodedTile, Reconstructed>;
+// How long a made-up picture took.
+struct Rehearsed {
+    JobId job;
+    std::uint64_t pixels = 0;
+    double seconds = 0.0;
+};
+using MergerOutput = std::variant<MergeReport, EncodedTile, Reconstructed, Rehearsed>;
 
 // Decodes, merges and filters film on a thread of its own, so that the loop that keeps heartbeats never does.
 // Tasks run in the order given; `wake` is called (from the merger's thread) whenever output is there.
@@ -56,6 +62,7 @@ class FilmMerger {
     void deliver(JobId job, std::uint32_t first_tile, std::uint32_t last_tile);  // encodes [first, last)
 
     void reconstruct(JobId job, const view::View& view, wire::PictureEncoding encoding);
+    void rehearse(JobId job, const view::View& view, wire::PictureEncoding encoding);
 
     std::vector<MergerOutput> take();
     std::size_t queued_bytes() const;
@@ -80,7 +87,8 @@ class FilmMerger {
         view::View view;
         wire::PictureEncoding encoding;
     };
-    using Task = std::variant<Open, Close, Film, Deliver, Reconstruct>;
+    struct Rehearse : Reconstruct {};
+    using Task = std::variant<Open, Close, Film, Deliver, Reconstruct, Rehearse>;
 
     void enqueue(Task task, std::size_t bytes);
     void run(std::stop_token stop);
@@ -89,6 +97,7 @@ class FilmMerger {
     void perform(Film& task);
     void perform(Deliver& task);
     void perform(Reconstruct& task);
+    void perform(Rehearse& task);
     void put(MergerOutput output);
 
     std::function<void()> wake_;

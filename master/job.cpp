@@ -50,6 +50,9 @@ std::string problem_of(const wire::StartJob& request) {
         return "neither a picture nor the film is asked for: ask for one of them";
     }
     if (request.budget < Duration::zero()) return "the time budget is negative";
+    if (request.budget > Duration::zero() && request.picture == wire::PictureEncoding::None) {
+        return "a time budget is for a picture: ask for one";
+    }
     if (request.time_limit < Duration::zero()) return "the time limit is negative";
     return {};
 }
@@ -60,6 +63,11 @@ void complete(view::View& view) {
     if (view.transparent_background) view.channels.insert(frame::Channel::Alpha);
     const view::PathClass wanted = filter->entry->description.path_class;
     if (wanted != view::PathClass::Indirect) view.path_class = wanted;
+}
+
+std::string way_of(const wire::StartJob& request) {
+    return request.view.filter + " as " + std::to_string(static_cast<int>(request.picture)) +
+           " of channels " + std::to_string(request.view.channels.bits());
 }
 
 std::uint32_t choose_tile_edge(const wire::StartJob& request) {

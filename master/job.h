@@ -20,7 +20,10 @@ struct Job {
     TimePoint started{};  // StartJob came
     TimePoint without_nodes_since{};
     TimePoint rendering_since{};
-    std::optional<TimePoint> deadline;
+    std::optional<TimePoint> deadline;      // of sampling
+    std::optional<TimePoint> budget_since;  // with a budget: when the nodes were ready
+    double predicted_seconds = 0.0;         // with a budget: from the deadline to the encoded picture
+    bool rehearsing = false;
     std::optional<TimePoint> first_picture;
     std::optional<TimePoint> ended;
     std::optional<Scheduler> scheduler;       // from the phase Rendering on
@@ -47,6 +50,9 @@ std::string problem_of(const wire::StartJob& request);
 
 // Adds what the view's filter needs: channels, and the path class where the filter is made for one.
 void complete(view::View& view);
+
+// What the time from the film to the encoded picture depends on (time_budget.h).
+std::string way_of(const wire::StartJob& request);
 
 // The edge of the tiles: what was asked for, else 64 for large pictures and 32 for small ones; never so large
 // that the film of one tile exceeds a bulk message.

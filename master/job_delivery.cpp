@@ -26,6 +26,11 @@ void JobRunner::take(Reconstructed&& made, TimePoint now) {
     job_->picture = std::move(made.picture);
     job_->samples_least = made.samples_least;
     job_->samples_most = made.samples_most;
+    job_->picture->summary.seconds_predicted = job_->predicted_seconds;
+    if (job_->request.budget > Duration::zero() && *job_->outcome == wire::JobOutcome::TimeUp) {
+        time_budget_.measured(way_of(job_->request), job_->request.view.window.pixel_count(),
+                              seconds(now - *job_->deadline));
+    }
     if (!job_->picture->error.empty()) {
         job_->outcome = wire::JobOutcome::Failed;
         job_->message = job_->picture->error;

@@ -37,7 +37,8 @@ std::optional<SessionId> JobRunner::session() const {
 void JobRunner::start(SessionId session, wire::StartJob request, Version version, TimePoint now) {
     request.view.id = ViewId{next_view_++};
     request.view.revision = 1;
-    if (request.time_limit > Duration::zero() && request.spp == 0) request.spp = MaxSamplesPerPixel;
+    if (request.budget > Duration::zero() || (request.time_limit > Duration::zero() && request.spp == 0))
+        request.spp = MaxSamplesPerPixel;
     job_.emplace();
     job_->request = std::move(request);
     complete(job_->request.view);
@@ -105,7 +106,10 @@ void JobRunner::wait_for_nodes(TimePoint now) {
         prepared += ready(node) ? 1 : 0;
     }
     const std::uint32_t wanted = std::max(1u, job_->request.wait_nodes);
-    if (prepared >= wanted) return begin_rendering(now);
+    if (prepared >= wanted) {
+        if (budget_is_planned(now)) begin_rendering(now);
+        return;
+    }
     if (suitable >= wanted) {
         job_->phase = wire::JobPhase::Syncing;
         job_->without_nodes_since = now;
@@ -121,17 +125,46 @@ void JobRunner::wait_for_nodes(TimePoint now) {
     }
 }
 
+// True when it is known how long filter and encoding will take; before, the merger tries them out.
+bool JobRunner::budget_is_planned(TimePoint now) {
+    const wire::StartJob& request = job_->request;
+    if (request.budget == Duration::zero()) return true;
+    if (!job_->budget_since) job_->budget_since = now;
+    const auto predicted = time_budget_.predict(way_of(request), request.view.window.pixel_count());
+    if (!predicted) {
+        if (!job_->rehearsing) merger_.rehearse(request.job, request.view, request.picture);
+        job_->rehearsing = true;
+        job_->phase = wire::JobPhase::Syncing;
+        return false;
+    }
+    job_->predicted_seconds = *predicted;
+    const auto after = std::chrono::duration_cast<Duration>(std::chrono::duration<double>(*predicted));
+    job_->deadline = std::max(now, *job_->budget_since + request.budget - after);
+    return true;
+}
+
+// With a budget every pixel shall have its first samples; for that it may be late by a part of the budget.
+bool JobRunner::time_is_up(TimePoint now) const {
+    if (!job_->deadline || now < *job_->deadline) return false;
+    if (job_->request.budget == Duration::zero() || job_->scheduler->tiles_without_samples() == 0)
+        return true;
+    constexpr int PartOfBudget = 8;
+    return now >= *job_->deadline + job_->request.budget / PartOfBudget;
+}
+
 void JobRunner::begin_rendering(TimePoint now) {
     const wire::StartJob& request = job_->request;
     job_->phase = wire::JobPhase::Rendering;
     job_->rendering_since = now;
-    if (request.time_limit > Duration::zero()) job_->deadline = now + request.time_limit;
-    // A batch frame shows its first picture at 4 samples; against the clock every round counts.
+    if (request.time_limit > Duration::zero() && !job_->deadline) job_->deadline = now + request.time_limit;
+    // A batch frame shows its first picture at 4 samples; against the clock every round counts, but a
+    // variance, which filters need, takes 2.
+    const std::uint32_t first_level = !job_->deadline ? 2u : request.budget > Duration::zero() ? 1u : 0u;
     const PlanSettings plan{.window = request.view.window,
                             .tile = job_->tile_edge,
                             .spp = request.spp,
                             .policy = request.policy,
-                            .first_level = job_->deadline ? 0u : 2u};
+                            .first_level = first_level};
     job_->scheduler.emplace(plan, request.view.id, request.view.revision, job_->version, UnitId{next_unit_},
                             job_->deadline);
     next_unit_ += UnitsPerJob;
@@ -145,7 +178,7 @@ void JobRunner::render(TimePoint now) {
     if (!job_->outcome) {
         if (scheduler.complete()) {
             decide(wire::JobOutcome::Complete, {}, now);
-        } else if (job_->deadline && now >= *job_->deadline) {
+        } else if (time_is_up(now)) {
             decide(wire::JobOutcome::TimeUp, {}, now);
         } else {
             collect_overdue(now);
@@ -197,6 +230,11 @@ void JobRunner::take_merger_output(TimePoint now) {
     for (MergerOutput& output : merger_.take()) {
         if (const auto* report = std::get_if<MergeReport>(&output)) {
             take(*report, now);
+            continue;
+        }
+        if (const auto* rehearsed = std::get_if<Rehearsed>(&output)) {
+            if (!job_ || rehearsed->job != job_->request.job) continue;
+            time_budget_.measured(way_of(job_->request), rehearsed->pixels, rehearsed->seconds);
             continue;
         }
         if (auto* made = std::get_if<Reconstructed>(&output)) {
@@ -364,7 +402,8 @@ void JobRunner::abandon() {
 TimePoint JobRunner::next_event(TimePoint now) const {
     if (!job_) return TimePoint::max();
     TimePoint next = now + settings_.progress_interval;
-    if (job_->deadline && !job_->outcome) next = std::min(next, std::max(now, *job_->deadline));
+    if (job_->deadline && !job_->outcome && now < *job_->deadline)
+        next = std::min(next, std::max(now, *job_->deadline));
     return next;
 }
 

@@ -10,6 +10,7 @@
 #include "master/outbox.h"
 #include "master/scene_distributor.h"
 #include "master/session_table.h"
+#include "master/time_budget.h"
 
 namespace tessera::master {
 
@@ -52,6 +53,8 @@ class JobRunner {
     bool ready(const NodeRecord& node) const;  // suits, and holds the version
     std::string missing_channels() const;
     void wait_for_nodes(TimePoint now);
+    bool budget_is_planned(TimePoint now);
+    bool time_is_up(TimePoint now) const;
     void begin_rendering(TimePoint now);
     void render(TimePoint now);
     void deal(TimePoint now);
@@ -76,6 +79,7 @@ class JobRunner {
     EventSink events_;
     FilmMerger merger_;
     Balancer balancer_;
+    TimeBudget time_budget_;
     std::optional<Job> job_;
     std::uint64_t next_view_ = 1, next_unit_ = 1;
     std::uint64_t triangles_ = 0, instances_ = 0, lights_ = 0;  // as the nodes last reported

@@ -1,6 +1,7 @@
 #include "client/tools/render_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -35,6 +36,27 @@ Json nodes_value(const client::JobResult& result) {
                          {"seconds_busy", node.seconds_busy}});
     }
     return nodes;
+}
+
+Json picture_value(const client::JobResult& result) {
+    if (!result.picture) return nullptr;
+    const client::Picture& picture = *result.picture;
+    Json passes = Json::array();
+    for (const client::FilterPass& pass : picture.passes) {
+        passes.push_back(
+            {{"name", pass.name}, {"seconds", pass.seconds}, {"bytes_per_pixel", pass.bytes_per_pixel}});
+    }
+    return {{"filter", picture.filter},
+            {"width", picture.width},
+            {"height", picture.height},
+            {"scale", picture.scale},
+            {"seconds_filter", picture.seconds_filter},
+            {"seconds_encode", picture.seconds_encode},
+            {"seconds_predicted", picture.seconds_predicted},
+            {"samples_least", result.samples_least},
+            {"samples_most", result.samples_most},
+            {"passes", passes},
+            {"notes", picture.notes}};
 }
 
 }  // namespace
@@ -76,6 +98,7 @@ std::string as_json(const RenderReport& report) {
          {{"control", result.wire_bytes.control},
           {"blobs", result.wire_bytes.blobs},
           {"film", result.wire_bytes.film}}},
+        {"picture", picture_value(result)},
     };
     return object.dump(2);
 }
@@ -94,6 +117,16 @@ std::string as_text(const RenderReport& report, const std::vector<std::string>& 
     line("%.2f s in all, %.2f s rendering: %.2f Mrays/s, %.3f Msamples/s", report.seconds_total,
          result.seconds_render, per_second(result.rays, result.seconds_render) * 1e-6,
          per_second(result.samples, result.seconds_render) * 1e-6);
+    if (const auto& picture = result.picture) {
+        line("filter %s: %.1f ms, encoding %.1f ms%s", picture->filter.c_str(), picture->seconds_filter * 1e3,
+             picture->seconds_encode * 1e3,
+             picture->seconds_predicted > 0.0
+                 ? (" (" + std::to_string(std::lround(picture->seconds_predicted * 1e3)) +
+                    " ms were set aside)")
+                       .c_str()
+                 : "");
+        for (const std::string& note : picture->notes) line("%s", note.c_str());
+    }
     std::set<std::string> kinds;
     for (const client::NodeShare& node : result.nodes) kinds.insert(node.kind);
     line("%zu node%s took part", result.nodes.size(), result.nodes.size() == 1 ? "" : "s");

@@ -1,0 +1,126 @@
+// Pictures that the master filters: the same bits for any cluster, and on time.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "master/filter/catalog.h"
+#include "mediator/filter/choice.h"
+#include "mediator/filter/inputs.h"
+#include "mediator/frame/resolve.h"
+#include "tests/cluster/cluster_scene.h"
+#include "tests/cluster/loopback_cluster.h"
+
+namespace tessera::test {
+namespace {
+
+using client::PictureEncoding;
+using client::Policy;
+using namespace std::chrono_literals;
+
+client::JobRequest picture_request(const std::string& filter, Policy policy = Policy::Mixed) {
+    client::JobRequest request{.spp = 6, .policy = policy, .picture = PictureEncoding::Planes, .film = false};
+    request.view.width = 90;
+    request.view.height = 60;
+    request.view.window = {0, 0, 90, 60};
+    request.view.camera = view::perspective(glm::dmat4(1.0), 0.8, 1.5);
+    request.view.channels = {frame::Channel::Radiance};
+    request.view.filter = filter;
+    return request;
+}
+
+client::JobResult render(int nodes, const client::JobRequest& request, Duration cost = {}, int times = 1) {
+    LoopbackCluster cluster;
+    for (int i = 0; i < nodes; ++i) cluster.add_node("null", {}, cost);
+    auto blobs = std::make_shared<scene::BlobStore>();
+    const auto session = cluster.session(blobs);
+    const auto opened = session->open_scene("test", client::WhenBusy::Queue, [](std::uint32_t) {}, {});
+    session->submit(scene_entries(std::get<client::OpenedScene>(opened).first_id, *blobs), {});
+    client::JobResult result;
+    for (int i = 0; i < times; ++i) result = session->render(request, [](const client::Progress&) {}, {});
+    return result;
+}
+
+class FilteredPicture : public testing::TestWithParam<std::string> {};
+
+TEST_P(FilteredPicture, HasTheSameBitsForAnyCluster) {
+    const client::JobResult one = render(1, picture_request(GetParam(), Policy::Tiled));
+    ASSERT_EQ(one.outcome, client::Outcome::Complete) << one.message;
+    ASSERT_TRUE(one.picture);
+    EXPECT_EQ(one.picture->filter, GetParam());
+    EXPECT_EQ(one.picture->bytes.size(), std::size_t{90} * 60 * 3 * sizeof(float));
+    EXPECT_FALSE(one.film) << "nobody asked for it";
+    EXPECT_EQ(one.samples_least, 6u);
+    EXPECT_EQ(one.samples_most, 6u);
+    client::JobRequest three = picture_request(GetParam(), Policy::Cooperative);
+    three.wait_nodes = 3;
+    EXPECT_EQ(render(3, three).picture->bytes, one.picture->bytes);
+}
+
+// What comes over the wire is what the same film gives here.
+TEST_P(FilteredPicture, IsThatOfItsFilm) {
+    client::JobRequest request = picture_request(GetParam());
+    request.film = true;
+    const client::JobResult result = render(2, request);
+    ASSERT_TRUE(result.film && result.picture) << result.message;
+    const auto choice = filter::parse_choice(GetParam(), filter::catalog());
+    view::View view = request.view;
+    view.path_class = choice->entry->description.path_class;
+    const filter::Inputs inputs = filter::make_inputs(*result.film, view);
+    filter::Output output;
+    tbb::task_arena arena(1);
+    choice->entry->make(90, 60)->run(inputs, choice->values, output, {arena, {}});
+    const auto values = output.picture.values();
+    ASSERT_EQ(values.size_bytes(), result.picture->bytes.size());
+    EXPECT_EQ(std::memcmp(values.data(), result.picture->bytes.data(), values.size_bytes()), 0);
+}
+
+std::vector<std::string> filter_names() {
+    std::vector<std::string> names;
+    for (const auto& entry : filter::catalog()) names.emplace_back(entry.description.name);
+    return names;
+}
+INSTANTIATE_TEST_SUITE_P(Filters, FilteredPicture, testing::ValuesIn(filter_names()));
+
+TEST(PictureRequest, RefusesWhatCannotBeWithAReason) {
+    const auto message = [](auto change) {
+        client::JobRequest request = picture_request("gauss");
+        change(request);
+        const client::JobResult result = render(1, request);
+        EXPECT_EQ(result.outcome, client::Outcome::Failed);
+        return result.message;
+    };
+    EXPECT_NE(message([](auto& r) { r.view.filter = "gaus"; }).find("gauss"), std::string::npos);
+    EXPECT_NE(message([](auto& r) { r.view.filter = "gauss:sigma=-1"; }).find("0.1"), std::string::npos);
+    EXPECT_NE(message([](auto& r) { r.picture = PictureEncoding::None; }).find("neither"), std::string::npos);
+    EXPECT_NE(message([](auto& r) { r.budget = -1s; }).find("negative"), std::string::npos);
+}
+
+TEST(PictureRequest, FilesAreWhatTheyAreCalled) {
+    const auto starts_with = [](PictureEncoding encoding, std::initializer_list<int> magic) {
+        client::JobRequest request = picture_request("none");
+        request.picture = encoding;
+        const client::JobResult result = render(1, request);
+        ASSERT_TRUE(result.picture) << result.message;
+        ASSERT_GT(result.picture->bytes.size(), magic.size());
+        std::size_t i = 0;
+        for (const int byte : magic) EXPECT_EQ(int(result.picture->bytes[i++]), byte);
+    };
+    starts_with(PictureEncoding::Png, {0x89, 'P', 'N', 'G'});
+    starts_with(PictureEncoding::Jpeg, {0xff, 0xd8, 0xff});
+    starts_with(PictureEncoding::Exr, {0x76, 0x2f, 0x31, 0x01});
+}
+
+// The clock decides how many samples there are; every pixel has at least the two that a variance takes.
+TEST(PictureRequest, WithABudgetEveryPixelHasTwoSamples) {
+    client::JobRequest request = picture_request("gauss");
+    request.picture = PictureEncoding::Png;
+    request.budget = 400ms;
+    const client::JobResult result = render(2, request, 2us, 3);
+    ASSERT_TRUE(result.picture) << result.message;
+    EXPECT_EQ(result.outcome, client::Outcome::TimeUp);
+    EXPECT_GE(result.samples_least, 2u);
+    EXPECT_GT(result.picture->seconds_predicted, 0.0);
+}
+
+}  // namespace
+}  // namespace tessera::test
