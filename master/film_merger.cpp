@@ -19,6 +19,10 @@ void FilmMerger::close() {
     enqueue(Close{}, 0);
 }
 
+void FilmMerger::keep_features() {
+    enqueue(KeepFeatures{}, 0);
+}
+
 void FilmMerger::push(net::PeerId peer, net::Bytes film_message) {
     const std::size_t bytes = film_message.size();
     enqueue(Film{peer, std::move(film_message)}, bytes);
@@ -78,6 +82,11 @@ void FilmMerger::perform(Open& task) {
 
 void FilmMerger::perform(Close&) {
     assembler_.reset();
+    features_.reset();
+}
+
+void FilmMerger::perform(KeepFeatures&) {
+    if (assembler_) features_ = assembler_->whole();
 }
 
 void FilmMerger::perform(Film& task) {
@@ -120,7 +129,8 @@ void FilmMerger::perform(Reconstruct& task) {
     const frame::FilmTile film = assembler_->whole();
     const auto [least, most] = std::minmax_element(film.counts.begin(), film.counts.end());
     Reconstructed output{.job = task.job, .samples_least = *least, .samples_most = *most};
-    output.picture = reconstructor_.reconstruct(film, task.view, task.encoding);
+    output.picture =
+        reconstructor_.reconstruct(film, task.view, task.encoding, features_ ? &*features_ : nullptr);
     put(std::move(output));
 }
 

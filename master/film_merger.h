@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <variant>
 #include <vector>
@@ -57,7 +58,8 @@ class FilmMerger {
     ~FilmMerger();
 
     void open(ViewId view, std::uint64_t revision, FrameAssembler assembler);
-    void close();  // drops the film
+    void close();          // drops the film
+    void keep_features();  // the film that is open is of the full size: for upsampling the next one's picture
     void push(net::PeerId peer, net::Bytes film_message);
     void deliver(JobId job, std::uint32_t first_tile, std::uint32_t last_tile);  // encodes [first, last)
 
@@ -74,6 +76,7 @@ class FilmMerger {
         std::shared_ptr<FrameAssembler> assembler;
     };
     struct Close {};
+    struct KeepFeatures {};
     struct Film {
         net::PeerId peer;
         net::Bytes bytes;
@@ -88,12 +91,13 @@ class FilmMerger {
         wire::PictureEncoding encoding;
     };
     struct Rehearse : Reconstruct {};
-    using Task = std::variant<Open, Close, Film, Deliver, Reconstruct, Rehearse>;
+    using Task = std::variant<Open, Close, KeepFeatures, Film, Deliver, Reconstruct, Rehearse>;
 
     void enqueue(Task task, std::size_t bytes);
     void run(std::stop_token stop);
     void perform(Open& task);
     void perform(Close& task);
+    void perform(KeepFeatures& task);
     void perform(Film& task);
     void perform(Deliver& task);
     void perform(Reconstruct& task);
@@ -105,6 +109,7 @@ class FilmMerger {
     ViewId view_;
     std::uint64_t revision_ = 0;
     std::shared_ptr<FrameAssembler> assembler_;
+    std::optional<frame::FilmTile> features_;
     Reconstructor reconstructor_;
 
     mutable std::mutex mutex_;  // protects what stands below

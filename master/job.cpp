@@ -53,6 +53,9 @@ std::string problem_of(const wire::StartJob& request) {
     if (request.budget > Duration::zero() && request.picture == wire::PictureEncoding::None) {
         return "a time budget is for a picture: ask for one";
     }
+    if (request.adapts_size && (request.film || request.budget == Duration::zero())) {
+        return "only a picture with a time budget and without its film can adapt its size";
+    }
     if (request.time_limit < Duration::zero()) return "the time limit is negative";
     return {};
 }
@@ -63,6 +66,35 @@ void complete(view::View& view) {
     if (view.transparent_background) view.channels.insert(frame::Channel::Alpha);
     const view::PathClass wanted = filter->entry->description.path_class;
     if (wanted != view::PathClass::Indirect) view.path_class = wanted;
+}
+
+view::View feature_view(const view::View& view) {
+    view::View features = view;
+    features.filter.clear();
+    features.channels = {frame::Channel::Albedo, frame::Channel::Normal, frame::Channel::Depth};
+    if (view.channels.contains(frame::Channel::Alpha)) features.channels.insert(frame::Channel::Alpha);
+    return features;
+}
+
+view::View scaled_view(const view::View& view, std::uint32_t scale) {
+    const auto part = [&](std::int32_t edge) { return std::max(1, (edge + int(scale) - 1) / int(scale)); };
+    view::View small = view;
+    const Rect& window = view.window;
+    // The window's own frustum, so that a crop need not fall on small pixels.
+    const auto along = [](double a, double b, double t) { return a + (b - a) * t; };
+    const view::CameraPose& camera = view.camera;
+    small.camera.left = along(camera.left, camera.right, double(window.x) / view.width);
+    small.camera.right = along(camera.left, camera.right, double(window.right()) / view.width);
+    small.camera.top = along(camera.top, camera.bottom, double(window.y) / view.height);
+    small.camera.bottom = along(camera.top, camera.bottom, double(window.bottom()) / view.height);
+    small.window = {0, 0, part(window.width), part(window.height)};
+    small.width = static_cast<std::uint32_t>(small.window.width);
+    small.height = static_cast<std::uint32_t>(small.window.height);
+    for (const frame::Channel channel :
+         {frame::Channel::Albedo, frame::Channel::Normal, frame::Channel::Depth}) {
+        small.channels.insert(channel);
+    }
+    return small;
 }
 
 std::string way_of(const wire::StartJob& request) {

@@ -22,8 +22,13 @@ struct Job {
     TimePoint rendering_since{};
     std::optional<TimePoint> deadline;      // of sampling
     std::optional<TimePoint> budget_since;  // with a budget: when the nodes were ready
+    std::string way;                        // with a budget: how the picture is made (time_budget.h)
     double predicted_seconds = 0.0;         // with a budget: from the deadline to the encoded picture
     bool rehearsing = false;
+    std::optional<TimePoint> stage_deadline;
+    std::uint64_t full_pixels = 0;    // of the picture, if it is upsampled
+    std::uint32_t scale = 1;          // rendered at this part of the size
+    std::optional<view::View> stage;  // not the request's view: the features of a picture to be upsampled
     std::optional<TimePoint> first_picture;
     std::optional<TimePoint> ended;
     std::optional<Scheduler> scheduler;       // from the phase Rendering on
@@ -53,6 +58,11 @@ void complete(view::View& view);
 
 // What the time from the film to the encoded picture depends on (time_budget.h).
 std::string way_of(const wire::StartJob& request);
+
+// For a picture that is rendered at half or a quarter of the size: the first stage, features of the full
+// size, one sample each; and the small view itself.
+view::View feature_view(const view::View& view);
+view::View scaled_view(const view::View& view, std::uint32_t scale);
 
 // The edge of the tiles: what was asked for, else 64 for large pictures and 32 for small ones; never so large
 // that the film of one tile exceeds a bulk message.

@@ -14,7 +14,8 @@ constexpr std::size_t BytesAhead = std::size_t{32} << 20;  // waiting for a slow
 
 void JobRunner::begin_filtering(TimePoint now) {
     const wire::StartJob& request = job_->request;
-    if (request.picture == wire::PictureEncoding::None || job_->scheduler->merged_samples() == 0) {
+    if (request.picture == wire::PictureEncoding::None || job_->stage ||
+        job_->scheduler->merged_samples() == 0) {
         return begin_delivery(now);
     }
     job_->phase = wire::JobPhase::Filtering;
@@ -26,10 +27,17 @@ void JobRunner::take(Reconstructed&& made, TimePoint now) {
     job_->picture = std::move(made.picture);
     job_->samples_least = made.samples_least;
     job_->samples_most = made.samples_most;
-    job_->picture->summary.seconds_predicted = job_->predicted_seconds;
+    wire::PictureSummary& summary = job_->picture->summary;
+    summary.seconds_predicted = job_->predicted_seconds;
+    summary.scale = job_->scale;
+    if (job_->scale > 1) {
+        summary.notes.push_back("the time is too short for 2 samples in every pixel: rendered at 1/" +
+                                std::to_string(job_->scale) + " of the size and upsampled");
+    }
     if (job_->request.budget > Duration::zero() && *job_->outcome == wire::JobOutcome::TimeUp) {
-        time_budget_.measured(way_of(job_->request), job_->request.view.window.pixel_count(),
-                              seconds(now - *job_->deadline));
+        const std::uint64_t pixels =
+            job_->scale == 1 ? job_->request.view.window.pixel_count() : job_->full_pixels;
+        time_budget_.measured(job_->way, pixels, seconds(now - *job_->deadline));
     }
     if (!job_->picture->error.empty()) {
         job_->outcome = wire::JobOutcome::Failed;

@@ -42,6 +42,7 @@ void JobRunner::start(SessionId session, wire::StartJob request, Version version
     job_.emplace();
     job_->request = std::move(request);
     complete(job_->request.view);
+    job_->way = way_of(job_->request);
     job_->session = session;
     job_->version = version;
     job_->tile_edge = choose_tile_edge(job_->request);
@@ -125,57 +126,46 @@ void JobRunner::wait_for_nodes(TimePoint now) {
     }
 }
 
-// True when it is known how long filter and encoding will take; before, the merger tries them out.
-bool JobRunner::budget_is_planned(TimePoint now) {
-    const wire::StartJob& request = job_->request;
-    if (request.budget == Duration::zero()) return true;
-    if (!job_->budget_since) job_->budget_since = now;
-    const auto predicted = time_budget_.predict(way_of(request), request.view.window.pixel_count());
-    if (!predicted) {
-        if (!job_->rehearsing) merger_.rehearse(request.job, request.view, request.picture);
-        job_->rehearsing = true;
-        job_->phase = wire::JobPhase::Syncing;
-        return false;
-    }
-    job_->predicted_seconds = *predicted;
-    const auto after = std::chrono::duration_cast<Duration>(std::chrono::duration<double>(*predicted));
-    job_->deadline = std::max(now, *job_->budget_since + request.budget - after);
-    return true;
-}
-
-// With a budget every pixel shall have its first samples; for that it may be late by a part of the budget.
-bool JobRunner::time_is_up(TimePoint now) const {
-    if (!job_->deadline || now < *job_->deadline) return false;
-    if (job_->request.budget == Duration::zero() || job_->scheduler->tiles_without_samples() == 0)
-        return true;
-    constexpr int PartOfBudget = 8;
-    return now >= *job_->deadline + job_->request.budget / PartOfBudget;
-}
-
 void JobRunner::begin_rendering(TimePoint now) {
     const wire::StartJob& request = job_->request;
+    choose_scale(now);
     job_->phase = wire::JobPhase::Rendering;
     job_->rendering_since = now;
     if (request.time_limit > Duration::zero() && !job_->deadline) job_->deadline = now + request.time_limit;
+    begin_picture(now);
+}
+
+// The film of the stage, or of the picture itself.
+void JobRunner::begin_picture(TimePoint now) {
+    const wire::StartJob& request = job_->request;
     // A batch frame shows its first picture at 4 samples; against the clock every round counts, but a
     // variance, which filters need, takes 2.
     const std::uint32_t first_level = !job_->deadline ? 2u : request.budget > Duration::zero() ? 1u : 0u;
-    const PlanSettings plan{.window = request.view.window,
+    const PlanSettings plan{.window = view().window,
                             .tile = job_->tile_edge,
-                            .spp = request.spp,
+                            .spp = job_->stage ? 1 : request.spp,
                             .policy = request.policy,
-                            .first_level = first_level};
-    job_->scheduler.emplace(plan, request.view.id, request.view.revision, job_->version, UnitId{next_unit_},
+                            .first_level = job_->stage ? 0u : first_level};
+    job_->scheduler.emplace(plan, view().id, view().revision, job_->version, UnitId{next_unit_},
                             job_->deadline);
     next_unit_ += UnitsPerJob;
-    merger_.open(request.view.id, request.view.revision,
-                 FrameAssembler(job_->scheduler->tiles(), request.view.channels, request.spp));
+    merger_.open(view().id, view().revision,
+                 FrameAssembler(job_->scheduler->tiles(), view().channels, plan.spp));
     render(now);
 }
 
 void JobRunner::render(TimePoint now) {
     Scheduler& scheduler = *job_->scheduler;
     if (!job_->outcome) {
+        const bool stage_is_over =
+            scheduler.complete() || (job_->stage_deadline && now >= *job_->stage_deadline);
+        if (job_->stage && stage_is_over) {
+            cancel(scheduler.cancel_everything());
+            close_view(view().id);
+            merger_.keep_features();
+            job_->stage.reset();
+            return begin_picture(now);
+        }
         if (scheduler.complete()) {
             decide(wire::JobOutcome::Complete, {}, now);
         } else if (time_is_up(now)) {
@@ -202,10 +192,10 @@ void JobRunner::deal(TimePoint now) {
     }
     for (const Assignment& assignment : job_->scheduler->assign(capacities, balancer_, now)) {
         NodeRecord& node = *nodes_.find(assignment.node);
-        if (node.views.insert(job_->request.view.id).second) {
-            view::View view = job_->request.view;
-            view.filter.clear();  // the master's affair
-            outbox_.control(node.control, wire::OpenView{std::move(view)});
+        if (node.views.insert(view().id).second) {
+            view::View opened = view();
+            opened.filter.clear();  // the master's affair
+            outbox_.control(node.control, wire::OpenView{std::move(opened)});
         }
         node.pending[assignment.unit.id] = ++node.work_sequence;
         outbox_.control(node.control, wire::Work{node.work_sequence, assignment.unit});
@@ -234,7 +224,7 @@ void JobRunner::take_merger_output(TimePoint now) {
         }
         if (const auto* rehearsed = std::get_if<Rehearsed>(&output)) {
             if (!job_ || rehearsed->job != job_->request.job) continue;
-            time_budget_.measured(way_of(job_->request), rehearsed->pixels, rehearsed->seconds);
+            time_budget_.measured(job_->way, rehearsed->pixels, rehearsed->seconds);
             continue;
         }
         if (auto* made = std::get_if<Reconstructed>(&output)) {
@@ -258,7 +248,7 @@ void JobRunner::take(const MergeReport& report, TimePoint now) {
         events_({wire::Severity::Warning, "malformed film was dropped"});
         return;
     }
-    if (report.stale || !job_ || !job_->scheduler || job_->request.view.id != report.view) return;
+    if (report.stale || !job_ || !job_->scheduler || view().id != report.view) return;
     Scheduler& scheduler = *job_->scheduler;
     switch (report.result.outcome) {
         case FrameAssembler::Outcome::Misfit:
@@ -292,7 +282,8 @@ void JobRunner::take(const MergeReport& report, TimePoint now) {
         balancer_.measured(node->id, report.pixel_samples, report.busy);
     }
     cancel(scheduler.merged(report.unit, report.result.tile, report.block));
-    if (!job_->first_picture && scheduler.tiles_without_samples() == 0) job_->first_picture = now;
+    if (!job_->first_picture && !job_->stage && scheduler.tiles_without_samples() == 0)
+        job_->first_picture = now;
 }
 
 void JobRunner::account(const MergeReport& report, NodeRecord& node) {
@@ -333,7 +324,7 @@ void JobRunner::released(NodeRecord& node, const wire::UnitReleased& release, Ti
         case wire::ReleaseReason::Leaving:
             return;
         case wire::ReleaseReason::UnknownView:
-            node.views.erase(job_->request.view.id);  // the message got lost: say it again
+            node.views.erase(view().id);  // the message got lost: say it again
             job_->scheduler->count_refused();
             return;
         case wire::ReleaseReason::OtherVersion:
@@ -384,17 +375,19 @@ void JobRunner::decide(wire::JobOutcome outcome, std::string message, TimePoint 
     if (job_->scheduler) cancel(job_->scheduler->cancel_everything());
 }
 
+void JobRunner::close_view(ViewId closed) {
+    for (auto& [id, node] : nodes_.all()) {
+        if (node.views.erase(closed) > 0) outbox_.control(node.control, wire::CloseView{closed});
+    }
+}
+
 void JobRunner::abandon() {
     if (!job_) return;
     if (job_->scheduler) {
         cancel(job_->scheduler->cancel_everything());
         add(total_, job_->scheduler->counts());
     }
-    for (auto& [id, node] : nodes_.all()) {
-        if (node.views.erase(job_->request.view.id) > 0) {
-            outbox_.control(node.control, wire::CloseView{job_->request.view.id});
-        }
-    }
+    close_view(view().id);
     merger_.close();
     job_.reset();
 }
@@ -402,8 +395,9 @@ void JobRunner::abandon() {
 TimePoint JobRunner::next_event(TimePoint now) const {
     if (!job_) return TimePoint::max();
     TimePoint next = now + settings_.progress_interval;
-    if (job_->deadline && !job_->outcome && now < *job_->deadline)
-        next = std::min(next, std::max(now, *job_->deadline));
+    for (const auto& deadline : {job_->stage ? job_->stage_deadline : std::nullopt, job_->deadline}) {
+        if (deadline && !job_->outcome && now < *deadline) next = std::min(next, *deadline);
+    }
     return next;
 }
 

@@ -54,6 +54,9 @@ class JobRunner {
     std::string missing_channels() const;
     void wait_for_nodes(TimePoint now);
     bool budget_is_planned(TimePoint now);
+    void choose_scale(TimePoint now);
+    void begin_picture(TimePoint now);
+    const view::View& view() const { return job_->stage ? *job_->stage : job_->request.view; }
     bool time_is_up(TimePoint now) const;
     void begin_rendering(TimePoint now);
     void render(TimePoint now);
@@ -63,6 +66,7 @@ class JobRunner {
     void take(const MergeReport& report, TimePoint now);
     void account(const MergeReport& report, NodeRecord& node);
     void cancel(const std::vector<Cancellation>& cancellations);
+    void close_view(ViewId closed);
     void decide(wire::JobOutcome outcome, std::string message, TimePoint now);
     void begin_filtering(TimePoint now);
     void take(Reconstructed&& made, TimePoint now);

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "master/filter/catalog.h"
+#include "master/filter/upsample.h"
 #include "mediator/picture/picture_encoder.h"
 
 namespace tessera::master {
@@ -54,7 +55,7 @@ filter::Filter& Reconstructor::instance(const filter::Choice& choice, std::uint3
 }
 
 Reconstruction Reconstructor::reconstruct(const frame::FilmTile& film, const view::View& view,
-                                          wire::PictureEncoding encoding) {
+                                          wire::PictureEncoding encoding, const frame::FilmTile* features) {
     Reconstruction result{.bytes = std::make_shared<const std::vector<std::byte>>()};
     wire::PictureSummary& summary = result.summary;
     const auto choice = filter::parse_choice(view.filter, filter::catalog());
@@ -69,18 +70,24 @@ Reconstruction Reconstructor::reconstruct(const frame::FilmTile& film, const vie
         filter::Filter& filter = instance(*choice, inputs.width, inputs.height);
         filter.reset();
         const filter::Report report = filter.run(inputs, choice->values, output_, {arena_, {}});
+        const filter::Planes* picture = &output_.picture;
+        if (features != nullptr) {
+            const filter::Inputs full = filter::make_inputs(*features, view);
+            filter::upsample(output_.picture, inputs, full, upsampled_, {arena_, {}});
+            picture = &upsampled_;
+        }
         summary.seconds_filter = since(started);
         for (const filter::Pass& pass : report.passes) {
             summary.passes.push_back({std::string(pass.name), seconds(pass.time), pass.bytes_per_pixel});
         }
         summary.notes = report.notes;
         const auto filtered = Clock::now();
-        result.bytes = std::make_shared<const std::vector<std::byte>>(encode(output_.picture, encoding));
+        result.bytes = std::make_shared<const std::vector<std::byte>>(encode(*picture, encoding));
         summary.seconds_encode = since(filtered);
         summary.encoding = encoding;
-        summary.width = inputs.width;
-        summary.height = inputs.height;
-        summary.components = output_.picture.components();
+        summary.width = picture->width();
+        summary.height = picture->height();
+        summary.components = picture->components();
         summary.byte_size = result.bytes->size();
     } catch (const std::exception& error) {
         result.error = "the filter " + summary.filter + " failed: " + error.what();

@@ -20,8 +20,9 @@ struct Reconstruction {
 // last filter as long as filter and size stay the same. One thread calls; the work runs on all cores.
 class Reconstructor {
   public:
+    // `features`: film of the full size, if `film` is of a smaller one that is to be upsampled.
     Reconstruction reconstruct(const frame::FilmTile& film, const view::View& view,
-                               wire::PictureEncoding encoding);
+                               wire::PictureEncoding encoding, const frame::FilmTile* features = nullptr);
 
     // Seconds that the same takes on a made-up film of about `pixels`: for the first prediction.
     double rehearse(const view::View& view, wire::PictureEncoding encoding, std::uint32_t width,
@@ -38,6 +39,7 @@ class Reconstructor {
     tbb::task_arena arena_;
     Instance instance_;
     filter::Output output_;
+    filter::Planes upsampled_;
 };
 
 }  // namespace tessera::master

@@ -122,5 +122,27 @@ TEST(PictureRequest, WithABudgetEveryPixelHasTwoSamples) {
     EXPECT_GT(result.picture->seconds_predicted, 0.0);
 }
 
+// Once the rate is known, a budget that is too small gives a smaller picture, brought back to size.
+TEST(PictureRequest, TooSmallABudgetGivesAnUpsampledPictureAndSaysSo) {
+    client::JobRequest request = picture_request("gauss");
+    request.budget = 150ms;
+    request.adapts_size = true;
+    const client::JobResult result =
+        render(1, request, 40us, 4);  // 2 samples of 5400 pixels: 0.4 s of one worker
+    ASSERT_TRUE(result.picture) << result.message;
+    EXPECT_GT(result.picture->scale, 1u);
+    EXPECT_EQ(result.picture->width, 90u);
+    EXPECT_EQ(result.picture->height, 60u);
+    EXPECT_GE(result.samples_least, 1u);
+    ASSERT_FALSE(result.picture->notes.empty());
+    EXPECT_NE(result.picture->notes.back().find("upsampled"), std::string::npos);
+}
+
+TEST(PictureRequest, AdaptsItsSizeOnlyWithABudgetAndWithoutFilm) {
+    client::JobRequest request = picture_request("none");
+    request.adapts_size = true;
+    EXPECT_EQ(render(1, request).outcome, client::Outcome::Failed);
+}
+
 }  // namespace
 }  // namespace tessera::test
