@@ -1,0 +1,71 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mediator/filter/filter.h"
+
+namespace tessera::filter {
+
+// Keeps a filter from worsening a picture that has nearly converged (Lardinoije L36):
+//
+//     out = U + w (F - U)          U unfiltered, F filtered, T the truth
+//
+// E|out - T|^2 is least at w = E[(U - T)(U - F)] / E[(F - U)^2]. U is unbiased, so the numerator is
+// V_U - Cov(U, F) = V_U (1 - a): V_U is the variance of the mean, a the weight that F gives to the pixel
+// itself (0 where unknown: w is then a little too large and is cut at 1). Hence
+//
+//     w = min(1, sum V_U (1 - a) s^2 / sum (F - U)^2 s^2)     over a square of (2 radius + 1)^2 pixels
+//
+// Where F has no bias the denominator is no larger than about V_U and w stays near 1; where it is biased the
+// denominator tends to bias^2 while V_U tends to 0, and with them w.
+//
+// s = 1 / (|F| + a tenth of the mean of |F|) per channel makes errors relative, as relMSE does, so that
+// bright pixels do not decide for dark neighbours. s must not depend on U: where light is found rarely the
+// pixels that found none would count for more than those that did, and w would be far too small. A firefly
+// has V_U = (F - U)^2 up to terms in F, so it is removed as F wishes.
+//
+// Pixels with n < 2 have no known variance: they have no say in the sums, and w = 1 there.
+//
+// Samples that are stratified have a smaller error than V_U says: w is then larger than best, never smaller.
+//
+// Measured, 192 x 192, relMSE faded / unfiltered, Gauss of sigma 0.7, 2, 6 as filters, four scenes (shadows
+// and checkers; the same with fireflies of 50 x brightness; light found by 1 to 4 % of the samples; an edge
+// of contrast 100), 4 to 4096 samples per pixel. Unfaded it reaches 3600.
+//
+//     radius                              0      1      2      3      4      5      7      10     15
+//     worst of 72                         1.19   0.91   0.92   0.91   0.90   0.91   0.93   0.95   1.07
+//     shadows, sigma 2, n = 4             0.539  0.198  0.152  0.136  0.130  0.126  0.123  0.121  0.121
+//     shadows, sigma 2, n = 256           0.851  0.562  0.540  0.534  0.532  0.531  0.531  0.538  0.547
+//     rare light, sigma 6, n = 16         0.314  0.078  0.035  0.021  0.015  0.011  0.007  0.005  0.004
+//     edge, sigma 2, n = 64               0.381  0.142  0.124  0.141  0.169  0.203  0.282  0.432  0.775
+//
+// Small squares follow edges of bias, large ones know w better: 5 is between.
+class Fade {
+  public:
+    explicit Fade(std::uint32_t radius = 5) : radius_(radius) {}
+
+    // Computes w for a channel of Moments with three components, of which `filtered` is the filtered mean.
+    // `self_weight` is a in [0, 1] per pixel, or empty. False: stopped.
+    bool weigh(const Inputs& inputs, frame::Channel channel, const Planes& filtered,
+               std::span<const float> self_weight, RunContext& context);
+
+    // Weighs by the radiance and fades every component of `picture` (of Inputs::color_components()), alpha
+    // with the same w. False: stopped, and the picture means nothing.
+    bool apply(const Inputs& inputs, std::span<const float> self_weight, Planes& picture,
+               RunContext& context);
+
+    // w of the last run, 1 component in [0, 1].
+    const Planes& weights() const { return weights_; }
+
+    // What apply moves.
+    static double bytes_per_pixel(std::uint32_t components) { return 88.0 + 12.0 * components; }
+
+  private:
+    std::uint32_t radius_;
+    Planes terms_;  // numerator and denominator, per pixel and summed down the columns
+    Planes weights_;
+    std::vector<double> row_sums_;
+};
+
+}  // namespace tessera::filter
