@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "client/cli/cli.h"
+#include "client/tools/bench/bench_command.h"
 #include "client/tools/compare.h"
 #include "client/tools/doctor.h"
 #include "client/tools/filter_tool.h"
@@ -16,10 +17,10 @@ int main(int argc, char** argv) {
     using namespace tessera;
     cli::CommandLine line(
         "tessera", "Tessera, a distributed path tracer: one master owns scene and picture, nodes render.");
-    const std::vector<tools::Command> commands{tools::render_command(line),  tools::status_command(line),
-                                               tools::probe_command(line),   tools::keys_command(line),
-                                               tools::compare_command(line), tools::filter_command(line),
-                                               tools::filters_command(line), tools::doctor_command(line)};
+    const std::vector<tools::Command> commands{
+        tools::render_command(line),  tools::status_command(line),  tools::probe_command(line),
+        tools::keys_command(line),    tools::compare_command(line), tools::filter_command(line),
+        tools::filters_command(line), tools::bench_command(line),   tools::doctor_command(line)};
     line.examples(
         {"tessera render room.glb -o room.exr -o room.png", "tessera doctor", "tessera render --help"});
     if (const auto exit = line.parse(argc, argv, std::cout, std::cerr)) return *exit;

@@ -1,0 +1,19 @@
+#include "client/tools/bench/bench_command.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "client/tools/bench/pictures.h"
+
+namespace tessera::tools {
+
+Command bench_command(cli::CommandLine& program) {
+    cli::CommandLine& line = program.command("bench", "Measure speed against error.");
+    const std::vector<Command> commands{bench::pictures_command(line)};
+    return {"bench", [commands](std::string_view chosen) {
+                const auto command = std::ranges::find(commands, chosen, &Command::name);
+                return command->run(chosen);
+            }};
+}
+
+}  // namespace tessera::tools
