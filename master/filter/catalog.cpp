@@ -4,12 +4,14 @@
 
 #include "master/filter/gauss.h"
 #include "master/filter/none.h"
+#include "master/filter/psvgf.h"
 
 namespace tessera::filter {
 
 std::span<const FilterEntry> catalog() {
     static const std::array Table{
         none_entry(),
+        psvgf_entry(),
         gauss_entry(),
     };
     return Table;

@@ -35,7 +35,7 @@ ARROWS = {
     "node/main.cpp": KIT + LINK + ["client/cli"],
     "master": CORE + LINK + ["mediator/picture"],
     "master/schedule": CORE + ["mediator/wire"],
-    "master/filter": KIT,
+    "master/filter": KIT + ["master/filter"],
     "master/config.h": CORE + LINK + ["client/cli"],
     "master/config.cpp": CORE + LINK + ["client/cli"],
     "master/main.cpp": CORE + LINK + ["mediator/picture", "client/cli"],

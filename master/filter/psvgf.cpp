@@ -1,0 +1,370 @@
+#include "master/filter/psvgf.h"
+
+#include <array>
+#include <utility>
+
+#include "master/filter/svgf/demodulate.h"
+#include "master/filter/svgf/hole_fill.h"
+#include "master/filter/svgf/signal.h"
+#include "master/filter/svgf/taa.h"
+
+namespace tessera::filter {
+
+namespace {
+
+using frame::Channel;
+using namespace svgf;
+
+enum Parameters : std::size_t {
+    Rest,
+    Mode,
+    SigmaL,
+    EpsL,
+    SigmaN,
+    SigmaD,
+    EpsD,
+    Steep,
+    Levels,
+    Order,
+    R0,
+    LightFade,
+    LightTest,
+    Young,
+    Feedback,
+    Taa,
+    TaaRatio,
+};
+constexpr double Filtered = 1.0;
+constexpr float NoShare = 1e-3f;  // of the history in the picture: from there on it is left out
+
+const frame::ChannelSet Needed{Channel::Radiance,   Channel::LowVariance, Channel::HighVariance,
+                               Channel::Irradiance, Channel::Albedo,      Channel::Normal,
+                               Channel::Depth,      Channel::ObjectIndex};
+
+bool has_all(const Inputs& inputs) {
+    for (const Channel channel :
+         {Channel::Radiance, Channel::Irradiance, Channel::Albedo, Channel::Normal, Channel::Depth}) {
+        if (!inputs.has(channel)) return false;
+    }
+    return inputs.object_ids.size() == inputs.pixel_count();
+}
+
+struct Coverage {
+    double samples = 0.0;
+    float least = 0.0f;  // samples in a pixel
+};
+
+Coverage coverage_of(const Inputs& inputs) {
+    Coverage coverage{.least = inputs.pixel_count() > 0 ? inputs.counts.plane(0)[0] : 0.0f};
+    for (std::uint32_t y = 0; y < inputs.height; ++y) {
+        const float* counts = inputs.counts.row(0, y);
+        float least = coverage.least, sum = 0.0f;
+        for (std::uint32_t x = 0; x < inputs.width; ++x) {
+            least = std::min(least, counts[x]);
+            sum += counts[x];
+        }
+        coverage.least = least;
+        coverage.samples += sum;
+    }
+    return coverage;
+}
+
+class Psvgf final : public Filter {
+  public:
+    Report run(const Inputs& inputs, const Values& values, Output& out, RunContext context) override {
+        Report report;
+        report.stopped = !run(inputs, values, out, context, report);
+        return report;
+    }
+
+    void reset() override {
+        for (Signal& signal : signals_) signal.forget();
+        known_ = has_before_ = false;
+        pending_ = changes_ = {};
+    }
+
+  private:
+    bool run(const Inputs& inputs, const Values& values, Output& out, RunContext& context, Report& report) {
+        if (now_.inverse_depth.pixel_count() != inputs.pixel_count() ||
+            now_.inverse_depth.width() != inputs.width) {
+            reset();
+        }
+        const bool rest_filtered = values[Rest] == Filtered;
+        const Settings settings = settings_of(values);
+        const Coverage coverage = coverage_of(inputs);
+        shape(out.picture, inputs, inputs.color_components());
+        out.maps.clear();
+        if (!has_all(inputs)) {
+            report.notes.emplace_back("channels that psvgf reads are missing: the picture is unfiltered");
+            reset();
+            copy_colors(inputs, out.picture);
+            return true;
+        }
+        take_changes(inputs.changes);
+        if (coverage.samples == 0.0) {
+            report.notes.emplace_back("no samples yet: the picture before is shown");
+            copy_colors(inputs, out.picture);
+            if (shown_.pixel_count() == inputs.pixel_count() && known_) out.picture = shown_;
+            return true;
+        }
+        if (pending_.film_restarted) begin_film();
+        if (!rest_filtered) signals_[1].forget();
+
+        const std::size_t used = rest_filtered ? 2 : 1;
+        for (std::size_t i = 0; i < used; ++i) signals_[i].fit(inputs.width, inputs.height);
+        if (!read_film(inputs, used, coverage.least == 0.0f, report, context)) return false;
+        known_ = true;
+
+        const float kept = std::exp(coverage.least * std::log1p(-settings.accumulation.r0));
+        const bool history = has_before_ && kept > NoShare;
+        if (history) {
+            Stage stage(report, "motion", 4.0 * 4);
+            if (!find_motion(now_, before_, motion_, context)) return false;
+        }
+        for (std::size_t i = 0; i < used; ++i) {
+            if (history && signals_[i].has_history() &&
+                !signals_[i].blend_history(now_, before_, motion_, settings, report, context)) {
+                return false;
+            }
+        }
+        const bool feedback = history && settings.feedback > 0.0f && mean_age() >= 1.0;
+        for (std::size_t i = 0; i < used; ++i) {
+            if (!signals_[i].filter(now_, settings, feedback, report, context)) return false;
+        }
+        if (!compose(inputs, rest_filtered, out.picture, report, context)) return false;
+        if (history && values[Taa] == 0.0 && shown_before_.pixel_count() == inputs.pixel_count() &&
+            shown_before_.components() == out.picture.components()) {
+            Stage stage(report, "antialias", 4.0 * (3 * out.picture.components() + 5));
+            if (!smooth_edges(inputs, static_cast<float>(values[TaaRatio]), out.picture, context))
+                return false;
+        }
+        Stage stage(report, "keep", 8.0 * out.picture.components());
+        shape(shown_, inputs, out.picture.components());
+        std::ranges::copy(out.picture.values(), shown_.values().begin());
+        if (out.wants_maps) write_maps(inputs, out);
+        return true;
+    }
+
+    Settings settings_of(const Values& values) const {
+        const auto value = [&](Parameters parameter) { return static_cast<float>(values[parameter]); };
+        Settings settings;
+        settings.stops = {.sigma_n = value(SigmaN),
+                          .sigma_d = value(SigmaD),
+                          .eps_d = value(EpsD),
+                          .steep = value(Steep),
+                          .sigma_l = value(SigmaL),
+                          .eps_l = value(EpsL),
+                          .deviation = static_cast<Deviation>(static_cast<int>(values[Mode]))};
+        settings.accumulation.r0 = value(R0);
+        settings.accumulation.age_scale = changes_.lights_or_materials ? value(LightFade) : 1.0f;
+        settings.accumulation.z0 =
+            changes_.lights_or_materials || changes_.geometry ? value(LightTest) : 0.0f;
+        settings.levels = static_cast<std::uint32_t>(values[Levels]);
+        settings.order = static_cast<LevelOrder>(static_cast<int>(values[Order]));
+        settings.young = value(Young);
+        settings.feedback = value(Feedback);
+        return settings;
+    }
+
+    static void copy_colors(const Inputs& inputs, Planes& picture) {
+        for (std::uint32_t c = 0; c < picture.components(); ++c) {
+            std::ranges::copy(inputs.color(c), picture.plane(c).begin());
+        }
+    }
+
+    // A film that brought no samples is as if it had not been, but what it said has changed has.
+    void take_changes(const Changes& changes) {
+        pending_.film_restarted |= changes.film_restarted;
+        pending_.lights_or_materials |= changes.lights_or_materials;
+        pending_.geometry |= changes.geometry;
+    }
+
+    void begin_film() {
+        changes_ = std::exchange(pending_, {});
+        for (Signal& signal : signals_) signal.restart();
+        std::swap(now_, before_);
+        std::swap(shown_, shown_before_);
+        has_before_ = std::exchange(known_, false);
+    }
+
+    bool read_film(const Inputs& inputs, std::size_t used, bool holes, Report& report, RunContext& context) {
+        {
+            Stage stage(report, "demodulate", 4.0 * (3 + 3 + 3 + 3 + 1 + 6));
+            if (!demodulate(inputs, signals_[0].now(), context)) return false;
+        }
+        if (!find_rest(inputs, rest_, rest_of_film_, context)) return false;
+        if (used > 1 && !take_rest(inputs, *rest_of_film_, signals_[1].now(), context)) return false;
+        albedo_of_film_ = &inputs.mean(Channel::Albedo);
+        {
+            Stage stage(report, "guides", 4.0 * (5 + 5));
+            if (!prepare_guides(inputs, now_, context)) return false;
+        }
+        if (holes) {
+            Stage stage(report, "holes", 4.0 * 2 * 20);
+            if (!fill_holes(inputs, used, context)) return false;
+        }
+        Stage stage(report, "slopes", 4.0 * 3);
+        return prepare_slopes(now_, context);
+    }
+
+    bool fill_holes(const Inputs& inputs, std::size_t used, RunContext& context) {
+        shape(albedo_, inputs, 3);
+        std::ranges::copy(albedo_of_film_->values(), albedo_.values().begin());
+        albedo_of_film_ = &albedo_;
+        if (rest_of_film_ != &rest_) {
+            shape(rest_, inputs, 3);
+            std::ranges::copy(rest_of_film_->values(), rest_.values().begin());
+            rest_of_film_ = &rest_;
+        }
+        shape(alpha_, inputs, 1);
+        if (inputs.has(Channel::Alpha)) {
+            std::ranges::copy(inputs.mean(Channel::Alpha).values(), alpha_.values().begin());
+        }
+        std::vector<PlaneView>& planes = filled_;
+        planes.clear();
+        const auto add = [&](Planes& from, std::uint32_t count) {
+            for (std::uint32_t c = 0; c < count; ++c) planes.push_back({from.row(c, 0), from.width()});
+        };
+        add(now_.normal, 3);
+        add(now_.inverse_depth, 1);
+        add(albedo_, 3);
+        add(rest_, 3);
+        add(alpha_, 1);
+        for (std::size_t i = 0; i < used; ++i) {
+            State& state = signals_[i].now();
+            for (std::uint32_t c = 0; c < 3; ++c)
+                planes.push_back({state.color.row(c, 0), state.color.pitch()});
+            add(state.moments, Age);
+        }
+        return hole_fill_.run(inputs.counts, now_.ids, planes, context);
+    }
+
+    double mean_age() {
+        const auto ages = signals_[0].now().moments.plane(Age);
+        double sum = 0.0;
+        for (const float age : ages) sum += age;
+        return sum / static_cast<double>(ages.size());
+    }
+
+    bool compose(const Inputs& inputs, bool rest_filtered, Planes& picture, Report& report,
+                 RunContext& context) {
+        Stage stage(report, "compose", 4.0 * 12);
+        const PaddedPlanes& light = signals_[0].filtered();
+        return for_rows(context, inputs.height, [&](std::uint32_t y) {
+            for (std::uint32_t c = 0; c < 3; ++c) {
+                const float* rest =
+                    rest_filtered ? signals_[1].filtered().row(c, y) : rest_of_film_->row(c, y);
+                const float *a = albedo_of_film_->row(c, y), *e = light.row(c, y);
+                float* __restrict to = picture.row(c, y);
+                for (std::uint32_t x = 0; x < inputs.width; ++x) to[x] = rest[x] + a[x] * e[x];
+            }
+            if (picture.components() == 4) {
+                const bool filled = albedo_of_film_ == &albedo_;
+                const float* alpha = filled ? alpha_.row(0, y) : inputs.mean(Channel::Alpha).row(0, y);
+                std::copy_n(alpha, inputs.width, picture.row(3, y));
+            }
+        });
+    }
+
+    bool smooth_edges(const Inputs& inputs, float ratio, Planes& picture, RunContext& context) {
+        shape(newness_, inputs, 1);
+        const Planes& moments = signals_[0].now().moments;
+        for (std::size_t i = 0; i < inputs.pixel_count(); ++i) {
+            const float age = moments.plane(Age)[i];
+            newness_.plane(0)[i] = age > 0.0f ? inputs.counts.plane(0)[i] / age : 1.0f;
+        }
+        if (!antialias(picture, shown_before_, now_, motion_, newness_, ratio, smoothed_, context))
+            return false;
+        std::ranges::copy(smoothed_.values(), picture.values().begin());
+        return true;
+    }
+
+    void write_maps(const Inputs& inputs, Output& out) {
+        Planes irradiance(inputs.width, inputs.height, 3), deviation(inputs.width, inputs.height, 1),
+            age(inputs.width, inputs.height, 1);
+        State& state = signals_[0].now();
+        for (std::uint32_t y = 0; y < inputs.height; ++y) {
+            for (std::uint32_t c = 0; c < 3; ++c) {
+                std::copy_n(signals_[0].filtered().row(c, y), inputs.width, irradiance.row(c, y));
+            }
+            for (std::uint32_t x = 0; x < inputs.width; ++x) {
+                deviation.row(0, y)[x] = std::sqrt(state.color.row(3, y)[x]);
+            }
+            std::copy_n(state.moments.row(Age, y), inputs.width, age.row(0, y));
+        }
+        out.maps.push_back({"irradiance", std::move(irradiance)});
+        out.maps.push_back({"deviation", std::move(deviation)});
+        out.maps.push_back({"age", std::move(age)});
+    }
+
+    std::array<Signal, 2> signals_;  // irradiance; the rest, when it is filtered
+    Guides now_, before_;
+    bool known_ = false, has_before_ = false;  // the guides
+    Changes pending_, changes_;                // since the last film with samples; that began this film
+    Motion motion_;
+    HoleFill hole_fill_;
+    std::vector<PlaneView> filled_;
+    Planes albedo_, rest_, alpha_;  // copies whose holes are filled
+    const Planes *albedo_of_film_ = nullptr, *rest_of_film_ = nullptr;
+    Planes shown_, shown_before_, smoothed_, newness_;
+};
+
+}  // namespace
+
+FilterEntry psvgf_entry() {
+    return {
+        {.name = "psvgf",
+         .summary = "progressive SVGF: history and edge-stopping wavelets on the diffuse irradiance",
+         .source = "Dundr 2",
+         .parameters =
+             {{"rest", "", "light besides the diffuse lobe", 0, 0, 1, {"unfiltered", "filtered"}},
+              {"mode",
+               "",
+               "what a luminance difference is measured in (E-D11): deviation of the mean, variance, "
+               "deviation "
+               "of one sample",
+               0,
+               0,
+               2,
+               {"age", "dundr", "svgf"}},
+              {"sigma_l", "deviations", "luminance difference that is kept apart (E-D11)", 4.0, 0.0, 1e3, {}},
+              {"eps_l", "of the luminance", "difference that never counts (E-D11)", 0.01, 0.0, 10.0, {}},
+              {"sigma_n", "", "exponent of the normals' cosine (E-D9)", 64.0, 0.0, 1e4, {}},
+              {"sigma_d", "slopes", "depth difference on one surface (E-D10)", 1.0, 0.0, 1e3, {}},
+              {"eps_d", "of the depth", "depth difference that never counts (E-D10)", 0.005, 0.0, 1.0, {}},
+              {"steep", "of the depth per px", "slope above which depth does not count", 0.2, 0.0, 1e6, {}},
+              {"levels", "", "levels of the wavelet transform", 6, 0, MaxLevels, {}},
+              {"order", "", "order of the levels", 0, 0, 2, {"first_then_coarse", "fine", "coarse"}},
+              {"r0", "", "least share of a new sample in the history (E-D3)", 0.05, 0.0, 0.999, {}},
+              {"light_fade",
+               "",
+               "share of its age that history keeps when light changes",
+               0.25,
+               0.0,
+               1.0,
+               {}},
+              {"light_test",
+               "deviations",
+               "difference above which history is doubted after an edit; 0: never",
+               3.0,
+               0.0,
+               1e3,
+               {}},
+              {"young", "samples", "below them the variance comes from around the pixel", 4.0, 2.0, 64.0, {}},
+              {"feedback",
+               "samples",
+               "up to them the first level goes into the history; 0: never",
+               8.0,
+               0.0,
+               1e6,
+               {}},
+              {"taa", "", "temporal antialiasing where history is used", 0, 0, 1, {"on", "off"}},
+              {"taa_ratio", "", "least share of the new picture in it (E-D14)", 0.1, 0.0, 1.0, {}}},
+         .channels = [](const Values&) { return Needed; },
+         .consistent = false,
+         .temporal = true,
+         .path_class = view::PathClass::Diffuse},
+        [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> { return std::make_unique<Psvgf>(); }};
+}
+
+}  // namespace tessera::filter

@@ -1,0 +1,92 @@
+#include "master/filter/svgf/accumulate.h"
+
+#include <algorithm>
+
+namespace tessera::filter::svgf {
+
+namespace {
+
+constexpr float SameLight = 1e-3f;  // relative differences that are no change, whatever the noise
+
+// The share of its age that history keeps where the light may have changed (Dundr 6.1): the new 3x3 mean
+// against the old one, in deviations of their difference.
+bool test_light(const Planes& history, const State& state, float z0, Planes& trust, RunContext& context) {
+    const std::uint32_t width = history.width(), height = history.height();
+    if (trust.width() != width || trust.height() != height) trust = Planes(width, height, 1);
+    return for_rows(context, height, [&](std::uint32_t y) {
+        const std::uint32_t first_row = y > 0 ? y - 1 : 0, last_row = std::min(y + 1, height - 1);
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const std::uint32_t first = x > 0 ? x - 1 : 0, last = std::min(x + 1, width - 1);
+            float n = 0.0f, sum = 0.0f, squares = 0.0f, pixels = 0.0f;
+            float age = 0.0f, old_sum = 0.0f, old_variance = 0.0f, known = 0.0f;
+            for (std::uint32_t ty = first_row; ty <= last_row; ++ty) {
+                const float* samples = state.moments.row(Age, ty);
+                const float* light = state.moments.row(MeanLuminance, ty);
+                const float* old_light = history.row(HistoryMoments + MeanLuminance, ty);
+                const float* old_age = history.row(HistoryMoments + Age, ty);
+                const float* variance = history.row(HistoryMoments + SampleVariance, ty);
+                for (std::uint32_t tx = first; tx <= last; ++tx) {
+                    if (samples[tx] <= 0.0f || old_age[tx] <= 0.0f) continue;
+                    n += samples[tx];
+                    sum += samples[tx] * light[tx];
+                    squares += samples[tx] * light[tx] * light[tx];
+                    pixels += 1.0f;
+                    age += old_age[tx];
+                    old_sum += samples[tx] * old_light[tx];
+                    old_variance += variance[tx];
+                    known += 1.0f;
+                }
+            }
+            float kept = 1.0f;
+            if (n > 0.0f) {
+                const float mean = sum / n, old_mean = old_sum / n;
+                const float spread = std::max(0.0f, squares / n - mean * mean) / pixels;
+                const float floor = SameLight * std::max(mean, old_mean);
+                const float variance = spread + old_variance / known / age + floor * floor + 1e-30f;
+                const float z = std::fabs(mean - old_mean) / std::sqrt(variance);
+                kept = exp_negative(-std::max(0.0f, z - z0));
+            }
+            trust.row(0, y)[x] = kept;
+        }
+    });
+}
+
+}  // namespace
+
+bool accumulate(const Planes& history, const Accumulation& how, State& state, Planes& trust,
+                RunContext& context) {
+    const bool tested = how.z0 > 0.0f;
+    if (tested && !test_light(history, state, how.z0, trust, context)) return false;
+    const float keep = std::log1p(-how.r0);
+    return for_rows(context, history.height(), [&](std::uint32_t y) {
+        const std::size_t width = history.width();
+        const float* trusted = tested ? trust.row(0, y) : nullptr;
+        const float* old_age = history.row(HistoryMoments + Age, y);
+        float* __restrict age = state.moments.row(Age, y);
+        float* __restrict mean = state.moments.row(MeanLuminance, y);
+        float* __restrict variance = state.moments.row(SampleVariance, y);
+        const float* old_mean = history.row(HistoryMoments + MeanLuminance, y);
+        const float* old_variance = history.row(HistoryMoments + SampleVariance, y);
+        float *__restrict red = state.color.row(0, y), *__restrict green = state.color.row(1, y),
+              *__restrict blue = state.color.row(2, y);
+        const float *old_red = history.row(0, y), *old_green = history.row(1, y),
+                    *old_blue = history.row(2, y);
+        for (std::size_t x = 0; x < width; ++x) {
+            const float old = old_age[x] * how.age_scale * (tested ? trusted[x] : 1.0f);
+            const float n = age[x];
+            const float share = new_share(n, old, keep);
+            const float filled = old > 0.0f ? 0.0f : 1.0f;
+            const float r = n > 0.0f ? (old > 0.0f ? share : 1.0f) : filled;
+            const float q = 1.0f - r;
+            age[x] = n > 0.0f ? std::min(n + old, n / r) : old;
+            red[x] = r * red[x] + q * old_red[x];
+            green[x] = r * green[x] + q * old_green[x];
+            blue[x] = r * blue[x] + q * old_blue[x];
+            const float difference = mean[x] - old_mean[x];
+            variance[x] = r * variance[x] + q * old_variance[x] + r * q * difference * difference;
+            mean[x] = r * mean[x] + q * old_mean[x];
+        }
+    });
+}
+
+}  // namespace tessera::filter::svgf

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "master/filter/kernels.h"
+#include "master/filter/svgf/padded_planes.h"
+
+namespace tessera::filter::svgf {
+
+// What is known of one signal, per pixel.
+struct State {
+    PaddedPlanes color;  // r, g, b; component 3 is room for the variance that the wavelet carries
+    Planes moments;      // mean luminance, E[L^2] - E[L]^2 of one sample (E-D6), age in samples
+};
+inline constexpr std::uint32_t MeanLuminance = 0, SampleVariance = 1, Age = 2, MomentCount = 3;
+
+// A reprojected state as planes, in this order.
+inline constexpr std::uint32_t HistoryMoments = 3, HistoryCount = HistoryMoments + MomentCount;
+
+struct Accumulation {
+    float r0 = 0.05f;        // least share of a new sample (E-D3)
+    float age_scale = 1.0f;  // what a changed light leaves of the history's age
+    float z0 = 0.0f;         // deviations that light may differ before history is doubted; 0: not tested
+};
+
+// The share of n new samples beside a history of `age` samples: E-D3 for samples that come one by one,
+// r0 -> 1 - (1 - r0)^n. `keep` is ln(1 - r0).
+inline float new_share(float n, float age, float keep) {
+    const float least = 1.0f - exp_negative(keep * n);
+    const float mean = n / std::max(n + age, 1e-6f);
+    return std::max(least, mean);
+}
+
+// Blends the film in `state` with the history, moments by the same shares (E-D2, E-D5; the variance by its
+// own exact rule, which is the same without cancellation). Pixels without samples keep their history. False:
+// stopped.
+bool accumulate(const Planes& history, const Accumulation& how, State& state, Planes& trust,
+                RunContext& context);
+
+}  // namespace tessera::filter::svgf

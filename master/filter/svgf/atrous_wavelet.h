@@ -1,0 +1,36 @@
+#pragma once
+
+#include "master/filter/svgf/guides.h"
+#include "master/filter/svgf/padded_planes.h"
+
+namespace tessera::filter::svgf {
+
+enum class LevelOrder : std::uint8_t {
+    FirstThenCoarse,  // 0, 5, 4, 3, 2, 1 (Dundr): coarse levels leave lattices that finer ones remove
+    Fine,             // 0 .. 5
+    Coarse,           // 5 .. 0
+};
+
+inline constexpr std::uint32_t MaxLevels = 7;  // the margin of PaddedPlanes is the widest step
+
+// The level that pass `pass` of `count` uses.
+std::uint32_t level_of(std::uint32_t pass, std::uint32_t count, LevelOrder order);
+
+// One level of the edge-stopping stationary wavelet transform (E-D8, E-D12): 3x3 taps (1 2 1)x(1 2 1)/16,
+// 2^level pixels apart. Components 0-2 are a colour, 3 its variance, which goes on by squared weights
+// (E-D13).
+class AtrousWavelet {
+  public:
+    // `from` and `to` are 4 components of the guides' size, and not the same. False: stopped.
+    bool run(const Guides& guides, const EdgeStops& stops, std::uint32_t level, const PaddedPlanes& from,
+             PaddedPlanes& to, RunContext& context);
+
+    // Read: colour, variance, normals, inverse depth, slopes, ids; written: colour, variance.
+    static constexpr double BytesPerPixel = 4.0 * (4 + 3 + 1 + 2 + 1 + 4);
+
+  private:
+    struct Scratch;
+    std::vector<float> scratch_;  // per thread
+};
+
+}  // namespace tessera::filter::svgf

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "master/filter/svgf/guides.h"
+
+namespace tessera::filter::svgf {
+
+// One plane that is to be filled, wherever it lies.
+struct PlaneView {
+    float* values;
+    std::size_t pitch;
+    float* row(std::size_t y) const { return values + y * pitch; }
+};
+
+// Fills pixels without a sample from a pyramid of factor 3 (Dundr 2.7.1): a coarse texel is the mean of the
+// valid children that show the same object as the one next to its centre, weighted by samples; a hole takes
+// the finest level that knows something around it, with linear interpolation among texels of one object.
+class HoleFill {
+  public:
+    // Sets ids of holes and every view's values there. Unchanged where nothing is known at all. False:
+    // stopped.
+    bool run(const Planes& counts, std::vector<std::uint32_t>& ids, std::span<const PlaneView> planes,
+             RunContext& context);
+
+  private:
+    struct Level {
+        std::uint32_t width = 0, height = 0;
+        std::vector<float> texels;  // weight, then a value per plane
+        std::vector<std::uint32_t> ids;
+    };
+    std::vector<Level> levels_;
+};
+
+}  // namespace tessera::filter::svgf

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "master/filter/svgf/accumulate.h"
+#include "master/filter/svgf/atrous_wavelet.h"
+#include "master/filter/svgf/reproject.h"
+#include "master/filter/svgf/spatial_variance.h"
+
+namespace tessera::filter::svgf {
+
+struct Settings {
+    EdgeStops stops;
+    Accumulation accumulation;
+    SurfaceTests tests;
+    std::uint32_t levels = 6;
+    LevelOrder order = LevelOrder::FirstThenCoarse;
+    float young = 4.0f;     // samples below which the variance is taken from around the pixel
+    float feedback = 8.0f;  // samples up to which the first level goes into the history; 0: never
+};
+
+// One kind of light through the whole filter: what is known now, what was known of the film before, and the
+// wavelet's pictures.
+class Signal {
+  public:
+    // Where the film goes: colour, mean luminance, variance of one sample, age = samples.
+    State& now() { return now_; }
+    void fit(std::uint32_t width, std::uint32_t height);
+    // A new film begins: what is known becomes history.
+    void restart();
+    void forget();
+    bool has_history() const { return has_before_; }
+
+    // Brings the history to this picture's places and blends it in. False: stopped, as in the next ones.
+    bool blend_history(const Guides& now, const Guides& before, const Motion& motion,
+                       const Settings& settings, Report& report, RunContext& context);
+    // Variance and all levels; afterwards filtered() is the picture. Feedback is for histories alone.
+    bool filter(const Guides& guides, const Settings& settings, bool feedback, Report& report,
+                RunContext& context);
+    const PaddedPlanes& filtered() const { return *filtered_; }
+
+  private:
+    bool feed_back(const PaddedPlanes& first_level, float limit, RunContext& context);
+
+    State now_, before_;
+    bool known_ = false, has_before_ = false;
+    Planes history_, trust_;
+    SpatialVariance variance_;
+    AtrousWavelet wavelet_;
+    std::array<PaddedPlanes, 2> levels_;
+    const PaddedPlanes* filtered_ = nullptr;
+};
+
+}  // namespace tessera::filter::svgf

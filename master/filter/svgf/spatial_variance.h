@@ -1,0 +1,30 @@
+#pragma once
+
+#include "master/filter/svgf/accumulate.h"
+#include "master/filter/svgf/guides.h"
+
+namespace tessera::filter::svgf {
+
+// The variance that the wavelet starts with, into component 3 of the state's colour: of the mean or of one
+// sample (EdgeStops::deviation); from the samples of the pixel, or where there are fewer than `young` from
+// those around it (E-D16: moments under a Gaussian of 7x7 on the same surface, done as a row and a column);
+// then blurred by (1 2 1)x(1 2 1)/16 (E-D7).
+class SpatialVariance {
+  public:
+    // False: stopped.
+    bool run(const Guides& guides, const EdgeStops& stops, float young, State& state, RunContext& context);
+
+    // Rows of the last run that had a young pixel, of all: the share that the wide estimate cost.
+    double young_share() const { return young_share_; }
+
+  private:
+    bool estimate(const Guides& guides, const EdgeStops& stops, float young, const State& state,
+                  RunContext& context);
+
+    Planes raw_;   // 1: before the blur
+    Planes sums_;  // 3: weight, weighted luminance and its square, along the row
+    std::vector<std::uint8_t> young_rows_;
+    double young_share_ = 0.0;
+};
+
+}  // namespace tessera::filter::svgf

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "master/filter/svgf/reproject.h"
+
+namespace tessera::filter::svgf {
+
+// Temporal antialiasing of a finished picture (E-D14, with its sign put right): r c + (1 - r) clamp(p), where
+// p is what the picture before showed of the nearest surface of the 3x3 pixels around, clamped to the range
+// of those 3x3 pixels, and r the larger one of `ratio` and the pixel's `newness` (share of samples that the
+// picture before did not have). Blended in the range compression x / (1 + max(r, g, b)), whose inverse is
+// exact because every colour carries its divisor along; linear radiance in and out; a fourth component goes
+// along. The result lies within the range of the 3x3 pixels. False: stopped.
+bool antialias(const Planes& picture, const Planes& before, const Guides& now, const Motion& motion,
+               const Planes& newness, float ratio, Planes& out, RunContext& context);
+
+}  // namespace tessera::filter::svgf
