@@ -29,7 +29,7 @@ scene::ChangeList authority_snapshot(ViewPlan& plan, const std::shared_ptr<scene
                                      import::CameraInfo& camera) {
     master::SceneAuthority authority(1, blobs);
     plan.import.first_id = ObjectId{authority.lend_ids(OnlySession).first};
-    auto imported = import::import_scene(plan.scene, plan.import);
+    auto imported = import_scene(plan);
     if (!imported) throw imported.error();
     for (const scene::BlobPtr& blob : imported->blobs) blobs->insert(blob);
     const auto answer = authority.submit({.session = OnlySession,

@@ -68,7 +68,7 @@ class Render {
 
     std::optional<int> import(ObjectId first_id) {
         plan_.view.import.first_id = first_id;
-        auto scene = import::import_scene(plan_.view.scene, plan_.view.import);
+        auto scene = import_scene(plan_.view);
         if (!scene) return complain(Name, ExitBadInput, scene.error().what());
         scene_ = std::move(*scene);
         auto camera = choose_camera(scene_.cameras, plan_.view.camera);

@@ -25,6 +25,9 @@ void ViewOptions::add_to(cli::CommandLine& command) {
     command.positional("SCENE", "scene file: .gltf, .glb, .obj, .ply", scene);
     command.option("--size", "picture size in pixels", size);
     command.option("--camera", "camera of the scene: its name, or its number from 0", camera);
+    command.option("--hide", "leave out this part, by its name in the file; may be given several times",
+                   hidden);
+    command.option("--material", "PART=MATERIAL, both by name; may be given several times", materials);
     command.option("--background", "uniform light from all around: linear R,G,B", background);
     command.option("--env", "environment map, latitude-longitude .exr or .hdr", environment);
     command.option("--env-strength", "factor on the environment map", environment_strength);
@@ -60,6 +63,14 @@ Expected<ViewPlan> understand(const ViewOptions& options) {
         if (!color) return wrong("--background", color.error());
         plan.import.background = *color;
     }
+    plan.configuration.hidden = options.hidden;
+    for (const std::string& text : options.materials) {
+        const std::size_t equals = text.find('=');
+        if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+            return failure(ErrorCode::InvalidInput, "--material: '" + text + "' is not PART=MATERIAL");
+        }
+        plan.configuration.materials.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+    }
     if (options.environment) plan.import.environment = *options.environment;
     if (!std::isfinite(options.environment_strength) || options.environment_strength < 0.0) {
         return failure(ErrorCode::InvalidInput, "--env-strength: must be a finite number from 0");
@@ -78,6 +89,15 @@ Expected<ViewPlan> understand(const ViewOptions& options) {
     if (options.transparent) plan.view.channels.insert(frame::Channel::Alpha);
     plan.view.pixel_filter = pixel_filter(options.pixel_filter);
     return plan;
+}
+
+Expected<import::ImportedScene> import_scene(const ViewPlan& plan) {
+    auto scene = import::import_scene(plan.scene, plan.import);
+    if (!scene) return scene;
+    if (auto done = import::configure(*scene, plan.configuration); !done) {
+        return failure(done.error().code(), "scene '" + plan.scene + "': " + done.error().what());
+    }
+    return scene;
 }
 
 Expected<import::CameraInfo> choose_camera(const std::vector<import::CameraInfo>& cameras,

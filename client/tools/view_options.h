@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "client/cli/cli.h"
+#include "client/import/configure.h"
 #include "client/import/import.h"
 #include "client/tools/values.h"
 #include "mediator/view/view.h"
@@ -17,6 +18,7 @@ struct ViewOptions {
     std::string scene;
     std::string size = "1280x720";
     std::optional<std::string> camera, background, environment, crop;
+    std::vector<std::string> hidden, materials;
     double environment_strength = 1.0;
     std::uint32_t bounces = 8;
     std::string pixel_filter = "box";
@@ -31,11 +33,15 @@ struct ViewOptions {
 struct ViewPlan {
     std::string scene;
     import::ImportOptions import;
+    import::Configuration configuration;
     std::optional<std::string> camera;
     Size size;
     view::View view;  // without camera and channels
 };
 Expected<ViewPlan> understand(const ViewOptions& options);
+
+// The scene with its parts and materials as chosen.
+Expected<import::ImportedScene> import_scene(const ViewPlan& plan);
 
 // By name, else by number from 0; without a choice the first. The failure names the nearest.
 Expected<import::CameraInfo> choose_camera(const std::vector<import::CameraInfo>& cameras,

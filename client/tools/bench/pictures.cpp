@@ -96,7 +96,7 @@ class PicturesBench {
     std::optional<int> open(const ViewPlan& plan) {
         ViewPlan scene_plan = plan;
         scene_plan.import.first_id = ObjectId{1u << 16};
-        auto scene = import::import_scene(scene_plan.scene, scene_plan.import);
+        auto scene = import_scene(scene_plan);
         if (!scene) return complain("bench", ExitBadInput, scene.error().what());
         auto camera = choose_camera(scene->cameras, scene_plan.camera);
         if (!camera) return complain("bench", cli::ExitUsage, camera.error().what());
