@@ -24,6 +24,7 @@ class Gauss final : public Filter {
         const std::uint32_t components = inputs.color_components();
         shape(out.picture, inputs, components);
         shape(rows_, inputs, components + 1);
+        shape(weights_, inputs, 1);
         Report report;
         Stage stage(report, "gauss", 4.0 * (4 * components + 4));
         const bool done =
@@ -69,20 +70,20 @@ class Gauss final : public Filter {
                 for (std::int64_t x = 0; x < width; ++x) to[x] += k * from[x];
             }
         };
-        std::vector<float> weights(static_cast<std::size_t>(width));
-        gather(components, weights.data());
+        float* weights = weights_.row(0, y);
+        gather(components, weights);
         for (std::uint32_t c = 0; c < components; ++c) {
             float* to = out.row(c, y);
             gather(c, to);
             for (std::int64_t x = 0; x < width; ++x) {
-                const float w = weights[static_cast<std::size_t>(x)];
+                const float w = weights[x];
                 to[x] = w > 0.0f ? to[x] / w : 0.0f;
             }
         }
     }
 
     std::vector<float> kernel_;
-    Planes rows_;
+    Planes rows_, weights_;
 };
 
 }  // namespace

@@ -10,8 +10,10 @@ namespace {
 
 class None final : public Filter {
   public:
-    Report run(const Inputs& inputs, const Values&, Output& out, RunContext) override {
+    Report run(const Inputs& inputs, const Values&, Output& out, RunContext context) override {
         Report report;
+        report.stopped = context.stop.stop_requested();
+        if (report.stopped) return report;
         Stage stage(report, "copy", 8.0 * inputs.color_components());
         shape(out.picture, inputs, inputs.color_components());
         for (std::uint32_t c = 0; c < inputs.color_components(); ++c) {
