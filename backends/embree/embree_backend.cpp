@@ -1,12 +1,11 @@
 #include "backends/embree/embree_backend.h"
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 #include <shared_mutex>
 #include <thread>
 
 #include "backends/embree/path_tracer.h"
+#include "backends/embree/sample_values.h"
 #include "backends/embree/world.h"
 #include "mediator/frame/block_stack.h"
 #include "mediator/frame/merge.h"
@@ -16,41 +15,8 @@ namespace tessera::embree {
 namespace {
 
 using namespace backend;
-using frame::Channel;
 
-constexpr frame::ChannelSet Supported{Channel::Radiance,   Channel::LowVariance, Channel::HighVariance,
-                                      Channel::Albedo,     Channel::Normal,      Channel::Depth,
-                                      Channel::ObjectIndex};
-
-// The values of a sample in the order of the channels (frame::put_sample), only those that are asked for.
-class SampleValues {
-  public:
-    explicit SampleValues(frame::ChannelSet channels) : channels_(channels) {}
-
-    std::span<const float> of(const PathSample& sample) {
-        count_ = 0;
-        add(Channel::Radiance, sample.direct + sample.indirect);
-        add(Channel::LowVariance, sample.direct);
-        add(Channel::HighVariance, sample.indirect);
-        add(Channel::Albedo, sample.albedo);
-        add(Channel::Normal, sample.normal);
-        if (channels_.contains(Channel::Depth)) values_[count_++] = sample.depth;
-        if (channels_.contains(Channel::ObjectIndex)) {
-            values_[count_++] = sample.depth;
-            std::memcpy(&values_[count_++], &sample.object, sizeof(float));
-        }
-        return {values_.data(), count_};
-    }
-
-  private:
-    void add(Channel channel, const glm::vec3& value) {
-        if (!channels_.contains(channel)) return;
-        for (int i = 0; i < 3; ++i) values_[count_++] = value[i];
-    }
-    frame::ChannelSet channels_;
-    std::array<float, 18> values_{};
-    std::size_t count_ = 0;
-};
+constexpr frame::ChannelSet AllChannels = frame::ChannelSet::from_bits((1u << frame::ChannelCount) - 1u);
 
 class EmbreeBackend final : public Backend {
   public:
@@ -59,7 +25,7 @@ class EmbreeBackend final : public Backend {
 
     Capabilities capabilities() const override {
         const std::uint32_t cores = std::max(1u, std::thread::hardware_concurrency());
-        return {.channels = Supported,
+        return {.channels = AllChannels,
                 .preferred_tile = 32,
                 .concurrent_units = settings_.threads != 0 ? settings_.threads : cores,
                 .deterministic = true,
@@ -77,7 +43,7 @@ class EmbreeBackend final : public Backend {
         const std::shared_lock lock(mutex_);
         if (unit.version != world_.version()) return {};
         const PathTracer tracer(world_.tables(), world_.scene(), view);
-        SampleValues values(view.channels);
+        SampleValues values(view);
         frame::BlockStack finished;
         RenderResult result{.status = RenderStatus::Done};
         for (std::uint64_t sample = unit.block.first; sample < unit.block.end(); ++sample) {
@@ -99,7 +65,7 @@ class EmbreeBackend final : public Backend {
         std::vector<std::string> story;
         std::uint64_t rays = 0;
         const PathSample found = tracer.trace(x, y, sample, rays, &story);
-        const glm::vec3 radiance = found.direct + found.indirect;
+        const glm::vec3 radiance = found.radiance();
         story.push_back("radiance (" + std::to_string(radiance.x) + ", " + std::to_string(radiance.y) + ", " +
                         std::to_string(radiance.z) + ") from " + std::to_string(rays) + " rays");
         return story;
@@ -128,7 +94,7 @@ class EmbreeBackend final : public Backend {
             for (std::int32_t x = tile.rect.x; x < tile.rect.right(); ++x, ++pixel) {
                 const PathSample sample = tracer.trace(static_cast<std::uint32_t>(x),
                                                        static_cast<std::uint32_t>(y), tile.block.first, rays);
-                frame::put_sample(tile, pixel, values.of(sample));
+                frame::put_sample(tile, pixel, values.of(sample, tile.block.first));
             }
         }
         return true;

@@ -24,7 +24,12 @@ LightSample sample_point(const LightData& light, const Surface& surface) {
     if (!(distance2 > 0.0f)) return sample;
     sample.direction = offset / std::sqrt(distance2);
     sample.radiance = light.intensity / distance2;
-    if (light.type == LightType::Spot) sample.radiance *= spot_falloff(light, sample.direction);
+    sample.intensity = light.intensity;
+    if (light.type == LightType::Spot) {
+        const float falloff = spot_falloff(light, sample.direction);
+        sample.radiance *= falloff;
+        sample.intensity *= falloff;
+    }
     sample.pdf = light.probability;
     sample.origin =
         leave_surface({surface.position, surface.error}, surface.geometric_normal, sample.direction);
@@ -92,6 +97,7 @@ LightSample sample_mesh(const SceneTables& tables, const LightData& light, const
         sample.radiance *=
             masked ? (alpha >= material.alpha_cutoff ? 1.0f : 0.0f) : std::clamp(alpha, 0.0f, 1.0f);
     }
+    sample.intensity = sample.radiance;
     sample.pdf = solid_angle_pdf(light.probability, light.area, distance2, std::fabs(facing));
     sample.origin =
         leave_surface({surface.position, surface.error}, surface.geometric_normal, sample.direction);
@@ -116,7 +122,7 @@ LightSample sample_light(const SceneTables& tables, const Surface& surface, floa
             return sample_point(light, surface);
         case LightType::Directional: {
             LightSample sample = sample_distant(light, surface, -light.direction);
-            sample.radiance = light.intensity;
+            sample.radiance = sample.intensity = light.intensity;
             sample.delta = true;
             return sample;
         }
@@ -125,7 +131,7 @@ LightSample sample_light(const SceneTables& tables, const Surface& surface, floa
         case LightType::Environment: {
             const Environment::Sample sky = tables.environment.sample(u);
             LightSample sample = sample_distant(light, surface, sky.direction);
-            sample.radiance = tables.environment.radiance(sky.direction);
+            sample.radiance = sample.intensity = tables.environment.radiance(sky.direction);
             sample.pdf *= sky.pdf;
             return sample;
         }

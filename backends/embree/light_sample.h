@@ -8,6 +8,7 @@ namespace tessera::embree {
 struct LightSample {
     glm::vec3 radiance{
         0.0f};  // that arrives when nothing is in between; for a delta light divided by its distance squared
+    glm::vec3 intensity{0.0f};  // the light's own, towards the surface, whatever the distance
     glm::vec3 direction{0.0f};  // to the light, unit length
     float pdf = 0.0f;           // per solid angle, choice of the light included; 0 = no light
     bool delta = false;         // cannot be hit by chance: the pdf is of the choice alone

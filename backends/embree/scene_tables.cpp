@@ -39,6 +39,7 @@ MaterialData make_material(const scene::Material& material, const Indices& textu
             .normal_scale = material.normal_scale,
             .index_of_refraction = material.index_of_refraction,
             .alpha_cutoff = material.alpha_cutoff,
+            .transmission = material.transmission,
             .base_color_texture = use(material.base_color_texture),
             .metallic_roughness_texture = use(material.metallic_roughness_texture),
             .normal_texture = use(material.normal_texture),

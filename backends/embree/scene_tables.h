@@ -15,7 +15,7 @@ struct MaterialData {
     glm::vec4 base_color{0.8f, 0.8f, 0.8f, 1.0f};
     glm::vec3 emission{0.0f};
     float metallic = 0.0f, roughness = 1.0f, normal_scale = 1.0f, index_of_refraction = 1.5f,
-          alpha_cutoff = 0.5f;
+          alpha_cutoff = 0.5f, transmission = 0.0f;
     TextureUse base_color_texture, metallic_roughness_texture, normal_texture, emission_texture;
     scene::AlphaMode alpha_mode = scene::AlphaMode::Opaque;
     bool double_sided = false, unlit = false;

@@ -53,6 +53,24 @@ glm::vec3 mapped_normal(const SceneTables& tables, const InstanceData& instance,
     return safe_normalize(tangent * n.x + bitangent * n.y + normal * n.z, normal);
 }
 
+// Directions by the shading normal where they leave the surface on their own sides, else by the geometric
+// one: no light may get lost at the rim of a smooth body.
+shading::Specular specular_at(const Surface& surface, const shading::Mixture& mixture, float eta,
+                              const glm::vec3& direction) {
+    glm::mat3 frame = surface.frame;
+    shading::Specular specular = shading::make_specular(surface.albedo, mixture, eta, -direction * frame);
+    const glm::vec3 up = surface.geometric_normal * frame;
+    const bool refracts = shading::largest(specular.refraction) > 0.0f;
+    if (!(glm::dot(specular.reflected, up) > 0.0f) ||
+        (refracts && !(glm::dot(specular.refracted, up) < 0.0f))) {
+        frame = shading::frame_around(surface.geometric_normal);
+        specular = shading::make_specular(surface.albedo, mixture, eta, -direction * frame);
+    }
+    specular.reflected = glm::normalize(frame * specular.reflected);
+    specular.refracted = frame * specular.refracted;
+    return specular;
+}
+
 }  // namespace
 
 PointWithError point_on(const InstanceData& instance, std::uint32_t triangle, const glm::vec2& b) {
@@ -61,9 +79,11 @@ PointWithError point_on(const InstanceData& instance, std::uint32_t triangle, co
     const glm::vec3 object = interpolate(p, corners, b);
     const glm::vec3 sizes = glm::abs(p[corners.x]) * std::fabs(1.0f - b.x - b.y) +
                             glm::abs(p[corners.y]) * b.x + glm::abs(p[corners.z]) * b.y;
-    const glm::vec3 extent = glm::max(glm::max(glm::abs(p[corners.x] - object), glm::abs(p[corners.y] - object)),
-                                      glm::abs(p[corners.z] - object));
-    const glm::mat3 linear(glm::abs(instance.linear[0]), glm::abs(instance.linear[1]), glm::abs(instance.linear[2]));
+    const glm::vec3 extent =
+        glm::max(glm::max(glm::abs(p[corners.x] - object), glm::abs(p[corners.y] - object)),
+                 glm::abs(p[corners.z] - object));
+    const glm::mat3 linear(glm::abs(instance.linear[0]), glm::abs(instance.linear[1]),
+                           glm::abs(instance.linear[2]));
     const glm::vec3 in_object = linear * (gamma(5) * sizes + gamma(8) * extent);
     const glm::vec3 transform = linear * glm::abs(object) + glm::abs(instance.translation);
     return {instance.to_world(object), in_object + 2.0f * gamma(6) * transform};
@@ -114,8 +134,15 @@ Surface make_surface(const SceneTables& tables, const RTCHit& hit, const glm::ve
         metallic *= texel.b;
     }
     const float cos_out = -glm::dot(direction, normal);
+    const shading::Mixture mixture = shading::make_mixture(metallic, roughness, material.transmission);
     surface.bsdf =
-        shading::make_bsdf(surface.albedo, metallic, roughness, material.index_of_refraction, cos_out);
+        shading::make_bsdf(surface.albedo, mixture, roughness, material.index_of_refraction, cos_out);
+    if (mixture.mirror > 0.0f || mixture.glass > 0.0f) {
+        surface.rough_share = mixture.rough();
+        // Bodies are solid: behind the front is glass, behind the back is air. Index 0 stands for infinity.
+        const float n = material.index_of_refraction;
+        surface.specular = specular_at(surface, mixture, front || n == 0.0f ? n : 1.0f / n, direction);
+    }
     return surface;
 }
 

@@ -6,7 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include "backends/embree/scene_tables.h"
-#include "mediator/shading/bsdf.h"
+#include "mediator/shading/specular.h"
 
 namespace tessera::embree {
 
@@ -17,7 +17,9 @@ struct Surface {
     glm::vec3 geometric_normal{0.0f};  // of unit length, to the side the path came from
     glm::mat3 frame{1.0f};             // shading frame, third axis = shading normal, same side
     glm::vec3 albedo{0.0f}, emission{0.0f};
-    shading::Bsdf bsdf{};
+    shading::Bsdf bsdf{};          // of what is no perfect specular
+    shading::Specular specular{};  // perfect mirror and smooth glass; directions in the world
+    float rough_share = 1.0f;      // of the material that is no perfect specular
     const InstanceData* instance = nullptr;
     std::uint32_t triangle = 0;
     bool scatters = true;
@@ -29,10 +31,11 @@ struct Surface {
 // `direction`: of the ray that hit, unit length.
 Surface make_surface(const SceneTables& tables, const RTCHit& hit, const glm::vec3& direction);
 
-// A point of an instance's triangle and the bound of the distance, per axis, at which Embree may find the triangle
-// around it. In the object's frame: interpolation, 5 roundings of the corners' coordinates; Embree's distance to the
-// plane, 8 roundings (differences, cross product, dot product) of the triangle's extent. Then 6 roundings of the way to
-// the world and as many of Embree's way back. gamma_n = n u / (1 - n u), u = 2^-24 (Higham 2002).
+// A point of an instance's triangle and the bound of the distance, per axis, at which Embree may find the
+// triangle around it. In the object's frame: interpolation, 5 roundings of the corners' coordinates; Embree's
+// distance to the plane, 8 roundings (differences, cross product, dot product) of the triangle's extent. Then
+// 6 roundings of the way to the world and as many of Embree's way back. gamma_n = n u / (1 - n u), u = 2^-24
+// (Higham 2002).
 struct PointWithError {
     glm::vec3 position, error;
 };

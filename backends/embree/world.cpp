@@ -1,7 +1,8 @@
 #include "backends/embree/world.h"
 
 #include <array>
-#include <set>
+
+#include "mediator/shading/bsdf.h"
 
 namespace tessera::embree {
 
@@ -74,7 +75,26 @@ void World::mark_alpha_tested() {
     }
 }
 
-backend::EditReport World::report(const backend::SceneDelta& delta, const MeshStore::Result& meshes) const {
+// Rough transmission is drawn as smooth: told when a material comes to have it.
+std::vector<std::string> World::material_problems(const backend::SceneDelta& delta) {
+    std::vector<std::string> problems;
+    if (delta.everything) told_.clear();
+    for (const ObjectId id : delta.materials) {
+        const auto* material = shadow_.scene().find_as<scene::Material>(id);
+        const bool rough = material != nullptr && material->transmission > 0.0f &&
+                           material->metallic < 1.0f &&
+                           material->roughness * material->roughness > shading::MinAlpha;
+        if (!rough) {
+            told_.erase(id);
+        } else if (told_.insert(id).second) {
+            problems.push_back("material " + std::to_string(id.value) + " '" + material->name +
+                               "': its rough transmission is drawn as smooth");
+        }
+    }
+    return problems;
+}
+
+backend::EditReport World::report(const backend::SceneDelta& delta, const MeshStore::Result& meshes) {
     backend::EditReport edit{.entries = delta.entries,
                              .relevant = delta.relevant,
                              .rebuilt = meshes.rebuilt,
@@ -83,6 +103,8 @@ backend::EditReport World::report(const backend::SceneDelta& delta, const MeshSt
                              .lights = tables_.lights.lights.size(),
                              .ignored_kinds = delta.ignored_kinds,
                              .problems = meshes.problems};
+    const std::vector<std::string> of_materials = material_problems(delta);
+    edit.problems.insert(edit.problems.end(), of_materials.begin(), of_materials.end());
     for (const auto& [id, mesh] : meshes_.all()) {
         edit.triangles += mesh->triangles.size();
         edit.degenerate_triangles += mesh->degenerate_triangles;

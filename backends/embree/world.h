@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <set>
 
 #include "backends/embree/mesh.h"
 #include "backends/embree/scene_tables.h"
@@ -29,7 +30,8 @@ class World {
     std::uint32_t retransform(const backend::SceneDelta& delta);
     void set_transform(std::uint32_t instance);
     void mark_alpha_tested();
-    backend::EditReport report(const backend::SceneDelta& delta, const MeshStore::Result& meshes) const;
+    std::vector<std::string> material_problems(const backend::SceneDelta& delta);
+    backend::EditReport report(const backend::SceneDelta& delta, const MeshStore::Result& meshes);
 
     RTCDevice device_;
     std::shared_ptr<scene::BlobStore> blobs_;
@@ -38,6 +40,7 @@ class World {
     MeshStore meshes_;
     SceneTables tables_;
     SceneHandle top_;
+    std::set<ObjectId> told_;  // materials whose problem is known
 };
 
 }  // namespace tessera::embree

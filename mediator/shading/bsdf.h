@@ -10,15 +10,28 @@
 //             coat reflects on its way in or out does not reach the base (as in Ashikhmin and Shirley 2000,
 //             without their rescaling). Reciprocal; the sum never reflects more than comes in.
 // Multiple scattering between facets is not modelled: rough metals are a little dark.
+// Perfect mirrors and smooth glass have no density and are in specular.h; a material is a mixture of both
+// kinds.
 namespace tessera::shading {
 
+// What a surface consists of: shares that sum to 1. This file knows metal (rough) and dielectric (opaque,
+// coated).
+struct Mixture {
+    float metal = 0.0f, dielectric = 1.0f;
+    float mirror = 0.0f, glass = 0.0f;
+    // Exactly 1 where there is neither mirror nor glass.
+    float rough() const { return 1.0f - mirror - glass; }
+};
+
 struct Bsdf {
-    glm::vec3 diffuse;     // albedo of the base
-    glm::vec3 f0;          // specular reflectance at normal incidence
-    float coat_f0;         // of the dielectric part: what the diffuse lobe loses
-    float f90, coat_f90;   // reflectance at grazing: 1, or 0 where there is no interface (index of refraction 1)
-    float alpha;           // roughness^2
+    glm::vec3 diffuse;  // albedo of the base
+    glm::vec3 f0;       // specular reflectance at normal incidence
+    float coat_f0;      // of the dielectric part: what the diffuse lobe loses
+    float f90,
+        coat_f90;  // reflectance at grazing: all of its share, or 0 where there is no interface (index 1)
+    float alpha;   // roughness^2
     float specular_share;  // probability of sampling the specular lobe
+    float reflectance;     // estimate of all that is reflected, as luminance
 };
 
 // A mirror within float accuracy: below, D overflows. Its energy is unchanged, only the lobe's width is.
@@ -30,21 +43,36 @@ inline float schlick_weight(float cosine) {
     return m2 * m2 * m;
 }
 
-inline Bsdf make_bsdf(const glm::vec3& base_color, float metallic, float roughness, float index_of_refraction,
-                      float cos_out) {
+inline Mixture make_mixture(float metallic, float roughness, float transmission) {
+    const float opaque = 1.0f - metallic;
+    Mixture mixture{.metal = metallic, .dielectric = opaque};
+    if (transmission > 0.0f) {
+        mixture.glass = opaque * transmission;
+        mixture.dielectric = opaque * (1.0f - transmission);
+    }
+    if (roughness * roughness <= MinAlpha) {
+        mixture.mirror = metallic;
+        mixture.metal = 0.0f;
+    }
+    return mixture;
+}
+
+inline Bsdf make_bsdf(const glm::vec3& base_color, const Mixture& mixture, float roughness,
+                      float index_of_refraction, float cos_out) {
     Bsdf bsdf;
     const float r =
         index_of_refraction == 0.0f ? 1.0f : (index_of_refraction - 1.0f) / (index_of_refraction + 1.0f);
     bsdf.coat_f0 = r * r;
-    bsdf.diffuse = base_color * (1.0f - metallic);
-    bsdf.f0 = glm::vec3(bsdf.coat_f0) * (1.0f - metallic) + base_color * metallic;
-    bsdf.f90 = largest(bsdf.f0) > 0.0f ? 1.0f : 0.0f;
+    bsdf.diffuse = base_color * mixture.dielectric;
+    bsdf.f0 = glm::vec3(bsdf.coat_f0) * mixture.dielectric + base_color * mixture.metal;
+    bsdf.f90 = largest(bsdf.f0) > 0.0f ? mixture.rough() : 0.0f;
     bsdf.coat_f90 = bsdf.coat_f0 > 0.0f ? 1.0f : 0.0f;
     bsdf.alpha = std::fmax(roughness * roughness, MinAlpha);
     const float fresnel = schlick_weight(cos_out);
     const float specular = luminance(bsdf.f0 + (bsdf.f90 - bsdf.f0) * fresnel);
     const float diffuse = luminance(bsdf.diffuse) * (1.0f - bsdf.coat_f0) * (1.0f - bsdf.coat_f90 * fresnel);
     const float sum = specular + diffuse;
+    bsdf.reflectance = sum;
     // Never 0 or 1 while both lobes are there, so that no light is out of reach.
     bsdf.specular_share = sum > 0.0f ? std::fmin(std::fmax(specular / sum, 0.1f), 0.9f) : 0.5f;
     if (!(largest(bsdf.diffuse) > 0.0f)) bsdf.specular_share = 1.0f;
@@ -82,12 +110,13 @@ inline glm::vec3 sample_visible_normal(const glm::vec3& out, float alpha, const 
 }
 
 struct BsdfValue {
-    glm::vec3 value;  // f cos(in)
-    float pdf;        // per solid angle, of sample_bsdf
+    glm::vec3 value;    // f cos(in)
+    float pdf;          // per solid angle, of sample_bsdf
+    glm::vec3 diffuse;  // the diffuse lobe's part of the value
 };
 
 inline BsdfValue evaluate_bsdf(const Bsdf& bsdf, const glm::vec3& out, const glm::vec3& in) {
-    BsdfValue result{glm::vec3(0.0f), 0.0f};
+    BsdfValue result{glm::vec3(0.0f), 0.0f, glm::vec3(0.0f)};
     if (!(in.z > 0.0f) || !(out.z > 0.0f)) return result;
     const glm::vec3 sum = in + out;
     const float length2 = dot(sum, sum);
@@ -101,7 +130,8 @@ inline BsdfValue evaluate_bsdf(const Bsdf& bsdf, const glm::vec3& out, const glm
     }
     const float keeps_in = 1.0f - (bsdf.coat_f0 + (bsdf.coat_f90 - bsdf.coat_f0) * schlick_weight(in.z));
     const float keeps_out = 1.0f - (bsdf.coat_f0 + (bsdf.coat_f90 - bsdf.coat_f0) * schlick_weight(out.z));
-    result.value += bsdf.diffuse * (keeps_in * keeps_out * in.z / Pi);
+    result.diffuse = bsdf.diffuse * (keeps_in * keeps_out * in.z / Pi);
+    result.value += result.diffuse;
     result.pdf += (1.0f - bsdf.specular_share) * in.z / Pi;
     return result;
 }

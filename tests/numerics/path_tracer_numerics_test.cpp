@@ -33,7 +33,7 @@ TEST_P(FurnaceAnywhere, IsAsBrightAsAtTheOrigin) {
         for (std::uint32_t y = 0; y < 32; ++y) {
             for (std::uint32_t x = 0; x < 32; ++x) {
                 const PathSample found = tracer.trace(x, y, sample, rays);
-                const double value = found.direct.x + found.indirect.x;
+                const double value = found.radiance().x;
                 ASSERT_TRUE(std::isfinite(value));
                 ASSERT_TRUE(std::isfinite(found.depth)) << "the camera looked through the wall";
                 sum += value;
@@ -59,7 +59,7 @@ TEST(SurfaceModelNumerics, IsFiniteAtItsEdges) {
     for (const float roughness : {0.0f, 1e-6f, 1e-3f, 0.01f, 1.0f}) {
         for (const float cosine : {1.0f, 0.5f, 1e-3f, 1e-7f, 1e-20f}) {
             const glm::vec3 out(std::sqrt(1.0f - cosine * cosine), 0.0f, cosine);
-            const Bsdf bsdf = make_bsdf(glm::vec3(0.9f), 1.0f, roughness, 1.5f, cosine);
+            const Bsdf bsdf = make_bsdf(glm::vec3(0.9f), {1.0f, 0.0f}, roughness, 1.5f, cosine);
             for (std::uint32_t i = 0; i < 2000; ++i) {
                 const Sampler sampler{i, 1};
                 const glm::vec3 in =

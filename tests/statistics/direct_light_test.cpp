@@ -78,9 +78,9 @@ class Stage {
         const double count = 256.0 * static_cast<double>(spp);
         for (std::uint64_t i = 0; i < 256 * spp; ++i) {
             const PathSample found = tracer.trace(i % 16, i / 16 % 16, i / 256, rays);
-            EXPECT_EQ(found.indirect, glm::vec3(0.0f)) << "one scattering is direct light";
-            sum += found.direct.x;
-            squares += double(found.direct.x) * found.direct.x;
+            EXPECT_EQ(found.high, glm::vec3(0.0f)) << "one scattering is direct light";
+            sum += found.low.x;
+            squares += double(found.low.x) * found.low.x;
         }
         const double mean = sum / count;
         return {mean, std::sqrt(std::max(0.0, squares / count - mean * mean) / count)};

@@ -165,7 +165,7 @@ class SurfaceModel : public testing::TestWithParam<std::tuple<float, float, floa
     float roughness = std::get<0>(GetParam()), metallic = std::get<1>(GetParam()),
           cosine = std::get<2>(GetParam());
     glm::vec3 out{std::sqrt(1.0f - cosine * cosine), 0.0f, cosine};
-    Bsdf bsdf = make_bsdf(glm::vec3(1.0f), metallic, roughness, 1.5f, cosine);
+    Bsdf bsdf = make_bsdf(glm::vec3(1.0f), {metallic, 1.0f - metallic}, roughness, 1.5f, cosine);
 };
 
 // Lobes that are wide against the cells.
@@ -217,7 +217,7 @@ TEST_P(SurfaceModel, IsReciprocal) {
     for (int i = 0; i < 1000; ++i) {
         const glm::vec3 in = sample_cosine_hemisphere(pair(random));
         if (!(in.z > 1e-3f)) continue;
-        const Bsdf back = make_bsdf(glm::vec3(1.0f), metallic, roughness, 1.5f, in.z);
+        const Bsdf back = make_bsdf(glm::vec3(1.0f), {metallic, 1.0f - metallic}, roughness, 1.5f, in.z);
         const double there = evaluate_bsdf(bsdf, out, in).value.x / in.z;
         const double again = evaluate_bsdf(back, in, out).value.x / out.z;
         EXPECT_NEAR(there, again, 1e-4 * std::max(there, again) + 1e-6);
