@@ -38,6 +38,13 @@ void tell_miss(const Path& path) {
     path.tell([&] { return std::string("leaves the scene"); });
 }
 
+bool any_light(frame::ChannelSet channels) {
+    using enum frame::Channel;
+    constexpr frame::ChannelSet Light{Radiance,       LowVariance, HighVariance,
+                                      ShadingFeature, Irradiance,  EvenHalf};
+    return (channels.bits() & Light.bits()) != 0;
+}
+
 }  // namespace
 
 PathTracer::PathTracer(const SceneTables& tables, RTCScene scene, const view::View& view, Strategy strategy)
@@ -47,7 +54,8 @@ PathTracer::PathTracer(const SceneTables& tables, RTCScene scene, const view::Vi
       transport_(rays_, view, strategy),
       // Light scattered up to max_bounces + 1 times is counted, so 0 is direct light (as in Cycles).
       max_scatterings_(view.max_bounces == view::UnlimitedBounces ? ~std::uint64_t{0}
-                                                                  : std::uint64_t{view.max_bounces} + 1) {}
+                                                                  : std::uint64_t{view.max_bounces} + 1),
+      wants_light_(any_light(view.channels)) {}
 
 void PathTracer::trace_path(Path& path, Ray ray, Surface surface) const {
     while (true) {
@@ -60,6 +68,7 @@ void PathTracer::trace_path(Path& path, Ray ray, Surface surface) const {
             path.sample.normal = surface.frame[2];
         }
         if (!surface.scatters || path.vertex >= max_scatterings_) return;
+        if (!wants_light_ && lobe.kind == Lobe::Kind::Rough) return;
         if (lobe.kind == Lobe::Kind::Rough) {
             const glm::vec3 out = surface.to_local(-ray.direction);
             transport_.add_lights(path, surface, out);

@@ -28,6 +28,7 @@ class PathTracer {
     Camera camera_;
     Transport transport_;
     std::uint64_t max_scatterings_;
+    bool wants_light_;  // otherwise a path ends where its features are known
 };
 
 }  // namespace tessera::embree
