@@ -42,7 +42,7 @@ bool any_light(frame::ChannelSet channels) {
     using enum frame::Channel;
     constexpr frame::ChannelSet Light{Radiance,       LowVariance, HighVariance,
                                       ShadingFeature, Irradiance,  EvenHalf};
-    return (channels.bits() & Light.bits()) != 0;
+    return channels.empty() || (channels.bits() & Light.bits()) != 0;  // empty: a probe wants the whole path
 }
 
 }  // namespace
