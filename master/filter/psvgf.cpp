@@ -3,9 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "master/filter/svgf/demodulate.h"
-#include "master/filter/svgf/hole_fill.h"
-#include "master/filter/svgf/signal.h"
+#include "master/filter/svgf/film_layers.h"
 #include "master/filter/svgf/taa.h"
 
 namespace tessera::filter {
@@ -33,8 +31,9 @@ enum Parameters : std::size_t {
     Feedback,
     Taa,
     TaaRatio,
+    FadeSwitch,
 };
-constexpr double Filtered = 1.0;
+constexpr double Filtered = 1.0, On = 0.0;
 constexpr float NoShare = 1e-3f;  // of the history in the picture: from there on it is left out
 
 const frame::ChannelSet Needed{Channel::Radiance,   Channel::LowVariance, Channel::HighVariance,
@@ -47,26 +46,6 @@ bool has_all(const Inputs& inputs) {
         if (!inputs.has(channel)) return false;
     }
     return inputs.object_ids.size() == inputs.pixel_count();
-}
-
-struct Coverage {
-    double samples = 0.0;
-    float least = 0.0f;  // samples in a pixel
-};
-
-Coverage coverage_of(const Inputs& inputs) {
-    Coverage coverage{.least = inputs.pixel_count() > 0 ? inputs.counts.plane(0)[0] : 0.0f};
-    for (std::uint32_t y = 0; y < inputs.height; ++y) {
-        const float* counts = inputs.counts.row(0, y);
-        float least = coverage.least, sum = 0.0f;
-        for (std::uint32_t x = 0; x < inputs.width; ++x) {
-            least = std::min(least, counts[x]);
-            sum += counts[x];
-        }
-        coverage.least = least;
-        coverage.samples += sum;
-    }
-    return coverage;
 }
 
 class Psvgf final : public Filter {
@@ -85,12 +64,10 @@ class Psvgf final : public Filter {
 
   private:
     bool run(const Inputs& inputs, const Values& values, Output& out, RunContext& context, Report& report) {
-        if (now_.inverse_depth.pixel_count() != inputs.pixel_count() ||
-            now_.inverse_depth.width() != inputs.width) {
-            reset();
-        }
+        if (inputs.width != width_ || inputs.height != height_) reset();
+        width_ = inputs.width;
+        height_ = inputs.height;
         const bool rest_filtered = values[Rest] == Filtered;
-        const Settings settings = settings_of(values);
         const Coverage coverage = coverage_of(inputs);
         shape(out.picture, inputs, inputs.color_components());
         out.maps.clear();
@@ -100,20 +77,21 @@ class Psvgf final : public Filter {
             copy_colors(inputs, out.picture);
             return true;
         }
-        take_changes(inputs.changes);
+        merge(inputs.changes, pending_);
         if (coverage.samples == 0.0) {
             report.notes.emplace_back("no samples yet: the picture before is shown");
             copy_colors(inputs, out.picture);
-            if (shown_.pixel_count() == inputs.pixel_count() && known_) out.picture = shown_;
+            if (known_ && shown_.components() == out.picture.components()) out.picture = shown_;
             return true;
         }
         if (pending_.film_restarted) begin_film();
         if (!rest_filtered) signals_[1].forget();
+        const Settings settings = settings_of(values);
+        known_ = false;  // until all is done: a run that is stopped leaves nothing to build on
 
-        const std::size_t used = rest_filtered ? 2 : 1;
-        for (std::size_t i = 0; i < used; ++i) signals_[i].fit(inputs.width, inputs.height);
-        if (!read_film(inputs, used, coverage.least == 0.0f, report, context)) return false;
-        known_ = true;
+        const auto signals = std::span(signals_).first(rest_filtered ? 2 : 1);
+        for (Signal& signal : signals) signal.fit(inputs.width, inputs.height);
+        if (!layers_.read(inputs, coverage.least == 0.0f, signals, now_, report, context)) return false;
 
         const float kept = std::exp(coverage.least * std::log1p(-settings.accumulation.r0));
         const bool history = has_before_ && kept > NoShare;
@@ -121,19 +99,22 @@ class Psvgf final : public Filter {
             Stage stage(report, "motion", 4.0 * 4);
             if (!find_motion(now_, before_, motion_, context)) return false;
         }
-        for (std::size_t i = 0; i < used; ++i) {
-            if (history && signals_[i].has_history() &&
-                !signals_[i].blend_history(now_, before_, motion_, settings, report, context)) {
+        for (Signal& signal : signals) {
+            if (history && signal.has_history() &&
+                !signal.blend_history(now_, before_, motion_, settings, report, context)) {
                 return false;
             }
         }
         const bool feedback = history && settings.feedback > 0.0f && mean_age() >= 1.0;
-        for (std::size_t i = 0; i < used; ++i) {
-            if (!signals_[i].filter(now_, settings, feedback, report, context)) return false;
+        const bool faded = values[FadeSwitch] == On;
+        for (Signal& signal : signals) {
+            if (!signal.filter(now_, settings, feedback, report, context)) return false;
+            if (faded && !signal.fade(report, context)) return false;
         }
-        if (!compose(inputs, rest_filtered, out.picture, report, context)) return false;
-        if (history && values[Taa] == 0.0 && shown_before_.pixel_count() == inputs.pixel_count() &&
-            shown_before_.components() == out.picture.components()) {
+        if (!layers_.compose(inputs, signals, faded, out.picture, report, context)) return false;
+        const bool shown_fits = shown_before_.pixel_count() == inputs.pixel_count() &&
+                                shown_before_.components() == out.picture.components();
+        if (history && values[Taa] == On && shown_fits) {
             Stage stage(report, "antialias", 4.0 * (3 * out.picture.components() + 5));
             if (!smooth_edges(inputs, static_cast<float>(values[TaaRatio]), out.picture, context))
                 return false;
@@ -142,6 +123,7 @@ class Psvgf final : public Filter {
         shape(shown_, inputs, out.picture.components());
         std::ranges::copy(out.picture.values(), shown_.values().begin());
         if (out.wants_maps) write_maps(inputs, out);
+        known_ = true;
         return true;
     }
 
@@ -173,70 +155,21 @@ class Psvgf final : public Filter {
     }
 
     // A film that brought no samples is as if it had not been, but what it said has changed has.
-    void take_changes(const Changes& changes) {
-        pending_.film_restarted |= changes.film_restarted;
-        pending_.lights_or_materials |= changes.lights_or_materials;
-        pending_.geometry |= changes.geometry;
+    static void merge(const Changes& from, Changes& to) {
+        to.film_restarted |= from.film_restarted;
+        to.lights_or_materials |= from.lights_or_materials;
+        to.geometry |= from.geometry;
     }
 
     void begin_film() {
-        changes_ = std::exchange(pending_, {});
-        for (Signal& signal : signals_) signal.restart();
-        std::swap(now_, before_);
-        std::swap(shown_, shown_before_);
-        has_before_ = std::exchange(known_, false);
-    }
-
-    bool read_film(const Inputs& inputs, std::size_t used, bool holes, Report& report, RunContext& context) {
-        {
-            Stage stage(report, "demodulate", 4.0 * (3 + 3 + 3 + 3 + 1 + 6));
-            if (!demodulate(inputs, signals_[0].now(), context)) return false;
+        if (known_) {
+            for (Signal& signal : signals_) signal.restart();
+            std::swap(now_, before_);
+            std::swap(shown_, shown_before_);
+            has_before_ = true;
+            changes_ = {};
         }
-        if (!find_rest(inputs, rest_, rest_of_film_, context)) return false;
-        if (used > 1 && !take_rest(inputs, *rest_of_film_, signals_[1].now(), context)) return false;
-        albedo_of_film_ = &inputs.mean(Channel::Albedo);
-        {
-            Stage stage(report, "guides", 4.0 * (5 + 5));
-            if (!prepare_guides(inputs, now_, context)) return false;
-        }
-        if (holes) {
-            Stage stage(report, "holes", 4.0 * 2 * 20);
-            if (!fill_holes(inputs, used, context)) return false;
-        }
-        Stage stage(report, "slopes", 4.0 * 3);
-        return prepare_slopes(now_, context);
-    }
-
-    bool fill_holes(const Inputs& inputs, std::size_t used, RunContext& context) {
-        shape(albedo_, inputs, 3);
-        std::ranges::copy(albedo_of_film_->values(), albedo_.values().begin());
-        albedo_of_film_ = &albedo_;
-        if (rest_of_film_ != &rest_) {
-            shape(rest_, inputs, 3);
-            std::ranges::copy(rest_of_film_->values(), rest_.values().begin());
-            rest_of_film_ = &rest_;
-        }
-        shape(alpha_, inputs, 1);
-        if (inputs.has(Channel::Alpha)) {
-            std::ranges::copy(inputs.mean(Channel::Alpha).values(), alpha_.values().begin());
-        }
-        std::vector<PlaneView>& planes = filled_;
-        planes.clear();
-        const auto add = [&](Planes& from, std::uint32_t count) {
-            for (std::uint32_t c = 0; c < count; ++c) planes.push_back({from.row(c, 0), from.width()});
-        };
-        add(now_.normal, 3);
-        add(now_.inverse_depth, 1);
-        add(albedo_, 3);
-        add(rest_, 3);
-        add(alpha_, 1);
-        for (std::size_t i = 0; i < used; ++i) {
-            State& state = signals_[i].now();
-            for (std::uint32_t c = 0; c < 3; ++c)
-                planes.push_back({state.color.row(c, 0), state.color.pitch()});
-            add(state.moments, Age);
-        }
-        return hole_fill_.run(inputs.counts, now_.ids, planes, context);
+        merge(std::exchange(pending_, {}), changes_);
     }
 
     double mean_age() {
@@ -244,26 +177,6 @@ class Psvgf final : public Filter {
         double sum = 0.0;
         for (const float age : ages) sum += age;
         return sum / static_cast<double>(ages.size());
-    }
-
-    bool compose(const Inputs& inputs, bool rest_filtered, Planes& picture, Report& report,
-                 RunContext& context) {
-        Stage stage(report, "compose", 4.0 * 12);
-        const PaddedPlanes& light = signals_[0].filtered();
-        return for_rows(context, inputs.height, [&](std::uint32_t y) {
-            for (std::uint32_t c = 0; c < 3; ++c) {
-                const float* rest =
-                    rest_filtered ? signals_[1].filtered().row(c, y) : rest_of_film_->row(c, y);
-                const float *a = albedo_of_film_->row(c, y), *e = light.row(c, y);
-                float* __restrict to = picture.row(c, y);
-                for (std::uint32_t x = 0; x < inputs.width; ++x) to[x] = rest[x] + a[x] * e[x];
-            }
-            if (picture.components() == 4) {
-                const bool filled = albedo_of_film_ == &albedo_;
-                const float* alpha = filled ? alpha_.row(0, y) : inputs.mean(Channel::Alpha).row(0, y);
-                std::copy_n(alpha, inputs.width, picture.row(3, y));
-            }
-        });
     }
 
     bool smooth_edges(const Inputs& inputs, float ratio, Planes& picture, RunContext& context) {
@@ -297,15 +210,13 @@ class Psvgf final : public Filter {
         out.maps.push_back({"age", std::move(age)});
     }
 
+    std::uint32_t width_ = 0, height_ = 0;
     std::array<Signal, 2> signals_;  // irradiance; the rest, when it is filtered
     Guides now_, before_;
-    bool known_ = false, has_before_ = false;  // the guides
-    Changes pending_, changes_;                // since the last film with samples; that began this film
+    bool known_ = false, has_before_ = false;  // what now_ and before_ say, and all that belongs to them
+    Changes pending_, changes_;                // since the last run with samples; since before_
     Motion motion_;
-    HoleFill hole_fill_;
-    std::vector<PlaneView> filled_;
-    Planes albedo_, rest_, alpha_;  // copies whose holes are filled
-    const Planes *albedo_of_film_ = nullptr, *rest_of_film_ = nullptr;
+    FilmLayers layers_;
     Planes shown_, shown_before_, smoothed_, newness_;
 };
 
@@ -359,9 +270,10 @@ FilterEntry psvgf_entry() {
                1e6,
                {}},
               {"taa", "", "temporal antialiasing where history is used", 0, 0, 1, {"on", "off"}},
-              {"taa_ratio", "", "least share of the new picture in it (E-D14)", 0.1, 0.0, 1.0, {}}},
+              {"taa_ratio", "", "least share of the new picture in it (E-D14)", 0.1, 0.0, 1.0, {}},
+              {"fade", "", "back to the film's own mean as it converges", 0, 0, 1, {"on", "off"}}},
          .channels = [](const Values&) { return Needed; },
-         .consistent = false,
+         .consistent = true,
          .temporal = true,
          .path_class = view::PathClass::Diffuse},
         [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> { return std::make_unique<Psvgf>(); }};

@@ -12,17 +12,17 @@ constexpr float LeastAlbedo =
     1e-4f;  // below it the light says nothing about the irradiance, and does not show
 constexpr float MostVariance = 1e36f;  // so that sums over a window stay finite
 
-bool knows_diffuse(const Inputs& inputs) {
-    return inputs.path_class == view::PathClass::Diffuse && inputs.has(Channel::HighVariance) &&
-           inputs.has(Channel::LowVariance);
-}
-
 // Standard deviation of the luminance if all components vary together, as light does: an upper bound.
 float luma_deviation(float r, float g, float b) {
     return luma(std::sqrt(r), std::sqrt(g), std::sqrt(b));
 }
 
 }  // namespace
+
+bool knows_diffuse(const Inputs& inputs) {
+    return inputs.path_class == view::PathClass::Diffuse && inputs.has(Channel::HighVariance) &&
+           inputs.has(Channel::LowVariance);
+}
 
 bool demodulate(const Inputs& inputs, State& state, RunContext& context) {
     const bool divide = knows_diffuse(inputs);
@@ -48,6 +48,7 @@ bool demodulate(const Inputs& inputs, State& state, RunContext& context) {
         float* __restrict l = state.moments.row(MeanLuminance, y);
         float* __restrict v = state.moments.row(SampleVariance, y);
         float* __restrict age = state.moments.row(Age, y);
+#pragma GCC ivdep  // the state is no part of the film
         for (std::size_t x = 0; x < width; ++x) {
             const float n = counts[x];
             const float plain = luma(er[x], eg[x], eb[x]);

@@ -7,6 +7,9 @@ namespace tessera::filter::svgf {
 // The film as the signals see it. Light of the diffuse lobe has the albedo divided out; the rest is what is
 // left of the radiance.
 
+// HighVariance holds the light of the diffuse lobe, and LowVariance the rest.
+bool knows_diffuse(const Inputs& inputs);
+
 // Diffuse light through the albedo: HighVariance / Albedo, so that albedo x irradiance is the film's own
 // diffuse mean to the last bit of noise, also where a pixel shows the surface in part; the mean Irradiance
 // where there is no albedo or HighVariance holds other paths. Its variance is that of Irradiance, scaled.

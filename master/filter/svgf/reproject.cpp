@@ -95,10 +95,6 @@ bool reproject(const Guides& now, const Guides& before, const Motion& motion, co
                 if (tx < 0 || ty < 0 || tx >= width || ty >= height) return false;
                 const auto j = static_cast<std::size_t>(ty) * width + static_cast<std::size_t>(tx);
                 if (before.ids[j] != now.ids[i]) return false;
-                if (!(ages.values[static_cast<std::size_t>(ty) * ages.pitch + static_cast<std::size_t>(tx)] >
-                      0.0f)) {
-                    return false;
-                }
                 if (std::fabs(before.inverse_depth.plane(0)[j] - expected) > tolerance) return false;
                 float square = 0.0f;
                 for (std::uint32_t c = 0; c < 3; ++c) {
@@ -123,10 +119,13 @@ bool reproject(const Guides& now, const Guides& before, const Motion& motion, co
             const auto y0 = static_cast<std::int64_t>(std::floor(py));
             const float fx = px - static_cast<float>(x0), fy = py - static_cast<float>(y0);
             std::array<float, 4> weights;
-            float sum = 0.0f;
+            float same = 0.0f, sum = 0.0f;  // of the taps on this surface; of those that know something
             for (int t = 0; t < 4; ++t) {
                 const float w = (t % 2 ? fx : 1.0f - fx) * (t / 2 ? fy : 1.0f - fy);
-                weights[static_cast<std::size_t>(t)] = w > 0.0f && valid(x0 + t % 2, y0 + t / 2) ? w : 0.0f;
+                const bool passes = w > 0.0f && valid(x0 + t % 2, y0 + t / 2);
+                const bool known = passes && at(ages, x0 + t % 2, y0 + t / 2) > 0.0f;
+                weights[static_cast<std::size_t>(t)] = known ? w : 0.0f;
+                same += passes ? w : 0.0f;
                 sum += weights[static_cast<std::size_t>(t)];
             }
             if (sum >= LeastWeight) {
@@ -140,13 +139,18 @@ bool reproject(const Guides& now, const Guides& before, const Motion& motion, co
                 }
                 continue;
             }
+            // Neighbours stand in for a surface that was missed, not for one that is known to be unknown.
+            if (same >= LeastWeight || motion.identity) {
+                clear();
+                continue;
+            }
             const auto near_x = static_cast<std::int64_t>(std::lround(px));
             const auto near_y = static_cast<std::int64_t>(std::lround(py));
             clear();
             float found = 0.0f;
             for (std::int64_t ty = near_y - 1; ty <= near_y + 1; ++ty) {
                 for (std::int64_t tx = near_x - 1; tx <= near_x + 1; ++tx) {
-                    if (!valid(tx, ty)) continue;
+                    if (!valid(tx, ty) || !(at(ages, tx, ty) > 0.0f)) continue;
                     found += 1.0f;
                     for (std::uint32_t c = 0; c < components; ++c) to.plane(c)[i] += at(from[c], tx, ty);
                 }

@@ -29,8 +29,9 @@ struct HistoryView {
     std::size_t pitch;
 };
 
-// Backward reprojection: of the four bilinear taps those that pass the tests, renormalised; else the mean of
-// those of the 3x3 pixels around that do; else 0 (disoccluded, with age 0). `to` has one component per view.
+// Backward reprojection: of the four bilinear taps those that pass the tests, renormalised; if none does and
+// the camera has moved the mean of those of the 3x3 pixels around that do; else 0 (disoccluded, with age 0).
+// `to` has one component per view.
 bool reproject(const Guides& now, const Guides& before, const Motion& motion, const SurfaceTests& tests,
                std::span<const HistoryView> from, Planes& to, RunContext& context);
 

@@ -6,23 +6,46 @@ namespace tessera::filter::svgf {
 
 namespace {
 
+enum Sum : std::uint32_t { Known, Square, Weight, RowKnown, RowMean, RowSquare, SumCount };
+
 constexpr std::int64_t Radius = 3;
 // exp(-d^2 / (2 * 1.5^2))
 constexpr std::array<float, 4> Gaussian{1.0f, 0.80073740f, 0.41111229f, 0.13533528f};
 
-// The weight of one surface seen from another pixel of it, without the light.
-float surface_weight(const float* const* a, const float* const* b, std::size_t i, std::size_t j,
-                     float inverse_depth_change, const EdgeStops& stops, bool same_id) {
-    const float dot = a[0][i] * b[0][j] + a[1][i] * b[1][j] + a[2][i] * b[2][j];
-    const float depth =
-        std::fabs(a[3][i] - b[3][j]) * depth_scale(std::min(a[3][i], b[3][j]), inverse_depth_change, stops);
-    const float w = exp_negative(-(normal_distance(dot, stops.sigma_n) + depth));
-    return same_id & (dot > 0.0f) ? w : 0.0f;
+// One row of surfaces.
+struct Surfaces {
+    const float *nx, *ny, *nz, *inverse_depth;
+    const std::uint32_t* ids;
+};
+
+Surfaces surfaces_of(const Guides& guides, std::uint32_t y, std::int64_t x) {
+    return {guides.normal.row(0, y) + x, guides.normal.row(1, y) + x, guides.normal.row(2, y) + x,
+            guides.inverse_depth.row(0, y) + x,
+            guides.ids.data() + static_cast<std::int64_t>(y) * guides.inverse_depth.width() + x};
 }
 
-std::array<const float*, 4> surface_rows(const Guides& guides, std::uint32_t y) {
-    return {guides.normal.row(0, y), guides.normal.row(1, y), guides.normal.row(2, y),
-            guides.inverse_depth.row(0, y)};
+// Weights of `there` as seen from `here`, both from the pixel of `slope` on, without the light.
+void surface_weights(const Surfaces& here, const Surfaces& there, const float* slope, float distance,
+                     float kernel, const EdgeStops& stops, std::size_t count, float* __restrict weights) {
+    const EdgeStops s = stops;
+    for (std::size_t x = 0; x < count; ++x) {
+        const float dot = here.nx[x] * there.nx[x] + here.ny[x] * there.ny[x] + here.nz[x] * there.nz[x];
+        const float depth = std::fabs(here.inverse_depth[x] - there.inverse_depth[x]) *
+                            depth_scale(here.inverse_depth[x], distance * slope[x], s);
+        const float w = kernel * exp_negative(-(normal_distance(dot, s.sigma_n) + depth));
+        weights[x] = (here.ids[x] == there.ids[x]) & (dot > 0.0f) ? w : 0.0f;
+    }
+}
+
+// `to` += weights * what they weigh.
+void add_weighted(const float* weights, const float* w, const float* first, const float* second,
+                  std::size_t count, float* __restrict to_w, float* __restrict to_first,
+                  float* __restrict to_second) {
+    for (std::size_t x = 0; x < count; ++x) {
+        to_w[x] += weights[x] * w[x];
+        to_first[x] += weights[x] * first[x];
+        to_second[x] += weights[x] * second[x];
+    }
 }
 
 }  // namespace
@@ -49,9 +72,8 @@ bool SpatialVariance::run(const Guides& guides, const EdgeStops& stops, float yo
         })) {
         return false;
     }
-    const auto rows = std::count(young_rows_.begin(), young_rows_.end(), 1);
-    young_share_ = static_cast<double>(rows) / height;
-    if (rows > 0 && !estimate(guides, stops, young, state, context)) return false;
+    const bool any = std::find(young_rows_.begin(), young_rows_.end(), 1) != young_rows_.end();
+    if (any && !estimate(guides, stops, young, state, context)) return false;
     return for_rows(context, height, [&](std::uint32_t y) {
         const float* here = raw_.row(0, y);
         const float* above = raw_.row(0, y > 0 ? y - 1 : y);
@@ -72,43 +94,43 @@ bool SpatialVariance::run(const Guides& guides, const EdgeStops& stops, float yo
 bool SpatialVariance::estimate(const Guides& guides, const EdgeStops& stops, float young, const State& state,
                                RunContext& context) {
     const std::uint32_t width = state.moments.width(), height = state.moments.height();
-    if (sums_.width() != width || sums_.height() != height) sums_ = Planes(width, height, 3);
+    if (sums_.width() != width || sums_.height() != height) sums_ = Planes(width, height, SumCount);
     const auto near_young = [&](std::uint32_t y) {
         const std::uint32_t first = y > Radius ? y - Radius : 0;
         const std::uint32_t last = std::min<std::uint32_t>(height - 1, y + Radius);
-        for (std::uint32_t row = first; row <= last; ++row) {
-            if (young_rows_[row]) return true;
-        }
-        return false;
+        return std::find(young_rows_.begin() + first, young_rows_.begin() + last + 1, 1) !=
+               young_rows_.begin() + last + 1;
     };
     if (!for_rows(context, height, [&](std::uint32_t y) {
             if (!near_young(y)) return;
-            const auto rows = surface_rows(guides, y);
-            const float* slope = guides.slope.row(0, y);
-            const std::uint32_t* ids = guides.ids.data() + std::size_t{y} * width;
             const float* mean = state.moments.row(MeanLuminance, y);
             const float* variance = state.moments.row(SampleVariance, y);
             const float* age = state.moments.row(Age, y);
-            float* __restrict weights = sums_.row(0, y);
-            float* __restrict first = sums_.row(1, y);
-            float* __restrict second = sums_.row(2, y);
-            std::fill(weights, weights + width, 0.0f);
-            std::fill(first, first + width, 0.0f);
-            std::fill(second, second + width, 0.0f);
+            float* __restrict known = sums_.row(Known, y);
+            float* __restrict square = sums_.row(Square, y);
+            float* __restrict sum_known = sums_.row(RowKnown, y);
+            float* __restrict sum_mean = sums_.row(RowMean, y);
+            float* __restrict sum_square = sums_.row(RowSquare, y);
+            for (std::uint32_t x = 0; x < width; ++x) {
+                known[x] = age[x] > 0.0f ? 1.0f : 0.0f;
+                square[x] = variance[x] + mean[x] * mean[x];
+                sum_known[x] = known[x];
+                sum_mean[x] = known[x] * mean[x];
+                sum_square[x] = known[x] * square[x];
+            }
             for (std::int64_t d = -Radius; d <= Radius; ++d) {
-                const float g = Gaussian[static_cast<std::size_t>(std::abs(d))];
-                const auto distance = static_cast<float>(std::abs(d));
                 const std::int64_t begin = std::max<std::int64_t>(0, -d);
                 const std::int64_t end = std::min<std::int64_t>(width, std::int64_t{width} - d);
-                for (std::int64_t x = begin; x < end; ++x) {
-                    const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(x + d);
-                    const float same = surface_weight(rows.data(), rows.data(), i, j, distance * slope[i],
-                                                      stops, ids[i] == ids[j]);
-                    const float w = (d == 0 ? 1.0f : same) * g * (age[j] > 0.0f ? 1.0f : 0.0f);
-                    weights[i] += w;
-                    first[i] += w * mean[j];
-                    second[i] += w * (variance[j] + mean[j] * mean[j]);
-                }
+                if (d == 0 || begin >= end) continue;
+                const auto count = static_cast<std::size_t>(end - begin);
+                float* weights = sums_.row(Weight, y);
+                surface_weights(surfaces_of(guides, y, begin), surfaces_of(guides, y, begin + d),
+                                guides.slope.row(0, y) + begin, static_cast<float>(std::abs(d)),
+                                Gaussian[static_cast<std::size_t>(std::abs(d))], stops, count, weights);
+                for (std::size_t i = 0; i < count; ++i)
+                    weights[i] *= known[begin + d + static_cast<std::int64_t>(i)];
+                add_weighted(weights, known + begin + d, mean + begin + d, square + begin + d, count,
+                             sum_known + begin, sum_mean + begin, sum_square + begin);
             }
         })) {
         return false;
@@ -117,38 +139,32 @@ bool SpatialVariance::estimate(const Guides& guides, const EdgeStops& stops, flo
     return for_rows(context, height, [&](std::uint32_t y) {
         if (!young_rows_[y]) return;
         constexpr std::uint32_t Chunk = 256;
-        const auto here = surface_rows(guides, y);
-        const float* slope = guides.slope.row(1, y);
         const float* age = state.moments.row(Age, y);
         float* __restrict raw = raw_.row(0, y);
         for (std::uint32_t start = 0; start < width; start += Chunk) {
             const std::uint32_t count = std::min(Chunk, width - start);
-            std::array<float, Chunk> weights{}, first{}, second{};
+            std::array<float, Chunk> weights, known{}, mean{}, square{};
             for (std::int64_t d = -Radius; d <= Radius; ++d) {
                 const std::int64_t other = std::int64_t{y} + d;
                 if (other < 0 || other >= height) continue;
                 const auto ty = static_cast<std::uint32_t>(other);
-                const auto there = surface_rows(guides, ty);
-                const std::uint32_t* ids = guides.ids.data() + std::size_t{y} * width;
-                const std::uint32_t* other_ids = guides.ids.data() + std::size_t{ty} * width;
-                const float g = Gaussian[static_cast<std::size_t>(std::abs(d))];
-                const auto distance = static_cast<float>(std::abs(d));
-                const float *w0 = sums_.row(0, ty), *s1 = sums_.row(1, ty), *s2 = sums_.row(2, ty);
-                for (std::uint32_t k = 0; k < count; ++k) {
-                    const std::size_t x = start + k;
-                    const float same = surface_weight(here.data(), there.data(), x, x, distance * slope[x],
-                                                      stops, ids[x] == other_ids[x]);
-                    const float w = (d == 0 ? 1.0f : same) * g;
-                    weights[k] += w * w0[x];
-                    first[k] += w * s1[x];
-                    second[k] += w * s2[x];
+                if (d == 0) {
+                    weights.fill(1.0f);
+                } else {
+                    surface_weights(surfaces_of(guides, y, start), surfaces_of(guides, ty, start),
+                                    guides.slope.row(1, y) + start, static_cast<float>(std::abs(d)),
+                                    Gaussian[static_cast<std::size_t>(std::abs(d))], stops, count,
+                                    weights.data());
                 }
+                add_weighted(weights.data(), sums_.row(RowKnown, ty) + start, sums_.row(RowMean, ty) + start,
+                             sums_.row(RowSquare, ty) + start, count, known.data(), mean.data(),
+                             square.data());
             }
             for (std::uint32_t k = 0; k < count; ++k) {
                 const std::size_t x = start + k;
-                const float scale = 1.0f / std::max(weights[k], Tiny);
-                const float m1 = first[k] * scale;
-                const float variance = std::max(0.0f, second[k] * scale - m1 * m1);
+                const float scale = 1.0f / std::max(known[k], Tiny);
+                const float m1 = mean[k] * scale;
+                const float variance = std::max(0.0f, square[k] * scale - m1 * m1);
                 const float wide = of_mean ? variance / std::max(age[x], 1.0f) : variance;
                 raw[x] = age[x] < young ? wide : raw[x];
             }

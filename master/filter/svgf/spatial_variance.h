@@ -14,17 +14,13 @@ class SpatialVariance {
     // False: stopped.
     bool run(const Guides& guides, const EdgeStops& stops, float young, State& state, RunContext& context);
 
-    // Rows of the last run that had a young pixel, of all: the share that the wide estimate cost.
-    double young_share() const { return young_share_; }
-
   private:
     bool estimate(const Guides& guides, const EdgeStops& stops, float young, const State& state,
                   RunContext& context);
 
     Planes raw_;   // 1: before the blur
-    Planes sums_;  // 3: weight, weighted luminance and its square, along the row
+    Planes sums_;  // what the wide estimate needs of each pixel, and its sums along the row
     std::vector<std::uint8_t> young_rows_;
-    double young_share_ = 0.0;
 };
 
 }  // namespace tessera::filter::svgf

@@ -1,0 +1,105 @@
+#include "master/filter/svgf/fade_light.h"
+
+#include <array>
+#include <numeric>
+
+#include "master/filter/svgf/edge_stops.h"
+
+namespace tessera::filter::svgf {
+
+namespace {
+
+enum Term : std::uint32_t { Light, Gain, Distance, TermCount };
+constexpr std::int64_t Radius =
+    5;  // measured there: small squares follow edges of bias, large ones know w better
+
+constexpr float Most = 1e30f;  // of a term, so that sums stay finite
+
+void add(const float* from, std::size_t count, float* __restrict to) {
+    for (std::size_t x = 0; x < count; ++x) to[x] += from[x];
+}
+
+// Eight sums side by side, in a fixed order.
+double absolute_sum(const float* values, std::size_t count) {
+    std::array<float, 8> sums{};
+    std::size_t x = 0;
+    for (; x + 8 <= count; x += 8) {
+        for (std::size_t k = 0; k < 8; ++k) sums[k] += std::fabs(values[x + k]);
+    }
+    for (; x < count; ++x) sums[0] += std::fabs(values[x]);
+    return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+void fill_terms(const float* light, const float* u, const float* v, const float* n, float floor,
+                std::size_t count, float* __restrict gain, float* __restrict distance) {
+    for (std::size_t x = 0; x < count; ++x) {
+        const float scale = (n[x] >= 2.0f ? 1.0f : 0.0f) / (std::fabs(light[x]) + floor);
+        const float d = (light[x] - u[x]) * scale;
+        const float deviation = std::sqrt(v[x] / std::max(n[x] - 1.0f, 1.0f)) * scale;
+        gain[x] = std::min(deviation * deviation, Most);
+        distance[x] = std::min(d * d, Most);
+    }
+}
+
+void divide(const float* gain, const float* distance, const float* n, std::size_t count,
+            float* __restrict weight) {
+    for (std::size_t x = 0; x < count; ++x) {
+        const float part = gain[x] / std::max(distance[x], Tiny);
+        weight[x] = (n[x] < 2.0f) | (gain[x] >= distance[x]) ? 1.0f : part;
+    }
+}
+
+}  // namespace
+
+bool FadeLight::run(const Planes& film, const PaddedPlanes& filtered, RunContext& context) {
+    const std::uint32_t width = film.width(), height = film.height();
+    if (terms_.width() != width || terms_.height() != height) {
+        terms_ = Planes(width, height, TermCount);
+        weights_ = Planes(width, height, 1);
+        row_sums_.assign(height, 0.0);
+    }
+    if (!for_rows(context, height, [&](std::uint32_t y) {
+            const float *r = filtered.row(0, y), *g = filtered.row(1, y), *b = filtered.row(2, y);
+            float* __restrict light = terms_.row(Light, y);
+            for (std::uint32_t x = 0; x < width; ++x) light[x] = luma(r[x], g[x], b[x]);
+            row_sums_[y] = absolute_sum(light, width);
+        })) {
+        return false;
+    }
+    const double mean = std::accumulate(row_sums_.begin(), row_sums_.end(), 0.0) / double(film.pixel_count());
+    const float floor = std::max(0.1f * static_cast<float>(mean), Tiny);
+    if (!for_rows(context, height, [&](std::uint32_t y) {
+            fill_terms(terms_.row(Light, y), film.row(MeanLuminance, y), film.row(SampleVariance, y),
+                       film.row(Age, y), floor, width, terms_.row(Gain, y), terms_.row(Distance, y));
+        })) {
+        return false;
+    }
+    return for_rows(context, height, [&](std::uint32_t y) {
+        constexpr std::size_t Chunk = 256;
+        std::array<float, Chunk + 2 * Radius> columns_gain, columns_distance;
+        std::array<float, Chunk> gain, distance;
+        const std::uint32_t top = y > Radius ? y - Radius : 0;
+        const std::uint32_t bottom = std::min<std::uint32_t>(height - 1, y + Radius);
+        for (std::uint32_t start = 0; start < width; start += Chunk) {
+            const std::size_t count = std::min<std::size_t>(Chunk, width - start);
+            const std::size_t left = std::min<std::size_t>(Radius, start);
+            const std::size_t right = std::min<std::size_t>(Radius, width - start - count);
+            columns_gain.fill(0.0f);
+            columns_distance.fill(0.0f);
+            for (std::uint32_t row = top; row <= bottom; ++row) {
+                add(terms_.row(Gain, row) + start - left, count + left + right, &columns_gain[Radius - left]);
+                add(terms_.row(Distance, row) + start - left, count + left + right,
+                    &columns_distance[Radius - left]);
+            }
+            gain.fill(0.0f);
+            distance.fill(0.0f);
+            for (std::size_t d = 0; d <= 2 * Radius; ++d) {
+                add(&columns_gain[d], count, gain.data());
+                add(&columns_distance[d], count, distance.data());
+            }
+            divide(gain.data(), distance.data(), film.row(Age, y) + start, count, weights_.row(0, y) + start);
+        }
+    });
+}
+
+}  // namespace tessera::filter::svgf

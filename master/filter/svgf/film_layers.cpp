@@ -1,0 +1,132 @@
+#include "master/filter/svgf/film_layers.h"
+
+#include "master/filter/svgf/demodulate.h"
+
+namespace tessera::filter::svgf {
+
+namespace {
+
+using frame::Channel;
+
+void copy(const Planes*& layer, Planes& own, const Inputs& inputs) {
+    if (layer == &own) return;
+    shape(own, inputs, layer->components());
+    std::ranges::copy(layer->values(), own.values().begin());
+    layer = &own;
+}
+
+// to (+)= w f + (1 - w) u, or f without weights.
+void add_faded(const float* f, const float* u, const float* w, std::size_t count, float* __restrict to) {
+    if (w == nullptr) {
+        for (std::size_t x = 0; x < count; ++x) to[x] += f[x];
+    } else {
+        for (std::size_t x = 0; x < count; ++x) to[x] += w[x] * f[x] + (1.0f - w[x]) * u[x];
+    }
+}
+
+}  // namespace
+
+Coverage coverage_of(const Inputs& inputs) {
+    const auto counts = inputs.counts.plane(0);
+    std::array<float, 8> least;
+    least.fill(counts.empty() ? 0.0f : counts[0]);
+    Coverage coverage;
+    for (std::uint32_t y = 0; y < inputs.height; ++y) {
+        const float* row = inputs.counts.row(0, y);
+        std::array<float, 8> sums{};
+        for (std::uint32_t x = 0; x + 8 <= inputs.width; x += 8) {
+            for (std::uint32_t k = 0; k < 8; ++k) {
+                sums[k] += row[x + k];
+                least[k] = std::min(least[k], row[x + k]);
+            }
+        }
+        for (std::uint32_t x = inputs.width / 8 * 8; x < inputs.width; ++x) {
+            sums[0] += row[x];
+            least[0] = std::min(least[0], row[x]);
+        }
+        for (const float sum : sums) coverage.samples += sum;
+    }
+    coverage.least = *std::ranges::min_element(least);
+    return coverage;
+}
+
+bool FilmLayers::read(const Inputs& inputs, bool holes, std::span<Signal> signals, Guides& guides,
+                      Report& report, RunContext& context) {
+    albedo_ = &inputs.mean(Channel::Albedo);
+    alpha_ = inputs.has(Channel::Alpha) ? &inputs.mean(Channel::Alpha) : nullptr;
+    {
+        Stage stage(report, "demodulate", 4.0 * (3 + 3 + 3 + 3 + 1 + 6));
+        if (!demodulate(inputs, signals[0].now(), context)) return false;
+        if (!find_rest(inputs, own_rest_, rest_, context)) return false;
+        if (signals.size() > 1 && !take_rest(inputs, *rest_, signals[1].now(), context)) return false;
+    }
+    {
+        Stage stage(report, "guides", 4.0 * (5 + 5));
+        if (!prepare_guides(inputs, guides, context)) return false;
+    }
+    if (holes) {
+        Stage stage(report, "holes", 4.0 * 2 * 20);
+        if (!fill_holes(inputs, signals, guides, context)) return false;
+    }
+    Stage stage(report, "slopes", 4.0 * 3);
+    return prepare_slopes(guides, context);
+}
+
+bool FilmLayers::fill_holes(const Inputs& inputs, std::span<Signal> signals, Guides& guides,
+                            RunContext& context) {
+    copy(albedo_, own_albedo_, inputs);
+    copy(rest_, own_rest_, inputs);
+    filled_.clear();
+    const auto add = [&](Planes& from, std::uint32_t count) {
+        for (std::uint32_t c = 0; c < count; ++c) filled_.push_back({from.row(c, 0), from.width()});
+    };
+    add(guides.normal, 3);
+    add(guides.inverse_depth, 1);
+    add(own_albedo_, 3);
+    add(own_rest_, 3);
+    if (alpha_ != nullptr) {
+        copy(alpha_, own_alpha_, inputs);
+        add(own_alpha_, 1);
+    }
+    for (Signal& signal : signals) {
+        State& state = signal.now();
+        for (std::uint32_t c = 0; c < 3; ++c) filled_.push_back({state.color.row(c, 0), state.color.pitch()});
+        add(state.moments, Age);  // but not the age: nothing has been seen there
+    }
+    return hole_fill_.run(inputs.counts, guides.ids, filled_, context);
+}
+
+bool FilmLayers::compose(const Inputs& inputs, std::span<const Signal> signals, bool faded, Planes& picture,
+                         Report& report, RunContext& context) const {
+    Stage stage(report, "compose", 4.0 * (faded ? 16 : 12));
+    const PaddedPlanes& light = signals[0].filtered();
+    const bool divided = knows_diffuse(inputs);
+    const Planes& film = inputs.mean(divided ? Channel::HighVariance : Channel::Irradiance);
+    const auto weights = [&](std::size_t signal, std::uint32_t y) {
+        return faded ? signals[signal].fade_weights().row(0, y) : nullptr;
+    };
+    return for_rows(context, inputs.height, [&](std::uint32_t y) {
+        const std::size_t width = inputs.width;
+        for (std::uint32_t c = 0; c < 3; ++c) {
+            const float *a = albedo_->row(c, y), *e = light.row(c, y), *u = film.row(c, y),
+                        *w = weights(0, y);
+            float* __restrict to = picture.row(c, y);
+            if (w == nullptr) {
+                for (std::size_t x = 0; x < width; ++x) to[x] = a[x] * e[x];
+            } else if (divided) {
+                for (std::size_t x = 0; x < width; ++x) to[x] = w[x] * a[x] * e[x] + (1.0f - w[x]) * u[x];
+            } else {
+                for (std::size_t x = 0; x < width; ++x) to[x] = a[x] * (w[x] * e[x] + (1.0f - w[x]) * u[x]);
+            }
+            const float* rest = rest_->row(c, y);
+            if (signals.size() > 1) {
+                add_faded(signals[1].filtered().row(c, y), rest, weights(1, y), width, to);
+            } else {
+                add_faded(rest, nullptr, nullptr, width, to);
+            }
+        }
+        if (picture.components() == 4) std::copy_n(alpha_->row(0, y), width, picture.row(3, y));
+    });
+}
+
+}  // namespace tessera::filter::svgf

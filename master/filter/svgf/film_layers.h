@@ -1,0 +1,37 @@
+#pragma once
+
+#include <span>
+
+#include "master/filter/svgf/hole_fill.h"
+#include "master/filter/svgf/signal.h"
+
+namespace tessera::filter::svgf {
+
+struct Coverage {
+    double samples = 0.0;  // in the whole film
+    float least = 0.0f;    // in a pixel
+};
+Coverage coverage_of(const Inputs& inputs);
+
+// The film taken apart into signals and what is multiplied or added to them, and put together again. The
+// first signal is the irradiance, the second one, if there is one, the rest.
+class FilmLayers {
+  public:
+    // Fills the signals and the guides of the film, holes included. False: stopped, as below.
+    bool read(const Inputs& inputs, bool holes, std::span<Signal> signals, Guides& guides, Report& report,
+              RunContext& context);
+
+    // picture = rest + albedo x irradiance. With fades each part goes back to the film by its own weights.
+    bool compose(const Inputs& inputs, std::span<const Signal> signals, bool faded, Planes& picture,
+                 Report& report, RunContext& context) const;
+
+  private:
+    bool fill_holes(const Inputs& inputs, std::span<Signal> signals, Guides& guides, RunContext& context);
+
+    HoleFill hole_fill_;
+    std::vector<PlaneView> filled_;
+    Planes own_albedo_, own_rest_, own_alpha_;  // copies whose holes are filled
+    const Planes *albedo_ = nullptr, *rest_ = nullptr, *alpha_ = nullptr;
+};
+
+}  // namespace tessera::filter::svgf

@@ -1,0 +1,459 @@
+// Progressive SVGF after films that began anew: what is kept, where it goes, when it is dropped.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "master/filter/catalog.h"
+#include "mediator/base/random.h"
+#include "mediator/filter/choice.h"
+#include "tests/filter/planes_scene.h"
+
+namespace tessera::filter {
+namespace {
+
+const FilterEntry& psvgf() {
+    return *parse_choice("psvgf", catalog()).value().entry;
+}
+
+// A filter that lives on, as for a view.
+class Session {
+  public:
+    explicit Session(const std::string& choice)
+        : choice_(parse_choice("psvgf:" + choice, catalog()).value()), filter_(choice_.entry->make(0, 0)) {
+        out_.wants_maps = true;
+    }
+    const Output& run(const Inputs& inputs) {
+        report_ = filter_->run(inputs, choice_.values, out_, {arena_, {}});
+        return out_;
+    }
+    const Output& restart(Inputs inputs, Changes changes = {}) {
+        inputs.changes = changes;
+        inputs.changes.film_restarted = true;
+        return run(inputs);
+    }
+    const Planes& map(std::string_view name) const {
+        for (const DebugMap& map : out_.maps) {
+            if (map.name == name) return map.planes;
+        }
+        throw std::out_of_range("no map " + std::string(name));
+    }
+    float age(std::uint32_t x, std::uint32_t y) const { return map("age").row(0, y)[x]; }
+    const Report& report() const { return report_; }
+
+  private:
+    Choice choice_;
+    std::unique_ptr<Filter> filter_;
+    tbb::task_arena arena_{2};
+    Output out_;
+    Report report_;
+};
+
+// Nothing but the accumulation: no wavelet, no fade, no antialiasing.
+const std::string Raw = "levels=0,fade=off,taa=off,feedback=0,";
+
+constexpr std::uint32_t Width = 96, Height = 64;
+
+PlanesScene wall_alone() {
+    PlanesScene scene;
+    scene.board_half = 0.0;
+    return scene;
+}
+
+double mean_of(const Planes& planes) {
+    double sum = 0.0;
+    for (const float v : planes.values()) sum += v;
+    return sum / static_cast<double>(planes.values().size());
+}
+
+double variance_of(const Planes& planes) {
+    const double mean = mean_of(planes);
+    double sum = 0.0;
+    for (const float v : planes.values()) sum += (v - mean) * (v - mean);
+    return sum / static_cast<double>(planes.values().size());
+}
+
+double largest_difference(const Planes& a, const Planes& b) {
+    double most = 0.0;
+    for (std::size_t i = 0; i < a.values().size(); ++i) {
+        most = std::max(most, std::abs(double(a.values()[i]) - b.values()[i]));
+    }
+    return most;
+}
+
+TEST(PsvgfHistory, IsTheMeanOfAllFramesWithoutALeastShare) {  // DT2
+    const PlanesScene scene = wall_alone();
+    const auto camera = looking_at(scene, {}, Width, Height);
+    Session session(Raw + "r0=0");
+    std::vector<double> sums(Width * Height);
+    constexpr int Frames = 20;
+    for (int k = 0; k < Frames; ++k) {
+        const Inputs frame = photograph(scene, camera, {.seed = std::uint64_t(k)});
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+            sums[i] += frame.mean(frame::Channel::Irradiance).plane(0)[i];
+        }
+        session.restart(frame);
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        EXPECT_NEAR(session.map("irradiance").plane(0)[i], sums[i] / Frames, 1e-5 * sums[i] + 1e-6);
+        EXPECT_NEAR(session.map("age").plane(0)[i], Frames, 1e-4);
+    }
+}
+
+TEST(PsvgfHistory, ManySamplesInOneFrameAreManyFrames) {  // DT25
+    const PlanesScene scene = wall_alone();
+    const auto camera = looking_at(scene, {}, Width, Height);
+    // The same eight samples in both.
+    const Inputs whole = photograph(scene, camera, {.n = 8, .seed = 3});
+    Session at_once(Raw + "r0=0"), one_by_one(Raw + "r0=0");
+    at_once.restart(whole);
+    std::vector<Inputs> frames;
+    for (std::uint64_t i = 0; i < 8; ++i) {
+        frames.push_back(synthetic_inputs(Width, Height, 1, [&](auto x, auto y, auto) {
+            CounterRandom random(mix(3), mix((std::uint64_t{y} << 32 | x) ^ mix(i)));
+            const auto hit = scene.trace(camera, Width, Height, x + 0.5, y + 0.5);
+            SyntheticSample s;
+            const float light = random.uniform() < hit->chance ? 1.0f : 0.0f;
+            s.albedo.fill(hit->albedo);
+            s.irradiance.fill(light);
+            s.high.fill(light * hit->albedo);
+            s.depth = static_cast<float>(hit->depth);
+            return s;
+        }));
+        frames.back().camera = camera;
+        frames.back().path_class = view::PathClass::Diffuse;
+        one_by_one.restart(frames.back());
+    }
+    for (const char* map : {"irradiance", "deviation", "age"}) {
+        EXPECT_LT(largest_difference(at_once.map(map), one_by_one.map(map)), 2e-5) << map;
+    }
+}
+
+TEST(PsvgfHistory, LeastShareIsAnExponentialMean) {  // DT3, DT4
+    const PlanesScene scene = wall_alone();
+    const auto camera = looking_at(scene, {}, Width, Height);
+    Session session(Raw + "r0=0.2");
+    const std::array<float, 6> ages{1, 2, 3, 4, 5, 5};  // n / r with r = 1, 1/2, 1/3, 1/4, 0.2, 0.2
+    double sum = 0.0;
+    int measured = 0;
+    for (int k = 0; k < 48; ++k) {
+        session.restart(photograph(scene, camera, {.seed = std::uint64_t(k)}));
+        if (k < 6) {
+            EXPECT_NEAR(session.age(40, 30), ages[std::size_t(k)], 1e-4) << k;
+        }
+        if (k >= 24 && k % 8 == 0) {
+            sum += variance_of(session.map("irradiance"));
+            ++measured;
+        }
+    }
+    EXPECT_NEAR(sum / measured / 0.25, 0.2 / 1.8, 0.05 * 0.2 / 1.8);  // r / (2 - r) of p (1 - p)
+}
+
+TEST(PsvgfHistory, MomentsAreThoseOfTheSamples) {  // DT5
+    const PlanesScene scene = wall_alone();
+    const auto camera = looking_at(scene, {}, Width, Height);
+    Session plain(Raw + "r0=0,mode=svgf"), fed("fade=off,taa=off,feedback=1000,r0=0,mode=svgf");
+    for (int k = 0; k < 32; ++k) {
+        const Inputs frame = photograph(scene, camera, {.seed = std::uint64_t(k)});
+        plain.restart(frame);
+        fed.restart(frame);
+    }
+    double sum = 0.0;
+    for (const float deviation : plain.map("deviation").values()) sum += double(deviation) * deviation;
+    EXPECT_NEAR(sum / (Width * Height), 0.25, 0.25 * 0.01);
+    EXPECT_EQ(largest_difference(plain.map("deviation"), fed.map("deviation")), 0.0);
+    EXPECT_GT(largest_difference(plain.map("irradiance"), fed.map("irradiance")), 0.0);
+}
+
+TEST(PsvgfHistory, NeverCountsASampleTwice) {
+    const PlanesScene scene = wall_alone();
+    const auto camera = looking_at(scene, {}, Width, Height);
+    Session direct(Raw + "r0=0"), step_by_step(Raw + "r0=0");
+    for (Session* session : {&direct, &step_by_step}) {
+        session->restart(photograph(scene, camera, {.n = 4, .seed = 1}));
+    }
+    direct.restart(photograph(scene, camera, {.n = 6, .seed = 2}));
+    step_by_step.restart(photograph(scene, camera, {.n = 1, .seed = 2}));
+    step_by_step.run(photograph(scene, camera, {.n = 3, .seed = 2}));
+    step_by_step.run(photograph(scene, camera, {.n = 6, .seed = 2}));
+    EXPECT_NEAR(step_by_step.age(10, 10), 10.0f, 1e-4);
+    EXPECT_EQ(largest_difference(direct.map("irradiance"), step_by_step.map("irradiance")), 0.0);
+}
+
+TEST(PsvgfHistory, AFilmThatGoesOnForgetsWhatWasBefore) {
+    PlanesScene scene = wall_alone();
+    const auto camera = looking_at(scene, {}, Width, Height);
+    const Inputs last = photograph(scene, camera, {.n = 256, .seed = 2});
+    Session session("");
+    scene.strength = 4.0f;  // history that is plainly wrong, and nobody says so
+    session.restart(photograph(scene, camera, {.n = 64, .seed = 1}));
+    session.restart(last);
+    Session fresh("");
+    EXPECT_LT(largest_difference(session.run(last).picture, fresh.run(last).picture), 1e-6);
+}
+
+// Intersection over union of two masks, where the first one is the same for two pixels around: in between
+// a bilinear tap may see both sides.
+double overlap(const std::vector<bool>& truth, const std::vector<bool>& found, std::uint32_t width) {
+    const auto height = static_cast<std::int64_t>(truth.size() / width);
+    double both = 0.0, any = 0.0;
+    for (std::int64_t y = 2; y + 2 < height; ++y) {
+        for (std::int64_t x = 2; x + 2 < width; ++x) {
+            const auto i = static_cast<std::size_t>(y * width + x);
+            bool uniform = true;
+            for (std::int64_t dy = -2; dy <= 2; ++dy) {
+                for (std::int64_t dx = -2; dx <= 2; ++dx) {
+                    uniform &= truth[i] == truth[static_cast<std::size_t>((y + dy) * width + x + dx)];
+                }
+            }
+            if (!uniform) continue;
+            both += truth[i] && found[i] ? 1.0 : 0.0;
+            any += truth[i] || found[i] ? 1.0 : 0.0;
+        }
+    }
+    return any > 0.0 ? both / any : 1.0;
+}
+
+struct Move {
+    glm::dvec3 shift;
+    double yaw;
+};
+
+class PsvgfMove : public testing::TestWithParam<Move> {};
+
+TEST_P(PsvgfMove, HistoryFollowsTheSurfaces) {  // DT6
+    const std::uint32_t width = 192, height = 128;
+    PlanesScene scene;
+    scene.tilt = 0.2;
+    const auto from = looking_at(scene, {}, width, height);
+    const auto to = looking_at(scene, GetParam().shift, width, height, GetParam().yaw);
+    Session session(Raw + "r0=0");
+    // Irradiance that is a texture of the wall, known exactly.
+    const auto picture_of = [&](const view::CameraPose& camera, std::uint64_t n) {
+        Inputs inputs = photograph(scene, camera, {.width = width, .height = height, .noise = false});
+        std::ranges::fill(inputs.counts.values(), float(n));
+        for (std::uint32_t y = 0; y < height; ++y) {
+            for (std::uint32_t x = 0; x < width; ++x) {
+                const auto hit = scene.trace(camera, width, height, x + 0.5, y + 0.5);
+                const auto value =
+                    static_cast<float>(1.0 + 0.5 * std::sin(2.0 * hit->point.x + hit->point.y));
+                for (std::uint32_t c = 0; c < 3; ++c) {
+                    inputs.means[std::size_t(frame::Channel::Irradiance)].row(c, y)[x] = value;
+                    inputs.means[std::size_t(frame::Channel::HighVariance)].row(c, y)[x] =
+                        value * hit->albedo;
+                }
+            }
+        }
+        return inputs;
+    };
+    session.restart(picture_of(from, 1000));
+    session.restart(picture_of(to, 1));
+    // Where a point was not to be seen before, by geometry.
+    std::vector<bool> hidden, dropped;
+    double error = 0.0, kept = 0.0;
+    const auto sharp = picture_of(to, 1);
+    for (std::uint32_t y = 0; y < height; ++y) {
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const auto hit = scene.trace(to, width, height, x + 0.5, y + 0.5);
+            const glm::dvec4 before =
+                glm::inverse(from.world_from_camera) * glm::dvec4(hit->point + scene.origin, 1.0);
+            const double px = (before.x / -before.z - from.left) / (from.right - from.left) * width;
+            const double py = (before.y / -before.z - from.top) / (from.bottom - from.top) * height;
+            const bool outside = px < 0.0 || py < 0.0 || px > width || py > height;
+            const auto seen = outside ? std::nullopt : scene.trace(from, width, height, px, py);
+            hidden.push_back(!seen || glm::distance(seen->point, hit->point) > 1e-6);
+            dropped.push_back(session.age(x, y) < 1.5f);
+            if (dropped.back() || hidden.back()) continue;
+            const double d =
+                session.map("irradiance").row(0, y)[x] - sharp.mean(frame::Channel::Irradiance).row(0, y)[x];
+            error += d * d;
+            kept += 1.0;
+        }
+    }
+    const bool whole = std::ranges::count(hidden, true) == 0;
+    if (whole) {
+        EXPECT_EQ(std::ranges::count(dropped, true), 0);
+    } else {
+        EXPECT_GT(overlap(hidden, dropped, width), 0.95);
+    }
+    // Bilinear interpolation of a sine of this frequency: a pixel of the wall is 0.06 wide.
+    EXPECT_LT(std::sqrt(error / kept), 0.5 * 0.5 * std::pow(0.07 * 2.3, 2) / 2.0);
+    EXPECT_NEAR(session.age(width / 2, height / 2), 1001.0f, 1.0f);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cameras, PsvgfMove,
+                         testing::Values(Move{{0.3, 0.0, 0.0}, 0.0}, Move{{0.02, -0.015, 0.0}, 0.0},
+                                         Move{{0.0, 0.0, -0.8}, 0.0}, Move{{0.1, 0.05, 0.3}, 0.05},
+                                         Move{{0.0, 0.0, 0.0}, -0.1}));
+
+// A frame in which `only` has a sample.
+Inputs single_sample(const PlanesScene& scene, const view::CameraPose& camera, std::size_t only) {
+    const Inputs full = photograph(scene, camera, {.seed = 2});
+    Inputs frame = photograph(scene, camera, {.seed = 2, .coverage = 0.0});
+    frame.counts.plane(0)[only] = 1.0f;
+    frame.object_ids[only] = full.object_ids[only];
+    for (std::size_t channel = 0; channel < frame::ChannelCount; ++channel) {
+        for (std::uint32_t c = 0; c < frame.means[channel].components(); ++c) {
+            frame.means[channel].plane(c)[only] = full.means[channel].plane(c)[only];
+        }
+    }
+    return frame;
+}
+
+TEST(PsvgfHistory, StandsStillExactlyWhenTheCameraDoes) {  // DT22: no drift over 100 frames
+    PlanesScene scene;
+    scene.tilt = 0.3;
+    const auto camera = looking_at(scene, {0.37, 0.11, 0.0}, Width, Height, 0.1);
+    Session session(Raw + "r0=0");
+    const Inputs first = photograph(scene, camera, {.n = 16, .seed = 1});
+    session.restart(first);
+    const Planes kept = session.map("irradiance");
+    const Inputs still = [&] {
+        Inputs inputs = first;
+        std::ranges::fill(inputs.counts.values(), 1e-20f);  // surfaces, but nothing to add
+        return inputs;
+    }();
+    for (int k = 0; k < 100; ++k) session.restart(still);
+    EXPECT_LT(largest_difference(session.map("irradiance"), kept), 1e-6);
+}
+
+TEST(PsvgfHistory, HolesKeepIt) {
+    const PlanesScene scene = wall_alone();
+    const auto camera = looking_at(scene, {}, Width, Height);
+    Session session(Raw + "r0=0");
+    session.restart(photograph(scene, camera, {.n = 16, .seed = 1}));
+    const Planes kept = session.map("irradiance");
+    session.restart(single_sample(scene, camera, 5));
+    EXPECT_NEAR(session.map("age").plane(0)[5], 17.0f, 1e-4);
+    EXPECT_EQ(session.map("age").plane(0)[6], 16.0f);
+    EXPECT_EQ(session.map("irradiance").plane(0)[6], kept.plane(0)[6]);
+    EXPECT_EQ(session.map("irradiance").plane(0)[Width * Height - 1], kept.plane(0)[Width * Height - 1]);
+}
+
+TEST(PsvgfHistory, AFilmWithoutSamplesChangesNothing) {
+    const PlanesScene scene = wall_alone();
+    const auto camera = looking_at(scene, {}, Width, Height);
+    Session session(Raw + "r0=0"), other(Raw + "r0=0");
+    for (Session* s : {&session, &other}) s->restart(photograph(scene, camera, {.n = 4, .seed = 1}));
+    const Planes before = other.run(photograph(scene, camera, {.n = 4, .seed = 1})).picture;
+    const Output& nothing = session.restart(photograph(scene, camera, {.n = 4, .coverage = 0.0}));
+    EXPECT_EQ(largest_difference(nothing.picture, before), 0.0);
+    ASSERT_FALSE(session.report().notes.empty());
+    session.run(photograph(scene, camera, {.n = 4, .seed = 2}));
+    other.restart(photograph(scene, camera, {.n = 4, .seed = 2}));
+    EXPECT_EQ(largest_difference(session.map("irradiance"), other.map("irradiance")), 0.0);
+    EXPECT_NEAR(session.age(3, 3), 8.0f, 1e-4);
+}
+
+TEST(PsvgfHistory, AStoppedRunLeavesTheOneBefore) {
+    const PlanesScene scene = wall_alone();
+    const auto camera = looking_at(scene, {}, Width, Height);
+    const auto filter = psvgf().make(Width, Height);
+    const Choice choice = parse_choice("psvgf:" + Raw + "r0=0", catalog()).value();
+    tbb::task_arena arena(2);
+    Output out;
+    out.wants_maps = true;
+    const auto run = [&](std::uint64_t seed, std::stop_token stop) {
+        Inputs inputs = photograph(scene, camera, {.n = 4, .seed = seed});
+        inputs.changes.film_restarted = true;
+        return filter->run(inputs, choice.values, out, {arena, stop});
+    };
+    std::stop_source stopped;
+    stopped.request_stop();
+    EXPECT_FALSE(run(1, {}).stopped);
+    EXPECT_TRUE(run(2, stopped.get_token()).stopped);
+    EXPECT_FALSE(run(3, {}).stopped);
+    EXPECT_NEAR(out.maps.back().planes.plane(0)[0], 8.0f, 1e-4);
+}
+
+TEST(PsvgfHistory, FeedbackWaitsForOneWholeSample) {  // DT24
+    const PlanesScene scene = wall_alone();
+    const auto camera = looking_at(scene, {}, Width, Height);
+    const std::string how = "fade=off,taa=off,r0=0,";
+    Session fed(how + "feedback=100"), raw(how + "feedback=0");
+    int first_difference = 0;
+    for (int k = 1; k <= 8; ++k) {
+        const Inputs frame = photograph(scene, camera, {.seed = std::uint64_t(k), .coverage = 0.3});
+        fed.restart(frame);
+        raw.restart(frame);
+        if (first_difference == 0 && largest_difference(fed.map("irradiance"), raw.map("irradiance")) > 0.0) {
+            first_difference = k;
+        }
+    }
+    EXPECT_EQ(first_difference, 5);  // 0.3 k >= 1 at k = 4: what goes back then is seen in the next frame
+}
+
+// A step of light at x = 0 of the wall, before and after its edge moved.
+double shadow_error(Session& session, const PlanesScene& scene, const view::CameraPose& camera) {
+    const Planes truth = truth_of(scene, camera, Width, Height);
+    double error = 0.0, power = 0.0;
+    for (std::uint32_t y = 0; y < Height; ++y) {
+        for (std::uint32_t x = 0; x < Width; ++x) {
+            const auto hit = scene.trace(camera, Width, Height, x + 0.5, y + 0.5);
+            const double e = session.map("irradiance").row(0, y)[x], t = hit->chance * scene.strength;
+            error += std::abs(e - t);
+            power += t;
+        }
+    }
+    return error / power;
+}
+
+TEST(PsvgfHistory, ChangedLightIsDoubted) {  // DT31
+    PlanesScene scene = wall_alone();
+    const auto camera = looking_at(scene, {}, Width, Height);
+    scene.shadow_x = -1.5;
+    PlanesScene moved = scene;
+    moved.shadow_x = 1.5;
+    const Changes light{.lights_or_materials = true};
+    Session tested("taa=off"), blind("taa=off,light_test=0,light_fade=1");
+    for (Session* session : {&tested, &blind}) {
+        session->restart(photograph(scene, camera, {.n = 64, .seed = 1}));
+        for (std::uint64_t k = 0; k < 3; ++k) {
+            session->restart(photograph(moved, camera, {.n = 4, .seed = 10 + k}), k == 0 ? light : Changes{});
+        }
+    }
+    const double error = shadow_error(tested, moved, camera);
+    EXPECT_LT(error, 0.1);
+    EXPECT_LT(error, 0.5 * shadow_error(blind, moved, camera));
+    // Without a change nothing is doubted.
+    Session still("taa=off");
+    still.restart(photograph(scene, camera, {.n = 64, .seed = 1}));
+    still.restart(photograph(scene, camera, {.n = 4, .seed = 20}), light);
+    double age = mean_of(still.map("age"));
+    EXPECT_GT(age, 0.7 * (0.25 * 64 + 4));
+}
+
+TEST(PsvgfHistory, ChangedGeometryIsDroppedWhereItChanged) {
+    PlanesScene scene;
+    const auto camera = looking_at(scene, {}, Width, Height);
+    PlanesScene moved = scene;
+    moved.board_x = 1.2;
+    Session session(Raw + "r0=0,light_test=0");
+    session.restart(photograph(scene, camera, {.n = 16, .seed = 1}));
+    session.restart(photograph(moved, camera, {.n = 1, .seed = 2}), {.geometry = true});
+    for (std::uint32_t y = 0; y < Height; ++y) {
+        for (std::uint32_t x = 0; x < Width; ++x) {
+            const auto was = scene.trace(camera, Width, Height, x + 0.5, y + 0.5);
+            const auto is = moved.trace(camera, Width, Height, x + 0.5, y + 0.5);
+            EXPECT_NEAR(session.age(x, y), was->object == is->object ? 17.0f : 1.0f, 1e-3) << x << " " << y;
+        }
+    }
+}
+
+TEST(PsvgfHistory, ResetForgets) {
+    const PlanesScene scene = wall_alone();
+    const auto camera = looking_at(scene, {}, Width, Height);
+    const auto filter = psvgf().make(Width, Height);
+    tbb::task_arena arena(2);
+    Output out, alone;
+    Inputs second = photograph(scene, camera, {.n = 4, .seed = 2});
+    second.changes.film_restarted = true;
+    const Values values = standard_values(psvgf().description);
+    filter->run(photograph(scene, camera, {.n = 64, .seed = 1}), values, out, {arena, {}});
+    filter->reset();
+    filter->run(second, values, out, {arena, {}});
+    psvgf().make(Width, Height)->run(second, values, alone, {arena, {}});
+    EXPECT_EQ(largest_difference(out.picture, alone.picture), 0.0);
+}
+
+}  // namespace
+}  // namespace tessera::filter
