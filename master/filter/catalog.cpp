@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "master/filter/fdf.h"
 #include "master/filter/gauss.h"
 #include "master/filter/none.h"
 #include "master/filter/psvgf.h"
@@ -11,6 +12,7 @@ namespace tessera::filter {
 std::span<const FilterEntry> catalog() {
     static const std::array Table{
         none_entry(),
+        fdf_entry(),
         psvgf_entry(),
         gauss_entry(),
     };

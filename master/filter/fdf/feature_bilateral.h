@@ -1,0 +1,51 @@
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include "master/filter/fdf/nl_means.h"
+
+namespace tessera::filter {
+
+enum class Demodulation : std::uint8_t { Off, On };
+
+struct FeatureSettings {
+    std::uint32_t radius = 8;
+    // Distances at which the weight has fallen to 1/e. Normals are mapped to (x + 1) / 2. The shading's is
+    // for one sample: at n samples it is s_max / n.
+    float t_max = 0.03f, n_max = 0.06f, s_max = 5.0f;
+    Demodulation demodulation = Demodulation::Off;
+};
+
+inline constexpr std::uint32_t FeatureMaxRadius = 16;
+
+// Below it a colour of albedo is not divided out: the light of such surfaces is not reflected light.
+inline constexpr float DemodulationFloor = 0.01f;
+
+// The weighted mean of the samples of a window whose features are alike (Lardinoije E-L8, E-L9), no spatial
+// weight:
+//
+//     out(p) = sum n_q w(p,q) c(q) / sum n_q w(p,q)
+//     w(p,q) = exp(-max(d_t, d_n, d_s))        0 between pixels of different classes
+//     d_t, d_n = max over components |f(p) - f(q)| / f_max
+//     d_s = |s(p) - s(q)| min(n_p, n_q) / s_max
+//
+// n_q makes it the mean over samples, as if those of all alike pixels were pooled; with equal counts it is
+// the thesis' mean over pixels. min(n_p, n_q) is symmetric, and the noise of the pixel with fewer samples
+// does not look like an edge; what that pixel adds to a better known one is small by n_q. Holes have no
+// weight and become 0.
+//
+// Distances are kept in powers of two in a copy of the tile and its surroundings, eight pixels in registers
+// over all (2 radius + 1)^2 taps at about 37 operations.
+class FeatureBilateral {
+  public:
+    // `shading` (in units of its own mean, 1 component) and `classes` as for NlMeans; Albedo and Normal are
+    // left out where the inputs lack them. `out` has Inputs::color_components(); `self_weight` gets the
+    // weight of the pixel in its own result, 1 component. False: stopped.
+    bool run(const Inputs& inputs, const Planes& shading, const Planes& classes,
+             const FeatureSettings& settings, Planes& out, Planes& self_weight, RunContext& context);
+
+  private:
+    tbb::enumerable_thread_specific<std::vector<float>> scratch_;
+};
+
+}  // namespace tessera::filter
