@@ -6,6 +6,7 @@
 #include "master/filter/gauss.h"
 #include "master/filter/none.h"
 #include "master/filter/psvgf.h"
+#include "master/filter/statmc.h"
 
 namespace tessera::filter {
 
@@ -15,6 +16,7 @@ std::span<const FilterEntry> catalog() {
         fdf_entry(),
         psvgf_entry(),
         gauss_entry(),
+        statmc_entry(),
     };
     return Table;
 }

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "master/filter/kernels.h"
+
+namespace tessera::filter {
+
+// Variances of the mean of the radiance that few samples can be trusted with. A pixel whose samples happened to
+// be equal has variance 0 and is not exact; so each pixel's own estimate is moderated by its neighbourhood's
+// (the posterior mean of a scaled inverse chi-square prior, as in moderated t-tests; Smyth 2004):
+//
+//     V(p) = ((n - 1) V_own + k V_0) / (n - 1 + k),     degrees of freedom n - 1 + k
+//     V_0  = S_0 / n,   S_0 = sum((n - 1) n V_own) / sum(n - 1) over a square, the variance of one sample
+//
+// The weight of the neighbourhood goes to 0 with 1 / n. Where no pixel of the square has two samples, V_0 is
+// the spatial variance of the means of one sample. A hole (n = 0) has V = 0 and 0 degrees of freedom.
+class ModeratedVariance {
+  public:
+    // k >= 0 degrees of freedom given to the neighbourhood, a square of (2 radius + 1)^2 pixels. With k = 0,
+    // n = 1 still takes V_0, with 1 degree of freedom. False: stopped.
+    bool run(const Inputs& inputs, float k, std::uint32_t radius, RunContext& context);
+
+    const Planes& variance() const { return variance_; }  // r, g, b
+    const Planes& dof() const { return dof_; }
+
+    // That run() moves per pixel.
+    static constexpr double Bytes = 4.0 * (1 + 3 + 3 + 4);
+
+  private:
+    Planes variance_, dof_;
+};
+
+}  // namespace tessera::filter

@@ -1,0 +1,232 @@
+#include "master/filter/statmc.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "master/filter/fade.h"
+#include "master/filter/kernels.h"
+#include "master/filter/membership.h"
+#include "master/filter/moderated_variance.h"
+#include "master/filter/student.h"
+
+namespace tessera::filter {
+
+namespace {
+
+using frame::Channel;
+
+enum Parameters : std::size_t { Radius, Sigma, Confidence, Pooled, Albedo, Normal, Depth, Fading };
+
+constexpr std::uint32_t PoolRadius = 3;
+
+// What a pair's weight reads, per pixel. Features are scaled so that their squared difference is an exponent.
+enum Pair : std::uint32_t {
+    Mean,
+    Variance = Mean + 3,
+    Square = Variance + 3,
+    Credit,
+    Count,
+    Known,
+    Feature,
+    PairPlanes = Feature + 7,
+};
+constexpr int Features = 7;
+// Half width, in squared distance, of the shell of pairs near the limit of membership.
+constexpr float Shell = 0.5f;
+constexpr float Miss = 1e3f;  // logarithm of an infinite depth: misses mix with misses only
+
+class StatMc final : public Filter {
+  public:
+    Report run(const Inputs& inputs, const Values& values, Output& out, RunContext context) override {
+        Report report;
+        const std::uint32_t components = inputs.color_components();
+        shape(out.picture, inputs, components);
+        squares_.prepare(values[Confidence]);
+        bool done = false;
+        {
+            Stage stage(report, "variance", ModeratedVariance::Bytes);
+            done = moderated_.run(inputs, static_cast<float>(values[Pooled]), PoolRadius, context);
+        }
+        if (done) {
+            Stage stage(report, "pairs", 4.0 * (15 + PairPlanes));
+            shape(pairs_, inputs, PairPlanes);
+            shape(self_, inputs, 1);
+            done = for_rows(context, inputs.height, [&](std::uint32_t y) { prepare_row(inputs, values, y); });
+        }
+        if (done) {
+            Stage stage(report, "average", 4.0 * (PairPlanes + 2 * components));
+            done = for_rows(context, inputs.height,
+                            [&](std::uint32_t y) { average_row(inputs, values, out.picture, y); });
+        }
+        if (done && values[Fading] > 0.0) {
+            Stage stage(report, "fade", Fade::bytes_per_pixel(components));
+            done = fade_.apply(inputs, self_.plane(0), out.picture, context);
+            if (done && out.wants_maps) out.maps = {{"fade", fade_.weights()}};
+        }
+        report.stopped = !done;
+        return report;
+    }
+
+  private:
+    void prepare_row(const Inputs& inputs, const Values& values, std::uint32_t y) {
+        const std::uint32_t width = inputs.width;
+        const float* counts = inputs.counts.row(0, y);
+        const float* dof = moderated_.dof().row(0, y);
+        float* square = pairs_.row(Square, y);
+        float* credit = pairs_.row(Credit, y);
+        float seen = -1.0f;  // neighbours mostly have equally many samples
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const bool hole = !(counts[x] > 0.0f);
+            pairs_.row(Count, y)[x] = hole ? 0.0f : counts[x];
+            pairs_.row(Known, y)[x] = hole ? 0.0f : 1.0f;
+            if (hole) {
+                square[x] = 1.0f;
+                credit[x] = 0.0f;
+            } else if (dof[x] == seen) {
+                square[x] = square[x - 1];
+                credit[x] = credit[x - 1];
+            } else {
+                square[x] = squares_(dof[x]);
+                credit[x] = 2.0f * (square[x] - squares_(2.0f * dof[x]));
+            }
+            seen = hole ? -1.0f : dof[x];
+        }
+        for (std::uint32_t c = 0; c < 3; ++c) {
+            const float* mean = inputs.mean(Channel::Radiance).row(c, y);
+            const float* variance = moderated_.variance().row(c, y);
+            std::copy(mean, mean + width, pairs_.row(Mean + c, y));
+            for (std::uint32_t x = 0; x < width; ++x) {
+                pairs_.row(Variance + c, y)[x] = counts[x] > 0.0f ? variance[x] : UnknownVariance;
+            }
+        }
+        put_feature(inputs, Channel::Albedo, values[Albedo], Feature, y);
+        put_feature(inputs, Channel::Normal, values[Normal], Feature + 3, y);
+        put_depth(inputs, values[Depth], y);
+    }
+
+    void put_feature(const Inputs& inputs, Channel channel, double deviation, std::uint32_t at, std::uint32_t y) {
+        const float scale = static_cast<float>(1.0 / (std::sqrt(2.0) * deviation));
+        for (std::uint32_t c = 0; c < 3; ++c) {
+            float* to = pairs_.row(at + c, y);
+            std::fill(to, to + inputs.width, 0.0f);
+            if (!inputs.has(channel)) continue;
+            const float* from = inputs.mean(channel).row(c, y);
+            for (std::uint32_t x = 0; x < inputs.width; ++x) to[x] = scale * from[x];
+        }
+    }
+
+    void put_depth(const Inputs& inputs, double deviation, std::uint32_t y) {
+        const float scale = static_cast<float>(1.0 / (std::sqrt(2.0) * deviation));
+        float* to = pairs_.row(Feature + 6, y);
+        std::fill(to, to + inputs.width, 0.0f);
+        if (!inputs.has(Channel::Depth)) return;
+        const float* depth = inputs.mean(Channel::Depth).row(0, y);
+        for (std::uint32_t x = 0; x < inputs.width; ++x) {
+            to[x] = scale * (std::isfinite(depth[x]) ? std::log(std::max(depth[x], 1e-30f)) : Miss);
+        }
+    }
+
+    void average_row(const Inputs& inputs, const Values& values, Planes& picture, std::uint32_t y) {
+        constexpr std::int64_t Chunk = 128;  // both rows' planes stay in the first cache
+        const std::int64_t width = inputs.width, height = inputs.height;
+        const auto radius = static_cast<std::int64_t>(values[Radius]);
+        const double slope = 0.5 / (values[Sigma] * values[Sigma]);
+        const std::uint32_t components = picture.components();
+        for (std::int64_t begin = 0; begin < width; begin += Chunk) {
+            const std::int64_t end = std::min(begin + Chunk, width);
+            alignas(32) std::array<std::array<float, Chunk>, 6> sums{};  // weight, shell, colours
+            for (std::int64_t row = std::max<std::int64_t>(y - radius, 0);
+                 row < std::min(y + radius + 1, height); ++row) {
+                const std::int64_t dy = row - y;
+                for (std::int64_t dx = -radius; dx <= radius; ++dx) {
+                    const std::int64_t first = std::max(begin, -dx), last = std::min(end, width - dx);
+                    if (first >= last) continue;
+                    alignas(32) std::array<float, Chunk> weights;
+                    const auto spatial = static_cast<float>(-slope * static_cast<double>(dx * dx + dy * dy));
+                    weigh(pairs_.row(0, y) + first, pairs_.row(0, static_cast<std::uint32_t>(row)) + first + dx,
+                          pairs_.pixel_count(), spatial, last - first, weights.data(), sums[0].data() + (first - begin), sums[1].data() + (first - begin));
+                    for (std::uint32_t c = 0; c < components; ++c) {
+                        const float* from = inputs.color(c).data() + row * width + first + dx;
+                        float* to = sums[c + 2].data() + (first - begin);
+                        for (std::int64_t i = 0; i < last - first; ++i) {
+                            to[i] += weights[static_cast<std::size_t>(i)] * from[i];
+                        }
+                    }
+                }
+            }
+            for (std::int64_t x = begin; x < end; ++x) {
+                const auto at = static_cast<std::size_t>(x - begin);
+                const float own = pairs_.row(Count, y)[x] + sums[1][at] / Shell;
+                self_.row(0, y)[x] = sums[0][at] > 0.0f ? std::min(own / sums[0][at], 1.0f) : 0.0f;
+            }
+            for (std::uint32_t c = 0; c < components; ++c) {
+                const float* own = inputs.color(c).data() + std::size_t{y} * inputs.width;
+                float* to = picture.row(c, y);
+                for (std::int64_t x = begin; x < end; ++x) {
+                    const auto at = static_cast<std::size_t>(x - begin);
+                    to[x] = sums[0][at] > 0.0f ? sums[c + 2][at] / sums[0][at] : own[x];
+                }
+            }
+        }
+    }
+
+    // Weights of `count` pairs; the planes of p and q start at these pointers, `plane` floats apart.
+    static void weigh(const float* p, const float* q, std::size_t plane, float spatial, std::int64_t count,
+                      float* __restrict weights, float* __restrict sum, float* __restrict shell) {
+        for (std::int64_t i = 0; i < count; ++i) {
+            const auto of_p = [&](std::uint32_t which) { return p[which * plane + static_cast<std::size_t>(i)]; };
+            const auto of_q = [&](std::uint32_t which) { return q[which * plane + static_cast<std::size_t>(i)]; };
+            float distance = 0.0f;
+            for (std::uint32_t f = 0; f < Features; ++f) {
+                const float d = of_p(Feature + f) - of_q(Feature + f);
+                distance += d * d;
+            }
+            const Quantile quantile_p{of_p(Square), of_p(Credit)}, quantile_q{of_q(Square), of_q(Credit)};
+            bool member = true, inner = true, outer = true;
+            for (std::uint32_t c = 0; c < 3; ++c) {
+                const float d = of_p(Mean + c) - of_q(Mean + c);
+                const float reach =
+                    squared_reach(of_p(Variance + c), of_q(Variance + c), quantile_p, quantile_q);
+                member &= d * d <= reach;
+                inner &= d * d <= (1.0f - Shell) * reach;
+                outer &= d * d <= (1.0f + Shell) * reach;
+            }
+            const float weight = of_q(Count) * exp_negative(spatial - of_p(Known) * distance);
+            weights[i] = member ? weight : 0.0f;
+            sum[i] += member ? weight : 0.0f;
+            shell[i] += outer && !inner ? weight : 0.0f;
+        }
+    }
+
+    ModeratedVariance moderated_;
+    StudentSquares squares_;
+    Fade fade_;
+    Planes pairs_, self_;
+};
+
+}  // namespace
+
+FilterEntry statmc_entry() {
+    return {
+        {.name = "statmc",
+         .summary = "averages pixels whose means cannot be told apart (confidence intervals)",
+         .source = "Sakai et al. 2024",
+         .parameters =
+             {{"radius", "px", "half side of the window", 10, 1, 40, {}},
+              {"sigma", "px", "standard deviation of the spatial weight", 5, 0.1, 100, {}},
+              {"confidence", "", "of the interval of the difference of two means, per channel", 0.995, 0.5, 0.99999, {}},
+              {"pooled", "", "degrees of freedom that the neighbourhood adds to a pixel's variance", 4, 0, 64, {}},
+              {"albedo", "", "standard deviation of the weight of albedo", 0.02, 1e-3, 10, {}},
+              {"normal", "", "standard deviation of the weight of normals", 0.1, 1e-3, 10, {}},
+              {"depth", "", "standard deviation of the weight of depth, relative to depth", 0.1, 1e-3, 10, {}},
+              {"fade", "", "blends with the unfiltered picture where that has less error", 1, 0, 1, {"off", "on"}}},
+         .channels =
+             [](const Values&) {
+                 return frame::ChannelSet{Channel::Radiance, Channel::Albedo, Channel::Normal, Channel::Depth};
+             },
+         .consistent = true},
+        [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> { return std::make_unique<StatMc>(); }};
+}
+
+}  // namespace tessera::filter
