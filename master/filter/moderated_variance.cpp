@@ -14,7 +14,14 @@ constexpr float Largest = 1e30f;  // keeps sums of squares of a window finite
 
 // What is summed over the square: degrees of freedom, known pixels, and per channel the weighted variance of
 // one sample, the mean and its square.
-enum Quantity : std::size_t { Dof, Known, Weighted, Mean = Weighted + 3, Square = Mean + 3, Quantities = Square + 3 };
+enum Quantity : std::size_t {
+    Dof,
+    Known,
+    Weighted,
+    Mean = Weighted + 3,
+    Square = Mean + 3,
+    Quantities = Square + 3
+};
 using Sums = std::array<std::array<float, Wide>, Quantities>;
 
 struct Row {
@@ -69,7 +76,8 @@ bool ModeratedVariance::run(const Inputs& inputs, float k, std::uint32_t radius,
             const std::int64_t end = std::min(begin + Chunk, width);
             Sums columns{};  // of columns begin - r ...; outside of the picture 0
             const std::int64_t first = std::max<std::int64_t>(begin - r, 0), last = std::min(end + r, width);
-            for (std::int64_t row = std::max<std::int64_t>(y - r, 0); row < std::min(y + r + 1, height); ++row) {
+            for (std::int64_t row = std::max<std::int64_t>(y - r, 0); row < std::min(y + r + 1, height);
+                 ++row) {
                 add_row(columns, row_of(inputs, static_cast<std::uint32_t>(row)), first, last,
                         first - (begin - r));
             }

@@ -4,9 +4,10 @@
 
 namespace tessera::filter {
 
-// Variances of the mean of the radiance that few samples can be trusted with. A pixel whose samples happened to
-// be equal has variance 0 and is not exact; so each pixel's own estimate is moderated by its neighbourhood's
-// (the posterior mean of a scaled inverse chi-square prior, as in moderated t-tests; Smyth 2004):
+// Variances of the mean of the radiance that few samples can be trusted with. A pixel whose samples happened
+// to be equal has variance 0 and is not exact; so each pixel's own estimate is moderated by its
+// neighbourhood's (the posterior mean of a scaled inverse chi-square prior, as in moderated t-tests; Smyth
+// 2004):
 //
 //     V(p) = ((n - 1) V_own + k V_0) / (n - 1 + k),     degrees of freedom n - 1 + k
 //     V_0  = S_0 / n,   S_0 = sum((n - 1) n V_own) / sum(n - 1) over a square, the variance of one sample

@@ -34,6 +34,8 @@ enum Pair : std::uint32_t {
 constexpr int Features = 7;
 // Half width, in squared distance, of the shell of pairs near the limit of membership.
 constexpr float Shell = 0.5f;
+constexpr std::int64_t Chunk = 128;  // pixels of a row at a time: their planes stay in the first cache
+using Sums = std::array<std::array<float, Chunk>, 6>;  // weight, shell, colours
 constexpr float Miss = 1e3f;  // logarithm of an infinite depth: misses mix with misses only
 
 class StatMc final : public Filter {
@@ -105,7 +107,8 @@ class StatMc final : public Filter {
         put_depth(inputs, values[Depth], y);
     }
 
-    void put_feature(const Inputs& inputs, Channel channel, double deviation, std::uint32_t at, std::uint32_t y) {
+    void put_feature(const Inputs& inputs, Channel channel, double deviation, std::uint32_t at,
+                     std::uint32_t y) {
         const float scale = static_cast<float>(1.0 / (std::sqrt(2.0) * deviation));
         for (std::uint32_t c = 0; c < 3; ++c) {
             float* to = pairs_.row(at + c, y);
@@ -128,33 +131,41 @@ class StatMc final : public Filter {
     }
 
     void average_row(const Inputs& inputs, const Values& values, Planes& picture, std::uint32_t y) {
-        constexpr std::int64_t Chunk = 128;  // both rows' planes stay in the first cache
         const std::int64_t width = inputs.width, height = inputs.height;
         const auto radius = static_cast<std::int64_t>(values[Radius]);
         const double slope = 0.5 / (values[Sigma] * values[Sigma]);
         const std::uint32_t components = picture.components();
         for (std::int64_t begin = 0; begin < width; begin += Chunk) {
             const std::int64_t end = std::min(begin + Chunk, width);
-            alignas(32) std::array<std::array<float, Chunk>, 6> sums{};  // weight, shell, colours
+            Sums sums{};
             for (std::int64_t row = std::max<std::int64_t>(y - radius, 0);
                  row < std::min(y + radius + 1, height); ++row) {
                 const std::int64_t dy = row - y;
+                Sums line{};  // sums of sums round less
                 for (std::int64_t dx = -radius; dx <= radius; ++dx) {
                     const std::int64_t first = std::max(begin, -dx), last = std::min(end, width - dx);
                     if (first >= last) continue;
                     alignas(32) std::array<float, Chunk> weights;
                     const auto spatial = static_cast<float>(-slope * static_cast<double>(dx * dx + dy * dy));
-                    weigh(pairs_.row(0, y) + first, pairs_.row(0, static_cast<std::uint32_t>(row)) + first + dx,
-                          pairs_.pixel_count(), spatial, last - first, weights.data(), sums[0].data() + (first - begin), sums[1].data() + (first - begin));
+                    weigh(pairs_.row(0, y) + first,
+                          pairs_.row(0, static_cast<std::uint32_t>(row)) + first + dx, pairs_.pixel_count(),
+                          spatial, last - first, weights.data(), line[0].data() + (first - begin),
+                          line[1].data() + (first - begin));
                     for (std::uint32_t c = 0; c < components; ++c) {
                         const float* from = inputs.color(c).data() + row * width + first + dx;
-                        float* to = sums[c + 2].data() + (first - begin);
+                        float* to = line[c + 2].data() + (first - begin);
                         for (std::int64_t i = 0; i < last - first; ++i) {
                             to[i] += weights[static_cast<std::size_t>(i)] * from[i];
                         }
                     }
                 }
+                for (std::size_t i = 0; i < components + 2; ++i) {
+                    for (std::size_t x = 0; x < Chunk; ++x) sums[i][x] += line[i][x];
+                }
             }
+            // How much the average F follows the pixel's own mean m, dF/dm: its weight, and that members are
+            // chosen by m. A pair that enters or leaves at the limit d = r moves F by its weight times r;
+            // with the density of d taken from the shell, dF/dm = (own + shell / Shell) / sum.
             for (std::int64_t x = begin; x < end; ++x) {
                 const auto at = static_cast<std::size_t>(x - begin);
                 const float own = pairs_.row(Count, y)[x] + sums[1][at] / Shell;
@@ -171,12 +182,17 @@ class StatMc final : public Filter {
         }
     }
 
-    // Weights of `count` pairs; the planes of p and q start at these pointers, `plane` floats apart.
+    // Weights of `count` pairs; the planes of p and q start at these pointers, `plane` floats apart. `shell`
+    // sums those near the limit of membership: if m_p moves by e, pairs within e of the limit enter or leave.
     static void weigh(const float* p, const float* q, std::size_t plane, float spatial, std::int64_t count,
                       float* __restrict weights, float* __restrict sum, float* __restrict shell) {
         for (std::int64_t i = 0; i < count; ++i) {
-            const auto of_p = [&](std::uint32_t which) { return p[which * plane + static_cast<std::size_t>(i)]; };
-            const auto of_q = [&](std::uint32_t which) { return q[which * plane + static_cast<std::size_t>(i)]; };
+            const auto of_p = [&](std::uint32_t which) {
+                return p[which * plane + static_cast<std::size_t>(i)];
+            };
+            const auto of_q = [&](std::uint32_t which) {
+                return q[which * plane + static_cast<std::size_t>(i)];
+            };
             float distance = 0.0f;
             for (std::uint32_t f = 0; f < Features; ++f) {
                 const float d = of_p(Feature + f) - of_q(Feature + f);
@@ -212,18 +228,42 @@ FilterEntry statmc_entry() {
         {.name = "statmc",
          .summary = "averages pixels whose means cannot be told apart (confidence intervals)",
          .source = "Sakai et al. 2024",
-         .parameters =
-             {{"radius", "px", "half side of the window", 10, 1, 40, {}},
-              {"sigma", "px", "standard deviation of the spatial weight", 5, 0.1, 100, {}},
-              {"confidence", "", "of the interval of the difference of two means, per channel", 0.995, 0.5, 0.99999, {}},
-              {"pooled", "", "degrees of freedom that the neighbourhood adds to a pixel's variance", 4, 0, 64, {}},
-              {"albedo", "", "standard deviation of the weight of albedo", 0.02, 1e-3, 10, {}},
-              {"normal", "", "standard deviation of the weight of normals", 0.1, 1e-3, 10, {}},
-              {"depth", "", "standard deviation of the weight of depth, relative to depth", 0.1, 1e-3, 10, {}},
-              {"fade", "", "blends with the unfiltered picture where that has less error", 1, 0, 1, {"off", "on"}}},
+         .parameters = {{"radius", "px", "half side of the window", 10, 1, 40, {}},
+                        {"sigma", "px", "standard deviation of the spatial weight", 5, 0.1, 100, {}},
+                        {"confidence",
+                         "",
+                         "of the interval of the difference of two means, per channel",
+                         0.995,
+                         0.5,
+                         0.99999,
+                         {}},
+                        {"pooled",
+                         "",
+                         "degrees of freedom that the neighbourhood adds to a pixel's variance",
+                         4,
+                         0,
+                         64,
+                         {}},
+                        {"albedo", "", "standard deviation of the weight of albedo", 0.02, 1e-3, 10, {}},
+                        {"normal", "", "standard deviation of the weight of normals", 0.1, 1e-3, 10, {}},
+                        {"depth",
+                         "",
+                         "standard deviation of the weight of depth, relative to depth",
+                         0.1,
+                         1e-3,
+                         10,
+                         {}},
+                        {"fade",
+                         "",
+                         "blends with the unfiltered picture where that has less error",
+                         1,
+                         0,
+                         1,
+                         {"off", "on"}}},
          .channels =
              [](const Values&) {
-                 return frame::ChannelSet{Channel::Radiance, Channel::Albedo, Channel::Normal, Channel::Depth};
+                 return frame::ChannelSet{Channel::Radiance, Channel::Albedo, Channel::Normal,
+                                          Channel::Depth};
              },
          .consistent = true},
         [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> { return std::make_unique<StatMc>(); }};
