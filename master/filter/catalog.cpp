@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "master/filter/bilateral.h"
+#include "master/filter/eaw.h"
 #include "master/filter/fdf.h"
 #include "master/filter/gauss.h"
 #include "master/filter/none.h"
@@ -16,6 +18,8 @@ std::span<const FilterEntry> catalog() {
         fdf_entry(),
         psvgf_entry(),
         gauss_entry(),
+        bilateral_entry(),
+        eaw_entry(),
         statmc_entry(),
     };
     return Table;
