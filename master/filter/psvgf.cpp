@@ -246,7 +246,7 @@ FilterEntry psvgf_entry() {
               {"steep", "of the depth per px", "slope above which depth does not count", 0.2, 0.0, 1e6, {}},
               {"levels", "", "levels of the wavelet transform", 6, 0, MaxLevels, {}},
               {"order", "", "order of the levels", 0, 0, 2, {"first_then_coarse", "fine", "coarse"}},
-              {"r0", "", "least share of a new sample in the history (E-D3)", 0.05, 0.0, 0.999, {}},
+              {"r0", "", "least share of a new sample in the history (E-D3)", 0.1, 0.0, 0.999, {}},
               {"light_fade",
                "",
                "share of its age that history keeps when light changes",
