@@ -54,15 +54,21 @@ glm::vec3 mapped_normal(const SceneTables& tables, const InstanceData& instance,
 }
 
 // Directions by the shading normal where they leave the surface on their own sides, else by the geometric
-// one: no light may get lost at the rim of a smooth body.
+// one: no light may get lost at the rim of a smooth body. Total reflection has to be that of both normals, or
+// light would run around inside of a smooth body for ever, which no light from outside can do.
 shading::Specular specular_at(const Surface& surface, const shading::Mixture& mixture, float eta,
                               const glm::vec3& direction) {
     glm::mat3 frame = surface.frame;
     shading::Specular specular = shading::make_specular(surface.albedo, mixture, eta, -direction * frame);
     const glm::vec3 up = surface.geometric_normal * frame;
-    const bool refracts = shading::largest(specular.refraction) > 0.0f;
-    if (!(glm::dot(specular.reflected, up) > 0.0f) ||
-        (refracts && !(glm::dot(specular.refracted, up) < 0.0f))) {
+    bool consistent = glm::dot(specular.reflected, up) > 0.0f;
+    if (shading::largest(specular.refraction) > 0.0f) {
+        consistent = consistent && glm::dot(specular.refracted, up) < 0.0f;
+    } else if (mixture.glass > 0.0f) {
+        const float cosine = -glm::dot(direction, surface.geometric_normal);
+        consistent = consistent && shading::fresnel_dielectric(cosine, eta) == 1.0f;
+    }
+    if (!consistent) {
         frame = shading::frame_around(surface.geometric_normal);
         specular = shading::make_specular(surface.albedo, mixture, eta, -direction * frame);
     }

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <chrono>
+#include <cmath>
+#include <cstring>
 #include <thread>
 
 #include "mediator/backend/catalog.h"
@@ -108,6 +111,88 @@ TEST_P(BackendContract, ThePixelsOfATileDoNotDependOnItsShape) {
             }
         }
     }
+}
+
+TEST_P(BackendContract, AChannelHasTheSameBitsAloneAndAmongOthers) {
+    const FilmTile all = render(*backend, whole, {0, 2});
+    const frame::ChannelSet channels = view.channels;
+    for (const frame::ChannelInfo& info : frame::channel_table()) {
+        if (!channels.contains(info.channel)) continue;
+        view.channels = {info.channel};
+        const FilmTile alone = render(*backend, whole, {0, 2});
+        const std::uint32_t first = channels.first_plane(info.channel);
+        for (std::uint32_t plane = 0; plane < info.plane_count(); ++plane) {
+            ASSERT_EQ(std::memcmp(alone.plane(plane).data(), all.plane(first + plane).data(),
+                                  sizeof(float) * whole.pixel_count()),
+                      0)
+                << info.name << " plane " << plane;
+        }
+    }
+}
+
+TEST_P(BackendContract, TheChannelsOfASampleFitTogether) {
+    using frame::Channel;
+    const FilmTile film = render(*backend, whole, {6, 0});
+    const auto value = [&](Channel channel, std::uint32_t component, std::size_t pixel) {
+        return film.plane(view.channels.first_plane(channel) + component)[pixel];
+    };
+    for (std::size_t pixel = 0; pixel < whole.pixel_count(); ++pixel) {
+        const bool hit = std::isfinite(value(Channel::Depth, 0, pixel));
+        ASSERT_EQ(value(Channel::Alpha, 0, pixel), hit ? 1.0f : 0.0f);
+        ASSERT_EQ(std::bit_cast<std::uint32_t>(value(Channel::ObjectIndex, 1, pixel)) != 0, hit);
+        ASSERT_EQ(value(Channel::EvenHalf, 3, pixel), 1.0f) << "the index is even";
+        for (std::uint32_t c = 0; c < 3; ++c) {
+            const float radiance = value(Channel::Radiance, c, pixel);
+            ASSERT_EQ(radiance,
+                      value(Channel::LowVariance, c, pixel) + value(Channel::HighVariance, c, pixel));
+            ASSERT_EQ(value(Channel::EvenHalf, c, pixel), radiance);
+            ASSERT_GE(value(Channel::Range, c, pixel), 0.0f);
+            ASSERT_LE(value(Channel::Range, c, pixel), 1.0f);
+            if (!hit) {
+                ASSERT_EQ(value(Channel::Albedo, c, pixel), 0.0f);
+                ASSERT_EQ(value(Channel::Normal, c, pixel), 0.0f);
+            }
+        }
+    }
+    const FilmTile odd = render(*backend, whole, {7, 0});
+    for (std::uint32_t c = 0; c < 4; ++c) {
+        for (const float half : odd.plane(view.channels.first_plane(Channel::EvenHalf) + c))
+            ASSERT_EQ(half, 0.0f);
+    }
+}
+
+// Every choice of a view renders whole blocks; the choices of light leave the geometry alone.
+TEST_P(BackendContract, ChoicesOfLightLeaveTheGeometryAlone) {
+    const FilmTile plain = render(*backend, whole, {0, 2});
+    const auto expect_same_geometry = [&](const char* choice) {
+        const FilmTile other = render(*backend, whole, {0, 2});
+        EXPECT_EQ(other.counts, plain.counts) << choice;
+        for (const frame::Channel channel :
+             {frame::Channel::Depth, frame::Channel::ObjectIndex, frame::Channel::Alpha}) {
+            const std::uint32_t first = view.channels.first_plane(channel);
+            for (std::uint32_t plane = 0; plane < frame::info(channel).plane_count(); ++plane) {
+                EXPECT_EQ(std::memcmp(other.plane(first + plane).data(), plain.plane(first + plane).data(),
+                                      sizeof(float) * whole.pixel_count()),
+                          0)
+                    << choice << " " << frame::info(channel).name;
+            }
+        }
+    };
+    const view::View before = view;
+    for (const view::PathClass kind :
+         {view::PathClass::Caustics, view::PathClass::Diffuse, view::PathClass::All, view::PathClass::None}) {
+        view.path_class = kind;
+        expect_same_geometry("path class");
+    }
+    view = before;
+    view.feature_rule = view::FeatureRule::Connections;
+    expect_same_geometry("feature rule");
+    view = before;
+    view.transparent_background = true;
+    expect_same_geometry("transparent background");
+    view = before;
+    view.renderer = view::Renderer::Whitted;
+    expect_same_geometry("renderer");
 }
 
 TEST_P(BackendContract, AnotherSeedIsAnotherPicture) {

@@ -7,6 +7,7 @@
 #include "backends/embree/path_tracer.h"
 #include "mediator/shading/bsdf.h"
 #include "tests/statistics/furnace.h"
+#include "tests/statistics/model.h"
 
 namespace tessera::embree {
 namespace {
@@ -17,6 +18,7 @@ struct Place {
 };
 
 class FurnaceAnywhere : public testing::TestWithParam<Place> {};
+class GlassAnywhere : public testing::TestWithParam<Place> {};
 
 // The furnace is as bright at any size and place: leaking or self-shadowing walls would show at once.
 TEST_P(FurnaceAnywhere, IsAsBrightAsAtTheOrigin) {
@@ -69,7 +71,65 @@ TEST(SurfaceModelNumerics, IsFiniteAtItsEdges) {
                 ASSERT_TRUE(std::isfinite(value.pdf) && value.pdf >= 0.0f) << roughness << " " << cosine;
                 ASSERT_TRUE(std::isfinite(value.value.x) && value.value.x >= 0.0f)
                     << roughness << " " << cosine;
-                if (value.value.x > 0.0f) ASSERT_GT(value.pdf, 0.0f);
+                if (value.value.x > 0.0f) {
+                    ASSERT_GT(value.pdf, 0.0f);
+                }
+            }
+        }
+    }
+}
+
+// A ball of tinted glass with the index of air: whatever its size and place, light that passes it crosses two
+// surfaces, so every sample is 1 or the tint squared, and deep inside of the silhouette the latter.
+TEST_P(GlassAnywhere, ABallIsCrossedTwice) {
+    const auto& [scale, center] = GetParam();
+    Model model(glm::round(center / 256.0) * 256.0);
+    model.sphere(model.material(glass(1.0f, glm::vec3(0.5f))), center + glm::dvec3(0.0, 0.0, -3.0 * scale),
+                 scale);
+    model.sky(glm::vec3(1.0f));
+    World& world = model.build();
+    std::uint64_t hits = 0, wrong = 0;
+    for_samples(world, small_view(center, 0.8, 32), 64, [&](const PathSample& sample) {
+        const bool hit = sample.object != 0;
+        const float expected = hit ? 0.25f : 1.0f;
+        hits += hit ? 1 : 0;
+        wrong += std::fabs(sample.radiance().x - expected) > 1e-5f ? 1 : 0;
+    });
+    EXPECT_GT(hits, 20000u);
+    // None was seen; at the rim a ray may pass within its error box.
+    EXPECT_LE(wrong, hits / 10000);
+}
+
+// With refraction: nothing leaks and nothing is lost.
+TEST_P(GlassAnywhere, AClearBallVanishes) {
+    const auto& [scale, center] = GetParam();
+    Model model(glm::round(center / 256.0) * 256.0);
+    model.sphere(model.material(glass(1.5f)), center + glm::dvec3(0.0, 0.0, -3.0 * scale), scale);
+    model.sky(glm::vec3(1.0f));
+    World& world = model.build();
+    for_samples(world, small_view(center, 0.8, 32), 8,
+                [&](const PathSample& sample) { ASSERT_NEAR(sample.radiance().x, 1.0f, 1e-4f); });
+}
+
+INSTANTIATE_TEST_SUITE_P(Places, GlassAnywhere,
+                         testing::Values(Place{1.0, {}}, Place{1e-4, {}}, Place{1e6, {}},
+                                         Place{1.0, {1e6, -3e6, 2e6}}, Place{1.0, {200.3, 100.7, -250.1}},
+                                         Place{0.01, {100.0, 50.0, 75.0}}));
+
+// Shares and directions of glass at any angle and index: finite, of unit length, summing to 1.
+TEST(GlassNumerics, IsFiniteAtItsEdges) {
+    using namespace shading;
+    constexpr Mixture Glass{.dielectric = 0.0f, .glass = 1.0f};
+    for (const float eta : {0.01f, 0.4f, 0.9999999f, 1.0f, 1.0000001f, 1.01f, 1.5f, 2.4f, 100.0f}) {
+        for (const float cosine : {1.0f, 0.9999999f, 0.5f, 1e-3f, 1e-7f, 1e-20f, 0.0f}) {
+            const glm::vec3 out(std::sqrt(1.0f - cosine * cosine), 0.0f, cosine);
+            const Specular specular = make_specular(glm::vec3(1.0f), Glass, eta, out);
+            ASSERT_TRUE(specular.reflection.x >= 0.0f && specular.reflection.x <= 1.0f + 1e-6f)
+                << eta << " " << cosine;
+            ASSERT_NEAR(specular.reflection.x + specular.refraction.x, 1.0f, 1e-6f);
+            if (specular.refraction.x > 0.0f) {
+                ASSERT_NEAR(glm::length(specular.refracted), 1.0f, 1e-6f) << eta << " " << cosine;
+                ASSERT_LE(specular.refracted.z, 0.0f);
             }
         }
     }

@@ -1,0 +1,275 @@
+// What the filters are given: path classes, features, halves, each by its definition.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "backends/embree/sample_values.h"
+#include "tests/statistics/model.h"
+
+namespace tessera::embree {
+namespace {
+
+using frame::Channel;
+using view::FeatureRule;
+using view::PathClass;
+using view::View;
+
+constexpr frame::ChannelSet All = frame::ChannelSet::from_bits((1u << frame::ChannelCount) - 1u);
+
+// A coloured corner under a lamp, with whatever stands in it; open to a sky.
+struct Corner : Model {
+    explicit Corner(const scene::Material& thing) {
+        scene::Material varnished = chalk({0.7f, 0.5f, 0.2f});
+        varnished.index_of_refraction = 1.5f;
+        varnished.roughness = 0.4f;
+        const ObjectId wall = material(varnished);
+        floor(wall, 2.0f, 0.0f);
+        quad(wall, {{{-2, -2, 0}, {-2, 2, 0}, {-2, 2, 4}, {-2, -2, 4}}});
+        quad(material(lamp(6.0f)), {{{0, -1, 3}, {0, 1, 3}, {1, 1, 3}, {1, -1, 3}}});
+        sphere(material(thing), {0.2, 0.0, 0.8}, 0.7);
+        sky({0.1f, 0.2f, 0.3f});
+    }
+    static View eye() {
+        View view = small_view({0.0, -4.0, 2.0}, 1.0, 24, glm::rotate(glm::dmat4(1.0), 1.2, {1.0, 0.0, 0.0}));
+        view.max_bounces = 8;
+        view.channels = All;
+        return view;
+    }
+};
+
+double energy(const glm::vec3& color) {
+    return double(color.x) + double(color.y) + double(color.z);
+}
+
+TEST(PathClasses, DivideTheSameRadiance) {
+    Corner corner(glass(1.5f));
+    World& world = corner.build();
+    View view = Corner::eye();
+    std::vector<glm::vec3> reference;
+    for_samples(world, view, 2, [&](const PathSample& s) { reference.push_back(s.radiance()); });
+    for (const PathClass kind :
+         {PathClass::Indirect, PathClass::Caustics, PathClass::Diffuse, PathClass::All, PathClass::None}) {
+        view.path_class = kind;
+        std::size_t i = 0;
+        double low = 0.0, high = 0.0;
+        for_samples(world, view, 2, [&](const PathSample& sample) {
+            for (int c = 0; c < 3; ++c) {
+                ASSERT_NEAR(sample.radiance()[c], reference[i][c], 1e-5f * (1.0f + reference[i][c]));
+                ASSERT_GE(sample.low[c], -1e-6f * reference[i][c]);
+                ASSERT_GE(sample.high[c], 0.0f);
+            }
+            low += energy(sample.low);
+            high += energy(sample.high);
+            ++i;
+        });
+        if (kind == PathClass::All) {
+            EXPECT_EQ(low, 0.0);
+        }
+        if (kind == PathClass::None) {
+            EXPECT_EQ(high, 0.0);
+        }
+        if (kind != PathClass::All) {
+            EXPECT_GT(low, 0.0);
+        }
+        if (kind != PathClass::None) {
+            EXPECT_GT(high, 0.0);
+        }
+    }
+}
+
+TEST(PathClasses, IrradianceTimesAlbedoIsTheLightOfTheDiffuseLobe) {
+    Corner corner(glass(1.5f, {0.9f, 1.0f, 0.8f}));
+    World& world = corner.build();
+    View view = Corner::eye();
+    view.path_class = PathClass::Diffuse;
+    std::size_t lit = 0;
+    for_samples(world, view, 4, [&](const PathSample& sample) {
+        const glm::vec3 product = sample.irradiance() * sample.albedo;
+        for (int c = 0; c < 3; ++c) ASSERT_NEAR(product[c], sample.high[c], 1e-6f * (1.0f + sample.high[c]));
+        lit += sample.high.x > 0.0f ? 1 : 0;
+    });
+    EXPECT_GT(lit, 500u);
+}
+
+// A diffuse floor under a sky of 1: the irradiance over pi, whatever the colour; 0 where there is no colour.
+TEST(PathClasses, IrradianceKnowsNoColour) {
+    Model model;
+    model.floor(model.material(chalk({0.8f, 0.25f, 0.0f})), 10.0f, 0.0f);
+    model.sky(glm::vec3(3.0f));
+    World& world = model.build();
+    View view = small_view({0.0, 0.0, 1.0}, 0.5);
+    view.channels = {Channel::Irradiance};
+    for (int c = 0; c < 3; ++c) {
+        const Mean mean =
+            mean_of(world, view, 64, [&](const PathSample& s) { return double(s.irradiance()[c]); });
+        EXPECT_NEAR(mean.value, c == 2 ? 0.0 : 3.0, 4.0 * mean.standard_error + 1e-5);
+    }
+}
+
+double caustics(const scene::Material& thing) {
+    Corner corner(thing);
+    World& world = corner.build();
+    View view = Corner::eye();
+    view.path_class = PathClass::Caustics;
+    double sum = 0.0;
+    for_samples(world, view, 16, [&](const PathSample& sample) { sum += energy(sample.high); });
+    return sum;
+}
+
+TEST(PathClasses, OnlyPerfectSpecularsMakeCaustics) {
+    EXPECT_EQ(caustics(chalk({0.9f, 0.9f, 0.9f})), 0.0);
+    EXPECT_GT(caustics(glass(1.5f)), 0.0);
+    EXPECT_GT(caustics(mirror({0.9f, 0.9f, 0.9f})), 0.0);
+}
+
+// Seen in a mirror or not, one scattering is direct light, and light of the lamp itself is none.
+TEST(PathClasses, PerfectSpecularsInFrontAreTransparent) {
+    Model model;
+    model.floor(model.material(mirror(glm::vec3(1.0f))), 10.0f, 0.0f);
+    const ObjectId wall = model.material(chalk(glm::vec3(0.5f)));
+    model.quad(wall, {{{4, -9, 0.1f}, {4, 9, 0.1f}, {4, 9, 9}, {4, -9, 9}}});
+    model.point_light({0.0, 0.0, 3.0}, 10.0f);
+    World& world = model.build();
+    View view = small_view({0.0, 0.0, 2.0}, 0.2, 8, glm::rotate(glm::dmat4(1.0), -0.8, {0.0, 1.0, 0.0}));
+    view.channels = All;
+    view.max_bounces = 1;  // the mirror, then the wall
+    double light = 0.0;
+    for_samples(world, view, 4, [&](const PathSample& sample) {
+        EXPECT_EQ(sample.high, glm::vec3(0.0f));
+        EXPECT_EQ(sample.albedo, glm::vec3(0.5f));
+        EXPECT_NEAR(sample.normal.x, -1.0f, 1e-6f) << "of the wall";
+        EXPECT_LT(sample.depth, 3.5f) << "of the mirror";
+        light += energy(sample.low);
+    });
+    EXPECT_GT(light, 0.0);
+}
+
+// A white point-lit floor: by definition the feature is what the light is without the floor's colour, or the
+// lamp's intensity.
+TEST(ShadingFeature, OfAKnownScene) {
+    for (const float albedo : {0.9f, 0.2f}) {
+        Model model;
+        model.floor(model.material(chalk({albedo, 0.5f * albedo, albedo})), 10.0f, 0.0f);
+        model.point_light({0.0, 0.0, 2.0}, 50.0f);
+        World& world = model.build();
+        View view = small_view({0.0, 0.0, 1.0}, 1e-3, 4);
+        view.channels = {Channel::ShadingFeature};
+        for_samples(world, view, 1, [&](const PathSample& sample) {
+            EXPECT_NEAR(sample.shading_feature(FeatureRule::Demodulated), 50.0 / 4.0 / M_PI, 1e-3);
+        });
+        view.feature_rule = FeatureRule::Connections;
+        for_samples(world, view, 1, [&](const PathSample& sample) {
+            EXPECT_NEAR(sample.shading_feature(FeatureRule::Connections), 50.0, 1e-3);
+        });
+    }
+}
+
+TEST(ShadingFeature, CountsTheSkyAsALight) {
+    Model model;
+    model.sky({1.0f, 2.0f, 3.0f});
+    World& world = model.build();
+    View view = small_view({}, 1.0, 4);
+    view.channels = {Channel::ShadingFeature};
+    for (const FeatureRule rule : {FeatureRule::Demodulated, FeatureRule::Connections}) {
+        view.feature_rule = rule;
+        for_samples(world, view, 1, [&](const PathSample& sample) {
+            EXPECT_NEAR(sample.shading_feature(rule), 0.299 + 2 * 0.587 + 3 * 0.114, 1e-5);
+        });
+    }
+}
+
+// LT27: the sky lights the scene and is seen in mirrors, but not by the camera.
+TEST(TransparentBackground, ShowsNothingWhereTheCameraSeesNothing) {
+    Corner corner(mirror(glm::vec3(0.9f)));
+    World& world = corner.build();
+    View view = Corner::eye(), shown = view;
+    view.transparent_background = true;
+    std::vector<PathSample> samples;
+    for_samples(world, shown, 2, [&](const PathSample& sample) { samples.push_back(sample); });
+    std::size_t i = 0, misses = 0;
+    for_samples(world, view, 2, [&](const PathSample& sample) {
+        const bool miss = std::isinf(samples[i].depth);
+        EXPECT_EQ(sample.alpha(), miss ? 0.0f : 1.0f);
+        EXPECT_EQ(sample.radiance(), miss ? glm::vec3(0.0f) : samples[i].radiance());
+        if (miss) {
+            EXPECT_EQ(samples[i].radiance(), glm::vec3(0.1f, 0.2f, 0.3f));
+        }
+        misses += miss ? 1 : 0;
+        ++i;
+    });
+    EXPECT_GT(misses, 50u);
+    EXPECT_GT(i - misses, 50u);
+}
+
+std::vector<std::vector<float>> planes_of(const World& world, View view, Channel channel) {
+    std::vector<std::vector<float>> result;
+    SampleValues values(view);
+    const PathTracer tracer(world.tables(), world.scene(), view);
+    std::uint64_t rays = 0;
+    for (std::uint32_t i = 0; i < view.width * view.height; ++i) {
+        const auto all = values.of(tracer.trace(i % view.width, i / view.width, 3, rays), 3);
+        std::size_t first = 0;
+        for (const frame::ChannelInfo& info : frame::channel_table()) {
+            if (info.channel == channel) break;
+            first += view.channels.contains(info.channel) ? info.components : 0;
+        }
+        const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+        result.emplace_back(begin, begin + frame::info(channel).components);
+    }
+    return result;
+}
+
+TEST(Channels, HaveTheSameBitsAloneAndTogether) {
+    Corner corner(glass(1.5f));
+    World& world = corner.build();
+    for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted}) {
+        for (const PathClass kind : {PathClass::Indirect, PathClass::Diffuse}) {
+            View together = Corner::eye();
+            together.renderer = renderer;
+            together.path_class = kind;
+            for (const frame::ChannelInfo& info : frame::channel_table()) {
+                View alone = together;
+                alone.channels = {info.channel};
+                const auto a = planes_of(world, alone, info.channel);
+                const auto b = planes_of(world, together, info.channel);
+                for (std::size_t i = 0; i < a.size(); ++i) {
+                    ASSERT_EQ(std::memcmp(a[i].data(), b[i].data(), 4 * a[i].size()), 0)
+                        << info.name << " " << i;
+                }
+            }
+        }
+    }
+}
+
+std::uint64_t rays_of(const World& world, const View& view) {
+    const PathTracer tracer(world.tables(), world.scene(), view);
+    std::uint64_t rays = 0;
+    for (std::uint32_t i = 0; i < view.width * view.height; ++i)
+        tracer.trace(i % view.width, i / view.width, 0, rays);
+    return rays;
+}
+
+TEST(Channels, OnlyTheRangeThroughSpecularsCostsRays) {
+    constexpr auto WithoutRange =
+        frame::ChannelSet::from_bits(All.bits() & ~(1u << unsigned(Channel::Range)));
+    for (const scene::Material& thing : {glass(1.5f), chalk(glm::vec3(0.5f))}) {
+        Corner corner(thing);
+        World& world = corner.build();
+        View view = Corner::eye();
+        view.channels = {Channel::Radiance};
+        const std::uint64_t plain = rays_of(world, view);
+        view.channels = WithoutRange;
+        EXPECT_EQ(rays_of(world, view), plain);
+        view.channels = All;
+        if (thing.transmission > 0.0f) {
+            EXPECT_GT(rays_of(world, view), plain);
+        }
+        if (thing.transmission == 0.0f) {
+            EXPECT_EQ(rays_of(world, view), plain) << "the first hit is reused";
+        }
+    }
+}
+
+}  // namespace
+}  // namespace tessera::embree
