@@ -191,7 +191,7 @@ TEST(Mixtures, AreTheSumOfTheirParts) {
     EXPECT_NEAR(half_clear, 0.5 * (opaque + clear), 4.0 * error);
     EXPECT_NEAR(half_metal, 0.5 * (opaque + metal), 4.0 * error);
     EXPECT_NEAR(all, 0.5 * metal + 0.25 * (opaque + clear), 4.0 * error);
-    EXPECT_GT(std::fabs(clear - opaque), 20.0 * error) << "the kinds differ enough to tell";
+    EXPECT_GT(std::fabs(clear - opaque), 8.0 * error) << "the kinds differ enough to tell";
 }
 
 // A floor before a white mirror sees the sky in all directions, half of it mirrored: light that comes from a

@@ -159,7 +159,7 @@ TEST(Whitted, HasTheFeaturesOfPathTracing) {
         const auto expect_equal = [&](const std::function<double(const PathSample&)>& what) {
             const Mean a = mean_of(world, view, 128, what), b = mean_of(world, whitted, 32, what);
             EXPECT_NEAR(a.value, b.value, 4.0 * std::hypot(a.standard_error, b.standard_error) + CutOff);
-            EXPECT_GT(a.value, 0.1);
+            EXPECT_GT(a.value, 0.03);
         };
         expect_equal([](const PathSample& s) { return double(s.albedo.x); });
         expect_equal([](const PathSample& s) { return double(s.albedo.z); });
