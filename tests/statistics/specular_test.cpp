@@ -135,6 +135,16 @@ INSTANTIATE_TEST_SUITE_P(Indices, GlassFurnace,
                          testing::Combine(testing::Values(1.0f, 1.01f, 1.33f, 1.5f, 2.4f),
                                           testing::Values(Normals::Flat, Normals::Smooth)));
 
+TEST(Mirror, AWhiteBallVanishesToo) {
+    for (const Normals normals : {Normals::Flat, Normals::Smooth}) {
+        Model model;
+        model.sphere(model.material(mirror(glm::vec3(1.0f))), {0.0, 0.0, -3.0}, 1.0, normals);
+        model.sky(glm::vec3(1.0f));
+        for_samples(model.build(), small_view({}, 0.8, 32), 16,
+                    [&](const PathSample& sample) { ASSERT_NEAR(sample.radiance().x, 1.0f, 1e-4f); });
+    }
+}
+
 TEST(Mirror, ShowsASkyInItsOwnColour) {
     Model model;
     const glm::vec3 color(0.9f, 0.5f, 0.1f);
