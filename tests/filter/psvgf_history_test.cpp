@@ -415,7 +415,7 @@ TEST(PsvgfHistory, ChangedLightIsDoubted) {  // DT31
     EXPECT_LT(error, 0.1);
     EXPECT_LT(error, 0.5 * shadow_error(blind, moved, camera));
     // Without a change nothing is doubted.
-    Session still("taa=off");
+    Session still("taa=off,r0=0");
     still.restart(photograph(scene, camera, {.n = 64, .seed = 1}));
     still.restart(photograph(scene, camera, {.n = 4, .seed = 20}), light);
     double age = mean_of(still.map("age"));
