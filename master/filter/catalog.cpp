@@ -7,6 +7,7 @@
 #include "master/filter/fdf.h"
 #include "master/filter/gauss.h"
 #include "master/filter/none.h"
+#include "master/filter/pixel.h"
 #include "master/filter/psvgf.h"
 #include "master/filter/statmc.h"
 
@@ -15,6 +16,7 @@ namespace tessera::filter {
 std::span<const FilterEntry> catalog() {
     static const std::array Table{
         none_entry(),
+        pixel_entry(),
         fdf_entry(),
         psvgf_entry(),
         gauss_entry(),

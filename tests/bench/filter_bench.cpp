@@ -39,7 +39,8 @@ void plain_copy(benchmark::State& state) {
     state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * 2 * from.byte_size()));
 }
 
-// All cores, warm memory. `bytes/px` is what the filter says that it moves; `GB/s` follows from it.
+// All cores, warm memory; the column CPU is that of all threads. `bytes/px` is what the filter says that it
+// moves; `GB/s` follows from it.
 void run(benchmark::State& state, const std::string& text) {
     const auto choice = parse_choice(text, catalog());
     if (!choice) {
@@ -80,6 +81,7 @@ int main(int count, char** arguments) {
     for (const std::string& choice : choices) {
         benchmark::RegisterBenchmark(choice.c_str(), run, choice)
             ->Unit(benchmark::kMillisecond)
+            ->MeasureProcessCPUTime()
             ->UseRealTime();
     }
     benchmark::RunSpecifiedBenchmarks();

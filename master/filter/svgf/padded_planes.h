@@ -21,6 +21,7 @@ class PaddedPlanes {
     }
     std::uint32_t width() const { return width_; }
     std::uint32_t height() const { return height_; }
+    std::uint32_t components() const { return components_; }
     std::size_t pitch() const { return pitch_; }
     float* row(std::uint32_t component, std::uint32_t y) { return values_.data() + offset(component, y); }
     const float* row(std::uint32_t component, std::uint32_t y) const {

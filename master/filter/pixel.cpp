@@ -1,0 +1,302 @@
+#include "master/filter/pixel.h"
+
+#include <algorithm>
+
+#include "master/filter/kernels.h"
+#include "master/filter/pixel/compose.h"
+#include "master/filter/pixel/first_look.h"
+#include "master/filter/pixel/plane_filters.h"
+#include "master/filter/pixel/schedule.h"
+#include "master/filter/pixel/widths.h"
+
+namespace tessera::filter {
+
+namespace {
+
+using frame::Channel;
+using namespace pixel;
+
+enum Parameters : std::size_t {
+    Threshold,
+    SigmaSpatial,
+    SigmaColor,
+    SigmaDepth,
+    SigmaNormal,
+    MethodChoice,
+    IterationCount,
+    RootChoice,
+    Adaptive,
+    AdaptiveClamp,
+    SpikeClamp,
+    AntialiasRecovery,
+    Normals,
+    Schedule,
+};
+
+float number(const Values& values, Parameters which) {
+    return static_cast<float>(values[which]);
+}
+
+bool is_on(const Values& values, Parameters which) {
+    return values[which] > 0.5;
+}
+
+// reduction_ratio by sigma: it changes below 4 pixels.
+class ReductionRatios {
+  public:
+    void fit(int iterations) {
+        if (iterations == iterations_) return;
+        iterations_ = iterations;
+        for (std::size_t i = 0; i < ratios_.size(); ++i) {
+            ratios_[i] =
+                static_cast<float>(reduction_ratio(std::max(0.01, PerPixel * double(i)), iterations));
+        }
+    }
+    float at(float sigma) const {
+        const auto i = static_cast<std::size_t>(sigma * (1.0f / PerPixel) + 0.5f);
+        return ratios_[std::min(i, ratios_.size() - 1)];
+    }
+
+  private:
+    static constexpr float PerPixel = 0.125f;
+    int iterations_ = 0;
+    std::array<float, 33> ratios_{};
+};
+
+class PixelFilter final : public Filter {
+  public:
+    Report run(const Inputs& inputs, const Values& values, Output& out, RunContext context) override {
+        Report report;
+        note_missing(inputs, report);
+        shape(out.picture, inputs, inputs.color_components());
+        const std::uint64_t samples = median_count(inputs.counts.plane(0));
+        const bool pass = needs_pass(inputs, values, samples);
+        const bool shown = pass || has_pass_;
+        {
+            Stage stage(report, "light", 0.0);
+            holes_.find(inputs);
+            light_.prepare(inputs, holes_, context);
+        }
+        bool done = true;
+        if (pass) {
+            has_pass_ = false;
+            done = filter(inputs, values, report, context);
+            has_pass_ = done;
+            values_ = values;
+            samples_ = samples;
+        }
+        if (done && !shown) report.notes.push_back("unfiltered: the schedule begins at 4 samples");
+        if (done) done = shown ? blend(inputs, values, report, out, context) : show_unfiltered(inputs, out);
+        report.stopped = !done;
+        return report;
+    }
+
+    void reset() override { has_pass_ = false; }
+
+  private:
+    static void note_missing(const Inputs& inputs, Report& report) {
+        if (!inputs.has(Channel::HighVariance))
+            report.notes.push_back("no high_variance: all light is filtered");
+        if (!inputs.has(Channel::Range)) report.notes.push_back("no range: only depth guides the filter");
+    }
+
+    bool needs_pass(const Inputs& inputs, const Values& values, std::uint64_t samples) const {
+        if (!is_on(values, Schedule)) return true;
+        const bool other = !has_pass_ || field_.values.width() != inputs.width ||
+                           field_.values.height() != inputs.height || inputs.changes.film_restarted ||
+                           inputs.changes.geometry || inputs.changes.lights_or_materials ||
+                           samples < samples_;
+        if (other) return samples >= FirstPass;
+        return values != values_ || filter_due(samples, samples_);
+    }
+
+    bool filter(const Inputs& inputs, const Values& values, Report& report, RunContext& context) {
+        const bool with_normals = is_on(values, Normals);
+        const auto layers = 4.0 + (inputs.has(Channel::Alpha) ? 1.0 : 0.0);
+        {
+            const double guide = 2.0 * (with_normals ? 7 : 4), field = 7.0 + layers + 1.0;
+            Stage stage(report, "guide", 4.0 * (guide + field));
+            const Tolerance tolerance{number(values, SigmaColor), number(values, SigmaDepth),
+                                      with_normals ? number(values, SigmaNormal) : 0.0f};
+            guide_.prepare(inputs, holes_, tolerance, context);
+            light_.fill(inputs, holes_, field_, context);
+            scratch_.fit(inputs.width, inputs.height, field_.values.components());
+        }
+        if (!choose_widths(inputs, values, report, context)) return false;
+        Stage stage(report, "filter", bytes_of_filter(values, layers));
+        if (!run_method(values, context)) return false;
+        return for_rows(context, inputs.height, [&](std::uint32_t y) {
+            float* variance = field_.values.row(Field::Variance, y);
+            const float* n = inputs.counts.row(0, y);
+            for (std::uint32_t x = 0; x < inputs.width; ++x) variance[x] *= std::max(n[x], 1.0f);
+        });
+    }
+
+    bool choose_widths(const Inputs& inputs, const Values& values, Report& report, RunContext& context) {
+        const float sigma = number(values, SigmaSpatial);
+        if (is_on(values, Adaptive) && values[MethodChoice] != double(Method::ATrous)) {
+            Stage stage(report, "widths", FirstLook::BytesPerPixel);
+            const AdaptiveWidths rule{number(values, Threshold), sigma, number(values, AdaptiveClamp)};
+            return look_.run(guide_, light_, inputs, field_, rule, widths_, context);
+        }
+        widths_.fit(inputs.width, inputs.height, 1);
+        return for_rows(context, inputs.height,
+                        [&](std::uint32_t y) { std::fill_n(widths_.row(0, y), inputs.width, sigma); });
+    }
+
+    bool run_method(const Values& values, RunContext& context) {
+        switch (static_cast<Method>(values[MethodChoice])) {
+            case Method::Brute:
+                return filter_brute(guide_, widths_, field_, scratch_, context);
+            case Method::ATrous:
+                return filter_atrous(guide_, number(values, SigmaSpatial), field_, scratch_, context);
+            case Method::Separable:
+                break;
+        }
+        const int iterations = static_cast<int>(values[IterationCount]);
+        const Edges edges = is_on(values, AntialiasRecovery) ? Edges::Recover : Edges::Keep;
+        if (!filter_separable(guide_, widths_, iterations, edges, field_, scratch_, context)) return false;
+        ratios_.fit(iterations);
+        return for_rows(context, field_.values.height(), [&](std::uint32_t y) {
+            float* reduction = field_.reduction.row(0, y);
+            const float* sigma = widths_.row(0, y);
+            for (std::uint32_t x = 0; x < field_.values.width(); ++x) reduction[x] *= ratios_.at(sigma[x]);
+        });
+    }
+
+    // Each sweep reads guide, values, r and width and writes values and r.
+    double bytes_of_filter(const Values& values, double layers) const {
+        const double sweep = 4.0 * (guide_.components() + 2.0 * (layers + 1.0) + 1.0);
+        switch (static_cast<Method>(values[MethodChoice])) {
+            case Method::Brute:
+                return sweep + 8.0;
+            case Method::ATrous:
+                return 3.0 * sweep + 16.0;
+            case Method::Separable:
+                break;
+        }
+        return 2.0 * values[IterationCount] * sweep + 20.0;
+    }
+
+    bool blend(const Inputs& inputs, const Values& values, Report& report, Output& out, RunContext& context) {
+        const std::uint32_t components = inputs.color_components();
+        Stage stage(report, "blend", 4.0 * (3.0 * 3 + components + 3 + components));
+        const Blend how{number(values, Threshold), static_cast<Root>(values[RootChoice]),
+                        number(values, SpikeClamp)};
+        BlendMaps maps;
+        if (out.wants_maps) maps = prepare_maps(inputs, out);
+        return compose(inputs, light_, field_, how, out.picture, maps, context);
+    }
+
+    BlendMaps prepare_maps(const Inputs& inputs, Output& out) const {
+        constexpr std::array Names{"range", "variance", "smoothed_variance", "blend", "width"};
+        out.maps.resize(Names.size());
+        for (std::size_t i = 0; i < Names.size(); ++i) {
+            out.maps[i].name = Names[i];
+            shape(out.maps[i].planes, inputs, i == 0 ? 3 : 1);
+        }
+        if (inputs.has(Channel::Range)) out.maps[0].planes = inputs.mean(Channel::Range);
+        const Channel high = inputs.has(Channel::HighVariance) ? Channel::HighVariance : Channel::Radiance;
+        const Planes& variance = inputs.variance(high);
+        for (std::size_t i = 0; i < inputs.pixel_count(); ++i) {
+            out.maps[1].planes.plane(0)[i] =
+                luminance_variance(variance.plane(0)[i], variance.plane(1)[i], variance.plane(2)[i]);
+        }
+        for (std::uint32_t y = 0; y < inputs.height; ++y) {
+            std::copy_n(widths_.row(0, y), inputs.width, out.maps[4].planes.row(0, y));
+        }
+        return {&out.maps[2].planes, &out.maps[3].planes};
+    }
+
+    bool show_unfiltered(const Inputs& inputs, Output& out) const {
+        for (std::uint32_t c = 0; c < inputs.color_components(); ++c) {
+            std::ranges::copy(inputs.color(c), out.picture.plane(c).begin());
+        }
+        return true;
+    }
+
+    Holes holes_;
+    Light light_;
+    Guide guide_;
+    FirstLook look_;
+    Widths widths_;
+    Field field_, scratch_;  // field_: of the last pass
+    ReductionRatios ratios_;
+
+    bool has_pass_ = false;  // field_ holds one, made with these:
+    Values values_;
+    std::uint64_t samples_ = 0;
+};
+
+}  // namespace
+
+FilterEntry pixel_entry() {
+    return {
+        {.name = "pixel",
+         .summary = "cross-bilateral filter of the high-variance light, blended by perceived variance",
+         .source = "Schwenk 3",
+         .parameters =
+             {{"t",
+               "",
+               "perceived variance that is accepted (0.01: a tenth of the light around)",
+               0.01,
+               1e-6,
+               10.0,
+               {}},
+              {"sigma_s", "px", "standard deviation of the spatial kernel", 8.0, 0.5, 32.0, {}},
+              {"sigma_c", "", "standard deviation in range colour", 0.02, 1e-4, 10.0, {}},
+              {"sigma_d", "m", "standard deviation in depth", 2.0, 1e-6, 1e9, {}},
+              {"sigma_n", "", "standard deviation of the difference of normals", 0.2, 1e-3, 10.0, {}},
+              {"method",
+               "",
+               "separable: fast; brute: the reference; atrous: three sparse iterations",
+               0,
+               0,
+               2,
+               {"separable", "brute", "atrous"}},
+              {"iterations", "", "of the separable method", 3, 1, 5, {}},
+              {"root",
+               "",
+               "blend factor without or with the covariance of both pictures",
+               1,
+               0,
+               1,
+               {"simple", "covariance"}},
+              {"adaptive", "", "kernel widths per pixel by variance (not atrous)", 1, 0, 1, {"off", "on"}},
+              {"adaptive_clamp", "", "widths within this factor of sigma_s / sqrt(n)", 4.0, 1.0, 64.0, {}},
+              {"spike_clamp",
+               "",
+               "unfiltered light within this factor of the filtered; 0: no clamp",
+               2.0,
+               0.0,
+               1e6,
+               {}},
+              {"aa_recovery",
+               "",
+               "mixes both sides of antialiased edges (separable)",
+               1,
+               0,
+               1,
+               {"off", "on"}},
+              {"normals", "", "normals as a further guide", 0, 0, 1, {"off", "on"}},
+              {"schedule",
+               "",
+               "filter only at 4, 8, 16, ... samples, blend between",
+               0,
+               0,
+               1,
+               {"off", "on"}}},
+         .channels =
+             [](const Values& values) {
+                 frame::ChannelSet channels{Channel::Radiance, Channel::LowVariance, Channel::HighVariance,
+                                            Channel::Depth, Channel::Range};
+                 if (is_on(values, Normals)) channels.insert(Channel::Normal);
+                 return channels;
+             },
+         .consistent = true},
+        [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> {
+            return std::make_unique<PixelFilter>();
+        }};
+}
+
+}  // namespace tessera::filter

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "master/filter/pixel/light.h"
+
+namespace tessera::filter::pixel {
+
+enum class Root { Simple, Covariance };
+
+struct Blend {
+    float threshold = 0.01f;  // t
+    Root root = Root::Simple;
+    float spike_clamp = 2.0f;  // c; 0: none
+};
+
+// Maps of one component for debugging; empty ones are not written.
+struct BlendMaps {
+    Planes* smoothed_variance = nullptr;  // of the luminance of the mean
+    Planes* blend = nullptr;              // s
+};
+
+// L_lv + s L_u' + (1 - s) L_f (Schwenk 3.1), s per pixel from the perceived variances. `filtered` has, as its
+// variance, that of one sample, and r; both are what they were at the filter's pass, and the number of
+// samples is today's. s = 1 gives the bits of the unfiltered picture; s = 0 where n < 2. Alpha is blended
+// with the same s. False: stopped.
+bool compose(const Inputs& inputs, const Light& light, const Field& filtered, const Blend& blend,
+             Planes& picture, const BlendMaps& maps, RunContext& context);
+
+}  // namespace tessera::filter::pixel

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "master/filter/pixel/gather.h"
+
+namespace tessera::filter::pixel {
+
+// A pixel that an antialiased edge crosses finds no neighbours that look like it. In the direction of a sweep
+// it is taken for a mixture of the two regions beside it (Schwenk 3.6.5): their colours P0 and P2 are the two
+// sides of a Sobel operator, and `coverage` is the place of the pixel's own colour on the way from P0 to P2.
+// `belief` is the range weight of its distance to that way; it falls to 0 where P0 and P2 are less than 2
+// sigma_c apart, since the two-sided filter accepts both then. The note leaves depth and normal of P0 and P2
+// open: they are those of the next pixel on that side.
+template <std::size_t Features>
+struct EdgeModel {
+    std::array<Lanes, Features> low, high;
+    Lanes coverage, belief;
+};
+
+// `before`, `after`: floats to the neighbours across the direction.
+template <std::size_t Features>
+inline EdgeModel<Features> edge_model(const std::array<const float*, Features>& sources,
+                                      const std::array<Lanes, Features>& target, std::ptrdiff_t stride,
+                                      std::ptrdiff_t before, std::ptrdiff_t after) {
+    EdgeModel<Features> model;
+    const auto side = [&](const float* row) {
+        return 0.25f * (load(row + before) + load(row + after)) + 0.5f * load(row);
+    };
+    Lanes squared{}, along{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        model.low[k] = side(sources[k] - stride);
+        model.high[k] = side(sources[k] + stride);
+        const Lanes way = model.high[k] - model.low[k];
+        squared += way * way;
+        along += way * (target[k] - model.low[k]);
+    }
+    for (std::size_t k = 3; k < Features; ++k) {
+        model.low[k] = load(sources[k] - stride);
+        model.high[k] = load(sources[k] + stride);
+    }
+    model.coverage = smaller(larger(along / larger(squared, splat(1e-30f)), Lanes{}), splat(1.0f));
+    Lanes off{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Lanes way = model.high[k] - model.low[k];
+        const Lanes beside = target[k] - model.low[k] - model.coverage * way;
+        off += beside * beside;
+    }
+    // Squared distances are in units of 2 sigma_c^2 / log2(e): from 2 to 3 sigma_c the belief grows to whole.
+    constexpr float Two = 4.0f * 0.5f * 1.44269504f, Three = 9.0f * 0.5f * 1.44269504f;
+    const Lanes distinct = smaller(larger((squared - Two) / (Three - Two), Lanes{}), splat(1.0f));
+    model.belief = distinct * exp2_negative(off);
+    return model;
+}
+
+}  // namespace tessera::filter::pixel

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "master/filter/pixel/guide.h"
+
+namespace tessera::filter::pixel {
+
+// What is filtered. Components 0-2 the high-variance light, 3 its variance, 4 alpha where there is one; and
+// how much of the variance of a pixel is left (r = sum of squared normalised weights, Schwenk 3.5).
+struct Field {
+    PaddedPlanes values;
+    PaddedPlanes reduction;
+    static constexpr std::uint32_t Variance = 3, Alpha = 4;
+
+    void fit(std::uint32_t width, std::uint32_t height, std::uint32_t components) {
+        values.fit(width, height, components);
+        reduction.fit(width, height, 1);
+    }
+};
+
+// Kernel widths: standard deviations in pixels, 1 component, 0 beside the picture.
+using Widths = PaddedPlanes;
+
+enum class Method { Separable, Brute, ATrous };
+
+}  // namespace tessera::filter::pixel

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <array>
+#include <type_traits>
+
+#include "master/filter/pixel/field.h"
+#include "master/filter/pixel/lanes.h"
+
+// The inner loop of every method: weighted sums over the neighbours of eight pixels (Schwenk 3.6).
+namespace tessera::filter::pixel {
+
+// Total weights below it mean that nothing was found: a rejected neighbour has 2^-125.
+inline constexpr float LeastWeight = 1e-20f;
+
+// Rows of the pictures at the eight pixels; a neighbour is so many floats away in all of them.
+template <std::size_t Features, std::size_t Layers>
+struct Neighbourhood {
+    std::array<const float*, Features> sources;
+    std::array<const float*, Layers> values;
+    const float* reduction;
+};
+
+// Unnormalised: weights, values times weights, and r times squared weights.
+template <std::size_t Layers>
+struct Sums {
+    Lanes weight{}, reduction{};
+    std::array<Lanes, Layers> values{};
+};
+
+// Adds the neighbour `at` floats away; `cost` is -log2 of its spatial weight.
+template <std::size_t Features, std::size_t Layers>
+inline void add(const Neighbourhood<Features, Layers>& from, const std::array<Lanes, Features>& target,
+                Lanes cost, std::ptrdiff_t at, Sums<Layers>& sums) {
+    for (std::size_t k = 0; k < Features; ++k) {
+        const Lanes difference = load(from.sources[k] + at) - target[k];
+        cost += difference * difference;
+    }
+    const Lanes weight = exp2_negative(cost);
+    sums.weight += weight;
+    for (std::size_t k = 0; k < Layers; ++k) sums.values[k] += weight * load(from.values[k] + at);
+    sums.reduction += weight * weight * load(from.reduction + at);
+}
+
+// Adds the neighbours at first, first + spacing, ..., last steps of `stride` floats. `spread` = log2(e) /
+// (2 sigma^2) of the spatial weight, of which `across` is the squared distance in the other dimension.
+template <std::size_t Features, std::size_t Layers>
+inline void gather(const Neighbourhood<Features, Layers>& from, const std::array<Lanes, Features>& target,
+                   Lanes spread, float across, std::int64_t first, std::int64_t last, std::int64_t spacing,
+                   std::ptrdiff_t stride, Sums<Layers>& sums) {
+    for (std::int64_t d = first; d <= last; d += spacing) {
+        add(from, target, spread * (static_cast<float>(d * d) + across), d * stride, sums);
+    }
+}
+
+template <std::size_t Layers>
+struct Result {
+    std::array<Lanes, Layers> values;
+    Lanes reduction;
+};
+
+template <std::size_t Layers>
+inline Result<Layers> normalised(const Sums<Layers>& sums) {
+    Result<Layers> result;
+    const Lanes inverse = 1.0f / larger(sums.weight, splat(LeastWeight));
+    for (std::size_t k = 0; k < Layers; ++k) result.values[k] = sums.values[k] * inverse;
+    result.reduction = sums.reduction * inverse * inverse;
+    return result;
+}
+
+template <std::size_t Features, std::size_t Layers>
+inline Neighbourhood<Features, Layers> neighbourhood(const Guide& guide, Sources sources, const Field& from,
+                                                     std::uint32_t y, std::int64_t x) {
+    Neighbourhood<Features, Layers> near;
+    for (std::uint32_t k = 0; k < Features; ++k) near.sources[k] = guide.source_row(k, y, sources) + x;
+    for (std::uint32_t k = 0; k < Layers; ++k) near.values[k] = from.values.row(k, y) + x;
+    near.reduction = from.reduction.row(0, y) + x;
+    return near;
+}
+
+template <std::size_t Features>
+inline std::array<Lanes, Features> target_of(const Guide& guide, std::uint32_t y, std::int64_t x) {
+    std::array<Lanes, Features> target;
+    for (std::uint32_t k = 0; k < Features; ++k) target[k] = load(guide.target_row(k, y) + x);
+    return target;
+}
+
+// Where nothing was found the values stay as they are.
+template <std::size_t Features, std::size_t Layers>
+inline void keep_or_store(const Sums<Layers>& sums, const Neighbourhood<Features, Layers>& near,
+                          const Result<Layers>& result, std::uint32_t y, std::int64_t x, Field& to) {
+    const auto keep = sums.weight < LeastWeight;
+    for (std::uint32_t k = 0; k < Layers; ++k) {
+        store(to.values.row(k, y) + x, keep ? load(near.values[k]) : result.values[k]);
+    }
+    store(to.reduction.row(0, y) + x, keep ? load(near.reduction) : result.reduction);
+}
+
+// Calls body(features, layers) with the numbers of components as compile-time constants.
+template <class Body>
+bool with_shapes(const Guide& guide, const Field& field, const Body& body) {
+    const auto with = [&](auto features) {
+        switch (field.values.components()) {
+            case 2:
+                return body(features, std::integral_constant<std::size_t, 2>());
+            case 4:
+                return body(features, std::integral_constant<std::size_t, 4>());
+            default:
+                return body(features, std::integral_constant<std::size_t, 5>());
+        }
+    };
+    return guide.components() == 4 ? with(std::integral_constant<std::size_t, 4>())
+                                   : with(std::integral_constant<std::size_t, 7>());
+}
+
+}  // namespace tessera::filter::pixel

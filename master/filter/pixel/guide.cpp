@@ -1,0 +1,121 @@
+#include "master/filter/pixel/guide.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace tessera::filter::pixel {
+
+namespace {
+
+using frame::Channel;
+
+// Depths in units of their tolerance: hits, misses, and what is unlike both. Squares and their sums are
+// finite.
+constexpr float MostHit = 1e15f, Miss = 1e17f, Nowhere = 3e17f;
+constexpr float MostColor = 1e15f;
+
+// exp(-d^2 / (2 sigma^2)) = 2^-(scale d)^2.
+float scale_of(float sigma) {
+    return std::sqrt(0.5f * 1.44269504f) / std::max(sigma, 1e-12f);
+}
+
+constexpr std::int64_t Pad = 8;
+
+void repeat_border(float* row, std::uint32_t width) {
+    std::fill(row - Pad, row, row[0]);
+    std::fill(row + width, row + width + Pad, row[width - 1]);
+}
+
+void isolate_border(float* row, std::uint32_t width) {
+    std::fill(row - Pad, row, Nowhere);
+    std::fill(row + width, row + width + Pad, Nowhere);
+}
+
+// For each of `count` places the nearest for which has(i), ties to the lower one; `count` where there is
+// none.
+template <class Has, class Set>
+void nearest(std::size_t count, const Has& has, const Set& set) {
+    std::size_t before = count, behind = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (has(i)) before = i;
+        if (behind <= i) {
+            behind = i;
+            while (behind < count && !has(behind)) ++behind;
+        }
+        const bool later = before == count || (behind < count && behind - i < i - before);
+        set(i, later ? behind : before);
+    }
+}
+
+}  // namespace
+
+void Holes::find(const Inputs& inputs) {
+    const std::span<const float> counts = inputs.counts.plane(0);
+    any_ = std::ranges::any_of(counts, [](float n) { return !(n > 0.0f); });
+    if (!any_) return;
+    const std::size_t width = inputs.width, height = inputs.height;
+    origin_.resize(width * height);
+    const auto is_empty = [&](std::size_t y) {
+        const auto row = counts.subspan(y * width, width);
+        return std::ranges::none_of(row, [](float n) { return n > 0.0f; });
+    };
+    nearest(
+        height, [&](std::size_t y) { return !is_empty(y); },
+        [&](std::size_t y, std::size_t row) {
+            nearest(
+                width, [&](std::size_t x) { return row < height && counts[row * width + x] > 0.0f; },
+                [&](std::size_t x, std::size_t column) {
+                    const std::size_t from = row < height ? row * width + column : y * width + x;
+                    origin_[y * width + x] = static_cast<std::uint32_t>(from);
+                });
+        });
+}
+
+void Guide::prepare(const Inputs& inputs, const Holes& holes, const Tolerance& tolerance,
+                    RunContext& context) {
+    const bool normals = tolerance.normal > 0.0f && inputs.has(Channel::Normal);
+    features_.fit(inputs.width, inputs.height, normals ? 7 : 4);
+    holes_ = holes.any();
+    if (holes_) source_depth_.fit(inputs.width, inputs.height, 1);
+
+    const auto fill = [&](std::uint32_t component, std::uint32_t y, std::span<const float> plane,
+                          const auto& scaled) {
+        float* to = features_.row(component, y);
+        const std::size_t first = std::size_t{y} * inputs.width;
+        if (plane.empty()) std::fill(to, to + inputs.width, 0.0f);
+        for (std::size_t x = 0; x < inputs.width && !plane.empty(); ++x) to[x] = scaled(plane[first + x]);
+        for (std::size_t x = 0; holes_ && x < inputs.width && !plane.empty(); ++x) {
+            to[x] = scaled(plane[holes.origin(first + x)]);
+        }
+    };
+    const auto component = [&](Channel channel, std::uint32_t c) {
+        return inputs.has(channel) ? inputs.mean(channel).plane(c) : std::span<const float>();
+    };
+    for_rows(context, inputs.height, [&](std::uint32_t y) {
+        const auto vector = [&](Channel channel, std::uint32_t first, float scale) {
+            for (std::uint32_t c = 0; c < 3; ++c) {
+                fill(first + c, y, component(channel, c), [scale](float value) {
+                    return std::min(std::max(scale * value, -MostColor), MostColor);
+                });
+                repeat_border(features_.row(first + c, y), inputs.width);
+            }
+        };
+        vector(Channel::Range, 0, scale_of(tolerance.color));
+        if (normals) vector(Channel::Normal, Depth + 1, scale_of(tolerance.normal));
+        const float scale = scale_of(tolerance.depth);
+        fill(Depth, y, component(Channel::Depth, 0), [scale](float depth) {
+            const float hit = std::min(scale * depth, MostHit);
+            return depth < std::numeric_limits<float>::infinity() ? hit : Miss;
+        });
+        isolate_border(features_.row(Depth, y), inputs.width);
+        if (!holes_) return;
+        const float* depth = features_.row(Depth, y);
+        float* source = source_depth_.row(0, y);
+        for (std::size_t x = 0; x < inputs.width; ++x) {
+            source[x] = inputs.counts.row(0, y)[x] > 0.0f ? depth[x] : Nowhere;
+        }
+        isolate_border(source, inputs.width);
+    });
+}
+
+}  // namespace tessera::filter::pixel
