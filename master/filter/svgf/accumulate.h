@@ -16,7 +16,7 @@ inline constexpr std::uint32_t MeanLuminance = 0, SampleVariance = 1, Age = 2, M
 inline constexpr std::uint32_t HistoryMoments = 3, HistoryCount = HistoryMoments + MomentCount;
 
 struct Accumulation {
-    float r0 = 0.1f;        // least share of a new sample (E-D3)
+    float r0 = 0.1f;         // least share of a new sample (E-D3)
     float age_scale = 1.0f;  // what a changed light leaves of the history's age
     float z0 = 0.0f;         // deviations that light may differ before history is doubted; 0: not tested
 };

@@ -74,6 +74,59 @@ bool find_motion(const Guides& now, const Guides& before, Motion& motion, RunCon
     });
 }
 
+namespace {
+
+// The tests of one pixel against pixels of the previous picture, by raw pointers: this is the one loop of the
+// filter that cannot be vectorised.
+class SurfaceTest {
+  public:
+    SurfaceTest(const Guides& now, const Guides& before, const SurfaceTests& tests)
+        : now_(now),
+          before_ids_(before.ids.data()),
+          before_inverse_(before.inverse_depth.plane(0).data()),
+          before_normal_(before.normal.plane(0).data()),
+          pixels_(before.inverse_depth.pixel_count()),
+          tests_(tests) {}
+
+    void set_pixel(std::uint32_t x, std::uint32_t y, float expected) {
+        x_ = x;
+        y_ = y;
+        const std::size_t i = std::size_t{y} * now_.inverse_depth.width() + x;
+        id_ = now_.ids[i];
+        expected_ = expected;
+        tolerance_ = tests_.depth * expected + tests_.depth_slopes * (std::fabs(now_.slope.plane(0)[i]) +
+                                                                      std::fabs(now_.slope.plane(1)[i]));
+        for (std::uint32_t c = 0; c < 3; ++c) normal_[c] = now_.normal.plane(c)[i];
+        turn_ = -1.0f;
+    }
+
+    bool passes(std::size_t j) {
+        if (before_ids_[j] != id_ || !(std::fabs(before_inverse_[j] - expected_) <= tolerance_)) return false;
+        float square = 0.0f;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const float d = before_normal_[c * pixels_ + j] - normal_[c];
+            square += d * d;
+        }
+        const float least = tests_.normal_slopes * 0.01f;
+        if (square <= least * least) return true;
+        // Rarely asked for, so not before.
+        if (turn_ < 0.0f) turn_ = least + tests_.normal_slopes * normal_change(now_.normal, x_, y_);
+        return square <= turn_ * turn_;
+    }
+
+  private:
+    const Guides& now_;
+    const std::uint32_t* before_ids_;
+    const float *before_inverse_, *before_normal_;
+    std::size_t pixels_;
+    SurfaceTests tests_;
+    std::uint32_t x_ = 0, y_ = 0, id_ = 0;
+    float expected_ = 0.0f, tolerance_ = 0.0f, turn_ = -1.0f;
+    std::array<float, 3> normal_{};
+};
+
+}  // namespace
+
 bool reproject(const Guides& now, const Guides& before, const Motion& motion, const SurfaceTests& tests,
                std::span<const HistoryView> from, Planes& to, RunContext& context) {
     const std::uint32_t width = now.inverse_depth.width(), height = now.inverse_depth.height();
@@ -82,80 +135,75 @@ bool reproject(const Guides& now, const Guides& before, const Motion& motion, co
         to = Planes(width, height, components);
     }
     const HistoryView ages = from.back();
+    const auto w = static_cast<std::int32_t>(width), h = static_cast<std::int32_t>(height);
     return for_rows(context, height, [&](std::uint32_t y) {
+        SurfaceTest test(now, before, tests);
+        const float *to_x = motion.position.row(0, y), *to_y = motion.position.row(1, y);
+        const float* expected = motion.inverse_depth.row(0, y);
+        const auto inside = [&](std::int32_t tx, std::int32_t ty) {
+            return tx >= 0 && ty >= 0 && tx < w && ty < h;
+        };
+        const auto passes = [&](std::int32_t tx, std::int32_t ty) {
+            return inside(tx, ty) &&
+                   test.passes(static_cast<std::size_t>(ty) * width + static_cast<std::size_t>(tx));
+        };
+        const auto at = [](const HistoryView& view, std::int32_t tx, std::int32_t ty) {
+            return view
+                .values[static_cast<std::ptrdiff_t>(ty) * static_cast<std::ptrdiff_t>(view.pitch) + tx];
+        };
         for (std::uint32_t x = 0; x < width; ++x) {
-            const std::size_t i = std::size_t{y} * width + x;
-            const float expected = motion.inverse_depth.plane(0)[i];
-            const float tolerance =
-                tests.depth * expected +
-                tests.depth_slopes * (std::fabs(now.slope.plane(0)[i]) + std::fabs(now.slope.plane(1)[i]));
-            const float turned =
-                now.ids[i] == 0 ? 0.0f : tests.normal_slopes * (normal_change(now.normal, x, y) + 0.01f);
-            const auto valid = [&](std::int64_t tx, std::int64_t ty) {
-                if (tx < 0 || ty < 0 || tx >= width || ty >= height) return false;
-                const auto j = static_cast<std::size_t>(ty) * width + static_cast<std::size_t>(tx);
-                if (before.ids[j] != now.ids[i]) return false;
-                if (std::fabs(before.inverse_depth.plane(0)[j] - expected) > tolerance) return false;
-                float square = 0.0f;
-                for (std::uint32_t c = 0; c < 3; ++c) {
-                    const float d = before.normal.plane(c)[j] - now.normal.plane(c)[i];
-                    square += d * d;
-                }
-                return square <= turned * turned;
-            };
-            const auto at = [&](const HistoryView& view, std::int64_t tx, std::int64_t ty) {
-                return view.values[static_cast<std::size_t>(ty) * view.pitch + static_cast<std::size_t>(tx)];
-            };
-            const auto clear = [&] {
-                for (std::uint32_t c = 0; c < components; ++c) to.plane(c)[i] = 0.0f;
-            };
-            const float px = motion.position.plane(0)[i], py = motion.position.plane(1)[i];
-            if (!(px > -2.0f && py > -2.0f && px < static_cast<float>(width) + 1.0f &&
-                  py < static_cast<float>(height) + 1.0f)) {
-                clear();
+            for (std::uint32_t c = 0; c < components; ++c) to.row(c, y)[x] = 0.0f;
+            const float px = to_x[x], py = to_y[x];
+            if (!(px > -2.0f && py > -2.0f && px < static_cast<float>(w + 1) &&
+                  py < static_cast<float>(h + 1))) {
                 continue;
             }
-            const auto x0 = static_cast<std::int64_t>(std::floor(px));
-            const auto y0 = static_cast<std::int64_t>(std::floor(py));
+            test.set_pixel(x, y, expected[x]);
+            const auto x0 = static_cast<std::int32_t>(px + 2.0f) - 2,
+                       y0 = static_cast<std::int32_t>(py + 2.0f) - 2;
             const float fx = px - static_cast<float>(x0), fy = py - static_cast<float>(y0);
-            std::array<float, 4> weights;
+            std::array<float, 4> weights{(1.0f - fx) * (1.0f - fy), fx * (1.0f - fy), (1.0f - fx) * fy,
+                                         fx * fy};
             float same = 0.0f, sum = 0.0f;  // of the taps on this surface; of those that know something
-            for (int t = 0; t < 4; ++t) {
-                const float w = (t % 2 ? fx : 1.0f - fx) * (t / 2 ? fy : 1.0f - fy);
-                const bool passes = w > 0.0f && valid(x0 + t % 2, y0 + t / 2);
-                const bool known = passes && at(ages, x0 + t % 2, y0 + t / 2) > 0.0f;
-                weights[static_cast<std::size_t>(t)] = known ? w : 0.0f;
-                same += passes ? w : 0.0f;
-                sum += weights[static_cast<std::size_t>(t)];
+            for (std::int32_t t = 0; t < 4; ++t) {
+                float& weight = weights[static_cast<std::size_t>(t)];
+                const bool on_surface = weight > 0.0f && passes(x0 + t % 2, y0 + t / 2);
+                same += on_surface ? weight : 0.0f;
+                if (!on_surface || !(at(ages, x0 + t % 2, y0 + t / 2) > 0.0f)) weight = 0.0f;
+                sum += weight;
             }
             if (sum >= LeastWeight) {
+                // A tap without weight may lie outside: it looks at the pixel of another one.
+                std::array<std::int32_t, 4> tx, ty;
+                std::size_t some = 0;
+                while (weights[some] == 0.0f) ++some;
+                for (std::size_t t = 0; t < 4; ++t) {
+                    const auto used = static_cast<std::int32_t>(weights[t] > 0.0f ? t : some);
+                    tx[t] = x0 + used % 2;
+                    ty[t] = y0 + used / 2;
+                    weights[t] /= sum;
+                }
                 for (std::uint32_t c = 0; c < components; ++c) {
-                    float value = 0.0f;
-                    for (int t = 0; t < 4; ++t) {
-                        const float w = weights[static_cast<std::size_t>(t)];
-                        if (w > 0.0f) value += w * at(from[c], x0 + t % 2, y0 + t / 2);
-                    }
-                    to.plane(c)[i] = value / sum;
+                    const HistoryView& view = from[c];
+                    to.row(c, y)[x] =
+                        (weights[0] * at(view, tx[0], ty[0]) + weights[1] * at(view, tx[1], ty[1])) +
+                        (weights[2] * at(view, tx[2], ty[2]) + weights[3] * at(view, tx[3], ty[3]));
                 }
                 continue;
             }
             // Neighbours stand in for a surface that was missed, not for one that is known to be unknown.
-            if (same >= LeastWeight || motion.identity) {
-                clear();
-                continue;
-            }
-            const auto near_x = static_cast<std::int64_t>(std::lround(px));
-            const auto near_y = static_cast<std::int64_t>(std::lround(py));
-            clear();
+            if (same >= LeastWeight || motion.identity) continue;
+            const auto near_x = static_cast<std::int32_t>(px + 2.5f) - 2;
+            const auto near_y = static_cast<std::int32_t>(py + 2.5f) - 2;
             float found = 0.0f;
-            for (std::int64_t ty = near_y - 1; ty <= near_y + 1; ++ty) {
-                for (std::int64_t tx = near_x - 1; tx <= near_x + 1; ++tx) {
-                    if (!valid(tx, ty) || !(at(ages, tx, ty) > 0.0f)) continue;
+            for (std::int32_t ty = near_y - 1; ty <= near_y + 1; ++ty) {
+                for (std::int32_t tx = near_x - 1; tx <= near_x + 1; ++tx) {
+                    if (!passes(tx, ty) || !(at(ages, tx, ty) > 0.0f)) continue;
                     found += 1.0f;
-                    for (std::uint32_t c = 0; c < components; ++c) to.plane(c)[i] += at(from[c], tx, ty);
+                    for (std::uint32_t c = 0; c < components; ++c) to.row(c, y)[x] += at(from[c], tx, ty);
                 }
             }
-            for (std::uint32_t c = 0; c < components && found > 1.0f; ++c) to.plane(c)[i] /= found;
+            for (std::uint32_t c = 0; c < components && found > 1.0f; ++c) to.row(c, y)[x] /= found;
         }
     });
 }
