@@ -8,7 +8,7 @@ namespace tessera::filter {
 
 namespace {
 
-enum Term : std::uint32_t { Gain, Distance, GainColumn, DistanceColumn, TermCount };
+enum Term : std::uint32_t { Gain, Distance, TermCount };
 
 // The part of one row: 0 where the variance is unknown, so that those pixels have no say.
 void fill_terms(const Inputs& inputs, frame::Channel channel, const Planes& filtered,
@@ -82,8 +82,10 @@ bool Fade::weigh(const Inputs& inputs, frame::Channel channel, const Planes& fil
                                    terms_.row(Distance, y));
                     }) &&
            for_rows(context, inputs.height, [&](std::uint32_t y) {
-               float* gain = terms_.row(GainColumn, y);
-               float* distance = terms_.row(DistanceColumn, y);
+               std::vector<float>& columns = columns_.local();
+               columns.resize(2 * std::size_t{inputs.width});
+               float* gain = columns.data();
+               float* distance = gain + width;
                sum_column(terms_, Gain, y, radius_, gain);
                sum_column(terms_, Distance, y, radius_, distance);
                const float* counts = inputs.counts.row(0, y);

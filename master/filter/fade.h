@@ -1,5 +1,7 @@
 #pragma once
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <span>
 #include <vector>
 
@@ -59,13 +61,14 @@ class Fade {
     const Planes& weights() const { return weights_; }
 
     // What apply moves.
-    static double bytes_per_pixel(std::uint32_t components) { return 88.0 + 12.0 * components; }
+    static double bytes_per_pixel(std::uint32_t components) { return 72.0 + 12.0 * components; }
 
   private:
     std::uint32_t radius_;
-    Planes terms_;  // numerator and denominator, per pixel and summed down the columns
+    Planes terms_;  // numerator and denominator per pixel
     Planes weights_;
     std::vector<double> row_sums_;
+    tbb::enumerable_thread_specific<std::vector<float>> columns_;  // their sums down the columns of a row
 };
 
 }  // namespace tessera::filter

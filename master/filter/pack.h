@@ -1,5 +1,7 @@
 #pragma once
 
+#include <immintrin.h>
+
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -31,10 +33,10 @@ inline IntPack bits(Pack v) {
 }
 // Of two numbers one of which is NaN: the second.
 inline Pack max(Pack a, Pack b) {
-    return a > b ? a : b;
+    return _mm256_max_ps(a, b);
 }
 inline Pack min(Pack a, Pack b) {
-    return a < b ? a : b;
+    return _mm256_min_ps(a, b);
 }
 inline Pack abs(Pack v) {
     return bits(bits(v) & 0x7fffffff);
@@ -44,12 +46,14 @@ inline Pack where_equal(Pack a, Pack b, Pack v) {
     return bits(bits(v) & (a == b));
 }
 
-// 2^-d for d >= 0, exactly 1 at 0; relative error below 3e-6; 2^-126 beyond 126. A polynomial of degree 4 on
+// 2^-d for d >= 0, exactly 1 at 0; relative error below 3e-6; exactly 0 from 127 on. A polynomial of degree 4
+// on
 // [-1/2, 1/2] (minimax by reweighted least squares) times a power of two.
 inline Pack exp2_negative(Pack d) {
     const Pack magic = all(12582912.0f);  // 1.5 * 2^23: the sum's low bits are the nearest integer
-    const Pack z = magic - min(d, all(126.0f));
-    const Pack r = (magic - z) - min(d, all(126.0f));
+    const Pack near = min(all(127.0f), d);
+    const Pack z = magic - near;
+    const Pack r = (magic - z) - near;
     Pack p = all(0.00958285299f);
     p = p * r + 0.0559064247f;
     p = p * r + 0.240240986f;

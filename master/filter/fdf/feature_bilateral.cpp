@@ -14,31 +14,31 @@ using frame::Channel;
 
 constexpr float Log2E = 1.44269504f;
 
-// Background shading is moved to the other side of 0 by more than a weight of 2^-126.
+// Background shading is moved to the other side of 0 so far that weights are 0 (exp2_negative).
 constexpr float Apart = 128.0f;
 
 // Planes of a row of the window, one after the other. Colours follow, times the count.
 enum Window : std::uint32_t { Texture = 0, Normal = 3, Shading = 6, Count = 7, Color = 8 };
 
-struct Layout {
-    Layout(const Tile& tile, std::uint32_t radius, std::uint32_t components)
-        : pitch((tile.width + 2 * radius + 2 * PackSize - 1) / PackSize * PackSize),
-          rows(tile.height + 2 * radius),
-          stride(std::size_t{pitch} * (Color + components)) {}
-    std::uint32_t pitch, rows;
-    std::size_t stride;
-};
+// Widths are those of the largest window, so that the planes of a pixel have fixed distances.
+constexpr std::size_t Pitch = Tiles::Width + 2 * FeatureMaxRadius + PackSize;
+
+constexpr std::size_t row_stride(std::uint32_t components) {
+    return Pitch * (Color + components);
+}
 
 float divisor(float albedo) {
     return albedo > DemodulationFloor ? albedo : 1.0f;
 }
 
 void copy_features(const Inputs& inputs, const Planes& shading, const Planes& classes, const Tile& tile,
-                   const FeatureSettings& settings, const Layout& layout, float* window) {
+                   const FeatureSettings& settings, float* window) {
+    const std::uint32_t columns = tile.packs() * PackSize + 2 * settings.radius;
+    const std::uint32_t rows = tile.height + 2 * settings.radius;
     const auto copy = [&](std::uint32_t plane, const auto& value) {
         copy_window(inputs.width, inputs.height, std::int64_t{tile.x} - settings.radius,
-                    std::int64_t{tile.y} - settings.radius, layout.pitch, layout.rows,
-                    window + std::size_t{plane} * layout.pitch, layout.stride, 0.0f,
+                    std::int64_t{tile.y} - settings.radius, columns, rows, window + plane * Pitch,
+                    row_stride(inputs.color_components()), 0.0f,
                     [&](std::uint32_t y, std::uint32_t first, std::uint32_t last, float* to) {
                         const std::size_t row = std::size_t{y} * inputs.width;
                         for (std::uint32_t x = first; x < last; ++x) to[x - first] = value(row + x);
@@ -74,66 +74,67 @@ void copy_features(const Inputs& inputs, const Planes& shading, const Planes& cl
     }
 }
 
-// Sums of eight pixels over their windows: weights and colours.
+// Of eight pixels over their windows: the weight, then the colours.
 template <std::uint32_t Components>
-struct Sums {
-    Pack weight, color[Components];
-};
+using Sums = std::array<Pack, Components + 1>;
 
+// The sums of the eight pixels at (x, y), taken by lines, so that rounding grows with 17 + 17 terms and not
+// 289.
 template <std::uint32_t Components>
-Sums<Components> gather(const float* window, const Layout& layout, std::uint32_t radius, std::uint32_t x,
-                        std::uint32_t y) {
-    const std::size_t pitch = layout.pitch;
-    const float* p = window + (y + radius) * layout.stride + x + radius;
-    const Pack t0 = load(p), t1 = load(p + pitch), t2 = load(p + 2 * pitch);
-    const Pack n0 = load(p + Normal * pitch), n1 = load(p + (Normal + 1) * pitch),
-               n2 = load(p + (Normal + 2) * pitch);
-    const Pack s = load(p + Shading * pitch), n = load(p + Count * pitch);
+Sums<Components> gather(const float* window, std::uint32_t radius, std::uint32_t x, std::uint32_t y) {
+    constexpr std::size_t Stride = row_stride(Components);
+    const float* p = window + (y + radius) * Stride + x + radius;
+    const auto own = [p](std::uint32_t plane) { return load(p + plane * Pitch); };
+    const Pack t0 = own(Texture), t1 = own(Texture + 1), t2 = own(Texture + 2);
+    const Pack n0 = own(Normal), n1 = own(Normal + 1), n2 = own(Normal + 2);
+    const Pack s = own(Shading), n = own(Count);
     Sums<Components> sums{};
-    const float* row = window + y * layout.stride + x;
-    for (std::uint32_t j = 0; j <= 2 * radius; ++j, row += layout.stride) {
-        Sums<Components> line{};  // summed by lines, so that rounding grows with 17 + 17 terms and not 289
-        const float* end = row + 2 * radius;
-        for (const float* q = row; q <= end; ++q) {
-            const Pack count = load(q + Count * pitch);
-            Pack d = abs(s - load(q + Shading * pitch)) * min(n, count);
-            d = max(max(d, abs(t0 - load(q))), max(abs(t1 - load(q + pitch)), abs(t2 - load(q + 2 * pitch))));
-            d = max(max(d, abs(n0 - load(q + Normal * pitch))),
-                    max(abs(n1 - load(q + (Normal + 1) * pitch)), abs(n2 - load(q + (Normal + 2) * pitch))));
-            const Pack w = exp2_negative(d);
-            line.weight += w * count;
+    const float* row = window + y * Stride + x;
+    for (std::uint32_t j = 0; j <= 2 * radius; ++j, row += Stride) {
+        Sums<Components> line{};
+        for (const float* q = row; q <= row + 2 * radius; ++q) {
+            const auto distance = [q](Pack own_value, std::uint32_t plane) {
+                return abs(own_value - load(q + plane * Pitch));
+            };
+            const Pack count = load(q + Count * Pitch);
+            const Pack texture =
+                max(max(distance(t0, Texture), distance(t1, Texture + 1)), distance(t2, Texture + 2));
+            const Pack normal =
+                max(max(distance(n0, Normal), distance(n1, Normal + 1)), distance(n2, Normal + 2));
+            const Pack shading = distance(s, Shading) * min(n, count);
+            const Pack w = exp2_negative(max(max(texture, normal), shading));
+            line[0] += w * count;
             for (std::uint32_t c = 0; c < Components; ++c) {
-                line.color[c] += w * load(q + (Color + c) * pitch);
+                line[c + 1] += w * load(q + (Color + c) * Pitch);
             }
         }
-        sums.weight += line.weight;
-        for (std::uint32_t c = 0; c < Components; ++c) sums.color[c] += line.color[c];
+        for (std::uint32_t i = 0; i <= Components; ++i) sums[i] += line[i];
     }
     return sums;
 }
 
 template <std::uint32_t Components>
-void run_tile(const Inputs& inputs, const Tile& tile, const Layout& layout, const FeatureSettings& settings,
-              const float* window, Planes& out, Planes& self_weight) {
+void run_tile(const Inputs& inputs, const Tile& tile, const FeatureSettings& settings, const float* window,
+              Planes& out, Planes& self_weight) {
     const bool demodulated = settings.demodulation == Demodulation::On && inputs.has(Channel::Albedo);
-    for (std::uint32_t y = 0; y < tile.height; ++y) {
-        const float* counts = inputs.counts.row(0, tile.y + y) + tile.x;
-        for (std::uint32_t pack = 0; pack < tile.packs(); ++pack) {
-            const Sums<Components> sums =
-                gather<Components>(window, layout, settings.radius, pack * PackSize, y);
-            const std::uint32_t first = pack * PackSize, last = std::min(tile.width, first + PackSize);
-            for (std::uint32_t x = first; x < last; ++x) {
-                const bool known = counts[x] > 0.0f;
-                const float inverse = known ? 1.0f / sums.weight[x - first] : 0.0f;
-                self_weight.row(0, tile.y + y)[tile.x + x] = counts[x] * inverse;
-                for (std::uint32_t c = 0; c < Components; ++c) {
-                    float value = sums.color[c][x - first] * inverse;
-                    if (demodulated && c < 3) {
-                        value *= divisor(inputs.mean(Channel::Albedo).row(c, tile.y + y)[tile.x + x]);
-                    }
-                    out.row(c, tile.y + y)[tile.x + x] = value;
+    const auto put = [&](const Sums<Components>& sums, std::uint32_t x, std::uint32_t y) {
+        const std::size_t pixel = std::size_t{tile.y + y} * inputs.width + tile.x + x;
+        for (std::uint32_t i = 0; i < std::min(PackSize, tile.width - x); ++i) {
+            const float count = inputs.counts.plane(0)[pixel + i];
+            const float inverse = count > 0.0f ? 1.0f / sums[0][i] : 0.0f;
+            self_weight.plane(0)[pixel + i] = count * inverse;
+            for (std::uint32_t c = 0; c < Components; ++c) {
+                float value = sums[c + 1][i] * inverse;
+                if (demodulated && c < 3) {
+                    value *= divisor(inputs.mean(Channel::Albedo).plane(c)[pixel + i]);
                 }
+                out.plane(c)[pixel + i] = value;
             }
+        }
+    };
+    for (std::uint32_t y = 0; y < tile.height; ++y) {
+        for (std::uint32_t x = 0; x < tile.width; x += PackSize) {
+            put(gather<Components>(window, settings.radius, x, y), x, y);
         }
     }
 }
@@ -147,16 +148,13 @@ bool FeatureBilateral::run(const Inputs& inputs, const Planes& shading, const Pl
     const Tiles tiles(inputs.width, inputs.height);
     return for_rows(context, tiles.count(), [&](std::uint32_t index) {
         const Tile tile = tiles.tile(index);
-        const Layout layout(tile, settings.radius, components);
         std::vector<float>& window = scratch_.local();
-        const std::size_t size = layout.stride * layout.rows + PackSize;
-        if (window.size() < size) window.resize(size);
-        std::ranges::fill(window, 0.0f);
-        copy_features(inputs, shading, classes, tile, settings, layout, window.data());
+        window.assign(row_stride(components) * (Tiles::Height + 2 * FeatureMaxRadius) + PackSize, 0.0f);
+        copy_features(inputs, shading, classes, tile, settings, window.data());
         if (components == 4) {
-            run_tile<4>(inputs, tile, layout, settings, window.data(), out, self_weight);
+            run_tile<4>(inputs, tile, settings, window.data(), out, self_weight);
         } else {
-            run_tile<3>(inputs, tile, layout, settings, window.data(), out, self_weight);
+            run_tile<3>(inputs, tile, settings, window.data(), out, self_weight);
         }
     });
 }
