@@ -154,7 +154,8 @@ TEST(FdfNlMeans, WithoutNoiseNothingCrossesAnEdge) {  // LT8
     }
     std::ranges::fill(shading.values.values(), 0.7f);
     for (const NlmForm form : {NlmForm::Standard, NlmForm::Thesis}) {
-        for (const float v : nl_means(shading, {.form = form}).values()) ASSERT_NEAR(v, 0.7f, 1e-6);
+        const auto made = nl_means(shading, {.form = form});
+        for (const float v : made.values()) ASSERT_NEAR(v, 0.7f, 1e-6);
     }
 }
 
@@ -343,7 +344,8 @@ TEST(Fdf, ColourHasNoSayInTheWeights) {  // LT13
 
 TEST(Fdf, StaysWithinTheValuesOfItsWindow) {
     const Inputs inputs = varied(70, 40, false);
-    for (const float v : bilateral(inputs, {}).picture.values()) {
+    const auto made = bilateral(inputs, {});
+    for (const float v : made.picture.values()) {
         ASSERT_GE(v, 0.0f);
         ASSERT_LE(v, 1.0f + 1e-6f);
     }
