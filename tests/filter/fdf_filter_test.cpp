@@ -402,8 +402,8 @@ TEST(Fdf, WithoutFeaturesItSaysSoAndStillFilters) {
         mean(inputs, channel) = {};
         variance(inputs, channel) = {};
     }
-    for (const float v : run_filter("fdf:demodulate=on", inputs).picture.values())
-        ASSERT_NEAR(v, 0.5f, 1e-6f);
+    const Output out = run_filter("fdf:demodulate=on", inputs);
+    for (const float v : out.picture.values()) ASSERT_NEAR(v, 0.5f, 1e-6f);
 }
 
 TEST(Fdf, OneHoleInAnObjectTakesTheObjectsColour) {
