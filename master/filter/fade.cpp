@@ -73,6 +73,7 @@ bool Fade::weigh(const Inputs& inputs, frame::Channel channel, const Planes& fil
                  std::span<const float> self_weight, RunContext& context) {
     shape(terms_, inputs, TermCount);
     shape(weights_, inputs, 1);
+    columns_.reserve(context, 2 * std::size_t{inputs.width});
     const auto width = static_cast<std::int64_t>(inputs.width);
     const auto radius = static_cast<std::int64_t>(radius_);
     const float floor = floor_of(filtered, row_sums_, context);
@@ -82,9 +83,7 @@ bool Fade::weigh(const Inputs& inputs, frame::Channel channel, const Planes& fil
                                    terms_.row(Distance, y));
                     }) &&
            for_rows(context, inputs.height, [&](std::uint32_t y) {
-               std::vector<float>& columns = columns_.local();
-               columns.resize(2 * std::size_t{inputs.width});
-               float* gain = columns.data();
+               float* gain = columns_.local();
                float* distance = gain + width;
                sum_column(terms_, Gain, y, radius_, gain);
                sum_column(terms_, Distance, y, radius_, distance);

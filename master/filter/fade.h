@@ -1,11 +1,9 @@
 #pragma once
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <span>
 #include <vector>
 
-#include "mediator/filter/filter.h"
+#include "master/filter/scratch.h"
 
 namespace tessera::filter {
 
@@ -68,7 +66,7 @@ class Fade {
     Planes terms_;  // numerator and denominator per pixel
     Planes weights_;
     std::vector<double> row_sums_;
-    tbb::enumerable_thread_specific<std::vector<float>> columns_;  // their sums down the columns of a row
+    Scratch columns_;  // their sums down the columns of a row
 };
 
 }  // namespace tessera::filter

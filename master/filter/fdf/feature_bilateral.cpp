@@ -44,8 +44,9 @@ void copy_features(const Inputs& inputs, const Planes& shading, const Planes& cl
                         for (std::uint32_t x = first; x < last; ++x) to[x - first] = value(row + x);
                     });
     };
-    const auto copy_scaled = [&](std::uint32_t plane, std::span<const float> from, float scale) {
-        const float* values = from.data();
+    const auto copy_scaled = [&](std::uint32_t plane, const Planes& from, std::uint32_t c, float scale) {
+        if (from.empty()) return copy(plane, [](std::size_t) { return 0.0f; });
+        const float* values = from.plane(c).data();
         copy(plane, [=](std::size_t i) { return values[i] * scale; });
     };
     const float* counts = inputs.counts.plane(0).data();
@@ -54,8 +55,8 @@ void copy_features(const Inputs& inputs, const Planes& shading, const Planes& cl
     const Planes& albedo = inputs.mean(Channel::Albedo);
     const Planes& normal = inputs.mean(Channel::Normal);
     for (std::uint32_t c = 0; c < 3; ++c) {
-        if (!albedo.empty()) copy_scaled(Texture + c, albedo.plane(c), Log2E / settings.t_max);
-        if (!normal.empty()) copy_scaled(Normal + c, normal.plane(c), 0.5f * Log2E / settings.n_max);
+        copy_scaled(Texture + c, albedo, c, Log2E / settings.t_max);
+        copy_scaled(Normal + c, normal, c, 0.5f * Log2E / settings.n_max);
     }
     constexpr auto Background = static_cast<float>(PixelClass::Background);
     const float scale = Log2E / settings.s_max;
@@ -146,15 +147,15 @@ bool FeatureBilateral::run(const Inputs& inputs, const Planes& shading, const Pl
                            RunContext& context) {
     const std::uint32_t components = inputs.color_components();
     const Tiles tiles(inputs.width, inputs.height);
+    scratch_.reserve(context, row_stride(components) * (Tiles::Height + 2 * FeatureMaxRadius) + PackSize);
     return for_rows(context, tiles.count(), [&](std::uint32_t index) {
         const Tile tile = tiles.tile(index);
-        std::vector<float>& window = scratch_.local();
-        window.assign(row_stride(components) * (Tiles::Height + 2 * FeatureMaxRadius) + PackSize, 0.0f);
-        copy_features(inputs, shading, classes, tile, settings, window.data());
+        float* const window = scratch_.local();
+        copy_features(inputs, shading, classes, tile, settings, window);
         if (components == 4) {
-            run_tile<4>(inputs, tile, settings, window.data(), out, self_weight);
+            run_tile<4>(inputs, tile, settings, window, out, self_weight);
         } else {
-            run_tile<3>(inputs, tile, settings, window.data(), out, self_weight);
+            run_tile<3>(inputs, tile, settings, window, out, self_weight);
         }
     });
 }

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include "master/filter/fdf/nl_means.h"
 
 namespace tessera::filter {
@@ -45,7 +43,7 @@ class FeatureBilateral {
              const FeatureSettings& settings, Planes& out, Planes& self_weight, RunContext& context);
 
   private:
-    tbb::enumerable_thread_specific<std::vector<float>> scratch_;
+    Scratch scratch_;
 };
 
 }  // namespace tessera::filter

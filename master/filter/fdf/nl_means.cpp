@@ -147,12 +147,12 @@ bool NlMeans::run(const Planes& values, const Planes& variances, const Planes& c
                                       ? function_for<NlmForm::Thesis>(settings.patch)
                                       : function_for<NlmForm::Standard>(settings.patch);
     const Tiles tiles(values.width(), values.height());
+    scratch_.reserve(context, Layout({0, 0, Tiles::Width, Tiles::Height}, settings).total());
     return for_rows(context, tiles.count(), [&](std::uint32_t index) {
         const Tile tile = tiles.tile(index);
         const Layout layout(tile, settings);
-        std::vector<float>& scratch = scratch_.local();
-        if (scratch.size() < layout.total()) scratch.resize(layout.total());
-        float* to = scratch.data();
+        float* const scratch = scratch_.local();
+        float* to = scratch;
         for (const Planes* plane : {&values, &variances, &classes}) {
             copy_window(plane->width(), plane->height(), std::int64_t{tile.x} - layout.halo,
                         std::int64_t{tile.y} - layout.halo, layout.columns, layout.rows, to, layout.columns,
@@ -163,7 +163,7 @@ bool NlMeans::run(const Planes& values, const Planes& variances, const Planes& c
             std::fill_n(to + std::size_t{layout.columns} * layout.rows, PackSize, 0.0f);
             to += layout.window_size();
         }
-        function(tile, layout, settings, scratch.data(), out);
+        function(tile, layout, settings, scratch, out);
     });
 }
 

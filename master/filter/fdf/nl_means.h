@@ -1,8 +1,6 @@
 #pragma once
 
-#include <tbb/enumerable_thread_specific.h>
-
-#include "mediator/filter/filter.h"
+#include "master/filter/scratch.h"
 
 namespace tessera::filter {
 
@@ -42,7 +40,7 @@ class NlMeans {
              const NlmSettings& settings, Planes& out, RunContext& context);
 
   private:
-    tbb::enumerable_thread_specific<std::vector<float>> scratch_;
+    Scratch scratch_;
 };
 
 }  // namespace tessera::filter
