@@ -6,6 +6,7 @@
 #include "master/filter/eaw.h"
 #include "master/filter/fdf.h"
 #include "master/filter/gauss.h"
+#include "master/filter/nlm.h"
 #include "master/filter/none.h"
 #include "master/filter/pixel.h"
 #include "master/filter/psvgf.h"
@@ -22,6 +23,7 @@ std::span<const FilterEntry> catalog() {
         gauss_entry(),
         bilateral_entry(),
         eaw_entry(),
+        nlm_entry(),
         statmc_entry(),
     };
     return Table;
