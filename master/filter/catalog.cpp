@@ -6,6 +6,7 @@
 #include "master/filter/eaw.h"
 #include "master/filter/fdf.h"
 #include "master/filter/gauss.h"
+#include "master/filter/guided.h"
 #include "master/filter/nlm.h"
 #include "master/filter/none.h"
 #include "master/filter/pixel.h"
@@ -24,6 +25,7 @@ std::span<const FilterEntry> catalog() {
         bilateral_entry(),
         eaw_entry(),
         nlm_entry(),
+        guided_entry(),
         statmc_entry(),
     };
     return Table;

@@ -46,14 +46,16 @@ void halve_with(const std::array<float, 2 * Reach>& weights, const Planes& in, P
                 const std::int64_t count = std::min(Stretch, half_width - first), left = 2 * first - 2,
                                    from = std::max<std::int64_t>(left, 0),
                                    to = std::min(left + 2 * count + 4, width);
-                float* middle = columns.data() - left;
+                const auto at = [&](std::int64_t x) -> float& {
+                    return columns[static_cast<std::size_t>(x - left)];
+                };
                 for (std::int64_t x = from; x < to; ++x) {
                     float sum = 0.0f;
                     for (std::size_t i = 0; i < rows.size(); ++i) sum += weights[i] * rows[i][x];
-                    middle[x] = sum;
+                    at(x) = sum;
                 }
-                for (std::int64_t x = left; x < from; ++x) middle[x] = middle[from];
-                for (std::int64_t x = to; x < left + 2 * count + 4; ++x) middle[x] = middle[to - 1];
+                for (std::int64_t x = left; x < from; ++x) at(x) = at(from);
+                for (std::int64_t x = to; x < left + 2 * count + 4; ++x) at(x) = at(to - 1);
                 float* halved = out.row(c, y) + first;
                 for (std::int64_t x = 0; x < count; ++x) {
                     float sum = 0.0f;
