@@ -112,9 +112,12 @@ void RandomEdits::tint(scene::SceneEditor& editor) {
             scene::Material material;
             material.base_color = {unit(), unit(), unit(), 1.0f};
             if (random_.below(3) == 0) material.emission = {unit(), unit(), unit()};
+            if (random_.below(3) == 0) material.transmission = unit();
+            if (random_.below(3) == 0) material.roughness = 0.0f;
+            using Field = scene::Material::Field;
             return editor.update<scene::Material>(
                 any(ObjectKind::Material),
-                {scene::Material::Field::BaseColor, scene::Material::Field::Emission}, material);
+                {Field::BaseColor, Field::Emission, Field::Transmission, Field::Roughness}, material);
         }
         case 1:
             if (const ObjectId id = any(ObjectKind::Light)) {
