@@ -42,30 +42,6 @@ LightRecord::LightRecord(const view::View& view) : path_class_(view.path_class) 
     keeps_connections_ = feature && view.feature_rule == FeatureRule::Connections;
 }
 
-void LightRecord::add(PathSample& sample, const glm::vec3& light, const Way& way) const {
-    const glm::vec3 diffuse = keeps_diffuse_ ? light * way.diffuse_share : glm::vec3(0.0f);
-    sample.diffuse += diffuse;
-    bool high = false;
-    switch (path_class_) {
-        case PathClass::Indirect:
-            high = way.scatterings > 1;
-            break;
-        case PathClass::Caustics:
-            high = way.scatterings > 1 && way.last == Way::Last::Delta;
-            break;
-        case PathClass::Diffuse:
-            sample.high += diffuse;
-            sample.low += light - diffuse;
-            return;
-        case PathClass::All:
-            high = true;
-            break;
-        case PathClass::None:
-            break;
-    }
-    (high ? sample.high : sample.low) += light;
-}
-
 void LightRecord::connect(PathSample& sample, const glm::vec3& intensity) const {
     sample.connections += grey(intensity);
 }

@@ -49,4 +49,29 @@ class LightRecord {
     bool keeps_diffuse_, keeps_connections_;
 };
 
+// Here, since it is called for every light found.
+inline void LightRecord::add(PathSample& sample, const glm::vec3& light, const Way& way) const {
+    const glm::vec3 diffuse = keeps_diffuse_ ? light * way.diffuse_share : glm::vec3(0.0f);
+    sample.diffuse += diffuse;
+    bool high = false;
+    switch (path_class_) {
+        case view::PathClass::Indirect:
+            high = way.scatterings > 1;
+            break;
+        case view::PathClass::Caustics:
+            high = way.scatterings > 1 && way.last == Way::Last::Delta;
+            break;
+        case view::PathClass::Diffuse:
+            sample.high += diffuse;
+            sample.low += light - diffuse;
+            return;
+        case view::PathClass::All:
+            high = true;
+            break;
+        case view::PathClass::None:
+            break;
+    }
+    (high ? sample.high : sample.low) += light;
+}
+
 }  // namespace tessera::embree

@@ -1,6 +1,5 @@
 #include "backends/embree/path_tracer.h"
 
-#include <cmath>
 #include <limits>
 
 #include "backends/embree/whitted.h"
@@ -15,11 +14,10 @@ constexpr std::uint32_t RouletteFrom = 3;  // vertices that are never cut short
 constexpr std::uint32_t NothingCertainFrom = 1024;
 constexpr float AtMost = 0.95f;
 
-bool survives(Path& path) {
+bool survives(Path& path, float choice) {
     if (path.vertex >= RouletteFrom) {
-        const float choice = shading::sample_pair(path.sampler, pair_of(path.vertex, LobeAndRoulette)).y;
         const float most = path.vertex >= NothingCertainFrom ? AtMost : 1.0f;
-        const float probability = std::fmin(shading::largest(path.throughput), most);
+        const float probability = shading::lesser_of(shading::largest(path.throughput), most);
         if (!(choice < probability)) return false;
         path.throughput /= probability;
     }
@@ -57,9 +55,15 @@ PathTracer::PathTracer(const SceneTables& tables, RTCScene scene, const view::Vi
                                                                   : std::uint64_t{view.max_bounces} + 1),
       wants_light_(any_light(view.channels)) {}
 
-void PathTracer::trace_path(Path& path, Ray ray, Surface surface) const {
+void PathTracer::trace_path(Path& path, Ray ray, Hit hit) const {
     while (true) {
+        const Surface surface = make_surface(rays_.tables(), hit.hit, ray.direction);
         tell_hit(path, surface);
+        if (path.vertex == 0) {
+            path.sample.object = surface.instance->object;
+            if (view_.channels.contains(frame::Channel::Range))
+                path.sample.range = range_of(rays_, ray, surface, path);
+        }
         transport_.add_emission(path, ray, surface);
         const Lobe lobe = transport_.choose_lobe(path, surface);
         if (lobe.kind == Lobe::Kind::None) return;
@@ -68,7 +72,6 @@ void PathTracer::trace_path(Path& path, Ray ray, Surface surface) const {
             path.sample.normal = surface.frame[2];
         }
         if (!surface.scatters || path.vertex >= max_scatterings_) return;
-        if (!wants_light_ && lobe.kind == Lobe::Kind::Rough) return;
         if (lobe.kind == Lobe::Kind::Rough) {
             const glm::vec3 out = surface.to_local(-ray.direction);
             transport_.add_lights(path, surface, out);
@@ -76,15 +79,15 @@ void PathTracer::trace_path(Path& path, Ray ray, Surface surface) const {
         } else {
             transport_.pass_on(path, surface, lobe, ray);
         }
-        if (!survives(path)) return;
+        if (!survives(path, lobe.roulette)) return;
         ++path.vertex;
         ++path.rays;
-        const std::optional<Hit> hit = rays_.closest(ray, path.closest_seed());
-        if (!hit) {
+        const std::optional<Hit> next = rays_.closest(ray, path.closest_seed());
+        if (!next) {
             tell_miss(path);
             return transport_.add_sky(path, ray);
         }
-        surface = make_surface(rays_.tables(), hit->hit, ray.direction);
+        hit = *next;
     }
 }
 
@@ -95,21 +98,17 @@ PathSample PathTracer::trace(std::uint32_t x, std::uint32_t y, std::uint64_t sam
     path.tell([&] { return "camera " + text(ray.origin) + " looks along " + text(ray.direction); });
     ++path.rays;
     const std::optional<Hit> hit = rays_.closest(ray, path.closest_seed());
-    if (hit) {
-        const Surface surface = make_surface(rays_.tables(), hit->hit, ray.direction);
-        path.sample.depth = camera_.depth(ray, hit->distance);
-        path.sample.object = surface.instance->object;
-        if (view_.renderer == view::Renderer::Whitted) {
-            trace_whitted(rays_, transport_, ray, surface, view_.channels, path);
-        } else {
-            if (view_.channels.contains(frame::Channel::Range))
-                path.sample.range = range_of(rays_, ray, surface, path);
-            trace_path(path, ray, surface);
-        }
-    } else {
-        path.sample.depth = std::numeric_limits<float>::infinity();
+    path.sample.depth = hit ? camera_.depth(ray, hit->distance) : std::numeric_limits<float>::infinity();
+    if (!hit) {
         tell_miss(path);
         if (!view_.transparent_background) transport_.add_sky(path, ray);
+    } else if (view_.renderer == view::Renderer::Whitted) {
+        const Surface surface = make_surface(rays_.tables(), hit->hit, ray.direction);
+        path.sample.object = surface.instance->object;
+        tell_hit(path, surface);
+        trace_whitted(rays_, transport_, ray, surface, view_.channels, path);
+    } else {
+        trace_path(path, ray, *hit);
     }
     rays += path.rays;
     return path.sample;

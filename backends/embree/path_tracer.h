@@ -21,7 +21,7 @@ class PathTracer {
                      std::vector<std::string>* story = nullptr) const;
 
   private:
-    void trace_path(Path& path, Ray ray, Surface surface) const;
+    void trace_path(Path& path, Ray ray, Hit hit) const;
 
     RayCaster rays_;
     view::View view_;

@@ -1,5 +1,6 @@
 #include "backends/embree/surface.h"
 
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -19,7 +20,7 @@ T interpolate(std::span<const T> values, const glm::uvec3& corners, const glm::v
 
 // Unit length even where squares would over- or underflow.
 glm::vec3 safe_normalize(const glm::vec3& v, const glm::vec3& otherwise) {
-    const float scale = std::fmax(std::fabs(v.x), std::fmax(std::fabs(v.y), std::fabs(v.z)));
+    const float scale = shading::largest(glm::abs(v));
     if (!(scale > 0.0f) || !std::isfinite(scale)) return otherwise;
     const glm::vec3 scaled = v / scale;
     return scaled / std::sqrt(glm::dot(scaled, scaled));
@@ -51,6 +52,13 @@ glm::vec3 mapped_normal(const SceneTables& tables, const InstanceData& instance,
     n.x *= material.normal_scale;
     n.y *= material.normal_scale;
     return safe_normalize(tangent * n.x + bitangent * n.y + normal * n.z, normal);
+}
+
+// As nextafter, towards where `side` points; the library's is a call for every coordinate.
+float neighbour(float value, float side) {
+    if (value == 0.0f) return std::copysign(std::numeric_limits<float>::denorm_min(), side);
+    const auto bits = std::bit_cast<std::int32_t>(value);
+    return std::bit_cast<float>((value > 0.0f) == (side > 0.0f) ? bits + 1 : bits - 1);
 }
 
 // Directions by the shading normal where they leave the surface on their own sides, else by the geometric
@@ -158,8 +166,7 @@ glm::vec3 leave_surface(const PointWithError& point, const glm::vec3& normal, co
     glm::vec3 left = point.position + offset;
     // The sum itself is rounded: away from the surface, not back onto it.
     for (int i = 0; i < 3; ++i) {
-        if (offset[i] > 0.0f) left[i] = std::nextafter(left[i], std::numeric_limits<float>::infinity());
-        if (offset[i] < 0.0f) left[i] = std::nextafter(left[i], -std::numeric_limits<float>::infinity());
+        if (offset[i] != 0.0f) left[i] = neighbour(left[i], offset[i]);
     }
     return left;
 }

@@ -91,28 +91,36 @@ void Transport::add_lights(Path& path, const Surface& surface, const glm::vec3& 
     path.tell([&] { return "  light " + text(light.direction) + " adds " + text(gathered); });
 }
 
+Lobe Transport::rough_lobe(const Path& path) const {
+    const glm::vec2 u = shading::sample_pair(path.sampler, pair_of(path.vertex, LobeAndRoulette));
+    return {Lobe::Kind::Rough, u.x, u.y};
+}
+
 Lobe Transport::choose_lobe(Path& path, const Surface& surface) const {
-    if (surface.rough_share == 1.0f) return {};
+    Lobe lobe = rough_lobe(path);
+    if (surface.rough_share == 1.0f) return lobe;
     const LobeChances chances = lobe_chances(surface);
-    const float u = shading::sample_pair(path.sampler, pair_of(path.vertex, LobeAndRoulette)).x;
     const float specular = chances.reflection + chances.refraction;
-    Lobe lobe{Lobe::Kind::Rough, specular, chances.rough};
-    if (u < chances.reflection) {
-        lobe = {Lobe::Kind::Reflection, 0.0f, chances.reflection};
-    } else if (u < specular || !(chances.rough > 0.0f)) {
-        lobe = {Lobe::Kind::Refraction, chances.reflection, chances.refraction};
+    float first = specular, width = chances.rough;
+    if (lobe.choice < chances.reflection) {
+        lobe.kind = Lobe::Kind::Reflection;
+        first = 0.0f;
+        width = chances.reflection;
+    } else if (lobe.choice < specular || !(chances.rough > 0.0f)) {
+        lobe.kind = Lobe::Kind::Refraction;
+        first = chances.reflection;
+        width = chances.refraction;
     }
-    if (!(lobe.width > 0.0f)) return {Lobe::Kind::None};
-    path.throughput /= lobe.width;
+    if (!(width > 0.0f)) return {Lobe::Kind::None};
+    lobe.choice = std::clamp((lobe.choice - first) / width, 0.0f, 0.99999994f);
+    path.throughput /= width;
     return lobe;
 }
 
 bool Transport::scatter(Path& path, const Surface& surface, const glm::vec3& out, const Lobe& lobe,
                         Ray& ray) const {
-    const glm::vec2 choice = shading::sample_pair(path.sampler, pair_of(path.vertex, LobeAndRoulette));
     const glm::vec2 u = shading::sample_pair(path.sampler, pair_of(path.vertex, BsdfDirection));
-    const float stretched = std::clamp((choice.x - lobe.first) / lobe.width, 0.0f, 0.99999994f);
-    const glm::vec3 in = shading::sample_bsdf(surface.bsdf, out, stretched, u);
+    const glm::vec3 in = shading::sample_bsdf(surface.bsdf, out, lobe.choice, u);
     const shading::BsdfValue bsdf = shading::evaluate_bsdf(surface.bsdf, out, in);
     const glm::vec3 direction = glm::normalize(surface.to_world(in));
     if (!(bsdf.pdf > 0.0f) || !(glm::dot(direction, surface.geometric_normal) > 0.0f)) return false;

@@ -47,10 +47,10 @@ constexpr std::uint32_t pair_of(std::uint32_t vertex, VertexPair pair) {
     return 1 + vertex * PairsPerVertex + pair;
 }
 
-// One of a surface's lobe groups, and the part of the unit interval that chose it.
+// One of a surface's lobe groups and the random numbers of this vertex that are left.
 struct Lobe {
     enum class Kind : std::uint8_t { None, Rough, Reflection, Refraction } kind = Kind::Rough;
-    float first = 0.0f, width = 1.0f;  // width = its probability
+    float choice = 0.0f, roulette = 0.0f;  // uniform in [0, 1)
 };
 
 // Probabilities of the groups, in proportion to the luminance they pass on: reflection, refraction, the rest.
@@ -75,6 +75,8 @@ class Transport {
 
     // Chooses and divides the throughput by the probability; None ends the path.
     Lobe choose_lobe(Path& path, const Surface& surface) const;
+    // The rough group for certain, where the others are followed on their own.
+    Lobe rough_lobe(const Path& path) const;
     // `ray` becomes the next one; false ends the path. The vertex is for the caller to count.
     bool scatter(Path& path, const Surface& surface, const glm::vec3& out, const Lobe& lobe, Ray& ray) const;
     void pass_on(Path& path, const Surface& surface, const Lobe& lobe, Ray& ray) const;

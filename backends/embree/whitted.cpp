@@ -86,7 +86,7 @@ class DirectLight final : public BranchVisitor {
         const glm::vec3 out = surface.to_local(-branch.ray.direction);
         transport_.add_lights(path_, surface, out);
         Ray ray;
-        if (!transport_.scatter(path_, surface, out, Lobe{}, ray)) return;
+        if (!transport_.scatter(path_, surface, out, transport_.rough_lobe(path_), ray)) return;
         ++path_.vertex;
         ++path_.rays;
         const std::optional<Hit> hit = rays_.closest(ray, path_.closest_seed());

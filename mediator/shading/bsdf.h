@@ -38,7 +38,7 @@ struct Bsdf {
 inline constexpr float MinAlpha = 1e-4f;
 
 inline float schlick_weight(float cosine) {
-    const float m = std::fmin(std::fmax(1.0f - cosine, 0.0f), 1.0f);
+    const float m = lesser_of(greater_of(1.0f - cosine, 0.0f), 1.0f);
     const float m2 = m * m;
     return m2 * m2 * m;
 }
@@ -67,14 +67,14 @@ inline Bsdf make_bsdf(const glm::vec3& base_color, const Mixture& mixture, float
     bsdf.f0 = glm::vec3(bsdf.coat_f0) * mixture.dielectric + base_color * mixture.metal;
     bsdf.f90 = largest(bsdf.f0) > 0.0f ? mixture.rough() : 0.0f;
     bsdf.coat_f90 = bsdf.coat_f0 > 0.0f ? 1.0f : 0.0f;
-    bsdf.alpha = std::fmax(roughness * roughness, MinAlpha);
+    bsdf.alpha = greater_of(roughness * roughness, MinAlpha);
     const float fresnel = schlick_weight(cos_out);
     const float specular = luminance(bsdf.f0 + (bsdf.f90 - bsdf.f0) * fresnel);
     const float diffuse = luminance(bsdf.diffuse) * (1.0f - bsdf.coat_f0) * (1.0f - bsdf.coat_f90 * fresnel);
     const float sum = specular + diffuse;
     bsdf.reflectance = sum;
     // Never 0 or 1 while both lobes are there, so that no light is out of reach.
-    bsdf.specular_share = sum > 0.0f ? std::fmin(std::fmax(specular / sum, 0.1f), 0.9f) : 0.5f;
+    bsdf.specular_share = sum > 0.0f ? lesser_of(greater_of(specular / sum, 0.1f), 0.9f) : 0.5f;
     if (!(largest(bsdf.diffuse) > 0.0f)) bsdf.specular_share = 1.0f;
     if (!(bsdf.f90 > 0.0f)) bsdf.specular_share = 0.0f;
     return bsdf;
@@ -103,10 +103,10 @@ inline glm::vec3 sample_visible_normal(const glm::vec3& out, float alpha, const 
     const glm::vec3 t2 = cross(stretched, t1);
     glm::vec2 p = sample_disk(u);
     const float s = 0.5f * (1.0f + stretched.z);
-    p.y = (1.0f - s) * std::sqrt(std::fmax(0.0f, 1.0f - p.x * p.x)) + s * p.y;
-    const float z = std::sqrt(std::fmax(0.0f, 1.0f - dot(p, p)));
+    p.y = (1.0f - s) * std::sqrt(greater_of(0.0f, 1.0f - p.x * p.x)) + s * p.y;
+    const float z = std::sqrt(greater_of(0.0f, 1.0f - dot(p, p)));
     const glm::vec3 h = p.x * t1 + p.y * t2 + z * stretched;
-    return normalize(glm::vec3(alpha * h.x, alpha * h.y, std::fmax(1e-12f, h.z)));
+    return normalize(glm::vec3(alpha * h.x, alpha * h.y, greater_of(1e-12f, h.z)));
 }
 
 struct BsdfValue {

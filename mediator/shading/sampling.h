@@ -17,8 +17,15 @@ inline constexpr float Pi = 3.14159265358979f;
 inline float luminance(const glm::vec3& color) {
     return dot(color, glm::vec3(0.2126f, 0.7152f, 0.0722f));
 }
+// As fmax and fmin: what is not a number loses. Written out, because compilers call the library for those.
+inline float greater_of(float a, float b) {
+    return a > b || b != b ? a : b;
+}
+inline float lesser_of(float a, float b) {
+    return a < b || b != b ? a : b;
+}
 inline float largest(const glm::vec3& v) {
-    return std::fmax(v.x, std::fmax(v.y, v.z));
+    return greater_of(v.x, greater_of(v.y, v.z));
 }
 
 // Orthonormal frame with n as third axis (Duff et al. 2017).
@@ -45,13 +52,13 @@ inline glm::vec2 sample_disk(const glm::vec2& u) {
 // Density cos / pi, z up.
 inline glm::vec3 sample_cosine_hemisphere(const glm::vec2& u) {
     const glm::vec2 d = sample_disk(u);
-    return glm::vec3(d, std::sqrt(std::fmax(0.0f, 1.0f - dot(d, d))));
+    return glm::vec3(d, std::sqrt(greater_of(0.0f, 1.0f - dot(d, d))));
 }
 
 // Density 1 / (4 pi).
 inline glm::vec3 sample_sphere(const glm::vec2& u) {
     const float z = 1.0f - 2.0f * u.x;
-    const float r = std::sqrt(std::fmax(0.0f, 1.0f - z * z));
+    const float r = std::sqrt(greater_of(0.0f, 1.0f - z * z));
     return glm::vec3(r * std::cos(2.0f * Pi * u.y), r * std::sin(2.0f * Pi * u.y), z);
 }
 

@@ -43,7 +43,7 @@ inline Specular make_specular(const glm::vec3& base_color, const Mixture& mixtur
     if (!(fresnel < 1.0f)) return specular;
     // 1 - cos^2 from x and y: it does not cancel near the normal.
     const float sin2 = (out.x * out.x + out.y * out.y) / (eta * eta);
-    const float inside = std::sqrt(std::fmax(0.0f, 1.0f - sin2));
+    const float inside = std::sqrt(greater_of(0.0f, 1.0f - sin2));
     specular.refracted = normalize(glm::vec3(-out.x / eta, -out.y / eta, -inside));
     return specular;
 }
