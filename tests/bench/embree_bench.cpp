@@ -120,8 +120,8 @@ BENCHMARK(bare_camera_rays)->Unit(benchmark::kMillisecond);
 BENCHMARK(bare_bounce_rays)->Unit(benchmark::kMillisecond);
 
 // items = rays: divide by bare_bounce_rays for the share of the limit.
-void path_tracer_rays(benchmark::State& state) {
-    const embree::PathTracer tracer(bed().world.tables(), bed().world.scene(), bed().view);
+void trace_view(benchmark::State& state, const view::View& view) {
+    const embree::PathTracer tracer(bed().world.tables(), bed().world.scene(), view);
     std::uint64_t rays = 0, sample = 0;
     for (auto _ : state) {
         for (std::uint32_t y = 0; y < Size; ++y) {
@@ -134,7 +134,24 @@ void path_tracer_rays(benchmark::State& state) {
     state.counters["samples/s"] =
         benchmark::Counter(static_cast<double>(sample) * Size * Size, benchmark::Counter::kIsRate);
 }
+void path_tracer_rays(benchmark::State& state) {
+    trace_view(state, bed().view);
+}
 BENCHMARK(path_tracer_rays)->Unit(benchmark::kMillisecond);
+
+void path_tracer_all_channels(benchmark::State& state) {
+    view::View view = bed().view;
+    view.channels = frame::ChannelSet::from_bits((1u << frame::ChannelCount) - 1u);
+    trace_view(state, view);
+}
+BENCHMARK(path_tracer_all_channels)->Unit(benchmark::kMillisecond);
+
+void whitted_rays(benchmark::State& state) {
+    view::View view = bed().view;
+    view.renderer = view::Renderer::Whitted;
+    trace_view(state, view);
+}
+BENCHMARK(whitted_rays)->Unit(benchmark::kMillisecond);
 
 // From the stop request to the return of render(), in the middle of a unit of 64 x 64 pixels; the promise is
 // 50 ms at p99.
