@@ -178,6 +178,24 @@ ClusterStatus Session::status() {
     throw Error(ErrorCode::Unavailable, "the master does not tell its status");
 }
 
+std::string Session::set_filter(const std::string& filter) {
+    Implementation& self = *implementation_;
+    const wire::SetFilter request{filter};
+    self.link.send(request);
+    const TimePoint deadline = self.clock.now() + self.settings.lost_limit;
+    while (const auto incoming = self.link.next(deadline, {})) {
+        if (std::holds_alternative<Rejoined>(*incoming)) self.link.send(request);
+        const auto* message = std::get_if<wire::ControlMessage>(&*incoming);
+        if (message == nullptr) continue;
+        throw_refusal(*message);
+        const auto* reply = std::get_if<wire::FilterSet>(message);
+        if (reply == nullptr) continue;
+        if (!reply->accepted) throw Error(ErrorCode::Refused, reply->text);
+        return reply->text;
+    }
+    throw Error(ErrorCode::Unavailable, "the master does not answer");
+}
+
 std::unique_ptr<Session> connect(const Address& address, std::shared_ptr<scene::BlobStore> blobs,
                                  const Clock& clock, const SessionSettings& settings) {
     net::ClientSettings client{.endpoint = address.endpoint, .keys = {}};

@@ -79,6 +79,10 @@ class Session {
 
     ClusterStatus status();
 
+    // Another filter for the frame that is being rendered, whoever asked for it; what the master answers.
+    // Throws Error{Refused} with the master's reason.
+    std::string set_filter(const std::string& filter);
+
   private:
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;

@@ -19,6 +19,10 @@ void FilmMerger::close() {
     enqueue(Close{}, 0);
 }
 
+void FilmMerger::widen(std::uint64_t revision, frame::ChannelSet channels) {
+    enqueue(Widen{revision, channels}, 0);
+}
+
 void FilmMerger::keep_features() {
     enqueue(KeepFeatures{}, 0);
 }
@@ -89,6 +93,11 @@ void FilmMerger::perform(KeepFeatures&) {
     if (assembler_) features_ = assembler_->whole();
 }
 
+void FilmMerger::perform(Widen& task) {
+    revision_ = task.revision;
+    if (assembler_) assembler_->widen(task.channels);
+}
+
 void FilmMerger::perform(Film& task) {
     MergeReport report{.peer = task.peer};
     auto message = wire::decode_bulk(task.bytes);
@@ -129,8 +138,10 @@ void FilmMerger::perform(Reconstruct& task) {
     const frame::FilmTile film = assembler_->whole();
     const auto [least, most] = std::minmax_element(film.counts.begin(), film.counts.end());
     Reconstructed output{.job = task.job, .samples_least = *least, .samples_most = *most};
-    output.picture =
-        reconstructor_.reconstruct(film, task.view, task.encoding, features_ ? &*features_ : nullptr);
+    const std::optional<frame::FilmTile> later = assembler_->later();
+    output.picture = reconstructor_.reconstruct(
+        {.film = film, .later = later ? &*later : nullptr, .features = features_ ? &*features_ : nullptr},
+        task.view, task.encoding);
     put(std::move(output));
 }
 

@@ -58,7 +58,9 @@ class FilmMerger {
     ~FilmMerger();
 
     void open(ViewId view, std::uint64_t revision, FrameAssembler assembler);
-    void close();          // drops the film
+    void close();  // drops the film
+    // The open film goes on under another revision, with more channels.
+    void widen(std::uint64_t revision, frame::ChannelSet channels);
     void keep_features();  // the film that is open is of the full size: for upsampling the next one's picture
     void push(net::PeerId peer, net::Bytes film_message);
     void deliver(JobId job, std::uint32_t first_tile, std::uint32_t last_tile);  // encodes [first, last)
@@ -77,6 +79,10 @@ class FilmMerger {
     };
     struct Close {};
     struct KeepFeatures {};
+    struct Widen {
+        std::uint64_t revision;
+        frame::ChannelSet channels;
+    };
     struct Film {
         net::PeerId peer;
         net::Bytes bytes;
@@ -91,13 +97,14 @@ class FilmMerger {
         wire::PictureEncoding encoding;
     };
     struct Rehearse : Reconstruct {};
-    using Task = std::variant<Open, Close, KeepFeatures, Film, Deliver, Reconstruct, Rehearse>;
+    using Task = std::variant<Open, Close, KeepFeatures, Widen, Film, Deliver, Reconstruct, Rehearse>;
 
     void enqueue(Task task, std::size_t bytes);
     void run(std::stop_token stop);
     void perform(Open& task);
     void perform(Close& task);
     void perform(KeepFeatures& task);
+    void perform(Widen& task);
     void perform(Film& task);
     void perform(Deliver& task);
     void perform(Reconstruct& task);

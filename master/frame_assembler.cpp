@@ -28,12 +28,33 @@ FrameAssembler::Result FrameAssembler::insert(frame::FilmTile block) {
     return {};
 }
 
-frame::FilmTile FrameAssembler::merged_tile(std::uint32_t tile) const {
-    if (forests_[tile].blocks().empty()) return frame::FilmTile(tiles_[tile], {}, channels_);
-    return forests_[tile].merged();
+void FrameAssembler::widen(frame::ChannelSet channels) {
+    const frame::ChannelSet kept = earlier_.empty() ? channels_ : earlier_channels_;
+    std::vector<frame::BlockForest> all(tiles_.size());
+    for (std::uint32_t tile = 0; tile < tile_count(); ++tile) all[tile] = all_blocks(tile);
+    earlier_ = std::move(all);
+    earlier_channels_ = kept;
+    channels_ = channels;
+    forests_.assign(tiles_.size(), {});
 }
 
-frame::FilmTile FrameAssembler::whole() const {
+// Every sample there is, with the channels that all of them have.
+frame::BlockForest FrameAssembler::all_blocks(std::uint32_t tile) const {
+    if (earlier_.empty()) return forests_[tile];
+    frame::BlockForest all = earlier_[tile];
+    for (const auto& [first, block] : forests_[tile].blocks())
+        all.insert(frame::with_channels(block, earlier_channels_));
+    return all;
+}
+
+frame::FilmTile FrameAssembler::merged_tile(std::uint32_t tile) const {
+    const frame::BlockForest all = all_blocks(tile);
+    if (!all.blocks().empty()) return all.merged();
+    return frame::FilmTile(tiles_[tile], {}, earlier_.empty() ? channels_ : earlier_channels_);
+}
+
+template <class MergedTile>
+frame::FilmTile FrameAssembler::pasted(frame::ChannelSet channels, const MergedTile& merged) const {
     Rect bounds = tiles_.front();
     for (const Rect& tile : tiles_) {
         const std::int32_t right = std::max(bounds.right(), tile.right());
@@ -43,15 +64,30 @@ frame::FilmTile FrameAssembler::whole() const {
         bounds.width = right - bounds.x;
         bounds.height = bottom - bounds.y;
     }
-    frame::FilmTile film(bounds, {}, channels_);
-    for (std::uint32_t i = 0; i < tile_count(); ++i) frame::paste(film, merged_tile(i));
+    frame::FilmTile film(bounds, {}, channels);
+    for (std::uint32_t tile = 0; tile < tile_count(); ++tile) frame::paste(film, merged(tile));
     return film;
+}
+
+frame::FilmTile FrameAssembler::whole() const {
+    return pasted(earlier_.empty() ? channels_ : earlier_channels_,
+                  [&](std::uint32_t tile) { return merged_tile(tile); });
+}
+
+std::optional<frame::FilmTile> FrameAssembler::later() const {
+    if (earlier_.empty()) return std::nullopt;
+    return pasted(channels_, [&](std::uint32_t tile) {
+        return forests_[tile].blocks().empty() ? frame::FilmTile(tiles_[tile], {}, channels_)
+                                               : forests_[tile].merged();
+    });
 }
 
 std::uint64_t FrameAssembler::byte_size() const {
     std::uint64_t bytes = 0;
-    for (const auto& forest : forests_) {
-        for (const auto& [first, block] : forest.blocks()) bytes += block.byte_size();
+    for (const auto* forests : {&forests_, &earlier_}) {
+        for (const auto& forest : *forests) {
+            for (const auto& [first, block] : forest.blocks()) bytes += block.byte_size();
+        }
     }
     return bytes;
 }

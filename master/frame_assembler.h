@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -22,16 +23,28 @@ class FrameAssembler {
     Result insert(frame::FilmTile block);
 
     std::uint32_t tile_count() const { return static_cast<std::uint32_t>(tiles_.size()); }
+    // From now on film brings these channels, too. What the tiles hold stays, without them.
+    void widen(frame::ChannelSet channels);
+
     frame::FilmTile merged_tile(std::uint32_t tile) const;  // without samples: zero counts
     frame::FilmTile whole() const;                          // all tiles in one; the block means nothing
+    // After widen(): the later samples alone, with all channels.
+    std::optional<frame::FilmTile> later() const;
     std::vector<frame::SampleBlock> roots(std::uint32_t tile) const { return forests_[tile].roots(); }
     std::uint64_t byte_size() const;
 
   private:
+    frame::BlockForest all_blocks(std::uint32_t tile) const;
+    template <class MergedTile>
+    frame::FilmTile pasted(frame::ChannelSet channels, const MergedTile& merged) const;
+
     std::vector<Rect> tiles_;
     frame::ChannelSet channels_;
     std::uint64_t spp_;
     std::vector<frame::BlockForest> forests_;
+    // After widen(): what there was before, and its channels.
+    std::vector<frame::BlockForest> earlier_;
+    frame::ChannelSet earlier_channels_;
     std::map<std::pair<std::int32_t, std::int32_t>, std::uint32_t> by_corner_;
 };
 

@@ -34,7 +34,9 @@ class JobRunner {
     std::optional<SessionId> session() const;
     void start(SessionId session, wire::StartJob request, Version version, TimePoint now);
     void stop(JobId job, TimePoint now);  // deliver what there is
-    void abandon();                       // the client is gone: no delivery
+    // Another filter for the frame that is being rendered; the answer says what that means, or why not.
+    wire::FilterSet set_filter(const std::string& filter, TimePoint now);
+    void abandon();  // the client is gone: no delivery
 
     void film(net::PeerId bulk_peer, net::Bytes message);
     void released(NodeRecord& node, const wire::UnitReleased& release, TimePoint now);

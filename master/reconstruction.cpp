@@ -54,8 +54,8 @@ filter::Filter& Reconstructor::instance(const filter::Choice& choice, std::uint3
     return *instance_.filter;
 }
 
-Reconstruction Reconstructor::reconstruct(const frame::FilmTile& film, const view::View& view,
-                                          wire::PictureEncoding encoding, const frame::FilmTile* features) {
+Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& view,
+                                          wire::PictureEncoding encoding) {
     Reconstruction result{.bytes = std::make_shared<const std::vector<std::byte>>()};
     wire::PictureSummary& summary = result.summary;
     const auto choice = filter::parse_choice(view.filter, filter::catalog());
@@ -66,13 +66,13 @@ Reconstruction Reconstructor::reconstruct(const frame::FilmTile& film, const vie
     summary.filter = filter::to_text(*choice);
     try {
         const auto started = Clock::now();
-        const filter::Inputs inputs = filter::make_inputs(film, view);
+        const filter::Inputs inputs = filter::make_inputs(films.film, view, films.later);
         filter::Filter& filter = instance(*choice, inputs.width, inputs.height);
         filter.reset();
         const filter::Report report = filter.run(inputs, choice->values, output_, {arena_, {}});
         const filter::Planes* picture = &output_.picture;
-        if (features != nullptr) {
-            const filter::Inputs full = filter::make_inputs(*features, view);
+        if (films.features != nullptr) {
+            const filter::Inputs full = filter::make_inputs(*films.features, view);
             filter::upsample(output_.picture, inputs, full, upsampled_, {arena_, {}});
             picture = &upsampled_;
         }
@@ -106,7 +106,7 @@ double Reconstructor::rehearse(const view::View& view, wire::PictureEncoding enc
         value = static_cast<float>(state >> 8) * 0x1p-24f;
     }
     const auto started = Clock::now();
-    reconstruct(film, view, encoding);
+    reconstruct({.film = film}, view, encoding);
     return since(started);
 }
 

@@ -16,13 +16,19 @@ struct Reconstruction {
     std::string error;
 };
 
+// What a picture is made of.
+struct Films {
+    const frame::FilmTile& film;
+    const frame::FilmTile* later = nullptr;  // of only some of the samples, for channels that `film` lacks
+    const frame::FilmTile* features =
+        nullptr;  // of the full size, if `film` is smaller and is to be upsampled
+};
+
 // Filters whole films and encodes them; each picture for itself, without history. Keeps the memory of the
 // last filter as long as filter and size stay the same. One thread calls; the work runs on all cores.
 class Reconstructor {
   public:
-    // `features`: film of the full size, if `film` is of a smaller one that is to be upsampled.
-    Reconstruction reconstruct(const frame::FilmTile& film, const view::View& view,
-                               wire::PictureEncoding encoding, const frame::FilmTile* features = nullptr);
+    Reconstruction reconstruct(const Films& films, const view::View& view, wire::PictureEncoding encoding);
 
     // Seconds that the same takes on a made-up film of about `pixels`: for the first prediction.
     double rehearse(const view::View& view, wire::PictureEncoding encoding, std::uint32_t width,

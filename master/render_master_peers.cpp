@@ -49,6 +49,8 @@ void RenderMaster::from_client(SessionRecord& session, wire::ControlMessage& mes
         service_.start_job(session, std::move(*job), now);
     } else if (const auto* stop = std::get_if<wire::StopJob>(&message)) {
         if (jobs_.session() == session.id) jobs_.stop(stop->job, now);
+    } else if (const auto* set = std::get_if<wire::SetFilter>(&message)) {
+        outbox_.control(session.control, jobs_.set_filter(set->filter, now));
     } else if (std::holds_alternative<wire::StatusRequest>(message)) {
         outbox_.control(session.control, status(now));
     } else if (std::holds_alternative<wire::Goodbye>(message)) {

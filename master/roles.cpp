@@ -31,6 +31,7 @@ struct SendersOf {
     unsigned operator()(const wire::StartJob&) const { return Editors; }
     unsigned operator()(const wire::StopJob&) const { return Editors; }
     unsigned operator()(const wire::StatusRequest&) const { return Clients; }
+    unsigned operator()(const wire::SetFilter&) const { return Editors; }
     // What only a master says.
     unsigned operator()(const wire::Welcome&) const { return Nobody; }
     unsigned operator()(const wire::Refusal&) const { return Nobody; }
@@ -48,6 +49,7 @@ struct SendersOf {
     unsigned operator()(const wire::JobProgress&) const { return Nobody; }
     unsigned operator()(const wire::JobDone&) const { return Nobody; }
     unsigned operator()(const wire::StatusReply&) const { return Nobody; }
+    unsigned operator()(const wire::FilterSet&) const { return Nobody; }
     // bulk
     unsigned operator()(const wire::BulkHello&) const { return Everybody; }
     unsigned operator()(const wire::BlobRequest&) const { return Nodes; }

@@ -167,6 +167,20 @@ std::optional<view::WorkUnit> Scheduler::find(UnitId unit) const {
     return entry->second.unit;
 }
 
+std::vector<Cancellation> Scheduler::revise(std::uint64_t revision) {
+    std::vector<Cancellation> cancellations;
+    while (!outstanding_.empty()) {
+        const auto entry = outstanding_.begin();
+        const std::map<NodeId, TimePoint> holders = entry->second.holders;
+        for (auto holder = holders.begin(); holder != holders.end(); ++holder) {
+            cancellations.push_back({holder->first, entry->first});
+            drop(entry, holder->first, Loss::Released);  // the last one ends the entry
+        }
+    }
+    revision_ = revision;
+    return cancellations;
+}
+
 std::vector<Cancellation> Scheduler::cancel_everything() {
     closed_ = true;
     std::vector<Cancellation> cancellations;

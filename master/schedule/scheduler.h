@@ -51,6 +51,9 @@ class Scheduler {
     std::vector<UnitId> held_by(NodeId node) const;
     std::optional<view::WorkUnit> find(UnitId unit) const;
 
+    // The view has a new revision: what is under way is given back, to be dealt again under it.
+    std::vector<Cancellation> revise(std::uint64_t revision);
+
     std::vector<Cancellation> cancel_everything();  // and deal no more
 
     bool complete() const { return plan_.exhausted() && outstanding_.empty(); }

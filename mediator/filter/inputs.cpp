@@ -41,9 +41,26 @@ void split_halves(const frame::FilmTile& film, Inputs& inputs) {
     }
 }
 
+void take_channel(const frame::FilmTile& film, const frame::ChannelInfo& entry, Inputs& inputs) {
+    const auto index = static_cast<std::size_t>(entry.channel);
+    if (entry.channel == Channel::ObjectIndex) {
+        const std::span<const float> ids = film.plane(film.channels.first_plane(entry.channel) + 1);
+        inputs.object_ids.resize(ids.size());
+        for (std::size_t i = 0; i < ids.size(); ++i)
+            inputs.object_ids[i] = std::bit_cast<std::uint32_t>(ids[i]);
+    } else if (entry.channel == Channel::EvenHalf) {
+        if (film.channels.contains(Channel::Radiance)) split_halves(film, inputs);
+    } else {
+        inputs.means[index] = planar(frame::resolve(film, entry.channel));
+        if (entry.rule == frame::MergeRule::Moments) {
+            inputs.variances[index] = planar(frame::resolve_variance_of_mean(film, entry.channel));
+        }
+    }
+}
+
 }  // namespace
 
-Inputs make_inputs(const frame::FilmTile& film, const view::View& view) {
+Inputs make_inputs(const frame::FilmTile& film, const view::View& view, const frame::FilmTile* later) {
     Inputs inputs;
     inputs.width = static_cast<std::uint32_t>(film.rect.width);
     inputs.height = static_cast<std::uint32_t>(film.rect.height);
@@ -51,24 +68,11 @@ Inputs make_inputs(const frame::FilmTile& film, const view::View& view) {
     inputs.path_class = view.path_class;
     inputs.counts = planar(frame::resolve_counts(film));
     for (const frame::ChannelInfo& entry : frame::channel_table()) {
-        if (!film.channels.contains(entry.channel)) continue;
-        const auto index = static_cast<std::size_t>(entry.channel);
-        if (entry.channel == Channel::ObjectIndex) {
-            const std::span<const float> ids = film.plane(film.channels.first_plane(entry.channel) + 1);
-            inputs.object_ids.resize(ids.size());
-            for (std::size_t i = 0; i < ids.size(); ++i) {
-                inputs.object_ids[i] = std::bit_cast<std::uint32_t>(ids[i]);
-            }
-            continue;
+        if (film.channels.contains(entry.channel)) {
+            take_channel(film, entry, inputs);
+        } else if (later != nullptr && later->channels.contains(entry.channel)) {
+            take_channel(*later, entry, inputs);
         }
-        if (entry.channel == Channel::EvenHalf) continue;
-        inputs.means[index] = planar(frame::resolve(film, entry.channel));
-        if (entry.rule == frame::MergeRule::Moments) {
-            inputs.variances[index] = planar(frame::resolve_variance_of_mean(film, entry.channel));
-        }
-    }
-    if (film.channels.contains(Channel::EvenHalf) && film.channels.contains(Channel::Radiance)) {
-        split_halves(film, inputs);
     }
     return inputs;
 }

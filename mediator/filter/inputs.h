@@ -50,6 +50,8 @@ struct Inputs {
 };
 
 // Divides by n (frame::resolve); the film covers the window of the view.
-Inputs make_inputs(const frame::FilmTile& film, const view::View& view);
+// `later`: film of the same size that holds only some of the samples, for the channels that `film` lacks.
+Inputs make_inputs(const frame::FilmTile& film, const view::View& view,
+                   const frame::FilmTile* later = nullptr);
 
 }  // namespace tessera::filter

@@ -64,6 +64,22 @@ void paste(FilmTile& film, const FilmTile& tile) {
     film.nonfinite_samples += tile.nonfinite_samples;
 }
 
+FilmTile with_channels(const FilmTile& tile, ChannelSet channels) {
+    FilmTile result(tile.rect, tile.block, channels);
+    result.counts = tile.counts;
+    result.nonfinite_samples = tile.nonfinite_samples;
+    for (const ChannelInfo& entry : channel_table()) {
+        if (!channels.contains(entry.channel)) continue;
+        const std::uint32_t from = tile.channels.first_plane(entry.channel),
+                            to = channels.first_plane(entry.channel);
+        for (std::uint32_t plane = 0; plane < entry.plane_count(); ++plane) {
+            const auto values = tile.plane(from + plane);
+            std::copy(values.begin(), values.end(), result.plane(to + plane).begin());
+        }
+    }
+    return result;
+}
+
 bool identical_bits(const FilmTile& a, const FilmTile& b) {
     return a.rect == b.rect && a.channels == b.channels && a.counts == b.counts &&
            a.nonfinite_samples == b.nonfinite_samples && a.planes.size() == b.planes.size() &&

@@ -38,6 +38,9 @@ class FilmTile {
 // Copies `tile`, which lies inside of `film` and has its channels, to its place.
 void paste(FilmTile& film, const FilmTile& tile);
 
+// The same samples with fewer channels: `channels` is part of those of the tile.
+FilmTile with_channels(const FilmTile& tile, ChannelSet channels);
+
 bool identical_bits(const FilmTile& a, const FilmTile& b);
 
 }  // namespace tessera::frame

@@ -97,6 +97,12 @@ proto::StatusRequest& part(proto::Control& c, const StatusRequest&) {
 proto::StatusReply& part(proto::Control& c, const StatusReply&) {
     return *c.mutable_status_reply();
 }
+proto::SetFilter& part(proto::Control& c, const SetFilter&) {
+    return *c.mutable_set_filter();
+}
+proto::FilterSet& part(proto::Control& c, const FilterSet&) {
+    return *c.mutable_filter_set();
+}
 
 template <class Message>
 std::vector<std::byte> serialized(const Message& message) {

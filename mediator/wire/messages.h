@@ -159,7 +159,8 @@ struct EditReply {
 };
 
 enum class Policy : std::uint8_t { Tiled, Cooperative, Mixed };
-// What the master makes of the film: nothing, the filtered picture as float32 planes one after another, or a file.
+// What the master makes of the film: nothing, the filtered picture as float32 planes one after another, or a
+// file.
 enum class PictureEncoding : std::uint8_t { None, Planes, Png, Jpeg, Exr };
 struct StartJob {
     JobId job;        // the client's number
@@ -172,9 +173,10 @@ struct StartJob {
     std::uint32_t wait_nodes = 1;
     Duration wait_limit{std::chrono::seconds(60)};
     PictureEncoding picture = PictureEncoding::None;
-    bool film = true;      // deliver the statistics, too
-    Duration budget{0};    // not 0: the picture is ready so long after the start, filter and encoding included
-    bool adapts_size = false;  // with a budget: a half or a quarter of the size, where it is too small for 2 samples
+    bool film = true;    // deliver the statistics, too
+    Duration budget{0};  // not 0: the picture is ready so long after the start, filter and encoding included
+    bool adapts_size =
+        false;  // with a budget: a half or a quarter of the size, where it is too small for 2 samples
 };
 struct StopJob {
     JobId job;  // deliver what is merged so far
@@ -210,7 +212,7 @@ struct PictureSummary {
     PictureEncoding encoding = PictureEncoding::None;
     std::uint32_t width = 0, height = 0, components = 0;
     std::uint64_t byte_size = 0;
-    std::string filter;  // as it ran: name and values
+    std::string filter;       // as it ran: name and values
     std::uint32_t scale = 1;  // 2, 4: rendered at this part of the size and upsampled
     double seconds_filter = 0, seconds_encode = 0;
     double seconds_predicted = 0;  // with a budget: what was set aside for filter and encoding
@@ -232,6 +234,15 @@ struct JobDone {
     WireBytes wire_bytes;
     PictureSummary picture;
     std::uint64_t samples_least = 0, samples_most = 0;  // of a pixel
+};
+
+// Another filter for the frame that is being rendered. Answered by FilterSet.
+struct SetFilter {
+    std::string filter;  // as View::filter
+};
+struct FilterSet {
+    bool accepted = false;
+    std::string text;  // what it means for the frame, or why not
 };
 
 struct StatusRequest {};
@@ -260,7 +271,7 @@ using ControlMessage =
     std::variant<Hello, Welcome, Refusal, Unknown, Heartbeat, Changes, ChangesByBlob, VersionReport, Resync,
                  OpenView, CloseView, Work, CancelUnits, UnitReleased, Leave, Goodbye, Notice, OpenScene,
                  QueuePlace, SceneOpened, SubmitEdit, SubmitEditByBlob, EditReply, StartJob, StopJob,
-                 JobProgress, JobDone, StatusRequest, StatusReply>;
+                 JobProgress, JobDone, StatusRequest, StatusReply, SetFilter, FilterSet>;
 
 // ---- bulk link: fixed little-endian header, then raw planes ----
 

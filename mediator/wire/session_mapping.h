@@ -195,6 +195,18 @@ void map(const Io& io, typename Io::template Ref<JobDone> s, proto::JobDone& p) 
 }
 
 template <class Io>
+void map(const Io& io, typename Io::template Ref<SetFilter> s, proto::SetFilter& p) {
+    io.text(s.filter, p.mutable_filter());
+}
+
+template <class Io>
+void map(const Io& io, typename Io::template Ref<FilterSet> s, proto::FilterSet& p) {
+    using P = proto::FilterSet;
+    io(s.accepted, p, &P::accepted, &P::set_accepted);
+    io.text(s.text, p.mutable_text());
+}
+
+template <class Io>
 void map(const Io&, typename Io::template Ref<StatusRequest>, proto::StatusRequest&) {}
 
 template <class Io>

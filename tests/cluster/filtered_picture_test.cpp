@@ -138,6 +138,42 @@ TEST(PictureRequest, TooSmallABudgetGivesAnUpsampledPictureAndSaysSo) {
     EXPECT_NE(result.picture->notes.back().find("upsampled"), std::string::npos);
 }
 
+// The film so far stays; what the new filter reads comes with the samples from then on.
+TEST(PictureRequest, AnotherFilterInTheMiddleChangesNoSampleAndSaysWhatItAdds) {
+    LoopbackCluster cluster;
+    for (int i = 0; i < 2; ++i) cluster.add_node("null", {}, 5us);
+    auto blobs = std::make_shared<scene::BlobStore>();
+    const auto session = cluster.session(blobs), other = cluster.session(blobs);
+    const auto opened = session->open_scene("test", client::WhenBusy::Queue, [](std::uint32_t) {}, {});
+    session->submit(scene_entries(std::get<client::OpenedScene>(opened).first_id, *blobs), {});
+    client::JobRequest request = picture_request("none");
+    request.spp = 64;
+    request.film = true;
+    std::string answer, refusal;
+    const auto meddle = [&](const client::Progress& progress) {
+        if (progress.phase != client::Phase::Rendering || progress.samples == 0 || !answer.empty()) return;
+        try {
+            (void)other->set_filter("no such filter");
+        } catch (const Error& error) {
+            refusal = error.what();
+        }
+        answer = other->set_filter("bilateral");
+    };
+    const client::JobResult result = session->render(request, meddle, {});
+    ASSERT_EQ(result.outcome, client::Outcome::Complete) << result.message;
+    EXPECT_NE(refusal.find("no such filter"), std::string::npos);
+    EXPECT_NE(answer.find("albedo"), std::string::npos) << answer;
+    EXPECT_NE(answer.find("from now on"), std::string::npos) << answer;
+    EXPECT_EQ(result.picture->filter, "bilateral");
+    client::JobRequest plain = picture_request("none");
+    plain.spp = 64;
+    plain.film = true;
+    const client::JobResult expected = session->render(plain, {}, {});
+    EXPECT_EQ(to_hex(frame::film_hash(*result.film)), to_hex(frame::film_hash(*expected.film)));
+    EXPECT_NE(result.picture->bytes, expected.picture->bytes) << "the filter had nothing to work on";
+    EXPECT_THROW((void)other->set_filter("gauss"), Error) << "no frame is being rendered";
+}
+
 TEST(PictureRequest, AdaptsItsSizeOnlyWithABudgetAndWithoutFilm) {
     client::JobRequest request = picture_request("none");
     request.adapts_size = true;

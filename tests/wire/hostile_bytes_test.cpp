@@ -113,7 +113,9 @@ std::vector<ControlMessage> control_messages() {
                 .samples_most = 9},
         StatusRequest{},
         StatusReply{.software = "s",
-                    .nodes = {{.summary = node, .phase = NodePhase::Leaving, .stuck = true}}}};
+                    .nodes = {{.summary = node, .phase = NodePhase::Leaving, .stuck = true}}},
+        SetFilter{"fdf:radius=3"},
+        FilterSet{true, "from now on"}};
 }
 
 std::vector<BulkMessage> bulk_messages() {

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "client/tools/command.h"
+
+namespace tessera::tools {
+
+// tessera set-filter: another filter for the frame that a cluster is rendering.
+Command set_filter_command(cli::CommandLine& program);
+
+}  // namespace tessera::tools
