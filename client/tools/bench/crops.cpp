@@ -3,17 +3,31 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mediator/picture/convolution.h"
+
 namespace tessera::tools::bench {
+
+namespace {
+
+// As seen, without what is left of noise.
+picture::Plane smoothed(const frame::Image& reference) {
+    const frame::Image shown = Display(reference).shown(reference);
+    picture::Plane plane(reference.width, reference.height);
+    for (std::size_t i = 0; i < plane.values.size(); ++i) plane.values[i] = std::sqrt(shown.pixel(i)[1]);
+    const picture::Kernel kernel = picture::gaussian(2.0, 5);
+    return picture::convolve(plane, kernel, kernel);
+}
+
+}  // namespace
 
 Rect most_detailed(const frame::Image& reference, std::int32_t width, std::int32_t height) {
     const auto whole_width = static_cast<std::int32_t>(reference.width);
     const auto whole_height = static_cast<std::int32_t>(reference.height);
     width = std::min(width, whole_width);
     height = std::min(height, whole_height);
-    const frame::Image shown = Display(reference).shown(reference);
+    const picture::Plane seen = smoothed(reference);
     const auto at = [&](std::int32_t x, std::int32_t y) {
-        return std::sqrt(
-            shown.pixel(static_cast<std::size_t>(y) * reference.width + static_cast<std::size_t>(x))[1]);
+        return seen.values[static_cast<std::size_t>(y) * seen.width + static_cast<std::size_t>(x)];
     };
     const std::int32_t step = std::max(1, std::min(width, height) / 8);
     Rect best{0, 0, width, height};
