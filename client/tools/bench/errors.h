@@ -10,9 +10,10 @@ namespace tessera::tools::bench {
 // the product has no share of the references' noise. With m = F - (R1 + R2)/2 and d = R1 - R2 it is
 //     (F - R1)(F - R2) = m^2 - d^2/4,
 // that is: the error against the mean of both, less the noise of that mean. Its variance over the references
-// is 2 e^2 v + v^2 with e = F - T and v the variance of either; d^2 m^2 has this expectation (m and d are
-// independent for normal noise), so the sum over pixels of (sum over components of w d m)^2 estimates the
-// variance of the sum. An estimate may be negative when the error is below what the references can resolve.
+// is 2 e^2 v + v^2 with e = F - T and v the variance of either; d^2 m^2 has this expectation for normal noise
+// (m and d are independent then) and a larger one for heavier tails, so the sum over pixels of (sum over
+// components of w d m)^2 estimates the variance of the sum. An estimate may be negative when the error is
+// below what the references can resolve.
 class ReferencePair {
   public:
     // Equal sizes, 3 components, finite. Throws Error{InvalidInput} otherwise.
