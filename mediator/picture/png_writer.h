@@ -1,13 +1,19 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace tessera::picture {
 
 // 8-bit sRGB, 3 bytes a pixel. In full or not at all; throws Error{Io}.
 void write_png(const std::string& path, std::uint32_t width, std::uint32_t height,
                std::span<const std::uint8_t> rgb);
+
+// The same as a file in memory.
+std::vector<std::byte> encode_png(std::uint32_t width, std::uint32_t height,
+                                  std::span<const std::uint8_t> rgb);
 
 }  // namespace tessera::picture

@@ -1,0 +1,44 @@
+#include "client/tools/bench/bench_files.h"
+
+#include <fstream>
+#include <span>
+
+#include "client/tools/bench/html_report.h"
+#include "client/tools/bench/json_report.h"
+#include "client/tools/bench/strip.h"
+#include "mediator/base/error.h"
+#include "mediator/picture/atomic_file.h"
+
+namespace tessera::tools::bench {
+
+BenchFiles::BenchFiles(std::filesystem::path folder) : folder_(std::move(folder)) {
+    std::error_code error;
+    std::filesystem::create_directories(folder_, error);
+    if (error) {
+        throw Error(ErrorCode::Io, "cannot make the folder '" + folder_.string() + "': " + error.message());
+    }
+}
+
+std::vector<std::string> BenchFiles::write(const BenchResults& results) const {
+    std::vector<std::string> written;
+    const auto write_file = [&](const char* name, std::string_view content) {
+        const std::string path = (folder_ / name).string();
+        picture::write_atomically(path, [&](const std::string& temporary) {
+            std::ofstream file(temporary, std::ios::binary);
+            file.write(content.data(), static_cast<std::streamsize>(content.size()));
+            file.close();
+            if (!file) throw Error(ErrorCode::Io, "cannot write '" + path + "': is the disk full?");
+        });
+        written.push_back(path);
+    };
+    write_file("filters.json", as_json(results) + "\n");
+    write_file("filters.html", as_html(results));
+    const Strip strip = make_strip(results);
+    if (!strip.png.empty()) {
+        write_file("crops.png", {reinterpret_cast<const char*>(strip.png.data()), strip.png.size()});
+        write_file("crops.md", strip.table);
+    }
+    return written;
+}
+
+}  // namespace tessera::tools::bench

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/tools/values.h"
+#include "mediator/filter/choice.h"
+
+namespace tessera::tools::bench {
+
+// What `tessera bench filters` is asked to do. As typed.
+struct BenchOptions {
+    std::string output = "bench-filters", references, assets = "tests/scenes";
+    std::string scenes, filters;  // "" = all
+    std::string spp = "1,4,16,64,256,1024";
+    std::string size = "192x108", large = "960x540";
+    std::uint64_t reference_spp = 2048;
+    std::uint32_t jobs = 0;
+    bool quick = false, json = false;
+};
+
+// One picture size, and what is done at it.
+struct SizePlan {
+    Size size;
+    std::vector<std::uint64_t> spp;  // ascending
+    std::uint64_t reference_spp = 0;
+};
+
+// The same, understood.
+struct BenchPlan {
+    std::filesystem::path output, references, assets;
+    std::vector<std::string> scenes;
+    std::vector<filter::Choice> filters;  // the first is `none`: what all are compared with
+    std::vector<SizePlan> sizes;          // of one scene, small first
+    std::vector<std::uint64_t> path_spp;  // samples per view of the camera path; empty: no path
+    std::uint32_t path_views = 16;
+    std::uint64_t path_reference_spp = 32;
+    std::uint32_t jobs = 1;
+};
+
+// InvalidInput names option and remedy.
+Expected<BenchPlan> understand(const BenchOptions& options, std::span<const filter::FilterEntry> table);
+
+}  // namespace tessera::tools::bench

@@ -1,0 +1,76 @@
+#include "client/tools/bench/scenes.h"
+
+#include <algorithm>
+#include <array>
+
+#include "client/cli/cli.h"
+#include "client/tools/bench/built_in_scenes.h"
+
+namespace tessera::tools::bench {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SceneFile {
+    const char *name, *kind, *summary, *file, *environment;
+};
+constexpr std::array Files{
+    SceneFile{"room-1", "indirect light", "closed textured room lit over its ceiling", "room-1.glb", ""},
+    SceneFile{"studio-1", "glossy surfaces", "metals and coated paint between soft boxes", "studio-1.glb",
+              ""},
+    SceneFile{"still", "environment light", "still life with glass and copper in a studio's light",
+              "still.glb", "env-studio.exr"},
+};
+
+Expected<BenchScene> import_file(const SceneFile& wanted, const fs::path& path, const fs::path& environment) {
+    auto imported = import::import_scene(path, {.environment = environment});
+    if (!imported) return tl::unexpected(imported.error());
+    BenchScene scene{.name = wanted.name, .kind = wanted.kind, .summary = wanted.summary};
+    scene.camera = imported->cameras.front();
+    if (auto made = scene.content.apply_entries(import::entries(*imported, import::RootEntry::Create));
+        !made) {
+        return tl::unexpected(made.error());
+    }
+    scene.content.set_version({1, 1});
+    scene.blobs = std::move(imported->blobs);
+    return scene;
+}
+
+}  // namespace
+
+std::vector<std::string> scene_names(const fs::path& assets) {
+    std::vector<std::string> names;
+    for (const SceneFile& file : Files) {
+        const bool lit = *file.environment == '\0' || fs::exists(assets / file.environment);
+        if (lit && fs::exists(assets / file.file)) names.emplace_back(file.name);
+    }
+    for (const BuiltIn& scene : built_in_scenes()) names.emplace_back(scene.name);
+    return names;
+}
+
+Expected<BenchScene> load_scene(const std::string& name, const fs::path& assets) {
+    const auto& built_in = built_in_scenes();
+    const auto made = std::find_if(built_in.begin(), built_in.end(),
+                                   [&](const BuiltIn& scene) { return scene.name == name; });
+    if (made != built_in.end()) return made->make();
+    const auto file = std::find_if(Files.begin(), Files.end(),
+                                   [&](const SceneFile& candidate) { return candidate.name == name; });
+    if (file != Files.end()) {
+        const fs::path environment = *file->environment ? assets / file->environment : fs::path();
+        return import_file(*file, assets / file->file, environment);
+    }
+    if (fs::exists(name)) {
+        const std::string stem = fs::path(name).stem().string();
+        return import_file({stem.c_str(), "as brought", name.c_str(), "", ""}, name, {});
+    }
+    const std::vector<std::string> names = scene_names(assets);
+    const auto meant = cli::nearest(name, names);
+    std::string list;
+    for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
+    return failure(ErrorCode::NotFound, "there is no scene '" + name + "'" +
+                                            (meant ? "; did you mean '" + *meant + "'" : "") +
+                                            ": give a file, or one of " + list);
+}
+
+}  // namespace tessera::tools::bench
