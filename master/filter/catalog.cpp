@@ -8,6 +8,7 @@
 #include "master/filter/gauss.h"
 #include "master/filter/guided.h"
 #include "master/filter/nlm.h"
+#include "master/filter/nfor.h"
 #include "master/filter/none.h"
 #include "master/filter/pixel.h"
 #include "master/filter/psvgf.h"
@@ -27,6 +28,7 @@ std::span<const FilterEntry> catalog() {
         nlm_entry(),
         guided_entry(),
         statmc_entry(),
+        nfor_entry(),
     };
     return Table;
 }

@@ -14,7 +14,7 @@ TEST_P(Consistency, NeverWorsensAPicture) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Filters, Consistency, testing::Values("pixel", "statmc"),
+INSTANTIATE_TEST_SUITE_P(Filters, Consistency, testing::Values("pixel", "statmc", "nfor"),
                          [](const auto& tested) { return tested.param; });
 
 }  // namespace

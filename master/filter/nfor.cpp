@@ -1,0 +1,196 @@
+#include "master/filter/nfor.h"
+
+#include <algorithm>
+
+#include "master/filter/fade.h"
+#include "master/filter/moderated_variance.h"
+#include "master/filter/nfor/selection.h"
+#include "master/filter/svgf/hole_fill.h"
+
+namespace tessera::filter {
+
+namespace {
+
+using frame::Channel;
+using namespace nfor;
+
+enum Parameters : std::size_t { Radius, Patch, Stride, Pooled, Fading };
+
+constexpr std::uint32_t PoolRadius = 3;
+
+class Nfor final : public Filter {
+  public:
+    Report run(const Inputs& inputs, const Values& values, Output& out, RunContext context) override {
+        Report report;
+        shape(out.picture, inputs, inputs.color_components());
+        if (inputs.halves[0].empty()) {
+            report.notes.push_back("no halves of the samples: weights come from the samples they weigh");
+        }
+        report.stopped = !reconstruct(inputs, values, out, context, report);
+        return report;
+    }
+
+  private:
+    bool reconstruct(const Inputs& inputs, const Values& values, Output& out, RunContext& context,
+                     Report& report) {
+        CollaborativeSettings settings;
+        settings.window.radius = static_cast<std::uint32_t>(values[Radius]);
+        settings.window.patch = static_cast<std::uint32_t>(values[Patch]);
+        settings.stride = 1u << static_cast<unsigned>(values[Stride]);
+        {
+            Stage stage(report, "variance", ModeratedVariance::Bytes + 4.0 * 30);
+            if (!moderated_.run(inputs, static_cast<float>(values[Pooled]), PoolRadius, context))
+                return false;
+            features_.gather(inputs, context);
+            if (!prepare_halves(inputs, context)) return false;
+        }
+        {
+            Stage stage(report, "features", 4.0 * 5 * FeatureCount);
+            if (!features_.prefilter(inputs, context)) return false;
+        }
+        const std::array<Half, 2> halves{half(0), half(1)};
+        {
+            Stage stage(report, "regression", 4.0 * 2 * (2 * (Colors + 1) * 3 + FeatureCount + 15));
+            for (std::size_t h = 0; h < 2; ++h) {
+                if (!collaborative_.run(halves[h], halves[1 - h], features_, settings, filtered_[h],
+                                        context)) {
+                    return false;
+                }
+            }
+        }
+        {
+            Stage stage(report, "selection", 4.0 * (2 * 3 * 3 + 25 + 2 * 2 * Colors));
+            if (!selection_.run(inputs, halves, filtered_, context) ||
+                !combine(inputs, out.picture, context)) {
+                return false;
+            }
+        }
+        if (out.wants_maps) out.maps = {{"bandwidth", selection_.first()}};
+        if (values[Fading] == 0.0) return true;
+        Stage stage(report, "fade", Fade::bytes_per_pixel(out.picture.components()));
+        if (!fade_.apply(inputs, {}, out.picture, context)) return false;
+        if (out.wants_maps) out.maps.push_back({"fade", fade_.weights()});
+        return true;
+    }
+
+    Half half(std::size_t h) const {
+        return {{colors_[h].plane(0), colors_[h].plane(1), colors_[h].plane(2), alpha_.plane(0)},
+                colors_[h],
+                variances_[h],
+                counts_[h]};
+    }
+
+    // Copies of the halves with holes filled, so that differences to a hole are finite and small. A half with
+    // no sample of its own takes the whole's mean.
+    bool prepare_halves(const Inputs& inputs, RunContext& context) {
+        const bool split = !inputs.halves[0].empty();
+        shape(alpha_, inputs, 1);
+        if (inputs.has(Channel::Alpha)) std::ranges::copy(inputs.color(3), alpha_.plane(0).begin());
+        for (std::size_t h = 0; h < 2; ++h) {
+            const Planes& from = split ? inputs.halves[h] : inputs.mean(Channel::Radiance);
+            shape(colors_[h], inputs, 3);
+            shape(variances_[h], inputs, 3);
+            shape(counts_[h], inputs, 1);
+            std::ranges::copy(from.values(), colors_[h].values().begin());
+            for_rows(context, inputs.height, [&](std::uint32_t y) {
+                const float* n = inputs.counts.row(0, y);
+                const float* own = split ? inputs.half_counts[h].row(0, y) : n;
+                float* counts = counts_[h].row(0, y);
+                for (std::uint32_t x = 0; x < inputs.width; ++x)
+                    counts[x] = std::max(own[x], std::min(n[x], 1.0f));
+                for (std::uint32_t c = 0; c < 3; ++c) {
+                    const float* variance = moderated_.variance().row(c, y);
+                    float* to = variances_[h].row(c, y);
+                    for (std::uint32_t x = 0; x < inputs.width; ++x) {
+                        to[x] = variance[x] * n[x] / std::max(counts[x], 1.0f);
+                    }
+                }
+            });
+        }
+        return fill_holes(inputs, context);
+    }
+
+    bool fill_holes(const Inputs& inputs, RunContext& context) {
+        if (std::ranges::all_of(inputs.counts.values(), [](float n) { return n > 0.0f; })) return true;
+        one_object_.assign(inputs.pixel_count(), 1);
+        views_.clear();
+        const auto add = [&](Planes& planes) {
+            for (std::uint32_t c = 0; c < planes.components(); ++c) {
+                views_.push_back({planes.plane(c).data(), inputs.width});
+            }
+        };
+        for (Planes& planes : colors_) add(planes);
+        for (Planes& planes : features_.raw()) add(planes);
+        add(alpha_);
+        return holes_.run(inputs.counts, one_object_, views_, context);
+    }
+
+    // Light and coverage cannot be negative, nor coverage above 1, whatever a line predicts.
+    bool combine(const Inputs& inputs, Planes& picture, RunContext& context) {
+        return for_rows(context, inputs.height, [&](std::uint32_t y) {
+            const float* first = selection_.first().row(0, y);
+            const float* counts[2] = {counts_[0].row(0, y), counts_[1].row(0, y)};
+            for (std::uint32_t c = 0; c < picture.components(); ++c) {
+                const float most = c == 3 ? 1.0f : std::numeric_limits<float>::max();
+                float* to = picture.row(c, y);
+                const auto of = [&](std::size_t h, std::uint32_t x) {
+                    const float narrow = filtered_[h][0].row(c, y)[x], wide = filtered_[h][1].row(c, y)[x];
+                    return wide + first[x] * (narrow - wide);
+                };
+                for (std::uint32_t x = 0; x < inputs.width; ++x) {
+                    const float all = counts[0][x] + counts[1][x];
+                    const float share = all > 0.0f ? counts[0][x] / all : 0.5f;
+                    const float odd = of(1, x);
+                    to[x] = std::clamp(odd + share * (of(0, x) - odd), 0.0f, most);
+                }
+            }
+        });
+    }
+
+    ModeratedVariance moderated_;
+    Regressors features_;
+    Collaborative collaborative_;
+    Selection selection_;
+    Fade fade_;
+    svgf::HoleFill holes_;
+    std::vector<std::uint32_t> one_object_;
+    std::vector<svgf::PlaneView> views_;
+    Planes alpha_;
+    std::array<Planes, 2> colors_, variances_, counts_;
+    std::array<std::array<Planes, 2>, 2> filtered_;  // by half, then bandwidth
+};
+
+}  // namespace
+
+FilterEntry nfor_entry() {
+    return {
+        {.name = "nfor",
+         .summary = "first-order regression on features, weights by NL-means of halves; slow",
+         .source = "Bitterli et al. 2016",
+         .parameters = {{"radius", "px", "half side of the window of a fit", 9, 1, MaxRadius, {}},
+                        {"patch", "px", "half side of the patches that weights compare", 3, 0, MaxPatch, {}},
+                        {"stride", "px", "distance of the centres of fits", 1, 0, 2, {"1", "2", "4"}},
+                        {"pooled",
+                         "",
+                         "degrees of freedom that the neighbourhood adds to a pixel's variance",
+                         4,
+                         0,
+                         64,
+                         {}},
+                        {"fade",
+                         "",
+                         "blends with the unfiltered picture where that has less error",
+                         1,
+                         0,
+                         1,
+                         {"off", "on"}}},
+         .channels =
+             [](const Values&) {
+                 return frame::ChannelSet{Channel::Radiance, Channel::Albedo, Channel::Normal, Channel::Depth,
+                                          Channel::EvenHalf};
+             },
+         .consistent = true},
+        [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> { return std::make_unique<Nfor>(); }};
+}
+
+}  // namespace tessera::filter

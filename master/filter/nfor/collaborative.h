@@ -1,0 +1,50 @@
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include "master/filter/nfor/regression.h"
+
+namespace tessera::filter::nfor {
+
+// The two bandwidths of the weights, by index.
+inline constexpr std::array<float, 2> Bandwidths{0.5f, 1.0f};
+
+// One half of the samples, whose light is regressed with weights from the other half.
+struct Half {
+    std::array<std::span<const float>, Colors> colors;  // holes filled; alpha, or anything, last
+    const Planes& color;                                // r, g, b: what patches of this half are compared by
+    const Planes& variance;                             // of the means of this half
+    const Planes& counts;                               // samples in it
+};
+
+struct CollaborativeSettings {
+    PatchSettings window{.radius = 9, .patch = 3};
+    std::uint32_t stride = 2;  // of the centres of fits: 1, 2 or 4
+};
+
+// First-order fits around every stride-th pixel in both directions; each predicts its whole window, and a
+// pixel gets the mean of the predictions for it with the fits' weights (collaborative filtering, Bitterli et
+// al. 2016 section 5). Weights are NL-means weights exp(-max(0, D) / k^2) of the other half times this half's
+// samples at q. Tiles that are two apart share no pixel, so four passes over them add up in a fixed order.
+class Collaborative {
+  public:
+    // `out[k]` for Bandwidths[k] gets Colors components. False: stopped.
+    bool run(const Half& half, const Half& other, const Regressors& features,
+             const CollaborativeSettings& settings, std::array<Planes, 2>& out, RunContext& context);
+
+  private:
+    struct Scratch {
+        PatchDistance distance;
+        std::vector<float> distances, weights, bandwidth, window;
+    };
+    struct Layout;
+    void run_tile(const Tile& tile, const Layout& layout, const Half& half, const Half& other,
+                  const Regressors& features, const CollaborativeSettings& settings, Scratch& scratch);
+    void prepare_taps(const Layout& layout);
+
+    tbb::enumerable_thread_specific<Scratch> scratch_;
+    std::vector<Tap> taps_;
+    std::array<Planes, 2> sums_;  // weight, then predictions less the pixel's own colours
+};
+
+}  // namespace tessera::filter::nfor

@@ -1,0 +1,86 @@
+#include "master/filter/nfor/patch_distance.h"
+
+#include <algorithm>
+
+namespace tessera::filter::nfor {
+
+namespace {
+
+constexpr float Largest = 1e30f;  // of squares and variances, so that their sums are finite
+constexpr float Tiny = 1e-30f;
+constexpr float Cut = 1e6f;
+constexpr std::size_t PairColumns = (Tiles::Width + 2 * MaxPatch + PackSize - 1) / PackSize * PackSize;
+
+}  // namespace
+
+void PatchDistance::load(const Guide& guide, const Tile& tile, const PatchSettings& settings) {
+    settings_ = settings;
+    components_ = guide.values.components();
+    height_ = tile.height;
+    halo_ = settings.radius + settings.patch;
+    columns_ = (Tiles::Width + 2 * halo_ + PackSize - 1) / PackSize * PackSize + PackSize;
+    const std::size_t rows = Tiles::Height + 2 * halo_;
+    plane_ = columns_ * rows + PackSize;
+    window_.resize(plane_ * (1 + 2 * components_));
+    pairs_.resize(PairColumns * (Tiles::Height + 2 * settings.patch));
+    columns_sums_.resize(PairColumns + PackSize);
+    const std::uint32_t width = guide.values.width(), height = guide.values.height();
+    const auto copy = [&](std::uint32_t plane, const auto& value) {
+        copy_window(width, height, std::int64_t{tile.x} - halo_, std::int64_t{tile.y} - halo_,
+                    static_cast<std::uint32_t>(columns_), static_cast<std::uint32_t>(rows),
+                    window_.data() + plane * plane_, columns_, 0.0f,
+                    [&](std::uint32_t y, std::uint32_t first, std::uint32_t last, float* to) {
+                        for (std::uint32_t x = first; x < last; ++x) to[x - first] = value(y, x);
+                    });
+    };
+    copy(0, [&](std::uint32_t y, std::uint32_t x) { return guide.known.row(0, y)[x] > 0.0f ? 1.0f : 0.0f; });
+    for (std::uint32_t c = 0; c < components_; ++c) {
+        copy(1 + 2 * c, [&](std::uint32_t y, std::uint32_t x) { return guide.values.row(c, y)[x]; });
+        copy(2 + 2 * c, [&](std::uint32_t y, std::uint32_t x) {
+            return std::min(guide.variances.row(c, y)[x], Largest);
+        });
+    }
+}
+
+template <std::uint32_t Components>
+void PatchDistance::pairs(std::int32_t dx, std::int32_t dy) {
+    const std::size_t rows = height_ + 2 * settings_.patch;
+    for (std::size_t row = 0; row < rows; ++row) {
+        const float* a = window_.data() + (settings_.radius + row) * columns_ + settings_.radius;
+        const float* b = a + dy * static_cast<std::ptrdiff_t>(columns_) + dx;
+        float* to = pairs_.data() + row * PairColumns;
+        for (std::size_t x = 0; x < PairColumns; x += PackSize) {
+            Pack sum = all(0.0f);
+            for (std::uint32_t c = 0; c < Components; ++c) {
+                const std::size_t value = (1 + 2 * c) * plane_ + x, variance = (2 + 2 * c) * plane_ + x;
+                const Pack d = filter::load(a + value) - filter::load(b + value);
+                const Pack va = filter::load(a + variance), vb = filter::load(b + variance);
+                const Pack excess = min(d * d, all(Largest)) - (va + min(va, vb));
+                sum += min(excess / (va + vb + Tiny), all(Cut));
+            }
+            store(to + x, sum * (filter::load(a + x) * filter::load(b + x)));
+        }
+    }
+}
+
+void PatchDistance::compute(std::int32_t dx, std::int32_t dy, std::uint32_t step, float* to) {
+    components_ == 1 ? pairs<1>(dx, dy) : pairs<3>(dx, dy);
+    const std::uint32_t side = 2 * settings_.patch + 1;
+    const Pack scale = all(1.0f / static_cast<float>(components_ * side * side));
+    for (std::uint32_t y = 0; y < height_; y += step, to += Tiles::Width) {
+        for (std::size_t x = 0; x < PairColumns; x += PackSize) {
+            const float* from = pairs_.data() + y * PairColumns + x;
+            Pack sum = filter::load(from);
+            for (std::uint32_t i = 1; i < side; ++i) sum += filter::load(from + i * PairColumns);
+            store(columns_sums_.data() + x, sum);
+        }
+        for (std::size_t x = 0; x < Tiles::Width; x += PackSize) {
+            const float* from = columns_sums_.data() + x;
+            Pack sum = filter::load(from);
+            for (std::uint32_t i = 1; i < side; ++i) sum += filter::load(from + i);
+            store(to + x, max(sum * scale, all(0.0f)));
+        }
+    }
+}
+
+}  // namespace tessera::filter::nfor

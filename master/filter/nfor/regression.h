@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "master/filter/nfor/regressors.h"
+#include "master/filter/pack.h"
+
+namespace tessera::filter::nfor {
+
+// The variables of the first-order model: x, y in the picture and the features. Four colours are regressed.
+inline constexpr std::size_t Variables = 2 + FeatureCount, Colors = 4;
+
+// One pixel of a window, seen from eight neighbouring centres.
+struct Tap {
+    float dx, dy;           // from centre to pixel
+    std::ptrdiff_t offset;  // from a centre's place in a plane to the pixel's
+};
+
+// Where the numbers of eight centres lie; plane i starts at `base + i * plane`.
+struct Window {
+    std::span<const Tap> taps;
+    const float* features;  // FeatureCount planes, at the centres
+    const float* colors;    // Colors planes
+    const float* noise;     // variance of the colours, summed over r, g, b
+    std::size_t plane;
+};
+
+// A weighted first-order fit of colours around each of eight pixels p,
+//
+//     c(q) ~ c_0 + sum_i b_i (v_i(q) - m_i)        m the weighted means of the variables
+//
+// by normal equations of differences to p, whose rounding is relative to the window's own spread. With C the
+// weighted covariance of the variables the ridge is
+//
+//     (C + diag(r (C_ii + f) + r_0 M_ii)) b = cov(v, c)      r = r_0 + (Variables / N) S / (T - S)
+//
+// N = (sum w)^2 / sum w^2 the effective number of pixels, T the weighted variance of the colours, S what
+// noise explains of it. This is Hoerl and Kennard's ridge (number of coefficients times noise over N times
+// the squared coefficients) for standardised variables, whose squared coefficients add up to the signal T -
+// S: a window that noise explains gets the zero-order mean. C_ii is the difference of the second moment M_ii
+// around p and a square, so its rounding is relative to M_ii: r_0 = 1e-5 is ten times the rounding of sums of
+// some hundred floats, and the matrix stays positive definite. f = 1e-6: a feature that varies by less than
+// 0.001 says little in noise. With features all equal, C and b are 0.
+class Fit {
+  public:
+    // weights: eight per tap. Centres without weight get known() = 0 and otherwise finite numbers.
+    void solve(const Window& window, const float* weights);
+
+    // Weighted number of pixels > 0: 1, else 0.
+    Pack known() const { return known_; }
+
+    // The model at a tap: colours relative to those of p.
+    std::array<Pack, Colors> at(const Window& window, const Tap& tap) const;
+
+  private:
+    Pack known_;
+    std::array<Pack, Colors> intercept_;
+    std::array<std::array<Pack, Colors>, Variables> slope_;
+};
+
+}  // namespace tessera::filter::nfor

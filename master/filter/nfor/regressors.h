@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "master/filter/nfor/joint_nl_means.h"
+
+namespace tessera::filter::nfor {
+
+// What the light is regressed on: albedo (3), mapped normal (3) and 1 / depth (1), which is linear in the
+// picture on planes and 0 at misses; scaled so that its mean over surfaces is 1, and cut at 10.
+inline constexpr std::uint32_t FeatureCount = 7;
+
+// Features of the frame, prefiltered by NL-means. Films have no variance of features; the mean of n samples
+// whose pixel may lie across an edge is given the variance of its 3 x 3 neighbourhood over n. Without noise a
+// pixel differs from its like by nothing and from others by far more than that, so exact features stay.
+// Features that the frame lacks are 0.
+class Regressors {
+  public:
+    void gather(const Inputs& inputs, RunContext& context);
+    // The planes that gather() has made, for holes to be filled in.
+    std::array<Planes, 3>& raw() { return raw_; }
+    // False: stopped.
+    bool prefilter(const Inputs& inputs, RunContext& context);
+
+    // After prefilter(): feature i in [0, FeatureCount).
+    std::span<const float> plane(std::uint32_t i) const { return smooth_[i / 3].plane(i % 3); }
+
+  private:
+    JointNlMeans nl_means_;
+    std::array<Planes, 3> raw_, variance_, smooth_;  // albedo, normal, depth
+};
+
+}  // namespace tessera::filter::nfor

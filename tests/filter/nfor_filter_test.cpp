@@ -1,0 +1,188 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "master/filter/nfor/regression.h"
+#include "mediator/base/random.h"
+#include "tests/filter/synthetic.h"
+
+namespace tessera::filter {
+namespace {
+
+// A window of 7 x 7 pixels around eight centres, with planes that a fit reads.
+struct Fitting {
+    static constexpr std::size_t Columns = 16, Rows = 7, Plane = Columns * Rows;
+    static constexpr std::ptrdiff_t Centre = 3 * Columns + 3;
+
+    Fitting() : values(Plane * (nfor::FeatureCount + nfor::Colors + 1)) {
+        for (int dy = -3; dy <= 3; ++dy) {
+            for (int dx = -3; dx <= 3; ++dx) {
+                taps.push_back({static_cast<float>(dx), static_cast<float>(dy), dy * 16 + dx});
+            }
+        }
+        CounterRandom random(1);
+        weights.resize(taps.size() * PackSize);
+        for (float& weight : weights) weight = static_cast<float>(0.1 + random.uniform());
+        for (float& value : values) value = static_cast<float>(random.uniform());
+        for (float* v = noise(); v != noise() + Plane; ++v) *v = 0.0f;
+    }
+    float* feature(std::size_t i) { return values.data() + i * Plane; }
+    float* color(std::size_t c) { return feature(nfor::FeatureCount + c); }
+    float* noise() { return color(nfor::Colors); }
+    nfor::Window window() { return {taps, feature(0) + Centre, color(0) + Centre, noise() + Centre, Plane}; }
+    nfor::Fit fit() {
+        nfor::Fit result;
+        result.solve(window(), weights.data());
+        return result;
+    }
+    // The largest difference of the model to what is there, over centres, pixels and colours.
+    float worst() {
+        const nfor::Fit model = fit();
+        float most = 0.0f;
+        for (const nfor::Tap& tap : taps) {
+            const auto predicted = model.at(window(), tap);
+            for (std::size_t c = 0; c < nfor::Colors; ++c) {
+                for (std::size_t lane = 0; lane < PackSize; ++lane) {
+                    const float* at = color(c) + Centre + lane;
+                    most = std::max(most, std::abs(predicted[c][lane] + at[0] - at[tap.offset]));
+                }
+            }
+        }
+        return most;
+    }
+
+    std::vector<nfor::Tap> taps;
+    std::vector<float> weights, values;
+};
+
+TEST(NforFit, ReproducesWhatIsLinearInTheVariables) {
+    Fitting f;
+    for (std::size_t i = 0; i < Fitting::Plane; ++i) {
+        for (std::size_t c = 0; c < nfor::Colors; ++c) {
+            f.color(c)[i] = 0.3f + 0.02f * static_cast<float>(i % Fitting::Columns) + 0.2f * f.feature(0)[i] -
+                            0.1f * static_cast<float>(c) * f.feature(4)[i] + 0.05f * f.feature(6)[i];
+        }
+    }
+    EXPECT_LT(f.worst(), 1e-4f);
+}
+
+TEST(NforFit, SaysNothingThatFeaturesDoNotSay) {
+    Fitting f;
+    EXPECT_GT(f.worst(), 0.2f);  // colours are random
+}
+
+TEST(NforFit, TakesFeaturesThatRepeatEachOther) {
+    Fitting f;
+    for (std::size_t i = 0; i < Fitting::Plane; ++i) {
+        for (std::size_t feature = 1; feature < nfor::FeatureCount; ++feature) {
+            f.feature(feature)[i] = 2.0f * f.feature(0)[i];
+        }
+        for (std::size_t c = 0; c < nfor::Colors; ++c) f.color(c)[i] = 0.5f + f.feature(0)[i];
+    }
+    EXPECT_LT(f.worst(), 1e-4f);
+}
+
+// What is predicted at the centre, relative to its colour, and the weighted mean of the window.
+TEST(NforFit, IsTheWeightedMeanWhereNoiseExplainsAll) {
+    for (const bool equal_features : {false, true}) {
+        Fitting f;
+        for (std::size_t i = 0; i < Fitting::Plane; ++i) {
+            f.noise()[i] = 0.3f;  // three times the variance of a uniform number, and a little
+            for (std::size_t k = 0; equal_features && k < nfor::FeatureCount; ++k) f.feature(k)[i] = 0.7f;
+        }
+        const nfor::Fit model = f.fit();
+        for (std::size_t lane = 0; lane < PackSize; ++lane) {
+            double sum = 0.0, weight = 0.0;
+            for (std::size_t t = 0; t < f.taps.size(); ++t) {
+                const double w = f.weights[t * PackSize + lane];
+                weight += w;
+                sum += w * f.color(0)[Fitting::Centre + static_cast<std::ptrdiff_t>(lane) + f.taps[t].offset];
+            }
+            const double mean = sum / weight;
+            for (const nfor::Tap& tap : f.taps) {
+                const float own = f.color(0)[Fitting::Centre + static_cast<std::ptrdiff_t>(lane)];
+                EXPECT_NEAR(model.at(f.window(), tap)[0][lane] + own, mean, 1e-3);
+            }
+        }
+    }
+}
+
+TEST(NforFit, EqualFeaturesChangeNothing) {
+    // Features of one value each, against none: the fit sees the position alone in both.
+    Fitting with, without;
+    for (std::size_t i = 0; i < Fitting::Plane * nfor::FeatureCount; ++i) {
+        with.values[i] = 0.7f;
+        without.values[i] = 0.0f;
+    }
+    const nfor::Fit a = with.fit(), b = without.fit();
+    for (const nfor::Tap& tap : with.taps) {
+        for (std::size_t lane = 0; lane < PackSize; ++lane) {
+            EXPECT_EQ(a.at(with.window(), tap)[0][lane], b.at(without.window(), tap)[0][lane]);
+        }
+    }
+}
+
+TEST(NforFit, WithoutWeightItIsFiniteAndSaysSo) {
+    Fitting f;
+    std::ranges::fill(f.weights, 0.0f);
+    const nfor::Fit model = f.fit();
+    EXPECT_EQ(model.known()[0], 0.0f);
+    for (const nfor::Tap& tap : f.taps) EXPECT_TRUE(std::isfinite(model.at(f.window(), tap)[0][0]));
+}
+
+// A bent surface: light linear in a normal that turns over the picture and in an albedo that waves.
+SyntheticSample bent(std::uint32_t x, std::uint32_t y, std::uint64_t i, double noise) {
+    const double angle = 2.0 * x / 64.0 + 0.5 * std::sin(0.2 * y);
+    CounterRandom random(mix(3), mix((std::uint64_t{y} << 32 | x) ^ mix(i)));
+    SyntheticSample s;
+    s.normal = {static_cast<float>(std::sin(angle)), 0.0f, static_cast<float>(std::cos(angle))};
+    s.albedo.fill(static_cast<float>(0.5 + 0.3 * std::sin(0.7 * x + 0.4 * y)));
+    const double light = 1.0 + 0.5 * s.normal[0] + 0.3 * s.normal[2] + 0.4 * s.albedo[0];
+    s.high.fill(static_cast<float>(light * (1.0 + noise * (2.0 * random.uniform() - 1.0))));
+    return s;
+}
+
+TEST(Nfor, KeepsWhatIsLinearInFeatures) {
+    const Inputs exact = synthetic_inputs(64, 48, 1, [](auto x, auto y, auto) { return bent(x, y, 0, 0.0); });
+    const Inputs clean =
+        synthetic_inputs(64, 48, 8, [](auto x, auto y, auto i) { return bent(x, y, i, 0.0); });
+    const Inputs noisy =
+        synthetic_inputs(64, 48, 8, [](auto x, auto y, auto i) { return bent(x, y, i, 1.0); });
+    const Planes& truth = exact.mean(frame::Channel::Radiance);
+    const Planes picture = run_filter("nfor", clean).picture;
+    for (std::size_t i = 0; i < truth.values().size(); ++i) {
+        EXPECT_NEAR(picture.values()[i], truth.values()[i], 1e-4f);
+    }
+    // A mean over like pixels leaves more error, as it has to cut where the light changes.
+    const double unfiltered = mean_squared_error(noisy.mean(frame::Channel::Radiance), truth);
+    const double first_order = mean_squared_error(run_filter("nfor", noisy).picture, truth);
+    EXPECT_LT(first_order, 0.05 * unfiltered);
+    EXPECT_LT(first_order, 0.7 * mean_squared_error(run_filter("statmc", noisy).picture, truth));
+}
+
+TEST(Nfor, FiltersWithoutHalvesAndSaysSo) {
+    const Inputs noisy =
+        synthetic_inputs(64, 48, 8, [](auto x, auto y, auto i) { return bent(x, y, i, 1.0); },
+                         {frame::Channel::Radiance, frame::Channel::Normal});
+    const Inputs exact = synthetic_inputs(64, 48, 1, [](auto x, auto y, auto) { return bent(x, y, 0, 0.0); });
+    const Planes& truth = exact.mean(frame::Channel::Radiance);
+    EXPECT_LT(mean_squared_error(run_filter("nfor", noisy).picture, truth),
+              0.2 * mean_squared_error(noisy.mean(frame::Channel::Radiance), truth));
+}
+
+TEST(Nfor, KeepsAnEdgeThatOnlyTheLightHas) {
+    const Inputs inputs = synthetic_inputs(48, 32, 256, [](auto x, auto y, auto i) {
+        CounterRandom random(mix(7), mix((std::uint64_t{y} << 32 | x) ^ mix(i)));
+        SyntheticSample s;
+        s.high.fill(static_cast<float>((x < 24 ? 1.0 : 2.0) * 2.0 * random.uniform()));
+        return s;
+    });
+    const Output out = run_filter("nfor", inputs);
+    for (std::uint32_t y = 0; y < 32; ++y) {
+        EXPECT_NEAR(out.picture.row(0, y)[23], 1.0f, 0.1f);
+        EXPECT_NEAR(out.picture.row(0, y)[24], 2.0f, 0.2f);
+    }
+}
+
+}  // namespace
+}  // namespace tessera::filter
