@@ -73,7 +73,7 @@ class PixelFilter final : public Filter {
         const bool pass = needs_pass(inputs, values, samples);
         const bool shown = pass || has_pass_;
         {
-            Stage stage(report, "light", 0.0);
+            Stage stage(report, "light", 4.0 * (2 + 9));  // counts twice, light and its variances once
             holes_.find(inputs);
             light_.prepare(inputs, holes_, context);
         }

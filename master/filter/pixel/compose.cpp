@@ -68,7 +68,10 @@ bool compose(const Inputs& inputs, const Light& light, const Field& filtered, co
                 float* to = picture.row(3, y) + x;
                 for (std::uint32_t i = 0; i < p.count; ++i) {
                     const float s = p.blend[i];
-                    to[i] = s < 1.0f ? s * alpha[i] + (1.0f - s) * smooth[i] : alpha[i];
+                    const float u = blend.spike_clamp > 0.0f
+                                        ? clamp_spike(alpha[i], smooth[i], blend.spike_clamp)
+                                        : alpha[i];
+                    to[i] = s < 1.0f ? s * u + (1.0f - s) * smooth[i] : alpha[i];
                 }
             }
             if (maps.blend) std::copy_n(p.blend.data(), p.count, maps.blend->row(0, y) + x);
