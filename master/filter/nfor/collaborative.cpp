@@ -37,16 +37,33 @@ struct Collaborative::Layout {
           part((Tiles::Width + 2 * margin) / stride + PackSize),
           columns(part * stride),
           rows(Tiles::Height + 2 * margin),
-          plane(columns * rows) {}
+          plane(columns * rows),
+          packs((Tiles::Width / stride + PackSize - 1) / PackSize) {}
 
     std::size_t place(std::size_t row, std::size_t column) const {
         return row * columns + column % stride * part + column / stride;
+    }
+
+    // body(place, pixel) for every pixel of the picture that the window of the tile has.
+    template <class Body>
+    void for_each_pixel(const Tile& tile, std::uint32_t width, std::uint32_t height, const Body& body) const {
+        const std::int64_t x0 = std::int64_t{tile.x} - margin, y0 = std::int64_t{tile.y} - margin;
+        const std::int64_t first_row = std::max<std::int64_t>(0, -y0), first = std::max<std::int64_t>(0, -x0);
+        const auto last_row = std::min<std::int64_t>(static_cast<std::int64_t>(rows), height - y0);
+        const auto last = std::min<std::int64_t>(Tiles::Width + 2 * margin, width - x0);
+        for (std::int64_t row = first_row; row < last_row; ++row) {
+            for (std::int64_t column = first; column < last; ++column) {
+                body(place(static_cast<std::size_t>(row), static_cast<std::size_t>(column)),
+                     static_cast<std::size_t>((y0 + row) * width + x0 + column));
+            }
+        }
     }
 
     std::uint32_t stride;
     std::int32_t radius;
     std::uint32_t margin;
     std::size_t part, columns, rows, plane;
+    std::size_t packs;  // of centres, in a row of the tile
 };
 
 void Collaborative::prepare_taps(const Layout& layout) {
@@ -76,13 +93,20 @@ bool Collaborative::run(const Half& half, const Half& other, const Regressors& f
     }
     const Layout layout(settings);
     prepare_taps(layout);
+    slots_.reserve(context, [&](Slot& slot) {
+        slot.distance.reserve(settings.window, 3);
+        slot.distances.resize(Tiles::Width * Tiles::Height);
+        slot.weights.resize(layout.packs * (Tiles::Height / layout.stride) * taps_.size() * PackSize);
+        slot.bandwidth.resize(2 * taps_.size() * PackSize);
+        slot.window.resize(Count * layout.plane + PackSize);
+    });
     const Tiles tiles(width, height);
     bool done = true;
     for (std::uint32_t turn = 0; done && turn < 4; ++turn) {
         done = for_rows(context, tiles.count(), [&](std::uint32_t i) {
             const Tile tile = tiles.tile(i);
             const std::uint32_t parity = tile.x / Tiles::Width % 2 + 2 * (tile.y / Tiles::Height % 2);
-            if (parity == turn) run_tile(tile, layout, half, other, features, settings, scratch_.local());
+            if (parity == turn) run_tile(tile, layout, half, other, features, slots_.local());
         });
     }
     return done && for_rows(context, height, [&](std::uint32_t y) {
@@ -103,118 +127,104 @@ bool Collaborative::run(const Half& half, const Half& other, const Regressors& f
 }
 
 void Collaborative::run_tile(const Tile& tile, const Layout& layout, const Half& half, const Half& other,
-                             const Regressors& features, const CollaborativeSettings& settings,
-                             Scratch& scratch) {
-    const std::uint32_t width = half.counts.width(), height = half.counts.height();
-    const std::uint32_t stride = layout.stride;
-    const std::int64_t x0 = std::int64_t{tile.x} - layout.margin, y0 = std::int64_t{tile.y} - layout.margin;
-    scratch.window.assign(Count * layout.plane + PackSize, 0.0f);
-    const auto gather = [&](std::size_t plane, const auto& value) {
-        float* to = scratch.window.data() + plane * layout.plane;
-        const std::int64_t columns = Tiles::Width + 2 * layout.margin;
-        for (std::size_t row = 0; row < layout.rows; ++row) {
-            const std::int64_t y = y0 + static_cast<std::int64_t>(row);
-            if (y < 0 || y >= height) continue;
-            for (std::int64_t column = std::max<std::int64_t>(0, -x0); column < std::min(columns, width - x0);
-                 ++column) {
-                to[layout.place(row, static_cast<std::size_t>(column))] =
-                    value(static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x0 + column));
+                             const Regressors& features, Slot& slot) {
+    gather(tile, layout, half, features, slot);
+    slot.distance.load({other.color, other.variance, other.counts}, tile);
+    measure(tile, layout, slot);
+    float* sums = slot.window.data() + Sum * layout.plane;
+    for (std::size_t k = 0; k < Bandwidths.size(); ++k) {
+        std::fill_n(sums, (Colors + 1) * layout.plane, 0.0f);
+        for (std::size_t row = 0; row * layout.stride < tile.height; ++row) {
+            for (std::size_t pack = 0; pack * PackSize * layout.stride < tile.width; ++pack) {
+                predict(tile, layout, k, row, pack, slot);
             }
         }
+        layout.for_each_pixel(tile, sums_[k].width(), sums_[k].height(),
+                              [&, plane = sums_[k].pixel_count()](std::size_t place, std::size_t pixel) {
+                                  float* to = sums_[k].values().data() + pixel;
+                                  for (std::size_t c = 0; c <= Colors; ++c) {
+                                      to[c * plane] += sums[c * layout.plane + place];
+                                  }
+                              });
+    }
+}
+
+void Collaborative::gather(const Tile& tile, const Layout& layout, const Half& half,
+                           const Regressors& features, Slot& slot) const {
+    std::ranges::fill(slot.window, 0.0f);
+    const auto copy = [&](std::size_t plane, const auto& value) {
+        float* to = slot.window.data() + plane * layout.plane;
+        layout.for_each_pixel(tile, half.counts.width(), half.counts.height(),
+                              [&](std::size_t place, std::size_t pixel) { to[place] = value(pixel); });
     };
     for (std::uint32_t f = 0; f < FeatureCount; ++f) {
-        gather(Feature + f, [from = features.plane(f)](std::size_t i) { return from[i]; });
+        copy(Feature + f, [from = features.plane(f)](std::size_t i) { return from[i]; });
     }
     for (std::size_t c = 0; c < Colors; ++c) {
-        gather(Color + c, [from = half.colors[c]](std::size_t i) { return from[i]; });
+        copy(Color + c, [from = half.colors[c]](std::size_t i) { return from[i]; });
     }
-    gather(Noise, [&](std::size_t i) {
+    copy(Noise, [&](std::size_t i) {
         return half.variance.plane(0)[i] + half.variance.plane(1)[i] + half.variance.plane(2)[i];
     });
-    gather(Samples, [from = half.counts.plane(0)](std::size_t i) { return from[i]; });
-    gather(Known, [from = half.counts.plane(0)](std::size_t i) { return from[i] > 0.0f ? 1.0f : 0.0f; });
+    copy(Samples, [from = half.counts.plane(0)](std::size_t i) { return from[i]; });
+    copy(Known, [from = half.counts.plane(0)](std::size_t i) { return from[i] > 0.0f ? 1.0f : 0.0f; });
+}
 
-    // exp(-D) of every centre and offset; eight centres are together, then come their offsets.
-    const std::size_t packs_across = (Tiles::Width / stride + PackSize - 1) / PackSize;
-    const std::size_t centre_rows = (tile.height + stride - 1) / stride;
-    const std::size_t taps = taps_.size();
-    scratch.distances.resize(Tiles::Width * Tiles::Height);
-    scratch.weights.resize(packs_across * (Tiles::Height / stride) * taps * PackSize);
-    scratch.bandwidth.resize(2 * taps * PackSize);
-    scratch.distance.load({other.color, other.variance, other.counts}, tile, settings.window);
-    for (std::size_t t = 0; t < taps; ++t) {
-        scratch.distance.compute(static_cast<std::int32_t>(taps_[t].dx),
-                                 static_cast<std::int32_t>(taps_[t].dy), stride, scratch.distances.data());
-        for (std::size_t row = 0; row < centre_rows; ++row) {
-            const float* from = scratch.distances.data() + row * Tiles::Width;
-            for (std::size_t pack = 0; pack < packs_across; ++pack) {
+void Collaborative::measure(const Tile& tile, const Layout& layout, Slot& slot) const {
+    for (std::size_t t = 0; t < taps_.size(); ++t) {
+        slot.distance.compute(static_cast<std::int32_t>(taps_[t].dx), static_cast<std::int32_t>(taps_[t].dy),
+                              layout.stride, slot.distances.data());
+        for (std::size_t row = 0; row * layout.stride < tile.height; ++row) {
+            const float* from = slot.distances.data() + row * Tiles::Width;
+            for (std::size_t pack = 0; pack < layout.packs; ++pack) {
                 Pack d;
                 for (std::uint32_t lane = 0; lane < PackSize; ++lane) {
-                    d[lane] = from[(pack * PackSize + lane) * stride];
+                    d[lane] = from[(pack * PackSize + lane) * layout.stride];
                 }
-                store(scratch.weights.data() + ((row * packs_across + pack) * taps + t) * PackSize,
+                store(slot.weights.data() + ((row * layout.packs + pack) * taps_.size() + t) * PackSize,
                       exp2_negative(d * Log2E));
             }
         }
     }
+}
 
-    for (std::size_t k = 0; k < Bandwidths.size(); ++k) {
-        float* sums = scratch.window.data() + Sum * layout.plane;
-        std::fill(sums, sums + (Colors + 1) * layout.plane, 0.0f);
-        for (std::size_t row = 0; row < centre_rows; ++row) {
-            for (std::size_t pack = 0; pack < packs_across; ++pack) {
-                if (pack * PackSize * stride >= tile.width) break;
-                const std::size_t centre =
-                    layout.place(row * stride + layout.margin, layout.margin) + pack * PackSize;
-                const float* at = scratch.window.data() + centre;
-                const Window window{taps_, at + Feature * layout.plane, at + Color * layout.plane,
-                                    at + Noise * layout.plane, layout.plane};
-                const float* nearness =
-                    scratch.weights.data() + (row * packs_across + pack) * taps * PackSize;
-                float* alike = scratch.bandwidth.data();
-                float* fitting = alike + taps * PackSize;
-                for (std::size_t t = 0; t < taps; ++t) {
-                    Pack w = load(nearness + t * PackSize);
-                    if (k == 0) w = (w * w) * (w * w);  // 1 / 0.5^2 = 4
-                    store(alike + t * PackSize, w);
-                    store(fitting + t * PackSize, w * load(at + Samples * layout.plane + taps_[t].offset));
-                }
-                Fit fit;
-                fit.solve(window, fitting);
-                Pack inside;
-                for (std::uint32_t lane = 0; lane < PackSize; ++lane) {
-                    inside[lane] = (pack * PackSize + lane) * stride < tile.width ? 1.0f : 0.0f;
-                }
-                const Pack valid = inside * fit.known(), centre_known = load(at + Known * layout.plane);
-                for (std::size_t t = 0; t < taps; ++t) {
-                    const Tap& tap = taps_[t];
-                    // A centre without samples has nothing to say about pixels that have some.
-                    const Pack known = load(at + Known * layout.plane + tap.offset);
-                    const Pack w = load(alike + t * PackSize) * valid * max(centre_known, 1.0f - known);
-                    const std::array<Pack, Colors> predicted = fit.at(window, tap);
-                    float* to = sums + centre + tap.offset;
-                    store(to, load(to) + w);
-                    for (std::size_t c = 0; c < Colors; ++c) {
-                        float* sum = to + (c + 1) * layout.plane;
-                        const float* color = window.colors + c * layout.plane;
-                        const Pack own = load(color + tap.offset) - load(color);
-                        store(sum, load(sum) + w * (predicted[c] - own));
-                    }
-                }
-            }
-        }
-        for (std::size_t row = 0; row < layout.rows; ++row) {
-            const std::int64_t y = y0 + static_cast<std::int64_t>(row);
-            if (y < 0 || y >= height) continue;
-            const std::int64_t columns = Tiles::Width + 2 * layout.margin;
-            for (std::uint32_t c = 0; c <= Colors; ++c) {
-                float* to = sums_[k].row(c, static_cast<std::uint32_t>(y));
-                for (std::int64_t column = std::max<std::int64_t>(0, -x0);
-                     column < std::min(columns, width - x0); ++column) {
-                    to[x0 + column] +=
-                        sums[c * layout.plane + layout.place(row, static_cast<std::size_t>(column))];
-                }
-            }
+void Collaborative::predict(const Tile& tile, const Layout& layout, std::size_t k, std::size_t row,
+                            std::size_t pack, Slot& slot) const {
+    const std::size_t taps = taps_.size();
+    const std::size_t centre =
+        layout.place(row * layout.stride + layout.margin, layout.margin) + pack * PackSize;
+    const float* at = slot.window.data() + centre;
+    const Window window{taps_, at + Feature * layout.plane, at + Color * layout.plane,
+                        at + Noise * layout.plane, layout.plane};
+    const float* nearness = slot.weights.data() + (row * layout.packs + pack) * taps * PackSize;
+    float* alike = slot.bandwidth.data();
+    float* fitting = alike + taps * PackSize;
+    for (std::size_t t = 0; t < taps; ++t) {
+        Pack w = load(nearness + t * PackSize);
+        if (k == 0) w = (w * w) * (w * w);  // to the power of 1 / 0.5^2
+        store(alike + t * PackSize, w);
+        store(fitting + t * PackSize, w * load(at + Samples * layout.plane + taps_[t].offset));
+    }
+    Fit fit;
+    fit.solve(window, fitting);
+    Pack inside;
+    for (std::uint32_t lane = 0; lane < PackSize; ++lane) {
+        inside[lane] = (pack * PackSize + lane) * layout.stride < tile.width ? 1.0f : 0.0f;
+    }
+    const Pack valid = inside * fit.known(), centre_known = load(at + Known * layout.plane);
+    for (std::size_t t = 0; t < taps; ++t) {
+        const Tap& tap = taps_[t];
+        // A centre without samples has nothing to say about pixels that have some.
+        const Pack known = load(at + Known * layout.plane + tap.offset);
+        const Pack w = load(alike + t * PackSize) * valid * max(centre_known, 1.0f - known);
+        const std::array<Pack, Colors> predicted = fit.at(window, tap);
+        float* to = slot.window.data() + Sum * layout.plane + centre + tap.offset;
+        store(to, load(to) + w);
+        for (std::size_t c = 0; c < Colors; ++c) {
+            float* sum = to + (c + 1) * layout.plane;
+            const float* color = window.colors + c * layout.plane;
+            const Pack own = load(color + tap.offset) - load(color);
+            store(sum, load(sum) + w * (predicted[c] - own));
         }
     }
 }

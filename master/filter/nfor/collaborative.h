@@ -1,7 +1,5 @@
 #pragma once
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include "master/filter/nfor/regression.h"
 
 namespace tessera::filter::nfor {
@@ -33,16 +31,24 @@ class Collaborative {
              const CollaborativeSettings& settings, std::array<Planes, 2>& out, RunContext& context);
 
   private:
-    struct Scratch {
+    struct Slot {
         PatchDistance distance;
         std::vector<float> distances, weights, bandwidth, window;
     };
     struct Layout;
     void run_tile(const Tile& tile, const Layout& layout, const Half& half, const Half& other,
-                  const Regressors& features, const CollaborativeSettings& settings, Scratch& scratch);
+                  const Regressors& features, Slot& slot);
+    // Copies what the fits of a tile read.
+    void gather(const Tile& tile, const Layout& layout, const Half& half, const Regressors& features,
+                Slot& slot) const;
+    // exp(-D) of every centre and tap: for eight centres that are neighbours all taps, then the next eight.
+    void measure(const Tile& tile, const Layout& layout, Slot& slot) const;
+    // Fits around eight centres and adds their predictions to the window's sums.
+    void predict(const Tile& tile, const Layout& layout, std::size_t k, std::size_t row, std::size_t pack,
+                 Slot& slot) const;
     void prepare_taps(const Layout& layout);
 
-    tbb::enumerable_thread_specific<Scratch> scratch_;
+    PerThread<Slot> slots_;
     std::vector<Tap> taps_;
     std::array<Planes, 2> sums_;  // weight, then predictions less the pixel's own colours
 };

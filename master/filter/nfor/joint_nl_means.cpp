@@ -17,26 +17,32 @@ bool JointNlMeans::run(const Guide& guide, const Planes& values, const PatchSett
         out.components() != values.components()) {
         out = Planes(values.width(), values.height(), values.components());
     }
+    const std::size_t window =
+        (Tiles::Width + 2 * settings.radius + PackSize) * (Tiles::Height + 2 * settings.radius);
+    slots_.reserve(context, [&](Slot& slot) {
+        slot.distance.reserve(settings, guide.values.components());
+        slot.distances.resize(TileSize);
+        slot.window.resize(window * (MaxComponents + 1));
+        slot.sums.resize(TileSize * (MaxComponents + 1));
+    });
     const Tiles tiles(values.width(), values.height());
     return for_rows(context, tiles.count(), [&](std::uint32_t i) {
-        run_tile(tiles.tile(i), guide, values, settings, k, out, scratch_.local());
+        run_tile(tiles.tile(i), guide, values, settings, k, out, slots_.local());
     });
 }
 
 void JointNlMeans::run_tile(const Tile& tile, const Guide& guide, const Planes& values,
-                            const PatchSettings& settings, float k, Planes& out, Scratch& scratch) const {
+                            const PatchSettings& settings, float k, Planes& out, Slot& slot) const {
     const std::uint32_t components = values.components();
     const auto radius = static_cast<std::int32_t>(settings.radius);
     const std::size_t columns = Tiles::Width + 2 * settings.radius + PackSize;
     const std::size_t rows = Tiles::Height + 2 * settings.radius, plane = columns * rows;
-    scratch.distance.load(guide, tile, settings);
-    scratch.distances.resize(TileSize);
-    scratch.window.resize(plane * (MaxComponents + 1));
-    scratch.sums.assign(TileSize * (MaxComponents + 1), 0.0f);
+    slot.distance.load(guide, tile);
+    std::ranges::fill(slot.sums, 0.0f);
     const auto copy = [&](std::uint32_t index, const auto& value) {
         copy_window(values.width(), values.height(), std::int64_t{tile.x} - radius,
                     std::int64_t{tile.y} - radius, static_cast<std::uint32_t>(columns),
-                    static_cast<std::uint32_t>(rows), scratch.window.data() + index * plane, columns, 0.0f,
+                    static_cast<std::uint32_t>(rows), slot.window.data() + index * plane, columns, 0.0f,
                     [&](std::uint32_t y, std::uint32_t first, std::uint32_t last, float* to) {
                         for (std::uint32_t x = first; x < last; ++x) to[x - first] = value(y, x);
                     });
@@ -48,12 +54,12 @@ void JointNlMeans::run_tile(const Tile& tile, const Guide& guide, const Planes& 
     const Pack scale = all(Log2E / (k * k));
     for (std::int32_t dy = -radius; dy <= radius; ++dy) {
         for (std::int32_t dx = -radius; dx <= radius; ++dx) {
-            scratch.distance.compute(dx, dy, 1, scratch.distances.data());
+            slot.distance.compute(dx, dy, 1, slot.distances.data());
             for (std::uint32_t y = 0; y < tile.height; ++y) {
-                const float* distances = scratch.distances.data() + y * Tiles::Width;
-                const float* from = scratch.window.data() +
-                                    (static_cast<std::size_t>(radius + dy) + y) * columns + radius + dx;
-                float* to = scratch.sums.data() + y * Tiles::Width;
+                const float* distances = slot.distances.data() + y * Tiles::Width;
+                const float* from =
+                    slot.window.data() + (static_cast<std::size_t>(radius + dy) + y) * columns + radius + dx;
+                float* to = slot.sums.data() + y * Tiles::Width;
                 for (std::uint32_t x = 0; x < Tiles::Width; x += PackSize) {
                     const Pack w = exp2_negative(load(distances + x) * scale) * load(from + x);
                     store(to + x, load(to + x) + w);
@@ -66,7 +72,7 @@ void JointNlMeans::run_tile(const Tile& tile, const Guide& guide, const Planes& 
         }
     }
     for (std::uint32_t y = 0; y < tile.height; ++y) {
-        const float* sums = scratch.sums.data() + y * Tiles::Width;
+        const float* sums = slot.sums.data() + y * Tiles::Width;
         for (std::uint32_t c = 0; c < components; ++c) {
             const float* own = values.row(c, tile.y + y) + tile.x;
             float* to = out.row(c, tile.y + y) + tile.x;

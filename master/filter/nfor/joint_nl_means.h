@@ -1,9 +1,8 @@
 #pragma once
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include "master/filter/kernels.h"
 #include "master/filter/nfor/patch_distance.h"
+#include "master/filter/nfor/per_thread.h"
 
 namespace tessera::filter::nfor {
 
@@ -21,14 +20,14 @@ class JointNlMeans {
     static constexpr std::uint32_t MaxComponents = 3;
 
   private:
-    struct Scratch {
+    struct Slot {
         PatchDistance distance;
         std::vector<float> distances, window, sums;
     };
     void run_tile(const Tile& tile, const Guide& guide, const Planes& values, const PatchSettings& settings,
-                  float k, Planes& out, Scratch& scratch) const;
+                  float k, Planes& out, Slot& slot) const;
 
-    tbb::enumerable_thread_specific<Scratch> scratch_;
+    PerThread<Slot> slots_;
 };
 
 }  // namespace tessera::filter::nfor

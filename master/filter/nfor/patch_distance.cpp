@@ -13,17 +13,20 @@ constexpr std::size_t PairColumns = (Tiles::Width + 2 * MaxPatch + PackSize - 1)
 
 }  // namespace
 
-void PatchDistance::load(const Guide& guide, const Tile& tile, const PatchSettings& settings) {
+void PatchDistance::reserve(const PatchSettings& settings, std::uint32_t components) {
     settings_ = settings;
-    components_ = guide.values.components();
-    height_ = tile.height;
     halo_ = settings.radius + settings.patch;
     columns_ = (Tiles::Width + 2 * halo_ + PackSize - 1) / PackSize * PackSize + PackSize;
-    const std::size_t rows = Tiles::Height + 2 * halo_;
-    plane_ = columns_ * rows + PackSize;
-    window_.resize(plane_ * (1 + 2 * components_));
+    plane_ = columns_ * (Tiles::Height + 2 * halo_) + PackSize;
+    window_.resize(plane_ * (1 + 2 * components));
     pairs_.resize(PairColumns * (Tiles::Height + 2 * settings.patch));
-    columns_sums_.resize(PairColumns + PackSize);
+    column_sums_.resize(PairColumns + PackSize);
+}
+
+void PatchDistance::load(const Guide& guide, const Tile& tile) {
+    components_ = guide.values.components();
+    height_ = tile.height;
+    const std::size_t rows = Tiles::Height + 2 * halo_;
     const std::uint32_t width = guide.values.width(), height = guide.values.height();
     const auto copy = [&](std::uint32_t plane, const auto& value) {
         copy_window(width, height, std::int64_t{tile.x} - halo_, std::int64_t{tile.y} - halo_,
@@ -72,10 +75,10 @@ void PatchDistance::compute(std::int32_t dx, std::int32_t dy, std::uint32_t step
             const float* from = pairs_.data() + y * PairColumns + x;
             Pack sum = filter::load(from);
             for (std::uint32_t i = 1; i < side; ++i) sum += filter::load(from + i * PairColumns);
-            store(columns_sums_.data() + x, sum);
+            store(column_sums_.data() + x, sum);
         }
         for (std::size_t x = 0; x < Tiles::Width; x += PackSize) {
-            const float* from = columns_sums_.data() + x;
+            const float* from = column_sums_.data() + x;
             Pack sum = filter::load(from);
             for (std::uint32_t i = 1; i < side; ++i) sum += filter::load(from + i);
             store(to + x, max(sum * scale, all(0.0f)));

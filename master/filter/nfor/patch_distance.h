@@ -28,7 +28,10 @@ inline constexpr std::uint32_t MaxRadius = 10, MaxPatch = 3;
 // nothing; it counts 0, as equal pixels do on average.
 class PatchDistance {
   public:
-    void load(const Guide& guide, const Tile& tile, const PatchSettings& settings);
+    // Allocates for guides of so many components.
+    void reserve(const PatchSettings& settings, std::uint32_t components);
+    // With the settings of reserve().
+    void load(const Guide& guide, const Tile& tile);
 
     // Of every step-th row of the tile, each Tiles::Width long, to offset (dx, dy) within the radius.
     void compute(std::int32_t dx, std::int32_t dy, std::uint32_t step, float* to);
@@ -41,7 +44,7 @@ class PatchDistance {
     std::uint32_t components_ = 0, height_ = 0, halo_ = 0;
     std::size_t columns_ = 0, plane_ = 0;
     std::vector<float> window_;  // known, then value and variance per component
-    std::vector<float> pairs_, columns_sums_;
+    std::vector<float> pairs_, column_sums_;
 };
 
 }  // namespace tessera::filter::nfor
