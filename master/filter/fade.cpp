@@ -8,13 +8,14 @@ namespace tessera::filter {
 
 namespace {
 
-enum Term : std::uint32_t { Gain, Distance, TermCount };
+// The differences of the three components come first.
+enum Term : std::uint32_t { Difference, Gain = 3, Distance, Spread, TermCount };
 
 // The part of one row: 0 where the variance is unknown, so that those pixels have no say.
 void fill_terms(const Inputs& inputs, frame::Channel channel, const Planes& filtered,
-                std::span<const float> self_weight, float floor, std::uint32_t y, float* gain,
-                float* distance) {
+                std::span<const float> self_weight, float floor, std::uint32_t y, Planes& terms) {
     const std::uint32_t width = inputs.width;
+    float *gain = terms.row(Gain, y), *distance = terms.row(Distance, y);
     std::fill(gain, gain + width, 0.0f);
     std::fill(distance, distance + width, 0.0f);
     const float* counts = inputs.counts.row(0, y);
@@ -24,10 +25,12 @@ void fill_terms(const Inputs& inputs, frame::Channel channel, const Planes& filt
         const float* u = mean.row(c, y);
         const float* v = variance.row(c, y);
         const float* f = filtered.row(c, y);
+        float* difference = terms.row(Difference + c, y);
         for (std::uint32_t x = 0; x < width; ++x) {
             const float known = counts[x] >= 2.0f ? 1.0f : 0.0f;
             const float scale = known / (std::abs(f[x]) + floor);
             const float d = (f[x] - u[x]) * scale;
+            difference[x] = d;
             gain[x] += v[x] * scale * scale;
             distance[x] += d * d;
         }
@@ -35,6 +38,32 @@ void fill_terms(const Inputs& inputs, frame::Channel channel, const Planes& filt
     if (self_weight.empty()) return;
     const float* a = self_weight.data() + std::size_t{y} * width;
     for (std::uint32_t x = 0; x < width; ++x) gain[x] *= 1.0f - a[x];
+}
+
+// Half of the squared difference of neighbours, to the right and below. Beyond a border, and to a pixel whose
+// variance is unknown, the pixel's own square stands for it.
+void fill_spread(const Planes& counts, std::uint32_t y, Planes& terms) {
+    const std::uint32_t width = terms.width();
+    const bool last_row = y + 1 == terms.height();
+    float* spread = terms.row(Spread, y);
+    std::fill(spread, spread + width, 0.0f);
+    for (std::uint32_t c = 0; c < 3; ++c) {
+        const float* here = terms.row(Difference + c, y);
+        const float* below = last_row ? here : terms.row(Difference + c, y + 1);
+        const float* n = counts.row(0, y);
+        const float* n_below = last_row ? n : counts.row(0, y + 1);
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const float own = here[x] * here[x];
+            const float down = here[x] - below[x];
+            const bool has_down = !last_row && n_below[x] >= 2.0f;
+            spread[x] += 0.5f * (n[x] < 2.0f ? 0.0f : has_down ? 0.5f * down * down : own);
+        }
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const bool has_right = x + 1 < width && n[x + 1] >= 2.0f;
+            const float across = has_right ? here[x] - here[x + 1] : 0.0f;
+            spread[x] += 0.5f * (n[x] < 2.0f ? 0.0f : has_right ? 0.5f * across * across : here[x] * here[x]);
+        }
+    }
 }
 
 // A tenth of the mean absolute value, which is the floor of relMSE's denominator too.
@@ -73,30 +102,35 @@ bool Fade::weigh(const Inputs& inputs, frame::Channel channel, const Planes& fil
                  std::span<const float> self_weight, RunContext& context) {
     shape(terms_, inputs, TermCount);
     shape(weights_, inputs, 1);
-    columns_.reserve(context, 2 * std::size_t{inputs.width});
+    columns_.reserve(context, 3 * std::size_t{inputs.width});
     const auto width = static_cast<std::int64_t>(inputs.width);
     const auto radius = static_cast<std::int64_t>(radius_);
     const float floor = floor_of(filtered, row_sums_, context);
     return for_rows(context, inputs.height,
                     [&](std::uint32_t y) {
-                        fill_terms(inputs, channel, filtered, self_weight, floor, y, terms_.row(Gain, y),
-                                   terms_.row(Distance, y));
+                        fill_terms(inputs, channel, filtered, self_weight, floor, y, terms_);
                     }) &&
+           for_rows(context, inputs.height,
+                    [&](std::uint32_t y) { fill_spread(inputs.counts, y, terms_); }) &&
            for_rows(context, inputs.height, [&](std::uint32_t y) {
                float* gain = columns_.local();
                float* distance = gain + width;
+               float* spread = distance + width;
                sum_column(terms_, Gain, y, radius_, gain);
                sum_column(terms_, Distance, y, radius_, distance);
+               sum_column(terms_, Spread, y, radius_, spread);
                const float* counts = inputs.counts.row(0, y);
                float* weight = weights_.row(0, y);
                for (std::int64_t x = 0; x < width; ++x) {
-                   float g = 0.0f, d = 0.0f;
+                   float g = 0.0f, d = 0.0f, s = 0.0f;
                    const std::int64_t first = std::max<std::int64_t>(0, x - radius);
                    const std::int64_t last = std::min(width - 1, x + radius);
                    for (std::int64_t i = first; i <= last; ++i) {
                        g += gain[i];
                        d += distance[i];
+                       s += spread[i];
                    }
+                   g = std::min(g, s);
                    weight[x] = counts[x] < 2.0f || g >= d ? 1.0f : g / d;
                }
            });
