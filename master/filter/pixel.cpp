@@ -137,7 +137,7 @@ class PixelFilter final : public Filter {
         if (is_on(values, Adaptive) && values[MethodChoice] != double(Method::ATrous)) {
             Stage stage(report, "widths", FirstLook::BytesPerPixel);
             const AdaptiveWidths rule{number(values, Threshold), sigma, number(values, AdaptiveClamp)};
-            return look_.run(guide_, light_, inputs, field_, rule, widths_, context);
+            return look_.run(guide_, light_, inputs, field_, rule, widths_, strips_, context);
         }
         widths_.fit(inputs.width, inputs.height, 1);
         return for_rows(context, inputs.height,
@@ -155,7 +155,8 @@ class PixelFilter final : public Filter {
         }
         const int iterations = static_cast<int>(values[IterationCount]);
         const Edges edges = is_on(values, AntialiasRecovery) ? Edges::Recover : Edges::Keep;
-        if (!filter_separable(guide_, widths_, iterations, edges, field_, scratch_, context)) return false;
+        if (!filter_separable(guide_, widths_, iterations, edges, field_, scratch_, strips_, context))
+            return false;
         ratios_.fit(iterations);
         return for_rows(context, field_.values.height(), [&](std::uint32_t y) {
             float* reduction = field_.reduction.row(0, y);
@@ -221,6 +222,7 @@ class PixelFilter final : public Filter {
     FirstLook look_;
     Widths widths_;
     Field field_, scratch_;  // field_: of the last pass
+    Strips strips_;
     ReductionRatios ratios_;
 
     bool has_pass_ = false;  // field_ holds one, made with these:

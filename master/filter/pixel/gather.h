@@ -47,8 +47,12 @@ template <std::size_t Features, std::size_t Layers>
 inline void gather(const Neighbourhood<Features, Layers>& from, const std::array<Lanes, Features>& target,
                    Lanes spread, float across, std::int64_t first, std::int64_t last, std::int64_t spacing,
                    std::ptrdiff_t stride, Sums<Layers>& sums) {
-    for (std::int64_t d = first; d <= last; d += spacing) {
-        add(from, target, spread * (static_cast<float>(d * d) + across), d * stride, sums);
+    std::ptrdiff_t at = first * stride;
+    auto d = static_cast<float>(first);
+    for (std::int64_t i = first; i <= last; i += spacing) {
+        add(from, target, spread * (d * d + across), at, sums);
+        at += spacing * stride;
+        d += static_cast<float>(spacing);
     }
 }
 
