@@ -190,7 +190,7 @@ class PixelFilter final : public Filter {
     }
 
     BlendMaps prepare_maps(const Inputs& inputs, Output& out) const {
-        constexpr std::array Names{"range", "variance", "smoothed_variance", "blend", "width"};
+        constexpr std::array Names{"range", "variance", "smoothed_variance", "blend", "width", "reduction"};
         out.maps.resize(Names.size());
         for (std::size_t i = 0; i < Names.size(); ++i) {
             out.maps[i].name = Names[i];
@@ -205,6 +205,7 @@ class PixelFilter final : public Filter {
         }
         for (std::uint32_t y = 0; y < inputs.height; ++y) {
             std::copy_n(widths_.row(0, y), inputs.width, out.maps[4].planes.row(0, y));
+            std::copy_n(field_.reduction.row(0, y), inputs.width, out.maps[5].planes.row(0, y));
         }
         return {&out.maps[2].planes, &out.maps[3].planes};
     }

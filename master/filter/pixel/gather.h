@@ -9,8 +9,8 @@
 // The inner loop of every method: weighted sums over the neighbours of eight pixels (Schwenk 3.6).
 namespace tessera::filter::pixel {
 
-// Total weights below it mean that nothing was found: a rejected neighbour has 2^-125.
-inline constexpr float LeastWeight = 1e-20f;
+// A pixel whose neighbours weigh less in all has found nothing; only holes can, others weigh 1 themselves.
+inline constexpr float LeastWeight = 1e-6f;
 
 // Rows of the pictures at the eight pixels; a neighbour is so many floats away in all of them.
 template <std::size_t Features, std::size_t Layers>
