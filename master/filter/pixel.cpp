@@ -137,7 +137,7 @@ class PixelFilter final : public Filter {
         if (is_on(values, Adaptive) && values[MethodChoice] != double(Method::ATrous)) {
             Stage stage(report, "widths", FirstLook::BytesPerPixel);
             const AdaptiveWidths rule{number(values, Threshold), sigma, number(values, AdaptiveClamp)};
-            return look_.run(guide_, light_, inputs, field_, rule, widths_, context);
+            return look_.run(guide_, light_, inputs, field_, rule, widths_, strips_, context);
         }
         widths_.fit(inputs.width, inputs.height, 1);
         return for_rows(context, inputs.height,
@@ -155,7 +155,8 @@ class PixelFilter final : public Filter {
         }
         const int iterations = static_cast<int>(values[IterationCount]);
         const Edges edges = is_on(values, AntialiasRecovery) ? Edges::Recover : Edges::Keep;
-        if (!filter_separable(guide_, widths_, iterations, edges, field_, scratch_, context)) return false;
+        if (!filter_separable(guide_, widths_, iterations, edges, field_, scratch_, strips_, context))
+            return false;
         ratios_.fit(iterations);
         return for_rows(context, field_.values.height(), [&](std::uint32_t y) {
             float* reduction = field_.reduction.row(0, y);
@@ -189,7 +190,7 @@ class PixelFilter final : public Filter {
     }
 
     BlendMaps prepare_maps(const Inputs& inputs, Output& out) const {
-        constexpr std::array Names{"range", "variance", "smoothed_variance", "blend", "width"};
+        constexpr std::array Names{"range", "variance", "smoothed_variance", "blend", "width", "reduction"};
         out.maps.resize(Names.size());
         for (std::size_t i = 0; i < Names.size(); ++i) {
             out.maps[i].name = Names[i];
@@ -204,6 +205,7 @@ class PixelFilter final : public Filter {
         }
         for (std::uint32_t y = 0; y < inputs.height; ++y) {
             std::copy_n(widths_.row(0, y), inputs.width, out.maps[4].planes.row(0, y));
+            std::copy_n(field_.reduction.row(0, y), inputs.width, out.maps[5].planes.row(0, y));
         }
         return {&out.maps[2].planes, &out.maps[3].planes};
     }
@@ -221,6 +223,7 @@ class PixelFilter final : public Filter {
     FirstLook look_;
     Widths widths_;
     Field field_, scratch_;  // field_: of the last pass
+    Strips strips_;
     ReductionRatios ratios_;
 
     bool has_pass_ = false;  // field_ holds one, made with these:

@@ -47,7 +47,9 @@ inline EdgeModel<Features> edge_model(const std::array<const float*, Features>& 
     // Squared distances are in units of 2 sigma_c^2 / log2(e): from 2 to 3 sigma_c the belief grows to whole.
     constexpr float Two = 4.0f * 0.5f * 1.44269504f, Three = 9.0f * 0.5f * 1.44269504f;
     const Lanes distinct = smaller(larger((squared - Two) / (Three - Two), Lanes{}), splat(1.0f));
-    model.belief = distinct * exp2_negative(off);
+    // Beside the picture and in holes there is no region.
+    const Lanes deepest = larger(model.low[Guide::Depth], model.high[Guide::Depth]);
+    model.belief = deepest < Guide::Nowhere ? distinct * exp2_negative(off) : Lanes{};
     return model;
 }
 

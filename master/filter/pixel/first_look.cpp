@@ -8,7 +8,7 @@
 namespace tessera::filter::pixel {
 
 bool FirstLook::run(const Guide& guide, const Light& light, const Inputs& inputs, const Field& field,
-                    const AdaptiveWidths& rule, Widths& widths, RunContext& context) {
+                    const AdaptiveWidths& rule, Widths& widths, Strips& strips, RunContext& context) {
     const std::uint32_t width = inputs.width, height = inputs.height;
     field_.fit(width, height, 2);
     scratch_.fit(width, height, 2);
@@ -22,8 +22,8 @@ bool FirstLook::run(const Guide& guide, const Light& light, const Inputs& inputs
     });
     const Sweep rows{.direction = Direction::Rows, .spacing = 2, .sources = Sources::Samples};
     const Sweep columns{.direction = Direction::Columns, .spacing = 2};
-    if (!sweep(guide, widths, rows, field_, scratch_, context)) return false;
-    if (!sweep(guide, widths, columns, scratch_, field_, context)) return false;
+    if (!sweep(guide, widths, rows, field_, scratch_, strips, context)) return false;
+    if (!sweep(guide, widths, columns, scratch_, field_, strips, context)) return false;
     return for_rows(context, height, [&](std::uint32_t y) {
         float* sigma = widths.row(0, y);
         const float *r = light.low().row(0, y), *g = light.low().row(1, y), *b = light.low().row(2, y);

@@ -17,7 +17,7 @@ struct AdaptiveWidths {
 class FirstLook {
   public:
     bool run(const Guide& guide, const Light& light, const Inputs& inputs, const Field& field,
-             const AdaptiveWidths& rule, Widths& widths, RunContext& context);
+             const AdaptiveWidths& rule, Widths& widths, Strips& strips, RunContext& context);
     static constexpr double BytesPerPixel = 4.0 * (4 + 3 + 2 * (4 + 1 + 3 + 3) + 7);
 
   private:

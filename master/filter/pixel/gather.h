@@ -9,8 +9,8 @@
 // The inner loop of every method: weighted sums over the neighbours of eight pixels (Schwenk 3.6).
 namespace tessera::filter::pixel {
 
-// Total weights below it mean that nothing was found: a rejected neighbour has 2^-125.
-inline constexpr float LeastWeight = 1e-20f;
+// A pixel whose neighbours weigh less in all has found nothing; only holes can, others weigh 1 themselves.
+inline constexpr float LeastWeight = 1e-6f;
 
 // Rows of the pictures at the eight pixels; a neighbour is so many floats away in all of them.
 template <std::size_t Features, std::size_t Layers>
@@ -47,8 +47,12 @@ template <std::size_t Features, std::size_t Layers>
 inline void gather(const Neighbourhood<Features, Layers>& from, const std::array<Lanes, Features>& target,
                    Lanes spread, float across, std::int64_t first, std::int64_t last, std::int64_t spacing,
                    std::ptrdiff_t stride, Sums<Layers>& sums) {
-    for (std::int64_t d = first; d <= last; d += spacing) {
-        add(from, target, spread * (static_cast<float>(d * d) + across), d * stride, sums);
+    std::ptrdiff_t at = first * stride;
+    auto d = static_cast<float>(first);
+    for (std::int64_t i = first; i <= last; i += spacing) {
+        add(from, target, spread * (d * d + across), at, sums);
+        at += spacing * stride;
+        d += static_cast<float>(spacing);
     }
 }
 

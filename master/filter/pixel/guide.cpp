@@ -11,7 +11,7 @@ using frame::Channel;
 
 // Depths in units of their tolerance: hits, misses, and what is unlike both. Squares and their sums are
 // finite.
-constexpr float MostHit = 1e15f, Miss = 1e17f, Nowhere = 3e17f;
+constexpr float MostHit = 1e15f, Miss = 1e17f;
 constexpr float MostColor = 1e15f;
 
 // exp(-d^2 / (2 sigma^2)) = 2^-(scale d)^2.
@@ -27,8 +27,8 @@ void repeat_border(float* row, std::uint32_t width) {
 }
 
 void isolate_border(float* row, std::uint32_t width) {
-    std::fill(row - Pad, row, Nowhere);
-    std::fill(row + width, row + width + Pad, Nowhere);
+    std::fill(row - Pad, row, Guide::Nowhere);
+    std::fill(row + width, row + width + Pad, Guide::Nowhere);
 }
 
 // For each of `count` places the nearest for which has(i), ties to the lower one; `count` where there is

@@ -41,6 +41,7 @@ class Guide {
 
     std::uint32_t components() const { return features_.components(); }  // 4, or 7 with normals
     static constexpr std::uint32_t Depth = 3;
+    static constexpr float Nowhere = 3e17f;  // scaled depth of what is unlike any pixel
 
     // Of a pixel that is being filtered.
     const float* target_row(std::uint32_t component, std::uint32_t y) const {

@@ -44,10 +44,10 @@ inline float largest(Lanes lanes) {
 // degree 4, relative error 3.5e-6, times a power of two that is added to the exponent. Adding 1.5 x 2^23
 // rounds to an integer that then stands in the low bits.
 inline Lanes exp2_negative(Lanes x) {
-    const Lanes y = -smaller(x, splat(125.0f));
     constexpr float Magic = 12582912.0f;
-    const Lanes shifted = y + Magic;
-    const Lanes f = y - (shifted - Magic);
+    const Lanes most = smaller(x, splat(125.0f));
+    const Lanes shifted = Magic - most;
+    const Lanes f = (Magic - shifted) - most;
     Lanes p = splat(0.009666368515f);
     p = p * f + 0.05592197584f;
     p = p * f + 0.2402234904f;

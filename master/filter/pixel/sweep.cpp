@@ -1,5 +1,8 @@
 #include "master/filter/pixel/sweep.h"
 
+#include <tbb/task_arena.h>
+
+#include <algorithm>
 #include <utility>
 
 #include "master/filter/pixel/edge_model.h"
@@ -11,10 +14,13 @@ namespace {
 
 constexpr float HalfLog2E = 0.5f * 1.44269504f;
 
-struct Line {
-    std::int64_t first, last;      // steps that stay within the picture
-    std::ptrdiff_t stride;         // floats per step
-    std::ptrdiff_t before, after;  // floats to the neighbours across
+// Floats to the next pixel in the direction of the sweep, and to those beside it.
+struct Across {
+    std::ptrdiff_t stride, before, after;
+};
+
+struct Steps {
+    std::int64_t first, last;
 };
 
 // Replaces the two-sided filter by the mixture of two one-sided ones as far as the edge model is believed
@@ -22,14 +28,13 @@ struct Line {
 // share but the pixel itself, which is unlike at least one of them.
 template <std::size_t Features, std::size_t Layers>
 void recover_edges(const Neighbourhood<Features, Layers>& from, const std::array<Lanes, Features>& target,
-                   Lanes spread, std::int64_t first, std::int64_t last, const Line& line,
-                   Result<Layers>& result) {
+                   Lanes spread, Steps steps, const Across& line, Result<Layers>& result) {
     const EdgeModel<Features> model =
         edge_model<Features>(from.sources, target, line.stride, line.before, line.after);
     if (largest(model.belief) < 0.01f) return;
     Sums<Layers> low, high;
-    gather(from, model.low, spread, 0.0f, first, -1, 1, line.stride, low);
-    gather(from, model.high, spread, 0.0f, 1, last, 1, line.stride, high);
+    gather(from, model.low, spread, 0.0f, steps.first, -1, 1, line.stride, low);
+    gather(from, model.high, spread, 0.0f, 1, steps.last, 1, line.stride, high);
     // Without the pixel itself both sides must have found something that looks like them.
     const Lanes found = smaller(low.weight, high.weight);
     const Lanes belief = found > 0.05f ? model.belief : Lanes{};
@@ -45,76 +50,142 @@ void recover_edges(const Neighbourhood<Features, Layers>& from, const std::array
     result.reduction += belief * (edge - result.reduction);
 }
 
-constexpr std::uint32_t Stripe = 128;  // columns; their rows of all planes stay in the second-level cache
+// As far as the kernels of eight pixels reach, of the steps that stay within the picture.
+Steps steps_of(Lanes sigma, const Sweep& plan, std::int64_t before, std::int64_t behind) {
+    const auto radius = static_cast<std::int64_t>(3.0f * largest(sigma));
+    return {-std::min(radius, before) / plan.spacing * plan.spacing,
+            std::min(radius, behind) / plan.spacing * plan.spacing};
+}
+
+Lanes sigma_at(const Widths& widths, const Sweep& plan, std::uint32_t y, std::int64_t x) {
+    return larger(load(widths.row(0, y) + x) * plan.width_factor, splat(1e-3f));
+}
 
 template <std::size_t Features, std::size_t Layers>
-bool sweep_as(const Guide& guide, const Widths& widths, const Sweep& plan, const Field& from, Field& to,
-              RunContext& context) {
+void filter_block(const Neighbourhood<Features, Layers>& near, const std::array<Lanes, Features>& target,
+                  Lanes sigma, Steps steps, const Sweep& plan, const Across& across, std::uint32_t y,
+                  std::int64_t x, Field& to) {
+    const Lanes spread = HalfLog2E / (sigma * sigma);
+    Sums<Layers> sums;
+    gather(near, target, spread, 0.0f, steps.first, steps.last, plan.spacing, across.stride, sums);
+    Result<Layers> result = normalised(sums);
+    if (plan.edges == Edges::Recover && steps.first < 0 && steps.last > 0) {
+        recover_edges(near, target, spread, steps, across, result);
+    }
+    keep_or_store(sums, near, result, y, x, to);
+}
+
+template <std::size_t Features, std::size_t Layers>
+bool sweep_rows(const Guide& guide, const Widths& widths, const Sweep& plan, const Field& from, Field& to,
+                RunContext& context) {
+    const auto width = static_cast<std::int64_t>(from.values.width());
+    const std::uint32_t height = from.values.height();
+    const auto pitch = static_cast<std::ptrdiff_t>(guide.pitch());
+    return for_rows(context, height, [&](std::uint32_t y) {
+        const Across across{1, y > 0 ? -pitch : 0, y + 1 < height ? pitch : 0};
+        for (std::int64_t x = 0; x < width; x += LaneCount) {
+            const Lanes sigma = sigma_at(widths, plan, y, x);
+            const Steps steps = steps_of(sigma, plan, x + LaneCount - 1, width - 1 - x);
+            const auto near = neighbourhood<Features, Layers>(guide, plan.sources, from, y, x);
+            const auto target = target_of<Features>(guide, y, x);
+            filter_block(near, target, sigma, steps, plan, across, y, x, to);
+        }
+    });
+}
+
+// Columns are read from copies of small strips, whose rows lie next to each other: a column of the picture
+// itself has each plane and row on a page of its own, more pages than a core translates at once.
+constexpr std::int64_t StripWidth = 32, StripHeight = 128, StripBorder = LaneCount;
+constexpr std::int64_t StripPitch = StripWidth + 2 * StripBorder;
+
+template <std::size_t Features, std::size_t Layers>
+void sweep_strip(const Guide& guide, const Widths& widths, const Sweep& plan, const Field& from, Field& to,
+                 std::int64_t left, std::int64_t top, std::vector<float>& copy) {
     const auto width = static_cast<std::int64_t>(from.values.width());
     const auto height = static_cast<std::int64_t>(from.values.height());
-    const auto pitch = static_cast<std::ptrdiff_t>(guide.pitch());
-    const bool rows = plan.direction == Direction::Rows;
-
-    const auto filter_block = [&](std::uint32_t y, std::int64_t x) {
-        const auto near = neighbourhood<Features, Layers>(guide, plan.sources, from, y, x);
-        const auto target = target_of<Features>(guide, y, x);
-        const Lanes sigma = larger(load(widths.row(0, y) + x) * plan.width_factor, splat(1e-3f));
-        const Lanes spread = HalfLog2E / (sigma * sigma);
-        const auto radius = static_cast<std::int64_t>(3.0f * largest(sigma));
-        const Line line = rows ? Line{.first = -(x + LaneCount - 1),
-                                      .last = width - 1 - x,
-                                      .stride = 1,
-                                      .before = y > 0 ? -pitch : 0,
-                                      .after = y + 1 < height ? pitch : 0}
-                               : Line{.first = -std::int64_t{y},
-                                      .last = height - 1 - y,
-                                      .stride = pitch,
-                                      .before = -1,
-                                      .after = 1};
-        const std::int64_t first = -std::min(radius, -line.first) / plan.spacing * plan.spacing;
-        const std::int64_t last = std::min(radius, line.last) / plan.spacing * plan.spacing;
-
-        Sums<Layers> sums;
-        gather(near, target, spread, 0.0f, first, last, plan.spacing, line.stride, sums);
-        Result<Layers> result = normalised(sums);
-        if (plan.edges == Edges::Recover && first < 0 && last > 0) {
-            recover_edges(near, target, spread, first, last, line, result);
+    const std::int64_t right = std::min(width, left + StripWidth);
+    const std::int64_t bottom = std::min(height, top + StripHeight);
+    Lanes widest{};
+    for (std::int64_t y = top; y < bottom; ++y) {
+        for (std::int64_t x = left; x < right; x += LaneCount) {
+            widest = larger(widest, sigma_at(widths, plan, static_cast<std::uint32_t>(y), x));
         }
-        keep_or_store(sums, near, result, y, x, to);
-    };
-
-    if (rows) {
-        return for_rows(context, static_cast<std::uint32_t>(height), [&](std::uint32_t y) {
-            for (std::int64_t x = 0; x < width; x += LaneCount) filter_block(y, x);
-        });
     }
-    const auto stripes = static_cast<std::uint32_t>((width + Stripe - 1) / Stripe);
-    return for_rows(context, stripes * static_cast<std::uint32_t>(height), [&](std::uint32_t i) {
-        const std::int64_t start = std::int64_t{i / static_cast<std::uint32_t>(height)} * Stripe;
-        const std::int64_t end = std::min(width, start + Stripe);
-        for (std::int64_t x = start; x < end; x += LaneCount) {
-            filter_block(i % static_cast<std::uint32_t>(height), x);
+    const auto radius = static_cast<std::int64_t>(3.0f * largest(widest));
+    const std::int64_t first = std::max<std::int64_t>(0, top - radius),
+                       last = std::min(height, bottom + radius);
+    constexpr auto RowSize = static_cast<std::int64_t>(Features + Layers + 1) * StripPitch;
+    if (copy.size() < static_cast<std::size_t>((last - first) * RowSize)) {
+        copy.resize(static_cast<std::size_t>((last - first) * RowSize));
+    }
+    for (std::int64_t y = first; y < last; ++y) {
+        const auto near = neighbourhood<Features, Layers>(guide, plan.sources, from,
+                                                          static_cast<std::uint32_t>(y), left - StripBorder);
+        float* row = copy.data() + (y - first) * RowSize;
+        const auto take = [&](const float* plane) { row = std::copy_n(plane, StripPitch, row); };
+        std::ranges::for_each(near.sources, take);
+        std::ranges::for_each(near.values, take);
+        take(near.reduction);
+    }
+    const Across across{RowSize, -1, 1};
+    for (std::int64_t y = top; y < bottom; ++y) {
+        const auto line = static_cast<std::uint32_t>(y);
+        const float* row = copy.data() + (y - first) * RowSize + StripBorder;
+        for (std::int64_t x = left; x < right; x += LaneCount) {
+            Neighbourhood<Features, Layers> near;
+            const float* plane = row + (x - left);
+            const auto next = [&](const float*& start) {
+                start = plane;
+                plane += StripPitch;
+            };
+            std::ranges::for_each(near.sources, next);
+            std::ranges::for_each(near.values, next);
+            next(near.reduction);
+            const Lanes sigma = sigma_at(widths, plan, line, x);
+            const Steps steps = steps_of(sigma, plan, y, height - 1 - y);
+            filter_block(near, target_of<Features>(guide, line, x), sigma, steps, plan, across, line, x, to);
         }
+    }
+}
+
+template <std::size_t Features, std::size_t Layers>
+bool sweep_columns(const Guide& guide, const Widths& widths, const Sweep& plan, const Field& from, Field& to,
+                   Strips& strips, RunContext& context) {
+    const auto count = [](std::uint32_t size, std::int64_t part) {
+        return static_cast<std::uint32_t>((size + part - 1) / part);
+    };
+    const std::uint32_t down = count(from.values.height(), StripHeight);
+    const std::uint32_t strip_count = count(from.values.width(), StripWidth) * down;
+    strips.resize(static_cast<std::size_t>(context.arena.max_concurrency()));
+    return for_rows(context, strip_count, [&](std::uint32_t i) {
+        std::vector<float>& copy =
+            strips[static_cast<std::size_t>(tbb::this_task_arena::current_thread_index())];
+        sweep_strip<Features, Layers>(guide, widths, plan, from, to, (i / down) * StripWidth,
+                                      (i % down) * StripHeight, copy);
     });
 }
 
 }  // namespace
 
 bool sweep(const Guide& guide, const Widths& widths, const Sweep& plan, const Field& from, Field& to,
-           RunContext& context) {
+           Strips& strips, RunContext& context) {
     return with_shapes(guide, from, [&](auto features, auto layers) {
-        return sweep_as<features(), layers()>(guide, widths, plan, from, to, context);
+        if (plan.direction == Direction::Rows) {
+            return sweep_rows<features(), layers()>(guide, widths, plan, from, to, context);
+        }
+        return sweep_columns<features(), layers()>(guide, widths, plan, from, to, strips, context);
     });
 }
 
 bool filter_separable(const Guide& guide, const Widths& widths, int iterations, Edges edges, Field& field,
-                      Field& scratch, RunContext& context) {
+                      Field& scratch, Strips& strips, RunContext& context) {
     Direction direction = Direction::Rows;
     Sources sources = Sources::Samples;
     for (int k = 1; k <= iterations; ++k) {
         const auto factor = static_cast<float>(iteration_sigma(1.0, k, iterations));
         for (int half = 0; half < 2; ++half) {
-            if (!sweep(guide, widths, {direction, factor, 1, sources, edges}, field, scratch, context))
+            if (!sweep(guide, widths, {direction, factor, 1, sources, edges}, field, scratch, strips,
+                       context))
                 return false;
             std::swap(field.values, scratch.values);
             // Only the first iteration's r is kept.

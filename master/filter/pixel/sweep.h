@@ -16,17 +16,20 @@ struct Sweep {
     Edges edges = Edges::Keep;
 };
 
+// Scratch of sweeps over columns, one per thread of an arena; kept between sweeps.
+using Strips = std::vector<std::vector<float>>;
+
 // Filters `from` into `to`, cut at 3 sigma of the widest of eight neighbouring pixels. r of the result is the
 // sum of squared weights times r of what they weigh. Fields of 2, 4 or 5 components. A pixel that finds
 // nothing keeps its values. False: stopped.
 bool sweep(const Guide& guide, const Widths& widths, const Sweep& plan, const Field& from, Field& to,
-           RunContext& context);
+           Strips& strips, RunContext& context);
 
 // The iterated separable filter (Schwenk 3.6.1): rows and columns in turns, `iterations` times with kernels
 // that shrink (3.14). Every iteration starts with the dimension that the one before has ended with, which
 // removes its streaks. The result is in `field`; its r is that of the first iteration times reduction_ratio:
 // later iterations see data that are no longer independent.
 bool filter_separable(const Guide& guide, const Widths& widths, int iterations, Edges edges, Field& field,
-                      Field& scratch, RunContext& context);
+                      Field& scratch, Strips& strips, RunContext& context);
 
 }  // namespace tessera::filter::pixel
