@@ -62,7 +62,7 @@ class Fade {
     const Planes& weights() const { return weights_; }
 
     // What apply moves.
-    static double bytes_per_pixel(std::uint32_t components) { return 112.0 + 12.0 * components; }
+    static double bytes_per_pixel(std::uint32_t components) { return 124.0 + 12.0 * components; }
 
   private:
     std::uint32_t radius_;

@@ -69,7 +69,7 @@ class Fdf final : public Filter {
   private:
     // Classes, and the shading feature and its variance in units of the mean over surfaces.
     bool prepare(const Inputs& inputs, Report& report, RunContext& context) {
-        Stage stage(report, "features", 60.0);
+        Stage stage(report, "features", 36.0);
         const bool has_alpha = inputs.has(Channel::Alpha), has_depth = inputs.has(Channel::Depth);
         const bool has_shading = inputs.has(Channel::ShadingFeature);
         if (!has_shading) report.notes.push_back("no shading feature: shadows are not seen");
