@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "master/filter/fade.h"
 #include "master/filter/kernels.h"
@@ -52,7 +53,7 @@ class StatMc final : public Filter {
         }
         if (done) {
             Stage stage(report, "pairs", 4.0 * (15 + PairPlanes));
-            shape(pairs_, inputs, PairPlanes);
+            shape_pairs(inputs);
             shape(self_, inputs, 1);
             done = for_rows(context, inputs.height, [&](std::uint32_t y) { prepare_row(inputs, values, y); });
         }
@@ -71,17 +72,27 @@ class StatMc final : public Filter {
     }
 
   private:
+    // A row's planes follow each other, an odd multiple of 64 bytes apart: at equal distances that are
+    // multiples of a page they would evict each other from the cache.
+    void shape_pairs(const Inputs& inputs) {
+        pitch_ = (std::size_t{inputs.width} + 31) / 32 * 32 + 16;
+        pairs_.resize(pitch_ * PairPlanes * inputs.height);
+    }
+    float* pair_row(std::uint32_t plane, std::uint32_t y) {
+        return pairs_.data() + (std::size_t{y} * PairPlanes + plane) * pitch_;
+    }
+
     void prepare_row(const Inputs& inputs, const Values& values, std::uint32_t y) {
         const std::uint32_t width = inputs.width;
         const float* counts = inputs.counts.row(0, y);
         const float* dof = moderated_.dof().row(0, y);
-        float* square = pairs_.row(Square, y);
-        float* credit = pairs_.row(Credit, y);
+        float* square = pair_row(Square, y);
+        float* credit = pair_row(Credit, y);
         float seen = -1.0f;  // neighbours mostly have equally many samples
         for (std::uint32_t x = 0; x < width; ++x) {
             const bool hole = !(counts[x] > 0.0f);
-            pairs_.row(Count, y)[x] = hole ? 0.0f : counts[x];
-            pairs_.row(Known, y)[x] = hole ? 0.0f : 1.0f;
+            pair_row(Count, y)[x] = hole ? 0.0f : counts[x];
+            pair_row(Known, y)[x] = hole ? 0.0f : 1.0f;
             if (hole) {
                 square[x] = 1.0f;
                 credit[x] = 0.0f;
@@ -97,9 +108,9 @@ class StatMc final : public Filter {
         for (std::uint32_t c = 0; c < 3; ++c) {
             const float* mean = inputs.mean(Channel::Radiance).row(c, y);
             const float* variance = moderated_.variance().row(c, y);
-            std::copy(mean, mean + width, pairs_.row(Mean + c, y));
+            std::copy(mean, mean + width, pair_row(Mean + c, y));
             for (std::uint32_t x = 0; x < width; ++x) {
-                pairs_.row(Variance + c, y)[x] = counts[x] > 0.0f ? variance[x] : UnknownVariance;
+                pair_row(Variance + c, y)[x] = counts[x] > 0.0f ? variance[x] : UnknownVariance;
             }
         }
         put_feature(inputs, Channel::Albedo, values[Albedo], Feature, y);
@@ -111,7 +122,7 @@ class StatMc final : public Filter {
                      std::uint32_t y) {
         const float scale = static_cast<float>(1.0 / (std::sqrt(2.0) * deviation));
         for (std::uint32_t c = 0; c < 3; ++c) {
-            float* to = pairs_.row(at + c, y);
+            float* to = pair_row(at + c, y);
             std::fill(to, to + inputs.width, 0.0f);
             if (!inputs.has(channel)) continue;
             const float* from = inputs.mean(channel).row(c, y);
@@ -121,7 +132,7 @@ class StatMc final : public Filter {
 
     void put_depth(const Inputs& inputs, double deviation, std::uint32_t y) {
         const float scale = static_cast<float>(1.0 / (std::sqrt(2.0) * deviation));
-        float* to = pairs_.row(Feature + 6, y);
+        float* to = pair_row(Feature + 6, y);
         std::fill(to, to + inputs.width, 0.0f);
         if (!inputs.has(Channel::Depth)) return;
         const float* depth = inputs.mean(Channel::Depth).row(0, y);
@@ -147,9 +158,8 @@ class StatMc final : public Filter {
                     if (first >= last) continue;
                     alignas(32) std::array<float, Chunk> weights;
                     const auto spatial = static_cast<float>(-slope * static_cast<double>(dx * dx + dy * dy));
-                    weigh(pairs_.row(0, y) + first,
-                          pairs_.row(0, static_cast<std::uint32_t>(row)) + first + dx, pairs_.pixel_count(),
-                          spatial, last - first, weights.data(), line[0].data() + (first - begin),
+                    weigh(pair_row(0, y) + first, pair_row(0, static_cast<std::uint32_t>(row)) + first + dx,
+                          pitch_, spatial, last - first, weights.data(), line[0].data() + (first - begin),
                           line[1].data() + (first - begin));
                     for (std::uint32_t c = 0; c < components; ++c) {
                         const float* from = inputs.color(c).data() + row * width + first + dx;
@@ -168,7 +178,7 @@ class StatMc final : public Filter {
             // with the density of d taken from the shell, dF/dm = (own + shell / Shell) / sum.
             for (std::int64_t x = begin; x < end; ++x) {
                 const auto at = static_cast<std::size_t>(x - begin);
-                const float own = pairs_.row(Count, y)[x] + sums[1][at] / Shell;
+                const float own = pair_row(Count, y)[x] + sums[1][at] / Shell;
                 self_.row(0, y)[x] = sums[0][at] > 0.0f ? std::min(own / sums[0][at], 1.0f) : 0.0f;
             }
             for (std::uint32_t c = 0; c < components; ++c) {
@@ -218,7 +228,9 @@ class StatMc final : public Filter {
     ModeratedVariance moderated_;
     StudentSquares squares_;
     Fade fade_;
-    Planes pairs_, self_;
+    std::vector<float> pairs_;  // by row, then by Pair
+    std::size_t pitch_ = 0;
+    Planes self_;
 };
 
 }  // namespace
