@@ -42,7 +42,7 @@ void fill_terms(const Inputs& inputs, frame::Channel channel, const Planes& filt
 
 // Half of the squared difference of neighbours, to the right and below. Beyond a border, and to a pixel whose
 // variance is unknown, the pixel's own square stands for it.
-void fill_spread(const Planes& counts, std::uint32_t y, Planes& terms) {
+void fill_spread(const Planes& counts, std::span<const float> self_weight, std::uint32_t y, Planes& terms) {
     const std::uint32_t width = terms.width();
     const bool last_row = y + 1 == terms.height();
     float* spread = terms.row(Spread, y);
@@ -64,6 +64,10 @@ void fill_spread(const Planes& counts, std::uint32_t y, Planes& terms) {
             spread[x] += 0.5f * (n[x] < 2.0f ? 0.0f : has_right ? 0.5f * across * across : here[x] * here[x]);
         }
     }
+    if (self_weight.empty()) return;
+    // The noise of F - U is that of U times 1 - a, and the numerator has V (1 - a), not V (1 - a)^2.
+    const float* a = self_weight.data() + std::size_t{y} * width;
+    for (std::uint32_t x = 0; x < width; ++x) spread[x] /= std::max(1.0f - a[x], 1e-3f);
 }
 
 // A tenth of the mean absolute value, which is the floor of relMSE's denominator too.
@@ -111,7 +115,7 @@ bool Fade::weigh(const Inputs& inputs, frame::Channel channel, const Planes& fil
                         fill_terms(inputs, channel, filtered, self_weight, floor, y, terms_);
                     }) &&
            for_rows(context, inputs.height,
-                    [&](std::uint32_t y) { fill_spread(inputs.counts, y, terms_); }) &&
+                    [&](std::uint32_t y) { fill_spread(inputs.counts, self_weight, y, terms_); }) &&
            for_rows(context, inputs.height, [&](std::uint32_t y) {
                float* gain = columns_.local();
                float* distance = gain + width;

@@ -67,17 +67,31 @@ TEST(BenchErrors, AgainstExactReferencesItIsThePlainError) {
     EXPECT_EQ(pair.noise_relmse(), 0.0);
     double expected = 0.0;
     for (const float r : truth().values) expected += 0.01 / (double(r) * r + pair.epsilon());
-    EXPECT_NEAR(errors.relmse.value, expected / double(truth().values.size()), 1e-6);
+    EXPECT_NEAR(errors.relmse.all.value, expected / double(truth().values.size()), 1e-6);
     EXPECT_EQ(seen_errors(truth(), pair).flip, 0.0);
     EXPECT_NEAR(seen_errors(truth(), pair).ssim, 1.0, 1e-9);
     EXPECT_GT(seen_errors(shifted(truth(), 0.1f), pair).flip, 0.0);
 }
 
+TEST(BenchErrors, TheWorstThousandthIsTrimmed) {
+    frame::Image picture = shifted(truth(), 0.01f);
+    const ReferencePair pair(truth(), truth());
+    const RelativeErrors calm = squared_errors(picture, pair).relmse;
+    EXPECT_NEAR(calm.trimmed.value / calm.all.value, 1.0, 0.05);
+    constexpr std::size_t Fireflies = 6;  // of 6144 pixels, 7 are left out
+    for (std::size_t i = 0; i < Fireflies; ++i) picture.values[3000 * i + 1] += 50.0f;
+    const RelativeErrors spiky = squared_errors(picture, pair).relmse;
+    EXPECT_GT(spiky.all.value, 100.0 * calm.all.value);
+    EXPECT_NEAR(spiky.trimmed.value / calm.trimmed.value, 1.0, 0.05);
+    for (std::size_t i = 0; i < 8; ++i) picture.values[2000 * i + 2] -= 50.0f;
+    EXPECT_GT(squared_errors(picture, pair).relmse.trimmed.value, 100.0 * calm.all.value);
+}
+
 TEST(BenchErrors, AConstantErrorDoesNotFlicker) {
     const ReferencePair before(truth(), truth()), after(shifted(truth(), 0.3f), shifted(truth(), 0.3f));
     const frame::Image first = shifted(truth(), 0.05f), second = shifted(truth(), 0.35f);
-    EXPECT_NEAR(temporal_relmse(first, second, before, after).value, 0.0, 1e-9);
-    EXPECT_GT(temporal_relmse(first, shifted(second, 0.05f), before, after).value, 1e-3);
+    EXPECT_NEAR(temporal_relmse(first, second, before, after).all.value, 0.0, 1e-9);
+    EXPECT_GT(temporal_relmse(first, shifted(second, 0.05f), before, after).all.value, 1e-3);
 }
 
 TEST(BenchErrors, ReferencesThatCannotBeComparedAreRefused) {

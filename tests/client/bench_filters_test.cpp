@@ -1,6 +1,7 @@
 // `tessera bench filters`: kept references, the plan, and a small run from scenes to the reports.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -13,6 +14,7 @@
 #include "client/tools/bench/plan.h"
 #include "client/tools/bench/references.h"
 #include "client/tools/bench/run_bench.h"
+#include "client/tools/bench/speed.h"
 #include "master/filter/catalog.h"
 
 namespace tessera::tools::bench {
@@ -144,10 +146,9 @@ BenchResults made_up() {
     for (const std::uint64_t spp : {1u, 4u, 16u}) {
         const double none = 1.0 / double(spp), smear = 0.05;
         const auto row = [&](const char* name, double error) {
-            Row made{.filter = name, .spp = spp, .to_unfiltered = error / none};
-            made.errors.relmse = {error, 0.001};
-            made.equal_error = {none / error, true};
-            made.equal_time = made.equal_error;
+            Row made{.filter = name, .spp = spp};
+            made.errors.relmse = {{error, 0.001}, {error, 0.001}};
+            made.all = made.trimmed = {error / none, {none / error, true}, {none / error, true}};
             made.crop.assign(8 * 4 * 3, 128);
             size.rows.push_back(made);
         };
@@ -159,6 +160,9 @@ BenchResults made_up() {
     size.crop_height = 4;
     size.reference_crop.assign(8 * 4 * 3, 255);
     results.scenes.push_back({"box", "test", "a box", "0", {size}, {}});
+    results.speed = {.scene = "box", .width = 8, .height = 4};
+    results.speed.published.push_back({"sharp", 8, 4, 0.1, 0.2, "a card", "a thesis"});
+    results.speed.variants.push_back({"sharp:way=long", {.seconds = 0.3}, {}});
     return results;
 }
 
@@ -179,7 +183,7 @@ TEST(BenchAdvice, SaysWhatTheNumbersSay) {
 TEST(BenchAdvice, AFilterThatStaysBehindIsNamed) {
     BenchResults results = made_up();
     for (Row& row : results.scenes[0].sizes[0].rows) {
-        if (row.filter == "smear<&>" && row.spp == 16) row.to_unfiltered = 1.06;
+        if (row.filter == "smear<&>" && row.spp == 16) row.trimmed.to_unfiltered = 1.06;
     }
     const auto found = convergence(results);
     ASSERT_EQ(found[2].passes.size(), 1u);
@@ -200,6 +204,21 @@ TEST(BenchHtml, HoldsEveryFilterAndNothingRaw) {
     EXPECT_EQ(html.find("smear<&>"), std::string::npos);
     EXPECT_EQ(html.find("src=\"http"), std::string::npos);
     EXPECT_NE(html.find("data:image/png;base64,iVBOR"), std::string::npos);
+}
+
+TEST(BenchHtml, QuotesThePublishedTimes) {
+    const std::string html = as_html(made_up());
+    EXPECT_NE(html.find("a card"), std::string::npos);
+    EXPECT_NE(html.find("sharp:way=long"), std::string::npos);
+}
+
+TEST(BenchSpeed, VariantsAreTheOtherMethods) {
+    const auto everything = variants(*filter::parse_choice("pixel", filter::catalog()));
+    std::vector<std::string> names;
+    for (const filter::Choice& choice : everything) names.push_back(to_text(choice));
+    EXPECT_NE(std::ranges::find(names, "pixel:method=brute"), names.end());
+    EXPECT_EQ(std::ranges::find(names, "pixel"), names.end());
+    EXPECT_TRUE(variants(*filter::parse_choice("none", filter::catalog())).empty());
 }
 
 TEST(BenchHtml, Base64) {
@@ -225,6 +244,7 @@ TEST(BenchFilters, ASmallRunWritesItsReports) {
     auto plan = understand(options, filter::catalog());
     ASSERT_TRUE(plan) << plan.error().what();
     plan->path_views = 3;
+    plan->measures_speed = false;
     plan->path_reference_spp = 4;
     const BenchFiles files(plan->output);
     int said = 0, warned = 0;
@@ -249,7 +269,7 @@ TEST(BenchFilters, ASmallRunWritesItsReports) {
         for (const char* field :
              {"filter", "spp", "relmse", "mse", "flip_mean", "ssim", "filter_milliseconds",
               "sampling_milliseconds", "passes", "bytes_per_pixel", "time_over_plain_copy",
-              "relmse_over_unfiltered", "equal_error_sample_ratio", "equal_time_error_ratio"}) {
+              "relmse_over_unfiltered", "equal_error_sample_ratio", "equal_time_error_ratio", "trimmed"}) {
             EXPECT_TRUE(row.contains(field)) << field;
         }
         EXPECT_GT(row["relmse"]["value"].get<double>(), 0.0);
@@ -271,8 +291,8 @@ TEST(BenchFilters, ASmallRunWritesItsReports) {
     const auto again = run_bench(*plan, progress, {});
     ASSERT_TRUE(again);
     EXPECT_EQ(newest(), before);
-    EXPECT_EQ(again->scenes[0].sizes[0].rows[1].errors.relmse.value,
-              results->scenes[0].sizes[0].rows[1].errors.relmse.value);
+    EXPECT_EQ(again->scenes[0].sizes[0].rows[1].errors.relmse.all.value,
+              results->scenes[0].sizes[0].rows[1].errors.relmse.all.value);
 }
 
 TEST(BenchFilters, AStopEndsTheRun) {

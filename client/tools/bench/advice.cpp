@@ -91,9 +91,9 @@ void advise_on_motion(const BenchResults& results, std::vector<std::string>& sen
     std::map<std::uint64_t, std::map<std::string, std::pair<double, int>>> logs;
     for (const SceneResult& scene : results.scenes) {
         for (const PathRow& row : scene.path.rows) {
-            if (!(row.temporal.value > 0.0)) continue;
+            if (!(row.temporal.trimmed.value > 0.0)) continue;
             auto& entry = logs[row.spp][row.filter];
-            entry.first += std::log(row.temporal.value);
+            entry.first += std::log(row.temporal.trimmed.value);
             ++entry.second;
         }
     }
@@ -137,13 +137,15 @@ std::vector<std::uint64_t> measured_spp(const BenchResults& results) {
 }
 
 std::optional<PlacedRow> least_error(const SceneResult& scene, std::uint64_t spp) {
-    return best(scene, spp,
-                [](const Row& a, const Row& b) { return a.errors.relmse.value < b.errors.relmse.value; });
+    return best(scene, spp, [](const Row& a, const Row& b) {
+        return a.errors.relmse.trimmed.value < b.errors.relmse.trimmed.value;
+    });
 }
 
 std::optional<PlacedRow> best_for_time(const SceneResult& scene, std::uint64_t spp) {
-    return best(scene, spp,
-                [](const Row& a, const Row& b) { return a.equal_time.value > b.equal_time.value; });
+    return best(scene, spp, [](const Row& a, const Row& b) {
+        return a.trimmed.equal_time.value > b.trimmed.equal_time.value;
+    });
 }
 
 std::vector<Convergence> convergence(const BenchResults& results) {
@@ -154,12 +156,12 @@ std::vector<Convergence> convergence(const BenchResults& results) {
             std::uint64_t first = 0;
             for (const Row& row : scene.sizes.front().rows) {
                 if (row.filter != filter.text || row.spp < 4) continue;
-                if (row.to_unfiltered > one.worst) {
-                    one.worst = row.to_unfiltered;
+                if (row.trimmed.to_unfiltered > one.worst) {
+                    one.worst = row.trimmed.to_unfiltered;
                     one.worst_scene = scene.name;
                     one.worst_spp = row.spp;
                 }
-                if (row.to_unfiltered > ConsistencyLimit && first == 0) first = row.spp;
+                if (row.trimmed.to_unfiltered > ConsistencyLimit && first == 0) first = row.spp;
             }
             if (first != 0) one.passes.push_back({scene.name, first});
         }
@@ -175,7 +177,7 @@ std::vector<Standing> standings(const BenchResults& results, std::uint64_t spp) 
         int count = 0;
         for (const SceneResult& scene : results.scenes) {
             for (const PlacedRow& placed : rows_at(scene, spp)) {
-                const double ratio = placed.row->equal_error.value;
+                const double ratio = placed.row->trimmed.equal_error.value;
                 if (placed.row->filter != filter.text || !(ratio > 0.0)) continue;
                 logs += std::log(ratio);
                 worst = count == 0 ? ratio : std::min(worst, ratio);
@@ -207,9 +209,11 @@ std::vector<std::string> advice(const BenchResults& results) {
                 "times where it helps least).",
                 first.filter.c_str(), first.ratio, first.worst);
         }
+        const std::string by_error = winners(results, spp, least_error);
+        const std::string by_time = winners(results, spp, best_for_time);
+        text += by_time == by_error ? " Counting the filters' own time changes nothing."
+                                    : " With the filter's own time counted: " + by_time + ".";
         sentences.push_back(text);
-        sentences.push_back(formatted("With the filter's own time counted, from %llu spp: ", n) +
-                            winners(results, spp, best_for_time) + ".");
     }
     advise_on_convergence(results, sentences);
     advise_on_motion(results, sentences);

@@ -119,12 +119,12 @@ BenchScene caustics() {
     builder.place("plane", quad({-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}),
                   builder.diffuse({0.6f, 0.58f, 0.55f}));
     builder.place("ball", sphere({0.0f, 0.6f, 0.0f}, 0.6f, 64), builder.glass());
-    constexpr float Edge = 0.2f;
+    constexpr float Edge = 0.35f;
     const glm::vec3 at(0.9f, 2.6f, -0.9f);
     builder.place("light",
                   quad(at + glm::vec3(-Edge, 0, -Edge), at + glm::vec3(Edge, 0, -Edge),
                        at + glm::vec3(Edge, 0, Edge), at + glm::vec3(-Edge, 0, Edge)),
-                  builder.light(60.0f));
+                  builder.light(20.0f));
     return builder.finish(
         {.name = "caustics", .kind = "caustics", .summary = "glass sphere on a plane under a small light"},
         {0.0, 1.9, 3.6}, {-0.1, 0.35, 0.0}, 0.66);
@@ -137,11 +137,11 @@ BenchScene grids() {
     Mesh layers = grid(0.4f, 2.4f, 8, 0.08f);
     append(layers, grid(1.5f, 2.0f, 5, 0.12f));
     builder.place("grids", layers, builder.diffuse({0.5f, 0.25f, 0.12f}));
-    constexpr float Sigma = 0.25f, Height = 4.0f;
+    constexpr float Sigma = 0.5f, Height = 4.0f;
     builder.place("light",
                   quad({-Sigma, Height, -Sigma}, {Sigma, Height, -Sigma}, {Sigma, Height, Sigma},
                        {-Sigma, Height, Sigma}),
-                  builder.light(50.0f));
+                  builder.light(12.0f));
     return builder.finish({.name = "grids",
                            .kind = "soft shadows",
                            .summary = "two layers of bars under a square light, direct light only",

@@ -12,8 +12,8 @@ namespace tessera::tools::bench {
 //   cornell-spheres  the same box with a mirror sphere and a glass sphere
 //   caustics         a glass sphere on a plane under a small light: what of it a path finds by chance
 //   grids            two layers of bars over a plane under a square light, direct light only (GRIDS, Mehta
-//                    ch. 3). Sizes of the check in our notes: light of 2 sigma = 0.5 m at 4 m, layers at
-//                    0.4 m and 1.5 m over a plane of 6 m; penumbrae from sigma s = 0.03 m to 0.15 m
+//                    ch. 3, whose sizes are not printed): light of 2 sigma = 1 m at d1 = 4 m over a plane of
+//                    6 m, layers at 0.4 m and 1.5 m; penumbrae sigma (d1 / d2 - 1) of 0.06 m and 0.3 m
 struct BuiltIn {
     std::string_view name;
     BenchScene (*make)();

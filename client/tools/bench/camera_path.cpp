@@ -112,9 +112,14 @@ class PathBench {
         sum.value += one.value;
         sum.deviation += one.deviation * one.deviation;
     }
-    static void finish(Estimate& sum, std::uint32_t count) {
+    static void add(RelativeErrors& sum, const RelativeErrors& one) {
+        add(sum.all, one.all);
+        add(sum.trimmed, one.trimmed);
+    }
+    static void finish(RelativeErrors& sum, std::uint32_t count) {
         const double n = std::max(1u, count);
-        sum = {sum.value / n, std::sqrt(sum.deviation) / n};
+        for (Estimate* part : {&sum.all, &sum.trimmed})
+            *part = {part->value / n, std::sqrt(part->deviation) / n};
     }
 
     const PathBed& bed_;

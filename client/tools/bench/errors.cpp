@@ -1,7 +1,10 @@
 #include "client/tools/bench/errors.h"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "client/tools/bench/display.h"
 #include "mediator/base/error.h"
@@ -23,27 +26,44 @@ double mean_luminance(const frame::Image& image) {
     return sum / static_cast<double>(image.pixel_count());
 }
 
-// Sum of w (F - R1)(F - R2) and of the squares behind its deviation.
+// Per pixel the sums over components of w (F - R1)(F - R2), of what stands behind its deviation, and of the
+// plain squared error.
 class Sum {
   public:
+    explicit Sum(std::size_t pixels) { pixels_.reserve(pixels); }
     void add(double weight, double to_first, double to_second) {
-        sum_ += weight * to_first * to_second;
         const double m = 0.5 * (to_first + to_second), d = to_second - to_first;
-        pixel_ += weight * m * d;
-        ++count_;
+        pixel_.product += weight * to_first * to_second;
+        pixel_.deviation += weight * m * d;
+        pixel_.size += weight * m * m;
     }
-    void end_pixel() {
-        squares_ += pixel_ * pixel_;
-        pixel_ = 0.0;
-    }
-    Estimate mean() const {
-        const double n = static_cast<double>(count_);
-        return {sum_ / n, std::sqrt(squares_) / n};
+    void end_pixel() { pixels_.push_back(std::exchange(pixel_, {})); }
+
+    RelativeErrors means() {
+        const Estimate all = mean(pixels_);
+        const auto left_out = static_cast<std::size_t>(std::ceil(TrimmedShare * double(pixels_.size())));
+        const std::size_t kept = pixels_.size() - std::min(left_out, pixels_.size() - 1);
+        std::nth_element(pixels_.begin(), pixels_.begin() + static_cast<std::ptrdiff_t>(kept - 1),
+                         pixels_.end(), [](const Pixel& a, const Pixel& b) { return a.size < b.size; });
+        return {all, mean(std::span(pixels_).first(kept))};
     }
 
   private:
-    double sum_ = 0.0, squares_ = 0.0, pixel_ = 0.0;
-    std::size_t count_ = 0;
+    struct Pixel {
+        double product = 0.0, deviation = 0.0, size = 0.0;
+    };
+    static Estimate mean(std::span<const Pixel> pixels) {
+        double sum = 0.0, squares = 0.0;
+        for (const Pixel& pixel : pixels) {
+            sum += pixel.product;
+            squares += pixel.deviation * pixel.deviation;
+        }
+        const double n = 3.0 * double(pixels.size());
+        return {sum / n, std::sqrt(squares) / n};
+    }
+
+    std::vector<Pixel> pixels_;
+    Pixel pixel_;
 };
 
 }  // namespace
@@ -72,7 +92,7 @@ ReferencePair::ReferencePair(frame::Image first, frame::Image second)
 
 SquaredErrors squared_errors(const frame::Image& picture, const ReferencePair& references) {
     picture::require_same_size(picture, references.mean());
-    Sum plain, relative;
+    Sum plain(picture.pixel_count()), relative(picture.pixel_count());
     for (std::size_t i = 0; i < picture.pixel_count(); ++i) {
         for (std::size_t c = 0; c < 3; ++c) {
             const std::size_t k = 3 * i + c;
@@ -85,15 +105,16 @@ SquaredErrors squared_errors(const frame::Image& picture, const ReferencePair& r
         plain.end_pixel();
         relative.end_pixel();
     }
-    return {plain.mean(), relative.mean()};
+    return {plain.means().all, relative.means()};
 }
 
-Estimate temporal_relmse(const frame::Image& before, const frame::Image& after,
-                         const ReferencePair& references_before, const ReferencePair& references_after) {
+RelativeErrors temporal_relmse(const frame::Image& before, const frame::Image& after,
+                               const ReferencePair& references_before,
+                               const ReferencePair& references_after) {
     picture::require_same_size(before, after);
     picture::require_same_size(before, references_before.mean());
     picture::require_same_size(after, references_after.mean());
-    Sum sum;
+    Sum sum(after.pixel_count());
     for (std::size_t i = 0; i < after.pixel_count(); ++i) {
         for (std::size_t c = 0; c < 3; ++c) {
             const std::size_t k = 3 * i + c;
@@ -109,7 +130,7 @@ Estimate temporal_relmse(const frame::Image& before, const frame::Image& after,
         }
         sum.end_pixel();
     }
-    return sum.mean();
+    return sum.means();
 }
 
 SeenErrors seen_errors(const frame::Image& picture, const ReferencePair& references) {

@@ -36,17 +36,26 @@ struct Estimate {
     double deviation = 0.0;  // standard error that the references' noise leaves
 };
 
+// Over all pixels, and without the TrimmedShare of the pixels whose error is largest. relMSE weighs each
+// error by the dark around it, so that one firefly or the edge of one lamp can outweigh the whole rest; what
+// is left out is chosen by the error against the mean of both references, anew for each picture.
+struct RelativeErrors {
+    Estimate all, trimmed;
+};
+inline constexpr double TrimmedShare = 0.001;
+
 // Mean over pixels and components of (F - R1)(F - R2), and the same over (mean^2 + epsilon). The mean of both
 // references stands for the truth in the weight alone.
 struct SquaredErrors {
-    Estimate mse, relmse;
+    Estimate mse;
+    RelativeErrors relmse;
 };
 SquaredErrors squared_errors(const frame::Image& picture, const ReferencePair& references);
 
 // Of the step from one picture to the next: F = second - first picture against the same of the references;
 // what does not flicker alike counts, a constant error does not. Weighted by the second references.
-Estimate temporal_relmse(const frame::Image& before, const frame::Image& after,
-                         const ReferencePair& references_before, const ReferencePair& references_after);
+RelativeErrors temporal_relmse(const frame::Image& before, const frame::Image& after,
+                               const ReferencePair& references_before, const ReferencePair& references_after);
 
 // Those that need one reference, against the mean of both. FLIP and SSIM see the pictures as shown on the
 // page (display.h).

@@ -45,8 +45,8 @@ std::string crops(const SceneResult& scene) {
         for (const Row& row : size.rows) {
             if (row.spp != spp || row.crop.empty()) continue;
             char caption[160];
-            std::snprintf(caption, sizeof caption, "%s, %llu spp, relMSE %.3g", row.filter.c_str(),
-                          static_cast<unsigned long long>(spp), row.errors.relmse.value);
+            std::snprintf(caption, sizeof caption, "%s, %llu spp, trimmed relMSE %.3g", row.filter.c_str(),
+                          static_cast<unsigned long long>(spp), row.errors.relmse.trimmed.value);
             html += image(scene, row.filter, std::to_string(spp), caption, row.crop);
         }
     };
@@ -68,16 +68,16 @@ std::string plots(const BenchResults& results, const SceneResult& scene) {
     std::string html = "<div class=\"plots\">\n";
     const SizeResult& size = scene.sizes.front();
     const std::string at = " at " + std::to_string(size.width) + "x" + std::to_string(size.height);
-    Plot by_spp{scene.name + ": error over samples" + at, "samples per pixel", "relMSE", {}};
-    Plot by_time{scene.name + ": error over time" + at, "sampling and filter, ms", "relMSE", {}};
+    Plot by_spp{scene.name + ": error over samples" + at, "samples per pixel", "trimmed relMSE", {}};
+    Plot by_time{scene.name + ": error over time" + at, "sampling and filter, ms", "trimmed relMSE", {}};
     for (std::size_t i = 0; i < results.filters.size(); ++i) {
         PlotSeries over_spp{results.filters[i].text, line_color(i), {}}, over_time = over_spp;
         for (const Row& row : size.rows) {
             if (row.filter != results.filters[i].text) continue;
             const double filter_seconds = row.filter == "none" ? 0.0 : row.time.seconds;
-            over_spp.points.emplace_back(double(row.spp), row.errors.relmse.value);
+            over_spp.points.emplace_back(double(row.spp), row.errors.relmse.trimmed.value);
             over_time.points.emplace_back((row.sampling_seconds + filter_seconds) * 1e3,
-                                          row.errors.relmse.value);
+                                          row.errors.relmse.trimmed.value);
         }
         by_spp.series.push_back(std::move(over_spp));
         by_time.series.push_back(std::move(over_time));
@@ -123,7 +123,11 @@ std::string introduction(const BenchResults& results) {
         "independent references, so that the references' own noise is not in them; the number behind "
         "\xC2\xB1 is what it leaves as standard error. relMSE has epsilon 0.01 times the squared mean "
         "luminance. FLIP (mean, LDR) and SSIM look at the tone-mapped picture against the mean of both "
-        "references.</p>\n";
+        "references. A trimmed relMSE leaves out the 0.1 % of the pixels where the error is largest: one "
+        "firefly in the "
+        "dark or the edge of one lamp can outweigh the whole rest. What the page says about filters goes by "
+        "it; the "
+        "tables have both.</p>\n";
     for (const std::string& note : results.notes) html += "<p class=\"note\">" + escaped(note) + "</p>\n";
     return html;
 }
@@ -154,7 +158,7 @@ std::string as_html(const BenchResults& results) {
     html += "<h2>Which filter when</h2>\n<ul>\n";
     for (const std::string& sentence : advice(results)) html += "<li>" + escaped(sentence) + "</li>\n";
     html += "</ul>\n" + winner_table(results) + convergence_table(results) + speed_table(results) +
-            filter_table(results);
+            method_tables(results.speed) + filter_table(results);
     html += comparison();
     for (const SceneResult& scene : results.scenes) html += scene_section(results, scene);
     return html + "<script>" + std::string(page_script()) + "</script>\n</body>\n</html>\n";

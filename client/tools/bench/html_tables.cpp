@@ -65,7 +65,8 @@ std::string winner_table(const BenchResults& results) {
         body += "<tr><td>" + escaped(scene.name) + "</td>" + cell(escaped(scene.kind));
         for (const std::uint64_t spp : counts) {
             const auto best = least_error(scene, spp);
-            body += cell(best ? escaped(best->row->filter) + " " + ratio(best->row->equal_error) : "");
+            body +=
+                cell(best ? escaped(best->row->filter) + " " + ratio(best->row->trimmed.equal_error) : "");
         }
         body += "</tr>\n";
     }
@@ -87,20 +88,22 @@ std::string convergence_table(const BenchResults& results) {
         body += "<tr><td>" + escaped(filter.text) + "</td>" +
                 cell(filter.is_consistent ? "consistent" : "biased");
         for (const std::uint64_t spp : counts) {
-            double worst = 0.0;
+            double trimmed = 0.0, all = 0.0;
             for (const SceneResult& scene : results.scenes) {
                 const Row* row = scene.sizes.front().find(filter.text, spp);
-                if (row) worst = std::max(worst, row->to_unfiltered);
+                if (!row) continue;
+                trimmed = std::max(trimmed, row->trimmed.to_unfiltered);
+                all = std::max(all, row->all.to_unfiltered);
             }
-            body += worst > 0.0 ? cell(formatted("%.3g", worst), worst > ConsistencyLimit ? "bad" : "")
-                                : cell("");
+            body += cell(trimmed > 0.0 ? formatted("%.3g (%.3g)", trimmed, all) : "",
+                         trimmed > ConsistencyLimit ? "bad" : "");
         }
         body += "</tr>\n";
     }
     return heading("Does it converge?",
-                   "relMSE over that of the unfiltered picture, in the scene where it is worst, at the small "
-                   "size. Red: "
-                   "more than 1.05.") +
+                   "Trimmed relMSE over that of the unfiltered picture, in the scene where it is worst, at "
+                   "the small "
+                   "size; in brackets the same over all pixels. Red: more than 1.05.") +
            table(head, body);
 }
 
@@ -142,30 +145,70 @@ std::string speed_table(const BenchResults& results) {
                  body);
 }
 
+std::string method_tables(const SpeedResult& speed) {
+    if (speed.scene.empty()) return {};
+    std::string variants, published;
+    for (const VariantRow& row : speed.variants) {
+        variants += "<tr><td>" + escaped(row.filter) + "</td>" +
+                    cell(formatted("%.2f", row.time.seconds * 1e3)) +
+                    cell(formatted("%.4g", row.relmse.trimmed.value)) +
+                    cell(formatted("%.4g", row.relmse.all.value)) + "</tr>\n";
+    }
+    for (const SpeedRow& row : speed.published) {
+        published +=
+            "<tr><td>" + escaped(row.filter) + "</td>" + cell(formatted("%ux%u", row.width, row.height)) +
+            cell(formatted("%.1f", row.seconds * 1e3)) +
+            cell(formatted("%.1f", row.published_seconds * 1e3)) + cell(row.hardware) + cell(row.source) +
+            cell(formatted("%.2f", row.published_seconds / row.seconds)) + "</tr>\n";
+    }
+    const std::string where =
+        formatted(" %s, %llu spp.", escaped(speed.scene).c_str(), static_cast<unsigned long long>(SpeedSpp));
+    return heading("Methods",
+                   "Each value of a parameter that chooses among methods, the others as they are." + where +
+                       formatted(" %ux%u.", speed.width, speed.height)) +
+           table(heads({"filter", "ms", "relMSE trimmed", "relMSE"}), variants) +
+           heading("Next to the sources",
+                   "The theses' times on their graphics cards, at their sizes: quoted, not measured here." +
+                       where) +
+           table(heads({"filter", "size", "ms here", "ms there", "there", "source", "there over here"}),
+                 published);
+}
+
 std::string size_table(const SizeResult& size) {
     std::string body;
     std::uint64_t before = 0;
     for (const Row& row : size.rows) {
-        double least = row.errors.relmse.value;
+        double least = row.errors.relmse.trimmed.value;
         for (const Row& other : size.rows) {
-            if (other.spp == row.spp) least = std::min(least, other.errors.relmse.value);
+            if (other.spp == row.spp) least = std::min(least, other.errors.relmse.trimmed.value);
         }
-        const bool is_best = row.errors.relmse.value <= least;
+        const bool is_best = row.errors.relmse.trimmed.value <= least;
         body += row.spp != before ? "<tr class=\"first\">" : "<tr>";
         before = row.spp;
-        body +=
-            "<td>" + escaped(row.filter) + "</td>" + cell(std::to_string(row.spp)) +
-            cell(formatted("%.4g", row.errors.relmse.value), is_best ? "best" : "") +
-            cell(formatted("\xC2\xB1%.1g", row.errors.relmse.deviation)) +
-            cell(formatted("%.4g", row.errors.mse.value)) + cell(formatted("%.4f", row.seen.flip)) +
-            cell(formatted("%.4f", row.seen.ssim)) +
-            cell(formatted("%.3f", row.to_unfiltered), row.to_unfiltered > ConsistencyLimit ? "bad" : "") +
-            cell(ratio(row.equal_error)) + cell(ratio(row.equal_time)) +
-            cell(formatted("%.2f", row.time.seconds * 1e3)) +
-            cell(formatted("%.1f", row.sampling_seconds * 1e3)) +
-            cell(formatted("%.0f", row.time.bytes_per_pixel)) + cell(formatted("%.2f", row.time.copy_ratio)) +
-            "</tr>\n";
+        body += "<td>" + escaped(row.filter) + "</td>" + cell(std::to_string(row.spp)) +
+                cell(formatted("%.4g", row.errors.relmse.trimmed.value), is_best ? "best" : "") +
+                cell(formatted("\xC2\xB1%.1g", row.errors.relmse.trimmed.deviation)) +
+                cell(formatted("%.3f", row.trimmed.to_unfiltered),
+                     row.trimmed.to_unfiltered > ConsistencyLimit ? "bad" : "") +
+                cell(ratio(row.trimmed.equal_error)) + cell(ratio(row.trimmed.equal_time)) +
+                cell(formatted("%.4g", row.errors.relmse.all.value)) +
+                cell(formatted("\xC2\xB1%.1g", row.errors.relmse.all.deviation)) +
+                cell(formatted("%.3f", row.all.to_unfiltered),
+                     row.all.to_unfiltered > ConsistencyLimit ? "bad" : "") +
+                cell(ratio(row.all.equal_error)) + cell(ratio(row.all.equal_time)) +
+                cell(formatted("%.4f", row.seen.flip)) + cell(formatted("%.4f", row.seen.ssim)) +
+                cell(formatted("%.2f", row.time.seconds * 1e3)) +
+                cell(formatted("%.1f", row.sampling_seconds * 1e3)) +
+                cell(formatted("%.0f", row.time.bytes_per_pixel)) +
+                cell(formatted("%.2f", row.time.copy_ratio)) + "</tr>\n";
     }
+    const std::string head =
+        "<th rowspan=\"2\">filter</th><th rowspan=\"2\">spp</th><th colspan=\"5\">trimmed relMSE</th>"
+        "<th colspan=\"5\">relMSE of all pixels</th><th rowspan=\"2\">FLIP</th><th rowspan=\"2\">SSIM</th>"
+        "<th rowspan=\"2\">filter ms</th><th rowspan=\"2\">sampling ms</th><th rowspan=\"2\">bytes/px</th>"
+        "<th rowspan=\"2\">time over copy</th></tr>\n<tr>" +
+        heads({"value", "", "/ unfiltered", "equal-error samples", "equal-time error", "value", "",
+               "/ unfiltered", "equal-error samples", "equal-time error"});
     return "<details" + std::string(size.reference_crop.empty() ? "" : " open") + "><summary>" +
            formatted("%ux%u", size.width, size.height) + "</summary><p class=\"note\">" +
            formatted(
@@ -173,30 +216,28 @@ std::string size_table(const SizeResult& size) {
                "their "
                "difference); it is not in the errors below.",
                static_cast<unsigned long long>(size.reference_spp), size.noise_relmse) +
-           "</p>" +
-           table(heads({"filter", "spp", "relMSE", "", "MSE", "FLIP", "SSIM", "/ unfiltered",
-                        "equal-error samples", "equal-time error", "filter ms", "sampling ms", "bytes/px",
-                        "time over copy"}),
-                 body) +
-           "</details>\n";
+           "</p>" + table(head, body) + "</details>\n";
 }
 
 std::string path_table(const PathResult& path) {
     if (path.rows.empty()) return {};
     std::string body;
     std::uint64_t before = 0;
+    const auto cells = [](const Estimate& value, bool is_best) {
+        return cell(formatted("%.4g", value.value), is_best ? "best" : "") +
+               cell(formatted("\xC2\xB1%.1g", value.deviation));
+    };
     for (const PathRow& row : path.rows) {
-        double least = row.temporal.value;
+        double least = row.temporal.trimmed.value;
         for (const PathRow& other : path.rows) {
-            if (other.spp == row.spp) least = std::min(least, other.temporal.value);
+            if (other.spp == row.spp) least = std::min(least, other.temporal.trimmed.value);
         }
         body += row.spp != before ? "<tr class=\"first\">" : "<tr>";
         before = row.spp;
         body += "<td>" + escaped(row.filter) + "</td>" + cell(std::to_string(row.spp)) +
-                cell(formatted("%.4g", row.temporal.value), row.temporal.value <= least ? "best" : "") +
-                cell(formatted("\xC2\xB1%.1g", row.temporal.deviation)) +
-                cell(formatted("%.4g", row.relmse.value)) +
-                cell(formatted("\xC2\xB1%.1g", row.relmse.deviation)) + "</tr>\n";
+                cells(row.temporal.trimmed, row.temporal.trimmed.value <= least) +
+                cells(row.temporal.all, false) + cells(row.relmse.trimmed, false) +
+                cells(row.relmse.all, false) + "</tr>\n";
     }
     return "<details><summary>camera path</summary><p class=\"note\">" +
            formatted(
@@ -204,7 +245,10 @@ std::string path_table(const PathResult& path) {
                "view "
                "against the references' step. relMSE: mean over the second half of the views.",
                path.views, path.degrees_per_view) +
-           "</p>" + table(heads({"filter", "spp", "temporal relMSE", "", "relMSE", ""}), body) +
+           "</p>" +
+           table(heads({"filter", "spp", "temporal, trimmed", "", "temporal, all pixels", "",
+                        "relMSE, trimmed", "", "relMSE, all pixels", ""}),
+                 body) +
            "</details>\n";
 }
 

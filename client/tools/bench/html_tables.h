@@ -11,6 +11,7 @@ std::string filter_table(const BenchResults& results);       // which there are
 std::string winner_table(const BenchResults& results);       // scenes x samples: the best and its worth
 std::string convergence_table(const BenchResults& results);  // filters x samples: worst error over unfiltered
 std::string speed_table(const BenchResults& results);        // filters: time, bytes, distance from a copy
+std::string method_tables(const SpeedResult& speed);         // other methods, and published times
 std::string size_table(const SizeResult& size);
 std::string path_table(const PathResult& path);
 

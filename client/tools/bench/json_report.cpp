@@ -19,28 +19,40 @@ Json ratio(const Ratio& value) {
     return {{"value", value.value}, {"measured", value.is_measured}};
 }
 
-Json row_json(const Row& row) {
+Json worth(const Worth& value) {
+    return {{"relmse_over_unfiltered", value.to_unfiltered},
+            {"equal_error_sample_ratio", ratio(value.equal_error)},
+            {"equal_time_error_ratio", ratio(value.equal_time)}};
+}
+
+Json passes_json(const FilterTime& time) {
     Json passes = Json::array();
-    for (const PassTime& pass : row.time.passes) {
+    for (const PassTime& pass : time.passes) {
         passes.push_back({{"name", pass.name},
                           {"milliseconds", pass.seconds * 1e3},
                           {"bytes_per_pixel", pass.bytes_per_pixel}});
     }
-    return {{"filter", row.filter},
-            {"spp", row.spp},
-            {"relmse", estimate(row.errors.relmse)},
-            {"mse", estimate(row.errors.mse)},
-            {"flip_mean", row.seen.flip},
-            {"ssim", row.seen.ssim},
-            {"filter_milliseconds", row.time.seconds * 1e3},
-            {"sampling_milliseconds", row.sampling_seconds * 1e3},
-            {"passes", passes},
-            {"bytes_per_pixel", row.time.bytes_per_pixel},
-            {"time_over_plain_copy", row.time.copy_ratio},
-            {"relmse_over_unfiltered", row.to_unfiltered},
-            {"equal_error_sample_ratio", ratio(row.equal_error)},
-            {"equal_time_error_ratio", ratio(row.equal_time)},
-            {"notes", row.notes}};
+    return passes;
+}
+
+Json row_json(const Row& row) {
+    Json trimmed = worth(row.trimmed);
+    trimmed["relmse"] = estimate(row.errors.relmse.trimmed);
+    Json object{{"filter", row.filter},
+                {"spp", row.spp},
+                {"relmse", estimate(row.errors.relmse.all)},
+                {"mse", estimate(row.errors.mse)},
+                {"flip_mean", row.seen.flip},
+                {"ssim", row.seen.ssim},
+                {"filter_milliseconds", row.time.seconds * 1e3},
+                {"sampling_milliseconds", row.sampling_seconds * 1e3},
+                {"passes", passes_json(row.time)},
+                {"bytes_per_pixel", row.time.bytes_per_pixel},
+                {"time_over_plain_copy", row.time.copy_ratio}};
+    object.update(worth(row.all));
+    object["trimmed"] = trimmed;
+    object["notes"] = row.notes;
+    return object;
 }
 
 Json size_json(const SizeResult& size) {
@@ -62,13 +74,38 @@ Json path_json(const PathResult& path) {
     for (const PathRow& row : path.rows) {
         rows.push_back({{"filter", row.filter},
                         {"spp", row.spp},
-                        {"temporal_relmse", estimate(row.temporal)},
-                        {"relmse", estimate(row.relmse)}});
+                        {"temporal_relmse", estimate(row.temporal.all)},
+                        {"relmse", estimate(row.relmse.all)},
+                        {"trimmed",
+                         {{"temporal_relmse", estimate(row.temporal.trimmed)},
+                          {"relmse", estimate(row.relmse.trimmed)}}}});
     }
     return {{"views", path.views},
             {"degrees_per_view", path.degrees_per_view},
             {"reference_spp", path.reference_spp},
             {"rows", rows}};
+}
+
+Json speed_json(const SpeedResult& speed) {
+    Json published = Json::array(), variants = Json::array();
+    for (const SpeedRow& row : speed.published) {
+        published.push_back({{"filter", row.filter},
+                             {"width", row.width},
+                             {"height", row.height},
+                             {"milliseconds", row.seconds * 1e3},
+                             {"published_milliseconds", row.published_seconds * 1e3},
+                             {"published_hardware", row.hardware},
+                             {"source", row.source}});
+    }
+    for (const VariantRow& row : speed.variants) {
+        variants.push_back({{"filter", row.filter},
+                            {"milliseconds", row.time.seconds * 1e3},
+                            {"passes", passes_json(row.time)},
+                            {"relmse", estimate(row.relmse.all)},
+                            {"relmse_trimmed", estimate(row.relmse.trimmed)}});
+    }
+    return {{"scene", speed.scene}, {"width", speed.width}, {"height", speed.height},
+            {"spp", SpeedSpp},      {"variants", variants}, {"published", published}};
 }
 
 }  // namespace
@@ -98,6 +135,7 @@ std::string as_json(const BenchResults& results) {
     const Json object{{"software", results.software}, {"backend", results.backend},
                       {"threads", results.threads},   {"seconds", results.seconds},
                       {"filters", filters},           {"scenes", scenes},
+                      {"speed", results.speed.scene.empty() ? Json(nullptr) : speed_json(results.speed)},
                       {"notes", results.notes}};
     return object.dump(1);
 }

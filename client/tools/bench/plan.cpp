@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t MostSpp = 1u << 16;
 // At the large size filters are timed and looked at; their way to convergence is measured at the small one.
-constexpr std::uint64_t MostSppLarge = 16, LargeReferenceSpp = 64;
+constexpr std::uint64_t MostSppLarge = 16, LargeReferenceSpp = 32;
 constexpr std::uint64_t MostSppOnPath = 4;
 
 tl::unexpected<Error> wrong(const std::string& option, const std::string& text) {
@@ -126,6 +126,7 @@ Expected<BenchPlan> understand(const BenchOptions& options, std::span<const filt
         }
     }
     plan.path_spp = up_to(*spp, MostSppOnPath);
+    plan.measures_speed = !options.quick;
     if (options.quick) plan.path_views = 8;
     return plan;
 }

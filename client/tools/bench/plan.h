@@ -17,7 +17,7 @@ struct BenchOptions {
     std::string scenes, filters;  // "" = all
     std::string spp = "1,4,16,64,256,1024";
     std::string size = "192x108", large = "960x540";
-    std::uint64_t reference_spp = 2048;
+    std::uint64_t reference_spp = 1024;
     std::uint32_t jobs = 0;
     bool quick = false, json = false;
 };
@@ -38,6 +38,7 @@ struct BenchPlan {
     std::vector<std::uint64_t> path_spp;  // samples per view of the camera path; empty: no path
     std::uint32_t path_views = 16;
     std::uint64_t path_reference_spp = 32;
+    bool measures_speed = true;  // at the sizes of the sources, and of other methods
     std::uint32_t jobs = 1;
 };
 

@@ -28,6 +28,13 @@ struct Ratio {
     bool is_measured = false;
 };
 
+// What a filter's relMSE means next to the unfiltered picture's.
+struct Worth {
+    double to_unfiltered = 0.0;  // relMSE over that of `none` on the same samples
+    Ratio equal_error;           // samples that unfiltered needs for this error, over spp
+    Ratio equal_time;            // error of unfiltered after this row's time, over this row's error
+};
+
 struct Row {
     std::string filter;
     std::uint64_t spp = 0;
@@ -35,9 +42,7 @@ struct Row {
     SeenErrors seen;
     FilterTime time;
     double sampling_seconds = 0.0;  // spp samples with this filter's channels
-    Ratio equal_error;              // samples that unfiltered needs for this error, over spp
-    Ratio equal_time;               // error of unfiltered after this row's time, over this row's error
-    double to_unfiltered = 0.0;     // relMSE over the relMSE of `none` on the same samples
+    Worth all, trimmed;             // by relMSE over all pixels, and by the trimmed one
     std::vector<std::string> notes;
     std::vector<std::uint8_t> crop;  // 8-bit sRGB as shown; empty: not kept
 };
@@ -58,8 +63,8 @@ struct SizeResult {
 struct PathRow {
     std::string filter;
     std::uint64_t spp = 0;
-    Estimate temporal;  // relMSE of the steps from view to view
-    Estimate relmse;    // mean over the second half of the path, where a history is there
+    RelativeErrors temporal;  // relMSE of the steps from view to view
+    RelativeErrors relmse;    // mean over the second half of the path, where a history is there
 };
 struct PathResult {
     std::uint32_t views = 0;
@@ -74,6 +79,28 @@ struct SceneResult {
     PathResult path;
 };
 
+// A filter at 4 samples per pixel of the first scene, at a size that others have published times for.
+struct SpeedRow {
+    std::string filter;
+    std::uint32_t width = 0, height = 0;
+    double seconds = 0.0;
+    double published_seconds = 0.0;
+    std::string hardware, source;
+};
+// The same at the plan's largest size, with each value of a parameter that chooses among methods.
+struct VariantRow {
+    std::string filter;
+    FilterTime time;
+    RelativeErrors relmse;
+};
+inline constexpr std::uint64_t SpeedSpp = 4;
+struct SpeedResult {
+    std::string scene;
+    std::uint32_t width = 0, height = 0;  // of the variants
+    std::vector<SpeedRow> published;
+    std::vector<VariantRow> variants;
+};
+
 struct FilterInfo {
     std::string text, name, summary, source, channels, path_class;
     bool is_consistent = false, is_temporal = false;
@@ -85,6 +112,7 @@ struct BenchResults {
     double seconds = 0.0;  // of the whole run
     std::vector<FilterInfo> filters;
     std::vector<SceneResult> scenes;
+    SpeedResult speed;
     std::vector<std::string> notes;
 };
 

@@ -1,6 +1,7 @@
 #include "client/tools/bench/run_bench.h"
 
 #include "client/cli/cli.h"
+#include "client/tools/bench/speed.h"
 #include "client/tools/view_attributes.h"
 #include "mediator/base/clock.h"
 
@@ -50,6 +51,10 @@ std::optional<BenchResults> run_bench(const BenchPlan& plan, const BenchProgress
         auto measured = measure_scene(*scene, possible, arena, progress, stop);
         if (!measured) return std::nullopt;
         results.scenes.push_back(std::move(*measured));
+        if (!possible.measures_speed || results.scenes.size() > 1) continue;
+        auto speed = measure_speed(*scene, possible, arena, progress, stop);
+        if (!speed) return std::nullopt;
+        results.speed = std::move(*speed);
     }
     results.seconds = seconds(clock.now() - started);
     return results;

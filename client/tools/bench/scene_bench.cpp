@@ -132,25 +132,31 @@ class SceneBench {
     }
 
     static void compare_with_unfiltered(SizeResult& result) {
+        compare_by(result, &RelativeErrors::all, &Row::all);
+        compare_by(result, &RelativeErrors::trimmed, &Row::trimmed);
+    }
+
+    static void compare_by(SizeResult& result, Estimate RelativeErrors::*kind, Worth Row::*worth_of) {
         std::vector<CurvePoint> by_spp, by_time;
         for (const Row& row : result.rows) {
             if (row.filter != "none") continue;
-            by_spp.push_back({double(row.spp), row.errors.relmse.value});
-            by_time.push_back({row.sampling_seconds, row.errors.relmse.value});
+            const double error = (row.errors.relmse.*kind).value;
+            by_spp.push_back({double(row.spp), error});
+            by_time.push_back({row.sampling_seconds, error});
         }
         const ErrorCurve over_spp(by_spp), over_time(by_time);
         for (Row& row : result.rows) {
-            const double error = row.errors.relmse.value;
+            const Estimate error = row.errors.relmse.*kind;
+            Worth& worth = row.*worth_of;
             const Row* unfiltered = result.find("none", row.spp);
-            if (unfiltered && unfiltered->errors.relmse.value > 0.0) {
-                row.to_unfiltered = error / unfiltered->errors.relmse.value;
-            }
-            if (!(error > row.errors.relmse.deviation)) continue;
-            const ErrorCurve::Reading samples = over_spp.cost_of(error);
-            row.equal_error = {samples.value / double(row.spp), samples.is_measured};
+            const double base = unfiltered ? (unfiltered->errors.relmse.*kind).value : 0.0;
+            if (base > 0.0) worth.to_unfiltered = error.value / base;
+            if (!(error.value > error.deviation)) continue;
+            const ErrorCurve::Reading samples = over_spp.cost_of(error.value);
+            worth.equal_error = {samples.value / double(row.spp), samples.is_measured};
             const double filter_seconds = row.filter == "none" ? 0.0 : row.time.seconds;
             const ErrorCurve::Reading same_time = over_time.error_at(row.sampling_seconds + filter_seconds);
-            row.equal_time = {same_time.value / error, same_time.is_measured};
+            worth.equal_time = {same_time.value / error.value, same_time.is_measured};
         }
     }
 

@@ -14,7 +14,7 @@ struct Strip {
     std::string table;           // Markdown: where each is, its error and time
 };
 
-// Of the scene where filters differ from no filter the most. Without crops: empty.
+// Of the scene where the filters help most. Without crops: empty.
 Strip make_strip(const BenchResults& results);
 
 }  // namespace tessera::tools::bench
