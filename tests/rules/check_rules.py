@@ -74,6 +74,14 @@ TOP_FOLDERS = {"mediator", "backends", "node", "master", "client", "tests", "pro
 LIMIT, TEST_LIMIT = 450, 600
 CODE = (".h", ".cpp")
 MEASURED = CODE + (".proto", ".py", ".sh", ".cmake", "CMakeLists.txt", ".comp", ".glsl")
+# Headers in the language that is compiled as C++ and as GLSL: GLSL knows no #pragma once, and its drivers' functions may be off by 2^-11.
+SHARED_LANGUAGE = "mediator/shading/language.h"
+NOT_SHARED = [
+    (re.compile(r"\b(std|glm)::"), "std:: and glm:: are not GLSL"),
+    (re.compile(r"\b(double|dvec[234]|static_cast|template|enum|class|using|namespace)\b"), "is not in the language"),
+    (re.compile(r"\b(a?sin|a?cos|a?tan|exp2?|log2?|pow|inversesqrt|normalize|length|distance)\s*\("),
+     "a driver's function: take that of maths.h"),
+]
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
@@ -115,6 +123,25 @@ def may_use_library(path, included):
     return None
 
 
+def without_comments(lines):
+    return re.sub(r"/\*.*?\*/|//[^\n]*", lambda found: "\n" * found.group().count("\n"), "\n".join(lines),
+                  flags=re.DOTALL).split("\n")
+
+
+def check_shared(path, lines):
+    """A header that says SHADING_BEGIN: C++ and GLSL."""
+    guard = "TESSERA_" + re.sub(r"[^A-Z0-9]", "_", path.upper())
+    if f"#ifndef {guard}" not in lines or f"#define {guard}" not in lines:
+        yield f"{path}: shared header without the guard {guard}"
+    if path == SHARED_LANGUAGE:
+        return
+    for number, line in enumerate(without_comments(lines), 1):
+        for pattern, reason in NOT_SHARED:
+            found = pattern.search(line)
+            if found:
+                yield f"{path}:{number}: {found.group()}: {reason}"
+
+
 def check_code(path, lines):
     for number, line in enumerate(lines, 1):
         found = INCLUDE.match(line)
@@ -127,7 +154,9 @@ def check_code(path, lines):
                 yield f"{path}:{number}: include of {included} {reason}"
         elif path.endswith(".h") and re.match(r"\s*using\s+namespace\b", line):
             yield f"{path}:{number}: using namespace in a header"
-    if path.endswith(".h") and not any(line.strip() == "#pragma once" for line in lines):
+    if path.endswith(".h") and "SHADING_BEGIN" in (line.strip() for line in lines):
+        yield from check_shared(path, lines)
+    elif path.endswith(".h") and not any(line.strip() == "#pragma once" for line in lines):
         yield f"{path}: header without #pragma once"
 
 

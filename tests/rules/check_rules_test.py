@@ -8,7 +8,9 @@ import unittest
 from check_rules import check_tree
 
 HEADER = "#pragma once\n"
+GUARD = "#ifndef TESSERA_MEDIATOR_SHADING_A_H\n#define TESSERA_MEDIATOR_SHADING_A_H\nSHADING_BEGIN\n"
 CLEAN = {
+    "mediator/shading/a.h": GUARD + "inline float f(float x) {  // no std::sin(x)\n    return sine(x);\n}\n",
     "mediator/net/channel.h": HEADER + '#include <vector>\n#include "mediator/base/clock.h"\n',
     "mediator/net/zmq_link.h": HEADER + '#include <zmq.hpp>\n',
     "mediator/wire/codec.cpp": '#include "proto/work.pb.h"\n#include "mediator/scene/scene.h"\n',
@@ -55,6 +57,10 @@ PLANTED = [
     ("unheard/of/a.cpp", '#include "mediator/base/ids.h"\n', "no rule"),
     ("node/a.h", HEADER + "using namespace std;\n", "using namespace"),
     ("node/a.h", "struct A {};\n", "pragma once"),
+    ("mediator/shading/a.h", HEADER + "SHADING_BEGIN\n", "TESSERA_MEDIATOR_SHADING_A_H"),
+    ("mediator/shading/a.h", GUARD + "inline float f(float x) {\n    return sin(x);\n}\n", "maths.h"),
+    ("mediator/shading/a.h", GUARD + "inline float f(float x) {\n    return std::fabs(x);\n}\n", "std::"),
+    ("mediator/shading/a.h", GUARD + "struct A {\n    double x;\n};\n", "double"),
     ("node/a.cpp", "\n" * 451, "451 lines"),
     ("tests/node/a.cpp", "\n" * 601, "601 lines"),
     ("node/CMakeLists.txt", "file(GLOB sources *.cpp)\n", "GLOB"),
