@@ -1,0 +1,74 @@
+#include "backends/vulkan/device/buffer.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "backends/vulkan/device/device.h"
+#include "backends/vulkan/device/handle.h"
+#include "backends/vulkan/device/result.h"
+
+namespace tessera::vulkan {
+
+struct Buffer::Parts {
+    Allocation memory;  // outlives the object bound to it
+    Handle<VkBuffer, vkDestroyBuffer> object;
+};
+
+Buffer::Buffer(Device& device, std::uint64_t bytes, MemoryKind kind)
+    : device_(&device), parts_(std::make_shared<Parts>()), bytes_(bytes) {
+    if (bytes > device.info().buffer_bytes) {
+        throw Error(ErrorCode::OutOfMemory, "cannot make a buffer of " + std::to_string(bytes) +
+                                                " bytes: the device allows " +
+                                                std::to_string(device.info().buffer_bytes) +
+                                                " in one buffer; use a smaller mesh or texture");
+    }
+    const VkBufferCreateInfo info{
+        .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+        .size = std::max<std::uint64_t>(bytes, 4),
+        .usage = VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                 VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                 VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
+                 VK_BUFFER_USAGE_VERTEX_BUFFER_BIT,
+        .sharingMode = VK_SHARING_MODE_EXCLUSIVE};
+    VkBuffer object = VK_NULL_HANDLE;
+    check(vkCreateBuffer(device.get(), &info, nullptr, &object), "make a buffer");
+    parts_->object = {device.get(), object};
+    VkMemoryRequirements needs{};
+    vkGetBufferMemoryRequirements(device.get(), object, &needs);
+    parts_->memory = device.allocate(needs, kind);
+    check(vkBindBufferMemory(device.get(), object, parts_->memory.get(), parts_->memory.offset()),
+          "give a buffer its memory");
+    const VkBufferDeviceAddressInfo place{.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO,
+                                          .buffer = object};
+    address_ = vkGetBufferDeviceAddress(device.get(), &place);
+}
+
+Buffer::Buffer(Buffer&& other) noexcept
+    : device_(other.device_),
+      parts_(std::move(other.parts_)),
+      bytes_(std::exchange(other.bytes_, 0)),
+      address_(std::exchange(other.address_, 0)) {}
+
+Buffer& Buffer::operator=(Buffer&& other) noexcept {
+    std::swap(device_, other.device_);
+    std::swap(parts_, other.parts_);
+    std::swap(bytes_, other.bytes_);
+    std::swap(address_, other.address_);
+    return *this;
+}
+
+Buffer::~Buffer() {
+    if (parts_ != nullptr) device_->queue().retire(std::move(parts_));
+}
+
+VkBuffer Buffer::get() const {
+    return parts_ != nullptr ? parts_->object.get() : VK_NULL_HANDLE;
+}
+
+std::span<std::byte> Buffer::mapped() const {
+    if (parts_ == nullptr || parts_->memory.mapped() == nullptr) return {};
+    return {parts_->memory.mapped(), bytes_};
+}
+
+}  // namespace tessera::vulkan

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vulkan/vulkan_core.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tessera::vulkan {
+
+// What the validation layer watches; anything but None needs the package vulkan-validationlayers.
+enum class Validation {
+    None,
+    Calls,        // core checks and synchronization validation
+    Instrumented  // also GPU-assisted: accesses out of bounds inside shaders; several times slower
+};
+
+struct Message {
+    enum class Severity { Warning, Error };
+    Severity severity = Severity::Error;
+    std::string id;  // "VUID-..." or the layer's own name
+    std::string text;
+};
+
+// The way into Vulkan 1.3: no window system, no extensions but what collects messages. Outlives everything
+// made from it. Throws Error{Unavailable}: no driver, or no validation layer where one is asked for.
+class Instance final {
+  public:
+    explicit Instance(Validation validation = Validation::None);
+    ~Instance();
+    Instance(const Instance&) = delete;
+    Instance& operator=(const Instance&) = delete;
+
+    VkInstance get() const { return instance_; }
+    // What the layers had to say since the last call; always empty without validation. Thread-safe.
+    std::vector<Message> take_messages();
+
+  private:
+    struct Messages;
+    std::unique_ptr<Messages> messages_;
+    VkInstance instance_ = VK_NULL_HANDLE;
+    VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+};
+
+}  // namespace tessera::vulkan

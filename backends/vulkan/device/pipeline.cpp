@@ -1,0 +1,95 @@
+#include "backends/vulkan/device/pipeline.h"
+
+#include <utility>
+
+#include "backends/vulkan/device/device.h"
+#include "backends/vulkan/device/handle.h"
+#include "backends/vulkan/device/result.h"
+
+namespace tessera::vulkan {
+
+namespace {
+
+using ShaderModule = Handle<VkShaderModule, vkDestroyShaderModule>;
+
+ShaderModule make_module(VkDevice device, const PipelineSettings& settings) {
+    const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                        .codeSize = settings.code.size_bytes(),
+                                        .pCode = settings.code.data()};
+    VkShaderModule object = VK_NULL_HANDLE;
+    check(vkCreateShaderModule(device, &info, nullptr, &object), "read the code of kernel " + settings.name);
+    return {device, object};
+}
+
+}  // namespace
+
+struct ComputePipeline::Parts {
+    Handle<VkPipelineLayout, vkDestroyPipelineLayout> layout;
+    Handle<VkPipeline, vkDestroyPipeline> pipeline;
+};
+
+ComputePipeline::ComputePipeline(Device& device, const PipelineSettings& settings)
+    : device_(&device),
+      parts_(std::make_shared<Parts>()),
+      push_bytes_(settings.push_bytes),
+      name_(settings.name) {
+    if (settings.push_bytes > device.info().push_constant_bytes) {
+        throw Error(ErrorCode::Internal,
+                    "kernel " + name_ + " asks for " + std::to_string(settings.push_bytes) +
+                        " bytes of push constants where the device allows " +
+                        std::to_string(device.info().push_constant_bytes) + "; report this");
+    }
+    const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, settings.push_bytes};
+    const VkPipelineLayoutCreateInfo layout_info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                                 .pushConstantRangeCount = settings.push_bytes > 0 ? 1u : 0u,
+                                                 .pPushConstantRanges = &range};
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    check(vkCreatePipelineLayout(device.get(), &layout_info, nullptr, &layout),
+          "lay out the arguments of kernel " + name_);
+    parts_->layout = {device.get(), layout};
+
+    std::vector<VkSpecializationMapEntry> entries;
+    for (const Constant& constant : settings.constants) {
+        const auto offset =
+            static_cast<std::uint32_t>(entries.size() * sizeof(Constant) + offsetof(Constant, bits));
+        entries.push_back({constant.id, offset, sizeof constant.bits});
+    }
+    const VkSpecializationInfo specialization{static_cast<std::uint32_t>(entries.size()), entries.data(),
+                                              settings.constants.size() * sizeof(Constant),
+                                              settings.constants.data()};
+    const ShaderModule module = make_module(device.get(), settings);
+    const VkComputePipelineCreateInfo info{
+        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                  .module = module.get(),
+                  .pName = "main",
+                  .pSpecializationInfo = &specialization},
+        .layout = layout};
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    check(vkCreateComputePipelines(device.get(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+          "compile kernel " + name_);
+    parts_->pipeline = {device.get(), pipeline};
+}
+
+ComputePipeline& ComputePipeline::operator=(ComputePipeline&& other) noexcept {
+    std::swap(device_, other.device_);
+    std::swap(parts_, other.parts_);
+    std::swap(push_bytes_, other.push_bytes_);
+    std::swap(name_, other.name_);
+    return *this;
+}
+
+ComputePipeline::~ComputePipeline() {
+    if (parts_ != nullptr) device_->queue().retire(std::move(parts_));
+}
+
+VkPipeline ComputePipeline::get() const {
+    return parts_ != nullptr ? parts_->pipeline.get() : VK_NULL_HANDLE;
+}
+
+VkPipelineLayout ComputePipeline::layout() const {
+    return parts_ != nullptr ? parts_->layout.get() : VK_NULL_HANDLE;
+}
+
+}  // namespace tessera::vulkan

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+namespace tessera::vulkan {
+
+class Buffer;
+class ComputePipeline;
+
+// The push-constant block of one dispatch: any plain struct of at most 128 bytes, laid out as the shader's
+// (scalar layout). Addresses of buffers go in here.
+class Arguments final {
+  public:
+    static constexpr std::size_t Capacity = 128;  // what every device allows
+
+    Arguments() = default;
+    template <class T>
+    requires(std::is_trivially_copyable_v<T> && sizeof(T) <= Capacity) Arguments(const T& block)
+        : size_(sizeof(T)) {  // implicit: .arguments = Block{...}
+        std::memcpy(bytes_.data(), &block, sizeof(T));
+    }
+
+    const std::byte* data() const { return bytes_.data(); }
+    std::uint32_t size() const { return size_; }
+
+  private:
+    std::array<std::byte, Capacity> bytes_{};
+    std::uint32_t size_ = 0;
+};
+
+struct Groups {
+    std::uint32_t x = 1, y = 1, z = 1;
+};
+
+// One dispatch, and what it touches. The order between steps comes from `reads` and `writes` alone: name
+// every buffer that the kernel reads or writes and that any step writes. Buffers that only upload() fills
+// need not be named. A buffer that is read and written stands in `writes`.
+struct Pass {
+    const ComputePipeline* pipeline = nullptr;
+    Arguments arguments;
+    Groups groups;
+    std::vector<const Buffer*> reads, writes;
+};
+
+struct Copy {
+    const Buffer* from = nullptr;
+    const Buffer* to = nullptr;
+    std::uint64_t from_offset = 0, to_offset = 0, bytes = 0;
+};
+
+// Sets every 32-bit word of a part; offset and bytes are multiples of 4.
+struct Fill {
+    const Buffer* buffer = nullptr;
+    std::uint64_t offset = 0, bytes = 0;
+    std::uint32_t word = 0;
+};
+
+using Step = std::variant<Pass, Copy, Fill>;
+
+}  // namespace tessera::vulkan

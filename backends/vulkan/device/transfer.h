@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "backends/vulkan/device/buffer.h"
+#include "backends/vulkan/device/device.h"
+
+namespace tessera::vulkan {
+
+// Both are ordered against everything submitted before and after, and done when they return. They throw
+// DeviceLost, or Error{Internal} for a part beyond the buffer's end.
+void upload_bytes(Device& device, const Buffer& buffer, std::span<const std::byte> bytes,
+                  std::uint64_t offset = 0);
+void download_bytes(Device& device, const Buffer& buffer, std::span<std::byte> bytes,
+                    std::uint64_t offset = 0);
+
+template <class T>
+requires std::is_trivially_copyable_v<T>
+void upload(Device& device, const Buffer& buffer, const std::vector<T>& values) {
+    upload_bytes(device, buffer, std::as_bytes(std::span(values)));
+}
+
+template <class T>
+requires std::is_trivially_copyable_v<T> Buffer make_buffer(Device& device, const std::vector<T>& values) {
+    Buffer buffer(device, values.size() * sizeof(T));
+    upload(device, buffer, values);
+    return buffer;
+}
+
+template <class T>
+requires std::is_trivially_copyable_v<T> std::vector<T> download(Device& device, const Buffer& buffer) {
+    std::vector<T> values(buffer.size() / sizeof(T));
+    download_bytes(device, buffer, std::as_writable_bytes(std::span(values)));
+    return values;
+}
+
+// Submits a pass and waits: for tests and for what runs once.
+inline void run(Device& device, const Pass& pass) {
+    device.queue().submit(Step(pass)).wait();
+}
+
+}  // namespace tessera::vulkan
