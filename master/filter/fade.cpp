@@ -1,6 +1,8 @@
 #include "master/filter/fade.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "master/filter/kernels.h"
 
@@ -9,18 +11,20 @@ namespace tessera::filter {
 namespace {
 
 // The differences of the three components come first.
-enum Term : std::uint32_t { Difference, Gain = 3, Distance, Spread, TermCount };
+enum Term : std::uint32_t { Difference, Gain = 3, Distance, Spread, Amplitude, TermCount };
+
+constexpr float Most = 1e15f;  // deviations, so that sums of squares stay finite
 
 // The part of one row: 0 where the variance is unknown, so that those pixels have no say.
-void fill_terms(const Inputs& inputs, frame::Channel channel, const Planes& filtered,
+void fill_terms(const Inputs& inputs, frame::Channel filtered_part, const Planes& filtered,
                 std::span<const float> self_weight, float floor, std::uint32_t y, Planes& terms) {
     const std::uint32_t width = inputs.width;
     float *gain = terms.row(Gain, y), *distance = terms.row(Distance, y);
     std::fill(gain, gain + width, 0.0f);
     std::fill(distance, distance + width, 0.0f);
     const float* counts = inputs.counts.row(0, y);
-    const Planes& mean = inputs.mean(channel);
-    const Planes& variance = inputs.variance(channel);
+    const Planes& mean = inputs.mean(frame::Channel::Radiance);
+    const Planes& variance = inputs.variance(filtered_part);
     for (std::uint32_t c = 0; c < mean.components(); ++c) {
         const float* u = mean.row(c, y);
         const float* v = variance.row(c, y);
@@ -29,15 +33,19 @@ void fill_terms(const Inputs& inputs, frame::Channel channel, const Planes& filt
         for (std::uint32_t x = 0; x < width; ++x) {
             const float known = counts[x] >= 2.0f ? 1.0f : 0.0f;
             const float scale = known / (std::abs(f[x]) + floor);
-            const float d = (f[x] - u[x]) * scale;
+            const float d = std::clamp((f[x] - u[x]) * scale, -Most, Most);
             difference[x] = d;
-            gain[x] += v[x] * scale * scale;
+            const float deviation = std::min(std::sqrt(v[x]) * scale, Most);
+            gain[x] += deviation * deviation;
             distance[x] += d * d;
         }
     }
-    if (self_weight.empty()) return;
-    const float* a = self_weight.data() + std::size_t{y} * width;
-    for (std::uint32_t x = 0; x < width; ++x) gain[x] *= 1.0f - a[x];
+    if (!self_weight.empty()) {
+        const float* a = self_weight.data() + std::size_t{y} * width;
+        for (std::uint32_t x = 0; x < width; ++x) gain[x] *= 1.0f - a[x];
+    }
+    float* amplitude = terms.row(Amplitude, y);
+    for (std::uint32_t x = 0; x < width; ++x) amplitude[x] = std::sqrt(gain[x]);
 }
 
 // Half of the squared difference of neighbours, to the right and below. Beyond a border, and to a pixel whose
@@ -87,62 +95,84 @@ float floor_of(const Planes& filtered, std::vector<double>& rows, RunContext& co
     return std::max(0.1f * static_cast<float>(mean), 1e-30f);
 }
 
-// to[x] = sum of from over the rows y - radius .. y + radius that there are.
-void sum_column(const Planes& from, std::uint32_t component, std::uint32_t y, std::uint32_t radius,
-                float* to) {
+// What the squares of one row are summed into, each `width` numbers; sums of columns have Fade::MaxRadius
+// zeroed pixels on either side.
+enum Sum : std::size_t { Gains, Distances, Spreads, Amplitudes, SumCount };
+constexpr std::array<Term, SumCount> SummedTerms{Gain, Distance, Spread, Amplitude};
+
+// Sums of the terms over the squares around the pixels of row y, as far as they lie in the picture.
+void sum_squares(const Planes& terms, std::uint32_t y, std::uint32_t radius, float* columns, float* sums) {
+    const std::size_t width = terms.width();
     const std::uint32_t first = y > radius ? y - radius : 0;
-    const std::uint32_t last = std::min(from.height() - 1, y + radius);
-    const std::uint32_t width = from.width();
-    std::copy_n(from.row(component, first), width, to);
-    for (std::uint32_t row = first + 1; row <= last; ++row) {
-        const float* values = from.row(component, row);
-        for (std::uint32_t x = 0; x < width; ++x) to[x] += values[x];
+    const std::uint32_t last = std::min(terms.height() - 1, y + radius);
+    for (std::size_t k = 0; k < SumCount; ++k) {
+        float* __restrict column = columns + Fade::MaxRadius;
+        std::fill_n(columns, width + 2 * Fade::MaxRadius, 0.0f);
+        for (std::uint32_t row = first; row <= last; ++row) {
+            const float* values = terms.row(SummedTerms[k], row);
+            for (std::size_t x = 0; x < width; ++x) column[x] += values[x];
+        }
+        float* __restrict sum = sums + k * width;
+        std::fill_n(sum, width, 0.0f);
+        const float* from = columns + (Fade::MaxRadius - radius);
+        for (std::uint32_t dx = 0; dx <= 2 * radius; ++dx) {
+            for (std::size_t x = 0; x < width; ++x) sum[x] += from[x + dx];
+        }
+    }
+}
+
+// margin x gain / distance, at most 1.
+void divide(const float* sums, std::size_t width, float margin, float* __restrict weight) {
+    const float *gain = sums + Gains * width, *distance = sums + Distances * width,
+                *spread = sums + Spreads * width;
+    for (std::size_t x = 0; x < width; ++x) {
+        const float known = margin * std::min(gain[x], spread[x]);
+        const float part = known / std::max(distance[x], 1e-37f);
+        weight[x] = known >= distance[x] ? 1.0f : part;
     }
 }
 
 }  // namespace
 
-bool Fade::weigh(const Inputs& inputs, frame::Channel channel, const Planes& filtered,
-                 std::span<const float> self_weight, RunContext& context) {
+bool Fade::weigh(const Inputs& inputs, frame::Channel filtered_part, std::span<const float> self_weight,
+                 const Planes& filtered, RunContext& context) {
     shape(terms_, inputs, TermCount);
     shape(weights_, inputs, 1);
-    columns_.reserve(context, 3 * std::size_t{inputs.width});
-    const auto width = static_cast<std::int64_t>(inputs.width);
-    const auto radius = static_cast<std::int64_t>(radius_);
+    const std::size_t width = inputs.width;
+    scratch_.reserve(context, (SumCount + 2) * width + 2 * MaxRadius);
     const float floor = floor_of(filtered, row_sums_, context);
+    const float side = 2.0f * static_cast<float>(radius_) + 1.0f;
+    const float share = 9.0f / (side * side);  // of the square of 3 x 3 in the large one
     return for_rows(context, inputs.height,
                     [&](std::uint32_t y) {
-                        fill_terms(inputs, channel, filtered, self_weight, floor, y, terms_);
+                        fill_terms(inputs, filtered_part, filtered, self_weight, floor, y, terms_);
                     }) &&
            for_rows(context, inputs.height,
                     [&](std::uint32_t y) { fill_spread(inputs.counts, self_weight, y, terms_); }) &&
            for_rows(context, inputs.height, [&](std::uint32_t y) {
-               float* gain = columns_.local();
-               float* distance = gain + width;
-               float* spread = distance + width;
-               sum_column(terms_, Gain, y, radius_, gain);
-               sum_column(terms_, Distance, y, radius_, distance);
-               sum_column(terms_, Spread, y, radius_, spread);
+               float* sums = scratch_.local();
+               float *near = sums + SumCount * width, *columns = near + width;
                const float* counts = inputs.counts.row(0, y);
                float* weight = weights_.row(0, y);
-               for (std::int64_t x = 0; x < width; ++x) {
-                   float g = 0.0f, d = 0.0f, s = 0.0f;
-                   const std::int64_t first = std::max<std::int64_t>(0, x - radius);
-                   const std::int64_t last = std::min(width - 1, x + radius);
-                   for (std::int64_t i = first; i <= last; ++i) {
-                       g += gain[i];
-                       d += distance[i];
-                       s += spread[i];
-                   }
-                   g = std::min(g, s);
-                   weight[x] = counts[x] < 2.0f || g >= d ? 1.0f : g / d;
+               sum_squares(terms_, y, 1, columns, sums);
+               divide(sums, width, Margin, near);
+               sum_squares(terms_, y, radius_, columns, sums);
+               divide(sums, width, 1.0f, weight);
+               const float *amplitudes = sums + Amplitudes * width, *gains = sums + Gains * width;
+               for (std::size_t x = 0; x < width; ++x) {
+                   const float seen = amplitudes[x] * amplitudes[x] / std::max(gains[x], 1e-37f);
+                   const float expected = share * seen;
+                   const float blind = exp_negative(-expected) * (1.0f + expected * (1.0f + 0.5f * expected));
+                   const float least = std::min(weight[x], near[x]);
+                   const float w = least + blind * (weight[x] - least);
+                   weight[x] = counts[x] < 2.0f ? 1.0f : w;
                }
            });
 }
 
-bool Fade::apply(const Inputs& inputs, std::span<const float> self_weight, Planes& picture,
-                 RunContext& context) {
-    if (!weigh(inputs, frame::Channel::Radiance, picture, self_weight, context)) return false;
+bool Fade::apply(const Inputs& inputs, frame::Channel filtered_part, std::span<const float> self_weight,
+                 Planes& picture, RunContext& context) {
+    if (!weigh(inputs, filtered_part, self_weight, picture, context)) return false;
     return for_rows(context, inputs.height, [&](std::uint32_t y) {
         const float* w = weights_.row(0, y);
         for (std::uint32_t c = 0; c < picture.components(); ++c) {

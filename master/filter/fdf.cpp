@@ -153,7 +153,7 @@ class Fdf final : public Filter {
         }
         if (values[UseFade] == 0.0) return true;
         Stage stage(report, "fade", Fade::bytes_per_pixel(components));
-        return fade_.apply(inputs, self_.plane(0), out.picture, context);
+        return fade_.apply(inputs, Channel::Radiance, self_.plane(0), out.picture, context);
     }
 
     bool fill_holes(const Inputs& inputs, Planes& picture, Report& report, RunContext& context) {

@@ -68,7 +68,7 @@ class Nfor final : public Filter {
         if (out.wants_maps) out.maps = {{"bandwidth", selection_.first()}};
         if (values[Fading] == 0.0) return true;
         Stage stage(report, "fade", Fade::bytes_per_pixel(out.picture.components()));
-        if (!fade_.apply(inputs, {}, out.picture, context)) return false;
+        if (!fade_.apply(inputs, Channel::Radiance, {}, out.picture, context)) return false;
         if (out.wants_maps) out.maps.push_back({"fade", fade_.weights()});
         return true;
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "master/filter/fade.h"
 #include "master/filter/kernels.h"
 #include "master/filter/pixel/compose.h"
 #include "master/filter/pixel/first_look.h"
@@ -31,6 +32,7 @@ enum Parameters : std::size_t {
     AntialiasRecovery,
     Normals,
     Schedule,
+    Fading,
 };
 
 float number(const Values& values, Parameters which) {
@@ -87,6 +89,7 @@ class PixelFilter final : public Filter {
         }
         if (done && !shown) report.notes.push_back("unfiltered: the schedule begins at 4 samples");
         if (done) done = shown ? blend(inputs, values, report, out, context) : show_unfiltered(inputs, out);
+        if (done && shown && is_on(values, Fading)) done = fade(inputs, report, out, context);
         report.stopped = !done;
         return report;
     }
@@ -189,6 +192,13 @@ class PixelFilter final : public Filter {
         return compose(inputs, light_, field_, how, out.picture, maps, context);
     }
 
+    // Only the high-variance light was filtered: its variance says what that could gain.
+    bool fade(const Inputs& inputs, Report& report, Output& out, RunContext& context) {
+        Stage stage(report, "fade", Fade::bytes_per_pixel(inputs.color_components()));
+        const Channel noisy = inputs.has(Channel::HighVariance) ? Channel::HighVariance : Channel::Radiance;
+        return fade_.apply(inputs, noisy, {}, out.picture, context);
+    }
+
     BlendMaps prepare_maps(const Inputs& inputs, Output& out) const {
         constexpr std::array Names{"range", "variance", "smoothed_variance", "blend", "width", "reduction"};
         out.maps.resize(Names.size());
@@ -225,6 +235,7 @@ class PixelFilter final : public Filter {
     Field field_, scratch_;  // field_: of the last pass
     Strips strips_;
     ReductionRatios ratios_;
+    Fade fade_;
 
     bool has_pass_ = false;  // field_ holds one, made with these:
     Values values_;
@@ -282,13 +293,8 @@ FilterEntry pixel_entry() {
                1,
                {"off", "on"}},
               {"normals", "", "normals as a further guide", 0, 0, 1, {"off", "on"}},
-              {"schedule",
-               "",
-               "filter only at 4, 8, 16, ... samples, blend between",
-               0,
-               0,
-               1,
-               {"off", "on"}}},
+              {"schedule", "", "filter only at 4, 8, 16, ... samples, blend between", 0, 0, 1, {"off", "on"}},
+              {"fade", "", "fade where it would worsen the picture", 1, 0, 1, {"off", "on"}}},
          .channels =
              [](const Values& values) {
                  frame::ChannelSet channels{Channel::Radiance, Channel::LowVariance, Channel::HighVariance,

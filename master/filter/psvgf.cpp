@@ -3,6 +3,8 @@
 #include <array>
 #include <utility>
 
+#include "master/filter/fade.h"
+#include "master/filter/svgf/demodulate.h"
 #include "master/filter/svgf/film_layers.h"
 #include "master/filter/svgf/taa.h"
 
@@ -106,12 +108,16 @@ class Psvgf final : public Filter {
             }
         }
         const bool feedback = history && settings.feedback > 0.0f && mean_age() >= 1.0;
-        const bool faded = values[FadeSwitch] == On;
         for (Signal& signal : signals) {
             if (!signal.filter(now_, settings, feedback, report, context)) return false;
-            if (faded && !signal.fade(report, context)) return false;
         }
-        if (!layers_.compose(inputs, signals, faded, out.picture, report, context)) return false;
+        if (!layers_.compose(inputs, signals, out.picture, report, context)) return false;
+        if (values[FadeSwitch] == On) {
+            Stage stage(report, "fade", Fade::bytes_per_pixel(out.picture.components()));
+            const bool diffuse_alone = !rest_filtered && knows_diffuse(inputs);
+            const Channel part = diffuse_alone ? Channel::HighVariance : Channel::Radiance;
+            if (!fade_.apply(inputs, part, {}, out.picture, context)) return false;
+        }
         const bool shown_fits = shown_before_.pixel_count() == inputs.pixel_count() &&
                                 shown_before_.components() == out.picture.components();
         if (history && values[Taa] == On && shown_fits) {
@@ -217,6 +223,7 @@ class Psvgf final : public Filter {
     Changes pending_, changes_;                // since the last run with samples; since before_
     Motion motion_;
     FilmLayers layers_;
+    Fade fade_;
     Planes shown_, shown_before_, smoothed_, newness_;
 };
 

@@ -64,7 +64,7 @@ class StatMc final : public Filter {
         }
         if (done && values[Fading] > 0.0) {
             Stage stage(report, "fade", Fade::bytes_per_pixel(components));
-            done = fade_.apply(inputs, self_.plane(0), out.picture, context);
+            done = fade_.apply(inputs, Channel::Radiance, self_.plane(0), out.picture, context);
             if (done && out.wants_maps) out.maps = {{"fade", fade_.weights()}};
         }
         report.stopped = !done;

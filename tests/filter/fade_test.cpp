@@ -60,7 +60,7 @@ Planes faded(const Inputs& inputs, const Planes& filtered, std::span<const float
     Planes picture = filtered;
     tbb::task_arena arena(2);
     RunContext context{arena, {}};
-    EXPECT_TRUE(fade.apply(inputs, self_weight, picture, context));
+    EXPECT_TRUE(fade.apply(inputs, frame::Channel::Radiance, self_weight, picture, context));
     if (weights != nullptr) *weights = fade.weights();
     return picture;
 }
@@ -92,7 +92,7 @@ TEST(Fade, LeavesAFilterWithoutBiasAlone) {
         Planes weights;
         const Inputs inputs = noisy(truth, n);
         faded(inputs, truth, {}, &weights);
-        EXPECT_GT(mean(weights), 0.95) << n;
+        EXPECT_GT(mean(weights), 0.94) << n;
     }
 }
 
@@ -128,7 +128,9 @@ TEST(Fade, DoesNotKeepRareLightAsSpots) {
     for (const std::uint32_t n : {4u, 16u, 64u}) {
         const Inputs inputs = noisy(truth, n, 50.0f);
         const double unfiltered = relative_error(inputs.mean(Channel::Radiance), truth);
-        EXPECT_LT(relative_error(faded(inputs, truth), truth), 0.02 * unfiltered) << n;
+        const Planes out = faded(inputs, truth);
+        EXPECT_LT(relative_error(out, truth), 0.02 * unfiltered) << n;
+        EXPECT_NEAR(mean(out), 1.0, 0.05) << n;  // and none of it is lost
     }
 }
 
@@ -196,6 +198,8 @@ TEST(Fade, BrightPixelsDoNotDecideForDarkOnes) {
     }
     const Planes out = faded(inputs, filtered);
     EXPECT_LT(out.row(0, 48)[Width / 2], 100.0f);
+    // Their own neighbours decide, once so many noisy pixels were seen.
+    EXPECT_LT(out.row(0, 48)[Width / 2 + 1], 20.0f);
     EXPECT_NEAR(out.row(0, 48)[Width / 2 + 6], 1.0f, 0.01f);
 }
 
@@ -234,14 +238,14 @@ TEST(Fade, SameBitsForAnyNumberOfThreadsAndStopsWhenAsked) {
     Planes one = filtered, two = filtered;
     tbb::task_arena single(1), pair(2);
     RunContext alone{single, {}}, together{pair, {}};
-    EXPECT_TRUE(fade.apply(inputs, {}, one, alone));
-    EXPECT_TRUE(fade.apply(inputs, {}, two, together));
+    EXPECT_TRUE(fade.apply(inputs, frame::Channel::Radiance, {}, one, alone));
+    EXPECT_TRUE(fade.apply(inputs, frame::Channel::Radiance, {}, two, together));
     EXPECT_TRUE(std::ranges::equal(one.values(), two.values()));
 
     std::stop_source source;
     source.request_stop();
     RunContext stopped{pair, source.get_token()};
-    EXPECT_FALSE(fade.apply(inputs, {}, two, stopped));
+    EXPECT_FALSE(fade.apply(inputs, frame::Channel::Radiance, {}, two, stopped));
 }
 
 }  // namespace

@@ -76,7 +76,8 @@ TEST(Psvgf, TheRestGoesThroughUnfilteredOrFiltered) {
         auto& low = without.means[std::size_t(frame::Channel::LowVariance)];
         std::ranges::fill(low.plane(c), 0.0f);
     }
-    const Planes all = run_filter("psvgf", inputs).picture, diffuse = run_filter("psvgf", without).picture;
+    const Planes all = run_filter("psvgf:fade=off", inputs).picture,
+                 diffuse = run_filter("psvgf:fade=off", without).picture;
     const Planes& rest = inputs.mean(frame::Channel::LowVariance);
     for (std::size_t i = 0; i < rest.values().size(); ++i) {
         EXPECT_NEAR(all.values()[i] - diffuse.values()[i], rest.values()[i], 2e-6);
@@ -207,7 +208,7 @@ TEST(Psvgf, SteepSidesAreFilteredOnceDepthIsIgnored) {  // DT27
         for (const float v : picture.plane(0)) sum += (v - 0.5) * (v - 0.5);
         return sum;
     };
-    EXPECT_LT(residual("psvgf"), 0.8 * residual("psvgf:steep=1e6"));
+    EXPECT_LT(residual("psvgf:fade=off"), 0.8 * residual("psvgf:fade=off,steep=1e6"));
 }
 
 TEST(Psvgf, HolesAreFilled) {

@@ -15,15 +15,6 @@ void copy(const Planes*& layer, Planes& own, const Inputs& inputs) {
     layer = &own;
 }
 
-// to (+)= w f + (1 - w) u, or f without weights.
-void add_faded(const float* f, const float* u, const float* w, std::size_t count, float* __restrict to) {
-    if (w == nullptr) {
-        for (std::size_t x = 0; x < count; ++x) to[x] += f[x];
-    } else {
-        for (std::size_t x = 0; x < count; ++x) to[x] += w[x] * f[x] + (1.0f - w[x]) * u[x];
-    }
-}
-
 }  // namespace
 
 Coverage coverage_of(const Inputs& inputs) {
@@ -96,34 +87,17 @@ bool FilmLayers::fill_holes(const Inputs& inputs, std::span<Signal> signals, Gui
     return hole_fill_.run(inputs.counts, guides.ids, filled_, context);
 }
 
-bool FilmLayers::compose(const Inputs& inputs, std::span<const Signal> signals, bool faded, Planes& picture,
+bool FilmLayers::compose(const Inputs& inputs, std::span<const Signal> signals, Planes& picture,
                          Report& report, RunContext& context) const {
-    Stage stage(report, "compose", 4.0 * (faded ? 16 : 12));
+    Stage stage(report, "compose", 4.0 * 12);
     const PaddedPlanes& light = signals[0].filtered();
-    const bool divided = knows_diffuse(inputs);
-    const Planes& film = inputs.mean(divided ? Channel::HighVariance : Channel::Irradiance);
-    const auto weights = [&](std::size_t signal, std::uint32_t y) {
-        return faded ? signals[signal].fade_weights().row(0, y) : nullptr;
-    };
     return for_rows(context, inputs.height, [&](std::uint32_t y) {
         const std::size_t width = inputs.width;
         for (std::uint32_t c = 0; c < 3; ++c) {
-            const float *a = albedo_->row(c, y), *e = light.row(c, y), *u = film.row(c, y),
-                        *w = weights(0, y);
+            const float *a = albedo_->row(c, y), *e = light.row(c, y);
+            const float* rest = signals.size() > 1 ? signals[1].filtered().row(c, y) : rest_->row(c, y);
             float* __restrict to = picture.row(c, y);
-            if (w == nullptr) {
-                for (std::size_t x = 0; x < width; ++x) to[x] = a[x] * e[x];
-            } else if (divided) {
-                for (std::size_t x = 0; x < width; ++x) to[x] = w[x] * a[x] * e[x] + (1.0f - w[x]) * u[x];
-            } else {
-                for (std::size_t x = 0; x < width; ++x) to[x] = a[x] * (w[x] * e[x] + (1.0f - w[x]) * u[x]);
-            }
-            const float* rest = rest_->row(c, y);
-            if (signals.size() > 1) {
-                add_faded(signals[1].filtered().row(c, y), rest, weights(1, y), width, to);
-            } else {
-                add_faded(rest, nullptr, nullptr, width, to);
-            }
+            for (std::size_t x = 0; x < width; ++x) to[x] = a[x] * e[x] + rest[x];
         }
         if (picture.components() == 4) std::copy_n(alpha_->row(0, y), width, picture.row(3, y));
     });

@@ -21,9 +21,9 @@ class FilmLayers {
     bool read(const Inputs& inputs, bool holes, std::span<Signal> signals, Guides& guides, Report& report,
               RunContext& context);
 
-    // picture = rest + albedo x irradiance. With fades each part goes back to the film by its own weights.
-    bool compose(const Inputs& inputs, std::span<const Signal> signals, bool faded, Planes& picture,
-                 Report& report, RunContext& context) const;
+    // picture = rest + albedo x irradiance.
+    bool compose(const Inputs& inputs, std::span<const Signal> signals, Planes& picture, Report& report,
+                 RunContext& context) const;
 
   private:
     bool fill_holes(const Inputs& inputs, std::span<Signal> signals, Guides& guides, RunContext& context);

@@ -23,7 +23,6 @@ void Signal::fit(std::uint32_t width, std::uint32_t height) {
     fit_state(now_, width, height);
     for (PaddedPlanes& level : levels_) level.fit(width, height, 4);
     known_ = true;
-    blended_ = false;
 }
 
 void Signal::restart() {
@@ -48,8 +47,6 @@ bool Signal::blend_history(const Guides& now, const Guides& before, const Motion
         if (!reproject(now, before, motion, settings.tests, views, history_, context)) return false;
     }
     Stage stage(report, "accumulate", 4.0 * (3 * HistoryCount + 2 * MomentCount));
-    film_ = now_.moments;
-    blended_ = true;
     return accumulate(history_, settings.accumulation, now_, trust_, context);
 }
 
@@ -74,11 +71,6 @@ bool Signal::filter(const Guides& guides, const Settings& settings, bool feedbac
         }
     }
     return true;
-}
-
-bool Signal::fade(Report& report, RunContext& context) {
-    Stage stage(report, "fade", 4.0 * (4 + 6 + 4));
-    return fade_.run(blended_ ? film_ : now_.moments, *filtered_, context);
 }
 
 bool Signal::feed_back(const PaddedPlanes& first_level, float limit, RunContext& context) {

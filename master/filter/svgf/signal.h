@@ -2,7 +2,6 @@
 
 #include "master/filter/svgf/accumulate.h"
 #include "master/filter/svgf/atrous_wavelet.h"
-#include "master/filter/svgf/fade_light.h"
 #include "master/filter/svgf/reproject.h"
 #include "master/filter/svgf/spatial_variance.h"
 
@@ -37,9 +36,6 @@ class Signal {
     bool filter(const Guides& guides, const Settings& settings, bool feedback, Report& report,
                 RunContext& context);
     const PaddedPlanes& filtered() const { return *filtered_; }
-    // The share of filtered() that is better than all of it.
-    bool fade(Report& report, RunContext& context);
-    const Planes& fade_weights() const { return fade_.weights(); }
 
   private:
     bool feed_back(const PaddedPlanes& first_level, float limit, RunContext& context);
@@ -47,11 +43,8 @@ class Signal {
     State now_, before_;
     bool known_ = false, has_before_ = false;
     Planes history_, trust_;
-    Planes film_;  // moments of the film alone, while a history is blended in
-    bool blended_ = false;
     SpatialVariance variance_;
     AtrousWavelet wavelet_;
-    FadeLight fade_;
     std::array<PaddedPlanes, 2> levels_;
     const PaddedPlanes* filtered_ = nullptr;
 };
