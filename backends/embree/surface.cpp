@@ -152,7 +152,7 @@ Surface make_surface(const SceneTables& tables, const RTCHit& hit, const glm::ve
     surface.bsdf =
         shading::make_bsdf(surface.albedo, mixture, roughness, material.index_of_refraction, cos_out);
     if (mixture.mirror > 0.0f || mixture.glass > 0.0f) {
-        surface.rough_share = mixture.rough();
+        surface.rough_share = shading::rough_share(mixture);
         // Bodies are solid: behind the front is glass, behind the back is air. Index 0 stands for infinity.
         const float n = material.index_of_refraction;
         surface.specular = specular_at(surface, mixture, front || n == 0.0f ? n : 1.0f / n, direction);

@@ -1,4 +1,5 @@
-#pragma once
+#ifndef TESSERA_MEDIATOR_SHADING_BSDF_H
+#define TESSERA_MEDIATOR_SHADING_BSDF_H
 
 #include "mediator/shading/sampling.h"
 
@@ -12,21 +13,24 @@
 // Multiple scattering between facets is not modelled: rough metals are a little dark.
 // Perfect mirrors and smooth glass have no density and are in specular.h; a material is a mixture of both
 // kinds.
-namespace tessera::shading {
+SHADING_BEGIN
 
 // What a surface consists of: shares that sum to 1. This file knows metal (rough) and dielectric (opaque,
 // coated).
 struct Mixture {
-    float metal = 0.0f, dielectric = 1.0f;
-    float mirror = 0.0f, glass = 0.0f;
-    // Exactly 1 where there is neither mirror nor glass.
-    float rough() const { return 1.0f - mirror - glass; }
+    float metal, dielectric;
+    float mirror, glass;
 };
 
+// Exactly 1 where there is neither mirror nor glass.
+inline float rough_share(IN(Mixture) mixture) {
+    return 1.0f - mixture.mirror - mixture.glass;
+}
+
 struct Bsdf {
-    glm::vec3 diffuse;  // albedo of the base
-    glm::vec3 f0;       // specular reflectance at normal incidence
-    float coat_f0;      // of the dielectric part: what the diffuse lobe loses
+    vec3 diffuse;   // albedo of the base
+    vec3 f0;        // specular reflectance at normal incidence
+    float coat_f0;  // of the dielectric part: what the diffuse lobe loses
     float f90,
         coat_f90;  // reflectance at grazing: all of its share, or 0 where there is no interface (index 1)
     float alpha;   // roughness^2
@@ -45,7 +49,7 @@ inline float schlick_weight(float cosine) {
 
 inline Mixture make_mixture(float metallic, float roughness, float transmission) {
     const float opaque = 1.0f - metallic;
-    Mixture mixture{.metal = metallic, .dielectric = opaque};
+    Mixture mixture = Mixture(metallic, opaque, 0.0f, 0.0f);
     if (transmission > 0.0f) {
         mixture.glass = opaque * transmission;
         mixture.dielectric = opaque * (1.0f - transmission);
@@ -57,15 +61,15 @@ inline Mixture make_mixture(float metallic, float roughness, float transmission)
     return mixture;
 }
 
-inline Bsdf make_bsdf(const glm::vec3& base_color, const Mixture& mixture, float roughness,
-                      float index_of_refraction, float cos_out) {
+inline Bsdf make_bsdf(vec3 base_color, IN(Mixture) mixture, float roughness, float index_of_refraction,
+                      float cos_out) {
     Bsdf bsdf;
     const float r =
         index_of_refraction == 0.0f ? 1.0f : (index_of_refraction - 1.0f) / (index_of_refraction + 1.0f);
     bsdf.coat_f0 = r * r;
     bsdf.diffuse = base_color * mixture.dielectric;
-    bsdf.f0 = glm::vec3(bsdf.coat_f0) * mixture.dielectric + base_color * mixture.metal;
-    bsdf.f90 = largest(bsdf.f0) > 0.0f ? mixture.rough() : 0.0f;
+    bsdf.f0 = vec3(bsdf.coat_f0) * mixture.dielectric + base_color * mixture.metal;
+    bsdf.f90 = largest(bsdf.f0) > 0.0f ? rough_share(mixture) : 0.0f;
     bsdf.coat_f90 = bsdf.coat_f0 > 0.0f ? 1.0f : 0.0f;
     bsdf.alpha = greater_of(roughness * roughness, MinAlpha);
     const float fresnel = schlick_weight(cos_out);
@@ -81,66 +85,68 @@ inline Bsdf make_bsdf(const glm::vec3& base_color, const Mixture& mixture, float
 }
 
 // D of the half vector. In a form that does not cancel: 1 - cos^2 comes from x and y.
-inline float ggx_distribution(const glm::vec3& h, float alpha) {
+inline float ggx_distribution(vec3 h, float alpha) {
     const float a2 = alpha * alpha;
     const float slope = h.x * h.x + h.y * h.y + a2 * h.z * h.z;
     return a2 / (Pi * slope * slope);
 }
 
-inline float smith_lambda(const glm::vec3& w, float alpha) {
+inline float smith_lambda(vec3 w, float alpha) {
     const float cos2 = w.z * w.z;
     if (!(cos2 > 0.0f)) return 1e20f;
     const float tan2 = (w.x * w.x + w.y * w.y) / cos2;
-    return 0.5f * (std::sqrt(1.0f + alpha * alpha * tan2) - 1.0f);
+    return 0.5f * (sqrt(1.0f + alpha * alpha * tan2) - 1.0f);
 }
 
-// Half vectors in proportion to what is visible from `out` (Heitz 2018).
-inline glm::vec3 sample_visible_normal(const glm::vec3& out, float alpha, const glm::vec2& u) {
-    const glm::vec3 stretched = normalize(glm::vec3(alpha * out.x, alpha * out.y, out.z));
+// Half vectors in proportion to what is visible from `wo` (Heitz 2018).
+inline vec3 sample_visible_normal(vec3 wo, float alpha, vec2 u) {
+    const vec3 stretched = unit_vector(vec3(alpha * wo.x, alpha * wo.y, wo.z));
     const float length2 = stretched.x * stretched.x + stretched.y * stretched.y;
-    const glm::vec3 t1 = length2 > 0.0f ? glm::vec3(-stretched.y, stretched.x, 0.0f) / std::sqrt(length2)
-                                        : glm::vec3(1.0f, 0.0f, 0.0f);
-    const glm::vec3 t2 = cross(stretched, t1);
-    glm::vec2 p = sample_disk(u);
+    const vec3 t1 =
+        length2 > 0.0f ? vec3(-stretched.y, stretched.x, 0.0f) / sqrt(length2) : vec3(1.0f, 0.0f, 0.0f);
+    const vec3 t2 = cross(stretched, t1);
+    vec2 p = sample_disk(u);
     const float s = 0.5f * (1.0f + stretched.z);
-    p.y = (1.0f - s) * std::sqrt(greater_of(0.0f, 1.0f - p.x * p.x)) + s * p.y;
-    const float z = std::sqrt(greater_of(0.0f, 1.0f - dot(p, p)));
-    const glm::vec3 h = p.x * t1 + p.y * t2 + z * stretched;
-    return normalize(glm::vec3(alpha * h.x, alpha * h.y, greater_of(1e-12f, h.z)));
+    p.y = (1.0f - s) * sqrt(greater_of(0.0f, 1.0f - p.x * p.x)) + s * p.y;
+    const float z = sqrt(greater_of(0.0f, 1.0f - dot(p, p)));
+    const vec3 h = p.x * t1 + p.y * t2 + z * stretched;
+    return unit_vector(vec3(alpha * h.x, alpha * h.y, greater_of(1e-12f, h.z)));
 }
 
 struct BsdfValue {
-    glm::vec3 value;    // f cos(in)
-    float pdf;          // per solid angle, of sample_bsdf
-    glm::vec3 diffuse;  // the diffuse lobe's part of the value
+    vec3 value;    // f cos(wi)
+    float pdf;     // per solid angle, of sample_bsdf
+    vec3 diffuse;  // the diffuse lobe's part of the value
 };
 
-inline BsdfValue evaluate_bsdf(const Bsdf& bsdf, const glm::vec3& out, const glm::vec3& in) {
-    BsdfValue result{glm::vec3(0.0f), 0.0f, glm::vec3(0.0f)};
-    if (!(in.z > 0.0f) || !(out.z > 0.0f)) return result;
-    const glm::vec3 sum = in + out;
+inline BsdfValue evaluate_bsdf(IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
+    BsdfValue result = BsdfValue(vec3(0.0f), 0.0f, vec3(0.0f));
+    if (!(wi.z > 0.0f) || !(wo.z > 0.0f)) return result;
+    const vec3 sum = wi + wo;
     const float length2 = dot(sum, sum);
     if (length2 > 0.0f) {
-        const glm::vec3 h = sum / std::sqrt(length2);
+        const vec3 h = sum / sqrt(length2);
         const float distribution = ggx_distribution(h, bsdf.alpha);
-        const float lambda_out = smith_lambda(out, bsdf.alpha), lambda_in = smith_lambda(in, bsdf.alpha);
-        const glm::vec3 fresnel = bsdf.f0 + (bsdf.f90 - bsdf.f0) * schlick_weight(dot(in, h));
-        result.value = fresnel * (distribution / (4.0f * out.z * (1.0f + lambda_out + lambda_in)));
-        result.pdf = bsdf.specular_share * distribution / (4.0f * out.z * (1.0f + lambda_out));
+        const float lambda_out = smith_lambda(wo, bsdf.alpha), lambda_in = smith_lambda(wi, bsdf.alpha);
+        const vec3 fresnel = bsdf.f0 + (bsdf.f90 - bsdf.f0) * schlick_weight(dot(wi, h));
+        result.value = fresnel * (distribution / (4.0f * wo.z * (1.0f + lambda_out + lambda_in)));
+        result.pdf = bsdf.specular_share * distribution / (4.0f * wo.z * (1.0f + lambda_out));
     }
-    const float keeps_in = 1.0f - (bsdf.coat_f0 + (bsdf.coat_f90 - bsdf.coat_f0) * schlick_weight(in.z));
-    const float keeps_out = 1.0f - (bsdf.coat_f0 + (bsdf.coat_f90 - bsdf.coat_f0) * schlick_weight(out.z));
-    result.diffuse = bsdf.diffuse * (keeps_in * keeps_out * in.z / Pi);
+    const float keeps_in = 1.0f - (bsdf.coat_f0 + (bsdf.coat_f90 - bsdf.coat_f0) * schlick_weight(wi.z));
+    const float keeps_out = 1.0f - (bsdf.coat_f0 + (bsdf.coat_f90 - bsdf.coat_f0) * schlick_weight(wo.z));
+    result.diffuse = bsdf.diffuse * (keeps_in * keeps_out * wi.z / Pi);
     result.value += result.diffuse;
-    result.pdf += (1.0f - bsdf.specular_share) * in.z / Pi;
+    result.pdf += (1.0f - bsdf.specular_share) * wi.z / Pi;
     return result;
 }
 
 // A direction; may point below the surface, where the value is 0.
-inline glm::vec3 sample_bsdf(const Bsdf& bsdf, const glm::vec3& out, float choice, const glm::vec2& u) {
+inline vec3 sample_bsdf(IN(Bsdf) bsdf, vec3 wo, float choice, vec2 u) {
     if (choice >= bsdf.specular_share) return sample_cosine_hemisphere(u);
-    const glm::vec3 h = sample_visible_normal(out, bsdf.alpha, u);
-    return 2.0f * dot(out, h) * h - out;
+    const vec3 h = sample_visible_normal(wo, bsdf.alpha, u);
+    return 2.0f * dot(wo, h) * h - wo;
 }
 
-}  // namespace tessera::shading
+SHADING_END
+
+#endif

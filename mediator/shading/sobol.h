@@ -1,16 +1,16 @@
-#pragma once
+#ifndef TESSERA_MEDIATOR_SHADING_SOBOL_H
+#define TESSERA_MEDIATOR_SHADING_SOBOL_H
 
-#include <cstdint>
-#include <glm/vec2.hpp>
+#include "mediator/shading/language.h"
 
 // Random numbers of a path. Owen-scrambled Sobol points by absolute sample index (Burley 2020: hash-based
 // nested uniform scrambling; constants of the permutation: Vegdahl's improvement of Laine and Karras 2011).
 // Dimensions come in pairs: each pair is a (0,2)-sequence of its own, its index and its two coordinates
 // scrambled by hashes of (pixel, pair), so that pairs and pixels are independent of each other and every
 // aligned power-of-two block of samples is stratified.
-namespace tessera::shading {
+SHADING_BEGIN
 
-inline std::uint32_t hash_u32(std::uint32_t x) {
+inline uint hash_u32(uint x) {
     x ^= x >> 16;
     x *= 0x7feb352du;
     x ^= x >> 15;
@@ -18,11 +18,11 @@ inline std::uint32_t hash_u32(std::uint32_t x) {
     return x ^ (x >> 16);
 }
 
-inline std::uint32_t hash_combine(std::uint32_t seed, std::uint32_t value) {
+inline uint hash_combine(uint seed, uint value) {
     return hash_u32(seed ^ (value + 0x9e3779b9u + (seed << 6) + (seed >> 2)));
 }
 
-inline std::uint32_t reverse_bits(std::uint32_t x) {
+inline uint reverse_bits(uint x) {
     x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
     x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
     x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
@@ -31,7 +31,7 @@ inline std::uint32_t reverse_bits(std::uint32_t x) {
 }
 
 // Owen scrambling of a number whose bits are reversed: a bit is flipped by a hash of the lower ones.
-inline std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) {
+inline uint scramble_reversed(uint x, uint seed) {
     x ^= x * 0x3d20adeau;
     x += seed;
     x *= (seed >> 16) | 1u;
@@ -41,7 +41,7 @@ inline std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) {
 
 // The second Sobol dimension (x + 1) of a reversed index: Pascal's triangle modulo 2, doubled five times
 // (Ahmed 2024). The first dimension is the reversed index itself.
-inline std::uint32_t sobol_second(std::uint32_t reversed) {
+inline uint sobol_second(uint reversed) {
     reversed ^= reversed << 16;
     reversed ^= (reversed & 0x00ff00ffu) << 8;
     reversed ^= (reversed & 0x0f0f0f0fu) << 4;
@@ -49,30 +49,32 @@ inline std::uint32_t sobol_second(std::uint32_t reversed) {
     return reversed ^ (reversed & 0x55555555u) << 1;
 }
 
-inline float unit_float(std::uint32_t bits) {
+inline float unit_float(uint bits) {
     return float(bits >> 8) * 5.9604644775390625e-8f;
 }  // [0, 1 - 2^-24]
 
 // Where the numbers of one sample of one pixel come from.
 struct Sampler {
-    std::uint32_t index;  // of the sample, low 32 bits
-    std::uint32_t seed;   // of (pixel, view's seed, high bits of the index)
+    uint index;  // of the sample, low 32 bits
+    uint seed;   // of (pixel, view's seed, high bits of the index)
 };
 
-inline Sampler make_sampler(std::uint32_t x, std::uint32_t y, std::uint64_t seed, std::uint64_t sample) {
-    std::uint32_t s = hash_combine(hash_u32(x), y);
-    s = hash_combine(s, std::uint32_t(seed));
-    s = hash_combine(s, std::uint32_t(seed >> 32));
-    return Sampler{std::uint32_t(sample), hash_combine(s, std::uint32_t(sample >> 32))};
+inline Sampler make_sampler(uint x, uint y, uint64_t seed, uint64_t index) {
+    uint s = hash_combine(hash_u32(x), y);
+    s = hash_combine(s, uint(seed));
+    s = hash_combine(s, uint(seed >> 32));
+    return Sampler(uint(index), hash_combine(s, uint(index >> 32)));
 }
 
-inline glm::vec2 sample_pair(const Sampler& sampler, std::uint32_t pair) {
-    const std::uint32_t seed = hash_combine(sampler.seed, pair);
-    const std::uint32_t reversed = scramble_reversed(reverse_bits(sampler.index), seed);
-    const std::uint32_t x = reverse_bits(scramble_reversed(reverse_bits(reversed), hash_combine(seed, 1u)));
-    const std::uint32_t y =
+inline vec2 sample_pair(IN(Sampler) numbers, uint pair) {
+    const uint seed = hash_combine(numbers.seed, pair);
+    const uint reversed = scramble_reversed(reverse_bits(numbers.index), seed);
+    const uint x = reverse_bits(scramble_reversed(reverse_bits(reversed), hash_combine(seed, 1u)));
+    const uint y =
         reverse_bits(scramble_reversed(reverse_bits(sobol_second(reversed)), hash_combine(seed, 2u)));
-    return glm::vec2(unit_float(x), unit_float(y));
+    return vec2(unit_float(x), unit_float(y));
 }
 
-}  // namespace tessera::shading
+SHADING_END
+
+#endif

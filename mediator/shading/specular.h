@@ -1,4 +1,5 @@
-#pragma once
+#ifndef TESSERA_MEDIATOR_SHADING_SPECULAR_H
+#define TESSERA_MEDIATOR_SHADING_SPECULAR_H
 
 #include "mediator/shading/bsdf.h"
 
@@ -9,7 +10,7 @@
 // Light is carried as basic radiance L / n^2 (Nicodemus 1963), which refraction does not change: the factors
 // 1/eta^2 and eta^2 of entering and leaving a closed body cancel. Only what shines inside of glass is given
 // as it would be in air.
-namespace tessera::shading {
+SHADING_BEGIN
 
 // Share of unpolarised light that the smooth boundary of two dielectrics reflects. `cosine` is that of the
 // direction and the normal, in [0, 1]; eta = index of refraction on the far side / on this side; eta = 0
@@ -19,33 +20,34 @@ inline float fresnel_dielectric(float cosine, float eta) {
     if (!(eta > 0.0f)) return 1.0f;
     const float sin2 = (1.0f - cosine) * (1.0f + cosine) / (eta * eta);
     if (!(sin2 < 1.0f)) return 1.0f;
-    const float inside = std::sqrt(1.0f - sin2);
+    const float inside = sqrt(1.0f - sin2);
     const float parallel = (eta * cosine - inside) / (eta * cosine + inside);
     const float across = (cosine - eta * inside) / (cosine + eta * inside);
     return 0.5f * (parallel * parallel + across * across);
 }
 
 struct Specular {
-    glm::vec3 reflection{0.0f}, refraction{0.0f};  // shares of the light that goes this way
-    glm::vec3 reflected{0.0f}, refracted{0.0f};    // directions, of unit length where the share is not 0
-    bool any() const { return largest(reflection) > 0.0f || largest(refraction) > 0.0f; }
+    vec3 reflection, refraction;  // shares of the light that goes this way
+    vec3 reflected, refracted;    // directions, of unit length where the share is not 0
 };
 
 // For mixtures without mirror and glass both shares are 0. At total reflection nothing is refracted.
-inline Specular make_specular(const glm::vec3& base_color, const Mixture& mixture, float eta,
-                              const glm::vec3& out) {
+inline Specular make_specular(vec3 base_color, IN(Mixture) mixture, float eta, vec3 wo) {
     Specular specular;
-    const float fresnel = fresnel_dielectric(out.z, eta);
-    specular.reflected = glm::vec3(-out.x, -out.y, out.z);
-    specular.reflection = mixture.mirror * (base_color + (1.0f - base_color) * schlick_weight(out.z)) +
-                          glm::vec3(mixture.glass * fresnel);
+    const float fresnel = fresnel_dielectric(wo.z, eta);
+    specular.reflected = vec3(-wo.x, -wo.y, wo.z);
+    specular.reflection = mixture.mirror * (base_color + (1.0f - base_color) * schlick_weight(wo.z)) +
+                          vec3(mixture.glass * fresnel);
     specular.refraction = base_color * (mixture.glass * (1.0f - fresnel));
+    specular.refracted = vec3(0.0f);
     if (!(fresnel < 1.0f)) return specular;
     // 1 - cos^2 from x and y: it does not cancel near the normal.
-    const float sin2 = (out.x * out.x + out.y * out.y) / (eta * eta);
-    const float inside = std::sqrt(greater_of(0.0f, 1.0f - sin2));
-    specular.refracted = normalize(glm::vec3(-out.x / eta, -out.y / eta, -inside));
+    const float sin2 = (wo.x * wo.x + wo.y * wo.y) / (eta * eta);
+    const float inside = sqrt(greater_of(0.0f, 1.0f - sin2));
+    specular.refracted = unit_vector(vec3(-wo.x / eta, -wo.y / eta, -inside));
     return specular;
 }
 
-}  // namespace tessera::shading
+SHADING_END
+
+#endif
