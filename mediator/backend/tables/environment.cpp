@@ -1,0 +1,101 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mediator/backend/tables/parts.h"
+#include "mediator/shading/sampling.h"
+#include "mediator/shading/textures.h"
+
+namespace tessera::backend {
+
+namespace {
+
+using std::numbers::pi;
+
+// Luminance of what is seen at the middle of each texel.
+std::vector<double> seen(const SceneTables& tables) {
+    const shading::Scene scene = on_host(tables);
+    const shading::Environment& sky = scene.environment;
+    const std::uint32_t width = sky.map.width, height = sky.map.height;
+    std::vector<double> texels;
+    texels.reserve(std::size_t{width} * height);
+    for (std::uint32_t y = 0; y < height; ++y) {
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const glm::vec2 uv{(static_cast<float>(x) + 0.5f) / static_cast<float>(width),
+                               (static_cast<float>(y) + 0.5f) / static_cast<float>(height)};
+            const glm::vec3 texel(shading::lookup(scene, sky.map, uv));
+            texels.push_back(double(shading::luminance(sky.color + sky.strength * texel)));
+        }
+    }
+    return texels;
+}
+
+// Weighs each texel half by itself and half by its neighbourhood, so that whatever bilinear filtering shows
+// can be sampled. Returns the mean luminance over the sphere.
+double add_map_sums(SceneTables& tables) {
+    shading::Environment& sky = tables.scene.environment;
+    const std::int64_t width = sky.map.width, height = sky.map.height;
+    const std::vector<double> texels = seen(tables);
+    const auto texel = [&](std::int64_t x, std::int64_t y) {
+        return texels[static_cast<std::size_t>(std::clamp<std::int64_t>(y, 0, height - 1) * width +
+                                               (x + width) % width)];
+    };
+    std::vector<double> row_weights(static_cast<std::size_t>(height));
+    double sphere = 0.0;
+    sky.column_sums = static_cast<std::uint32_t>(tables.sums.size());
+    for (std::int64_t y = 0; y < height; ++y) {
+        const double sine = std::sin(pi * (double(y) + 0.5) / double(height));
+        std::vector<double> weights(static_cast<std::size_t>(width));
+        for (std::int64_t x = 0; x < width; ++x) {
+            double neighbours = 0.0;
+            for (std::int64_t dy = -1; dy <= 1; ++dy) {
+                for (std::int64_t dx = -1; dx <= 1; ++dx) neighbours += texel(x + dx, y + dy) / 9.0;
+            }
+            weights[static_cast<std::size_t>(x)] = 0.5 * (texel(x, y) + neighbours);
+            row_weights[static_cast<std::size_t>(y)] += weights[static_cast<std::size_t>(x)] * sine;
+            sphere += texel(x, y) * sine;
+        }
+        add_sums(tables, weights);
+    }
+    sky.row_sums = add_sums(tables, row_weights);
+    return sphere * pi / (2.0 * double(width) * double(height));
+}
+
+}  // namespace
+
+std::uint32_t add_sums(SceneTables& tables, const std::vector<double>& weights) {
+    const auto first = static_cast<std::uint32_t>(tables.sums.size());
+    double total = 0.0, sum = 0.0;
+    for (const double weight : weights) total += weight;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        sum += weights[i];
+        tables.sums.push_back(total > 0.0 ? static_cast<float>(sum / total)
+                                          : static_cast<float>(i + 1) / static_cast<float>(weights.size()));
+    }
+    return first;
+}
+
+double add_environment(SceneTables& tables, const scene::Scene& scene, const Indices& textures) {
+    const auto* root = scene.find_as<scene::Root>(scene::RootId);
+    const auto* background = root ? scene.find_as<scene::Background>(root->background) : nullptr;
+    if (background == nullptr) return 0.0;
+    shading::Environment& sky = tables.scene.environment;
+    sky.color = background->color;
+    sky.strength = background->strength;
+    sky.rotation = background->rotation;
+    double mean = shading::luminance(sky.color);
+    const auto map = textures.find(background->environment);
+    if (map != textures.end() && sky.strength > 0.0f) {
+        sky.map = tables.textures[map->second];
+        sky.map.wrap_s = shading::WrapRepeat;
+        sky.map.wrap_t = shading::WrapClamp;
+        tables.environment_texels = tables.texels[map->second];
+        mean = add_map_sums(tables);
+        tables.scene.features |= shading::FeatureEnvironmentMap;
+    }
+    sky.emits = mean > 0.0 ? 1u : 0u;
+    if (mean > 0.0) tables.scene.features |= shading::FeatureEnvironment;
+    return mean;
+}
+
+}  // namespace tessera::backend

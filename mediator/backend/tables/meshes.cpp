@@ -1,0 +1,122 @@
+#include "mediator/backend/tables/meshes.h"
+
+#include <algorithm>
+#include <array>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "mediator/scene/validate.h"
+
+namespace tessera::backend {
+
+namespace {
+
+using scene::Geometry;
+using Field = Geometry::Field;
+
+void resolve_blobs(Mesh& mesh, const scene::BlobStore& blobs) {
+    const auto find = [&](const scene::BlobRef& reference) {
+        return reference.empty() ? scene::BlobPtr() : blobs.find(reference.hash);
+    };
+    mesh.positions = find(mesh.source.positions);
+    mesh.normals = find(mesh.source.normals);
+    mesh.tangents = find(mesh.source.tangents);
+    mesh.colors = find(mesh.source.colors);
+    mesh.tex_coords = find(mesh.source.tex_coords);
+    mesh.triangles = find(mesh.source.indices);
+}
+
+scene::BlobPtr placeholder_positions() {
+    std::array<glm::vec3, 8> corners;
+    for (unsigned i = 0; i < 8; ++i) {
+        corners[i] = glm::vec3((i & 1u) ? 0.5f : -0.5f, (i & 2u) ? 0.5f : -0.5f, (i & 4u) ? 0.5f : -0.5f);
+    }
+    return std::make_shared<const scene::Blob>(std::as_bytes(std::span(corners)));
+}
+scene::BlobPtr placeholder_triangles() {
+    static constexpr std::array<std::uint32_t, 36> Indices{0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6,
+                                                           0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7,
+                                                           0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+    return std::make_shared<const scene::Blob>(std::as_bytes(std::span(Indices)));
+}
+
+// Bounds and degenerate triangles.
+void measure(Mesh& mesh) {
+    const auto positions = elements<glm::vec3>(mesh.positions);
+    mesh.low = Mesh().low;
+    mesh.high = Mesh().high;
+    mesh.degenerate_triangles = 0;
+    for (const glm::uvec3& t : elements<glm::uvec3>(mesh.triangles)) {
+        // In double: tiny triangles are small, not degenerate.
+        const glm::dvec3 a = positions[t.x], b = positions[t.y], c = positions[t.z];
+        const glm::dvec3 n = glm::cross(b - a, c - a);
+        mesh.degenerate_triangles += glm::dot(n, n) > 0.0 ? 0 : 1;
+        mesh.low = glm::min(mesh.low, glm::min(positions[t.x], glm::min(positions[t.y], positions[t.z])));
+        mesh.high = glm::max(mesh.high, glm::max(positions[t.x], glm::max(positions[t.y], positions[t.z])));
+    }
+}
+
+bool fits(const Mesh& mesh, const Geometry& geometry) {
+    return mesh.refits && geometry.indices == mesh.source.indices && geometry.hint == mesh.source.hint &&
+           geometry.positions.byte_size == mesh.source.positions.byte_size;
+}
+
+}  // namespace
+
+std::uint32_t MeshCatalog::Result::count(MeshStep step) const {
+    return static_cast<std::uint32_t>(std::count_if(
+        changes.begin(), changes.end(), [&](const Change& change) { return change.step == step; }));
+}
+
+const Mesh* MeshCatalog::find(ObjectId id) const {
+    const auto place = meshes_.find(id);
+    return place == meshes_.end() ? nullptr : &place->second;
+}
+
+MeshCatalog::Result MeshCatalog::update(const scene::Scene& scene, const SceneDelta& delta) {
+    Result result{.everything = delta.everything, .removed = delta.removed_geometries};
+    if (delta.everything) meshes_.clear();
+    for (const ObjectId id : delta.removed_geometries) meshes_.erase(id);
+    for (const auto& change : delta.geometries) {
+        const auto* geometry = scene.find_as<Geometry>(change.id);
+        if (geometry == nullptr) continue;
+        const auto place = meshes_.find(change.id);
+        const scene::Fields<Geometry> shape{Field::Hint, Field::Indices, Field::Positions};
+        MeshStep step = MeshStep::Rebuild;
+        if (place != meshes_.end() && !place->second.placeholder &&
+            scene::validate_blobs(change.id, *scene.find(change.id), *blobs_).empty()) {
+            if (!change.fields.intersects(shape)) {
+                step = MeshStep::ShadingData;
+            } else if (fits(place->second, *geometry)) {
+                step = MeshStep::Refit;
+            }
+        }
+        if (step == MeshStep::Rebuild) {
+            meshes_[change.id] = build(change.id, *geometry, result.problems);
+        } else {
+            place->second.source = *geometry;
+            resolve_blobs(place->second, *blobs_);
+            if (step == MeshStep::Refit) measure(place->second);
+        }
+        result.changes.push_back({change.id, step});
+    }
+    return result;
+}
+
+Mesh MeshCatalog::build(ObjectId id, const Geometry& geometry, std::vector<std::string>& problems) const {
+    Mesh mesh{.source = geometry, .refits = geometry.hint == scene::MotionHint::Animated};
+    for (const scene::Problem& problem : scene::validate_blobs(id, scene::Object(geometry), *blobs_)) {
+        mesh.placeholder = true;
+        problems.push_back(problem.message + " (a placeholder is drawn instead)");
+    }
+    if (mesh.placeholder) {
+        mesh.positions = placeholder_positions();
+        mesh.triangles = placeholder_triangles();
+    } else {
+        resolve_blobs(mesh, *blobs_);
+    }
+    measure(mesh);
+    return mesh;
+}
+
+}  // namespace tessera::backend

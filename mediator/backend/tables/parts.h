@@ -1,0 +1,29 @@
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "mediator/backend/tables/tables.h"
+
+// Steps of make_tables, in this order. Each reads what the former have put into the tables.
+namespace tessera::backend {
+
+using Indices = std::map<ObjectId, std::uint32_t>;  // of objects in their table
+
+Indices add_textures(SceneTables& tables, const scene::Scene& scene, const scene::BlobStore& blobs);
+Indices add_materials(SceneTables& tables, const scene::Scene& scene, const Indices& textures);
+void add_instances(SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes,
+                   const Indices& materials);
+
+// Radiance over the sphere in the mean, as luminance; 0: there is no sky.
+double add_environment(SceneTables& tables, const scene::Scene& scene, const Indices& textures);
+
+// Instances that emit get their light's index.
+void add_lights(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
+                const MeshCatalog& meshes, double sky_luminance);
+
+// Appends cumulative sums of the weights to the tables' sums, normalised to end at 1 (evenly spread where all
+// weights are 0), and returns the index of the first.
+std::uint32_t add_sums(SceneTables& tables, const std::vector<double>& weights);
+
+}  // namespace tessera::backend

@@ -1,0 +1,76 @@
+#include "mediator/backend/tables/tables.h"
+
+#include <array>
+#include <cmath>
+
+#include "mediator/backend/tables/parts.h"
+
+namespace tessera::backend {
+
+namespace {
+
+std::array<float, 256> make_srgb_values() {
+    std::array<float, 256> values{};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const double c = static_cast<double>(i) / 255.0;
+        values[i] = static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+    }
+    return values;
+}
+
+template <class Array>
+void set_address(Array& array, const scene::BlobPtr& blob, const BlobAddress& address_of) {
+    if (blob) array.items = reinterpret_cast<decltype(array.items)>(address_of(blob));
+}
+
+}  // namespace
+
+std::span<const float> srgb_values() {
+    static const std::array<float, 256> values = make_srgb_values();
+    return values;
+}
+
+void set_addresses(SceneTables& tables, const BlobAddress& address_of) {
+    for (std::size_t i = 0; i < tables.textures.size(); ++i) {
+        set_address(tables.textures[i].texels, tables.texels[i], address_of);
+    }
+    for (std::size_t i = 0; i < tables.meshes.size(); ++i) {
+        const SceneTables::Arrays& blobs = tables.arrays[i];
+        shading::Mesh& mesh = tables.meshes[i];
+        set_address(mesh.positions, blobs.positions, address_of);
+        set_address(mesh.triangles, blobs.triangles, address_of);
+        set_address(mesh.normals, blobs.normals, address_of);
+        set_address(mesh.tangents, blobs.tangents, address_of);
+        set_address(mesh.colors, blobs.colors, address_of);
+        set_address(mesh.tex_coords, blobs.tex_coords, address_of);
+    }
+    set_address(tables.scene.environment.map.texels, tables.environment_texels, address_of);
+}
+
+shading::Scene on_host(const SceneTables& tables) {
+    shading::Scene scene = tables.scene;
+    scene.textures.items = tables.textures.data();
+    scene.materials.items = tables.materials.data();
+    scene.meshes.items = tables.meshes.data();
+    scene.instances.items = tables.instances.data();
+    scene.lights.items = tables.lights.data();
+    scene.sums.items = tables.sums.data();
+    scene.srgb.items = srgb_values().data();
+    return scene;
+}
+
+SceneTables make_tables(const scene::Scene& scene, const Lowered& lowered, const MeshCatalog& meshes,
+                        const scene::BlobStore& blobs) {
+    SceneTables tables;
+    if (const auto* root = scene.find_as<scene::Root>(scene::RootId)) {
+        tables.render_origin = root->render_origin;
+    }
+    const Indices textures = add_textures(tables, scene, blobs);
+    const Indices materials = add_materials(tables, scene, textures);
+    add_instances(tables, lowered, meshes, materials);
+    const double sky_luminance = add_environment(tables, scene, textures);
+    add_lights(tables, scene, lowered, meshes, sky_luminance);
+    return tables;
+}
+
+}  // namespace tessera::backend

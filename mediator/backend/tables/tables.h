@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "mediator/backend/tables/meshes.h"
+#include "mediator/shading/layout.h"
+
+namespace tessera::backend {
+
+// Everything that rays are shaded with, relative to the render origin and ordered by object id: a function of
+// the scene's content alone, the same for all back-ends. Made anew at each commit; vertices and texels stay
+// in their blobs.
+struct SceneTables {
+    std::vector<shading::Texture> textures;
+    std::vector<shading::Material> materials;  // 0 = the default grey, 1 = the placeholder's
+    std::vector<shading::Mesh> meshes;         // of the geometries that are placed
+    std::vector<shading::Instance> instances;  // as in Lowered::instances
+    std::vector<shading::LightSource>
+        lights;               // mesh lights by instance, placed lights by (id, path), the sky
+    std::vector<float> sums;  // cumulative; each ends at 1
+    shading::Scene scene{};   // all of it but the addresses of the tables
+    glm::dvec3 render_origin{0.0};
+
+    // What the records' addresses point into: of each texture, of the environment's map and of each mesh.
+    std::vector<scene::BlobPtr> texels;
+    scene::BlobPtr environment_texels;
+    struct Arrays {
+        scene::BlobPtr positions, triangles, normals, tangents, colors, tex_coords;
+    };
+    std::vector<Arrays> arrays;
+};
+
+// One light out of all is chosen in proportion to its power, a tenth uniformly, so that a wrong estimate
+// costs noise, never light. Addresses are the host's.
+SceneTables make_tables(const scene::Scene& scene, const Lowered& lowered, const MeshCatalog& meshes,
+                        const scene::BlobStore& blobs);
+
+// The scene on the host: addresses of the tables' own memory, valid while they are neither changed nor moved.
+shading::Scene on_host(const SceneTables& tables);
+
+// 256 linear values, for Scene::srgb.
+std::span<const float> srgb_values();
+
+// Where a blob lies for whoever reads the records, on a device for instance. Never asked for null.
+using BlobAddress = std::function<std::uint64_t(const scene::BlobPtr& blob)>;
+void set_addresses(SceneTables& tables, const BlobAddress& address_of);
+
+}  // namespace tessera::backend

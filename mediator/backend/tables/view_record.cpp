@@ -1,0 +1,83 @@
+#include "mediator/backend/tables/view_record.h"
+
+#include "mediator/shading/sample_values.h"
+
+namespace tessera::backend {
+
+namespace {
+
+using frame::Channel;
+
+// A record holds the view's own numbers.
+static_assert(shading::FilterBox == std::uint32_t(view::PixelFilterKind::Box) &&
+              shading::FilterGaussian == std::uint32_t(view::PixelFilterKind::Gaussian) &&
+              shading::FilterBlackmanHarris == std::uint32_t(view::PixelFilterKind::BlackmanHarris));
+static_assert(shading::RendererPathTracing == std::uint32_t(view::Renderer::PathTracing) &&
+              shading::RendererWhitted == std::uint32_t(view::Renderer::Whitted));
+static_assert(shading::ClassIndirect == std::uint32_t(view::PathClass::Indirect) &&
+              shading::ClassCaustics == std::uint32_t(view::PathClass::Caustics) &&
+              shading::ClassDiffuse == std::uint32_t(view::PathClass::Diffuse) &&
+              shading::ClassAll == std::uint32_t(view::PathClass::All) &&
+              shading::ClassNone == std::uint32_t(view::PathClass::None));
+static_assert(shading::RuleDemodulated == std::uint32_t(view::FeatureRule::Demodulated) &&
+              shading::RuleConnections == std::uint32_t(view::FeatureRule::Connections));
+
+constexpr bool is_number_of(std::uint32_t number, Channel channel) {
+    return number == static_cast<std::uint32_t>(channel);
+}
+static_assert(is_number_of(shading::ChannelRadiance, Channel::Radiance) &&
+              is_number_of(shading::ChannelLowVariance, Channel::LowVariance) &&
+              is_number_of(shading::ChannelHighVariance, Channel::HighVariance) &&
+              is_number_of(shading::ChannelAlbedo, Channel::Albedo) &&
+              is_number_of(shading::ChannelNormal, Channel::Normal) &&
+              is_number_of(shading::ChannelDepth, Channel::Depth) &&
+              is_number_of(shading::ChannelObjectIndex, Channel::ObjectIndex) &&
+              is_number_of(shading::ChannelAlpha, Channel::Alpha) &&
+              is_number_of(shading::ChannelRange, Channel::Range) &&
+              is_number_of(shading::ChannelShadingFeature, Channel::ShadingFeature) &&
+              is_number_of(shading::ChannelIrradiance, Channel::Irradiance) &&
+              is_number_of(shading::ChannelEvenHalf, Channel::EvenHalf) && frame::ChannelCount == 12);
+
+std::uint32_t kept(const view::View& view) {
+    const bool feature = view.channels.contains(Channel::ShadingFeature);
+    std::uint32_t keeps = 0;
+    if (view.path_class == view::PathClass::Diffuse || view.channels.contains(Channel::Irradiance) ||
+        (feature && view.feature_rule == view::FeatureRule::Demodulated)) {
+        keeps |= shading::KeepsDiffuse;
+    }
+    if (feature && view.feature_rule == view::FeatureRule::Connections) keeps |= shading::KeepsConnections;
+    if (view.channels.contains(Channel::Range)) keeps |= shading::KeepsRange;
+    return keeps;
+}
+
+}  // namespace
+
+shading::View make_view(const view::View& view, const glm::dvec3& render_origin) {
+    const view::CameraPose& camera = view.camera;
+    const glm::dmat4& m = camera.world_from_camera;
+    return {.seed = view.seed,
+            .eye = glm::vec3(glm::dvec3(m[3]) - render_origin),
+            .right = glm::vec3(m[0]),
+            .up = glm::vec3(m[1]),
+            .forward = -glm::vec3(m[2]),
+            .middle = {static_cast<float>(0.5 * (camera.left + camera.right)),
+                       static_cast<float>(0.5 * (camera.top + camera.bottom))},
+            .step = {static_cast<float>((camera.right - camera.left) / view.width),
+                     static_cast<float>((camera.bottom - camera.top) / view.height)},
+            .width = view.width,
+            .height = view.height,
+            .pixel_filter = static_cast<std::uint32_t>(view.pixel_filter.kind),
+            .filter_radius = view.pixel_filter.radius,
+            // Light scattered up to max_bounces + 1 times is counted, so 0 is direct light (as in Cycles).
+            .max_scatterings = view.max_bounces == view::UnlimitedBounces ? shading::UnlimitedScatterings
+                                                                          : view.max_bounces + 1,
+            .renderer = static_cast<std::uint32_t>(view.renderer),
+            .path_class = static_cast<std::uint32_t>(view.path_class),
+            .feature_rule = static_cast<std::uint32_t>(view.feature_rule),
+            .channels = view.channels.bits(),
+            .keeps = kept(view),
+            .transparent_background = view.transparent_background ? 1u : 0u,
+            .strategy = shading::StrategyBoth};
+}
+
+}  // namespace tessera::backend

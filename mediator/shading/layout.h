@@ -1,0 +1,122 @@
+#pragma once
+
+#include <cstddef>
+
+#include "mediator/shading/records.h"
+
+// C++ only: the records lie where a shader looks for them.
+namespace tessera::shading {
+
+static_assert(sizeof(FloatArray) == 8 && alignof(FloatArray) == 8);
+
+static_assert(sizeof(Texture) == 32);
+static_assert(offsetof(Texture, texels) == 0);
+static_assert(offsetof(Texture, width) == 8);
+static_assert(offsetof(Texture, height) == 12);
+static_assert(offsetof(Texture, format) == 16);
+static_assert(offsetof(Texture, wrap_s) == 20);
+static_assert(offsetof(Texture, wrap_t) == 24);
+static_assert(offsetof(Texture, texture_filter) == 28);
+
+static_assert(sizeof(TextureUse) == 28);
+static_assert(offsetof(TextureUse, texture) == 0);
+static_assert(offsetof(TextureUse, row_u) == 4);
+static_assert(offsetof(TextureUse, row_v) == 12);
+static_assert(offsetof(TextureUse, offset) == 20);
+
+static_assert(sizeof(Material) == 176);
+static_assert(offsetof(Material, base_color) == 0);
+static_assert(offsetof(Material, emission) == 16);
+static_assert(offsetof(Material, metallic) == 28);
+static_assert(offsetof(Material, roughness) == 32);
+static_assert(offsetof(Material, normal_scale) == 36);
+static_assert(offsetof(Material, index_of_refraction) == 40);
+static_assert(offsetof(Material, alpha_cutoff) == 44);
+static_assert(offsetof(Material, transmission) == 48);
+static_assert(offsetof(Material, base_color_texture) == 52);
+static_assert(offsetof(Material, metallic_roughness_texture) == 80);
+static_assert(offsetof(Material, normal_texture) == 108);
+static_assert(offsetof(Material, emission_texture) == 136);
+static_assert(offsetof(Material, alpha_mode) == 164);
+static_assert(offsetof(Material, double_sided) == 168);
+static_assert(offsetof(Material, unlit) == 172);
+
+static_assert(sizeof(Mesh) == 56);
+static_assert(offsetof(Mesh, positions) == 0);
+static_assert(offsetof(Mesh, triangles) == 8);
+static_assert(offsetof(Mesh, normals) == 16);
+static_assert(offsetof(Mesh, tangents) == 24);
+static_assert(offsetof(Mesh, colors) == 32);
+static_assert(offsetof(Mesh, tex_coords) == 40);
+static_assert(offsetof(Mesh, arrays) == 48);
+static_assert(offsetof(Mesh, triangle_count) == 52);
+
+static_assert(sizeof(Instance) == 104);
+static_assert(offsetof(Instance, mesh) == 0);
+static_assert(offsetof(Instance, material) == 4);
+static_assert(offsetof(Instance, object) == 8);
+static_assert(offsetof(Instance, light) == 12);
+static_assert(offsetof(Instance, linear) == 16);
+static_assert(offsetof(Instance, translation) == 52);
+static_assert(offsetof(Instance, normals) == 64);
+static_assert(offsetof(Instance, alpha_tested) == 100);
+
+static_assert(sizeof(LightSource) == 64);
+static_assert(offsetof(LightSource, kind) == 0);
+static_assert(offsetof(LightSource, probability) == 4);
+static_assert(offsetof(LightSource, intensity) == 8);
+static_assert(offsetof(LightSource, position) == 20);
+static_assert(offsetof(LightSource, direction) == 32);
+static_assert(offsetof(LightSource, cos_inner) == 44);
+static_assert(offsetof(LightSource, cos_outer) == 48);
+static_assert(offsetof(LightSource, instance) == 52);
+static_assert(offsetof(LightSource, area_sums) == 56);
+static_assert(offsetof(LightSource, root_area) == 60);
+
+static_assert(sizeof(Environment) == 64);
+static_assert(offsetof(Environment, map) == 0);
+static_assert(offsetof(Environment, color) == 32);
+static_assert(offsetof(Environment, strength) == 44);
+static_assert(offsetof(Environment, rotation) == 48);
+static_assert(offsetof(Environment, row_sums) == 52);
+static_assert(offsetof(Environment, column_sums) == 56);
+static_assert(offsetof(Environment, emits) == 60);
+
+static_assert(sizeof(Scene) == 144);
+static_assert(offsetof(Scene, textures) == 0);
+static_assert(offsetof(Scene, materials) == 8);
+static_assert(offsetof(Scene, meshes) == 16);
+static_assert(offsetof(Scene, instances) == 24);
+static_assert(offsetof(Scene, lights) == 32);
+static_assert(offsetof(Scene, sums) == 40);
+static_assert(offsetof(Scene, srgb) == 48);
+static_assert(offsetof(Scene, environment) == 56);
+static_assert(offsetof(Scene, instance_count) == 120);
+static_assert(offsetof(Scene, light_count) == 124);
+static_assert(offsetof(Scene, light_sums) == 128);
+static_assert(offsetof(Scene, environment_light) == 132);
+static_assert(offsetof(Scene, features) == 136);
+static_assert(offsetof(Scene, unused) == 140);
+
+static_assert(sizeof(View) == 120);
+static_assert(offsetof(View, seed) == 0);
+static_assert(offsetof(View, eye) == 8);
+static_assert(offsetof(View, right) == 20);
+static_assert(offsetof(View, up) == 32);
+static_assert(offsetof(View, forward) == 44);
+static_assert(offsetof(View, middle) == 56);
+static_assert(offsetof(View, step) == 64);
+static_assert(offsetof(View, width) == 72);
+static_assert(offsetof(View, height) == 76);
+static_assert(offsetof(View, pixel_filter) == 80);
+static_assert(offsetof(View, filter_radius) == 84);
+static_assert(offsetof(View, max_scatterings) == 88);
+static_assert(offsetof(View, renderer) == 92);
+static_assert(offsetof(View, path_class) == 96);
+static_assert(offsetof(View, feature_rule) == 100);
+static_assert(offsetof(View, channels) == 104);
+static_assert(offsetof(View, keeps) == 108);
+static_assert(offsetof(View, transparent_background) == 112);
+static_assert(offsetof(View, strategy) == 116);
+
+}  // namespace tessera::shading

@@ -1,0 +1,63 @@
+#ifndef TESSERA_MEDIATOR_SHADING_MATERIALS_H
+#define TESSERA_MEDIATOR_SHADING_MATERIALS_H
+
+#include "mediator/shading/sobol.h"
+#include "mediator/shading/textures.h"
+
+// What a material is like at a point of an instance's triangle. `b`: barycentric weights of the second and
+// third vertex.
+SHADING_BEGIN
+
+inline bool emits(IN(Material) material) {
+    return material.emission.x > 0.0f || material.emission.y > 0.0f || material.emission.z > 0.0f;
+}
+
+inline vec2 tex_coord_at(IN(Mesh) mesh, uvec3 corners, vec2 b) {
+    if ((mesh.arrays & MeshTexCoords) == 0u) return vec2(0.0f);
+    return mesh.tex_coords.items[corners.x] * (1.0f - b.x - b.y) + mesh.tex_coords.items[corners.y] * b.x +
+           mesh.tex_coords.items[corners.z] * b.y;
+}
+
+inline vec4 base_color_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uvec3 corners, vec2 b) {
+    vec4 color = material.base_color;
+    if (material.base_color_texture.texture >= 0) {
+        color *= lookup_use(scene, material.base_color_texture, tex_coord_at(mesh, corners, b));
+    }
+    if ((mesh.arrays & MeshColors) != 0u) {
+        color *= mesh.colors.items[corners.x] * (1.0f - b.x - b.y) + mesh.colors.items[corners.y] * b.x +
+                 mesh.colors.items[corners.z] * b.y;
+    }
+    return color;
+}
+
+// 1 for opaque materials.
+inline float alpha_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uvec3 corners, vec2 b) {
+    if (material.alpha_mode == AlphaOpaque) return 1.0f;
+    return base_color_at(scene, material, mesh, corners, b).w;
+}
+
+inline vec3 emission_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uvec3 corners, vec2 b) {
+    if (material.emission_texture.texture < 0) return material.emission;
+    return material.emission *
+           vec3(lookup_use(scene, material.emission_texture, tex_coord_at(mesh, corners, b)));
+}
+
+inline bool alpha_stops(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uint instance, uint triangle,
+                        vec2 b, uint seed) {
+    const float alpha = alpha_at(scene, material, mesh, mesh.triangles.items[triangle], b);
+    if (material.alpha_mode == AlphaOpaque) return true;
+    if (material.alpha_mode == AlphaMask) return alpha >= material.alpha_cutoff;
+    return unit_float(hash_combine(hash_combine(seed, instance), triangle)) < alpha;
+}
+
+// Whether a surface with alpha stops a ray. Mask: by the cutoff. Blend: by a hash of the ray's seed and the
+// triangle, so that the answer does not depend on the order in which triangles are visited; on average a
+// share alpha of rays stops.
+inline bool stops_at(IN(Scene) scene, uint instance, uint triangle, vec2 b, uint seed) {
+    return alpha_stops(scene, scene.materials.items[scene.instances.items[instance].material],
+                       scene.meshes.items[scene.instances.items[instance].mesh], instance, triangle, b, seed);
+}
+
+SHADING_END
+
+#endif

@@ -1,0 +1,179 @@
+#ifndef TESSERA_MEDIATOR_SHADING_RECORDS_H
+#define TESSERA_MEDIATOR_SHADING_RECORDS_H
+
+#include "mediator/shading/language.h"
+
+// What a renderer looks up, as it lies in memory: the same bytes for C++ and GLSL (scalar layout; asserted in
+// layout.h). Places are relative to the render origin. Tables are ordered by object id: a function of the
+// scene's content alone. Arrays are reached by address: a host pointer on the CPU, a device address on a GPU;
+// a record says by a count or a flag whether an array is there.
+SHADING_BEGIN
+
+ARRAY_OF(float, FloatArray, 4);
+ARRAY_OF(uint, UintArray, 4);
+ARRAY_OF(vec2, Vec2Array, 4);
+ARRAY_OF(vec3, Vec3Array, 4);
+ARRAY_OF(vec4, Vec4Array, 4);
+ARRAY_OF(uvec3, UVec3Array, 4);
+
+// Values as in scene/objects.h.
+inline constexpr uint TexelRgba8 = 0u, TexelRgba8Srgb = 1u, TexelRgbFloat = 2u;
+inline constexpr uint WrapRepeat = 0u, WrapMirror = 1u, WrapClamp = 2u;
+inline constexpr uint TextureLinear = 0u, TextureNearest = 1u;
+inline constexpr uint AlphaOpaque = 0u, AlphaMask = 1u, AlphaBlend = 2u;
+
+// Rows from the top, without gaps. Rgba8: red in the lowest byte; RgbFloat: three floats a texel.
+struct Texture {
+    UintArray texels;
+    uint width;
+    uint height;
+    uint format;
+    uint wrap_s;
+    uint wrap_t;
+    uint texture_filter;
+};
+
+// A use of a texture, with its transform: u' = dot(row_u, uv) + offset.x, and v' likewise.
+struct TextureUse {
+    int texture;  // index; -1 = none
+    vec2 row_u;
+    vec2 row_v;
+    vec2 offset;
+};
+
+// As scene::Material; every value is factor x texture.
+struct Material {
+    vec4 base_color;
+    vec3 emission;
+    float metallic;
+    float roughness;
+    float normal_scale;
+    float index_of_refraction;
+    float alpha_cutoff;
+    float transmission;
+    TextureUse base_color_texture;
+    TextureUse metallic_roughness_texture;
+    TextureUse normal_texture;
+    TextureUse emission_texture;
+    uint alpha_mode;
+    uint double_sided;  // 1 or 0, as all that could be a bool
+    uint unlit;
+};
+
+// Which of a mesh's arrays are there besides positions and triangles.
+inline constexpr uint MeshNormals = 1u, MeshTangents = 2u, MeshColors = 4u, MeshTexCoords = 8u;
+
+struct Mesh {
+    Vec3Array positions;
+    UVec3Array triangles;
+    Vec3Array normals;
+    Vec4Array tangents;  // w = handedness
+    Vec4Array colors;
+    Vec2Array tex_coords;
+    uint arrays;
+    uint triangle_count;
+};
+
+struct Instance {
+    uint mesh;      // index
+    uint material;  // index
+    uint object;    // id of the geometry
+    int light;      // index, if it emits and can be hit; else -1
+    mat3 linear;    // world from object
+    vec3 translation;
+    mat3 normals;       // cofactors of `linear` times a power of two: they turn normals, to their own side
+    uint alpha_tested;  // whether a hit has to be asked (stops_at)
+};
+
+inline constexpr uint LightPoint = 0u, LightSpot = 1u, LightDirectional = 2u, LightMesh = 3u,
+                      LightEnvironment = 4u;
+
+struct LightSource {
+    uint kind;
+    float probability;  // of being chosen
+    vec3 intensity;
+    vec3 position;
+    vec3 direction;  // in which it shines
+    float cos_inner;
+    float cos_outer;
+    uint instance;    // of a mesh light:
+    uint area_sums;   // index of its triangles' cumulative areas in the world, normalised to end at 1
+    float root_area;  // square root of its area in the world; the area itself may leave the range of floats
+};
+
+// Light from infinitely far: color + strength x map. A map of width 0 is none.
+struct Environment {
+    Texture map;
+    vec3 color;
+    float strength;
+    float rotation;
+    uint row_sums;     // index of the rows' cumulative weights
+    uint column_sums;  // index of the cumulative weights of the texels of each row
+    uint emits;
+};
+
+// What occurs in a scene; what does not can be left out of a kernel.
+inline constexpr uint FeatureTextures = 1u, FeatureNormalMaps = 2u, FeatureAlpha = 4u, FeatureSpecular = 8u,
+                      FeaturePlacedLights = 16u, FeatureMeshLights = 32u, FeatureEnvironment = 64u,
+                      FeatureEnvironmentMap = 128u;
+
+ARRAY_OF(Texture, TextureArray, 8);
+ARRAY_OF(Material, MaterialArray, 4);
+ARRAY_OF(Mesh, MeshArray, 8);
+ARRAY_OF(Instance, InstanceArray, 4);
+ARRAY_OF(LightSource, LightSourceArray, 4);
+
+struct Scene {
+    TextureArray textures;
+    MaterialArray materials;
+    MeshArray meshes;
+    InstanceArray instances;
+    LightSourceArray lights;
+    FloatArray sums;  // all cumulative sums: whoever has some knows the index of the first
+    FloatArray srgb;  // linear value of each byte (IEC 61966-2-1)
+    Environment environment;
+    uint instance_count;
+    uint light_count;
+    uint light_sums;        // index of the lights' cumulative probabilities
+    int environment_light;  // index of the light source that stands for the environment, or -1
+    uint features;
+    uint unused;  // keeps the size a multiple of an address's
+};
+
+// Values as in view/view.h.
+inline constexpr uint FilterBox = 0u, FilterGaussian = 1u, FilterBlackmanHarris = 2u;
+inline constexpr uint RendererPathTracing = 0u, RendererWhitted = 1u;
+inline constexpr uint ClassIndirect = 0u, ClassCaustics = 1u, ClassDiffuse = 2u, ClassAll = 3u,
+                      ClassNone = 4u;
+inline constexpr uint RuleDemodulated = 0u, RuleConnections = 1u;
+// How light is found; the estimates agree in expectation. Only tests choose other than both.
+inline constexpr uint StrategyBoth = 0u, StrategyLightsOnly = 1u, StrategyBsdfOnly = 2u;
+// What a sample has to keep besides its light.
+inline constexpr uint KeepsDiffuse = 1u, KeepsConnections = 2u, KeepsRange = 4u;
+inline constexpr uint UnlimitedScatterings = 0xffffffffu;
+
+struct View {
+    uint64_t seed;
+    vec3 eye;
+    vec3 right;
+    vec3 up;
+    vec3 forward;
+    vec2 middle;  // of the picture, at distance 1 in front of the eye
+    vec2 step;    // from pixel to pixel there; y down the picture
+    uint width;
+    uint height;
+    uint pixel_filter;
+    float filter_radius;
+    uint max_scatterings;
+    uint renderer;
+    uint path_class;
+    uint feature_rule;
+    uint channels;  // bits as in frame/channels.h
+    uint keeps;
+    uint transparent_background;
+    uint strategy;
+};
+
+SHADING_END
+
+#endif

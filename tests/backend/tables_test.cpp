@@ -1,0 +1,204 @@
+// What a renderer looks up: made of a scene, the same for all back-ends.
+#include "mediator/backend/tables/tables.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "tests/backend/scene_builder.h"
+
+namespace tessera::backend {
+namespace {
+
+using scene::Create;
+using test::moved;
+using test::SceneBuilder;
+using test::transform;
+
+constexpr ObjectId Corner{2}, Paint{3}, Place{4}, Picture{5}, Sun{6}, Sky{7}, Bulb{8}, Glow{9}, Panel{10};
+
+// A scene that is built step by step, and what is made of it.
+struct Stage {
+    std::shared_ptr<scene::BlobStore> blobs = std::make_shared<scene::BlobStore>();
+    MeshCatalog meshes{blobs};
+    MeshCatalog::Result steps;
+    SceneBuilder builder;
+    ShadowScene shadow;
+
+    template <class T, std::size_t N>
+    scene::BlobRef blob(const std::array<T, N>& values) {
+        return scene::reference(*blobs->insert(std::as_bytes(std::span(values))));
+    }
+    // Two triangles of the areas 1/2 and 3/2 times the size squared, facing +z.
+    scene::Geometry corner(ObjectId material, float size = 1.0f) {
+        return {.material = material,
+                .indices = blob(std::array{0u, 1u, 2u, 0u, 2u, 3u}),
+                .positions = blob(
+                    std::array<glm::vec3, 4>{{{0, 0, 0}, {size, 0, 0}, {size, size, 0}, {0, 3 * size, 0}}})};
+    }
+    SceneTables make(std::vector<scene::Entry> entries) {
+        EXPECT_TRUE(shadow.apply(builder.edit(std::move(entries))));
+        steps = meshes.update(shadow.scene(), shadow.take_delta());
+        return make_tables(shadow.scene(), shadow.lowered(), meshes, *blobs);
+    }
+};
+
+TEST(Tables, PlaceWhatTheGraphPlaces) {
+    Stage stage;
+    const SceneTables tables = stage.make(
+        {Create{scene::RootId, scene::Root{.children = {Corner, Place}, .render_origin = {1000.0, 0.0, 0.0}}},
+         Create{Corner, stage.corner(Paint)},
+         Create{Place, transform(moved(1001.0, 2.0, 3.0), {Corner, Panel})},
+         Create{Paint, scene::Material{.roughness = 0.25f, .double_sided = true}},
+         Create{Panel, stage.corner(ObjectId{99})}});
+    ASSERT_EQ(tables.instances.size(), 3u);
+    ASSERT_EQ(tables.meshes.size(), 2u) << "shared by both instances";
+    ASSERT_EQ(tables.materials.size(), 3u) << "the default, the placeholder's and this";
+    EXPECT_EQ(tables.instances[0].mesh, tables.instances[1].mesh);
+    EXPECT_EQ(tables.instances[0].translation, glm::vec3(-1000.0f, 0.0f, 0.0f));
+    EXPECT_EQ(tables.instances[1].translation, glm::vec3(1.0f, 2.0f, 3.0f));
+    EXPECT_EQ(tables.instances[1].object, Corner.value);
+    EXPECT_EQ(tables.materials[tables.instances[1].material].roughness, 0.25f);
+    EXPECT_EQ(tables.materials[tables.instances[1].material].double_sided, 1u);
+    EXPECT_EQ(tables.instances[2].material, 0u) << "the default grey";
+    EXPECT_EQ(tables.scene.features, 0u);
+    const shading::Scene scene = on_host(tables);
+    EXPECT_EQ(scene.instance_count, 3u);
+    const shading::Mesh& mesh = scene.meshes.items[scene.instances.items[2].mesh];
+    EXPECT_EQ(mesh.triangle_count, 2u);
+    EXPECT_EQ(mesh.arrays, 0u);
+    EXPECT_EQ(mesh.positions.items[mesh.triangles.items[1].z], glm::vec3(0.0f, 3.0f, 0.0f));
+}
+
+// Turned normals keep their direction and their side at any scale, and where a mirror turns space inside out.
+TEST(Tables, NormalsSurviveTinyHugeAndMirroredInstances) {
+    for (const double scale : {1.0, 1e-25, 1e25, -1e-3}) {
+        Stage stage;
+        const glm::dmat4 matrix = glm::scale(glm::dmat4(1.0), glm::dvec3(scale, 2.0 * scale, scale));
+        const SceneTables tables =
+            stage.make({Create{scene::RootId, scene::Root{.children = {Place}}},
+                        Create{Place, transform(matrix, {Corner})}, Create{Corner, stage.corner(Paint)}});
+        const glm::vec3 normal = tables.instances.at(0).normals * glm::vec3(0.0f, 0.0f, 1.0f);
+        const float length = glm::length(normal);
+        EXPECT_TRUE(length > 1e-3f && length < 1e3f) << scale;
+        EXPECT_EQ(normal, glm::vec3(0.0f, 0.0f, scale < 0.0 ? -length : length)) << scale;
+    }
+}
+
+TEST(Tables, LightsAreChosenByPowerAndATenthUniformly) {
+    Stage stage;
+    const scene::Material glow{.emission = glm::vec3(2.0f)};
+    const SceneTables tables =
+        stage.make({Create{scene::RootId, scene::Root{.children = {Corner, Bulb, Panel}, .background = Sky}},
+                    Create{Corner, stage.corner(Glow, 2.0f)}, Create{Panel, stage.corner(Paint)},
+                    Create{Paint, scene::Material{}}, Create{Glow, glow},
+                    Create{Bulb, scene::Light{.intensity = glm::vec3(3.0f)}},
+                    Create{Sky, scene::Background{.color = glm::vec3(0.5f)}}});
+    ASSERT_EQ(tables.lights.size(), 3u);
+    const shading::LightSource &mesh = tables.lights[0], &bulb = tables.lights[1], &sky = tables.lights[2];
+    EXPECT_EQ(mesh.kind, shading::LightMesh);
+    EXPECT_EQ(bulb.kind, shading::LightPoint);
+    EXPECT_EQ(sky.kind, shading::LightEnvironment);
+    EXPECT_EQ(tables.instances[0].light, 0);
+    EXPECT_EQ(tables.instances[1].light, -1);
+    EXPECT_EQ(tables.scene.environment_light, 2);
+    EXPECT_FLOAT_EQ(mesh.root_area, std::sqrt(8.0f));
+    EXPECT_FLOAT_EQ(tables.sums[mesh.area_sums], 0.25f);
+    EXPECT_FLOAT_EQ(tables.sums[mesh.area_sums + 1], 1.0f);
+    // The scene reaches from (0, 0) to (2, 6).
+    const double radius2 = (4.0 + 36.0) / 4.0;
+    const std::array powers{8.0 * 2.0 * M_PI, 4.0 * M_PI * 3.0, 4.0 * M_PI * M_PI * radius2 * 0.5};
+    const double total = std::accumulate(powers.begin(), powers.end(), 0.0);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double expected = 0.9 * powers[i] / total + 0.1 / 3.0;
+        EXPECT_NEAR(tables.lights[i].probability, expected, 1e-6) << i;
+        sum += expected;
+        EXPECT_NEAR(tables.sums[tables.scene.light_sums + i], sum, 1e-6) << i;
+    }
+    EXPECT_EQ(tables.scene.features,
+              shading::FeatureMeshLights | shading::FeaturePlacedLights | shading::FeatureEnvironment);
+}
+
+TEST(Tables, AFlattenedLampIsNoLightAndABlackSkyNeither) {
+    Stage stage;
+    const glm::dmat4 flat = glm::scale(glm::dmat4(1.0), glm::dvec3(0.0));
+    const SceneTables tables = stage.make(
+        {Create{scene::RootId, scene::Root{.children = {Place}, .background = Sky}},
+         Create{Place, transform(flat, {Corner, Sun})}, Create{Corner, stage.corner(Glow)},
+         Create{Glow, scene::Material{.emission = glm::vec3(2.0f)}},
+         Create{Sun, scene::Light{.kind = scene::LightKind::Directional}}, Create{Sky, scene::Background{}}});
+    EXPECT_TRUE(tables.lights.empty());
+    EXPECT_EQ(tables.scene.light_count, 0u);
+    EXPECT_EQ(tables.scene.environment_light, -1);
+    EXPECT_EQ(tables.instances.at(0).light, -1);
+    EXPECT_EQ(tables.scene.environment.emits, 0u);
+}
+
+std::vector<scene::Entry> sky_with_a_map(Stage& stage) {
+    const std::array<glm::vec3, 2> texels{{{1, 1, 1}, {3, 3, 3}}};
+    return {Create{scene::RootId, scene::Root{.children = {Corner}, .background = Sky}},
+            Create{Corner, stage.corner(Paint)},
+            Create{Paint, scene::Material{.base_color_texture = {.texture = Picture}}},
+            Create{Picture, scene::Texture{.width = 2,
+                                           .height = 1,
+                                           .format = scene::TexelFormat::RgbFloat,
+                                           .wrap_t = scene::Wrap::Mirror,
+                                           .texels = stage.blob(texels)}},
+            Create{Sky, scene::Background{.color = glm::vec3(1.0f), .environment = Picture}}};
+}
+
+// Half of a texel's weight is its own, half its neighbourhood's.
+TEST(Tables, ASkyIsWeighedByItsTexelsAndTheirNeighbours) {
+    Stage stage;
+    const SceneTables tables = stage.make(sky_with_a_map(stage));
+    const shading::Environment& sky = tables.scene.environment;
+    EXPECT_EQ(sky.map.width, 2u);
+    EXPECT_EQ(sky.map.wrap_s, shading::WrapRepeat);
+    EXPECT_EQ(sky.map.wrap_t, shading::WrapClamp) << "whatever the texture says";
+    EXPECT_EQ(tables.textures.at(0).wrap_t, shading::WrapMirror);
+    const double left = 0.5 * (2.0 + (2.0 + 2 * 4.0) / 3), right = 0.5 * (4.0 + (4.0 + 2 * 2.0) / 3);
+    EXPECT_NEAR(tables.sums[sky.column_sums], left / (left + right), 1e-6);
+    EXPECT_EQ(tables.sums[sky.column_sums + 1], 1.0f);
+    EXPECT_EQ(tables.sums[sky.row_sums], 1.0f);
+    EXPECT_EQ(tables.scene.features,
+              shading::FeatureTextures | shading::FeatureEnvironment | shading::FeatureEnvironmentMap);
+}
+
+TEST(Tables, ATextureThatIsNotWholeIsNotThere) {
+    Stage stage;
+    auto entries = sky_with_a_map(stage);
+    std::get<scene::Texture>(std::get<Create>(entries[3]).object).height = 2;
+    const SceneTables tables = stage.make(std::move(entries));
+    EXPECT_TRUE(tables.textures.empty());
+    EXPECT_EQ(tables.materials.at(2).base_color_texture.texture, -1);
+    EXPECT_EQ(tables.scene.environment.map.width, 0u);
+    EXPECT_EQ(tables.scene.environment.emits, 1u) << "by its colour";
+}
+
+// On a device every array is somewhere else.
+TEST(Tables, AddressesAreTheReaders) {
+    Stage stage;
+    SceneTables tables = stage.make(sky_with_a_map(stage));
+    const auto at = [](const scene::BlobPtr& blob) {
+        return 0x1000 + 8 * std::uint64_t(blob->hash().bytes[0]);
+    };
+    std::set<scene::BlobPtr> asked;
+    set_addresses(tables, [&](const scene::BlobPtr& blob) {
+        asked.insert(blob);
+        return at(blob);
+    });
+    EXPECT_EQ(asked.size(), 3u) << "positions, triangles, texels";
+    const auto address = [](const auto* items) { return reinterpret_cast<std::uint64_t>(items); };
+    EXPECT_EQ(address(tables.meshes.at(0).positions.items), at(tables.arrays.at(0).positions));
+    EXPECT_EQ(address(tables.meshes.at(0).triangles.items), at(tables.arrays.at(0).triangles));
+    EXPECT_EQ(address(tables.meshes.at(0).normals.items), 0u);
+    EXPECT_EQ(address(tables.textures.at(0).texels.items), at(tables.texels.at(0)));
+    EXPECT_EQ(address(tables.scene.environment.map.texels.items), at(tables.texels.at(0)));
+}
+
+}  // namespace
+}  // namespace tessera::backend
