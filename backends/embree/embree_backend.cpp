@@ -5,10 +5,10 @@
 #include <thread>
 
 #include "backends/embree/path_tracer.h"
-#include "backends/embree/sample_values.h"
 #include "backends/embree/world.h"
 #include "mediator/frame/block_stack.h"
 #include "mediator/frame/merge.h"
+#include "mediator/shading/sample_values.h"
 
 namespace tessera::embree {
 
@@ -43,12 +43,11 @@ class EmbreeBackend final : public Backend {
         const std::shared_lock lock(mutex_);
         if (unit.version != world_.version()) return {};
         const PathTracer tracer(world_.tables(), world_.scene(), view);
-        SampleValues values(view);
         frame::BlockStack finished;
         RenderResult result{.status = RenderStatus::Done};
         for (std::uint64_t sample = unit.block.first; sample < unit.block.end(); ++sample) {
             frame::FilmTile tile = finished.recycled(unit.tile, {sample, 0}, view.channels);
-            if (!fill(tile, tracer, values, result.rays, stop)) {
+            if (!fill(tile, tracer, result.rays, stop)) {
                 result.status = RenderStatus::Stopped;  // the sample in hand is not whole: dropped
                 break;
             }
@@ -65,7 +64,7 @@ class EmbreeBackend final : public Backend {
         std::vector<std::string> story;
         std::uint64_t rays = 0;
         const PathSample found = tracer.trace(x, y, sample, rays, &story);
-        const glm::vec3 radiance = found.radiance();
+        const glm::vec3 radiance = shading::radiance_of(found);
         story.push_back("radiance (" + std::to_string(radiance.x) + ", " + std::to_string(radiance.y) + ", " +
                         std::to_string(radiance.z) + ") from " + std::to_string(rays) + " rays");
         return story;
@@ -86,15 +85,17 @@ class EmbreeBackend final : public Backend {
         std::unique_lock<std::shared_mutex> lock_;
     };
 
-    static bool fill(frame::FilmTile& tile, const PathTracer& tracer, SampleValues& values,
-                     std::uint64_t& rays, const std::stop_token& stop) {
+    static bool fill(frame::FilmTile& tile, const PathTracer& tracer, std::uint64_t& rays,
+                     const std::stop_token& stop) {
         std::size_t pixel = 0;
         for (std::int32_t y = tile.rect.y; y < tile.rect.bottom(); ++y) {
             if (stop.stop_requested()) return false;
             for (std::int32_t x = tile.rect.x; x < tile.rect.right(); ++x, ++pixel) {
                 const PathSample sample = tracer.trace(static_cast<std::uint32_t>(x),
                                                        static_cast<std::uint32_t>(y), tile.block.first, rays);
-                frame::put_sample(tile, pixel, values.of(sample, tile.block.first));
+                const shading::SampleValues values = shading::sample_values(
+                    tracer.view(), sample, static_cast<std::uint32_t>(tile.block.first));
+                frame::put_sample(tile, pixel, {values.items, values.count});
             }
         }
         return true;

@@ -7,21 +7,27 @@
 namespace tessera::embree {
 
 World::World(RTCDevice device, std::shared_ptr<scene::BlobStore> blobs)
-    : device_(device), blobs_(std::move(blobs)), meshes_(device, blobs_), top_(rtcNewScene(device)) {
+    : device_(device),
+      blobs_(std::move(blobs)),
+      meshes_(blobs_),
+      mesh_scenes_(device),
+      top_(rtcNewScene(device)) {
     rtcCommitScene(top_.get());
 }
 
 Expected<backend::EditReport> World::commit() {
     backend::SceneDelta delta = shadow_.take_delta();
-    const MeshStore::Result meshes = meshes_.update(shadow_.scene(), delta);
-    tables_ = make_tables(shadow_.scene(), shadow_.lowered(), meshes_, *blobs_);
+    const backend::MeshCatalog::Result meshes = meshes_.update(shadow_.scene(), delta);
+    mesh_scenes_.update(meshes_, meshes);
+    tables_ = backend::make_tables(shadow_.scene(), shadow_.lowered(), meshes_, *blobs_);
     mark_alpha_tested();
     backend::EditReport edit = report(delta, meshes);
-    if (delta.everything || delta.instances_changed || delta.render_origin_changed || meshes.rebuilt > 0) {
+    if (delta.everything || delta.instances_changed || delta.render_origin_changed ||
+        meshes.count(backend::MeshStep::Rebuild) > 0) {
         rebuild_top();
     } else {
         edit.retransformed = retransform(delta);
-        if (edit.retransformed > 0 || meshes.refitted > 0) rtcCommitScene(top_.get());
+        if (edit.retransformed > 0 || edit.refitted > 0) rtcCommitScene(top_.get());
     }
     check(device_, "building the top level");
     version_ = shadow_.scene().version();
@@ -29,7 +35,7 @@ Expected<backend::EditReport> World::commit() {
 }
 
 void World::set_transform(std::uint32_t instance) {
-    const InstanceData& data = tables_.instances[instance];
+    const shading::Instance& data = tables_.instances[instance];
     const std::array<float, 12> columns{data.linear[0].x,   data.linear[0].y,   data.linear[0].z,
                                         data.linear[1].x,   data.linear[1].y,   data.linear[1].z,
                                         data.linear[2].x,   data.linear[2].y,   data.linear[2].z,
@@ -44,7 +50,8 @@ void World::rebuild_top() {
     rtcSetSceneFlags(top_.get(), RTC_SCENE_FLAG_ROBUST);
     for (std::uint32_t i = 0; i < tables_.instances.size(); ++i) {
         const GeometryHandle geometry(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE));
-        rtcSetGeometryInstancedScene(geometry.get(), tables_.instances[i].mesh->scene.get());
+        rtcSetGeometryInstancedScene(geometry.get(),
+                                     mesh_scenes_.find(ObjectId{tables_.instances[i].object}));
         rtcSetGeometryTimeStepCount(geometry.get(), 1);
         rtcAttachGeometryByID(top_.get(), geometry.get(), i);
         set_transform(i);
@@ -68,10 +75,9 @@ std::uint32_t World::retransform(const backend::SceneDelta& delta) {
 }
 
 void World::mark_alpha_tested() {
-    for (const InstanceData& instance : tables_.instances) {
-        const MaterialData& material = tables_.materials[instance.material];
-        const bool tested = material.alpha_mode != scene::AlphaMode::Opaque;
-        meshes_.set_alpha_tested(ObjectId{instance.object}, tested ? AlphaTest::On : AlphaTest::Off);
+    for (const shading::Instance& instance : tables_.instances) {
+        mesh_scenes_.set_alpha_tested(ObjectId{instance.object},
+                                      instance.alpha_tested != 0 ? AlphaTest::On : AlphaTest::Off);
     }
 }
 
@@ -94,20 +100,21 @@ std::vector<std::string> World::material_problems(const backend::SceneDelta& del
     return problems;
 }
 
-backend::EditReport World::report(const backend::SceneDelta& delta, const MeshStore::Result& meshes) {
+backend::EditReport World::report(const backend::SceneDelta& delta,
+                                  const backend::MeshCatalog::Result& meshes) {
     backend::EditReport edit{.entries = delta.entries,
                              .relevant = delta.relevant,
-                             .rebuilt = meshes.rebuilt,
-                             .refitted = meshes.refitted,
+                             .rebuilt = meshes.count(backend::MeshStep::Rebuild),
+                             .refitted = meshes.count(backend::MeshStep::Refit),
                              .instances = tables_.instances.size(),
-                             .lights = tables_.lights.lights.size(),
+                             .lights = tables_.lights.size(),
                              .ignored_kinds = delta.ignored_kinds,
                              .problems = meshes.problems};
     const std::vector<std::string> of_materials = material_problems(delta);
     edit.problems.insert(edit.problems.end(), of_materials.begin(), of_materials.end());
     for (const auto& [id, mesh] : meshes_.all()) {
-        edit.triangles += mesh->triangles.size();
-        edit.degenerate_triangles += mesh->degenerate_triangles;
+        edit.triangles += backend::elements<glm::uvec3>(mesh.triangles).size();
+        edit.degenerate_triangles += mesh.degenerate_triangles;
     }
     return edit;
 }

@@ -3,9 +3,9 @@
 #include <memory>
 #include <set>
 
-#include "backends/embree/mesh.h"
-#include "backends/embree/scene_tables.h"
+#include "backends/embree/meshes.h"
 #include "mediator/backend/backend.h"
+#include "mediator/backend/tables/tables.h"
 
 namespace tessera::embree {
 
@@ -22,7 +22,7 @@ class World {
     Expected<backend::EditReport> commit();
 
     Version version() const { return version_; }
-    const SceneTables& tables() const { return tables_; }
+    const backend::SceneTables& tables() const { return tables_; }
     RTCScene scene() const { return top_.get(); }
 
   private:
@@ -31,14 +31,15 @@ class World {
     void set_transform(std::uint32_t instance);
     void mark_alpha_tested();
     std::vector<std::string> material_problems(const backend::SceneDelta& delta);
-    backend::EditReport report(const backend::SceneDelta& delta, const MeshStore::Result& meshes);
+    backend::EditReport report(const backend::SceneDelta& delta, const backend::MeshCatalog::Result& meshes);
 
     RTCDevice device_;
     std::shared_ptr<scene::BlobStore> blobs_;
     backend::ShadowScene shadow_;
     Version version_;
-    MeshStore meshes_;
-    SceneTables tables_;
+    backend::MeshCatalog meshes_;
+    MeshScenes mesh_scenes_;
+    backend::SceneTables tables_;
     SceneHandle top_;
     std::set<ObjectId> told_;  // materials whose problem is known
 };

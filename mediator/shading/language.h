@@ -20,6 +20,8 @@
 //   assigned to it, where bits matter (C++ is compiled so everywhere).
 // - Data in buffers: ARRAY_OF(Item, ItemArray, alignment) declares a type of the size of an address, whose
 //   `.items[i]` reads on both sides. Its members and items are laid out as in C++ (scalar layout).
+// - WITH_CONTEXT stands before a function with a parameter IN(Context): a type of the including side, through
+//   which rays are asked for (transport.h).
 //
 // What it must not have:
 // - references, pointers, templates, member functions, default member initialisers, default arguments, enums,
@@ -51,6 +53,7 @@
 #define OUT(T) T&
 #define INOUT(T) T&
 #define PRECISE
+#define WITH_CONTEXT template <class Context>
 #define ARRAY_OF(Item, Name, alignment) \
     struct Name {                       \
         const Item* items;              \
@@ -95,6 +98,7 @@ inline bool is_finite(float x) {
 #define OUT(T) out T
 #define INOUT(T) inout T
 #define PRECISE precise
+#define WITH_CONTEXT
 #define ARRAY_OF(Item, Name, alignment)                                                         \
     layout(buffer_reference, scalar, buffer_reference_align = alignment) readonly buffer Name { \
         Item items[];                                                                           \

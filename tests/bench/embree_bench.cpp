@@ -10,7 +10,6 @@
 
 #include "backends/embree/embree_backend.h"
 #include "backends/embree/path_tracer.h"
-#include "backends/embree/surface.h"
 #include "backends/embree/world.h"
 #include "client/import/import.h"
 #include "mediator/shading/sampling.h"
@@ -82,18 +81,21 @@ std::vector<RTCRayHit> camera_rays() {
 std::vector<RTCRayHit> bounce_rays() {
     std::vector<RTCRayHit> bounces;
     std::uint32_t index = 0;
+    const shading::Scene scene = backend::on_host(bed().world.tables());
     for (RTCRayHit query : camera_rays()) {
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
         rtcIntersect1(bed().world.scene(), &context, &query);
         if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
         const glm::vec3 direction(query.ray.dir_x, query.ray.dir_y, query.ray.dir_z);
-        const embree::Surface surface = embree::make_surface(bed().world.tables(), query.hit, direction);
+        const shading::Hit hit{
+            query.hit.instID[0], query.hit.primID, {query.hit.u, query.hit.v}, query.ray.tfar};
+        const shading::Surface surface = shading::make_surface(scene, hit, direction);
         const glm::vec2 u = shading::sample_pair({index, shading::hash_u32(index)}, 0);
         ++index;
-        const glm::vec3 out = surface.to_world(shading::sample_cosine_hemisphere(u));
+        const glm::vec3 out = shading::to_world(surface, shading::sample_cosine_hemisphere(u));
         bounces.push_back(ray_hit(
-            embree::leave_surface({surface.position, surface.error}, surface.geometric_normal, out), out));
+            shading::leave_surface(surface.position, surface.error, surface.geometric_normal, out), out));
     }
     return bounces;
 }

@@ -35,7 +35,7 @@ TEST_P(FurnaceAnywhere, IsAsBrightAsAtTheOrigin) {
         for (std::uint32_t y = 0; y < 32; ++y) {
             for (std::uint32_t x = 0; x < 32; ++x) {
                 const PathSample found = tracer.trace(x, y, sample, rays);
-                const double value = found.radiance().x;
+                const double value = radiance_of(found).x;
                 ASSERT_TRUE(std::isfinite(value));
                 ASSERT_TRUE(std::isfinite(found.depth)) << "the camera looked through the wall";
                 sum += value;
@@ -93,7 +93,7 @@ TEST_P(GlassAnywhere, ABallIsCrossedTwice) {
         const bool hit = sample.object != 0;
         const float expected = hit ? 0.25f : 1.0f;
         hits += hit ? 1 : 0;
-        wrong += std::fabs(sample.radiance().x - expected) > 1e-5f ? 1 : 0;
+        wrong += std::fabs(radiance_of(sample).x - expected) > 1e-5f ? 1 : 0;
     });
     EXPECT_GT(hits, 20000u);
     // None was seen; at the rim a ray may pass within its error box.
@@ -108,7 +108,7 @@ TEST_P(GlassAnywhere, AClearBallVanishes) {
     model.sky(glm::vec3(1.0f));
     World& world = model.build();
     for_samples(world, small_view(center, 0.8, 32), 8,
-                [&](const PathSample& sample) { ASSERT_NEAR(sample.radiance().x, 1.0f, 1e-4f); });
+                [&](const PathSample& sample) { ASSERT_NEAR(radiance_of(sample).x, 1.0f, 1e-4f); });
 }
 
 INSTANTIATE_TEST_SUITE_P(Places, GlassAnywhere,

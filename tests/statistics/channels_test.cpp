@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "backends/embree/sample_values.h"
+#include "mediator/shading/sample_values.h"
 #include "tests/statistics/model.h"
 
 namespace tessera::embree {
@@ -47,7 +47,7 @@ TEST(PathClasses, DivideTheSameRadiance) {
     World& world = corner.build();
     View view = Corner::eye();
     std::vector<glm::vec3> reference;
-    for_samples(world, view, 2, [&](const PathSample& s) { reference.push_back(s.radiance()); });
+    for_samples(world, view, 2, [&](const PathSample& s) { reference.push_back(radiance_of(s)); });
     for (const PathClass kind :
          {PathClass::Indirect, PathClass::Caustics, PathClass::Diffuse, PathClass::All, PathClass::None}) {
         view.path_class = kind;
@@ -55,7 +55,7 @@ TEST(PathClasses, DivideTheSameRadiance) {
         double low = 0.0, high = 0.0;
         for_samples(world, view, 2, [&](const PathSample& sample) {
             for (int c = 0; c < 3; ++c) {
-                ASSERT_NEAR(sample.radiance()[c], reference[i][c], 1e-5f * (1.0f + reference[i][c]));
+                ASSERT_NEAR(radiance_of(sample)[c], reference[i][c], 1e-5f * (1.0f + reference[i][c]));
                 ASSERT_GE(sample.low[c], -1e-6f * reference[i][c]);
                 ASSERT_GE(sample.high[c], 0.0f);
             }
@@ -85,7 +85,7 @@ TEST(PathClasses, IrradianceTimesAlbedoIsTheLightOfTheDiffuseLobe) {
     view.path_class = PathClass::Diffuse;
     std::size_t lit = 0;
     for_samples(world, view, 4, [&](const PathSample& sample) {
-        const glm::vec3 product = sample.irradiance() * sample.albedo;
+        const glm::vec3 product = irradiance_of(sample) * sample.albedo;
         for (int c = 0; c < 3; ++c) ASSERT_NEAR(product[c], sample.high[c], 1e-6f * (1.0f + sample.high[c]));
         lit += sample.high.x > 0.0f ? 1 : 0;
     });
@@ -102,7 +102,7 @@ TEST(PathClasses, IrradianceKnowsNoColour) {
     view.channels = {Channel::Irradiance};
     for (int c = 0; c < 3; ++c) {
         const Mean mean =
-            mean_of(world, view, 64, [&](const PathSample& s) { return double(s.irradiance()[c]); });
+            mean_of(world, view, 64, [&](const PathSample& s) { return double(irradiance_of(s)[c]); });
         EXPECT_NEAR(mean.value, c == 2 ? 0.0 : 3.0, 4.0 * mean.standard_error + 1e-5);
     }
 }
@@ -156,11 +156,12 @@ TEST(ShadingFeature, OfAKnownScene) {
         View view = small_view({0.0, 0.0, 1.0}, 1e-3, 4);
         view.channels = {Channel::ShadingFeature};
         for_samples(world, view, 1, [&](const PathSample& sample) {
-            EXPECT_NEAR(sample.shading_feature(FeatureRule::Demodulated), 50.0 / 4.0 / M_PI, 1e-3);
+            EXPECT_NEAR(shading_feature_of(sample, std::uint32_t(FeatureRule::Demodulated)),
+                        50.0 / 4.0 / M_PI, 1e-3);
         });
         view.feature_rule = FeatureRule::Connections;
         for_samples(world, view, 1, [&](const PathSample& sample) {
-            EXPECT_NEAR(sample.shading_feature(FeatureRule::Connections), 50.0, 1e-3);
+            EXPECT_NEAR(shading_feature_of(sample, std::uint32_t(FeatureRule::Connections)), 50.0, 1e-3);
         });
     }
 }
@@ -174,7 +175,7 @@ TEST(ShadingFeature, CountsTheSkyAsALight) {
     for (const FeatureRule rule : {FeatureRule::Demodulated, FeatureRule::Connections}) {
         view.feature_rule = rule;
         for_samples(world, view, 1, [&](const PathSample& sample) {
-            EXPECT_NEAR(sample.shading_feature(rule), 0.299 + 2 * 0.587 + 3 * 0.114, 1e-5);
+            EXPECT_NEAR(shading_feature_of(sample, std::uint32_t(rule)), 0.299 + 2 * 0.587 + 3 * 0.114, 1e-5);
         });
     }
 }
@@ -190,10 +191,10 @@ TEST(TransparentBackground, ShowsNothingWhereTheCameraSeesNothing) {
     std::size_t i = 0, misses = 0;
     for_samples(world, view, 2, [&](const PathSample& sample) {
         const bool miss = std::isinf(samples[i].depth);
-        EXPECT_EQ(sample.alpha(), miss ? 0.0f : 1.0f);
-        EXPECT_EQ(sample.radiance(), miss ? glm::vec3(0.0f) : samples[i].radiance());
+        EXPECT_EQ(alpha_of(sample), miss ? 0.0f : 1.0f);
+        EXPECT_EQ(radiance_of(sample), miss ? glm::vec3(0.0f) : radiance_of(samples[i]));
         if (miss) {
-            EXPECT_EQ(samples[i].radiance(), glm::vec3(0.1f, 0.2f, 0.3f));
+            EXPECT_EQ(radiance_of(samples[i]), glm::vec3(0.1f, 0.2f, 0.3f));
         }
         misses += miss ? 1 : 0;
         ++i;
@@ -204,17 +205,17 @@ TEST(TransparentBackground, ShowsNothingWhereTheCameraSeesNothing) {
 
 std::vector<std::vector<float>> planes_of(const World& world, View view, Channel channel) {
     std::vector<std::vector<float>> result;
-    SampleValues values(view);
     const PathTracer tracer(world.tables(), world.scene(), view);
     std::uint64_t rays = 0;
     for (std::uint32_t i = 0; i < view.width * view.height; ++i) {
-        const auto all = values.of(tracer.trace(i % view.width, i / view.width, 3, rays), 3);
+        const PathSample found = tracer.trace(i % view.width, i / view.width, 3, rays);
+        const shading::SampleValues all = shading::sample_values(tracer.view(), found, 3);
         std::size_t first = 0;
         for (const frame::ChannelInfo& info : frame::channel_table()) {
             if (info.channel == channel) break;
             first += view.channels.contains(info.channel) ? info.components : 0;
         }
-        const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+        const float* begin = all.items + first;
         result.emplace_back(begin, begin + frame::info(channel).components);
     }
     return result;

@@ -28,7 +28,7 @@ Estimate radiance(const Furnace& furnace, std::uint32_t max_bounces, Strategy st
         for (std::uint32_t y = 0; y < view.height; ++y) {
             for (std::uint32_t x = 0; x < view.width; ++x) {
                 const PathSample found = tracer.trace(x, y, sample, rays);
-                const double value = found.radiance().x;
+                const double value = radiance_of(found).x;
                 sum += value;
                 squares += value * value;
                 ++count;

@@ -149,7 +149,7 @@ inline Mean mean_of(const World& world, const view::View& view, std::uint64_t sp
 }
 
 inline double red(const PathSample& sample) {
-    return double(sample.radiance().x);
+    return double(radiance_of(sample).x);
 }
 
 inline scene::Material glass(float index, const glm::vec3& color = glm::vec3(1.0f)) {

@@ -7,9 +7,10 @@
 #include <functional>
 #include <vector>
 
-#include "backends/embree/environment.h"
+#include "mediator/backend/tables/tables.h"
 #include "mediator/base/random.h"
 #include "mediator/shading/bsdf.h"
+#include "mediator/shading/environment.h"
 #include "mediator/shading/sobol.h"
 
 namespace tessera::shading {
@@ -153,11 +154,21 @@ TEST(Sampling, EnvironmentMap) {
     std::vector<glm::vec3> texels(Width * Height, glm::vec3(0.2f));
     texels[3 * Width + 5] = glm::vec3(40.0f);
     texels[6 * Width + 0] = glm::vec3(5.0f);
-    const auto blob = std::make_shared<const scene::Blob>(std::as_bytes(std::span(texels)));
-    const embree::TextureData map{blob, Width, Height, scene::TexelFormat::RgbFloat};
-    const embree::Environment sky({.strength = 1.0f, .rotation = 0.7f}, &map);
-    expect_directions([&](CounterRandom& r) { return sky.sample(pair(r)).direction; },
-                      [&](const glm::vec3& w) { return double(sky.pdf(w)); });
+    const auto blobs = std::make_shared<scene::BlobStore>();
+    const scene::BlobPtr blob = blobs->insert(std::as_bytes(std::span(texels)));
+    constexpr ObjectId Sky{2}, Map{3};
+    scene::Scene described;
+    ASSERT_TRUE(described.apply_entries(
+        {scene::Create{scene::RootId, scene::Root{.background = Sky}},
+         scene::Create{Sky, scene::Background{.environment = Map, .strength = 1.0f, .rotation = 0.7f}},
+         scene::Create{Map, scene::Texture{.width = Width,
+                                           .height = Height,
+                                           .format = scene::TexelFormat::RgbFloat,
+                                           .texels = scene::reference(*blob)}}}));
+    const auto tables = backend::make_tables(described, {}, backend::MeshCatalog(blobs), *blobs);
+    const Scene sky = backend::on_host(tables);
+    expect_directions([&](CounterRandom& r) { return sample_sky(sky, pair(r)); },
+                      [&](const glm::vec3& w) { return double(sky_pdf(sky, w)); });
 }
 
 class SurfaceModel : public testing::TestWithParam<std::tuple<float, float, float>> {

@@ -1,5 +1,5 @@
 // Whitted's tree of perfect speculars: the range buffer and the renderer of that name.
-#include "backends/embree/whitted.h"
+#include "mediator/shading/whitted.h"
 
 #include <gtest/gtest.h>
 
@@ -131,12 +131,12 @@ TEST(Whitted, IsDirectLightWhereNothingIsPerfectlySpecular) {
     std::size_t i = 0;
     for_samples(world, view, 4, [&](const PathSample& sample) {
         const PathSample& path = paths[i++];
-        EXPECT_EQ(sample.radiance(), path.radiance());
+        EXPECT_EQ(radiance_of(sample), radiance_of(path));
         EXPECT_EQ(sample.albedo, path.albedo);
         EXPECT_EQ(sample.normal, path.normal);
         EXPECT_EQ(sample.depth, path.depth);
         EXPECT_EQ(sample.range, path.range);
-        EXPECT_EQ(sample.irradiance(), path.irradiance());
+        EXPECT_EQ(irradiance_of(sample), irradiance_of(path));
     });
 }
 
@@ -179,7 +179,7 @@ TEST(Whitted, SeesALampInAMirrorWithoutNoise) {
     view.renderer = view::Renderer::Whitted;
     const double expected = 4.0 * (0.5 + 0.5 * std::pow(1.0 - std::cos(Tilt), 5.0));
     for_samples(world, view, 2,
-                [&](const PathSample& sample) { EXPECT_NEAR(sample.radiance().x, expected, 1e-3); });
+                [&](const PathSample& sample) { EXPECT_NEAR(radiance_of(sample).x, expected, 1e-3); });
 }
 
 }  // namespace

@@ -1,0 +1,74 @@
+#include "backends/embree/meshes.h"
+
+#include "backends/embree/alpha.h"
+
+namespace tessera::embree {
+
+namespace {
+
+void attach(RTCGeometry geometry, const backend::Mesh& mesh) {
+    const auto triangles = backend::elements<glm::uvec3>(mesh.triangles);
+    const auto positions = backend::elements<glm::vec3>(mesh.positions);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
+                               sizeof(glm::uvec3), triangles.size());
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions.data(), 0,
+                               sizeof(glm::vec3), positions.size());
+}
+
+}  // namespace
+
+void MeshScenes::update(const backend::MeshCatalog& catalog, const backend::MeshCatalog::Result& edit) {
+    if (edit.everything) meshes_.clear();
+    for (const ObjectId id : edit.removed) meshes_.erase(id);
+    for (const auto& change : edit.changes) {
+        const backend::Mesh& mesh = *catalog.find(change.id);
+        switch (change.step) {
+            case backend::MeshStep::ShadingData:
+                break;
+            case backend::MeshStep::Refit:
+                refit(meshes_.at(change.id), mesh);
+                break;
+            case backend::MeshStep::Rebuild:
+                meshes_[change.id] = build(mesh);
+                break;
+        }
+    }
+    check(device_, "building meshes");
+}
+
+MeshScenes::MeshScene MeshScenes::build(const backend::Mesh& mesh) const {
+    MeshScene built;
+    built.scene.reset(rtcNewScene(device_));
+    rtcSetSceneFlags(built.scene.get(),
+                     mesh.refits ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_ROBUST);
+    const GeometryHandle handle(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE));
+    built.geometry = handle.get();
+    rtcSetGeometryBuildQuality(handle.get(),
+                               mesh.refits ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
+    attach(handle.get(), mesh);
+    rtcCommitGeometry(handle.get());
+    rtcAttachGeometryByID(built.scene.get(), handle.get(), 0);
+    rtcCommitScene(built.scene.get());
+    return built;
+}
+
+// Same triangles, other places: the tree stays, its boxes follow.
+void MeshScenes::refit(const MeshScene& built, const backend::Mesh& mesh) {
+    attach(built.geometry, mesh);  // the triangles too: the same blob may be under another address by now
+    rtcUpdateGeometryBuffer(built.geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+    rtcCommitGeometry(built.geometry);
+    rtcCommitScene(built.scene.get());
+}
+
+void MeshScenes::set_alpha_tested(ObjectId id, AlphaTest test) {
+    MeshScene& mesh = meshes_.at(id);
+    const bool wanted = test == AlphaTest::On;
+    if (mesh.alpha_tested == wanted) return;
+    mesh.alpha_tested = wanted;
+    rtcSetGeometryIntersectFilterFunction(mesh.geometry, wanted ? alpha_filter : nullptr);
+    rtcSetGeometryOccludedFilterFunction(mesh.geometry, wanted ? alpha_filter : nullptr);
+    rtcCommitGeometry(mesh.geometry);
+    rtcCommitScene(mesh.scene.get());
+}
+
+}  // namespace tessera::embree

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <map>
+
+#include "backends/embree/device.h"
+#include "mediator/backend/tables/meshes.h"
+
+namespace tessera::embree {
+
+enum class AlphaTest { Off, On };
+
+// Embree's bottom level: a scene for each mesh, shared by all its instances. Vertices stay in their blobs.
+class MeshScenes {
+  public:
+    explicit MeshScenes(RTCDevice device) : device_(device) {}
+
+    // Does what the catalog has found to do. The blobs of its meshes have to live as long as the scenes.
+    void update(const backend::MeshCatalog& catalog, const backend::MeshCatalog::Result& edit);
+    void set_alpha_tested(ObjectId id, AlphaTest test);  // whether rays ask the filter in alpha.h
+
+    RTCScene find(ObjectId id) const { return meshes_.at(id).scene.get(); }
+
+  private:
+    struct MeshScene {
+        SceneHandle scene;
+        RTCGeometry geometry = nullptr;  // owned by the scene
+        bool alpha_tested = false;
+    };
+    MeshScene build(const backend::Mesh& mesh) const;
+    static void refit(const MeshScene& built, const backend::Mesh& mesh);
+
+    RTCDevice device_;
+    std::map<ObjectId, MeshScene> meshes_;
+};
+
+}  // namespace tessera::embree

@@ -1,0 +1,57 @@
+#ifndef TESSERA_MEDIATOR_SHADING_ENVIRONMENT_H
+#define TESSERA_MEDIATOR_SHADING_ENVIRONMENT_H
+
+#include "mediator/shading/sampling.h"
+#include "mediator/shading/sums.h"
+#include "mediator/shading/textures.h"
+
+// Light from infinitely far: sampled in proportion to the map's brightness (per texel, with its neighbours,
+// so that whatever bilinear filtering shows can be sampled), or uniformly without a map.
+SHADING_BEGIN
+
+inline bool has_map(IN(Scene) scene) {
+    return (scene.features & FeatureEnvironmentMap) != 0u;
+}
+
+// Where a direction is in the map, in [0, 1].
+inline vec2 map_place(IN(Environment) sky, vec3 direction) {
+    const float u = 0.5f + (arc_tangent(direction.x, -direction.z) + sky.rotation) / (2.0f * Pi);
+    return vec2(u - floor(u), arc_cosine(clamp(direction.y, -1.0f, 1.0f)) / Pi);
+}
+
+inline vec3 sky_radiance(IN(Scene) scene, vec3 direction) {
+    if (!has_map(scene)) return scene.environment.color;
+    const vec4 texel = lookup(scene, scene.environment.map, map_place(scene.environment, direction));
+    return scene.environment.color + scene.environment.strength * vec3(texel);
+}
+
+// Per solid angle.
+inline float sky_pdf(IN(Scene) scene, vec3 direction) {
+    if (!has_map(scene)) return 1.0f / (4.0f * Pi);
+    const uint width = scene.environment.map.width;
+    const uint height = scene.environment.map.height;
+    const vec2 uv = map_place(scene.environment, direction);
+    const uint x = min(uint(uv.x * float(width)), width - 1u);
+    const uint y = min(uint(uv.y * float(height)), height - 1u);
+    const float row = probability_of(scene.sums, scene.environment.row_sums, y);
+    const float column = probability_of(scene.sums, scene.environment.column_sums + y * width, x);
+    const float sine_theta = sqrt(greater_of(0.0f, 1.0f - direction.y * direction.y));
+    if (!(sine_theta > 0.0f)) return 0.0f;
+    return row * column * float(width) * float(height) / (2.0f * Pi * Pi * sine_theta);
+}
+
+inline vec3 sample_sky(IN(Scene) scene, vec2 u) {
+    if (!has_map(scene)) return sample_sphere(u);
+    const uint width = scene.environment.map.width;
+    const uint height = scene.environment.map.height;
+    const Choice row = choose(scene.sums, scene.environment.row_sums, height, u.y);
+    const Choice column = choose(scene.sums, scene.environment.column_sums + row.index * width, width, u.x);
+    const float theta = Pi * (float(row.index) + row.rest) / float(height);
+    const float phi =
+        2.0f * Pi * ((float(column.index) + column.rest) / float(width) - 0.5f) - scene.environment.rotation;
+    return vec3(sine(theta) * sine(phi), cosine(theta), -sine(theta) * cosine(phi));
+}
+
+SHADING_END
+
+#endif

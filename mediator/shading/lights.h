@@ -1,0 +1,150 @@
+#ifndef TESSERA_MEDIATOR_SHADING_LIGHTS_H
+#define TESSERA_MEDIATOR_SHADING_LIGHTS_H
+
+#include "mediator/shading/environment.h"
+#include "mediator/shading/surfaces.h"
+
+// One light out of all, and a place on it.
+SHADING_BEGIN
+
+// A place where light comes from, seen from a surface.
+struct LightSample {
+    vec3 radiance;   // that arrives when nothing is in between; for a delta light divided by its distance
+                     // squared
+    vec3 intensity;  // the light's own, towards the surface, whatever the distance
+    vec3 direction;  // to the light, unit length
+    float pdf;       // per solid angle, choice of the light included; 0 = no light
+    bool delta;      // cannot be hit by chance: the pdf is of the choice alone
+    // The shadow ray: from origin along `segment` until far (a share of the segment, or infinity).
+    vec3 origin;
+    vec3 segment;
+    float far;
+};
+
+inline LightSample no_light() {
+    return LightSample(vec3(0.0f), vec3(0.0f), vec3(0.0f), 0.0f, false, vec3(0.0f), vec3(0.0f), 1.0f);
+}
+
+// glTF's falloff between the cones (KHR_lights_punctual).
+inline float spot_falloff(IN(LightSource) light, vec3 to_light) {
+    const float cosine_axis = -dot(light.direction, to_light);
+    if (!(cosine_axis > light.cos_outer)) return 0.0f;
+    if (cosine_axis >= light.cos_inner) return 1.0f;
+    const float t = (cosine_axis - light.cos_outer) / (light.cos_inner - light.cos_outer);
+    return t * t;
+}
+
+inline LightSample sample_point_light(IN(LightSource) light, IN(Surface) surface) {
+    LightSample found = no_light();
+    const vec3 offset = light.position - surface.position;
+    const float distance2 = dot(offset, offset);
+    if (!(distance2 > 0.0f)) return found;
+    found.delta = true;
+    found.direction = offset / sqrt(distance2);
+    const float falloff = light.kind == LightSpot ? spot_falloff(light, found.direction) : 1.0f;
+    found.radiance = light.intensity / distance2 * falloff;
+    found.intensity = light.intensity * falloff;
+    found.pdf = light.probability;
+    found.origin = leave_surface(surface.position, surface.error, surface.geometric_normal, found.direction);
+    found.segment = light.position - found.origin;
+    return found;
+}
+
+inline LightSample sample_distant_light(IN(LightSource) light, IN(Surface) surface, vec3 direction,
+                                        vec3 radiance) {
+    LightSample found = no_light();
+    found.direction = direction;
+    found.radiance = radiance;
+    found.intensity = radiance;
+    found.pdf = light.probability;
+    found.origin = leave_surface(surface.position, surface.error, surface.geometric_normal, direction);
+    found.segment = direction;
+    found.far = infinity();
+    return found;
+}
+
+// Density per solid angle of a mesh light's point at a distance, seen on its surface under a cosine. Their
+// ratio is squared, since the squares themselves leave the range of floats in tiny and huge scenes.
+inline float solid_angle_pdf(IN(LightSource) light, float distance, float cosine_there) {
+    const float ratio = distance / light.root_area;
+    return light.probability * (ratio * ratio) / greater_of(cosine_there, 1e-30f);
+}
+
+inline LightSample sample_mesh_light(IN(Scene) scene, IN(LightSource) light, IN(Instance) instance,
+                                     IN(Mesh) mesh, IN(Material) material, IN(Surface) surface, vec2 u) {
+    LightSample found = no_light();
+    const Choice chosen = choose(scene.sums, light.area_sums, mesh.triangle_count, u.x);
+    const uvec3 corners = mesh.triangles.items[chosen.index];
+    const vec2 b = sample_triangle(vec2(chosen.rest, u.y));
+    const PointWithError point = point_on(instance, mesh, corners, b);
+    const vec3 offset = point.position - surface.position;
+    const Measured way = measure(offset);
+    const vec3 normal = face_normal(instance, mesh, corners, vec3(0.0f));
+    const float facing = -dot(normal, way.direction);
+    if (facing == 0.0f || (facing < 0.0f && material.double_sided == 0u)) return found;
+    found.direction = way.direction;
+    found.radiance = emission_at(scene, material, mesh, corners, b);
+    if (material.alpha_mode != AlphaOpaque) {
+        // A ray that comes by chance stops here with this probability (stops_at).
+        const float alpha = alpha_at(scene, material, mesh, corners, b);
+        const float masked = alpha >= material.alpha_cutoff ? 1.0f : 0.0f;
+        found.radiance *= material.alpha_mode == AlphaMask ? masked : clamp(alpha, 0.0f, 1.0f);
+    }
+    found.intensity = found.radiance;
+    found.pdf = solid_angle_pdf(light, way.distance, abs(facing));
+    found.origin = leave_surface(surface.position, surface.error, surface.geometric_normal, found.direction);
+    // The far end leaves its own surface too, by its own error and that of the segment's rounding on the way
+    // there.
+    const vec3 error = point.error + 2.0f * 5.9604644775390625e-8f * abs(offset);
+    found.segment = leave_surface(point.position, error, normal, -found.direction) - found.origin;
+    return found;
+}
+
+inline LightSample sample_instance_light(IN(Scene) scene, IN(LightSource) light, IN(Instance) instance,
+                                         IN(Surface) surface, vec2 u) {
+    return sample_mesh_light(scene, light, instance, scene.meshes.items[instance.mesh],
+                             scene.materials.items[instance.material], surface, u);
+}
+
+inline LightSample sample_source(IN(Scene) scene, IN(LightSource) light, IN(Surface) surface, vec2 u) {
+    if (light.kind == LightMesh) {
+        if ((scene.features & FeatureMeshLights) == 0u) return no_light();
+        return sample_instance_light(scene, light, scene.instances.items[light.instance], surface, u);
+    }
+    if (light.kind == LightEnvironment) {
+        const vec3 direction = sample_sky(scene, u);
+        LightSample found = sample_distant_light(light, surface, direction, sky_radiance(scene, direction));
+        found.pdf *= sky_pdf(scene, direction);
+        return found;
+    }
+    if (light.kind == LightDirectional) {
+        LightSample found = sample_distant_light(light, surface, -light.direction, light.intensity);
+        found.delta = true;
+        return found;
+    }
+    return sample_point_light(light, surface);
+}
+
+inline LightSample sample_light(IN(Scene) scene, IN(Surface) surface, float choice, vec2 u) {
+    if (scene.light_count == 0u) return no_light();
+    const uint index = first_above(scene.sums, scene.light_sums, scene.light_count, choice);
+    return sample_source(scene, scene.lights.items[index], surface, u);
+}
+
+// Density with which sample_light finds the point of a mesh light that was hit from `from`.
+inline float mesh_light_pdf(IN(Scene) scene, IN(Surface) hit, vec3 from) {
+    if ((scene.features & FeatureMeshLights) == 0u || hit.light < 0) return 0.0f;
+    const Measured way = measure(hit.position - from);
+    const float cosine_there = abs(dot(hit.geometric_normal, way.direction));
+    return solid_angle_pdf(scene.lights.items[hit.light], way.distance, cosine_there);
+}
+
+// The same of a direction to the sky.
+inline float environment_pdf(IN(Scene) scene, vec3 direction) {
+    if (scene.environment_light < 0) return 0.0f;
+    return scene.lights.items[scene.environment_light].probability * sky_pdf(scene, direction);
+}
+
+SHADING_END
+
+#endif

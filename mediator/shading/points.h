@@ -1,0 +1,84 @@
+#ifndef TESSERA_MEDIATOR_SHADING_POINTS_H
+#define TESSERA_MEDIATOR_SHADING_POINTS_H
+
+#include "mediator/shading/rays.h"
+#include "mediator/shading/scaling.h"
+
+// Points on triangles and the way off them. `b`: barycentric weights of the second and third vertex.
+SHADING_BEGIN
+
+struct PointWithError {
+    vec3 position;
+    vec3 error;  // bound of the rounding error, per axis
+};
+
+// n u / (1 - n u), u = 2^-24: bounds n roundings (Higham 2002).
+inline float rounding_bound(float n) {
+    return n * 5.9604644775390625e-8f / (1.0f - n * 5.9604644775390625e-8f);
+}
+
+// A point of an instance's triangle and the bound of the distance, per axis, at which a ray may find the
+// triangle around it. In the object's frame: interpolation, 5 roundings of the corners' coordinates; the
+// distance to the plane, 8 roundings (differences, cross product, dot product) of the triangle's extent. Then
+// 6 roundings of the way to the world and as many of the ray's way back.
+inline PointWithError point_on(IN(Instance) instance, IN(Mesh) mesh, uvec3 corners, vec2 b) {
+    const vec3 p = mesh.positions.items[corners.x];
+    const vec3 q = mesh.positions.items[corners.y];
+    const vec3 r = mesh.positions.items[corners.z];
+    const float first = 1.0f - b.x - b.y;
+    const vec3 object = p * first + q * b.x + r * b.y;
+    const vec3 sizes = abs(p) * abs(first) + abs(q) * b.x + abs(r) * b.y;
+    const vec3 extent = max(max(abs(p - object), abs(q - object)), abs(r - object));
+    const mat3 linear = mat3(abs(instance.linear[0]), abs(instance.linear[1]), abs(instance.linear[2]));
+    const vec3 in_object = linear * (rounding_bound(5.0f) * sizes + rounding_bound(8.0f) * extent);
+    const vec3 transform = linear * abs(object) + abs(instance.translation);
+    return PointWithError(instance.linear * object + instance.translation,
+                          in_object + 2.0f * rounding_bound(6.0f) * transform);
+}
+
+// Of the front, unit length; `otherwise` for a degenerate triangle. From the two shorter edges, whose angle
+// is the triangle's largest: needles keep their normal. Scaled, since products of a tiny triangle's edges
+// underflow.
+inline vec3 face_normal(IN(Instance) instance, IN(Mesh) mesh, uvec3 corners, vec3 otherwise) {
+    const vec3 p = mesh.positions.items[corners.x];
+    const vec3 q = mesh.positions.items[corners.y];
+    const vec3 r = mesh.positions.items[corners.z];
+    vec3 pq = q - p;
+    vec3 pr = r - p;
+    vec3 qr = r - q;
+    const float scale = unit_scale(largest(max(abs(pq), abs(pr))));
+    pq *= scale;
+    pr *= scale;
+    qr *= scale;
+    const float pq2 = dot(pq, pq);
+    const float qr2 = dot(qr, qr);
+    const bool without_pq = pq2 > qr2 && pq2 > dot(pr, pr);
+    const bool without_qr = qr2 >= pq2 && qr2 > dot(pr, pr);
+    const vec3 first = without_pq ? pr : pq;
+    const vec3 second = without_qr ? pr : qr;
+    return direction_of(instance.normals * cross(first, second), otherwise);
+}
+
+// The next float towards the side of `towards`. From 0 to the smallest number that no device takes for 0.
+inline float neighbour(float value, float towards) {
+    if (value == 0.0f) return towards < 0.0f ? -1.17549435e-38f : 1.17549435e-38f;
+    const uint bits = float_bits(value);
+    return float_from_bits((value > 0.0f) == (towards > 0.0f) ? bits + 1u : bits - 1u);
+}
+
+// A sum is rounded: away from the surface, not back onto it.
+inline float moved_by(float value, float offset) {
+    return offset == 0.0f ? value : neighbour(value + offset, offset);
+}
+
+// Moves the point along the normal out of its error box, to the side `direction` leads to.
+inline vec3 leave_surface(vec3 position, vec3 error, vec3 normal, vec3 direction) {
+    const float distance = dot(abs(normal), error);
+    const vec3 offset = dot(normal, direction) < 0.0f ? -distance * normal : distance * normal;
+    return vec3(moved_by(position.x, offset.x), moved_by(position.y, offset.y),
+                moved_by(position.z, offset.z));
+}
+
+SHADING_END
+
+#endif

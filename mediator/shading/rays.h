@@ -1,0 +1,26 @@
+#ifndef TESSERA_MEDIATOR_SHADING_RAYS_H
+#define TESSERA_MEDIATOR_SHADING_RAYS_H
+
+#include "mediator/shading/records.h"
+
+SHADING_BEGIN
+
+struct Ray {
+    vec3 origin;
+    vec3 direction;  // unit length
+};
+
+struct Hit {
+    uint instance;     // index
+    uint triangle;     // of its mesh
+    vec2 barycentric;  // weights of the second and third vertex
+    float distance;
+};
+
+// A path starts exactly on its surface where the error bound is 0 (an axis-aligned plane through the origin):
+// hits nearer than this are that surface. The smallest number that no device takes for 0.
+inline constexpr float NearestHit = 1.17549435e-38f;
+
+SHADING_END
+
+#endif

@@ -1,0 +1,187 @@
+#ifndef TESSERA_MEDIATOR_SHADING_TRANSPORT_H
+#define TESSERA_MEDIATOR_SHADING_TRANSPORT_H
+
+#include "mediator/shading/lights.h"
+#include "mediator/shading/paths.h"
+
+// The steps of a path from surface to surface, shared by all ways to render. Next-event estimation with one
+// light sample per vertex, combined with BSDF sampling by the power heuristic (Veach 1997); none of both at
+// perfect speculars: what is seen in them counts in full.
+//
+// A Context is the including side's: it has `scene` (Scene) and `view` (View), and there are
+//   bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, OUT(Hit) hit);
+//       the closest hit beyond NearestHit; false where there is none
+//   bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed);
+//       whether anything lies beyond NearestHit, before the share `far` of the segment
+// both of which ask stops_at where an instance is alpha_tested, with this seed. GLSL: declared before this
+// file is included. C++: found in the namespace of the context, and so are those that tell the story of a
+// path when one sample is replayed for people; a shader is silent.
+//   tell_camera(context, ray)                     where it starts
+//   tell_hit(context, surface, throughput)        what it hits, and what it carries there
+//   tell_miss(context)                            it leaves the scene
+//   tell_emission(context, emission, direction)   the surface shines
+//   tell_light(context, direction, gathered)      a light is seen
+//   tell_specular(context, reflects, direction)   it goes on, reflected or refracted
+SHADING_BEGIN
+
+#ifndef __cplusplus
+#define tell_camera(context, ray)
+#define tell_hit(context, surface, throughput)
+#define tell_miss(context)
+#define tell_emission(context, emission, direction)
+#define tell_light(context, direction, gathered)
+#define tell_specular(context, reflects, direction)
+#endif
+
+// Probabilities of a surface's lobe groups, in proportion to the luminance they pass on. Sum 1, or all 0 for
+// a black surface.
+struct LobeChances {
+    float reflection;
+    float refraction;
+    float rough;
+};
+
+inline LobeChances lobe_chances(IN(Surface) surface) {
+    if (surface.rough_share == 1.0f) return LobeChances(0.0f, 0.0f, 1.0f);
+    const float reflection = luminance(surface.specular.reflection);
+    const float refraction = luminance(surface.specular.refraction);
+    const float sum = reflection + refraction + surface.bsdf.reflectance;
+    if (!(sum > 0.0f)) return LobeChances(0.0f, 0.0f, 0.0f);
+    return LobeChances(reflection / sum, refraction / sum, surface.bsdf.reflectance / sum);
+}
+
+inline constexpr uint LobeNone = 0u, LobeRough = 1u, LobeReflection = 2u, LobeRefraction = 3u;
+
+// One of the groups and the random numbers of this vertex that are left, in [0, 1).
+struct Lobe {
+    uint kind;
+    float choice;
+    float roulette;
+};
+
+inline Ray leaving(IN(Surface) surface, vec3 direction) {
+    return Ray(leave_surface(surface.position, surface.error, surface.geometric_normal, direction),
+               direction);
+}
+
+// Which part of the value is the diffuse lobe's.
+inline vec3 diffuse_share(IN(BsdfValue) bsdf) {
+    return vec3(bsdf.value.x > 0.0f ? bsdf.diffuse.x / bsdf.value.x : 0.0f,
+                bsdf.value.y > 0.0f ? bsdf.diffuse.y / bsdf.value.y : 0.0f,
+                bsdf.value.z > 0.0f ? bsdf.diffuse.z / bsdf.value.z : 0.0f);
+}
+
+// Weight of light that the path has come to by chance, when next-event estimation finds it with the density
+// `other`.
+inline float weight_by_chance(IN(View) view, IN(Path) path, float other) {
+    if (!(path.bsdf_pdf > 0.0f)) return 1.0f;
+    if (view.strategy == StrategyBoth) return power_heuristic(path.bsdf_pdf, other);
+    return view.strategy == StrategyLightsOnly && other > 0.0f ? 0.0f : 1.0f;
+}
+
+WITH_CONTEXT inline void add_sky(IN(Context) context, INOUT(Path) path, IN(Ray) ray) {
+    if (context.scene.environment.emits == 0u) return;
+    const vec3 radiance = sky_radiance(context.scene, ray.direction);
+    connect_light(path.found, context.view, path.probability * radiance);
+    float other = 0.0f;
+    if (path.bsdf_pdf > 0.0f) other = environment_pdf(context.scene, ray.direction);
+    const float weight = weight_by_chance(context.view, path, other);
+    add_light(path.found, context.view, path.throughput * radiance * weight, path.way);
+}
+
+WITH_CONTEXT inline void add_emission(IN(Context) context, INOUT(Path) path, IN(Ray) ray,
+                                      IN(Surface) surface) {
+    if (!(largest(surface.emission) > 0.0f)) return;
+    connect_light(path.found, context.view, path.probability * surface.emission);
+    float other = 0.0f;
+    if (path.bsdf_pdf > 0.0f) other = mesh_light_pdf(context.scene, surface, path.last_position);
+    const float weight = weight_by_chance(context.view, path, other);
+    add_light(path.found, context.view, path.throughput * surface.emission * weight, path.way);
+    tell_emission(context, surface.emission, ray.direction);
+}
+
+WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Surface) surface, vec3 wo) {
+    if (context.scene.light_count == 0u) return;
+    const vec2 choice = pair_at(path, PairLightChoice);
+    const vec2 u = pair_at(path, PairLightPoint);
+    const LightSample light = sample_light(context.scene, surface, choice.x, u);
+    if (!(light.pdf > 0.0f) || !(largest(light.radiance) > 0.0f)) return;
+    if (context.view.strategy == StrategyBsdfOnly && !light.delta) return;
+    if (!(dot(light.direction, surface.geometric_normal) > 0.0f)) return;
+    const BsdfValue bsdf = evaluate_bsdf(surface.bsdf, wo, to_local(surface, light.direction));
+    if (!(largest(bsdf.value) > 0.0f)) return;
+    const bool alone = light.delta || context.view.strategy == StrategyLightsOnly;
+    const float weight = alone ? 1.0f : power_heuristic(light.pdf, bsdf.pdf);
+    path.rays += 1u;
+    if (trace_occluded(context, light.origin, light.segment, light.far, shadow_seed(path))) return;
+    const vec3 gathered = path.throughput * bsdf.value * light.radiance * (weight / light.pdf);
+    Way way = Way(path.way.scatterings + 1u, false, path.way.diffuse_share);
+    if (keeps(context.view, KeepsDiffuse) && path.way.scatterings == 0u) {
+        way.diffuse_share = diffuse_share(bsdf);
+    }
+    add_light(path.found, context.view, gathered, way);
+    connect_light(path.found, context.view, path.probability * light.intensity);
+    tell_light(context, light.direction, gathered);
+}
+
+// The rough group for certain, where the others are followed on their own.
+inline Lobe rough_lobe(IN(Path) path) {
+    const vec2 u = pair_at(path, PairLobeAndRoulette);
+    return Lobe(LobeRough, u.x, u.y);
+}
+
+// Chooses and divides the throughput by the probability; LobeNone ends the path.
+inline Lobe choose_lobe(INOUT(Path) path, IN(Surface) surface) {
+    Lobe lobe = rough_lobe(path);
+    if (surface.rough_share == 1.0f) return lobe;
+    const LobeChances chances = lobe_chances(surface);
+    const float specular = chances.reflection + chances.refraction;
+    float first = specular;
+    float width = chances.rough;
+    if (lobe.choice < chances.reflection) {
+        lobe.kind = LobeReflection;
+        first = 0.0f;
+        width = chances.reflection;
+    } else if (lobe.choice < specular || !(chances.rough > 0.0f)) {
+        lobe.kind = LobeRefraction;
+        first = chances.reflection;
+        width = chances.refraction;
+    }
+    if (!(width > 0.0f)) return Lobe(LobeNone, 0.0f, 0.0f);
+    lobe.choice = clamp((lobe.choice - first) / width, 0.0f, 0.99999994f);
+    path.throughput /= width;
+    return lobe;
+}
+
+// `ray` becomes the next one; false ends the path. The vertex is for the caller to count.
+inline bool scatter(IN(View) view, INOUT(Path) path, IN(Surface) surface, vec3 wo, IN(Lobe) lobe,
+                    INOUT(Ray) ray) {
+    const vec2 u = pair_at(path, PairBsdfDirection);
+    const vec3 wi = sample_bsdf(surface.bsdf, wo, lobe.choice, u);
+    const BsdfValue bsdf = evaluate_bsdf(surface.bsdf, wo, wi);
+    const vec3 direction = unit_vector(to_world(surface, wi));
+    if (!(bsdf.pdf > 0.0f) || !(dot(direction, surface.geometric_normal) > 0.0f)) return false;
+    path.throughput *= bsdf.value / bsdf.pdf;
+    path.bsdf_pdf = bsdf.pdf;
+    path.last_position = surface.position;
+    if (keeps(view, KeepsDiffuse) && path.way.scatterings == 0u) path.way.diffuse_share = diffuse_share(bsdf);
+    path.way.scatterings += 1u;
+    path.way.last_is_delta = false;
+    ray = leaving(surface, direction);
+    return true;
+}
+
+WITH_CONTEXT inline void pass_on(IN(Context) context, INOUT(Path) path, IN(Surface) surface, IN(Lobe) lobe,
+                                 INOUT(Ray) ray) {
+    const bool reflects = lobe.kind == LobeReflection;
+    path.throughput *= reflects ? surface.specular.reflection : surface.specular.refraction;
+    path.bsdf_pdf = 0.0f;
+    if (path.way.scatterings > 0u) path.way.scatterings += 1u;
+    path.way.last_is_delta = true;
+    ray = leaving(surface, reflects ? surface.specular.reflected : surface.specular.refracted);
+    tell_specular(context, reflects, ray.direction);
+}
+
+SHADING_END
+
+#endif
