@@ -47,6 +47,13 @@ inline float schlick_weight(float cosine) {
     return m2 * m2 * m;
 }
 
+// 1 - schlick_weight, in a form that does not cancel at grazing angles.
+inline float schlick_rest(float cosine) {
+    const float c = lesser_of(greater_of(cosine, 0.0f), 1.0f);
+    const float m = 1.0f - c;
+    return c * (1.0f + m * (1.0f + m) * (1.0f + m * m));
+}
+
 inline Mixture make_mixture(float metallic, float roughness, float transmission) {
     const float opaque = 1.0f - metallic;
     Mixture mixture = Mixture(metallic, opaque, 0.0f, 0.0f);
@@ -88,7 +95,7 @@ inline Bsdf make_bsdf(vec3 base_color, IN(Mixture) mixture, float roughness, flo
 inline float ggx_distribution(vec3 h, float alpha) {
     const float a2 = alpha * alpha;
     const float slope = h.x * h.x + h.y * h.y + a2 * h.z * h.z;
-    return a2 / (Pi * slope * slope);
+    return a2 * InversePi / (slope * slope);
 }
 
 inline float smith_lambda(vec3 w, float alpha) {
@@ -105,12 +112,25 @@ inline vec3 sample_visible_normal(vec3 wo, float alpha, vec2 u) {
     const vec3 t1 =
         length2 > 0.0f ? vec3(-stretched.y, stretched.x, 0.0f) / sqrt(length2) : vec3(1.0f, 0.0f, 0.0f);
     const vec3 t2 = cross(stretched, t1);
-    vec2 p = sample_disk(u);
-    const float s = 0.5f * (1.0f + stretched.z);
-    p.y = (1.0f - s) * sqrt(greater_of(0.0f, 1.0f - p.x * p.x)) + s * p.y;
-    const float z = sqrt(greater_of(0.0f, 1.0f - dot(p, p)));
-    const vec3 h = p.x * t1 + p.y * t2 + z * stretched;
+    // The disk's point is pushed from the half that cannot be seen. In a form that does not cancel at the
+    // rim: half_chord^2 = 1 - p.x^2, above = half_chord - p.y, below = half_chord + p.y, height^2 = above *
+    // below.
+    const vec2 p = sample_disk(u);
+    const float s = 0.5f * (1.0f + stretched.z), rest = 0.25f * length2 / s;  // sum 1
+    const float height = height_over_disk(u);
+    const float half_chord = sqrt(height * height + p.y * p.y);
+    const float longer = half_chord + abs(p.y);
+    const float shorter = longer > 0.0f ? height * height / longer : 0.0f;
+    const float above = p.y > 0.0f ? shorter : longer, below = p.y > 0.0f ? longer : shorter;
+    const float y = half_chord - s * above;
+    const float z = sqrt(s * above * (2.0f * rest * half_chord + s * below));
+    const vec3 h = p.x * t1 + y * t2 + z * stretched;
     return unit_vector(vec3(alpha * h.x, alpha * h.y, greater_of(1e-12f, h.z)));
+}
+
+// Share of the light that the coat does not reflect on its way in or out. Without an interface coat_f0 is 0.
+inline float passes_coat(IN(Bsdf) bsdf, float cosine) {
+    return bsdf.coat_f90 > 0.0f ? (1.0f - bsdf.coat_f0) * schlick_rest(cosine) : 1.0f;
 }
 
 struct BsdfValue {
@@ -132,11 +152,10 @@ inline BsdfValue evaluate_bsdf(IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
         result.value = fresnel * (distribution / (4.0f * wo.z * (1.0f + lambda_out + lambda_in)));
         result.pdf = bsdf.specular_share * distribution / (4.0f * wo.z * (1.0f + lambda_out));
     }
-    const float keeps_in = 1.0f - (bsdf.coat_f0 + (bsdf.coat_f90 - bsdf.coat_f0) * schlick_weight(wi.z));
-    const float keeps_out = 1.0f - (bsdf.coat_f0 + (bsdf.coat_f90 - bsdf.coat_f0) * schlick_weight(wo.z));
-    result.diffuse = bsdf.diffuse * (keeps_in * keeps_out * wi.z / Pi);
+    const float keeps_in = passes_coat(bsdf, wi.z), keeps_out = passes_coat(bsdf, wo.z);
+    result.diffuse = bsdf.diffuse * (keeps_in * keeps_out * wi.z * InversePi);
     result.value += result.diffuse;
-    result.pdf += (1.0f - bsdf.specular_share) * wi.z / Pi;
+    result.pdf += (1.0f - bsdf.specular_share) * wi.z * InversePi;
     return result;
 }
 

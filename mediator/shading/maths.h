@@ -15,6 +15,7 @@
 SHADING_BEGIN
 
 inline constexpr float Pi = 3.14159265358979f;
+inline constexpr float InversePi = 0.318309886f;
 
 // As fmax and fmin: what is not a number loses. Written out, because compilers call the library for those.
 inline float greater_of(float a, float b) {

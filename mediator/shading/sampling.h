@@ -33,16 +33,22 @@ inline vec2 sample_disk(vec2 u) {
     return radius * vec2(cosine(angle), sine(angle));
 }
 
+// sqrt(1 - d^2) for a point d of the disk, from the exact radius: 1 - d^2 would cancel at the rim.
+inline float height_over_disk(vec2 u) {
+    const vec2 p = abs(2.0f * u - 1.0f);
+    const float radius = p.x > p.y ? p.x : p.y;
+    return sqrt((1.0f - radius) * (1.0f + radius));
+}
+
 // Density cos / pi, z up.
 inline vec3 sample_cosine_hemisphere(vec2 u) {
-    const vec2 d = sample_disk(u);
-    return vec3(d, sqrt(greater_of(0.0f, 1.0f - dot(d, d))));
+    return vec3(sample_disk(u), height_over_disk(u));
 }
 
 // Density 1 / (4 pi).
 inline vec3 sample_sphere(vec2 u) {
     const float z = 1.0f - 2.0f * u.x;
-    const float r = sqrt(greater_of(0.0f, 1.0f - z * z));
+    const float r = 2.0f * sqrt(u.x * (1.0f - u.x));
     return vec3(r * cosine(2.0f * Pi * u.y), r * sine(2.0f * Pi * u.y), z);
 }
 
@@ -91,16 +97,15 @@ inline float gaussian_offset(float u, float radius) {
         p = 1.00167406f + p * w;
         p = 2.83297682f + p * w;
     }
-    return p * x * 1.41421356f * (radius / 3.0f);
+    return p * x * 0.471404521f * radius;  // sqrt(2) / 3
 }
 
-// Integral of the window from -radius to t * radius, normalised to 1 (Harris 1978, four terms).
+// Integral of the window from -radius to t * radius, normalised to 1 (Harris 1978, four terms: 0.35875,
+// 0.48829, 0.14128, 0.01168; the factors are those of the sines over 0.35875, 2 pi and their order).
 inline float blackman_harris_integral(float t) {
     const float x = 0.5f * (t + 1.0f);
     const float s = 2.0f * Pi * x;
-    return x + (-0.48829f / 0.35875f * sine(s) + 0.5f * 0.14128f / 0.35875f * sine(2.0f * s) -
-                0.01168f / (3.0f * 0.35875f) * sine(3.0f * s)) /
-                   (2.0f * Pi);
+    return x + (-0.216623741f * sine(s) + 0.0313385510f * sine(2.0f * s) - 0.00172722856f * sine(3.0f * s));
 }
 
 inline float blackman_harris_offset(float u, float radius) {

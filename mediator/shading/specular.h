@@ -12,15 +12,23 @@
 // as it would be in air.
 SHADING_BEGIN
 
+// Squared cosine on the far side, by Snell's law; not positive at total reflection. `sine2` is 1 - cosine^2,
+// as its source can tell it best; eta as below, not 0. Towards the denser side (and none) in a form that does
+// not cancel at grazing angles.
+inline float refracted_cosine2(float cosine, float sine2, float eta) {
+    const float eta2 = eta * eta;
+    return eta >= 1.0f ? ((eta - 1.0f) * (eta + 1.0f) + cosine * cosine) / eta2 : 1.0f - sine2 / eta2;
+}
+
 // Share of unpolarised light that the smooth boundary of two dielectrics reflects. `cosine` is that of the
 // direction and the normal, in [0, 1]; eta = index of refraction on the far side / on this side; eta = 0
 // stands for an index without bound.
 inline float fresnel_dielectric(float cosine, float eta) {
     if (eta == 1.0f) return 0.0f;
     if (!(eta > 0.0f)) return 1.0f;
-    const float sin2 = (1.0f - cosine) * (1.0f + cosine) / (eta * eta);
-    if (!(sin2 < 1.0f)) return 1.0f;
-    const float inside = sqrt(1.0f - sin2);
+    const float inside2 = refracted_cosine2(cosine, (1.0f - cosine) * (1.0f + cosine), eta);
+    if (!(inside2 > 0.0f)) return 1.0f;
+    const float inside = sqrt(inside2);
     const float parallel = (eta * cosine - inside) / (eta * cosine + inside);
     const float across = (cosine - eta * inside) / (cosine + eta * inside);
     return 0.5f * (parallel * parallel + across * across);
@@ -42,8 +50,8 @@ inline Specular make_specular(vec3 base_color, IN(Mixture) mixture, float eta, v
     specular.refracted = vec3(0.0f);
     if (!(fresnel < 1.0f)) return specular;
     // 1 - cos^2 from x and y: it does not cancel near the normal.
-    const float sin2 = (wo.x * wo.x + wo.y * wo.y) / (eta * eta);
-    const float inside = sqrt(greater_of(0.0f, 1.0f - sin2));
+    const float sine2 = wo.x * wo.x + wo.y * wo.y;
+    const float inside = sqrt(greater_of(0.0f, refracted_cosine2(wo.z, sine2, eta)));
     specular.refracted = unit_vector(vec3(-wo.x / eta, -wo.y / eta, -inside));
     return specular;
 }

@@ -1,0 +1,84 @@
+#include "tests/shading/difference.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace tessera::shading {
+
+namespace {
+
+constexpr double Infinite = std::numeric_limits<double>::infinity();
+
+bool has(uint mask, uint place) {
+    return (mask >> place & 1u) != 0u;
+}
+
+double ulp_of(double size) {
+    int exponent = 0;
+    std::frexp(std::max(size, 0x1p-126), &exponent);
+    return std::ldexp(1.0, exponent - 24);
+}
+
+double difference(float a, float b, double ulp) {
+    if (float_bits(a) == float_bits(b) || (is_nan(a) && is_nan(b))) return 0.0;
+    if (is_nan(a) || is_nan(b)) return Infinite;
+    const auto flushed = [](float value) { return std::fabs(value) < 0x1p-126f ? 0.0 : double(value); };
+    // One more binade instead of infinity: to the largest float it is one ulp.
+    const auto finite = [&](float value) {
+        return is_finite(value) ? flushed(value) : std::copysign(0x1p128, double(value));
+    };
+    return std::fabs(finite(a) - finite(b)) / ulp;
+}
+
+std::string text_of(const Outputs& y) {
+    std::string text;
+    for (uint i = 0; i < y.count; ++i) {
+        char number[64];
+        std::snprintf(number, sizeof number, " %.9g", double(float_from_bits(y.bits[i])));
+        text += has(y.exact, i) ? " " + std::to_string(y.bits[i]) : number;
+    }
+    return text;
+}
+
+double difference(const Outputs& a, const Outputs& b) {
+    if (a.count != b.count || a.starts != b.starts || a.exact != b.exact) return Infinite;
+    double worst = 0.0;
+    for (uint first = 0, end = 0; first < a.count; first = end) {
+        for (end = first + 1; end < a.count && !has(a.starts, end);) ++end;
+        if (has(a.exact, first)) {
+            if (a.bits[first] != b.bits[first]) return Infinite;
+            continue;
+        }
+        double size = 0.0;
+        for (uint i = first; i < end; ++i) {
+            const float value = float_from_bits(a.bits[i]);
+            if (is_finite(value)) size = std::max(size, std::fabs(double(value)));
+        }
+        for (uint i = first; i < end; ++i) {
+            worst = std::max(
+                worst, difference(float_from_bits(a.bits[i]), float_from_bits(b.bits[i]), ulp_of(size)));
+        }
+    }
+    return worst;
+}
+
+}  // namespace
+
+std::vector<SharedFunction> shared_functions() {
+    return {
+#define FUNCTION(ordinary, edges, call) {#call, ordinary, edges},
+#include "tests/shading/functions.inc"
+#undef FUNCTION
+    };
+}
+
+Difference largest_difference(const std::vector<Outputs>& a, const std::vector<Outputs>& b) {
+    Difference worst;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const double ulp = difference(a[i], b[i]);
+        if (ulp > worst.ulp) worst = {ulp, i, text_of(a[i]) + " and" + text_of(b[i])};
+    }
+    return worst;
+}
+
+}  // namespace tessera::shading
