@@ -2,12 +2,10 @@
 
 #include <sys/resource.h>
 
-#include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
+#include "client/tools/findings.h"
 #include "client/tools/this_machine.h"
 #include "client/tools/vulkan_devices.h"
 #include "mediator/backend/catalog.h"
@@ -16,25 +14,6 @@
 namespace tessera::tools {
 
 namespace {
-
-enum class Verdict { Good, Poor, Bad };  // Bad: something does not work here at all
-
-struct Finding {
-    Verdict verdict = Verdict::Good;
-    std::string subject, fact;
-    std::string remedy;  // "" = none needed
-};
-using Findings = std::vector<Finding>;
-
-const char* name(Verdict verdict) {
-    return verdict == Verdict::Good ? "ok" : verdict == Verdict::Poor ? "note" : "bad";
-}
-
-std::string gibibytes(std::uint64_t bytes) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.1f GiB", double(bytes) / double(1u << 30));
-    return text;
-}
 
 std::string limit_text(rlim_t limit) {
     return limit == RLIM_INFINITY ? "unlimited" : std::to_string(limit);
@@ -78,18 +57,6 @@ void examine_backends(Findings& findings) {
     }
 }
 
-void examine_vulkan(Findings& findings) {
-    const auto devices = vulkan_devices();
-    if (!devices) {
-        findings.push_back({Verdict::Poor, "Vulkan", "none", devices.error().what()});
-        return;
-    }
-    for (const VulkanDevice& device : *devices) {
-        findings.push_back({Verdict::Good, "Vulkan device",
-                            device.name + " (" + device.kind + ", Vulkan " + device.api_version + ")", ""});
-    }
-}
-
 void examine_network(Findings& findings) {
     const net::ZmqFacts facts = net::zmq_facts();
     findings.push_back({facts.has_curve ? Verdict::Good : Verdict::Bad, "libzmq",
@@ -101,7 +68,7 @@ void examine_limits(Findings& findings) {
     const std::uint64_t memory = total_memory_bytes();
     constexpr std::uint64_t Enough = 4ull << 30;
     findings.push_back(
-        {memory >= Enough ? Verdict::Good : Verdict::Poor, "memory", gibibytes(memory),
+        {memory >= Enough ? Verdict::Good : Verdict::Poor, "memory", byte_text(memory),
          memory >= Enough ? "" : "large scenes will not fit: use a machine with 4 GiB or more"});
     rlimit files{}, locked{};
     ::getrlimit(RLIMIT_NOFILE, &files);
@@ -111,24 +78,6 @@ void examine_limits(Findings& findings) {
     findings.push_back({plenty ? Verdict::Good : Verdict::Poor, "open files", limit_text(files.rlim_cur),
                         plenty ? "" : "a master of many nodes needs more: ulimit -n 8192"});
     findings.push_back({Verdict::Good, "locked memory", limit_text(locked.rlim_cur) + " bytes", ""});
-}
-
-void print(const Findings& findings) {
-    for (const Finding& finding : findings) {
-        std::printf("%-5s %-18s %s\n", name(finding.verdict), finding.subject.c_str(), finding.fact.c_str());
-        if (!finding.remedy.empty()) std::printf("      %-18s -> %s\n", "", finding.remedy.c_str());
-    }
-}
-
-void print_json(const Findings& findings) {
-    auto list = nlohmann::ordered_json::array();
-    for (const Finding& finding : findings) {
-        list.push_back({{"subject", finding.subject},
-                        {"verdict", name(finding.verdict)},
-                        {"fact", finding.fact},
-                        {"remedy", finding.remedy}});
-    }
-    std::printf("%s\n", list.dump(2).c_str());
 }
 
 struct DoctorOptions {

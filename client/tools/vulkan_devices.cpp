@@ -1,96 +1,70 @@
 #include "client/tools/vulkan_devices.h"
 
-#include <dlfcn.h>
-
-#if __has_include(<vulkan/vulkan_core.h>)
-#include <vulkan/vulkan_core.h>
-
-#include <memory>
+#ifdef TESSERA_BACKEND_VULKAN
+#include "backends/vulkan/device/device_list.h"
+#include "mediator/base/error.h"
+#endif
 
 namespace tessera::tools {
 
+#ifdef TESSERA_BACKEND_VULKAN
+
 namespace {
 
-struct CloseLibrary {
-    void operator()(void* library) const { ::dlclose(library); }
-};
-using Library = std::unique_ptr<void, CloseLibrary>;
-
-std::string kind_of(VkPhysicalDeviceType type) {
-    switch (type) {
-        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
-            return "discrete GPU";
-        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
-            return "integrated GPU";
-        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
-            return "virtual GPU";
-        case VK_PHYSICAL_DEVICE_TYPE_CPU:
-            return "CPU";
-        default:
-            return "other";
-    }
-}
-
-std::string version_text(std::uint32_t version) {
-    return std::to_string(VK_API_VERSION_MAJOR(version)) + "." +
-           std::to_string(VK_API_VERSION_MINOR(version)) + "." +
-           std::to_string(VK_API_VERSION_PATCH(version));
-}
-
-tl::unexpected<Error> no_driver() {
-    return failure(ErrorCode::Unavailable,
-                   "no Vulkan driver: install mesa-vulkan-drivers or the GPU maker's driver");
+Finding describe(const vulkan::DeviceInfo& device) {
+    std::string refusals;
+    for (const std::string& reason : device.refused) refusals += (refusals.empty() ? "" : ", ") + reason;
+    Finding finding{.verdict = device.refused.empty() ? Verdict::Good : Verdict::Poor,
+                    .subject = "Vulkan device " + std::to_string(device.index),
+                    .fact = device.name + " (" + vulkan::kind_name(device.kind) + ")",
+                    .remedy = refusals.empty() ? "" : "refused: " + refusals};
+    finding.facts = {
+        {"vulkan", vulkan::version_text(device.api_version)},
+        {"driver", device.driver},
+        {"memory_bytes", device.device_memory_bytes},
+        {"unified_memory", device.unified_memory},
+        {"subgroup_size", std::uint64_t(device.subgroup_size)},
+        {"min_subgroup_size", std::uint64_t(device.min_subgroup_size)},
+        {"max_subgroup_size", std::uint64_t(device.max_subgroup_size)},
+        {"workgroup_invocations", std::uint64_t(device.max_workgroup_size)},
+        {"shared_memory_bytes", std::uint64_t(device.shared_memory_bytes)},
+        {"push_constant_bytes", std::uint64_t(device.push_constant_bytes)},
+        {"buffer_bytes", device.buffer_bytes},
+        {"allocation_bytes", device.allocation_bytes},
+        {"allocations", std::uint64_t(device.max_allocations)},
+        {"timestamps", device.timestamp_period > 0},
+        {"keeps_denormals", device.keeps_denormals},
+        {"rounds_to_even", device.rounds_to_even},
+        {"memory_budget", device.memory_budget},
+        {"ray_query", device.ray_query},
+    };
+    return finding;
 }
 
 }  // namespace
 
-Expected<std::vector<VulkanDevice>> vulkan_devices() {
-    const Library loader(::dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL));
-    if (!loader) return failure(ErrorCode::Unavailable, "no Vulkan loader: install libvulkan1");
-    const auto get =
-        reinterpret_cast<PFN_vkGetInstanceProcAddr>(::dlsym(loader.get(), "vkGetInstanceProcAddr"));
-    if (get == nullptr)
-        return failure(ErrorCode::Unavailable, "libvulkan.so.1 is no Vulkan loader: reinstall libvulkan1");
-    const auto create = reinterpret_cast<PFN_vkCreateInstance>(get(VK_NULL_HANDLE, "vkCreateInstance"));
-    const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
-                                        .apiVersion = VK_API_VERSION_1_1};
-    const VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-                                    .pApplicationInfo = &application};
-    VkInstance instance = VK_NULL_HANDLE;
-    if (create == nullptr || create(&info, nullptr, &instance) != VK_SUCCESS) return no_driver();
-
-    const auto destroy = reinterpret_cast<PFN_vkDestroyInstance>(get(instance, "vkDestroyInstance"));
-    const auto enumerate =
-        reinterpret_cast<PFN_vkEnumeratePhysicalDevices>(get(instance, "vkEnumeratePhysicalDevices"));
-    const auto properties_of =
-        reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(get(instance, "vkGetPhysicalDeviceProperties"));
-    std::uint32_t count = 0;
-    enumerate(instance, &count, nullptr);
-    std::vector<VkPhysicalDevice> handles(count);
-    enumerate(instance, &count, handles.data());
-    std::vector<VulkanDevice> devices;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        VkPhysicalDeviceProperties properties{};
-        properties_of(handles[i], &properties);
-        devices.push_back(
-            {properties.deviceName, kind_of(properties.deviceType), version_text(properties.apiVersion)});
+void examine_vulkan(Findings& findings) {
+    try {
+        const vulkan::Instance instance;
+        const auto devices = vulkan::list_devices(instance);
+        for (const vulkan::DeviceInfo& device : devices) findings.push_back(describe(device));
+        if (devices.empty()) {
+            findings.push_back({Verdict::Poor, "Vulkan", "no device",
+                                "install mesa-vulkan-drivers or the GPU maker's driver"});
+        }
+    } catch (const Error& error) {
+        findings.push_back({Verdict::Poor, "Vulkan", "none", error.what()});
     }
-    destroy(instance, nullptr);
-    if (devices.empty()) return no_driver();
-    return devices;
 }
-
-}  // namespace tessera::tools
 
 #else
 
-namespace tessera::tools {
-
-Expected<std::vector<VulkanDevice>> vulkan_devices() {
-    return failure(ErrorCode::Unavailable,
-                   "built without Vulkan headers: install libvulkan-dev and build again");
+void examine_vulkan(Findings& findings) {
+    findings.push_back({Verdict::Poor, "Vulkan", "not built",
+                        "install libvulkan-dev, glslc and spirv-tools and configure with "
+                        "-DTESSERA_BACKEND_VULKAN=ON"});
 }
 
-}  // namespace tessera::tools
-
 #endif
+
+}  // namespace tessera::tools

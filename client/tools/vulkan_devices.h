@@ -1,20 +1,11 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
-#include "mediator/base/error.h"
+#include "client/tools/findings.h"
 
 namespace tessera::tools {
 
-struct VulkanDevice {
-    std::string name;
-    std::string kind;         // "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
-    std::string api_version;  // "1.3.230"
-};
-
-// Asks the loader, which is opened at run time: a machine without Vulkan is a normal one. Unavailable: no
-// loader or no driver, with the remedy.
-Expected<std::vector<VulkanDevice>> vulkan_devices();
+// One finding for every Vulkan device, also for those that the back-end refuses, with the reasons; one that
+// says so where there is none or where the back-end was not built.
+void examine_vulkan(Findings& findings);
 
 }  // namespace tessera::tools

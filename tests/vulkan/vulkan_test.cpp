@@ -21,26 +21,39 @@ Validation wanted_validation() {
 
 void VulkanTest::SetUp() {
     try {
-        instance_ = std::make_unique<Instance>(wanted_validation());
-        reopen();
+        reopen({}, wanted_validation());
     } catch (const Error& error) {
         FAIL() << "this test needs a Vulkan device, and a software device is enough: " << error.what();
     }
 }
 
 void VulkanTest::TearDown() {
-    device_.reset();
+    close();
     if (instance_ == nullptr) return;
     for (const Message& message : instance_->take_messages()) {
         ADD_FAILURE() << "validation: " << message.id << "\n" << message.text;
     }
 }
 
-void VulkanTest::reopen() {
+bool VulkanTest::is_instrumented() const {
+    return wanted_validation() == Validation::Instrumented;
+}
+
+void VulkanTest::close() {
     device_.reset();
+}
+
+void VulkanTest::reopen(const DeviceSettings& settings) {
+    close();
     const std::vector<DeviceInfo> devices = list_devices(*instance_);
-    device_ =
-        std::make_unique<Device>(*instance_, choose_device(devices, environment("TESSERA_TEST_DEVICE")));
+    const DeviceInfo& chosen = choose_device(devices, environment("TESSERA_TEST_DEVICE"));
+    device_ = std::make_unique<Device>(*instance_, chosen, settings);
+}
+
+void VulkanTest::reopen(const DeviceSettings& settings, Validation validation) {
+    TearDown();
+    instance_ = std::make_unique<Instance>(validation);
+    reopen(settings);
 }
 
 }  // namespace tessera::vulkan

@@ -1,6 +1,8 @@
 #include "backends/vulkan/device/buffer.h"
 
 #include <algorithm>
+#include <map>
+#include <mutex>
 #include <string>
 #include <utility>
 
@@ -10,9 +12,18 @@
 
 namespace tessera::vulkan {
 
+namespace {
+
+constexpr std::uint64_t LargestTexel =
+    16;  // bytes; no buffer is smaller, so that each can be bound as texels
+
+}  // namespace
+
 struct Buffer::Parts {
     Allocation memory;  // outlives the object bound to it
     Handle<VkBuffer, vkDestroyBuffer> object;
+    std::mutex mutex;  // protects the views
+    std::map<VkFormat, Handle<VkBufferView, vkDestroyBufferView>> views;
 };
 
 Buffer::Buffer(Device& device, std::uint64_t bytes, MemoryKind kind)
@@ -25,11 +36,11 @@ Buffer::Buffer(Device& device, std::uint64_t bytes, MemoryKind kind)
     }
     const VkBufferCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-        .size = std::max<std::uint64_t>(bytes, 4),
+        .size = std::max(bytes, LargestTexel),
         .usage = VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
-                 VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
-                 VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
-                 VK_BUFFER_USAGE_VERTEX_BUFFER_BIT,
+                 VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
+                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                 VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT,
         .sharingMode = VK_SHARING_MODE_EXCLUSIVE};
     VkBuffer object = VK_NULL_HANDLE;
     check(vkCreateBuffer(device.get(), &info, nullptr, &object), "make a buffer");
@@ -64,6 +75,21 @@ Buffer::~Buffer() {
 
 VkBuffer Buffer::get() const {
     return parts_ != nullptr ? parts_->object.get() : VK_NULL_HANDLE;
+}
+
+VkBufferView Buffer::texels(VkFormat format) const {
+    const std::scoped_lock lock(parts_->mutex);
+    auto& view = parts_->views[format];
+    if (!view) {
+        const VkBufferViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                                          .buffer = parts_->object.get(),
+                                          .format = format,
+                                          .range = VK_WHOLE_SIZE};
+        VkBufferView object = VK_NULL_HANDLE;
+        check(vkCreateBufferView(device_->get(), &info, nullptr, &object), "view a buffer as texels");
+        view = {device_->get(), object};
+    }
+    return view.get();
 }
 
 std::span<std::byte> Buffer::mapped() const {

@@ -29,6 +29,7 @@ class Buffer final {
     std::uint64_t size() const { return bytes_; }
     VkDeviceAddress address() const { return address_; }
     VkBuffer get() const;
+    VkBufferView texels(VkFormat format) const;  // all of it, as whole texels; made at the first call
     // The bytes as the host sees them, for as long as the buffer lives; empty where it cannot see them.
     // Whoever writes or reads here makes sure that no step in flight does; upload() and download() do it for
     // you.

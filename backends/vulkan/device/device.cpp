@@ -52,16 +52,24 @@ Device::Opened::~Opened() {
     vkDestroyDevice(object, nullptr);
 }
 
-Device::Device(const Instance&, const DeviceInfo& info)
+Device::Device(const Instance&, const DeviceInfo& info, const DeviceSettings& settings)
     : info_(info),
       family_(choose_family(info.handle)),
       device_{open(info, family_)},
-      memory_(device_.object, info_),
-      queue_(device_.object, info_, family_) {}
+      memory_(device_.object, info_, settings.memory),
+      queue_(device_.object, info_, family_, settings.fault) {}
 
 Device::~Device() = default;
 
 Allocation Device::allocate(const VkMemoryRequirements& needs, MemoryKind kind) {
+    queue_.collect();
+    try {
+        return memory_.allocate(needs, kind);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::OutOfMemory) throw;
+    }
+    queue_.latest().wait();  // what dropped buffers held comes back now
+    queue_.collect();
     return memory_.allocate(needs, kind);
 }
 

@@ -2,19 +2,27 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include <atomic>
+#include <cstdint>
+
 #include "backends/vulkan/device/device_list.h"
-#include "backends/vulkan/device/result.h"
 #include "backends/vulkan/device/memory.h"
 #include "backends/vulkan/device/queue.h"
+#include "backends/vulkan/device/result.h"
 
 namespace tessera::vulkan {
+
+struct DeviceSettings {
+    MemorySettings memory;
+    FaultHook fault;  // for tests
+};
 
 // One opened device with its memory and its queue. Outlives all buffers and pipelines made on it.
 // Thread-safe.
 class Device final {
   public:
     // The device is one of list_devices(instance) and was not refused. Throws Error.
-    Device(const Instance& instance, const DeviceInfo& info);
+    Device(const Instance& instance, const DeviceInfo& info, const DeviceSettings& settings = {});
     ~Device();
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
@@ -23,21 +31,26 @@ class Device final {
     VkDevice get() const { return device_.object; }
     Queue& queue() { return queue_; }
 
-    // Throws Error{OutOfMemory} with the sizes.
+    const Memory& memory() const { return memory_; }
+    std::uint64_t uploaded_bytes() const { return uploaded_; }      // so far
+    void count_upload(std::uint64_t bytes) { uploaded_ += bytes; }  // for upload()
+
+    // For Buffer: waits for the memory of dropped buffers before it throws Error{OutOfMemory} with the sizes.
     Allocation allocate(const VkMemoryRequirements& needs, MemoryKind kind);
 
   private:
-    // The last to go, after queue and memory.
     struct Opened {
         VkDevice object = VK_NULL_HANDLE;
         ~Opened();
     };
 
+    // In the order in which they need each other.
     DeviceInfo info_;
     std::uint32_t family_;
     Opened device_;
     Memory memory_;
     Queue queue_;
+    std::atomic<std::uint64_t> uploaded_ = 0;
 };
 
 }  // namespace tessera::vulkan

@@ -55,6 +55,7 @@ void read_limits(DeviceInfo& info, const VkPhysicalDeviceLimits& limits) {
     info.shared_memory_bytes = limits.maxComputeSharedMemorySize;
     info.push_constant_bytes = limits.maxPushConstantsSize;
     info.storage_range_bytes = limits.maxStorageBufferRange;
+    info.texel_elements = limits.maxTexelBufferElements;
     info.max_allocations = limits.maxMemoryAllocationCount;
     info.timestamp_period = limits.timestampComputeAndGraphics != VK_FALSE ? limits.timestampPeriod : 0.0f;
 }

@@ -33,6 +33,7 @@ struct DeviceInfo {
     std::uint32_t shared_memory_bytes = 0;  // of a workgroup
     std::uint32_t push_constant_bytes = 0;
     std::uint64_t storage_range_bytes = 0;  // of a descriptor; addresses reach further
+    std::uint64_t texel_elements = 0;       // of a binding to texels
     std::uint64_t buffer_bytes = 0;         // of one buffer
     std::uint64_t allocation_bytes = 0;     // of one allocation
     std::uint32_t max_allocations = 0;

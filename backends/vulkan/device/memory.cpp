@@ -1,36 +1,73 @@
 #include "backends/vulkan/device/memory.h"
 
+#include <algorithm>
 #include <array>
+#include <string>
 #include <utility>
 
+#include "backends/vulkan/device/handle.h"
 #include "backends/vulkan/device/result.h"
 
 namespace tessera::vulkan {
 
-Allocation::Allocation(Memory& memory, VkDeviceMemory object, std::byte* mapped, std::uint64_t size)
-    : memory_(&memory), object_(object), mapped_(mapped), size_(size) {}
+struct MemoryBlock {
+    Handle<VkDeviceMemory, vkFreeMemory> object;
+    RangeAllocator ranges;
+    std::byte* mapped = nullptr;
+    std::uint32_t type = 0;
+};
+
+namespace {
+
+// Large enough that hundreds of blocks hold any scene (drivers promise 4096 allocations), small enough that
+// the last one wastes little; a heap of 2 GiB still has 32.
+constexpr std::uint64_t BlockBytes = 64u << 20;
+
+std::string shortage(std::uint64_t asked, const HeapUse& heap, std::uint64_t available) {
+    return "not enough device memory: " + std::to_string(asked) + " bytes asked for, " +
+           std::to_string(heap.used) + " used, " + std::to_string(available + (heap.reserved - heap.used)) +
+           " available (not all in one piece); use a smaller scene or a device with more memory";
+}
+
+}  // namespace
 
 Allocation::Allocation(Allocation&& other) noexcept
     : memory_(std::exchange(other.memory_, nullptr)),
-      object_(other.object_),
-      mapped_(std::exchange(other.mapped_, nullptr)),
-      size_(std::exchange(other.size_, 0)) {}
+      block_(std::exchange(other.block_, nullptr)),
+      offset_(other.offset_),
+      size_(other.size_) {}
 
 Allocation& Allocation::operator=(Allocation&& other) noexcept {
     std::swap(memory_, other.memory_);
-    std::swap(object_, other.object_);
-    std::swap(mapped_, other.mapped_);
+    std::swap(block_, other.block_);
+    std::swap(offset_, other.offset_);
     std::swap(size_, other.size_);
     return *this;
 }
 
 Allocation::~Allocation() {
-    if (memory_ != nullptr) memory_->release(object_);
+    if (memory_ != nullptr) memory_->release(*block_, offset_, size_);
 }
 
-Memory::Memory(VkDevice device, const DeviceInfo& info) : device_(device) {
-    vkGetPhysicalDeviceMemoryProperties(info.handle, &properties_);
+VkDeviceMemory Allocation::get() const {
+    return block_ != nullptr ? block_->object.get() : VK_NULL_HANDLE;
 }
+
+std::byte* Allocation::mapped() const {
+    return block_ != nullptr && block_->mapped != nullptr ? block_->mapped + offset_ : nullptr;
+}
+
+Memory::Memory(VkDevice device, const DeviceInfo& info, const MemorySettings& settings)
+    : device_(device), info_(info), settings_(settings) {
+    vkGetPhysicalDeviceMemoryProperties(info.handle, &properties_);
+    blocks_.resize(properties_.memoryTypeCount);
+    for (std::uint32_t i = 0; i < properties_.memoryHeapCount; ++i) {
+        heaps_.push_back(
+            {.device_local = (properties_.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) != 0});
+    }
+}
+
+Memory::~Memory() = default;
 
 // The first type that has what is wanted, most wanted first; the driver lists faster types first.
 std::uint32_t Memory::choose_type(std::uint32_t allowed, MemoryKind kind) const {
@@ -52,29 +89,117 @@ std::uint32_t Memory::choose_type(std::uint32_t allowed, MemoryKind kind) const 
     throw Error(ErrorCode::Internal, "no memory type of the device fits a buffer; report this");
 }
 
-Allocation Memory::allocate(const VkMemoryRequirements& needs, MemoryKind kind) {
-    const VkMemoryAllocateFlagsInfo flags{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO,
-                                          .flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT};
-    const std::uint32_t type = choose_type(needs.memoryTypeBits, kind);
-    const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                    .pNext = &flags,
-                                    .allocationSize = needs.size,
-                                    .memoryTypeIndex = type};
-    VkDeviceMemory object = VK_NULL_HANDLE;
-    check(vkAllocateMemory(device_, &info, nullptr, &object),
-          "allocate " + std::to_string(needs.size) + " bytes of device memory");
-    if ((properties_.memoryTypes[type].propertyFlags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) == 0) {
-        return Allocation(*this, object, nullptr, needs.size);
+// What other programs hold counts only where the driver tells of it.
+std::uint64_t Memory::available(std::uint32_t heap) const {
+    const std::uint64_t reserved = heaps_[heap].reserved;
+    std::uint64_t total = properties_.memoryHeaps[heap].size;
+    if (info_.memory_budget) {
+        VkPhysicalDeviceMemoryBudgetPropertiesEXT budget{
+            .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT};
+        VkPhysicalDeviceMemoryProperties2 properties{
+            .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PROPERTIES_2, .pNext = &budget};
+        vkGetPhysicalDeviceMemoryProperties2(info_.handle, &properties);
+        total = std::min<std::uint64_t>(total, budget.heapBudget[heap]);
     }
-    void* mapped = nullptr;
-    const VkResult result = vkMapMemory(device_, object, 0, VK_WHOLE_SIZE, 0, &mapped);
-    if (result != VK_SUCCESS) release(object);
-    check(result, "map device memory");
-    return Allocation(*this, object, static_cast<std::byte*>(mapped), needs.size);
+    if (settings_.limit != 0) total = std::min(total, settings_.limit);
+    return total > reserved ? total - reserved : 0;
 }
 
-void Memory::release(VkDeviceMemory object) {
-    vkFreeMemory(device_, object, nullptr);
+MemoryBlock& Memory::add_block(std::uint32_t type, const VkMemoryRequirements& needs, MemoryKind kind) {
+    const std::uint32_t heap = properties_.memoryTypes[type].heapIndex;
+    if (needs.size > available(heap)) free_empty_blocks();
+    const std::uint64_t left = available(heap);
+    if (needs.size > left || needs.size > info_.allocation_bytes) {
+        throw Error(ErrorCode::OutOfMemory,
+                    shortage(needs.size, heaps_[heap], std::min(left, info_.allocation_bytes)));
+    }
+    // What would fill most of a block gets one of its own, so that it leaves no rest that little fits into.
+    const bool is_large = needs.size > BlockBytes / 2;
+    const std::uint64_t size = is_large ? needs.size : std::max(needs.size, std::min(BlockBytes, left));
+    const VkMemoryAllocateFlagsInfo flags{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO,
+                                          .flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT};
+    const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                    .pNext = &flags,
+                                    .allocationSize = size,
+                                    .memoryTypeIndex = type};
+    VkDeviceMemory object = VK_NULL_HANDLE;
+    const VkResult allocated = vkAllocateMemory(device_, &info, nullptr, &object);
+    if (allocated == VK_ERROR_OUT_OF_DEVICE_MEMORY || allocated == VK_ERROR_OUT_OF_HOST_MEMORY) {
+        throw Error(ErrorCode::OutOfMemory,
+                    result_name(allocated) + ": " + shortage(needs.size, heaps_[heap], left));
+    }
+    check(allocated, "allocate device memory");
+    auto block = std::make_unique<MemoryBlock>(
+        MemoryBlock{.object = {device_, object}, .ranges = RangeAllocator(size), .type = type});
+    const bool is_visible =
+        (properties_.memoryTypes[type].propertyFlags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0;
+    const bool stays_apart =
+        settings_.mapping == MemorySettings::Mapping::Apart && kind == MemoryKind::Device;
+    if (is_visible && !stays_apart) {
+        void* mapped = nullptr;
+        check(vkMapMemory(device_, object, 0, VK_WHOLE_SIZE, 0, &mapped), "map device memory");
+        block->mapped = static_cast<std::byte*>(mapped);
+    }
+    heaps_[heap].reserved += size;
+    return *blocks_[type].emplace_back(std::move(block));
+}
+
+Allocation Memory::allocate(const VkMemoryRequirements& needs, MemoryKind kind) {
+    const std::uint32_t type = choose_type(needs.memoryTypeBits, kind);
+    const bool apart = settings_.mapping == MemorySettings::Mapping::Apart;
+    const std::scoped_lock lock(mutex_);
+    Allocation result;
+    const auto take = [&](MemoryBlock& block) {
+        // With memory kept apart one type serves two kinds, of which one is not mapped.
+        if (apart && (block.mapped == nullptr) != (kind == MemoryKind::Device)) return false;
+        const auto offset = block.ranges.allocate(needs.size, needs.alignment);
+        if (!offset) return false;
+        result.block_ = &block;
+        result.offset_ = *offset;
+        return true;
+    };
+    const bool found = std::any_of(blocks_[type].begin(), blocks_[type].end(),
+                                   [&](const auto& block) { return take(*block); });
+    if (!found) take(add_block(type, needs, kind));
+    result.memory_ = this;
+    result.size_ = needs.size;
+    heaps_[properties_.memoryTypes[type].heapIndex].used += needs.size;
+    return result;
+}
+
+void Memory::release(MemoryBlock& block, std::uint64_t offset, std::uint64_t size) {
+    const std::scoped_lock lock(mutex_);
+    block.ranges.release(offset, size);
+    heaps_[properties_.memoryTypes[block.type].heapIndex].used -= size;
+    if (!block.ranges.empty()) return;
+    // One empty block stays, so that what comes and goes at the edge of a block costs no calls of the driver.
+    const Blocks& blocks = blocks_[block.type];
+    const auto empty =
+        std::count_if(blocks.begin(), blocks.end(), [](const auto& other) { return other->ranges.empty(); });
+    if (empty > 1 || block.ranges.size() > BlockBytes)
+        free_blocks(block.type, [&](const MemoryBlock& other) { return &other == &block; });
+}
+
+template <class Condition>
+void Memory::free_blocks(std::uint32_t type, Condition condition) {
+    std::erase_if(blocks_[type], [&](const auto& block) {
+        if (!condition(*block)) return false;
+        heaps_[properties_.memoryTypes[type].heapIndex].reserved -= block->ranges.size();
+        return true;
+    });
+}
+
+void Memory::free_empty_blocks() {
+    for (std::uint32_t type = 0; type < blocks_.size(); ++type) {
+        free_blocks(type, [](const MemoryBlock& block) { return block.ranges.empty(); });
+    }
+}
+
+std::vector<HeapUse> Memory::use() const {
+    const std::scoped_lock lock(mutex_);
+    std::vector<HeapUse> result = heaps_;
+    for (std::uint32_t i = 0; i < result.size(); ++i) result[i].available = available(i);
+    return result;
 }
 
 }  // namespace tessera::vulkan

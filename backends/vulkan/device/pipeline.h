@@ -18,11 +18,23 @@ struct Constant {
     std::uint32_t bits = 0;
 };
 
+// Set 0 of the shader: what a pass binds, in the order of this list. Addresses need no binding, and reach any
+// buffer; but some devices read texels much faster (lavapipe: three times), and storage somewhat.
+struct Binding {
+    std::uint32_t index = 0;  // layout(set = 0, binding = index)
+    enum class Kind {
+        Storage,  // buffer { ... }; at most DeviceInfo::storage_range_bytes
+        Texels    // uniform [iu]textureBuffer; at most DeviceInfo::texel_elements of `format`
+    } kind = Kind::Storage;
+    VkFormat format = VK_FORMAT_R32G32B32A32_UINT;  // of texels
+};
+
 struct PipelineSettings {
     std::string name;                     // for messages
     std::span<const std::uint32_t> code;  // SPIR-V, as tessera_shaders() embeds it; entry point "main"
     std::vector<Constant> constants;      // those not named keep the shader's defaults
     std::uint32_t push_bytes = 0;         // of the push-constant block
+    std::vector<Binding> bindings;
 };
 
 // A kernel that is ready to run. Its end never waits, like a buffer's. The device outlives it.
@@ -37,6 +49,8 @@ class ComputePipeline final {
 
     VkPipeline get() const;
     VkPipelineLayout layout() const;
+    VkDescriptorSetLayout set_layout() const;  // null without bindings
+    const std::vector<Binding>& bindings() const { return bindings_; }
     std::uint32_t push_bytes() const { return push_bytes_; }
     const std::string& name() const { return name_; }
 
@@ -45,6 +59,7 @@ class ComputePipeline final {
     Device* device_ = nullptr;
     std::shared_ptr<Parts> parts_;
     std::uint32_t push_bytes_ = 0;
+    std::vector<Binding> bindings_;
     std::string name_;
 };
 

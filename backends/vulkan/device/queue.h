@@ -2,56 +2,42 @@
 
 #include <vulkan/vulkan_core.h>
 
-#include <chrono>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <span>
 #include <vector>
 
+#include "backends/vulkan/device/barrier_plan.h"
 #include "backends/vulkan/device/device_list.h"
+#include "backends/vulkan/device/fault.h"
 #include "backends/vulkan/device/handle.h"
 #include "backends/vulkan/device/step.h"
+#include "backends/vulkan/device/submission.h"
 
 namespace tessera::vulkan {
 
-class Queue;
-
-// Steps on their way. Dropping it abandons them: they run to their end unobserved.
-class Submission final {
-  public:
-    Submission() = default;  // of nothing: done
-
-    bool done() const;
-    // Both throw DeviceLost.
-    void wait() const;
-    bool wait_for(std::chrono::nanoseconds time) const;  // false: not done yet
-
-  private:
-    friend class Queue;
-    struct Slot;
-    Queue* queue_ = nullptr;
-    std::shared_ptr<Slot> slot_;
-    std::uint64_t ticket_ = 0;
-};
-
 // Runs steps on the device, in the order of submission as far as their reads and writes demand. Thread-safe.
+// Once a call reported VK_ERROR_DEVICE_LOST, all later ones throw DeviceLost.
 class Queue final {
   public:
-    Queue(VkDevice device, const DeviceInfo& info, std::uint32_t family);
+    Queue(VkDevice device, const DeviceInfo& info, std::uint32_t family, FaultHook fault);
     ~Queue();  // waits for everything
     Queue(const Queue&) = delete;
     Queue& operator=(const Queue&) = delete;
 
     // Returns at once. The steps see everything that the host wrote before. Throws DeviceLost, or
-    // Error{Internal} for a step that is none: a pass without a pipeline, arguments of another size, more
-    // groups than the device allows, a part beyond a buffer's end.
-    Submission submit(std::span<const Step> steps);
-    Submission submit(const Step& step) { return submit(std::span(&step, 1)); }
-    void wait_idle();  // until all that was submitted is done; throws DeviceLost
+    // Error{Internal} for a step that is none (see check_step); then none of them runs.
+    Submission submit(std::span<const Step> steps, Timing timing = Timing::None);
+    Submission submit(const Step& step, Timing timing = Timing::None) {
+        return submit(std::span(&step, 1), timing);
+    }
+    Submission latest() const;  // done when all that was submitted so far is; without times
 
     // Keeps `object` until everything submitted so far is done.
-    void retire(std::shared_ptr<void> object);
+    void retire(std::shared_ptr<void> object) noexcept;
+    void collect() noexcept;  // drops what was retired and is no longer in use
 
   private:
     friend class Submission;
@@ -60,21 +46,30 @@ class Queue final {
         std::shared_ptr<void> object;
     };
 
-    std::shared_ptr<Submission::Slot> free_slot();
-    void record(VkCommandBuffer commands, std::span<const Step> steps) const;
+    void check_call(VkResult result, const char* operation) const;
+    VkResult fault(FaultPoint point) const;
+    std::shared_ptr<SubmissionSlot> free_slot();
+    void record(SubmissionSlot& slot, std::span<const Step> steps, Timing timing);
+    void send(const SubmissionSlot& slot);
     std::uint64_t completed() const;
+    std::uint64_t completed_or_lost() const noexcept;
     bool wait_for(std::uint64_t ticket, std::uint64_t nanoseconds) const;
-    void collect();
+    std::vector<double> seconds_of(const SubmissionSlot& slot) const;
 
     VkDevice device_;
     const DeviceInfo& info_;
     std::uint32_t family_;
+    FaultHook fault_;
+    std::uint32_t timestamp_bits_ = 0;
     VkQueue queue_ = VK_NULL_HANDLE;
     Handle<VkSemaphore, vkDestroySemaphore> timeline_;
+    mutable std::atomic<bool> is_lost_ = false;
 
-    std::mutex mutex_;  // protects all below
+    mutable std::mutex mutex_;  // protects all below
     std::uint64_t submitted_ = 0;
-    std::vector<std::shared_ptr<Submission::Slot>> slots_;
+    bool is_plan_valid_ = false;
+    BarrierPlan plan_;
+    std::vector<std::shared_ptr<SubmissionSlot>> slots_;
     std::vector<Retired> retired_;
 };
 

@@ -45,6 +45,10 @@ struct Pass {
     const ComputePipeline* pipeline = nullptr;
     Arguments arguments;
     Groups groups;
+    const Buffer* groups_from =
+        nullptr;                       // instead of `groups`: three words there, which an earlier step wrote
+    std::uint64_t groups_offset = 0;   // a multiple of 4
+    std::vector<const Buffer*> bound;  // for the pipeline's bindings, in their order
     std::vector<const Buffer*> reads, writes;
 };
 
@@ -61,6 +65,9 @@ struct Fill {
     std::uint32_t word = 0;
 };
 
-using Step = std::variant<Pass, Copy, Fill>;
+// All before is done and seen before anything after starts, named or not.
+struct Publish {};
+
+using Step = std::variant<Pass, Copy, Fill, Publish>;
 
 }  // namespace tessera::vulkan

@@ -11,12 +11,29 @@
 
 namespace tessera::vulkan {
 
-// Both are ordered against everything submitted before and after, and done when they return. They throw
-// DeviceLost, or Error{Internal} for a part beyond the buffer's end.
+// Both are ordered against everything submitted before and after, and done when they return; where the host
+// does not see the buffer they go through staging memory. They throw DeviceLost, or Error{Internal} for a
+// part beyond the buffer's end.
 void upload_bytes(Device& device, const Buffer& buffer, std::span<const std::byte> bytes,
                   std::uint64_t offset = 0);
 void download_bytes(Device& device, const Buffer& buffer, std::span<std::byte> bytes,
                     std::uint64_t offset = 0);
+
+// A part of a buffer on its way to the host, behind all that was submitted before; others may go on
+// submitting. What it shows stays as long as it lives and the part is not written again.
+class Download final {
+  public:
+    Download() = default;  // of nothing
+    Download(Device& device, const Buffer& from, std::uint64_t offset, std::uint64_t bytes);
+
+    bool done() const { return submission_.done(); }
+    std::span<const std::byte> wait() const;  // throws DeviceLost
+
+  private:
+    Buffer staging_;  // only where the host does not see the buffer
+    Submission submission_;
+    std::span<const std::byte> bytes_;
+};
 
 template <class T>
 requires std::is_trivially_copyable_v<T>

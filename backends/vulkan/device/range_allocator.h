@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+namespace tessera::vulkan {
+
+// Hands out parts of [0, size): the smallest hole that fits, so that what returns is taken again by an equal
+// one; neighbouring holes become one. Logarithmic, but for alignments that few holes meet.
+class RangeAllocator final {
+  public:
+    explicit RangeAllocator(std::uint64_t size);
+
+    // The offset, a multiple of `alignment` (a power of two); nothing when no hole fits. `size` above zero.
+    std::optional<std::uint64_t> allocate(std::uint64_t size, std::uint64_t alignment);
+    // What allocate() gave, with the same size, once.
+    void release(std::uint64_t offset, std::uint64_t size);
+
+    std::uint64_t size() const { return size_; }
+    std::uint64_t free_bytes() const { return free_; }
+    bool empty() const { return free_ == size_; }
+
+  private:
+    void add_hole(std::uint64_t offset, std::uint64_t size);
+    void remove_hole(std::map<std::uint64_t, std::uint64_t>::iterator hole);
+
+    std::uint64_t size_, free_ = 0;
+    std::map<std::uint64_t, std::uint64_t> holes_;               // offset -> size; no two touch
+    std::set<std::pair<std::uint64_t, std::uint64_t>> by_size_;  // the same as (size, offset)
+};
+
+}  // namespace tessera::vulkan

@@ -1,0 +1,79 @@
+#include "client/tools/findings.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace tessera::tools {
+
+namespace {
+
+constexpr std::string_view BytesSuffix = "_bytes";
+
+const char* name(Verdict verdict) {
+    return verdict == Verdict::Good ? "ok" : verdict == Verdict::Poor ? "note" : "bad";
+}
+
+// "shared memory 32.0 KiB", "ray query no".
+std::string text_of(const Fact& fact) {
+    std::string key = fact.key;
+    const bool is_bytes = key.ends_with(BytesSuffix);
+    if (is_bytes) key.resize(key.size() - BytesSuffix.size());
+    std::replace(key.begin(), key.end(), '_', ' ');
+    if (const auto* flag = std::get_if<bool>(&fact.value)) return key + (*flag ? " yes" : " no");
+    if (const auto* text = std::get_if<std::string>(&fact.value)) return key + " " + *text;
+    const std::uint64_t number = std::get<std::uint64_t>(fact.value);
+    return key + " " + (is_bytes ? byte_text(number) : std::to_string(number));
+}
+
+void print_facts(const std::vector<Fact>& facts) {
+    constexpr std::size_t Width = 84;
+    std::string line;
+    for (const Fact& fact : facts) {
+        const std::string text = text_of(fact);
+        if (!line.empty() && line.size() + text.size() + 2 > Width) {
+            std::printf("      %-18s %s\n", "", line.c_str());
+            line.clear();
+        }
+        line += (line.empty() ? "" : ", ") + text;
+    }
+    if (!line.empty()) std::printf("      %-18s %s\n", "", line.c_str());
+}
+
+}  // namespace
+
+std::string byte_text(std::uint64_t bytes) {
+    constexpr const char* Units[] = {"KiB", "MiB", "GiB", "TiB"};
+    if (bytes < 1024) return std::to_string(bytes) + " B";
+    double value = double(bytes) / 1024;
+    std::size_t unit = 0;
+    for (; value >= 1024 && unit + 1 < std::size(Units); ++unit) value /= 1024;
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f %s", value, Units[unit]);
+    return text;
+}
+
+void print(const Findings& findings) {
+    for (const Finding& finding : findings) {
+        std::printf("%-5s %-18s %s\n", name(finding.verdict), finding.subject.c_str(), finding.fact.c_str());
+        print_facts(finding.facts);
+        if (!finding.remedy.empty()) std::printf("      %-18s -> %s\n", "", finding.remedy.c_str());
+    }
+}
+
+void print_json(const Findings& findings) {
+    auto list = nlohmann::ordered_json::array();
+    for (const Finding& finding : findings) {
+        nlohmann::ordered_json entry{{"subject", finding.subject},
+                                     {"verdict", name(finding.verdict)},
+                                     {"fact", finding.fact},
+                                     {"remedy", finding.remedy}};
+        for (const Fact& fact : finding.facts) {
+            std::visit([&](const auto& value) { entry["facts"][fact.key] = value; }, fact.value);
+        }
+        list.push_back(std::move(entry));
+    }
+    std::printf("%s\n", list.dump(2).c_str());
+}
+
+}  // namespace tessera::tools
