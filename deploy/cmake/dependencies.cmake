@@ -17,7 +17,7 @@ pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
 find_package(TinyGLTF REQUIRED CONFIG)
 find_package(draco REQUIRED CONFIG)
 find_package(assimp REQUIRED CONFIG)
-if(TESSERA_BACKEND_EMBREE)
+if(TESSERA_BACKEND_EMBREE OR TESSERA_BACKEND_VULKAN)  # Vulkan: builds trees
   find_package(embree 3 REQUIRED CONFIG)
 endif()
 if(TESSERA_BACKEND_VULKAN)

@@ -74,6 +74,9 @@ inline uint float_bits(float x) {
 inline float float_from_bits(uint bits) {
     return std::bit_cast<float>(bits);
 }
+inline uint lowest_bit(uint bits) {  // its index; bits != 0
+    return static_cast<uint>(std::countr_zero(bits));
+}
 inline bool is_nan(float x) {
     return x != x;
 }
@@ -106,6 +109,10 @@ inline bool is_finite(float x) {
 
 #define float_bits floatBitsToUint
 #define float_from_bits uintBitsToFloat
+
+uint lowest_bit(uint bits) {
+    return uint(findLSB(bits));
+}
 
 // By bits: a driver may leave out comparisons with what is no number.
 bool is_nan(float x) {

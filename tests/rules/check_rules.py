@@ -60,7 +60,7 @@ LIBRARIES = [
     (r"sodium", ["mediator/base/"], SOURCES),
     (r"google/protobuf/|.*\.pb\.h$", ["mediator/wire/", "tests/wire/"], EVERYWHERE),
     (r"(spdlog|CLI|nlohmann|toml\+\+)/", PROGRAMS + ["tests/"], SOURCES),
-    (r"embree\d/", ["backends/embree/"], EVERYWHERE),
+    (r"embree\d/", ["backends/embree/", "backends/vulkan/bvh/", "tests/bvh/"], EVERYWHERE),
     (r"vulkan/", ["backends/vulkan/", "client/tools/", "tests/vulkan/"], EVERYWHERE),
     (r"(OpenEXR/|Imath/)?(Imf|Imath|Iex|half)\w*\.h$", ["mediator/picture/", "client/import/", "tests/"],
      EVERYWHERE),

@@ -1,0 +1,89 @@
+#include "backends/vulkan/bvh/mesh_bvh.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace tessera::vulkan {
+
+namespace {
+
+constexpr float LargestCoordinate = 1.844e18f;  // Embree's FLT_LARGE
+
+bool has_area(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    for (const glm::vec3& p : {a, b, c}) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (!(std::fabs(p[axis]) < LargestCoordinate)) return false;
+        }
+    }
+    // In double: tiny triangles are small, not degenerate.
+    const glm::dvec3 normal = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
+    return glm::dot(normal, normal) > 0.0;
+}
+
+// Empty for a triangle that is left out.
+Box box_of(const MeshData& mesh, std::uint32_t triangle) {
+    const glm::uvec3& corners = mesh.triangles[triangle];
+    const glm::vec3 &a = mesh.positions[corners.x], &b = mesh.positions[corners.y],
+                    &c = mesh.positions[corners.z];
+    Box box;
+    if (!has_area(a, b, c)) return box;
+    box.add(a);
+    box.add(b);
+    box.add(c);
+    return box;
+}
+
+void fit(WideTree& tree, const MeshData& mesh, const TraversalCosts& costs) {
+    fit_boxes(tree, Level::Mesh, costs,
+              [&](std::uint32_t place) { return box_of(mesh, tree.primitives[place]); });
+}
+
+}  // namespace
+
+WideTree build_mesh(BinaryTreeBuilder& builder, const MeshData& mesh, const TraversalCosts& costs) {
+    std::vector<Box> boxes(mesh.triangles.size());
+    tbb::parallel_for(std::size_t{0}, boxes.size(),
+                      [&](std::size_t i) { boxes[i] = box_of(mesh, static_cast<std::uint32_t>(i)); });
+    std::vector<std::uint32_t> kept;
+    kept.reserve(boxes.size());
+    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+        if (boxes[i].empty()) continue;
+        boxes[kept.size()] = boxes[i];
+        kept.push_back(i);
+    }
+    boxes.resize(kept.size());
+    WideTree tree = collapse(builder.build(boxes, costs), Level::Mesh, shading::BvhMeshDepth);
+    for (std::uint32_t& primitive : tree.primitives) primitive = kept[primitive];
+    fit(tree, mesh, costs);
+    return tree;
+}
+
+bool refit_mesh(WideTree& tree, const MeshData& mesh, double built_cost, const TraversalCosts& costs) {
+    std::vector<char> kept(mesh.triangles.size());
+    for (const std::uint32_t triangle : tree.primitives) kept[triangle] = 1;
+    for (std::uint32_t i = 0; i < kept.size(); ++i) {
+        if (kept[i] == 0 && !box_of(mesh, i).empty()) return false;
+    }
+    fit(tree, mesh, costs);
+    return tree.cost <= RefitLimit * built_cost;
+}
+
+void write_triangles(const WideTree& tree, const MeshData& mesh, std::span<shading::BvhTriangle> out) {
+    tbb::parallel_for(std::size_t{0}, tree.primitives.size(), [&](std::size_t place) {
+        const std::uint32_t triangle = tree.primitives[place];
+        shading::BvhTriangle written{.triangle = triangle};
+        if (!box_of(mesh, triangle).empty()) {  // after a refit: else zero, which is never hit
+            const glm::uvec3& corners = mesh.triangles[triangle];
+            written.a = mesh.positions[corners.x];
+            written.b = mesh.positions[corners.y];
+            written.c = mesh.positions[corners.z];
+        }
+        out[place] = written;
+    });
+}
+
+}  // namespace tessera::vulkan

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "backends/vulkan/bvh/binary_tree.h"
+#include "mediator/shading/bvh_layout.h"
+
+namespace tessera::vulkan {
+
+// What a leaf's primitives are: triangles in a row of their own, or instances in the row of the nodes.
+enum class Level { Mesh, Top };
+
+// A tree as in shading/bvh_layout.h: rows, and what stands where. A node's children come after it; so does
+// all that is below them.
+struct WideTree {
+    std::vector<shading::BvhNode> nodes;    // Level::Top: places of instances are zero
+    std::vector<std::uint32_t> primitives;  // Level::Mesh: of each place in the row of triangles; Top: of
+                                            // each place in the row of nodes, NoPrimitive for nodes
+    std::uint32_t depth = 0;                // levels of nodes
+    Box box;
+    double cost = 0.0;  // expected of a ray that meets the box (surface-area heuristic), in TraversalCosts
+
+    static constexpr std::uint32_t NoPrimitive = 0xffffffffu;
+};
+
+// The wide tree's shape: boxes are still missing (fit_boxes). It is at most `max_depth` deep: where the
+// cheapest is deeper, an even one is made instead.
+WideTree collapse(const BinaryNode* root, Level level, std::uint32_t max_depth);
+
+// Sets the boxes of all nodes, from the leaves up, and cost and box of the tree. `box_of(place)`: of a
+// primitive by its place in WideTree::primitives, called from all threads of the calling arena. A quantised
+// box holds the exact one and a margin (see Margin), as the traversal computes it.
+void fit_boxes(WideTree& tree, Level level, const TraversalCosts& costs,
+               const std::function<Box(std::uint32_t place)>& box_of);
+
+}  // namespace tessera::vulkan

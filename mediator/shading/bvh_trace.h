@@ -1,0 +1,195 @@
+#ifndef TESSERA_MEDIATOR_SHADING_BVH_TRACE_H
+#define TESSERA_MEDIATOR_SHADING_BVH_TRACE_H
+
+#include "mediator/shading/bvh_node.h"
+#include "mediator/shading/rays.h"
+
+// Rays through the two levels of the acceleration structure. Hits are a function of the triangles alone:
+// neither the tree nor the order of its visit shows, but for rays within a triangle's plane.
+SHADING_BEGIN
+
+ARRAY_OF(uvec4, BvhItems, 16);
+
+// A shader may have the pool in a texel buffer (R32G32B32A32_UINT) and name it BVH_TEXELS.
+inline uvec4 bvh_item(BvhItems pool, uint at) {
+#ifdef BVH_TEXELS
+    return texelFetch(BVH_TEXELS, int(at));
+#else
+    return pool.items[at];
+#endif
+}
+
+inline vec4 bvh_floats(uvec4 bits) {
+    return vec4(float_from_bits(bits.x), float_from_bits(bits.y), float_from_bits(bits.z),
+                float_from_bits(bits.w));
+}
+
+inline vec3 bvh_corner(uvec4 item) {
+    return vec3(float_from_bits(item.x), float_from_bits(item.y), float_from_bits(item.z));
+}
+
+inline float bvh_row(vec4 row, vec3 v) {
+    return row.x * v.x + row.y * v.y + row.z * v.z;
+}
+
+inline constexpr uint NoInstance = 0xffffffffu;  // of a Hit: nothing was hit
+
+#ifndef __cplusplus
+bool stops_ray(IN(Context) context, IN(Hit) candidate, uint seed);
+#endif
+
+// Exact ties go to the lower instance, then to the lower triangle.
+inline bool bvh_is_closer(IN(Hit) hit, float distance, uint instance, uint triangle) {
+    return distance < hit.distance ||
+           (distance == hit.distance &&
+            (instance < hit.instance || (instance == hit.instance && triangle < hit.triangle)));
+}
+
+// Where a ray is: in the top level (instance = NoInstance) or within an instance.
+struct BvhPlace {
+    BvhRay ray;
+    uint nodes, corners;  // where the rows begin
+    uint instance, flags;
+};
+
+inline BvhPlace bvh_top(uint top, vec3 origin, vec3 direction) {
+    BvhPlace place;
+    place.ray = bvh_ray(origin, direction);
+    place.nodes = top;
+    place.corners = 0u;
+    place.instance = NoInstance;
+    place.flags = 0u;
+    return place;
+}
+
+// Directions are not made unit: distances are those of the world.
+inline BvhPlace bvh_enter(BvhItems pool, uint at, vec3 origin, vec3 direction) {
+    const vec4 x = bvh_floats(bvh_item(pool, at)), y = bvh_floats(bvh_item(pool, at + 1u));
+    const vec4 z = bvh_floats(bvh_item(pool, at + 2u));
+    const uvec4 about = bvh_item(pool, at + 3u);
+    BvhPlace place;
+    place.ray = bvh_ray(vec3(bvh_row(x, origin) + x.w, bvh_row(y, origin) + y.w, bvh_row(z, origin) + z.w),
+                        vec3(bvh_row(x, direction), bvh_row(y, direction), bvh_row(z, direction)));
+    place.nodes = about.x;
+    place.corners = about.y;
+    place.instance = about.z;
+    place.flags = about.w;
+    return place;
+}
+
+struct BvhStep {
+    uint first_child, first_triangle;
+    BvhVisit visit;
+};
+
+inline BvhStep bvh_step(BvhItems pool, uint node, IN(BvhPlace) place, float near, float far, uint question) {
+    const uvec4 item0 = bvh_item(pool, node), item1 = bvh_item(pool, node + 1u);
+    const uint inner = item0.w >> 24u;
+    const uint sorted = place.instance == NoInstance ? inner + item1.y : inner;
+    BvhStep made;
+    made.first_child = item1.x;
+    made.first_triangle = item1.y;
+    made.visit = bvh_visit(place.ray, item0, item1, bvh_item(pool, node + 2u), bvh_item(pool, node + 3u),
+                           bvh_item(pool, node + 4u), near, far, sorted, question);
+    return made;
+}
+
+// A closer hit of the triangle there, or the hit as it was.
+inline Hit bvh_meet(BvhItems pool, uint at, IN(BvhPlace) place, float near, IN(Hit) hit) {
+    const uvec4 a = bvh_item(pool, at), b = bvh_item(pool, at + 1u), c = bvh_item(pool, at + 2u);
+    const BvhCrossing crossing = bvh_cross_triangle(place.ray, bvh_corner(a), bvh_corner(b), bvh_corner(c));
+    Hit met = hit;
+    if (crossing.crosses && crossing.distance > near &&
+        bvh_is_closer(hit, crossing.distance, place.instance, a.w)) {
+        met.distance = crossing.distance;
+        met.barycentric = crossing.barycentric;
+        met.instance = place.instance;
+        met.triangle = a.w;
+    }
+    return met;
+}
+
+// The closest hit with near < distance <= far, or any; distance = far where there is none. `top`: where the
+// top level's root is, in items. Whoever includes this says what Context is and defines
+//     bool stops_ray(IN(Context) context, IN(Hit) candidate, uint seed)
+// before. Memory: BvhStackSize entries of 8 bytes; the builder bounds the depth of every tree.
+WITH_CONTEXT
+inline Hit bvh_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float near, float far,
+                     uint question, IN(Context) context, uint seed) {
+    Hit hit;
+    hit.distance = far;
+    hit.barycentric = vec2(0.0f, 0.0f);
+    hit.instance = NoInstance;
+    hit.triangle = 0u;
+
+    uint stack_first[BvhStackSize];
+    uint stack_list[BvhStackSize];
+    stack_list[0] = BvhEnd;
+    uint height = 0u;
+
+    BvhPlace place = bvh_top(top, origin, direction);
+    uint first = 0u, list = BvhRoot;  // children to visit
+    uint triangles = 0u, first_triangle = 0u;
+    Hit candidate = hit;
+    bool asked = false;
+
+    // One loop, its parts one after the other: lanes that have come to triangles wait for those still among
+    // nodes, and no longer; nested loops, another order or leaving the inner loop early were slower.
+    while (list != BvhEnd || triangles != 0u) {
+        while (triangles == 0u && bvh_is_node(list)) {
+            const uint node = place.nodes + (first + (list & 7u)) * BvhNodeItems;
+            list = bvh_without_nearest(list);
+            // Written in any case: a branch would cost more.
+            stack_first[height + 1u] = first;
+            stack_list[height + 1u] = list;
+            height += bvh_is_empty(list) ? 0u : 1u;
+            const BvhStep made = bvh_step(pool, node, place, near, hit.distance, question);
+            first = made.first_child;
+            first_triangle = made.first_triangle;
+            triangles = made.visit.triangles;
+            list = made.visit.list;
+            if (bvh_is_empty(list)) {
+                first = stack_first[height];
+                list = stack_list[height];
+                height -= height > 0u ? 1u : 0u;
+            }
+        }
+        while (triangles != 0u && !asked) {
+            const uint at = place.corners + (first_triangle + lowest_bit(triangles)) * BvhTriangleItems;
+            triangles &= triangles - 1u;
+            candidate = bvh_meet(pool, at, place, near, hit);
+            asked = (question & place.flags & BvhAlpha) != 0u &&
+                    (candidate.instance != hit.instance || candidate.triangle != hit.triangle);
+            if (!asked) hit = candidate;
+        }
+        if ((question & BvhAlpha) != 0u) {
+            if (asked && stops_ray(context, candidate, seed)) hit = candidate;
+            asked = false;
+        }
+        if ((question & BvhAny) != 0u && hit.instance != NoInstance) {
+            triangles = 0u;
+            list = BvhEnd;
+        }
+        if (triangles == 0u && list == BvhLeave) {
+            first = stack_first[height];
+            list = stack_list[height];
+            height -= height > 0u ? 1u : 0u;
+            if (bvh_is_node(list)) place = bvh_top(top, origin, direction);
+        }
+        if (triangles == 0u && list > BvhLeave && !bvh_is_node(list)) {  // into an instance
+            place = bvh_enter(pool, top + (first + (list & 7u)) * BvhInstanceItems, origin, direction);
+            list = bvh_without_nearest(list);
+            stack_first[height + 1u] = first;
+            stack_list[height + 1u] = list;
+            height += bvh_is_empty(list) ? 1u : 2u;
+            stack_list[height] = BvhLeave;
+            first = 0u;
+            list = BvhRoot;
+        }
+    }
+    return hit;
+}
+
+SHADING_END
+
+#endif
