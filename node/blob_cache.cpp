@@ -2,10 +2,10 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <fstream>
 #include <vector>
 
+#include "mediator/base/disk_cache.h"
 #include "mediator/base/error.h"
 
 namespace tessera::node {
@@ -72,27 +72,7 @@ void BlobCache::save(const scene::Blob& blob) {
 }
 
 void BlobCache::shrink() {
-    struct File {
-        fs::file_time_type used;
-        std::uint64_t size;
-        fs::path path;
-    };
-    std::vector<File> files;
-    byte_size_ = 0;
-    std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error)) {
-        if (!is_cache_file(entry.path())) continue;
-        std::error_code gone;
-        const File file{entry.last_write_time(gone), entry.file_size(gone), entry.path()};
-        if (gone) continue;
-        files.push_back(file);
-        byte_size_ += file.size;
-    }
-    std::sort(files.begin(), files.end(), [](const File& a, const File& b) { return a.used < b.used; });
-    for (const File& file : files) {
-        if (byte_size_ <= byte_limit_) break;
-        if (fs::remove(file.path, error)) byte_size_ -= file.size;
-    }
+    byte_size_ = shrink_folder(folder_, byte_limit_, is_cache_file);
 }
 
 }  // namespace tessera::node

@@ -49,7 +49,8 @@ namespace tessera::vulkan {
 //
 // TESSERA_TEST_DEVICE chooses the device as --device does; TESSERA_TEST_VALIDATION=instrumented turns
 // GPU-assisted validation on. Under it, lavapipe 22.3 was seen to skip work in a workgroup of one invocation:
-// keep workgroups at least as large as a subgroup.
+// keep workgroups at least as large as a subgroup. The layer takes structs of scalar layout for padded ones (as
+// std430), so that the last of a buffer seems to lie beyond its end: give such a buffer room for one more.
 class VulkanTest : public testing::Test {
   protected:
     void SetUp() override;
