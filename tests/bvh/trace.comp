@@ -1,12 +1,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Many rays, one each invocation. With TEXELS the pool is read through a texel buffer.
+// Many rays, one each invocation. With TEXELS pool and rays are read as texels and hits are storage, else all by
+// address; with PLAIN the trees are the baseline's.
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint Question = 0u;
 
 #ifdef TEXELS
 layout(set = 0, binding = 0) uniform usamplerBuffer pool_texels;
+layout(set = 0, binding = 1) uniform usamplerBuffer ray_texels;
 #define BVH_TEXELS pool_texels
 #endif
 
@@ -14,7 +16,11 @@ struct Context {
     uint unused;
 };
 
+#ifdef PLAIN
+#include "mediator/shading/plain_trace.h"
+#else
 #include "mediator/shading/bvh_trace.h"
+#endif
 
 struct AskedRay {
     vec3 origin;
@@ -41,11 +47,34 @@ bool stops_ray(IN(Context) context, IN(Hit) candidate, uint seed) {
     return candidate.triangle % 3u != 0u;
 }
 
+#ifdef TEXELS
+layout(set = 0, binding = 2, scalar) writeonly buffer BoundHits {
+    Hit bound_hits[];
+};
+
+AskedRay asked_ray(uint at) {
+    const vec4 start = uintBitsToFloat(texelFetch(ray_texels, int(2u * at)));
+    const vec4 way = uintBitsToFloat(texelFetch(ray_texels, int(2u * at + 1u)));
+    return AskedRay(start.xyz, start.w, way.xyz, way.w);
+}
+#endif
+
 void main() {
     const uint at = gl_GlobalInvocationID.x;
     if (at >= count) return;
-    const AskedRay ray = rays.items[at];
     Context context;
     context.unused = 0u;
-    hits.items[at] = bvh_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, context, 0u);
+#if defined(PLAIN)
+    const AskedRay ray = rays.items[at];
+    hits.items[at] =
+        plain_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, context, 0u);
+#elif defined(TEXELS)
+    const AskedRay ray = asked_ray(at);
+    bound_hits[at] =
+        bvh_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, context, 0u);
+#else
+    const AskedRay ray = rays.items[at];
+    hits.items[at] =
+        bvh_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, context, 0u);
+#endif
 }

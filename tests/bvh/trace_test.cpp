@@ -61,6 +61,7 @@ void expect_tree_unseen(const TracedScene& scene, float size, std::uint32_t coun
     for (const TestRay& ray : rays_around(scene, size, count)) {
         for (const std::uint32_t question : {shading::BvhClosest, shading::BvhAlpha}) {
             const Hit all = scene.ask_all(ray, question), found = scene.trace(ray, question);
+            EXPECT_TRUE(equal(all, scene.trace_plain(ray, question)));
             hits += all.instance != shading::NoInstance ? 1 : 0;
             if (equal(all, found)) continue;
             if (++different < 10) ADD_FAILURE() << "all: " << text(all) << ", tree: " << text(found);

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
-#include <map>
 
 namespace tessera::vulkan {
 
@@ -50,29 +49,48 @@ TracedScene::TracedScene(std::vector<TestMesh> meshes, const std::vector<TestIns
     : meshes_(std::move(meshes)), instances_(instances) {
     for (const TestMesh& mesh : meshes_) trees_.push_back(build_mesh(builder_, mesh.data()));
     lay_out();
+    lay_out_plain();
     make_embree();
 }
 
-void TracedScene::lay_out() {
-    pool_.assign(1, glm::uvec4(0));  // so that no row is at 0 by chance
-    std::vector<PlacedMesh> placed;
-    std::map<std::uint32_t, PlacedMesh> rows;
-    for (std::uint32_t i = 0; i < meshes_.size(); ++i) {
-        std::vector<shading::BvhTriangle> triangles(trees_[i].primitives.size());
-        write_triangles(trees_[i], meshes_[i].data(), triangles);
-        rows[i].box = trees_[i].box;
-        rows[i].nodes = append(pool_, trees_[i].nodes);
-        rows[i].triangles = append(pool_, triangles);
-    }
+std::vector<PlacedMesh> TracedScene::placed(const std::vector<PlacedMesh>& rows) const {
+    std::vector<PlacedMesh> all;
     for (const TestInstance& instance : instances_) {
         PlacedMesh mesh = rows[instance.mesh];
         mesh.linear = instance.linear;
         mesh.translation = instance.translation;
         mesh.alpha_tested = true;
-        placed.push_back(mesh);
+        all.push_back(mesh);
     }
-    top_ = build_top(builder_, placed);
+    return all;
+}
+
+void TracedScene::lay_out() {
+    pool_.assign(1, glm::uvec4(0));  // so that no row is at 0 by chance
+    std::vector<PlacedMesh> rows(meshes_.size());
+    for (std::uint32_t i = 0; i < meshes_.size(); ++i) {
+        std::vector<shading::BvhTriangle> triangles(trees_[i].primitives.size());
+        write_triangles(trees_[i].primitives, meshes_[i].data(), triangles);
+        rows[i].box = trees_[i].box;
+        rows[i].nodes = append(pool_, trees_[i].nodes);
+        rows[i].triangles = append(pool_, triangles);
+    }
+    top_ = build_top(builder_, placed(rows));
     top_place_ = append(pool_, top_.row);
+}
+
+void TracedScene::lay_out_plain() {
+    plain_pool_.assign(1, glm::uvec4(0));
+    std::vector<PlacedMesh> rows(meshes_.size());
+    for (std::uint32_t i = 0; i < meshes_.size(); ++i) {
+        const PlainTree tree = build_plain_mesh(builder_, meshes_[i].data());
+        std::vector<shading::BvhTriangle> triangles(tree.primitives.size());
+        write_triangles(tree.primitives, meshes_[i].data(), triangles);
+        rows[i].box = trees_[i].box;
+        rows[i].nodes = append(plain_pool_, tree.nodes);
+        rows[i].triangles = append(plain_pool_, triangles);
+    }
+    plain_top_place_ = append(plain_pool_, build_plain_top(builder_, placed(rows)));
 }
 
 void TracedScene::make_embree() {
@@ -120,6 +138,11 @@ void TracedScene::move(std::uint32_t mesh, const std::vector<glm::vec3>& positio
 shading::Hit TracedScene::trace(const TestRay& ray, std::uint32_t question) const {
     return shading::bvh_trace(shading::BvhItems{pool_.data()}, top_place_, ray.origin, ray.direction,
                               ray.near, ray.far, question, ThirdsPass{}, 0);
+}
+
+shading::Hit TracedScene::trace_plain(const TestRay& ray, std::uint32_t question) const {
+    return shading::plain_trace(shading::BvhItems{plain_pool_.data()}, plain_top_place_, ray.origin,
+                                ray.direction, ray.near, ray.far, question, ThirdsPass{}, 0);
 }
 
 shading::Hit TracedScene::ask_all(const TestRay& ray, std::uint32_t question) const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "backends/vulkan/bvh/mesh_bvh.h"
+#include "backends/vulkan/bvh/plain_tree.h"
 #include "backends/vulkan/bvh/top_bvh.h"
 #include "mediator/base/random.h"
 #include "mediator/shading/bvh_trace.h"
@@ -40,12 +41,13 @@ struct ThirdsPass {
     }
 };
 
-// The same scene three times: in the pool, as a list of all triangles, and in Embree.
+// The same scene four times: in the pool, as plain trees, as a list of all triangles, and in Embree.
 class TracedScene final {
   public:
     TracedScene(std::vector<TestMesh> meshes, const std::vector<TestInstance>& instances);
 
     shading::Hit trace(const TestRay& ray, std::uint32_t question = shading::BvhClosest) const;
+    shading::Hit trace_plain(const TestRay& ray, std::uint32_t question = shading::BvhClosest) const;
     // Every triangle asked, no boxes.
     shading::Hit ask_all(const TestRay& ray, std::uint32_t question = shading::BvhClosest) const;
     shading::Hit ask_embree(const TestRay& ray) const;
@@ -57,11 +59,15 @@ class TracedScene final {
     const TopBvh& top() const { return top_; }
     const std::vector<glm::uvec4>& pool() const { return pool_; }
     std::uint32_t top_place() const { return top_place_; }
-    // New positions, boxes by refit; instances stay.
+    const std::vector<glm::uvec4>& plain_pool() const { return plain_pool_; }
+    std::uint32_t plain_top_place() const { return plain_top_place_; }
+    // New positions, boxes by refit; instances stay. The plain trees are those of before.
     void move(std::uint32_t mesh, const std::vector<glm::vec3>& positions);
 
   private:
     void lay_out();
+    void lay_out_plain();
+    std::vector<PlacedMesh> placed(const std::vector<PlacedMesh>& rows) const;
     void make_embree();
 
     struct Release {
@@ -75,6 +81,8 @@ class TracedScene final {
     TopBvh top_;
     std::vector<glm::uvec4> pool_;
     std::uint32_t top_place_ = 0;
+    std::vector<glm::uvec4> plain_pool_;
+    std::uint32_t plain_top_place_ = 0;
     std::unique_ptr<RTCDeviceTy, Release> device_;
     std::vector<std::unique_ptr<RTCSceneTy, Release>> embree_meshes_;
     std::unique_ptr<RTCSceneTy, Release> embree_;

@@ -44,20 +44,25 @@ void fit(WideTree& tree, const MeshData& mesh, const TraversalCosts& costs) {
 
 }  // namespace
 
-WideTree build_mesh(BinaryTreeBuilder& builder, const MeshData& mesh, const TraversalCosts& costs) {
-    std::vector<Box> boxes(mesh.triangles.size());
-    tbb::parallel_for(std::size_t{0}, boxes.size(),
-                      [&](std::size_t i) { boxes[i] = box_of(mesh, static_cast<std::uint32_t>(i)); });
-    std::vector<std::uint32_t> kept;
-    kept.reserve(boxes.size());
-    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
-        if (boxes[i].empty()) continue;
-        boxes[kept.size()] = boxes[i];
-        kept.push_back(i);
+MeshBoxes boxes_of(const MeshData& mesh) {
+    MeshBoxes all;
+    all.boxes.resize(mesh.triangles.size());
+    tbb::parallel_for(std::size_t{0}, all.boxes.size(),
+                      [&](std::size_t i) { all.boxes[i] = box_of(mesh, static_cast<std::uint32_t>(i)); });
+    all.triangles.reserve(all.boxes.size());
+    for (std::uint32_t i = 0; i < all.boxes.size(); ++i) {
+        if (all.boxes[i].empty()) continue;
+        all.boxes[all.triangles.size()] = all.boxes[i];
+        all.triangles.push_back(i);
     }
-    boxes.resize(kept.size());
-    WideTree tree = collapse(builder.build(boxes, costs), Level::Mesh, shading::BvhMeshDepth);
-    for (std::uint32_t& primitive : tree.primitives) primitive = kept[primitive];
+    all.boxes.resize(all.triangles.size());
+    return all;
+}
+
+WideTree build_mesh(BinaryTreeBuilder& builder, const MeshData& mesh, const TraversalCosts& costs) {
+    const MeshBoxes boxes = boxes_of(mesh);
+    WideTree tree = collapse(builder.build(boxes.boxes, costs), Level::Mesh, shading::BvhMeshDepth);
+    for (std::uint32_t& primitive : tree.primitives) primitive = boxes.triangles[primitive];
     fit(tree, mesh, costs);
     return tree;
 }
@@ -72,9 +77,10 @@ bool refit_mesh(WideTree& tree, const MeshData& mesh, double built_cost, const T
     return tree.cost <= RefitLimit * built_cost;
 }
 
-void write_triangles(const WideTree& tree, const MeshData& mesh, std::span<shading::BvhTriangle> out) {
-    tbb::parallel_for(std::size_t{0}, tree.primitives.size(), [&](std::size_t place) {
-        const std::uint32_t triangle = tree.primitives[place];
+void write_triangles(std::span<const std::uint32_t> primitives, const MeshData& mesh,
+                     std::span<shading::BvhTriangle> out) {
+    tbb::parallel_for(std::size_t{0}, primitives.size(), [&](std::size_t place) {
+        const std::uint32_t triangle = primitives[place];
         shading::BvhTriangle written{.triangle = triangle};
         if (!box_of(mesh, triangle).empty()) {  // after a refit: else zero, which is never hit
             const glm::uvec3& corners = mesh.triangles[triangle];

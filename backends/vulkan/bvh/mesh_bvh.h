@@ -13,8 +13,15 @@ struct MeshData {
     std::span<const glm::uvec3> triangles;  // their indices are within `positions`
 };
 
-// The bottom level of one mesh: WideTree over its triangles. Those without area, or with a coordinate that is
-// no number or beyond +-1.8e18 (where Embree stops, too), are left out and never hit.
+// Boxes of the triangles that can be hit. Left out are those without area, or with a coordinate that is no
+// number or beyond +-1.8e18 (where Embree stops, too).
+struct MeshBoxes {
+    std::vector<Box> boxes;
+    std::vector<std::uint32_t> triangles;
+};
+MeshBoxes boxes_of(const MeshData& mesh);
+
+// The bottom level of one mesh.
 WideTree build_mesh(BinaryTreeBuilder& builder, const MeshData& mesh, const TraversalCosts& costs = {});
 
 // Same triangles, other positions: the tree stays, its boxes follow. False: a triangle that was left out has
@@ -22,10 +29,8 @@ WideTree build_mesh(BinaryTreeBuilder& builder, const MeshData& mesh, const Trav
 // in the second case). `built_cost`: WideTree::cost after the last build.
 bool refit_mesh(WideTree& tree, const MeshData& mesh, double built_cost, const TraversalCosts& costs = {});
 
-// A refitted tree may cost so many times what it cost when it was built.
-inline constexpr double RefitLimit = 1.5;
-
-// The row of triangles, `out` of tree.primitives.size().
-void write_triangles(const WideTree& tree, const MeshData& mesh, std::span<shading::BvhTriangle> out);
+// The row of triangles: WideTree::primitives of the mesh; `out` has as many.
+void write_triangles(std::span<const std::uint32_t> primitives, const MeshData& mesh,
+                     std::span<shading::BvhTriangle> out);
 
 }  // namespace tessera::vulkan

@@ -1,10 +1,6 @@
 #include "backends/vulkan/bvh/top_bvh.h"
 
-#include <cmath>
 #include <cstring>
-#include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
-#include <optional>
 
 namespace tessera::vulkan {
 
@@ -13,96 +9,68 @@ namespace {
 using shading::BvhInstance;
 using shading::BvhNode;
 
-constexpr double LargestCoordinate = 1.8e18;
-constexpr double UnitRoundoff = 0x1p-24;
-
-struct Rows {
-    glm::vec4 x, y, z;  // object from world
-};
-
-std::optional<Rows> inverse_of(const PlacedMesh& placed) {
-    const glm::dmat3 inverse = glm::inverse(glm::dmat3(placed.linear));
-    const glm::dvec3 translation = -(inverse * glm::dvec3(placed.translation));
-    Rows rows;
-    const auto fill = [&](glm::vec4& row, int i) {
-        row = glm::vec4(inverse[0][i], inverse[1][i], inverse[2][i], translation[i]);
-        return std::isfinite(row.x) && std::isfinite(row.y) && std::isfinite(row.z) && std::isfinite(row.w);
-    };
-    if (!fill(rows.x, 0) || !fill(rows.y, 1) || !fill(rows.z, 2)) return std::nullopt;
-    return rows;
+TraversalCosts instance_costs() {
+    return {.triangle = InstanceCost, .leaf_triangles = 1};
 }
 
-float outward(double value, double direction) {
-    return std::nextafter(static_cast<float>(value), static_cast<float>(direction));
-}
-
-// Around the mesh as rays see it: their way to the object's space is rounded, 6 roundings of what is summed
-// up there, and as many of the transform that it inverts.
-Box world_box(const PlacedMesh& placed) {
-    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low), size(0.0);
-    const glm::dmat3 linear(placed.linear);
-    const glm::dmat3 sizes(glm::abs(linear[0]), glm::abs(linear[1]), glm::abs(linear[2]));
-    for (unsigned i = 0; i < 8; ++i) {
-        const glm::dvec3 corner((i & 1u) ? placed.box.low.x : placed.box.high.x,
-                                (i & 2u) ? placed.box.low.y : placed.box.high.y,
-                                (i & 4u) ? placed.box.low.z : placed.box.high.z);
-        const glm::dvec3 world = linear * corner + glm::dvec3(placed.translation);
-        low = glm::min(low, world);
-        high = glm::max(high, world);
-        size = glm::max(size, sizes * glm::abs(corner) + glm::abs(glm::dvec3(placed.translation)));
-    }
-    const glm::dvec3 margin = 12.0 * UnitRoundoff * size;
-    Box box;
-    for (int axis = 0; axis < 3; ++axis) {
-        box.low[axis] = outward(low[axis] - margin[axis], -INFINITY);
-        box.high[axis] = outward(high[axis] + margin[axis], INFINITY);
-        if (!(box.low[axis] > -LargestCoordinate && box.high[axis] < LargestCoordinate)) return {};
-    }
-    return box;
-}
-
-}  // namespace
-
-TopBvh build_top(BinaryTreeBuilder& builder, std::span<const PlacedMesh> instances,
-                 const TraversalCosts& costs) {
-    TopBvh top;
+// Boxes of all instances; empty ones are left out.
+std::vector<Box> world_boxes(std::span<const PlacedMesh> instances) {
     std::vector<Box> boxes;
-    std::vector<std::uint32_t> kept;
-    for (std::uint32_t i = 0; i < instances.size(); ++i) {
-        if (instances[i].box.empty() || !inverse_of(instances[i])) continue;
-        const Box box = world_box(instances[i]);
-        if (box.empty()) continue;
-        boxes.push_back(box);
-        kept.push_back(i);
-    }
-    TraversalCosts alone = costs;
-    alone.leaf_triangles = 1;
-    top.tree = collapse(builder.build(boxes, alone), Level::Top, shading::BvhTopDepth);
-    fit_boxes(top.tree, Level::Top, alone,
-              [&](std::uint32_t place) { return boxes[top.tree.primitives[place]]; });
+    boxes.reserve(instances.size());
+    for (const PlacedMesh& placed : instances) boxes.push_back(world_box(placed));
+    return boxes;
+}
 
+void fit(TopBvh& top, std::span<const Box> boxes, std::span<const PlacedMesh> instances) {
+    fit_boxes(top.tree, Level::Top, instance_costs(),
+              [&](std::uint32_t place) { return boxes[top.tree.primitives[place]]; });
     static_assert(sizeof(BvhNode) == sizeof(BvhInstance));
     top.row.resize(top.tree.nodes.size() * sizeof(BvhNode));
     for (std::size_t place = 0; place < top.tree.nodes.size(); ++place) {
         std::byte* target = top.row.data() + place * sizeof(BvhNode);
-        std::uint32_t& primitive = top.tree.primitives[place];
-        if (primitive == WideTree::NoPrimitive) {
+        const std::uint32_t number = top.tree.primitives[place];
+        if (number == WideTree::NoPrimitive) {
             std::memcpy(target, &top.tree.nodes[place], sizeof(BvhNode));
-            continue;
+        } else {
+            const BvhInstance record = record_of(instances[number], number);
+            std::memcpy(target, &record, sizeof record);
         }
-        primitive = kept[primitive];
-        const PlacedMesh& placed = instances[primitive];
-        const Rows rows = *inverse_of(placed);
-        const BvhInstance instance{.object_x = rows.x,
-                                   .object_y = rows.y,
-                                   .object_z = rows.z,
-                                   .nodes = placed.nodes,
-                                   .triangles = placed.triangles,
-                                   .instance = primitive,
-                                   .flags = placed.alpha_tested ? shading::BvhAlphaTested : 0u};
-        std::memcpy(target, &instance, sizeof instance);
     }
+}
+
+}  // namespace
+
+TopBvh build_top(BinaryTreeBuilder& builder, std::span<const PlacedMesh> instances) {
+    const std::vector<Box> boxes = world_boxes(instances);
+    std::vector<Box> kept_boxes;
+    std::vector<std::uint32_t> kept;
+    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+        if (boxes[i].empty()) continue;
+        kept_boxes.push_back(boxes[i]);
+        kept.push_back(i);
+    }
+    TopBvh top;
+    top.tree = collapse(builder.build(kept_boxes, instance_costs()), Level::Top, shading::BvhTopDepth);
+    for (std::uint32_t& primitive : top.tree.primitives) {
+        if (primitive != WideTree::NoPrimitive) primitive = kept[primitive];
+    }
+    fit(top, boxes, instances);
     return top;
+}
+
+bool refit_top(TopBvh& top, std::span<const PlacedMesh> instances, double built_cost) {
+    const std::vector<Box> boxes = world_boxes(instances);
+    std::vector<char> placed(instances.size());
+    for (const std::uint32_t number : top.tree.primitives) {
+        if (number == WideTree::NoPrimitive) continue;
+        if (number >= boxes.size() || boxes[number].empty()) return false;
+        placed[number] = 1;
+    }
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (placed[i] == 0 && !boxes[i].empty()) return false;
+    }
+    fit(top, boxes, instances);
+    return top.tree.cost <= RefitLimit * built_cost;
 }
 
 }  // namespace tessera::vulkan

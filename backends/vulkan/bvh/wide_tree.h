@@ -25,6 +25,9 @@ struct WideTree {
     static constexpr std::uint32_t NoPrimitive = 0xffffffffu;
 };
 
+// A refitted tree may cost so many times what it cost when it was built.
+inline constexpr double RefitLimit = 1.5;
+
 // The wide tree's shape: boxes are still missing (fit_boxes). It is at most `max_depth` deep: where the
 // cheapest is deeper, an even one is made instead.
 WideTree collapse(const BinaryNode* root, Level level, std::uint32_t max_depth);
