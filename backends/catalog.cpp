@@ -31,4 +31,16 @@ const BackendEntry& find_backend(std::string_view name) {
                 "there is no back-end '" + std::string(name) + "'; choose one of " + names);
 }
 
+bool offers_devices() {
+    const std::span<const BackendEntry> entries = catalog();
+    return std::any_of(entries.begin(), entries.end(),
+                       [](const BackendEntry& entry) { return entry.chooses_device; });
+}
+
+Expected<void> check_device(const BackendEntry& entry, std::string_view device) {
+    if (device.empty() || entry.chooses_device) return {};
+    return failure(ErrorCode::InvalidInput,
+                   "back-end '" + entry.name + "' has no choice of devices: leave --device out");
+}
+
 }  // namespace tessera::backend

@@ -53,6 +53,10 @@ std::optional<int> parse_options(int argc, const char* const* argv, NodeOptions&
     line.option("--threads", "units rendered at a time; 0 = one per core", options.threads);
     line.choice("--isa", "instruction set of the back-end; avx2 gives the same bits on every node",
                 options.isa, {"avx2", "avx512"});
+    if (backend::offers_devices()) {
+        line.option("--device", "index or part of a name, as tessera doctor lists them; default: the best",
+                    options.device);
+    }
     line.option("--cache", "keep blobs in this folder, for the next start", options.cache);
     line.option("--cache-size", "MiB that the cache folder may hold", options.cache_mib);
     line.option("--memory", "MiB of blobs in memory above which unused ones are dropped", options.memory_mib);
@@ -80,6 +84,10 @@ std::optional<int> parse_options(int argc, const char* const* argv, NodeOptions&
             "no keys: give --keys DIR (made by 'tessera keys'), or --insecure for a master on this machine");
     }
     if (!options.keys.empty() && options.insecure) return usage("--keys and --insecure exclude each other");
+    if (const auto fine = backend::check_device(backend::find_backend(options.backend), options.device);
+        !fine) {
+        return usage(fine.error().what());
+    }
     const Expected<Duration> simulated = parse_duration(cost);
     if (!simulated) return usage(std::string("--simulate-cost: ") + simulated.error().what());
     options.simulated_cost = *simulated;

@@ -17,7 +17,7 @@ struct NodeOptions {
     std::string user = "node";  // whose pair in that folder
     bool insecure = false;
     std::uint32_t threads = 0;
-    std::string isa;
+    std::string isa, device;
     std::string cache;                                  // "" = none
     std::uint64_t cache_mib = 4096, memory_mib = 8192;  // of blobs, on disk and in memory
     std::string name, host;

@@ -65,6 +65,8 @@ int serve(const node::NodeOptions& options, const sigset_t& signals) {
     auto backend = backend::find_backend(options.backend)
                        .make({.threads = options.threads,
                               .isa = options.isa,
+                              .device = options.device,
+                              .cache_folder = options.cache,
                               .simulated_sample_cost = options.simulated_cost,
                               .blobs = blobs});
     net::ClientSettings client;

@@ -52,9 +52,11 @@ std::unique_ptr<net::Channel> EmbeddedCluster::client() {
 void EmbeddedCluster::add_node(const EmbeddedSettings& settings, std::uint32_t index,
                                const std::shared_ptr<scene::BlobStore>& blobs, const Clock& clock) {
     const std::uint32_t threads = settings.threads != 0 ? settings.threads : core_count();
-    auto backend =
-        backend::find_backend(settings.backend)
-            .make({.threads = std::max(1u, threads / settings.nodes), .isa = settings.isa, .blobs = blobs});
+    auto backend = backend::find_backend(settings.backend)
+                       .make({.threads = std::max(1u, threads / settings.nodes),
+                              .isa = settings.isa,
+                              .device = settings.device,
+                              .blobs = blobs});
     node::NodeSettings node_settings{.name = "embedded-" + std::to_string(index + 1),
                                      .host = host_name(),
                                      .software = "tessera " + cli::version(),

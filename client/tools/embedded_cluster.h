@@ -19,7 +19,7 @@ struct EmbeddedSettings {
     std::string backend;
     std::uint32_t nodes = 1;
     std::uint32_t threads = 0;  // of all nodes together; 0 = all cores
-    std::string isa;            // of the back-end; "" = best
+    std::string isa, device;    // of the back-end; "" = best
 };
 
 // A master and its nodes inside this process, talking over inproc and sharing one store of blobs, so that

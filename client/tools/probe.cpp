@@ -21,6 +21,7 @@ struct ProbeOptions {
     std::string pixel;
     std::uint64_t sample = 0;
     std::optional<std::string> backend;
+    std::string device;
     bool reproducible = false;
 };
 
@@ -56,7 +57,11 @@ int run(const ProbeOptions& options) {
         const auto blobs = std::make_shared<scene::BlobStore>();
         const backend::BackendEntry& entry =
             options.backend ? backend::find_backend(*options.backend) : backend::catalog().front();
-        const auto backend = entry.make({.isa = options.reproducible ? "avx2" : "", .blobs = blobs});
+        if (const auto fine = backend::check_device(entry, options.device); !fine) {
+            return complain(Name, cli::ExitUsage, fine.error().what());
+        }
+        const auto backend =
+            entry.make({.isa = options.reproducible ? "avx2" : "", .device = options.device, .blobs = blobs});
         import::CameraInfo camera;
         const scene::ChangeList scene = authority_snapshot(*plan, blobs, camera);
         {
@@ -84,6 +89,9 @@ Command probe_command(cli::CommandLine& program) {
     command.option("--pixel", "X,Y from the top left", options->pixel);
     command.option("--sample", "number of the sample from 0", options->sample);
     command.option("--backend", "which back-end replays it", options->backend);
+    if (backend::offers_devices()) {
+        command.option("--device", "on which device; index or part of a name", options->device);
+    }
     command.flag("--reproducible", "as the frame was rendered: AVX2 only", options->reproducible);
     command.required("--pixel");
     command.examples({"tessera probe room.glb --pixel 320,180 --sample 7",

@@ -57,6 +57,9 @@ Expected<EmbeddedSettings> embedded_settings(const RenderOptions& options) {
     settings.nodes = static_cast<std::uint32_t>(nodes);
     settings.threads = static_cast<std::uint32_t>(threads);
     if (options.reproducible) settings.isa = "avx2";
+    settings.device = options.device.value_or("");
+    const auto fine = backend::check_device(backend::find_backend(settings.backend), settings.device);
+    if (!fine) return tl::unexpected(fine.error());
     return settings;
 }
 
@@ -125,6 +128,11 @@ void RenderOptions::add_to(cli::CommandLine& command) {
     command.choice("--policy", "how frames are cut into work", policy, {"tiled", "cooperative", "mixed"});
     command.flag("--reproducible", "the same bits on every x86-64-v3 machine: AVX2 only", reproducible);
     command.option("--backend", "back-end of the embedded nodes", backend);
+    if (backend::offers_devices()) {
+        command.option("--device",
+                       "its device: index or part of a name, as tessera doctor lists them (the best)",
+                       device);
+    }
     command.option("--nodes", "number of embedded nodes (1)", nodes);
     command.option("--threads", "threads of all embedded nodes together (all cores)", threads);
     command.option("--master", "use a running cluster: tcp://host:port", master);
@@ -153,10 +161,10 @@ Expected<RenderPlan> understand(const RenderOptions& options) {
     plan.embedded = *embedded;
     plan.job.wait_nodes = plan.embedded.nodes;
     if (options.master) {
-        if (options.backend || options.nodes || options.threads) {
+        if (options.backend || options.device || options.nodes || options.threads) {
             return wrong(
-                "--backend, --nodes and --threads are for the embedded cluster; with --master the nodes "
-                "decide");
+                "--backend, --device, --nodes and --threads are for the embedded cluster; with --master the "
+                "nodes decide");
         }
         plan.address = {*options.master, options.keys.value_or(""), options.user};
         plan.job.wait_nodes = 1;

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <stop_token>
@@ -81,6 +82,8 @@ class Backend {
 struct BackendSettings {
     std::uint32_t threads = 0;  // 0 = all cores
     std::string isa;            // "" = best, "avx2", "avx512"
+    std::string device;         // "" = best; else an index or a part of a name, letter case aside
+    std::filesystem::path cache_folder;  // for what can be made again (trees, compiled kernels); "" = none
     std::chrono::nanoseconds simulated_sample_cost{0};  // null only: fixed time per sample, for scheduler benchmarks
     std::shared_ptr<scene::BlobStore> blobs;            // never null
 };
@@ -90,6 +93,7 @@ struct BackendEntry {
     std::string name;
     std::string summary;
     std::function<std::unique_ptr<Backend>(const BackendSettings&)> make;  // throws Error when it cannot start
+    bool chooses_device = false;  // whether BackendSettings::device means anything to it
 };
 
 }  // namespace tessera::backend

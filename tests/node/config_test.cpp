@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "client/cli/cli.h"
+#include "mediator/backend/catalog.h"
 
 namespace tessera::node {
 namespace {
@@ -63,6 +64,23 @@ TEST(NodeOptions, AWrongChoiceOrNumberExits64) {
     EXPECT_EQ(parse({"--master", "tcp://a:1", "--insecure", "--threads", "-1"}).exit, 64);
     EXPECT_EQ(parse({"--master", "tcp://a:1", "--insecure", "--simulate-cost", "20"}).exit, 64);
     EXPECT_EQ(parse({"--master", "tcp://a:1", "--insecure", "stray"}).exit, 64);
+}
+
+TEST(NodeOptions, ADeviceIsOfferedOnlyWhereABackEndHasAChoice) {
+    const Parsed null_device =
+        parse({"--master", "tcp://a:1", "--insecure", "--backend", "null", "--device", "0"});
+    EXPECT_EQ(null_device.exit, 64);
+    EXPECT_TRUE(mentions(null_device.err, "--device")) << null_device.err;
+    EXPECT_EQ(mentions(parse({"--help"}).out, "--device"), backend::offers_devices());
+    for (const backend::BackendEntry& entry : backend::catalog()) {
+        EXPECT_TRUE(backend::check_device(entry, ""));
+        EXPECT_EQ(backend::check_device(entry, "0").has_value(), entry.chooses_device);
+        if (!entry.chooses_device) continue;
+        const Parsed chosen = parse(
+            {"--master", "tcp://a:1", "--insecure", "--backend", entry.name.c_str(), "--device", "llvmpipe"});
+        ASSERT_FALSE(chosen.exit) << chosen.err;
+        EXPECT_EQ(chosen.options.device, "llvmpipe");
+    }
 }
 
 TEST(NodeOptions, WhatIsMissingOrContradictsExits64) {

@@ -57,7 +57,8 @@ Device::Device(const Instance&, const DeviceInfo& info, const DeviceSettings& se
       family_(choose_family(info.handle)),
       device_{open(info, family_)},
       memory_(device_.object, info_, settings.memory),
-      queue_(device_.object, info_, family_, settings.fault) {}
+      queue_(device_.object, info_, family_, settings.fault),
+      pipelines_(device_.object, info_, settings.cache_folder) {}
 
 Device::~Device() = default;
 

@@ -4,9 +4,11 @@
 
 #include <atomic>
 #include <cstdint>
+#include <filesystem>
 
 #include "backends/vulkan/device/device_list.h"
 #include "backends/vulkan/device/memory.h"
+#include "backends/vulkan/device/pipeline_cache.h"
 #include "backends/vulkan/device/queue.h"
 #include "backends/vulkan/device/result.h"
 
@@ -14,7 +16,8 @@ namespace tessera::vulkan {
 
 struct DeviceSettings {
     MemorySettings memory;
-    FaultHook fault;  // for tests
+    std::filesystem::path cache_folder;  // of compiled kernels; empty: none
+    FaultHook fault;                     // for tests
 };
 
 // One opened device with its memory and its queue. Outlives all buffers and pipelines made on it.
@@ -30,6 +33,7 @@ class Device final {
     const DeviceInfo& info() const { return info_; }
     VkDevice get() const { return device_.object; }
     Queue& queue() { return queue_; }
+    PipelineCache& pipelines() { return pipelines_; }
 
     const Memory& memory() const { return memory_; }
     std::uint64_t uploaded_bytes() const { return uploaded_; }      // so far
@@ -50,6 +54,7 @@ class Device final {
     Opened device_;
     Memory memory_;
     Queue queue_;
+    PipelineCache pipelines_;
     std::atomic<std::uint64_t> uploaded_ = 0;
 };
 

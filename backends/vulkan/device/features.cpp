@@ -37,10 +37,6 @@ constexpr std::array Requirements{
                 [](FeatureChain& f) -> VkBool32& { return f.v13.synchronization2; }},
     Requirement{"maintenance4", "workgroup sizes as specialisation constants",
                 [](FeatureChain& f) -> VkBool32& { return f.v13.maintenance4; }},
-    Requirement{"subgroupSizeControl", "full subgroups",
-                [](FeatureChain& f) -> VkBool32& { return f.v13.subgroupSizeControl; }},
-    Requirement{"computeFullSubgroups", "full subgroups",
-                [](FeatureChain& f) -> VkBool32& { return f.v13.computeFullSubgroups; }},
 };
 
 }  // namespace

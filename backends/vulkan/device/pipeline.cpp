@@ -92,10 +92,7 @@ ComputePipeline::ComputePipeline(Device& device, const PipelineSettings& setting
                   .pName = "main",
                   .pSpecializationInfo = &specialization},
         .layout = layout};
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    check(vkCreateComputePipelines(device.get(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
-          "compile kernel " + name_);
-    parts_->pipeline = {device.get(), pipeline};
+    parts_->pipeline = device.pipelines().make(info, settings);
 }
 
 ComputePipeline& ComputePipeline::operator=(ComputePipeline&& other) noexcept {

@@ -1,0 +1,69 @@
+#include "backends/vulkan/device/pipeline_cache.h"
+
+#include <optional>
+
+#include "backends/vulkan/device/result.h"
+
+namespace tessera::vulkan {
+
+namespace {
+
+// A compiled kernel takes some hundred KiB: room for all variants of some drivers.
+constexpr std::uint64_t ByteLimit = 64u << 20;
+
+template <class T>
+void update(Blake2b& hash, const T& value) {
+    hash.update(std::as_bytes(std::span(&value, 1)));
+}
+
+std::vector<std::byte> data_of(VkDevice device, VkPipelineCache cache) {
+    std::size_t size = 0;
+    check(vkGetPipelineCacheData(device, cache, &size, nullptr), "read a compiled kernel");
+    std::vector<std::byte> data(size);
+    check(vkGetPipelineCacheData(device, cache, &size, data.data()), "read a compiled kernel");
+    data.resize(size);
+    return data;
+}
+
+}  // namespace
+
+PipelineCache::PipelineCache(VkDevice device, const DeviceInfo& info, const std::filesystem::path& folder)
+    : device_(device), info_(info), files_(folder, "pipeline", ByteLimit) {}
+
+Hash256 PipelineCache::key_of(const PipelineSettings& settings) const {
+    Blake2b hash;
+    update(hash, info_.cache_uuid);
+    update(hash, info_.vendor_id);
+    update(hash, info_.device_id);
+    update(hash, info_.driver_version);
+    update(hash, settings.push_bytes);
+    update(hash, settings.constants.size());
+    for (const Constant& constant : settings.constants) update(hash, constant);
+    update(hash, settings.bindings.size());
+    for (const Binding& binding : settings.bindings) {
+        update(hash, binding.index);
+        update(hash, binding.kind);
+    }
+    hash.update(std::as_bytes(settings.code));
+    return hash.finish();
+}
+
+Handle<VkPipeline, vkDestroyPipeline> PipelineCache::make(const VkComputePipelineCreateInfo& info,
+                                                          const PipelineSettings& settings) {
+    const Hash256 key = key_of(settings);
+    const std::optional<std::vector<std::byte>> kept = files_.load(key);
+    const VkPipelineCacheCreateInfo cache_info{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
+                                               .initialDataSize = kept ? kept->size() : 0,
+                                               .pInitialData = kept ? kept->data() : nullptr};
+    VkPipelineCache object = VK_NULL_HANDLE;
+    check(vkCreatePipelineCache(device_, &cache_info, nullptr, &object), "open a cache of kernels");
+    const Handle<VkPipelineCache, vkDestroyPipelineCache> cache(device_, object);
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    check(vkCreateComputePipelines(device_, object, 1, &info, nullptr, &pipeline),
+          "compile kernel " + settings.name);
+    Handle<VkPipeline, vkDestroyPipeline> made(device_, pipeline);
+    if (!kept) files_.save(key, data_of(device_, object));
+    return made;
+}
+
+}  // namespace tessera::vulkan
