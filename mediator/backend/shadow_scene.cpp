@@ -178,23 +178,34 @@ void ShadowScene::forget_index() {
     lights_below_.clear();
 }
 
-SceneDelta ShadowScene::take_delta() {
-    if (!delta_.instances_changed) delta_.moved_instances = listed(std::exchange(moved_, {}));
+SceneDelta ShadowScene::pending() const {
+    SceneDelta delta = delta_;
+    if (!delta.instances_changed) delta.moved_instances = listed(moved_);
     for (const auto& [id, fields] : changed_geometries_) {
-        delta_.geometries.push_back({id, Fields<Geometry>::from_bits(fields)});
+        delta.geometries.push_back({id, Fields<Geometry>::from_bits(fields)});
     }
-    std::sort(delta_.geometries.begin(), delta_.geometries.end(),
+    std::sort(delta.geometries.begin(), delta.geometries.end(),
               [](const auto& a, const auto& b) { return a.id < b.id; });
-    delta_.removed_geometries = listed(removed_geometries_);
-    delta_.materials = listed(materials_);
-    delta_.textures = listed(textures_);
-    delta_.ignored_kinds = listed(ignored_kinds_);
+    delta.removed_geometries = listed(removed_geometries_);
+    delta.materials = listed(materials_);
+    delta.textures = listed(textures_);
+    delta.ignored_kinds = listed(ignored_kinds_);
+    return delta;
+}
+
+void ShadowScene::accept() {
     for (auto* ids : {&created_geometries_, &removed_geometries_, &materials_, &textures_}) ids->clear();
     ignored_kinds_.clear();
     changed_geometries_.clear();
     moved_.clear();
     undo_.clear();
-    return std::exchange(delta_, {});
+    delta_ = {};
+}
+
+SceneDelta ShadowScene::take_delta() {
+    SceneDelta delta = pending();
+    accept();
+    return delta;
 }
 
 void ShadowScene::rollback() {
@@ -215,7 +226,7 @@ void ShadowScene::rollback() {
             move_below(undo.moved_transforms, moved);
         }
     }
-    take_delta();
+    accept();
 }
 
 ShadowScene::Touched ShadowScene::touch(const scene::ChangeList& changes) const {

@@ -33,15 +33,18 @@ struct SceneDelta {
 };
 
 // The back-end's mirror: dictionary and dispatch, shared by all back-ends (Schwenk 5.3.2.3). Deltas of
-// consecutive lists add up until take_delta(), and until then rollback() undoes them. The result never
+// consecutive lists add up until accept(), and until then rollback() undoes them. The result never
 // depends on how the scene came about: it equals one that was made from a snapshot. Moving a transform costs
 // the instances below it.
 class ShadowScene {
   public:
     // All of a list or nothing. InvalidInput: what Scene::apply refuses, and what lower() refuses.
     Expected<void> apply(const scene::ChangeList& changes);
-    SceneDelta take_delta();
-    void rollback();  // to the state at the last take_delta(); the delta is empty then
+    // What changed since the last accept(), which makes it final: for a back-end whose device may refuse.
+    SceneDelta pending() const;
+    void accept();
+    SceneDelta take_delta();  // both
+    void rollback();          // to the state at the last accept(); nothing is pending then
 
     const scene::Scene& scene() const { return scene_; }
     const Lowered& lowered() const { return lowered_; }
@@ -85,7 +88,7 @@ class ShadowScene {
     std::vector<Undo> undo_;
     std::set<std::uint32_t> moved_;  // becomes delta_.moved_instances
     std::unordered_map<ObjectId, std::uint32_t>
-        changed_geometries_;  // field bits, since the last take_delta()
+        changed_geometries_;  // field bits, since the last accept()
     std::set<ObjectId> created_geometries_, removed_geometries_, materials_, textures_;
     std::set<std::string> ignored_kinds_;
 

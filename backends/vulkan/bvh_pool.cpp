@@ -1,0 +1,134 @@
+#include "backends/vulkan/bvh_pool.h"
+
+#include <algorithm>
+
+#include "backends/vulkan/device/transfer.h"
+
+namespace tessera::vulkan {
+
+namespace {
+
+MeshData data_of(const backend::Mesh& mesh) {
+    return {backend::elements<glm::vec3>(mesh.positions), backend::elements<glm::uvec3>(mesh.triangles)};
+}
+
+}  // namespace
+
+BvhPool::Work BvhPool::update(const backend::MeshCatalog& meshes,
+                              const backend::MeshCatalog::Result& changes,
+                              std::span<const shading::Instance> instances) {
+    Work work;
+    const auto remove = [&](ObjectId id) {
+        const auto place = meshes_.find(id);
+        if (place == meshes_.end()) return;
+        release(place->second.nodes);
+        release(place->second.triangles);
+        meshes_.erase(place);
+    };
+    if (changes.everything) {
+        while (!meshes_.empty()) remove(meshes_.begin()->first);
+    }
+    for (const ObjectId id : changes.removed) remove(id);
+    for (const auto& [id, step] : changes.changes) {
+        if (step == backend::MeshStep::ShadingData) continue;
+        const backend::Mesh& mesh = *meshes.find(id);
+        const auto place = meshes_.find(id);
+        if (step == backend::MeshStep::Refit && place != meshes_.end() && refit(place->second, mesh)) {
+            ++work.refitted;
+            continue;
+        }
+        remove(id);
+        build(id, mesh);
+        ++work.rebuilt;
+    }
+    // A row of the top level holds the places of the others: as many bytes before they are known as after.
+    release(top_);
+    TopBvh top = make_top(instances);
+    place_rows(top.row.size());
+    for (auto& [id, rows] : meshes_) {
+        if (rows.dirty) send(rows, *meshes.find(id));
+    }
+    top = make_top(instances);
+    upload_bytes(device_, buffer_, top.row, top_.offset);
+    return work;
+}
+
+bool BvhPool::refit(MeshRows& rows, const backend::Mesh& mesh) {
+    rows.dirty = true;
+    return refit_mesh(rows.tree, data_of(mesh), rows.built_cost);
+}
+
+void BvhPool::build(ObjectId id, const backend::Mesh& mesh) {
+    MeshRows rows;
+    rows.tree = build_mesh(builder_, data_of(mesh));
+    rows.built_cost = rows.tree.cost;
+    rows.nodes.bytes = std::max<std::uint64_t>(rows.tree.nodes.size() * sizeof(shading::BvhNode), 16);
+    rows.triangles.bytes =
+        std::max<std::uint64_t>(rows.tree.primitives.size() * sizeof(shading::BvhTriangle), 16);
+    meshes_.emplace(id, std::move(rows));
+}
+
+TopBvh BvhPool::make_top(std::span<const shading::Instance> instances) {
+    std::vector<PlacedMesh> placed(instances.size());
+    for (std::size_t i = 0; i < instances.size(); ++i) {
+        const shading::Instance& instance = instances[i];
+        const MeshRows& rows = meshes_.at(ObjectId{instance.object});
+        placed[i] = {.linear = instance.linear,
+                     .translation = instance.translation,
+                     .box = rows.tree.box,
+                     .nodes = rows.nodes.item(),
+                     .triangles = rows.triangles.item(),
+                     .alpha_tested = instance.alpha_tested != 0};
+    }
+    return build_top(builder_, placed);
+}
+
+void BvhPool::place_rows(std::uint64_t top_bytes) {
+    if (ranges_ && try_place(top_bytes)) return;
+    std::uint64_t bytes = std::max<std::uint64_t>(top_bytes, 16);
+    for (auto& [id, rows] : meshes_) {
+        bytes += rows.nodes.bytes + rows.triangles.bytes;
+        rows.nodes.placed = rows.triangles.placed = false;
+        rows.dirty = true;
+    }
+    top_.placed = false;
+    bytes += bytes / 2;  // room for edits
+    bytes = (bytes + 15) / 16 * 16;
+    buffer_ = Buffer();  // first: the memory may be needed again
+    ranges_.reset();
+    buffer_ = Buffer(device_, bytes);
+    ranges_.emplace(bytes);
+    if (!try_place(top_bytes)) throw Error(ErrorCode::Internal, "the rows of meshes do not fit their pool");
+}
+
+bool BvhPool::try_place(std::uint64_t top_bytes) {
+    top_.bytes = std::max<std::uint64_t>(top_bytes, 16);
+    for (auto& [id, rows] : meshes_) {
+        if (!try_place(rows.nodes) || !try_place(rows.triangles)) return false;
+    }
+    return try_place(top_);
+}
+
+bool BvhPool::try_place(Row& row) {
+    if (row.placed) return true;
+    const auto offset = ranges_->allocate(row.bytes, 16);
+    if (!offset) return false;
+    row.offset = *offset;
+    row.placed = true;
+    return true;
+}
+
+void BvhPool::release(Row& row) {
+    if (row.placed) ranges_->release(row.offset, row.bytes);
+    row.placed = false;
+}
+
+void BvhPool::send(MeshRows& rows, const backend::Mesh& mesh) {
+    upload_bytes(device_, buffer_, std::as_bytes(std::span(rows.tree.nodes)), rows.nodes.offset);
+    std::vector<shading::BvhTriangle> triangles(rows.tree.primitives.size());
+    write_triangles(rows.tree, data_of(mesh), triangles);
+    upload_bytes(device_, buffer_, std::as_bytes(std::span(triangles)), rows.triangles.offset);
+    rows.dirty = false;
+}
+
+}  // namespace tessera::vulkan

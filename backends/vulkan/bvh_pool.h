@@ -1,0 +1,65 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "backends/vulkan/bvh/mesh_bvh.h"
+#include "backends/vulkan/bvh/top_bvh.h"
+#include "backends/vulkan/device/buffer.h"
+#include "backends/vulkan/device/range_allocator.h"
+#include "mediator/backend/tables/tables.h"
+
+namespace tessera::vulkan {
+
+// The acceleration structures of a scene in one pool of 16-byte items on the device
+// (mediator/shading/bvh_layout.h), in step with its meshes and instances at the cheapest level.
+class BvhPool final {
+  public:
+    explicit BvhPool(Device& device) : device_(device) {}
+
+    struct Work {
+        std::uint32_t rebuilt = 0, refitted = 0;
+    };
+    // Brings the meshes in step with the catalog, then the top level with the instances. A refit that would
+    // make a tree bad is a rebuild. Throws Error{OutOfMemory} and DeviceLost; the pool is to be dropped then.
+    Work update(const backend::MeshCatalog& meshes, const backend::MeshCatalog::Result& changes,
+                std::span<const shading::Instance> instances);
+
+    const Buffer& buffer() const { return buffer_; }
+    std::uint32_t top() const { return top_.item(); }  // where the top level's root is, in items
+
+  private:
+    // A row of items.
+    struct Row {
+        std::uint64_t offset = 0, bytes = 0;
+        bool placed = false;
+        std::uint32_t item() const { return static_cast<std::uint32_t>(offset / 16); }
+    };
+    struct MeshRows {
+        WideTree tree;
+        double built_cost = 0.0;
+        Row nodes, triangles;
+        bool dirty = true;  // the device does not have it yet
+    };
+
+    bool refit(MeshRows& rows, const backend::Mesh& mesh);
+    void build(ObjectId id, const backend::Mesh& mesh);
+    TopBvh make_top(std::span<const shading::Instance> instances);
+    // Places all rows that have no place, in a larger pool if need be.
+    void place_rows(std::uint64_t top_bytes);
+    bool try_place(std::uint64_t top_bytes);
+    bool try_place(Row& row);
+    void release(Row& row);
+    void send(MeshRows& rows, const backend::Mesh& mesh);
+
+    Device& device_;
+    BinaryTreeBuilder builder_;
+    std::map<ObjectId, MeshRows> meshes_;
+    Buffer buffer_;
+    std::optional<RangeAllocator> ranges_;
+    Row top_;
+};
+
+}  // namespace tessera::vulkan

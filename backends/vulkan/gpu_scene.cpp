@@ -1,0 +1,52 @@
+#include "backends/vulkan/gpu_scene.h"
+
+namespace tessera::vulkan {
+
+namespace {
+
+template <class Array>
+void set_address(Array& array, const DeviceTable& table) {
+    array.items = reinterpret_cast<decltype(array.items)>(table.address());
+}
+
+}  // namespace
+
+GpuScene::GpuScene(Device& device)
+    : blobs_(device),
+      bvh_(device),
+      textures_(device),
+      materials_(device),
+      meshes_(device),
+      instances_(device),
+      lights_(device),
+      sums_(device),
+      srgb_(device),
+      scene_(device) {}
+
+BvhPool::Work GpuScene::update(const backend::MeshCatalog& meshes,
+                               const backend::MeshCatalog::Result& changes,
+                               const backend::SceneTables& tables) {
+    backend::SceneTables there = tables;
+    backend::set_addresses(there, [&](const scene::BlobPtr& blob) { return blobs_.address_of(blob); });
+    const BvhPool::Work work = bvh_.update(meshes, changes, tables.instances);
+    textures_.update(there.textures);
+    materials_.update(there.materials);
+    meshes_.update(there.meshes);
+    instances_.update(there.instances);
+    lights_.update(there.lights);
+    sums_.update(there.sums);
+    srgb_.update(std::as_bytes(backend::srgb_values()));
+    set_address(there.scene.textures, textures_);
+    set_address(there.scene.materials, materials_);
+    set_address(there.scene.meshes, meshes_);
+    set_address(there.scene.instances, instances_);
+    set_address(there.scene.lights, lights_);
+    set_address(there.scene.sums, sums_);
+    set_address(there.scene.srgb, srgb_);
+    scene_.update(std::as_bytes(std::span(&there.scene, 1)));
+    features_ = there.scene.features;
+    blobs_.drop_unused();
+    return work;
+}
+
+}  // namespace tessera::vulkan

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "backends/vulkan/blob_buffers.h"
+#include "backends/vulkan/bvh_pool.h"
+#include "backends/vulkan/device_table.h"
+#include "mediator/backend/tables/tables.h"
+
+namespace tessera::vulkan {
+
+// A scene on the device: everything that kernels read of it. Made anew from the host's side at any time.
+class GpuScene final {
+  public:
+    explicit GpuScene(Device& device);
+
+    // Throws Error{OutOfMemory} with the sizes, and DeviceLost; then it is to be dropped.
+    BvhPool::Work update(const backend::MeshCatalog& meshes, const backend::MeshCatalog::Result& changes,
+                         const backend::SceneTables& tables);
+
+    std::uint64_t record() const { return scene_.address(); }  // of shading::Scene
+    std::uint32_t features() const { return features_; }
+    const Buffer& pool() const { return bvh_.buffer(); }
+    std::uint32_t top() const { return bvh_.top(); }
+
+  private:
+    BlobBuffers blobs_;
+    BvhPool bvh_;
+    DeviceTable textures_, materials_, meshes_, instances_, lights_, sums_, srgb_, scene_;
+    std::uint32_t features_ = 0;
+};
+
+}  // namespace tessera::vulkan

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "backends/vulkan/device/device.h"
+#include "backends/vulkan/kernels.h"
+#include "backends/vulkan/pace.h"
+#include "mediator/backend/backend.h"
+
+namespace tessera::vulkan {
+
+// A device with all that lives no longer than it.
+struct OpenedDevice {
+    Instance instance;
+    Device device;
+    Kernels kernels;
+    Pace pace;
+
+    OpenedDevice(const std::string& wanted, const DeviceSettings& settings)
+        : device(instance, choose_device(list_devices(instance), wanted), settings), kernels(device) {}
+};
+
+// Opens the device that the settings name, again if need be. `threads` of the settings are those of a
+// software device, for the whole process.
+class DeviceOpener {
+  public:
+    explicit DeviceOpener(const backend::BackendSettings& settings);
+
+    // Throws Error{Unavailable} or Error{InvalidInput} with the devices there are.
+    std::unique_ptr<OpenedDevice> open() const;
+
+  private:
+    std::string wanted_;
+    DeviceSettings settings_;
+};
+
+}  // namespace tessera::vulkan

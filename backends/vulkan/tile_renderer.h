@@ -1,0 +1,25 @@
+#pragma once
+
+#include <stop_token>
+
+#include "backends/vulkan/device/device.h"
+#include "backends/vulkan/gpu_scene.h"
+#include "backends/vulkan/kernels.h"
+#include "backends/vulkan/pace.h"
+#include "mediator/backend/backend.h"
+
+namespace tessera::vulkan {
+
+// Traces the samples of a unit in dispatches of a measured size, two on their way at a time, and merges them
+// on the host in the canonical order. Throws DeviceLost.
+struct TileRenderer {
+    Device& device;
+    Kernels& kernels;
+    Pace& pace;
+    const GpuScene& scene;
+
+    backend::RenderResult run(const shading::View& view, const view::WorkUnit& unit,
+                              frame::ChannelSet channels, const std::stop_token& stop) const;
+};
+
+}  // namespace tessera::vulkan

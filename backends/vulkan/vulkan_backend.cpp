@@ -1,0 +1,126 @@
+#include "backends/vulkan/vulkan_backend.h"
+
+#include <algorithm>
+#include <mutex>
+#include <shared_mutex>
+
+#include "backends/vulkan/opened_device.h"
+#include "backends/vulkan/probe.h"
+#include "backends/vulkan/tile_renderer.h"
+#include "backends/vulkan/world.h"
+#include "mediator/backend/tables/view_record.h"
+
+namespace tessera::vulkan {
+
+namespace {
+
+using namespace backend;
+
+constexpr frame::ChannelSet AllChannels = frame::ChannelSet::from_bits((1u << frame::ChannelCount) - 1u);
+constexpr int Attempts = 3;  // a device that is lost so often in a row does not come back
+
+class VulkanBackend final : public Backend {
+  public:
+    explicit VulkanBackend(const BackendSettings& settings) : opener_(settings), world_(settings.blobs) {
+        opened_ = opener_.open();
+        world_.move_to(&opened_->device);
+    }
+    ~VulkanBackend() override { world_.move_to(nullptr); }
+
+    Capabilities capabilities() const override {
+        const DeviceInfo& info = opened_->device.info();
+        // A card needs many samples at a time.
+        return {.channels = AllChannels,
+                .preferred_tile = info.kind == DeviceKind::Cpu ? 32u : 128u,
+                .concurrent_units = 2,  // one merges while the other one's samples are traced
+                .deterministic = true,
+                .kind = "vulkan " + info.name + ", " + info.driver};
+    }
+
+    Version version() const override {
+        const std::shared_lock lock(mutex_);
+        return world_.version();
+    }
+
+    std::unique_ptr<EditScope> begin_edit() override { return std::make_unique<Edit>(*this); }
+
+    RenderResult render(const view::View& view, const view::WorkUnit& unit, std::stop_token stop) override {
+        for (int attempt = 1;; ++attempt) {
+            std::uint64_t lost = 0;
+            try {
+                const std::shared_lock lock(mutex_);
+                lost = recoveries_;
+                if (unit.version != world_.version()) return {};
+                const TileRenderer renderer{opened_->device, opened_->kernels, opened_->pace, world_.scene()};
+                return renderer.run(make_view(view, world_.tables().render_origin), unit, view.channels, stop);
+            } catch (const DeviceLost&) {
+                if (attempt == Attempts) throw;
+            }
+            recover(lost);
+        }
+    }
+
+    std::vector<std::string> probe(const view::View& view, std::uint32_t x, std::uint32_t y,
+                                   std::uint64_t sample) override {
+        const std::shared_lock lock(mutex_);
+        return replay(opened_->device, world_.scene(), world_.tables(),
+                      make_view(view, world_.tables().render_origin), {x, y}, sample);
+    }
+
+  private:
+    class Edit final : public EditScope {
+      public:
+        explicit Edit(VulkanBackend& backend) : backend_(backend), lock_(backend.mutex_) {}
+        ~Edit() override { backend_.world_.rollback(); }  // what was committed stays
+        Expected<void> apply(const scene::ChangeList& changes) override {
+            return backend_.world_.apply(changes);
+        }
+        Expected<EditReport> commit() override { return backend_.commit(); }
+
+      private:
+        VulkanBackend& backend_;
+        std::unique_lock<std::shared_mutex> lock_;
+    };
+
+    // Under the edit's lock.
+    Expected<EditReport> commit() {
+        for (int attempt = 1;; ++attempt) {
+            try {
+                return world_.commit();
+            } catch (const DeviceLost&) {
+                if (attempt == Attempts) throw;
+                reopen();
+            }
+        }
+    }
+
+    // Unless another thread has done it since recoveries_ was `seen`.
+    void recover(std::uint64_t seen) {
+        const std::unique_lock lock(mutex_);
+        if (recoveries_ == seen) reopen();
+    }
+
+    // A new device, and the scene on it as it was.
+    void reopen() {
+        ++recoveries_;
+        world_.move_to(nullptr);
+        opened_.reset();
+        opened_ = opener_.open();
+        world_.move_to(&opened_->device);
+    }
+
+    const DeviceOpener opener_;
+    mutable std::shared_mutex mutex_;  // renders share it, an edit owns it; protects all below
+    std::uint64_t recoveries_ = 0;
+    std::unique_ptr<OpenedDevice> opened_;
+    World world_;
+};
+
+}  // namespace
+
+BackendEntry entry() {
+    return {"vulkan", "path tracing on any device with Vulkan 1.3",
+            [](const BackendSettings& settings) { return std::make_unique<VulkanBackend>(settings); }};
+}
+
+}  // namespace tessera::vulkan

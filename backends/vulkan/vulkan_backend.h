@@ -1,0 +1,9 @@
+#pragma once
+
+#include "mediator/backend/backend.h"
+
+namespace tessera::vulkan {
+
+backend::BackendEntry entry();
+
+}  // namespace tessera::vulkan

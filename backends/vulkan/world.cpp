@@ -1,0 +1,64 @@
+#include "backends/vulkan/world.h"
+
+namespace tessera::vulkan {
+
+namespace {
+
+backend::MeshCatalog::Result everything_in(const backend::MeshCatalog& meshes) {
+    backend::MeshCatalog::Result all{.everything = true};
+    for (const auto& [id, mesh] : meshes.all()) all.changes.push_back({id, backend::MeshStep::Rebuild});
+    return all;
+}
+
+}  // namespace
+
+void World::move_to(Device* device) {
+    scene_.reset();
+    device_ = device;
+    if (device_ != nullptr) rebuild();
+}
+
+void World::rebuild() {
+    scene_.reset();
+    scene_ = std::make_unique<GpuScene>(*device_);
+    scene_->update(meshes_, everything_in(meshes_), tables_);
+}
+
+Expected<backend::EditReport> World::commit() {
+    const backend::SceneDelta delta = shadow_.pending();
+    const backend::MeshCatalog::Result changes = meshes_.update(shadow_.scene(), delta);
+    tables_ = backend::make_tables(shadow_.scene(), shadow_.lowered(), meshes_, *blobs_);
+    try {
+        const BvhPool::Work work = scene_->update(meshes_, changes, tables_);
+        shadow_.accept();
+        version_ = shadow_.scene().version();
+        backend::EditReport report = backend::make_report(delta, meshes_, changes, tables_);
+        report.rebuilt = work.rebuilt;
+        report.refitted = work.refitted;
+        if (!delta.everything && !delta.instances_changed) {
+            report.retransformed = static_cast<std::uint32_t>(delta.moved_instances.size());
+        }
+        for (std::string& problem : problems_.update(shadow_.scene(), delta)) {
+            report.problems.push_back(std::move(problem));
+        }
+        return report;
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::OutOfMemory) throw;
+        return refuse(error);
+    }
+}
+
+// The device holds parts of both versions by now: all of the old one is sent again.
+Expected<backend::EditReport> World::refuse(const Error& error) {
+    scene_.reset();
+    shadow_.rollback();
+    meshes_ = backend::MeshCatalog(blobs_);
+    meshes_.update(shadow_.scene(), {.everything = true});
+    tables_ = backend::make_tables(shadow_.scene(), shadow_.lowered(), meshes_, *blobs_);
+    rebuild();
+    return failure(ErrorCode::OutOfMemory, "the scene does not fit into the memory of " +
+                                               device_->info().name + ": " + error.what() +
+                                               "; version " + to_string(version_) + " stays");
+}
+
+}  // namespace tessera::vulkan
