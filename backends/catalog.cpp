@@ -7,6 +7,9 @@
 #ifdef TESSERA_BACKEND_EMBREE
 #include "backends/embree/embree_backend.h"
 #endif
+#ifdef TESSERA_BACKEND_VULKAN
+#include "backends/vulkan/vulkan_backend.h"
+#endif
 
 namespace tessera::backend {
 
@@ -14,6 +17,9 @@ std::span<const BackendEntry> catalog() {
     static const std::array entries{
 #ifdef TESSERA_BACKEND_EMBREE
         embree::entry(),
+#endif
+#ifdef TESSERA_BACKEND_VULKAN
+        vulkan::entry(),
 #endif
         null_backend::entry(),
     };

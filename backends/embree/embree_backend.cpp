@@ -65,8 +65,7 @@ class EmbreeBackend final : public Backend {
         std::uint64_t rays = 0;
         const PathSample found = tracer.trace(x, y, sample, rays, &story);
         const glm::vec3 radiance = shading::radiance_of(found);
-        story.push_back("radiance (" + std::to_string(radiance.x) + ", " + std::to_string(radiance.y) + ", " +
-                        std::to_string(radiance.z) + ") from " + std::to_string(rays) + " rays");
+        write_end(story, radiance, rays);
         return story;
     }
 

@@ -2,7 +2,6 @@
 
 #include <array>
 
-#include "mediator/shading/bsdf.h"
 
 namespace tessera::embree {
 
@@ -21,7 +20,10 @@ Expected<backend::EditReport> World::commit() {
     mesh_scenes_.update(meshes_, meshes);
     tables_ = backend::make_tables(shadow_.scene(), shadow_.lowered(), meshes_, *blobs_);
     mark_alpha_tested();
-    backend::EditReport edit = report(delta, meshes);
+    backend::EditReport edit = backend::make_report(delta, meshes_, meshes, tables_);
+    for (std::string& problem : problems_.update(shadow_.scene(), delta)) {
+        edit.problems.push_back(std::move(problem));
+    }
     if (delta.everything || delta.instances_changed || delta.render_origin_changed ||
         meshes.count(backend::MeshStep::Rebuild) > 0) {
         rebuild_top();
@@ -79,44 +81,6 @@ void World::mark_alpha_tested() {
         mesh_scenes_.set_alpha_tested(ObjectId{instance.object},
                                       instance.alpha_tested != 0 ? AlphaTest::On : AlphaTest::Off);
     }
-}
-
-// Rough transmission is drawn as smooth: told when a material comes to have it.
-std::vector<std::string> World::material_problems(const backend::SceneDelta& delta) {
-    std::vector<std::string> problems;
-    if (delta.everything) told_.clear();
-    for (const ObjectId id : delta.materials) {
-        const auto* material = shadow_.scene().find_as<scene::Material>(id);
-        const bool rough = material != nullptr && material->transmission > 0.0f &&
-                           material->metallic < 1.0f &&
-                           material->roughness * material->roughness > shading::MinAlpha;
-        if (!rough) {
-            told_.erase(id);
-        } else if (told_.insert(id).second) {
-            problems.push_back("material " + std::to_string(id.value) + " '" + material->name +
-                               "': its rough transmission is drawn as smooth");
-        }
-    }
-    return problems;
-}
-
-backend::EditReport World::report(const backend::SceneDelta& delta,
-                                  const backend::MeshCatalog::Result& meshes) {
-    backend::EditReport edit{.entries = delta.entries,
-                             .relevant = delta.relevant,
-                             .rebuilt = meshes.count(backend::MeshStep::Rebuild),
-                             .refitted = meshes.count(backend::MeshStep::Refit),
-                             .instances = tables_.instances.size(),
-                             .lights = tables_.lights.size(),
-                             .ignored_kinds = delta.ignored_kinds,
-                             .problems = meshes.problems};
-    const std::vector<std::string> of_materials = material_problems(delta);
-    edit.problems.insert(edit.problems.end(), of_materials.begin(), of_materials.end());
-    for (const auto& [id, mesh] : meshes_.all()) {
-        edit.triangles += backend::elements<glm::uvec3>(mesh.triangles).size();
-        edit.degenerate_triangles += mesh.degenerate_triangles;
-    }
-    return edit;
 }
 
 }  // namespace tessera::embree

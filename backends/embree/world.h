@@ -1,11 +1,9 @@
 #pragma once
 
 #include <memory>
-#include <set>
 
 #include "backends/embree/meshes.h"
-#include "mediator/backend/backend.h"
-#include "mediator/backend/tables/tables.h"
+#include "mediator/backend/edit_report.h"
 
 namespace tessera::embree {
 
@@ -30,8 +28,6 @@ class World {
     std::uint32_t retransform(const backend::SceneDelta& delta);
     void set_transform(std::uint32_t instance);
     void mark_alpha_tested();
-    std::vector<std::string> material_problems(const backend::SceneDelta& delta);
-    backend::EditReport report(const backend::SceneDelta& delta, const backend::MeshCatalog::Result& meshes);
 
     RTCDevice device_;
     std::shared_ptr<scene::BlobStore> blobs_;
@@ -41,7 +37,7 @@ class World {
     MeshScenes mesh_scenes_;
     backend::SceneTables tables_;
     SceneHandle top_;
-    std::set<ObjectId> told_;  // materials whose problem is known
+    backend::MaterialProblems problems_;
 };
 
 }  // namespace tessera::embree

@@ -14,8 +14,7 @@ MeshData data_of(const backend::Mesh& mesh) {
 
 }  // namespace
 
-BvhPool::Work BvhPool::update(const backend::MeshCatalog& meshes,
-                              const backend::MeshCatalog::Result& changes,
+BvhPool::Work BvhPool::update(const backend::MeshCatalog& meshes, const backend::MeshCatalog::Result& changes,
                               std::span<const shading::Instance> instances) {
     Work work;
     const auto remove = [&](ObjectId id) {

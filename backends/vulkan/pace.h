@@ -10,9 +10,9 @@ namespace tessera::vulkan {
 // Thread-safe.
 class Pace final {
   public:
-    static constexpr double Target = 0.012;           // seconds of one dispatch; two are on their way at once
-    static constexpr std::uint32_t First = 2048;      // samples, before anything is known
-    static constexpr std::uint32_t Most = 1u << 19;   // bounds the memory of the results
+    static constexpr double Target = 0.012;          // seconds of one dispatch; two are on their way at once
+    static constexpr std::uint32_t First = 2048;     // samples, before anything is known
+    static constexpr std::uint32_t Most = 1u << 19;  // bounds the memory of the results
 
     std::uint32_t samples() const;
     void learn(std::uint32_t samples, double seconds);

@@ -79,8 +79,8 @@ backend::RenderResult TileRenderer::run(const shading::View& view, const view::W
     const std::uint64_t samples = unit.block.end() - unit.block.first;
     const Buffer view_buffer = make_buffer(device, std::vector<shading::View>{view});
     const bool fits_texels = scene.pool().size() / 16 <= device.info().texel_elements;
-    const auto access = fits_texels ? Kernels::PoolAccess::Texels : Kernels::PoolAccess::Address;
-    const ComputePipeline& kernel = kernels.find(kind_of(scene.features(), view), access);
+    const bool trees = view.renderer == shading::RendererWhitted || (view.keeps & shading::KeepsRange) != 0;
+    const ComputePipeline& kernel = kernels.find({scene.features(), trees, fits_texels});
 
     UnitFilm film(unit, channels);
     std::array<Batch, 2> batches;

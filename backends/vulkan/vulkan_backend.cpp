@@ -52,7 +52,8 @@ class VulkanBackend final : public Backend {
                 lost = recoveries_;
                 if (unit.version != world_.version()) return {};
                 const TileRenderer renderer{opened_->device, opened_->kernels, opened_->pace, world_.scene()};
-                return renderer.run(make_view(view, world_.tables().render_origin), unit, view.channels, stop);
+                return renderer.run(make_view(view, world_.tables().render_origin), unit, view.channels,
+                                    stop);
             } catch (const DeviceLost&) {
                 if (attempt == Attempts) throw;
             }

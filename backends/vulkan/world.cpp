@@ -1,5 +1,7 @@
 #include "backends/vulkan/world.h"
 
+#include "backends/vulkan/device/device.h"
+
 namespace tessera::vulkan {
 
 namespace {
@@ -57,8 +59,8 @@ Expected<backend::EditReport> World::refuse(const Error& error) {
     tables_ = backend::make_tables(shadow_.scene(), shadow_.lowered(), meshes_, *blobs_);
     rebuild();
     return failure(ErrorCode::OutOfMemory, "the scene does not fit into the memory of " +
-                                               device_->info().name + ": " + error.what() +
-                                               "; version " + to_string(version_) + " stays");
+                                               device_->info().name + ": " + error.what() + "; version " +
+                                               std::to_string(version_.number) + " stays");
 }
 
 }  // namespace tessera::vulkan

@@ -18,6 +18,9 @@
 // - `float(x)`, `uint(x)` convert; float_bits, float_from_bits look at bits; is_nan, is_finite work even if a
 //   compiler takes all numbers to be finite. PRECISE before a local variable forbids contraction in what is
 //   assigned to it, where bits matter (C++ is compiled so everywhere).
+// - KEEP_LOOP before a loop asks a shader's compiler not to unroll it.
+// - GENERIC(T) before a function with a parameter of a type T that the includer brings: a template in C++; in
+//   GLSL T is a struct that is known before.
 // - Data in buffers: ARRAY_OF(Item, ItemArray, alignment) declares a type of the size of an address, whose
 //   `.items[i]` reads on both sides. Its members and items are laid out as in C++ (scalar layout).
 // - WITH_CONTEXT stands before a function with a parameter IN(Context): a type of the including side, through
@@ -53,7 +56,9 @@
 #define OUT(T) T&
 #define INOUT(T) T&
 #define PRECISE
+#define KEEP_LOOP
 #define WITH_CONTEXT template <class Context>
+#define GENERIC(T) template <class T>
 #define ARRAY_OF(Item, Name, alignment) \
     struct Name {                       \
         const Item* items;              \
@@ -88,6 +93,7 @@ inline bool is_finite(float x) {
 
 #else
 
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference2 : require
@@ -101,7 +107,9 @@ inline bool is_finite(float x) {
 #define OUT(T) out T
 #define INOUT(T) inout T
 #define PRECISE precise
+#define KEEP_LOOP [[dont_unroll]]
 #define WITH_CONTEXT
+#define GENERIC(T)
 #define ARRAY_OF(Item, Name, alignment)                                                         \
     layout(buffer_reference, scalar, buffer_reference_align = alignment) readonly buffer Name { \
         Item items[];                                                                           \

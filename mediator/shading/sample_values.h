@@ -13,48 +13,61 @@ inline constexpr uint ChannelRadiance = 0u, ChannelLowVariance = 1u, ChannelHigh
 // Components of all channels together.
 inline constexpr uint MaxSampleValues = 30u;
 
-// The values of a sample in the order of the channels, only of those that the view asks for.
-struct SampleValues {
-    float items[MaxSampleValues];
-    uint count;
-};
-
 inline bool has_channel(IN(View) view, uint channel) {
     return ((view.channels >> channel) & 1u) != 0u;
 }
-inline void put_number(INOUT(SampleValues) values, IN(View) view, uint channel, float value) {
-    if (!has_channel(view, channel)) return;
-    values.items[values.count] = value;
-    values.count += 1u;
+// The values of a sample in the order of the channels, only of those that the view asks for, one after the
+// other to store_value(INOUT(Sink), float), which the includer defines with its type of sink.
+GENERIC(Sink)
+inline void put_number(INOUT(Sink) sink, IN(View) view, uint channel, float value) {
+    if (has_channel(view, channel)) store_value(sink, value);
 }
-inline void put_vector(INOUT(SampleValues) values, IN(View) view, uint channel, vec3 value) {
-    put_number(values, view, channel, value.x);
-    put_number(values, view, channel, value.y);
-    put_number(values, view, channel, value.z);
+GENERIC(Sink)
+inline void put_vector(INOUT(Sink) sink, IN(View) view, uint channel, vec3 value) {
+    if (!has_channel(view, channel)) return;
+    store_value(sink, value.x);
+    store_value(sink, value.y);
+    store_value(sink, value.z);
 }
 
 // `index`: of the sample; only whether it is even counts.
-inline SampleValues sample_values(IN(View) view, IN(PathSample) found, uint index) {
-    SampleValues values;
-    values.count = 0u;
+GENERIC(Sink)
+inline void put_sample_values(INOUT(Sink) sink, IN(View) view, IN(PathSample) found, uint index) {
     const vec3 radiance = radiance_of(found);
-    put_vector(values, view, ChannelRadiance, radiance);
-    put_vector(values, view, ChannelLowVariance, found.low);
-    put_vector(values, view, ChannelHighVariance, found.high);
-    put_vector(values, view, ChannelAlbedo, found.albedo);
-    put_vector(values, view, ChannelNormal, found.normal);
-    put_number(values, view, ChannelDepth, found.depth);
-    put_number(values, view, ChannelObjectIndex, found.depth);
-    put_number(values, view, ChannelObjectIndex, float_from_bits(found.object));
-    put_number(values, view, ChannelAlpha, alpha_of(found));
-    put_vector(values, view, ChannelRange, found.range);
-    put_number(values, view, ChannelShadingFeature, shading_feature_of(found, view.feature_rule));
-    put_vector(values, view, ChannelIrradiance, irradiance_of(found));
+    put_vector(sink, view, ChannelRadiance, radiance);
+    put_vector(sink, view, ChannelLowVariance, found.low);
+    put_vector(sink, view, ChannelHighVariance, found.high);
+    put_vector(sink, view, ChannelAlbedo, found.albedo);
+    put_vector(sink, view, ChannelNormal, found.normal);
+    put_number(sink, view, ChannelDepth, found.depth);
+    put_number(sink, view, ChannelObjectIndex, found.depth);
+    put_number(sink, view, ChannelObjectIndex, float_from_bits(found.object));
+    put_number(sink, view, ChannelAlpha, alpha_of(found));
+    put_vector(sink, view, ChannelRange, found.range);
+    put_number(sink, view, ChannelShadingFeature, shading_feature_of(found, view.feature_rule));
+    put_vector(sink, view, ChannelIrradiance, irradiance_of(found));
     const bool even = index % 2u == 0u;
-    put_vector(values, view, ChannelEvenHalf, even ? radiance : vec3(0.0f));
-    put_number(values, view, ChannelEvenHalf, even ? 1.0f : 0.0f);
+    put_vector(sink, view, ChannelEvenHalf, even ? radiance : vec3(0.0f));
+    put_number(sink, view, ChannelEvenHalf, even ? 1.0f : 0.0f);
+}
+
+#ifdef __cplusplus
+
+// A sink in memory.
+struct SampleValues {
+    float items[MaxSampleValues];
+    uint count = 0u;
+};
+inline void store_value(SampleValues& values, float value) {
+    values.items[values.count++] = value;
+}
+inline SampleValues sample_values(const View& view, const PathSample& found, uint index) {
+    SampleValues values;
+    put_sample_values(values, view, found, index);
     return values;
 }
+
+#endif
 
 SHADING_END
 

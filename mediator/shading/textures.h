@@ -47,11 +47,15 @@ inline vec4 lookup(IN(Scene) scene, IN(Texture) map, vec2 uv) {
     if (map.texture_filter == TextureNearest) return texel_at(scene, map, int(floor(x)), int(floor(y)));
     const float fx = floor(x - 0.5f), fy = floor(y - 0.5f);
     const float wx = x - 0.5f - fx, wy = y - 0.5f - fy;
-    const int ix = int(fx), iy = int(fy);
-    const vec4 top = texel_at(scene, map, ix, iy) * (1.0f - wx) + texel_at(scene, map, ix + 1, iy) * wx;
-    const vec4 bottom =
-        texel_at(scene, map, ix, iy + 1) * (1.0f - wx) + texel_at(scene, map, ix + 1, iy + 1) * wx;
-    return top * (1.0f - wy) + bottom * wy;
+    vec4 sum = vec4(0.0f);
+    // A loop that stays one: compilers of shaders take long for text that is there many times.
+    KEEP_LOOP
+    for (int corner = 0; corner < 4; ++corner) {
+        const bool right = (corner & 1) != 0, below = corner > 1;
+        const vec4 texel = texel_at(scene, map, int(fx) + (right ? 1 : 0), int(fy) + (below ? 1 : 0));
+        sum += texel * ((right ? wx : 1.0f - wx) * (below ? wy : 1.0f - wy));
+    }
+    return sum;
 }
 
 // White where no texture is used.

@@ -4,6 +4,9 @@
 #include "mediator/shading/camera.h"
 #include "mediator/shading/whitted.h"
 
+// The including side says whether its views may ask for trees of perfect speculars (the Whitted renderer, or
+// the range channel): bool has_specular_trees(IN(Context) context). A kernel without is much smaller.
+//
 // One sample, a pure function of (scene, view, pixel, index). Unidirectional; Russian roulette from the
 // fourth vertex on, by the largest component of the throughput.
 SHADING_BEGIN
@@ -31,7 +34,7 @@ WITH_CONTEXT inline bool see_first(IN(Context) context, INOUT(Path) path, IN(Ray
     const bool whitted = context.view.renderer == RendererWhitted;
     uint what = whitted ? FindLight : 0u;
     if (keeps(context.view, KeepsRange)) what |= FindRange;
-    if (what != 0u) follow_speculars(context, path, ray, surface, what);
+    if (has_specular_trees(context) && what != 0u) follow_speculars(context, path, ray, surface, what);
     path.vertex = 0u;
     return !whitted;
 }

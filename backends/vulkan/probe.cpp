@@ -1,0 +1,56 @@
+#include "backends/vulkan/probe.h"
+
+#include "backends/vulkan/device/transfer.h"
+#include "mediator/backend/story.h"
+#include "mediator/shading/bvh_trace.h"
+#include "mediator/shading/trace.h"
+
+namespace tessera::vulkan {
+
+namespace {
+
+// What the shared transport asks for, as in shaders/trace.comp.
+struct HostContext : backend::Teller {
+    HostContext(const shading::Scene& scene, const shading::View& view, shading::BvhItems pool,
+                std::uint32_t top, backend::Story& story)
+        : Teller{&story}, scene(scene), view(view), pool(pool), top(top) {}
+
+    const shading::Scene& scene;
+    const shading::View& view;
+    shading::BvhItems pool;
+    std::uint32_t top;
+};
+
+bool stops_ray(const HostContext& context, const shading::Hit& candidate, std::uint32_t seed) {
+    return shading::stops_at(context.scene, candidate.instance, candidate.triangle, candidate.barycentric,
+                             seed);
+}
+
+bool trace_closest(const HostContext& context, const shading::Ray& ray, std::uint32_t seed,
+                   shading::Hit& hit) {
+    hit = shading::bvh_trace(context.pool, context.top, ray.origin, ray.direction, shading::NearestHit,
+                             shading::infinity(), shading::BvhClosest | shading::BvhAlpha, context, seed);
+    return hit.instance != shading::NoInstance;
+}
+
+bool trace_occluded(const HostContext& context, const glm::vec3& origin, const glm::vec3& segment, float far,
+                    std::uint32_t seed) {
+    return shading::bvh_trace(context.pool, context.top, origin, segment, shading::NearestHit, far,
+                              shading::BvhAny | shading::BvhAlpha, context, seed)
+               .instance != shading::NoInstance;
+}
+
+}  // namespace
+
+std::vector<std::string> replay(Device& device, const GpuScene& scene, const backend::SceneTables& tables,
+                                const shading::View& view, glm::uvec2 pixel, std::uint64_t sample) {
+    const auto pool = download<glm::uvec4>(device, scene.pool());
+    const shading::Scene on_host = backend::on_host(tables);
+    backend::Story story;
+    const HostContext context(on_host, view, {pool.data()}, scene.top(), story);
+    const shading::Path path = shading::trace_sample(context, pixel.x, pixel.y, sample);
+    backend::write_end(story, shading::radiance_of(path.found), path.rays);
+    return story;
+}
+
+}  // namespace tessera::vulkan

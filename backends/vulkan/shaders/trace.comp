@@ -1,0 +1,119 @@
+#version 460
+// The path tracer: one invocation is one sample of one pixel. With POOL_AS_TEXELS the acceleration structure
+// is bound as texels instead of being reached by its address. SPECULAR_TREES leaves in what follows all
+// branches of perfect speculars, which most views do not need: it is more than the half of the text, and
+// drivers take seconds for it.
+#extension GL_GOOGLE_include_directive : require
+#include "mediator/shading/materials.h"
+#include "mediator/shading/rays.h"
+
+#ifdef POOL_AS_TEXELS
+layout(set = 0, binding = 0) uniform usamplerBuffer pool_texels;
+#define BVH_TEXELS pool_texels
+#endif
+
+layout(local_size_x_id = 0) in;
+
+// What the scene needs: the rest is left out when the pipeline is made.
+layout(constant_id = 1) const uint Features = 0xffffffffu;
+
+struct Context {
+    Scene scene;
+    View view;
+    uint64_t pool;  // address; used where the pool is not bound
+    uint top;
+};
+
+#include "mediator/shading/bvh_trace.h"
+
+bool stops_ray(IN(Context) context, IN(Hit) candidate, uint seed) {
+    return stops_at(context.scene, candidate.instance, candidate.triangle, candidate.barycentric, seed);
+}
+
+uint alpha_question() {
+    return (Features & FeatureAlpha) != 0u ? BvhAlpha : 0u;
+}
+
+bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, OUT(Hit) hit) {
+    hit = bvh_trace(BvhItems(context.pool), context.top, ray.origin, ray.direction, NearestHit, infinity(),
+                    BvhClosest | alpha_question(), context, seed);
+    return hit.instance != NoInstance;
+}
+
+bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed) {
+    return bvh_trace(BvhItems(context.pool), context.top, origin, segment, NearestHit, far,
+                     BvhAny | alpha_question(), context, seed)
+               .instance != NoInstance;
+}
+
+bool has_specular_trees(IN(Context) context) {
+#ifdef SPECULAR_TREES
+    return true;
+#else
+    return false;
+#endif
+}
+
+// Nobody listens.
+#define tell_camera(context, ray)
+#define tell_hit(context, surface, throughput)
+#define tell_miss(context)
+#define tell_emission(context, emission, direction)
+#define tell_light(context, direction, gathered)
+#define tell_specular(context, reflects, direction)
+
+#include "mediator/shading/trace.h"
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Values {
+    float items[];
+};
+
+// Straight to memory: drivers make long chains of branches of arrays that are filled at any place.
+struct Sink {
+    Values values;
+    uint next, stride;
+};
+void store_value(INOUT(Sink) sink, float value) {
+    sink.values.items[sink.next] = value;
+    sink.next += sink.stride;
+}
+
+#include "mediator/shading/sample_values.h"
+
+ARRAY_OF(Scene, SceneArray, 8);
+ARRAY_OF(View, ViewArray, 8);
+// As struct Job in job.h.
+layout(push_constant, scalar) uniform Arguments {
+    SceneArray scene;
+    ViewArray view;
+    uint64_t pool;
+    Values values;
+    uint64_t first_sample;
+    uint top;
+    uint x, y, width;
+    uint pixels;
+    uint first_item, item_count;
+}
+job;
+
+void main() {
+    const uint item = gl_GlobalInvocationID.x;
+    if (item >= job.item_count) return;
+    const uint at = job.first_item + item;
+    const uint pixel = at % job.pixels;
+    const uint64_t index = job.first_sample + uint64_t(at / job.pixels);
+
+    Context context;
+    context.scene = job.scene.items[0];
+    context.scene.features = Features;
+    if ((Features & FeatureEnvironment) == 0u) context.scene.environment.emits = 0u;
+    context.view = job.view.items[0];
+    context.view.strategy = StrategyBoth;
+    context.pool = job.pool;
+    context.top = job.top;
+
+    const Path path = trace_sample(context, job.x + pixel % job.width, job.y + pixel / job.width, index);
+    Sink sink = Sink(job.values, item, job.item_count);
+    put_sample_values(sink, context.view, path.found, uint(index));
+    store_value(sink, float_from_bits(path.rays));
+}
