@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Sets up and does the main job: a master and two nodes as processes of their own (TCP on loopback, CURVE keys
-# made for this run) render a glTF scene by tiles and cooperative samples into out/demo.exr and out/demo.png.
+# Sets up and does the main job: a master, an Embree node and a Vulkan node as processes of their own (TCP on
+# loopback, CURVE keys made for this run) render a glTF scene by tiles and cooperative samples into out/demo.exr and out/demo.png.
 # Arguments go to the render, as in: deploy/demo.sh --spp 16
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -59,12 +59,11 @@ for ((attempt = 0; ; ++attempt)); do
     done
     fail "the master does not answer"
 done
-for node in 1 2; do
-    start "node-$node" "$bin/tessera-node" --master "$endpoint" --keys "$keys" \
-        --name "node-$node" --threads 1
-done
+# One with Embree, one with Vulkan: on the software device where there is no GPU.
+start node-1 "$bin/tessera-node" --master "$endpoint" --keys "$keys" --name node-1 --threads 1 --backend embree
+start node-2 "$bin/tessera-node" --master "$endpoint" --keys "$keys" --name node-2 --threads 1 --backend vulkan
 
-echo "demo: rendering tests/scenes/studio-1.glb with two nodes"
+echo "demo: rendering tests/scenes/studio-1.glb with an Embree and a Vulkan node"
 rm -f out/demo.exr out/demo.png out/demo.json
 # In the background, so that a signal is answered at once.
 "$bin/tessera" render tests/scenes/studio-1.glb --master "$endpoint" --keys "$keys" --wait-nodes 2:60 \

@@ -125,7 +125,7 @@ void BvhPool::release(Row& row) {
 void BvhPool::send(MeshRows& rows, const backend::Mesh& mesh) {
     upload_bytes(device_, buffer_, std::as_bytes(std::span(rows.tree.nodes)), rows.nodes.offset);
     std::vector<shading::BvhTriangle> triangles(rows.tree.primitives.size());
-    write_triangles(rows.tree, data_of(mesh), triangles);
+    write_triangles(rows.tree.primitives, data_of(mesh), triangles);
     upload_bytes(device_, buffer_, std::as_bytes(std::span(triangles)), rows.triangles.offset);
     rows.dirty = false;
 }

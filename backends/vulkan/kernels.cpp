@@ -8,6 +8,7 @@
 #include "backends/vulkan/shaders/trace_texels.comp.h"
 #include "backends/vulkan/shaders/trace_trees.comp.h"
 #include "backends/vulkan/shaders/trace_trees_texels.comp.h"
+#include "mediator/shading/records.h"
 
 namespace tessera::vulkan {
 
@@ -20,13 +21,18 @@ std::span<const std::uint32_t> code_of(const KernelKind& kind) {
     return kind.pool_as_texels ? shaders::trace_texels_comp() : shaders::trace_comp();
 }
 
+// What the text asks about. The rest is no smaller without, and each mask costs a driver seconds.
+constexpr std::uint32_t Pruned = shading::FeatureAlpha | shading::FeatureSpecular |
+                                 shading::FeatureMeshLights | shading::FeatureEnvironmentMap;
+
 }  // namespace
 
 // 64 is a multiple of every subgroup there is, and small enough for kernels with many registers.
 Kernels::Kernels(Device& device)
     : device_(device), group_size_(std::min(64u, device.info().max_workgroup_size)) {}
 
-const ComputePipeline& Kernels::find(const KernelKind& kind) {
+const ComputePipeline& Kernels::find(KernelKind kind) {
+    kind.features |= ~Pruned;
     const std::scoped_lock lock(mutex_);
     std::unique_ptr<ComputePipeline>& kernel = made_[kind];
     if (!kernel) {

@@ -24,7 +24,7 @@ class Kernels final {
 
     // Invocations of a workgroup.
     std::uint32_t group_size() const { return group_size_; }
-    const ComputePipeline& find(const KernelKind& kind);
+    const ComputePipeline& find(KernelKind kind);
 
   private:
     Device& device_;

@@ -25,7 +25,7 @@ struct OpenedDevice {
 // software device, for the whole process.
 class DeviceOpener {
   public:
-    explicit DeviceOpener(const backend::BackendSettings& settings);
+    DeviceOpener(const backend::BackendSettings& settings, const DeviceSettings& device);
 
     // Throws Error{Unavailable} or Error{InvalidInput} with the devices there are.
     std::unique_ptr<OpenedDevice> open() const;

@@ -21,7 +21,8 @@ constexpr int Attempts = 3;  // a device that is lost so often in a row does not
 
 class VulkanBackend final : public Backend {
   public:
-    explicit VulkanBackend(const BackendSettings& settings) : opener_(settings), world_(settings.blobs) {
+    VulkanBackend(const BackendSettings& settings, const DeviceSettings& device)
+        : opener_(settings, device), world_(settings.blobs) {
         opened_ = opener_.open();
         world_.move_to(&opened_->device);
     }
@@ -119,9 +120,15 @@ class VulkanBackend final : public Backend {
 
 }  // namespace
 
+std::unique_ptr<Backend> make_backend(const BackendSettings& settings, const DeviceSettings& device) {
+    return std::make_unique<VulkanBackend>(settings, device);
+}
+
 BackendEntry entry() {
-    return {"vulkan", "path tracing on any device with Vulkan 1.3",
-            [](const BackendSettings& settings) { return std::make_unique<VulkanBackend>(settings); }};
+    return {.name = "vulkan",
+            .summary = "path tracing on any device with Vulkan 1.3",
+            .make = [](const BackendSettings& settings) { return make_backend(settings, {}); },
+            .chooses_device = true};
 }
 
 }  // namespace tessera::vulkan

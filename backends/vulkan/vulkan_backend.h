@@ -1,9 +1,14 @@
 #pragma once
 
+#include "backends/vulkan/device/device.h"
 #include "mediator/backend/backend.h"
 
 namespace tessera::vulkan {
 
 backend::BackendEntry entry();
+
+// The same with settings of the device layer, which tests make fail. The cache folder is that of `settings`.
+std::unique_ptr<backend::Backend> make_backend(const backend::BackendSettings& settings,
+                                               const DeviceSettings& device);
 
 }  // namespace tessera::vulkan

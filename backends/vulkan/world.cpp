@@ -12,6 +12,15 @@ backend::MeshCatalog::Result everything_in(const backend::MeshCatalog& meshes) {
     return all;
 }
 
+// As if the scene had come as a snapshot.
+backend::SceneDelta everything_in(const scene::Scene& scene) {
+    backend::SceneDelta all{.everything = true};
+    for (const auto& [id, object] : scene.objects()) {
+        if (std::holds_alternative<scene::Geometry>(*object)) all.geometries.push_back({id, {}});
+    }
+    return all;
+}
+
 }  // namespace
 
 void World::move_to(Device* device) {
@@ -55,7 +64,7 @@ Expected<backend::EditReport> World::refuse(const Error& error) {
     scene_.reset();
     shadow_.rollback();
     meshes_ = backend::MeshCatalog(blobs_);
-    meshes_.update(shadow_.scene(), {.everything = true});
+    meshes_.update(shadow_.scene(), everything_in(shadow_.scene()));
     tables_ = backend::make_tables(shadow_.scene(), shadow_.lowered(), meshes_, *blobs_);
     rebuild();
     return failure(ErrorCode::OutOfMemory, "the scene does not fit into the memory of " +

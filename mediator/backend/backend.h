@@ -16,31 +16,32 @@
 #include "mediator/view/view.h"
 #include "mediator/view/work_unit.h"
 
-// What a renderer owes the cluster: scene in by change lists, statistics of samples out. It knows no network, no
-// other node, no window and no file. A sample is a pure function of (scene content, view, pixel, sample index).
+// What a renderer owes the cluster: scene in by change lists, statistics of samples out. It knows no network,
+// no other node, no window and no file. A sample is a pure function of (scene content, view, pixel, sample
+// index).
 namespace tessera::backend {
 
 struct Capabilities {
     frame::ChannelSet channels;
-    std::uint32_t preferred_tile = 32;  // pixels, edge of a square
-    std::uint32_t concurrent_units = 1; // render() calls worth running at a time
+    std::uint32_t preferred_tile = 32;   // pixels, edge of a square
+    std::uint32_t concurrent_units = 1;  // render() calls worth running at a time
     bool deterministic = true;
     std::string kind;  // back-end, build and instruction set or device: equal kinds give equal bits
 };
 
 struct EditReport {
     std::uint32_t entries = 0, relevant = 0;
-    std::uint32_t rebuilt = 0;       // geometries whose acceleration structure was built anew
-    std::uint32_t refitted = 0;      // geometries refitted in place
-    std::uint32_t retransformed = 0; // instances that only moved
+    std::uint32_t rebuilt = 0;        // geometries whose acceleration structure was built anew
+    std::uint32_t refitted = 0;       // geometries refitted in place
+    std::uint32_t retransformed = 0;  // instances that only moved
     std::uint64_t triangles = 0, instances = 0, lights = 0;  // of the scene after the edit
     std::uint64_t degenerate_triangles = 0;                  // counted and skipped
-    std::vector<std::string> ignored_kinds;  // object kinds this back-end does not draw
-    std::vector<std::string> problems;       // objects drawn as placeholders, and why; each once per content
+    std::vector<std::string> ignored_kinds;                  // object kinds this back-end does not draw
+    std::vector<std::string> problems;  // objects drawn as placeholders, and why; each once per content
 };
 
-// Lives between begin_edit() and its own end; no render runs meanwhile. Destroying it without commit() leaves the
-// last good version.
+// Lives between begin_edit() and its own end; no render runs meanwhile. Destroying it without commit() leaves
+// the last good version.
 class EditScope {
   public:
     virtual ~EditScope() = default;
@@ -70,8 +71,9 @@ class Backend {
     virtual Version version() const = 0;
     virtual std::unique_ptr<EditScope> begin_edit() = 0;  // waits until no render runs
 
-    // Thread-safe: several units at a time. Finishes a sample over the whole tile before the next, so a stop leaves
-    // whole aligned blocks; returns within 50 ms of the stop. Never throws for content; Error for device failures.
+    // Thread-safe: several units at a time. Finishes a sample over the whole tile before the next, so a stop
+    // leaves whole aligned blocks; returns within 50 ms of the stop. Never throws for content; Error for
+    // device failures.
     virtual RenderResult render(const view::View& view, const view::WorkUnit& unit, std::stop_token stop) = 0;
 
     // Replays one sample and tells each vertex of its path, one line each; the picture is not touched.
@@ -80,19 +82,21 @@ class Backend {
 };
 
 struct BackendSettings {
-    std::uint32_t threads = 0;  // 0 = all cores
-    std::string isa;            // "" = best, "avx2", "avx512"
-    std::string device;         // "" = best; else an index or a part of a name, letter case aside
+    std::uint32_t threads = 0;           // 0 = all cores
+    std::string isa;                     // "" = best, "avx2", "avx512"
+    std::string device;                  // "" = best; else an index or a part of a name, letter case aside
     std::filesystem::path cache_folder;  // for what can be made again (trees, compiled kernels); "" = none
-    std::chrono::nanoseconds simulated_sample_cost{0};  // null only: fixed time per sample, for scheduler benchmarks
-    std::shared_ptr<scene::BlobStore> blobs;            // never null
+    std::chrono::nanoseconds simulated_sample_cost{
+        0};                                   // null only: fixed time per sample, for scheduler benchmarks
+    std::shared_ptr<scene::BlobStore> blobs;  // never null
 };
 
 // One line of the explicit table in backends/catalog.cpp.
 struct BackendEntry {
     std::string name;
     std::string summary;
-    std::function<std::unique_ptr<Backend>(const BackendSettings&)> make;  // throws Error when it cannot start
+    std::function<std::unique_ptr<Backend>(const BackendSettings&)>
+        make;                     // throws Error when it cannot start
     bool chooses_device = false;  // whether BackendSettings::device means anything to it
 };
 

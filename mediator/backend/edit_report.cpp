@@ -23,8 +23,8 @@ std::vector<std::string> MaterialProblems::update(const scene::Scene& scene, con
     return problems;
 }
 
-EditReport make_report(const SceneDelta& delta, const MeshCatalog& meshes,
-                       const MeshCatalog::Result& changes, const SceneTables& tables) {
+EditReport make_report(const SceneDelta& delta, const MeshCatalog& meshes, const MeshCatalog::Result& changes,
+                       const SceneTables& tables) {
     EditReport report{.entries = delta.entries,
                       .relevant = delta.relevant,
                       .rebuilt = changes.count(MeshStep::Rebuild),

@@ -86,9 +86,8 @@ class ShadowScene {
     Lowered lowered_;
     SceneDelta delta_;
     std::vector<Undo> undo_;
-    std::set<std::uint32_t> moved_;  // becomes delta_.moved_instances
-    std::unordered_map<ObjectId, std::uint32_t>
-        changed_geometries_;  // field bits, since the last accept()
+    std::set<std::uint32_t> moved_;                                   // becomes delta_.moved_instances
+    std::unordered_map<ObjectId, std::uint32_t> changed_geometries_;  // field bits, since the last accept()
     std::set<ObjectId> created_geometries_, removed_geometries_, materials_, textures_;
     std::set<std::string> ignored_kinds_;
 

@@ -106,7 +106,6 @@ void main() {
     Context context;
     context.scene = job.scene.items[0];
     context.scene.features = Features;
-    if ((Features & FeatureEnvironment) == 0u) context.scene.environment.emits = 0u;
     context.view = job.view.items[0];
     context.view.strategy = StrategyBoth;
     context.pool = job.pool;

@@ -1,0 +1,143 @@
+// The Vulkan back-end beside the Embree one, and on devices that fail.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "backends/vulkan/vulkan_backend.h"
+#include "mediator/backend/catalog.h"
+#include "mediator/frame/resolve.h"
+#include "tests/contract/contract_scene.h"
+
+namespace tessera::vulkan {
+namespace {
+
+using namespace backend;
+
+class Rendering {
+  public:
+    Rendering() : blobs(std::make_shared<scene::BlobStore>()) {
+        changes = builder.edit(test::contract_scene(*blobs));
+        view = test::contract_view({frame::Channel::Radiance, frame::Channel::Depth});
+    }
+    frame::FilmTile film(Backend& with, frame::SampleBlock block) const {
+        const view::WorkUnit unit{.id = UnitId{1},
+                                  .view = view.id,
+                                  .revision = view.revision,
+                                  .version = with.version(),
+                                  .tile = view.window,
+                                  .block = block};
+        RenderResult result = with.render(view, unit, {});
+        EXPECT_EQ(result.status, RenderStatus::Done);
+        return std::move(result.blocks.at(0));
+    }
+
+    std::shared_ptr<scene::BlobStore> blobs;
+    test::SceneBuilder builder;
+    scene::ChangeList changes;
+    view::View view;
+};
+
+std::unique_ptr<Backend> with_scene(std::unique_ptr<Backend> backend, const Rendering& rendering) {
+    test::commit(*backend, {rendering.changes});
+    return backend;
+}
+
+TEST(VulkanParity, SeesTheSampleThatEmbreeSees) {
+    const Rendering rendering;
+    const auto ours = with_scene(find_backend("vulkan").make({.blobs = rendering.blobs}), rendering);
+    const auto theirs = with_scene(find_backend("embree").make({.blobs = rendering.blobs}), rendering);
+    const auto image = [&](Backend& backend, frame::SampleBlock block) {
+        return frame::resolve(rendering.film(backend, block), frame::Channel::Radiance);
+    };
+    const auto one = image(*ours, {0, 0}), other = image(*theirs, {0, 0});
+    std::size_t agree = 0;
+    for (std::size_t i = 0; i < one.values.size(); i += 3) {
+        bool near = true;
+        for (std::size_t c = 0; c < 3; ++c) {
+            near &=
+                std::fabs(one.values[i + c] - other.values[i + c]) <= 1e-3f * (1.0f + other.values[i + c]);
+        }
+        agree += near;
+    }
+    EXPECT_GE(double(agree), 0.995 * double(one.values.size()) / 3.0);
+
+    const auto many = image(*ours, {0, 4}), reference = image(*theirs, {0, 4});
+    double error = 0.0, difference = 0.0, squares = 0.0;
+    for (std::size_t i = 0; i < many.values.size(); ++i) {
+        const double d = many.values[i] - reference.values[i], r = reference.values[i];
+        error += d * d / (r * r + 1e-4);
+        difference += d;
+        squares += d * d;
+    }
+    EXPECT_LE(error / double(many.values.size()), 1e-4);
+    EXPECT_LE(std::fabs(difference), 3.0 * std::sqrt(squares) + 1e-6);
+}
+
+// Loses the device at the n-th submission that is counted over all devices.
+// Uploads are submissions too: the host does not look into the device's memory.
+DeviceSettings lost_at(std::shared_ptr<std::atomic<int>> calls, int call) {
+    return {.memory = {.mapping = MemorySettings::Mapping::Apart}, .fault = [=](FaultPoint point) {
+                return point == FaultPoint::Submit && ++*calls == call ? VK_ERROR_DEVICE_LOST : VK_SUCCESS;
+            }};
+}
+
+TEST(VulkanBackendFaults, ALostDeviceIsOpenedAgainAndTheUnitIsTheSame) {
+    const Rendering rendering;
+    const auto calls = std::make_shared<std::atomic<int>>(0);
+    const auto sound = with_scene(make_backend({.blobs = rendering.blobs}, lost_at(calls, -1)), rendering);
+    const int edits = *calls;
+    const frame::FilmTile expected = rendering.film(*sound, {0, 2});
+    ASSERT_GT(edits, 2);
+    // In the middle of the edit, and at the first dispatch of the unit.
+    for (const int call : {edits / 2, edits + 1}) {
+        const auto again = std::make_shared<std::atomic<int>>(0);
+        const auto hurt =
+            with_scene(make_backend({.blobs = rendering.blobs}, lost_at(again, call)), rendering);
+        const frame::FilmTile film = rendering.film(*hurt, {0, 2});
+        EXPECT_GE(int(*again), call);
+        EXPECT_EQ(film.planes, expected.planes) << call;
+    }
+}
+
+TEST(VulkanBackendFaults, ADeviceThatIsLostAgainAndAgainIsAnError) {
+    const Rendering rendering;
+    auto healthy = std::make_shared<std::atomic<bool>>(true);
+    const auto backend = with_scene(
+        make_backend({.blobs = rendering.blobs},
+                     {.fault = [=](FaultPoint) { return *healthy ? VK_SUCCESS : VK_ERROR_DEVICE_LOST; }}),
+        rendering);
+    *healthy = false;
+    EXPECT_THROW(rendering.film(*backend, {0, 0}), Error);
+}
+
+TEST(VulkanBackendMemory, ASceneThatDoesNotFitIsRefusedAndTheLastOneStays) {
+    Rendering rendering;
+    const auto backend = with_scene(
+        make_backend({.blobs = rendering.blobs}, {.memory = {.limit = std::uint64_t{192} << 20}}), rendering);
+    const frame::FilmTile before = rendering.film(*backend, {0, 0});
+    const Version version = backend->version();
+
+    scene::Geometry large = test::square(*rendering.blobs, 1.0f, test::Red);
+    large.positions =
+        test::array_blob<float>(*rendering.blobs, std::vector<float>(std::size_t{96} << 20));  // 384 MiB
+    {
+        const auto scope = backend->begin_edit();
+        const auto changes = rendering.builder.edit(
+            {scene::Create{ObjectId{90}, large},
+             scene::Create{ObjectId{9}, test::transform(test::moved(0, 0, -4), {ObjectId{90}})},
+             test::SceneBuilder::update<scene::Root>(
+                 scene::RootId, scene::Root::Field::Children,
+                 {.children = {ObjectId{9}, test::FloorAt, test::BlockAt}})});
+        ASSERT_TRUE(scope->apply(changes));
+        const auto done = scope->commit();
+        ASSERT_FALSE(done);
+        EXPECT_EQ(done.error().code(), ErrorCode::OutOfMemory);
+        EXPECT_NE(std::string(done.error().what()).find("stays"), std::string::npos) << done.error().what();
+    }
+    EXPECT_EQ(backend->version(), version);
+    EXPECT_EQ(rendering.film(*backend, {0, 0}).planes, before.planes);
+}
+
+}  // namespace
+}  // namespace tessera::vulkan
