@@ -40,15 +40,15 @@ BvhPool::Work BvhPool::update(const backend::MeshCatalog& meshes, const backend:
         build(id, mesh);
         ++work.rebuilt;
     }
-    // A row of the top level holds the places of the others: as many bytes before they are known as after.
-    release(top_);
-    TopBvh top = make_top(instances);
-    place_rows(top.row.size());
+    // Nodes have two children at least, so there are fewer of them than instances, but for the root.
+    place_rows((2 * instances.size() + 1) * sizeof(shading::BvhNode));
     for (auto& [id, rows] : meshes_) {
         if (rows.dirty) send(rows, *meshes.find(id));
     }
-    top = make_top(instances);
-    upload_bytes(device_, buffer_, top.row, top_.offset);
+    update_top(instances);
+    if (top_.row.size() > top_row_.bytes)
+        throw Error(ErrorCode::Internal, "the top level is larger than planned");
+    upload_bytes(device_, buffer_, top_.row, top_row_.offset);
     return work;
 }
 
@@ -67,7 +67,7 @@ void BvhPool::build(ObjectId id, const backend::Mesh& mesh) {
     meshes_.emplace(id, std::move(rows));
 }
 
-TopBvh BvhPool::make_top(std::span<const shading::Instance> instances) {
+void BvhPool::update_top(std::span<const shading::Instance> instances) {
     std::vector<PlacedMesh> placed(instances.size());
     for (std::size_t i = 0; i < instances.size(); ++i) {
         const shading::Instance& instance = instances[i];
@@ -79,33 +79,38 @@ TopBvh BvhPool::make_top(std::span<const shading::Instance> instances) {
                      .triangles = rows.triangles.item(),
                      .alpha_tested = instance.alpha_tested != 0};
     }
-    return build_top(builder_, placed);
+    if (refit_top(top_, placed, top_built_cost_)) return;
+    top_ = build_top(builder_, placed);
+    top_built_cost_ = top_.tree.cost;
 }
 
 void BvhPool::place_rows(std::uint64_t top_bytes) {
-    if (ranges_ && try_place(top_bytes)) return;
-    std::uint64_t bytes = std::max<std::uint64_t>(top_bytes, 16);
+    if (top_row_.bytes != top_bytes) {
+        release(top_row_);
+        top_row_.bytes = top_bytes;
+    }
+    if (ranges_ && try_place()) return;
+    std::uint64_t bytes = top_bytes;
     for (auto& [id, rows] : meshes_) {
         bytes += rows.nodes.bytes + rows.triangles.bytes;
         rows.nodes.placed = rows.triangles.placed = false;
         rows.dirty = true;
     }
-    top_.placed = false;
+    top_row_.placed = false;
     bytes += bytes / 2;  // room for edits
     bytes = (bytes + 15) / 16 * 16;
     buffer_ = Buffer();  // first: the memory may be needed again
     ranges_.reset();
     buffer_ = Buffer(device_, bytes);
     ranges_.emplace(bytes);
-    if (!try_place(top_bytes)) throw Error(ErrorCode::Internal, "the rows of meshes do not fit their pool");
+    if (!try_place()) throw Error(ErrorCode::Internal, "the rows of meshes do not fit their pool");
 }
 
-bool BvhPool::try_place(std::uint64_t top_bytes) {
-    top_.bytes = std::max<std::uint64_t>(top_bytes, 16);
+bool BvhPool::try_place() {
     for (auto& [id, rows] : meshes_) {
         if (!try_place(rows.nodes) || !try_place(rows.triangles)) return false;
     }
-    return try_place(top_);
+    return try_place(top_row_);
 }
 
 bool BvhPool::try_place(Row& row) {

@@ -28,7 +28,7 @@ class BvhPool final {
                 std::span<const shading::Instance> instances);
 
     const Buffer& buffer() const { return buffer_; }
-    std::uint32_t top() const { return top_.item(); }  // where the top level's root is, in items
+    std::uint32_t top() const { return top_row_.item(); }  // where the top level's root is, in items
 
   private:
     // A row of items.
@@ -46,10 +46,10 @@ class BvhPool final {
 
     bool refit(MeshRows& rows, const backend::Mesh& mesh);
     void build(ObjectId id, const backend::Mesh& mesh);
-    TopBvh make_top(std::span<const shading::Instance> instances);
+    void update_top(std::span<const shading::Instance> instances);
     // Places all rows that have no place, in a larger pool if need be.
     void place_rows(std::uint64_t top_bytes);
-    bool try_place(std::uint64_t top_bytes);
+    bool try_place();
     bool try_place(Row& row);
     void release(Row& row);
     void send(MeshRows& rows, const backend::Mesh& mesh);
@@ -59,7 +59,9 @@ class BvhPool final {
     std::map<ObjectId, MeshRows> meshes_;
     Buffer buffer_;
     std::optional<RangeAllocator> ranges_;
-    Row top_;
+    TopBvh top_;
+    double top_built_cost_ = 0.0;
+    Row top_row_;
 };
 
 }  // namespace tessera::vulkan

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <chrono>
 
 #include "backends/vulkan/device/transfer.h"
 #include "backends/vulkan/job.h"
@@ -113,6 +114,9 @@ backend::RenderResult TileRenderer::run(const shading::View& view, const view::W
     for (Batch& batch : batches) send(batch);
     for (std::size_t turn = 0; batches[turn].items > 0; turn = 1 - turn) {
         Batch& batch = batches[turn];
+        // What still runs is abandoned: a first dispatch may wait for the driver's compiler.
+        while (!batch.submission.wait_for(std::chrono::milliseconds(5)) && !stop.stop_requested()) {
+        }
         if (stop.stop_requested()) return film.take(backend::RenderStatus::Stopped);
         const std::vector<double> seconds = batch.submission.seconds();
         if (!seconds.empty()) pace.learn(batch.items, seconds.front());

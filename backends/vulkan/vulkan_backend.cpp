@@ -25,18 +25,17 @@ class VulkanBackend final : public Backend {
         : opener_(settings, device), world_(settings.blobs) {
         opened_ = opener_.open();
         world_.move_to(&opened_->device);
+        const DeviceInfo& info = opened_->device.info();
+        // A card needs many samples at a time.
+        capabilities_ = {.channels = AllChannels,
+                         .preferred_tile = info.kind == DeviceKind::Cpu ? 32u : 128u,
+                         .concurrent_units = 2,  // one merges while the other one's samples are traced
+                         .deterministic = true,
+                         .kind = "vulkan " + info.name + ", " + info.driver};
     }
     ~VulkanBackend() override { world_.move_to(nullptr); }
 
-    Capabilities capabilities() const override {
-        const DeviceInfo& info = opened_->device.info();
-        // A card needs many samples at a time.
-        return {.channels = AllChannels,
-                .preferred_tile = info.kind == DeviceKind::Cpu ? 32u : 128u,
-                .concurrent_units = 2,  // one merges while the other one's samples are traced
-                .deterministic = true,
-                .kind = "vulkan " + info.name + ", " + info.driver};
-    }
+    Capabilities capabilities() const override { return capabilities_; }
 
     Version version() const override {
         const std::shared_lock lock(mutex_);
@@ -46,27 +45,19 @@ class VulkanBackend final : public Backend {
     std::unique_ptr<EditScope> begin_edit() override { return std::make_unique<Edit>(*this); }
 
     RenderResult render(const view::View& view, const view::WorkUnit& unit, std::stop_token stop) override {
-        for (int attempt = 1;; ++attempt) {
-            std::uint64_t lost = 0;
-            try {
-                const std::shared_lock lock(mutex_);
-                lost = recoveries_;
-                if (unit.version != world_.version()) return {};
-                const TileRenderer renderer{opened_->device, opened_->kernels, opened_->pace, world_.scene()};
-                return renderer.run(make_view(view, world_.tables().render_origin), unit, view.channels,
-                                    stop);
-            } catch (const DeviceLost&) {
-                if (attempt == Attempts) throw;
-            }
-            recover(lost);
-        }
+        return on_device([&]() -> RenderResult {
+            if (unit.version != world_.version()) return {};
+            const TileRenderer renderer{opened_->device, opened_->kernels, opened_->pace, world_.scene()};
+            return renderer.run(make_view(view, world_.tables().render_origin), unit, view.channels, stop);
+        });
     }
 
     std::vector<std::string> probe(const view::View& view, std::uint32_t x, std::uint32_t y,
                                    std::uint64_t sample) override {
-        const std::shared_lock lock(mutex_);
-        return replay(opened_->device, world_.scene(), world_.tables(),
-                      make_view(view, world_.tables().render_origin), {x, y}, sample);
+        return on_device([&] {
+            return replay(opened_->device, world_.scene(), world_.tables(),
+                          make_view(view, world_.tables().render_origin), {x, y}, sample);
+        });
     }
 
   private:
@@ -84,25 +75,39 @@ class VulkanBackend final : public Backend {
         std::unique_lock<std::shared_mutex> lock_;
     };
 
+    // `work` with the scene on the device, under the lock of renders; on another device where this one is
+    // lost. A device that could not be had the last time is asked for again.
+    template <class Work>
+    auto on_device(const Work& work) -> decltype(work()) {
+        for (int attempt = 1;; ++attempt) {
+            std::uint64_t seen = 0;
+            try {
+                const std::shared_lock lock(mutex_);
+                seen = recoveries_;
+                if (world_.is_on_device()) return work();
+            } catch (const DeviceLost&) {
+                if (attempt == Attempts) throw;
+            }
+            const std::unique_lock lock(mutex_);
+            if (recoveries_ == seen) reopen();  // unless another thread has
+        }
+    }
+
     // Under the edit's lock.
     Expected<EditReport> commit() {
         for (int attempt = 1;; ++attempt) {
             try {
+                if (!world_.is_on_device()) reopen();
                 return world_.commit();
             } catch (const DeviceLost&) {
                 if (attempt == Attempts) throw;
-                reopen();
+                world_.move_to(nullptr);
             }
         }
     }
 
-    // Unless another thread has done it since recoveries_ was `seen`.
-    void recover(std::uint64_t seen) {
-        const std::unique_lock lock(mutex_);
-        if (recoveries_ == seen) reopen();
-    }
-
-    // A new device, and the scene on it as it was.
+    // A new device, and the scene on it as it was. Throws what opening throws; the scene is on no device
+    // then.
     void reopen() {
         ++recoveries_;
         world_.move_to(nullptr);
@@ -112,6 +117,7 @@ class VulkanBackend final : public Backend {
     }
 
     const DeviceOpener opener_;
+    Capabilities capabilities_;
     mutable std::shared_mutex mutex_;  // renders share it, an edit owns it; protects all below
     std::uint64_t recoveries_ = 0;
     std::unique_ptr<OpenedDevice> opened_;

@@ -31,17 +31,34 @@ void World::move_to(Device* device) {
 
 void World::rebuild() {
     scene_.reset();
-    scene_ = std::make_unique<GpuScene>(*device_);
-    scene_->update(meshes_, everything_in(meshes_), tables_);
+    auto scene = std::make_unique<GpuScene>(*device_);
+    scene->update(meshes_, everything_in(meshes_), tables_);
+    scene_ = std::move(scene);
+}
+
+void World::rollback() {
+    shadow_.rollback();
+    if (ahead_) restore();
+}
+
+// The host's side from the shadow scene; the device may hold parts of another version: it lets go of all.
+void World::restore() {
+    scene_.reset();
+    meshes_ = backend::MeshCatalog(blobs_);
+    meshes_.update(shadow_.scene(), everything_in(shadow_.scene()));
+    tables_ = backend::make_tables(shadow_.scene(), shadow_.lowered(), meshes_, *blobs_);
+    ahead_ = false;
 }
 
 Expected<backend::EditReport> World::commit() {
     const backend::SceneDelta delta = shadow_.pending();
+    ahead_ = true;
     const backend::MeshCatalog::Result changes = meshes_.update(shadow_.scene(), delta);
     tables_ = backend::make_tables(shadow_.scene(), shadow_.lowered(), meshes_, *blobs_);
     try {
         const BvhPool::Work work = scene_->update(meshes_, changes, tables_);
         shadow_.accept();
+        ahead_ = false;
         version_ = shadow_.scene().version();
         backend::EditReport report = backend::make_report(delta, meshes_, changes, tables_);
         report.rebuilt = work.rebuilt;
@@ -59,13 +76,8 @@ Expected<backend::EditReport> World::commit() {
     }
 }
 
-// The device holds parts of both versions by now: all of the old one is sent again.
 Expected<backend::EditReport> World::refuse(const Error& error) {
-    scene_.reset();
-    shadow_.rollback();
-    meshes_ = backend::MeshCatalog(blobs_);
-    meshes_.update(shadow_.scene(), everything_in(shadow_.scene()));
-    tables_ = backend::make_tables(shadow_.scene(), shadow_.lowered(), meshes_, *blobs_);
+    rollback();
     rebuild();
     return failure(ErrorCode::OutOfMemory, "the scene does not fit into the memory of " +
                                                device_->info().name + ": " + error.what() + "; version " +

@@ -14,11 +14,16 @@ class World final {
   public:
     explicit World(std::shared_ptr<scene::BlobStore> blobs) : blobs_(std::move(blobs)), meshes_(blobs_) {}
 
-    // To a device that is new, or that was lost: everything is sent there. Null: lets go of it.
+    // To a device that is new, or that was lost: everything is sent there. Null: lets go of it. Throws
+    // Error{OutOfMemory} and DeviceLost; nothing is on the device then.
     void move_to(Device* device);
+    // Whether the scene is on a device; only then may scene() and commit() be called.
+    bool is_on_device() const { return scene_ != nullptr; }
 
     Expected<void> apply(const scene::ChangeList& changes) { return shadow_.apply(changes); }
-    void rollback() { shadow_.rollback(); }
+    // To the last version that was committed.
+    void rollback();
+    // May be called again after DeviceLost, on another device.
     Expected<backend::EditReport> commit();
 
     Version version() const { return version_; }
@@ -27,6 +32,7 @@ class World final {
 
   private:
     void rebuild();
+    void restore();
     Expected<backend::EditReport> refuse(const Error& error);
 
     std::shared_ptr<scene::BlobStore> blobs_;
@@ -34,6 +40,7 @@ class World final {
     Version version_;
     backend::MeshCatalog meshes_;
     backend::SceneTables tables_;
+    bool ahead_ = false;  // meshes and tables are those of a version that is not committed
     Device* device_ = nullptr;
     std::unique_ptr<GpuScene> scene_;
     backend::MaterialProblems problems_;

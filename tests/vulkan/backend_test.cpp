@@ -100,15 +100,32 @@ TEST(VulkanBackendFaults, ALostDeviceIsOpenedAgainAndTheUnitIsTheSame) {
     }
 }
 
-TEST(VulkanBackendFaults, ADeviceThatIsLostAgainAndAgainIsAnError) {
-    const Rendering rendering;
-    auto healthy = std::make_shared<std::atomic<bool>>(true);
-    const auto backend = with_scene(
-        make_backend({.blobs = rendering.blobs},
-                     {.fault = [=](FaultPoint) { return *healthy ? VK_SUCCESS : VK_ERROR_DEVICE_LOST; }}),
-        rendering);
-    *healthy = false;
-    EXPECT_THROW(rendering.film(*backend, {0, 0}), Error);
+TEST(VulkanBackendFaults, ADeviceThatIsLostAgainAndAgainIsAnErrorUntilItComesBack) {
+    for (const auto mapping : {MemorySettings::Mapping::AsOffered, MemorySettings::Mapping::Apart}) {
+        Rendering rendering;
+        const auto healthy = std::make_shared<std::atomic<bool>>(true);
+        const auto backend = with_scene(
+            make_backend({.blobs = rendering.blobs},
+                         {.memory = {.mapping = mapping},
+                          .fault = [=](FaultPoint) { return *healthy ? VK_SUCCESS : VK_ERROR_DEVICE_LOST; }}),
+            rendering);
+        const frame::FilmTile before = rendering.film(*backend, {0, 1});
+        const Version version = backend->version();
+        *healthy = false;
+        EXPECT_THROW(rendering.film(*backend, {0, 1}), Error);
+        EXPECT_THROW(rendering.film(*backend, {0, 1}), Error) << "nothing is on a device by now";
+        const auto moved = rendering.builder.move(test::BlockAt, test::moved(0.2, 0.1, -1.5));
+        const bool uploads_fail = mapping == MemorySettings::Mapping::Apart;
+        if (uploads_fail) {
+            EXPECT_THROW(test::commit(*backend, {moved}), Error);
+            EXPECT_EQ(backend->version(), version);
+        }
+        EXPECT_FALSE(backend->capabilities().kind.empty());
+        *healthy = true;
+        EXPECT_EQ(rendering.film(*backend, {0, 1}).planes, before.planes);
+        test::commit(*backend, {moved});
+        EXPECT_NE(rendering.film(*backend, {0, 1}).planes, before.planes);
+    }
 }
 
 TEST(VulkanBackendMemory, ASceneThatDoesNotFitIsRefusedAndTheLastOneStays) {

@@ -59,6 +59,7 @@ TopBvh build_top(BinaryTreeBuilder& builder, std::span<const PlacedMesh> instanc
 }
 
 bool refit_top(TopBvh& top, std::span<const PlacedMesh> instances, double built_cost) {
+    if (top.tree.nodes.empty()) return false;
     const std::vector<Box> boxes = world_boxes(instances);
     std::vector<char> placed(instances.size());
     for (const std::uint32_t number : top.tree.primitives) {

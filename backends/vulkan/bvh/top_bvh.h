@@ -22,7 +22,7 @@ TopBvh build_top(BinaryTreeBuilder& builder, std::span<const PlacedMesh> instanc
 
 // Instances have moved, or their meshes have other boxes or places: the tree stays. False: it is to be built
 // anew, since an instance has come, gone or changed between being hit and left out (then it is as before), or
-// since the tree has become bad (RefitLimit).
+// since the tree has become bad (RefitLimit) or was never built.
 bool refit_top(TopBvh& top, std::span<const PlacedMesh> instances, double built_cost);
 
 }  // namespace tessera::vulkan
