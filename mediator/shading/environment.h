@@ -19,25 +19,26 @@ inline vec2 map_place(IN(Environment) sky, vec3 direction) {
     return vec2(u - floor(u), arc_cosine(clamp(direction.y, -1.0f, 1.0f)) / Pi);
 }
 
-inline vec3 sky_radiance(IN(Scene) scene, vec3 direction) {
-    if (!has_map(scene)) return scene.environment.color;
-    const vec4 texel = lookup(scene, scene.environment.map, map_place(scene.environment, direction));
-    return scene.environment.color + scene.environment.strength * vec3(texel);
-}
+struct Sky {
+    vec3 radiance;
+    float pdf;  // of sample_sky, per solid angle
+};
 
-// Per solid angle.
-inline float sky_pdf(IN(Scene) scene, vec3 direction) {
-    if (!has_map(scene)) return 1.0f / (4.0f * Pi);
+inline Sky sky_at(IN(Scene) scene, vec3 direction) {
+    Sky sky = Sky(scene.environment.color, 1.0f / (4.0f * Pi));
+    if (!has_map(scene)) return sky;
+    const vec2 uv = map_place(scene.environment, direction);
+    sky.radiance += scene.environment.strength * vec3(lookup(scene, scene.environment.map, uv));
     const uint width = scene.environment.map.width;
     const uint height = scene.environment.map.height;
-    const vec2 uv = map_place(scene.environment, direction);
     const uint x = min(uint(uv.x * float(width)), width - 1u);
     const uint y = min(uint(uv.y * float(height)), height - 1u);
     const float row = probability_of(scene.sums, scene.environment.row_sums, y);
     const float column = probability_of(scene.sums, scene.environment.column_sums + y * width, x);
     const float sine_theta = sqrt(greater_of(0.0f, 1.0f - direction.y * direction.y));
-    if (!(sine_theta > 0.0f)) return 0.0f;
-    return row * column * float(width) * float(height) / (2.0f * Pi * Pi * sine_theta);
+    const float per_texel = row * column * float(width) * float(height);
+    sky.pdf = sine_theta > 0.0f ? per_texel / (2.0f * Pi * Pi * sine_theta) : 0.0f;
+    return sky;
 }
 
 inline vec3 sample_sky(IN(Scene) scene, vec2 u) {

@@ -67,12 +67,22 @@
 namespace tessera::shading {
 
 using uint = std::uint32_t;
-using glm::abs, glm::floor, glm::min, glm::max, glm::clamp, glm::mix, glm::dot, glm::cross;
+using glm::floor, glm::min, glm::max, glm::clamp, glm::mix, glm::dot, glm::cross;
 using glm::ivec2, glm::ivec3, glm::ivec4, glm::uvec2, glm::uvec3, glm::uvec4;
 using glm::vec2, glm::vec3, glm::vec4, glm::mat3;
 using std::sqrt;
 using std::uint64_t;
 
+// Not GLM's, which compare: to clear the sign is one instruction.
+inline float abs(float x) {
+    return std::fabs(x);
+}
+inline vec2 abs(const vec2& v) {
+    return vec2(abs(v.x), abs(v.y));
+}
+inline vec3 abs(const vec3& v) {
+    return vec3(abs(v.x), abs(v.y), abs(v.z));
+}
 inline uint float_bits(float x) {
     return std::bit_cast<uint>(x);
 }

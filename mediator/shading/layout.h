@@ -71,7 +71,7 @@ static_assert(offsetof(LightSource, cos_inner) == 44);
 static_assert(offsetof(LightSource, cos_outer) == 48);
 static_assert(offsetof(LightSource, instance) == 52);
 static_assert(offsetof(LightSource, area_sums) == 56);
-static_assert(offsetof(LightSource, root_area) == 60);
+static_assert(offsetof(LightSource, inverse_root_area) == 60);
 
 static_assert(sizeof(Environment) == 64);
 static_assert(offsetof(Environment, map) == 0);

@@ -15,14 +15,12 @@ struct LightSample {
     vec3 direction;  // to the light, unit length
     float pdf;       // per solid angle, choice of the light included; 0 = no light
     bool delta;      // cannot be hit by chance: the pdf is of the choice alone
-    // The shadow ray: from origin along `segment` until far (a share of the segment, or infinity).
-    vec3 origin;
-    vec3 segment;
-    float far;
+    bool distant;    // infinitely far
+    vec3 target;     // where a shadow ray ends, if not; off the light's own surface
 };
 
 inline LightSample no_light() {
-    return LightSample(vec3(0.0f), vec3(0.0f), vec3(0.0f), 0.0f, false, vec3(0.0f), vec3(0.0f), 1.0f);
+    return LightSample(vec3(0.0f), vec3(0.0f), vec3(0.0f), 0.0f, false, false, vec3(0.0f));
 }
 
 // glTF's falloff between the cones (KHR_lights_punctual).
@@ -45,28 +43,24 @@ inline LightSample sample_point_light(IN(LightSource) light, IN(Surface) surface
     found.radiance = light.intensity / distance2 * falloff;
     found.intensity = light.intensity * falloff;
     found.pdf = light.probability;
-    found.origin = leave_surface(surface.position, surface.error, surface.geometric_normal, found.direction);
-    found.segment = light.position - found.origin;
+    found.target = light.position;
     return found;
 }
 
-inline LightSample sample_distant_light(IN(LightSource) light, IN(Surface) surface, vec3 direction,
-                                        vec3 radiance) {
+inline LightSample sample_distant_light(IN(LightSource) light, vec3 direction, vec3 radiance) {
     LightSample found = no_light();
     found.direction = direction;
     found.radiance = radiance;
     found.intensity = radiance;
     found.pdf = light.probability;
-    found.origin = leave_surface(surface.position, surface.error, surface.geometric_normal, direction);
-    found.segment = direction;
-    found.far = infinity();
+    found.distant = true;
     return found;
 }
 
 // Density per solid angle of a mesh light's point at a distance, seen on its surface under a cosine. Their
 // ratio is squared, since the squares themselves leave the range of floats in tiny and huge scenes.
 inline float solid_angle_pdf(IN(LightSource) light, float distance, float cosine_there) {
-    const float ratio = distance / light.root_area;
+    const float ratio = distance * light.inverse_root_area;
     return light.probability * (ratio * ratio) / greater_of(cosine_there, 1e-30f);
 }
 
@@ -76,15 +70,16 @@ inline LightSample sample_mesh_light(IN(Scene) scene, IN(LightSource) light, IN(
     const Choice chosen = choose(scene.sums, light.area_sums, mesh.triangle_count, u.x);
     const uvec3 corners = mesh.triangles.items[chosen.index];
     const vec2 b = sample_triangle(vec2(chosen.rest, u.y));
-    const PointWithError point = point_on(instance, mesh, corners, b);
+    const Triangle triangle = triangle_of(mesh, corners);
+    const PointWithError point = point_on(instance, triangle, b);
     const vec3 offset = point.position - surface.position;
     const Measured way = measure(offset);
-    const vec3 normal = face_normal(instance, mesh, corners, vec3(0.0f));
+    const vec3 normal = face_normal(instance, triangle, vec3(0.0f));
     const float facing = -dot(normal, way.direction);
     if (facing == 0.0f || (facing < 0.0f && material.double_sided == 0u)) return found;
     found.direction = way.direction;
     found.radiance = emission_at(scene, material, mesh, corners, b);
-    if (material.alpha_mode != AlphaOpaque) {
+    if ((scene.features & FeatureAlpha) != 0u && material.alpha_mode != AlphaOpaque) {
         // A ray that comes by chance stops here with this probability (stops_at).
         const float alpha = alpha_at(scene, material, mesh, corners, b);
         const float masked = alpha >= material.alpha_cutoff ? 1.0f : 0.0f;
@@ -92,11 +87,9 @@ inline LightSample sample_mesh_light(IN(Scene) scene, IN(LightSource) light, IN(
     }
     found.intensity = found.radiance;
     found.pdf = solid_angle_pdf(light, way.distance, abs(facing));
-    found.origin = leave_surface(surface.position, surface.error, surface.geometric_normal, found.direction);
-    // The far end leaves its own surface too, by its own error and that of the segment's rounding on the way
-    // there.
+    // By its own error and that of the segment's rounding on the way there.
     const vec3 error = point.error + 2.0f * 5.9604644775390625e-8f * abs(offset);
-    found.segment = leave_surface(point.position, error, normal, -found.direction) - found.origin;
+    found.target = leave_surface(point.position, error, normal, -found.direction);
     return found;
 }
 
@@ -113,12 +106,13 @@ inline LightSample sample_source(IN(Scene) scene, IN(LightSource) light, IN(Surf
     }
     if (light.kind == LightEnvironment) {
         const vec3 direction = sample_sky(scene, u);
-        LightSample found = sample_distant_light(light, surface, direction, sky_radiance(scene, direction));
-        found.pdf *= sky_pdf(scene, direction);
+        const Sky sky = sky_at(scene, direction);
+        LightSample found = sample_distant_light(light, direction, sky.radiance);
+        found.pdf *= sky.pdf;
         return found;
     }
     if (light.kind == LightDirectional) {
-        LightSample found = sample_distant_light(light, surface, -light.direction, light.intensity);
+        LightSample found = sample_distant_light(light, -light.direction, light.intensity);
         found.delta = true;
         return found;
     }
@@ -140,9 +134,9 @@ inline float mesh_light_pdf(IN(Scene) scene, IN(Surface) hit, vec3 from) {
 }
 
 // The same of a direction to the sky.
-inline float environment_pdf(IN(Scene) scene, vec3 direction) {
+inline float sky_light_pdf(IN(Scene) scene, IN(Sky) sky) {
     if (scene.environment_light < 0) return 0.0f;
-    return scene.lights.items[scene.environment_light].probability * sky_pdf(scene, direction);
+    return scene.lights.items[scene.environment_light].probability * sky.pdf;
 }
 
 SHADING_END

@@ -20,7 +20,7 @@ inline vec2 tex_coord_at(IN(Mesh) mesh, uvec3 corners, vec2 b) {
 
 inline vec4 base_color_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uvec3 corners, vec2 b) {
     vec4 color = material.base_color;
-    if (material.base_color_texture.texture >= 0) {
+    if (is_used(scene, material.base_color_texture)) {
         color *= lookup_use(scene, material.base_color_texture, tex_coord_at(mesh, corners, b));
     }
     if ((mesh.arrays & MeshColors) != 0u) {
@@ -37,7 +37,7 @@ inline float alpha_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uve
 }
 
 inline vec3 emission_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uvec3 corners, vec2 b) {
-    if (material.emission_texture.texture < 0) return material.emission;
+    if (!is_used(scene, material.emission_texture)) return material.emission;
     return material.emission *
            vec3(lookup_use(scene, material.emission_texture, tex_coord_at(mesh, corners, b)));
 }

@@ -7,6 +7,17 @@
 // Points on triangles and the way off them. `b`: barycentric weights of the second and third vertex.
 SHADING_BEGIN
 
+struct Triangle {
+    vec3 p;
+    vec3 q;
+    vec3 r;
+};
+
+inline Triangle triangle_of(IN(Mesh) mesh, uvec3 corners) {
+    return Triangle(mesh.positions.items[corners.x], mesh.positions.items[corners.y],
+                    mesh.positions.items[corners.z]);
+}
+
 struct PointWithError {
     vec3 position;
     vec3 error;  // bound of the rounding error, per axis
@@ -21,14 +32,11 @@ inline float rounding_bound(float n) {
 // triangle around it. In the object's frame: interpolation, 5 roundings of the corners' coordinates; the
 // distance to the plane, 8 roundings (differences, cross product, dot product) of the triangle's extent. Then
 // 6 roundings of the way to the world and as many of the ray's way back.
-inline PointWithError point_on(IN(Instance) instance, IN(Mesh) mesh, uvec3 corners, vec2 b) {
-    const vec3 p = mesh.positions.items[corners.x];
-    const vec3 q = mesh.positions.items[corners.y];
-    const vec3 r = mesh.positions.items[corners.z];
+inline PointWithError point_on(IN(Instance) instance, IN(Triangle) t, vec2 b) {
     const float first = 1.0f - b.x - b.y;
-    const vec3 object = p * first + q * b.x + r * b.y;
-    const vec3 sizes = abs(p) * abs(first) + abs(q) * b.x + abs(r) * b.y;
-    const vec3 extent = max(max(abs(p - object), abs(q - object)), abs(r - object));
+    const vec3 object = t.p * first + t.q * b.x + t.r * b.y;
+    const vec3 sizes = abs(t.p) * abs(first) + abs(t.q) * b.x + abs(t.r) * b.y;
+    const vec3 extent = max(max(abs(t.p - object), abs(t.q - object)), abs(t.r - object));
     const mat3 linear = mat3(abs(instance.linear[0]), abs(instance.linear[1]), abs(instance.linear[2]));
     const vec3 in_object = linear * (rounding_bound(5.0f) * sizes + rounding_bound(8.0f) * extent);
     const vec3 transform = linear * abs(object) + abs(instance.translation);
@@ -39,23 +47,16 @@ inline PointWithError point_on(IN(Instance) instance, IN(Mesh) mesh, uvec3 corne
 // Of the front, unit length; `otherwise` for a degenerate triangle. From the two shorter edges, whose angle
 // is the triangle's largest: needles keep their normal. Scaled, since products of a tiny triangle's edges
 // underflow.
-inline vec3 face_normal(IN(Instance) instance, IN(Mesh) mesh, uvec3 corners, vec3 otherwise) {
-    const vec3 p = mesh.positions.items[corners.x];
-    const vec3 q = mesh.positions.items[corners.y];
-    const vec3 r = mesh.positions.items[corners.z];
-    vec3 pq = q - p;
-    vec3 pr = r - p;
-    vec3 qr = r - q;
-    const float scale = unit_scale(largest(max(abs(pq), abs(pr))));
-    pq *= scale;
-    pr *= scale;
-    qr *= scale;
+inline vec3 face_normal(IN(Instance) instance, IN(Triangle) t, vec3 otherwise) {
+    const float scale = unit_scale(extent_of(max(abs(t.q - t.p), abs(t.r - t.p))));
+    const vec3 pq = (t.q - t.p) * scale;
+    const vec3 pr = (t.r - t.p) * scale;
+    const vec3 qr = (t.r - t.q) * scale;
     const float pq2 = dot(pq, pq);
+    const float pr2 = dot(pr, pr);
     const float qr2 = dot(qr, qr);
-    const bool without_pq = pq2 > qr2 && pq2 > dot(pr, pr);
-    const bool without_qr = qr2 >= pq2 && qr2 > dot(pr, pr);
-    const vec3 first = without_pq ? pr : pq;
-    const vec3 second = without_qr ? pr : qr;
+    const vec3 first = pq2 > max(pr2, qr2) ? pr : pq;
+    const vec3 second = qr2 >= max(pr2, pq2) ? pr : qr;
     return direction_of(instance.normals * cross(first, second), otherwise);
 }
 

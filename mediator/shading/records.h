@@ -96,9 +96,9 @@ struct LightSource {
     vec3 direction;  // in which it shines
     float cos_inner;
     float cos_outer;
-    uint instance;    // of a mesh light:
-    uint area_sums;   // index of its triangles' cumulative areas in the world, normalised to end at 1
-    float root_area;  // square root of its area in the world; the area itself may leave the range of floats
+    uint instance;            // of a mesh light:
+    uint area_sums;           // index of its triangles' cumulative areas in the world, normalised to end at 1
+    float inverse_root_area;  // 1 / square root of its area in the world, which may leave the range of floats
 };
 
 // Light from infinitely far: color + strength x map. A map of width 0 is none.

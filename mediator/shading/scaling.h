@@ -7,11 +7,28 @@
 // slow at doubles or have none; scaling by powers of two costs no bits.
 SHADING_BEGIN
 
-// The power of two that brings x > 0 into [1, 2); towards the ends of the range of floats, as near as it
-// goes.
-inline float unit_scale(float x) {
+// The exponent of the power of two that brings x > 0 into [1, 2), biased as in a float; towards the ends of
+// the range of floats, as near as it goes.
+inline uint unit_exponent(float x) {
     const uint exponent = (float_bits(x) >> 23u) & 255u;
-    return float_from_bits((254u - min(max(exponent, 1u), 253u)) << 23u);
+    return 254u - min(max(exponent, 1u), 253u);
+}
+inline float unit_scale(float x) {
+    return float_from_bits(unit_exponent(x) << 23u);
+}
+
+// The largest component of a vector without NaN.
+inline float extent_of(vec3 v) {
+    const vec3 sizes = abs(v);
+    return max(max(sizes.x, sizes.y), sizes.z);
+}
+
+// Of unit length; `otherwise` where v has no direction or is not finite.
+inline vec3 direction_of(vec3 v, vec3 otherwise) {
+    const float extent = extent_of(v);
+    if (!(extent > 0.0f) || !is_finite(extent)) return otherwise;
+    const vec3 scaled = v * unit_scale(extent);
+    return scaled * (1.0f / sqrt(dot(scaled, scaled)));
 }
 
 // A vector as its direction, of unit length, and how far it reaches. Both 0 where it has none or is not
@@ -22,20 +39,13 @@ struct Measured {
 };
 
 inline Measured measure(vec3 v) {
-    Measured result = Measured(vec3(0.0f), 0.0f);
-    const float size = largest(abs(v));
-    if (!(size > 0.0f) || !is_finite(size)) return result;
-    const float scale = unit_scale(size);
-    const vec3 scaled = v * scale;
+    const float extent = extent_of(v);
+    if (!(extent > 0.0f) || !is_finite(extent)) return Measured(vec3(0.0f), 0.0f);
+    const uint exponent = unit_exponent(extent);
+    const vec3 scaled = v * float_from_bits(exponent << 23u);
     const float scaled_length = sqrt(dot(scaled, scaled));
-    result.direction = scaled / scaled_length;
-    result.distance = scaled_length / scale;
-    return result;
-}
-
-inline vec3 direction_of(vec3 v, vec3 otherwise) {
-    const Measured measured = measure(v);
-    return measured.distance > 0.0f ? measured.direction : otherwise;
+    return Measured(scaled * (1.0f / scaled_length),
+                    scaled_length * float_from_bits((254u - exponent) << 23u));
 }
 
 SHADING_END

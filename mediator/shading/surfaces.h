@@ -33,8 +33,9 @@ inline vec3 to_world(IN(Surface) surface, vec3 local) {
 
 inline vec3 mapped_normal(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
                           uvec3 corners, vec2 b, vec3 normal) {
+    if ((scene.features & FeatureNormalMaps) == 0u || !is_used(scene, material.normal_texture)) return normal;
     const uint needed = MeshTangents | MeshTexCoords;
-    if (material.normal_texture.texture < 0 || (mesh.arrays & needed) != needed) return normal;
+    if ((mesh.arrays & needed) != needed) return normal;
     const vec4 tangent4 = mesh.tangents.items[corners.x] * (1.0f - b.x - b.y) +
                           mesh.tangents.items[corners.y] * b.x + mesh.tangents.items[corners.z] * b.y;
     vec3 tangent = instance.linear * vec3(tangent4);
@@ -91,7 +92,7 @@ inline void set_scattering(INOUT(Surface) surface, IN(Scene) scene, IN(Mesh) mes
                            uvec3 corners, vec2 b, vec3 direction, bool front) {
     float metallic = material.metallic;
     float roughness = material.roughness;
-    if (material.metallic_roughness_texture.texture >= 0 && (mesh.arrays & MeshTexCoords) != 0u) {
+    if (is_used(scene, material.metallic_roughness_texture) && (mesh.arrays & MeshTexCoords) != 0u) {
         const vec4 texel =
             lookup_use(scene, material.metallic_roughness_texture, tex_coord_at(mesh, corners, b));
         roughness *= texel.y;
@@ -114,13 +115,14 @@ inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     Surface surface;
     const uvec3 corners = mesh.triangles.items[hit.triangle];
     const vec2 b = hit.barycentric;
-    const PointWithError point = point_on(instance, mesh, corners, b);
+    const Triangle triangle = triangle_of(mesh, corners);
+    const PointWithError point = point_on(instance, triangle, b);
     surface.position = point.position;
     surface.error = point.error;
     surface.object = instance.object;
     surface.triangle = hit.triangle;
     surface.light = instance.light;
-    const vec3 face = face_normal(instance, mesh, corners, vec3(0.0f, 0.0f, 1.0f));
+    const vec3 face = face_normal(instance, triangle, vec3(0.0f, 0.0f, 1.0f));
     const bool front = dot(face, direction) < 0.0f;
     surface.geometric_normal = front ? face : -face;
     surface.frame =

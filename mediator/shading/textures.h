@@ -7,19 +7,24 @@
 // and theirs filter with fewer bits.
 SHADING_BEGIN
 
-// Any integer coordinate to a texel.
-inline uint wrapped(int i, uint size, uint wrap) {
-    if (uint(i) < size) return uint(i);
-    if (wrap == WrapClamp) return i < 0 ? 0u : size - 1u;
-    const uint steps = i < 0 ? uint(-1 - i) : uint(i);  // from texel 0 on, or backwards from texel -1
-    const uint turns = steps / size;
-    const uint rest = steps - turns * size;
-    const bool backwards = wrap == WrapMirror ? (turns & 1u) == 1u : i < 0;
-    return backwards ? size - 1u - rest : rest;
+// A texture coordinate in [0, 1]; 1 only where it does not repeat. Beyond 1e9 a float has no fraction left:
+// any place is as good.
+inline float wrapped(float u, uint wrap) {
+    if (!(abs(u) < 1e9f)) return 0.0f;
+    if (wrap == WrapClamp) return clamp(u, 0.0f, 1.0f);
+    if (wrap == WrapRepeat) return u - floor(u);
+    const float there_and_back = u - 2.0f * floor(0.5f * u);
+    return min(there_and_back, 2.0f - there_and_back);
 }
 
-inline vec4 texel_at(IN(Scene) scene, IN(Texture) map, int x, int y) {
-    const uint index = wrapped(y, map.height, map.wrap_t) * map.width + wrapped(x, map.width, map.wrap_s);
+// A texel of -1 ... size: one step beyond an edge is the other edge where the texture repeats.
+inline uint wrapped_texel(int i, uint size, uint wrap) {
+    const int last = int(size) - 1;
+    if (wrap != WrapRepeat) return uint(clamp(i, 0, last));
+    return uint(i < 0 ? last : (i > last ? 0 : i));
+}
+
+inline vec4 texel_at(IN(Scene) scene, IN(Texture) map, uint index) {
     if (map.format == TexelRgbFloat) {
         return vec4(float_from_bits(map.texels.items[3u * index]),
                     float_from_bits(map.texels.items[3u * index + 1u]),
@@ -35,32 +40,34 @@ inline vec4 texel_at(IN(Scene) scene, IN(Texture) map, int x, int y) {
     return vec4(float(r) * unit, float(g) * unit, float(b) * unit, alpha);
 }
 
-// Beyond 1e9 a float has no fraction left, and integers come to their end: any texel is as good.
-inline float sane_coordinate(float x) {
-    return x > -1e9f && x < 1e9f ? x : 0.0f;
-}
-
-// Linear values (sRGB decoded before filtering), bilinear or nearest; RgbFloat has alpha 1.
+// Linear values (sRGB decoded before filtering), bilinear or nearest; RgbFloat has alpha 1. In a loop:
+// written out, the four texels of all lookups of a kernel are a good part of its code.
 inline vec4 lookup(IN(Scene) scene, IN(Texture) map, vec2 uv) {
-    const float x = sane_coordinate(uv.x * float(map.width));
-    const float y = sane_coordinate(uv.y * float(map.height));
-    if (map.texture_filter == TextureNearest) return texel_at(scene, map, int(floor(x)), int(floor(y)));
-    const float fx = floor(x - 0.5f), fy = floor(y - 0.5f);
-    const float wx = x - 0.5f - fx, wy = y - 0.5f - fy;
+    const bool nearest = map.texture_filter == TextureNearest;
+    const float half_texel = nearest ? 0.0f : 0.5f;
+    const float x = wrapped(uv.x, map.wrap_s) * float(map.width) - half_texel;
+    const float y = wrapped(uv.y, map.wrap_t) * float(map.height) - half_texel;
+    const float fx = floor(x), fy = floor(y);
+    const float wx = nearest ? 0.0f : x - fx;
+    const float wy = nearest ? 0.0f : y - fy;
+    const uint taps = nearest ? 1u : 4u;
     vec4 sum = vec4(0.0f);
-    // A loop that stays one: compilers of shaders take long for text that is there many times.
     KEEP_LOOP
-    for (int corner = 0; corner < 4; ++corner) {
-        const bool right = (corner & 1) != 0, below = corner > 1;
-        const vec4 texel = texel_at(scene, map, int(fx) + (right ? 1 : 0), int(fy) + (below ? 1 : 0));
-        sum += texel * ((right ? wx : 1.0f - wx) * (below ? wy : 1.0f - wy));
+    for (uint i = 0u; i < taps; ++i) {
+        const int dx = int(i & 1u), dy = int(i >> 1u);
+        const uint column = wrapped_texel(int(fx) + dx, map.width, map.wrap_s);
+        const uint row = wrapped_texel(int(fy) + dy, map.height, map.wrap_t);
+        const float weight = (dx == 0 ? 1.0f - wx : wx) * (dy == 0 ? 1.0f - wy : wy);
+        sum += weight * texel_at(scene, map, row * map.width + column);
     }
     return sum;
 }
 
-// White where no texture is used.
+inline bool is_used(IN(Scene) scene, IN(TextureUse) use) {
+    return (scene.features & FeatureTextures) != 0u && use.texture >= 0;
+}
+
 inline vec4 lookup_use(IN(Scene) scene, IN(TextureUse) use, vec2 uv) {
-    if (use.texture < 0) return vec4(1.0f);
     const vec2 place = vec2(use.row_u.x * uv.x + use.row_u.y * uv.y + use.offset.x,
                             use.row_v.x * uv.x + use.row_v.y * uv.y + use.offset.y);
     return lookup(scene, scene.textures.items[use.texture], place);

@@ -2,13 +2,20 @@
 #define TESSERA_MEDIATOR_SHADING_TRACE_H
 
 #include "mediator/shading/camera.h"
-#include "mediator/shading/whitted.h"
+#include "mediator/shading/speculars.h"
 
-// The including side says whether its views may ask for trees of perfect speculars (the Whitted renderer, or
-// the range channel): bool has_specular_trees(IN(Context) context). A kernel without is much smaller.
+// One sample, a pure function of (scene, view, pixel, index).
 //
-// One sample, a pure function of (scene, view, pixel, index). Unidirectional; Russian roulette from the
-// fourth vertex on, by the largest component of the throughput.
+// Path tracing: unidirectional; Russian roulette from the fourth vertex on, by the largest component of the
+// throughput. The renderer Whitted: emission and sky along all branches of perfect speculars, and where one
+// ends on a surface direct light, as path tracing finds it with max_bounces = 0; the features of a sample are
+// the branches' by their weights, the normal by their probabilities. The range is that of all branches in
+// both.
+//
+// All rays but those to lights are asked for at one place and shaded at one place: a shader has all its
+// functions inlined, and what is written twice is compiled twice. The including side says whether its views
+// may ask for trees of perfect speculars (the renderer Whitted, or the range):
+//   bool has_specular_trees(IN(Context) context)
 SHADING_BEGIN
 
 inline constexpr uint RouletteFrom = 3u;  // vertices that are never cut short
@@ -26,58 +33,89 @@ inline bool survives(INOUT(Path) path, float choice) {
     return largest(path.throughput) > 0.0f;
 }
 
-// What only the camera's hit tells. False: the sample is finished.
-WITH_CONTEXT inline bool see_first(IN(Context) context, INOUT(Path) path, IN(Ray) ray, IN(Surface) surface,
-                                   float distance) {
-    path.found.depth = depth_along(context.view, ray, distance);
-    path.found.object = surface.object;
-    const bool whitted = context.view.renderer == RendererWhitted;
-    uint what = whitted ? FindLight : 0u;
-    if (keeps(context.view, KeepsRange)) what |= FindRange;
-    if (has_specular_trees(context) && what != 0u) follow_speculars(context, path, ray, surface, what);
-    path.vertex = 0u;
-    return !whitted;
-}
+// What a ray is for: the next step of a path; a branch of perfect speculars; from a branch's end, to find by
+// chance what shines on it.
+inline constexpr uint StagePath = 0u, StageBranch = 1u, StageGather = 2u;
 
-// From a hit to the next ray; false: the path is finished.
+// From a hit to the next ray; false: there is none.
 WITH_CONTEXT inline bool leave_vertex(IN(Context) context, INOUT(Path) path, INOUT(Ray) ray,
-                                      IN(Surface) surface) {
+                                      INOUT(uint) stage, IN(Surface) surface) {
     add_emission(context, path, ray, surface);
-    const Lobe lobe = choose_lobe(path, surface);
-    if (lobe.kind == LobeNone) return false;
-    if (lobe.kind == LobeRough && path.way.scatterings == 0u) {
-        path.found.albedo = surface.albedo * surface.rough_share * path.throughput;
-        path.found.normal = surface.frame[2];
+    if (stage == StageGather) return false;
+    Lobe lobe = rough_lobe(path);
+    if (stage == StagePath) {
+        lobe = choose_lobe(path, surface, lobe);
+        if (lobe.kind == LobeNone) return false;
+    } else {
+        if (!(surface.rough_share > 0.0f)) return false;
+        path.probability *= lobe_chances(surface).rough;
     }
-    if (!surface.scatters || path.vertex >= context.view.max_scatterings) return false;
+    if (lobe.kind == LobeRough && path.way.scatterings == 0u) {
+        path.found.albedo += surface.albedo * surface.rough_share * path.throughput;
+        path.found.normal += path.probability * surface.frame[2];
+    }
+    if (!surface.scatters) return false;
+    if (stage == StagePath && path.vertex >= context.view.max_scatterings) return false;
+    vec3 direction = vec3(0.0f);
     if (lobe.kind == LobeRough) {
         const vec3 wo = to_local(surface, -ray.direction);
         add_lights(context, path, surface, wo);
-        if (!scatter(context.view, path, surface, wo, lobe, ray)) return false;
+        if (!scatter(context.view, path, surface, wo, lobe, direction)) return false;
     } else {
-        pass_on(context, path, surface, lobe, ray);
+        direction = pass_on(context, path, surface, lobe);
     }
-    if (!survives(path, lobe.roulette)) return false;
+    if (stage == StagePath) {
+        if (!survives(path, lobe.roulette)) return false;
+    } else {
+        stage = StageGather;
+    }
+    ray = leaving(surface, direction);
     path.vertex += 1u;
     return true;
 }
 
 WITH_CONTEXT inline Path trace_sample(IN(Context) context, uint x, uint y, uint64_t index) {
+    const bool whitted = has_specular_trees(context) && context.view.renderer == RendererWhitted;
+    const bool wants_range = has_specular_trees(context) && keeps(context.view, KeepsRange);
     Path path = start_path(make_sampler(x, y, context.view.seed, index));
     Ray ray = camera_ray(context.view, x, y, sample_pair(path.numbers, CameraPair));
     tell_camera(context, ray);
+    Branch branch = root_branch(ray);
+    BranchStack open;
+    open.count = 0u;
+    uint stage = whitted ? StageBranch : StagePath;
     while (true) {
+        const bool first = path.rays == 0u;
+        // The tree of a path is followed, after the path itself, for its range alone.
+        const bool lit = whitted || stage == StagePath;
+        bool goes_on = false;
         path.rays += 1u;
         Hit hit;
-        if (!trace_closest(context, ray, closest_seed(path), hit)) {
+        if (trace_closest(context, ray, closest_seed(path), hit)) {
+            const Surface surface = make_surface(context.scene, hit, ray.direction);
+            tell_hit(context, surface, path.throughput);
+            if (first) {
+                path.found.depth = depth_along(context.view, ray, hit.distance);
+                path.found.object = surface.object;
+            }
+            if (stage == StageBranch || (first && wants_range)) {
+                if (wants_range) path.found.range += range_at(branch, surface);
+                push_children(open, branch, surface);
+            }
+            if (lit) goes_on = leave_vertex(context, path, ray, stage, surface);
+        } else {
             tell_miss(context);
-            if (path.vertex > 0u || context.view.transparent_background == 0u) add_sky(context, path, ray);
-            return path;
+            const bool hidden = first && context.view.transparent_background != 0u;
+            if (lit && !hidden) add_sky(context, path, ray);
         }
-        const Surface surface = make_surface(context.scene, hit, ray.direction);
-        tell_hit(context, surface, path.throughput);
-        if (path.vertex == 0u && !see_first(context, path, ray, surface, hit.distance)) return path;
-        if (!leave_vertex(context, path, ray, surface)) return path;
+        if (!goes_on) {
+            if (open.count == 0u) return path;
+            open.count -= 1u;
+            branch = open.branches[open.count];
+            enter_branch(path, branch);
+            ray = branch.ray;
+            stage = StageBranch;
+        }
     }
 }
 

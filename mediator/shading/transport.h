@@ -81,12 +81,10 @@ inline float weight_by_chance(IN(View) view, IN(Path) path, float other) {
 
 WITH_CONTEXT inline void add_sky(IN(Context) context, INOUT(Path) path, IN(Ray) ray) {
     if (context.scene.environment.emits == 0u) return;
-    const vec3 radiance = sky_radiance(context.scene, ray.direction);
-    connect_light(path.found, context.view, path.probability * radiance);
-    float other = 0.0f;
-    if (path.bsdf_pdf > 0.0f) other = environment_pdf(context.scene, ray.direction);
-    const float weight = weight_by_chance(context.view, path, other);
-    add_light(path.found, context.view, path.throughput * radiance * weight, path.way);
+    const Sky sky = sky_at(context.scene, ray.direction);
+    connect_light(path.found, context.view, path.probability * sky.radiance);
+    const float weight = weight_by_chance(context.view, path, sky_light_pdf(context.scene, sky));
+    add_light(path.found, context.view, path.throughput * sky.radiance * weight, path.way);
 }
 
 WITH_CONTEXT inline void add_emission(IN(Context) context, INOUT(Path) path, IN(Ray) ray,
@@ -113,7 +111,10 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
     const bool alone = light.delta || context.view.strategy == StrategyLightsOnly;
     const float weight = alone ? 1.0f : power_heuristic(light.pdf, bsdf.pdf);
     path.rays += 1u;
-    if (trace_occluded(context, light.origin, light.segment, light.far, shadow_seed(path))) return;
+    const vec3 origin = leaving(surface, light.direction).origin;
+    const vec3 segment = light.distant ? light.direction : light.target - origin;
+    const float far = light.distant ? infinity() : 1.0f;
+    if (trace_occluded(context, origin, segment, far, shadow_seed(path))) return;
     const vec3 gathered = path.throughput * bsdf.value * light.radiance * (weight / light.pdf);
     Way way = Way(path.way.scatterings + 1u, false, path.way.diffuse_share);
     if (keeps(context.view, KeepsDiffuse) && path.way.scatterings == 0u) {
@@ -124,15 +125,15 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
     tell_light(context, light.direction, gathered);
 }
 
-// The rough group for certain, where the others are followed on their own.
+// The rough group for certain: all there is, or the others are followed on their own.
 inline Lobe rough_lobe(IN(Path) path) {
     const vec2 u = pair_at(path, PairLobeAndRoulette);
     return Lobe(LobeRough, u.x, u.y);
 }
 
 // Chooses and divides the throughput by the probability; LobeNone ends the path.
-inline Lobe choose_lobe(INOUT(Path) path, IN(Surface) surface) {
-    Lobe lobe = rough_lobe(path);
+inline Lobe choose_lobe(INOUT(Path) path, IN(Surface) surface, IN(Lobe) rough) {
+    Lobe lobe = rough;
     if (surface.rough_share == 1.0f) return lobe;
     const LobeChances chances = lobe_chances(surface);
     const float specular = chances.reflection + chances.refraction;
@@ -153,13 +154,13 @@ inline Lobe choose_lobe(INOUT(Path) path, IN(Surface) surface) {
     return lobe;
 }
 
-// `ray` becomes the next one; false ends the path. The vertex is for the caller to count.
+// `direction` becomes the next one; false ends the path. The vertex is for the caller to count.
 inline bool scatter(IN(View) view, INOUT(Path) path, IN(Surface) surface, vec3 wo, IN(Lobe) lobe,
-                    INOUT(Ray) ray) {
+                    INOUT(vec3) direction) {
     const vec2 u = pair_at(path, PairBsdfDirection);
     const vec3 wi = sample_bsdf(surface.bsdf, wo, lobe.choice, u);
     const BsdfValue bsdf = evaluate_bsdf(surface.bsdf, wo, wi);
-    const vec3 direction = unit_vector(to_world(surface, wi));
+    direction = unit_vector(to_world(surface, wi));
     if (!(bsdf.pdf > 0.0f) || !(dot(direction, surface.geometric_normal) > 0.0f)) return false;
     path.throughput *= bsdf.value / bsdf.pdf;
     path.bsdf_pdf = bsdf.pdf;
@@ -167,19 +168,19 @@ inline bool scatter(IN(View) view, INOUT(Path) path, IN(Surface) surface, vec3 w
     if (keeps(view, KeepsDiffuse) && path.way.scatterings == 0u) path.way.diffuse_share = diffuse_share(bsdf);
     path.way.scatterings += 1u;
     path.way.last_is_delta = false;
-    ray = leaving(surface, direction);
     return true;
 }
 
-WITH_CONTEXT inline void pass_on(IN(Context) context, INOUT(Path) path, IN(Surface) surface, IN(Lobe) lobe,
-                                 INOUT(Ray) ray) {
+// By a perfect specular; returns the next direction.
+WITH_CONTEXT inline vec3 pass_on(IN(Context) context, INOUT(Path) path, IN(Surface) surface, IN(Lobe) lobe) {
     const bool reflects = lobe.kind == LobeReflection;
     path.throughput *= reflects ? surface.specular.reflection : surface.specular.refraction;
     path.bsdf_pdf = 0.0f;
     if (path.way.scatterings > 0u) path.way.scatterings += 1u;
     path.way.last_is_delta = true;
-    ray = leaving(surface, reflects ? surface.specular.reflected : surface.specular.refracted);
-    tell_specular(context, reflects, ray.direction);
+    const vec3 direction = reflects ? surface.specular.reflected : surface.specular.refracted;
+    tell_specular(context, reflects, direction);
+    return direction;
 }
 
 SHADING_END

@@ -105,7 +105,7 @@ TEST(Tables, LightsAreChosenByPowerAndATenthUniformly) {
     EXPECT_EQ(tables.instances[0].light, 0);
     EXPECT_EQ(tables.instances[1].light, -1);
     EXPECT_EQ(tables.scene.environment_light, 2);
-    EXPECT_FLOAT_EQ(mesh.root_area, std::sqrt(8.0f));
+    EXPECT_FLOAT_EQ(mesh.inverse_root_area, 1.0f / std::sqrt(8.0f));
     EXPECT_FLOAT_EQ(tables.sums[mesh.area_sums], 0.25f);
     EXPECT_FLOAT_EQ(tables.sums[mesh.area_sums + 1], 1.0f);
     // The scene reaches from (0, 0) to (2, 6).

@@ -132,7 +132,8 @@ void scatter(const TracedScene& scene, const std::vector<TestRay>& seen, std::ve
             glm::normalize(glm::cross(placed.linear * (mesh.positions[t.y] - mesh.positions[t.x]),
                                       placed.linear * (mesh.positions[t.z] - mesh.positions[t.x])));
         if (glm::dot(normal, ray.direction) > 0.0f) normal = -normal;
-        vertices.push_back({shading::point_on(instance, arrays, t, hit.barycentric), normal});
+        vertices.push_back(
+            {shading::point_on(instance, shading::triangle_of(arrays, t), hit.barycentric), normal});
     }
     CounterRandom random(9);
     for (const auto& [point, normal] : vertices) {

@@ -122,8 +122,8 @@ void leave(const TestMesh& mesh, const TestInstance& placed, CounterRandom& rand
         const auto triangle = static_cast<std::uint32_t>(random.below(mesh.triangles.size()));
         const glm::vec3 normal(normal_of(mesh, triangle, placed.linear));
         const glm::vec2 u(random.uniform(), random.uniform());
-        const shading::PointWithError point =
-            shading::point_on(instance, source, mesh.triangles[triangle], shading::sample_triangle(u));
+        const shading::PointWithError point = shading::point_on(
+            instance, shading::triangle_of(source, mesh.triangles[triangle]), shading::sample_triangle(u));
         glm::vec3 out = random_direction(random);
         if (i % 2 == 0) out -= normal * (glm::dot(normal, out) * 0.999f);  // grazing
         const TestRay ray{shading::leave_surface(point.position, point.error, normal, out), out};

@@ -1,82 +1,23 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
 #include <functional>
-#include <glm/gtc/matrix_transform.hpp>
-#include <memory>
-#include <vector>
 
 #include "backends/embree/path_tracer.h"
 #include "backends/embree/world.h"
+#include "tests/statistics/scene_model.h"
 
 namespace tessera::embree {
 
-enum class Normals { Flat, Smooth };
+using test::chalk, test::glass, test::lamp, test::mirror, test::Normals, test::small_view;
 
-// A scene put together in a test: spheres, quads, lights, a sky.
-class Model {
+// A scene put together in a test, drawn by Embree.
+class Model : public test::SceneModel {
   public:
-    explicit Model(glm::dvec3 render_origin = glm::dvec3(0.0)) { root_.render_origin = render_origin; }
-
-    ObjectId material(const scene::Material& material) { return create(material); }
-
-    void sphere(ObjectId material, const glm::dvec3& center, double radius, Normals normals = Normals::Flat) {
-        constexpr unsigned Rings = 24, Sectors = 48;
-        std::vector<glm::vec3> positions;
-        std::vector<std::uint32_t> indices;
-        for (unsigned ring = 0; ring <= Rings; ++ring) {
-            for (unsigned sector = 0; sector <= Sectors; ++sector) {
-                // The seam's points are the same ones, so that the body is closed.
-                const double theta = M_PI * ring / Rings, phi = 2.0 * M_PI * (sector % Sectors) / Sectors;
-                const double sine = ring % Rings == 0 ? 0.0 : std::sin(theta);
-                positions.emplace_back(sine * std::cos(phi), std::cos(theta), sine * std::sin(phi));
-            }
-        }
-        for (unsigned ring = 0; ring < Rings; ++ring) {
-            for (unsigned sector = 0; sector < Sectors; ++sector) {
-                const std::uint32_t a = ring * (Sectors + 1) + sector, b = a + Sectors + 1;
-                if (ring > 0) indices.insert(indices.end(), {a, a + 1, b});
-                if (ring + 1 < Rings) indices.insert(indices.end(), {a + 1, b + 1, b});
-            }
-        }
-        scene::Geometry geometry{
-            .material = material, .indices = blob(indices), .positions = blob(positions)};
-        if (normals == Normals::Smooth) geometry.normals = geometry.positions;
-        hang(create(geometry), glm::scale(glm::translate(glm::dmat4(1.0), center), glm::dvec3(radius)));
-    }
-
-    // Corners counter-clockwise as seen from the front; colours, if any, per corner.
-    void quad(ObjectId material, const std::array<glm::vec3, 4>& corners,
-              const std::vector<glm::vec4>& colors = {}) {
-        const std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 3};
-        scene::Geometry geometry{.material = material,
-                                 .indices = blob(indices),
-                                 .positions = blob(std::vector<glm::vec3>(corners.begin(), corners.end()))};
-        if (!colors.empty()) geometry.colors = blob(colors);
-        hang(create(geometry), glm::dmat4(1.0));
-    }
-    // A square of half edge `size` at height z, its front to +z (or to -z, size negative).
-    void floor(ObjectId material, float size, float z, const std::vector<glm::vec4>& colors = {}) {
-        const float s = std::fabs(size);
-        quad(material, {{{-size, -s, z}, {size, -s, z}, {size, s, z}, {-size, s, z}}}, colors);
-    }
-
-    void sky(const glm::vec3& color) { root_.background = create(scene::Background{.color = color}); }
-    void point_light(const glm::dvec3& place, float intensity) {
-        hang(create(scene::Light{.kind = scene::LightKind::Point, .intensity = glm::vec3(intensity)}),
-             glm::translate(glm::dmat4(1.0), place));
-    }
+    using SceneModel::SceneModel;
 
     // Once.
     World& build() {
-        entries_.push_back(scene::Create{scene::RootId, root_});
-        scene::Scene scene;
-        EXPECT_TRUE(scene.apply_entries(entries_));
-        scene.set_version({1, 1});
-        EXPECT_TRUE(world_.apply(scene::snapshot(scene)));
+        EXPECT_TRUE(world_.apply(scene::snapshot(finished())));
         const auto report = world_.commit();
         EXPECT_TRUE(report);
         if (report) problems = report->problems;
@@ -86,39 +27,9 @@ class Model {
     std::vector<std::string> problems;  // of the build
 
   private:
-    template <class T>
-    scene::BlobRef blob(const std::vector<T>& values) {
-        return scene::reference(*blobs_->insert(std::as_bytes(std::span(values))));
-    }
-    template <class T>
-    ObjectId create(const T& object) {
-        const ObjectId id{next_++};
-        entries_.push_back(scene::Create{id, object});
-        return id;
-    }
-    void hang(ObjectId child, const glm::dmat4& place) {
-        root_.children.push_back(create(scene::Transform{.matrix = place, .children = {child}}));
-    }
-
-    std::shared_ptr<scene::BlobStore> blobs_ = std::make_shared<scene::BlobStore>();
-    DeviceHandle device_ = make_device({.threads = 1, .blobs = blobs_});
-    World world_{device_.get(), blobs_};
-    scene::Root root_;
-    std::vector<scene::Entry> entries_;
-    std::uint64_t next_ = 2;
+    DeviceHandle device_ = make_device({.threads = 1, .blobs = blobs()});
+    World world_{device_.get(), blobs()};
 };
-
-// A square picture from `eye` along -z of `turn`.
-inline view::View small_view(const glm::dvec3& eye, double vertical_fov, std::uint32_t size = 16,
-                             const glm::dmat4& turn = glm::dmat4(1.0)) {
-    view::View view;
-    view.width = view.height = size;
-    view.window = {0, 0, static_cast<std::int32_t>(size), static_cast<std::int32_t>(size)};
-    view.seed = 11;
-    view.max_bounces = view::UnlimitedBounces;
-    view.camera = view::perspective(glm::translate(glm::dmat4(1.0), eye) * turn, vertical_fov, 1.0);
-    return view;
-}
 
 // Every sample of a view, in order.
 inline void for_samples(const World& world, const view::View& view, std::uint64_t spp,
@@ -150,27 +61,6 @@ inline Mean mean_of(const World& world, const view::View& view, std::uint64_t sp
 
 inline double red(const PathSample& sample) {
     return double(radiance_of(sample).x);
-}
-
-inline scene::Material glass(float index, const glm::vec3& color = glm::vec3(1.0f)) {
-    return {.base_color = glm::vec4(color, 1.0f),
-            .roughness = 0.0f,
-            .double_sided = true,
-            .index_of_refraction = index,
-            .transmission = 1.0f};
-}
-inline scene::Material mirror(const glm::vec3& color) {
-    return {.base_color = glm::vec4(color, 1.0f), .metallic = 1.0f, .roughness = 0.0f};
-}
-// No coat: nothing but the diffuse lobe.
-inline scene::Material chalk(const glm::vec3& color) {
-    return {.base_color = glm::vec4(color, 1.0f), .double_sided = true, .index_of_refraction = 1.0f};
-}
-inline scene::Material lamp(float radiance) {
-    return {.base_color = {0.0f, 0.0f, 0.0f, 1.0f},
-            .emission = glm::vec3(radiance),
-            .double_sided = true,
-            .index_of_refraction = 1.0f};
 }
 
 }  // namespace tessera::embree

@@ -168,7 +168,7 @@ TEST(Sampling, EnvironmentMap) {
     const auto tables = backend::make_tables(described, {}, backend::MeshCatalog(blobs), *blobs);
     const Scene sky = backend::on_host(tables);
     expect_directions([&](CounterRandom& r) { return sample_sky(sky, pair(r)); },
-                      [&](const glm::vec3& w) { return double(sky_pdf(sky, w)); });
+                      [&](const glm::vec3& w) { return double(sky_at(sky, w).pdf); });
 }
 
 class SurfaceModel : public testing::TestWithParam<std::tuple<float, float, float>> {

@@ -1,5 +1,4 @@
 // Whitted's tree of perfect speculars: the range buffer and the renderer of that name.
-#include "mediator/shading/whitted.h"
 
 #include <gtest/gtest.h>
 

@@ -63,8 +63,9 @@ std::optional<Candidate> mesh_light(SceneTables& tables, const shading::Scene& s
                 luminance(shading::emission_at(scene, material, mesh, corners, {1.0f / 3.0f, 1.0f / 3.0f}));
     }
     Candidate made;
-    made.light.root_area = static_cast<float>(std::sqrt(area));
-    if (!(made.light.root_area > 0.0f) || !std::isfinite(made.light.root_area)) return std::nullopt;
+    const auto inverse = static_cast<float>(1.0 / std::sqrt(area));
+    if (!(inverse > 0.0f) || !std::isfinite(inverse)) return std::nullopt;
+    made.light.inverse_root_area = inverse;
     made.light.kind = shading::LightMesh;
     made.light.instance = index;
     made.light.area_sums = add_sums(tables, areas);

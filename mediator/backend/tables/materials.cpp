@@ -92,7 +92,7 @@ std::uint32_t features_of(const shading::Material& material, const shading::Mesh
     const bool mapped = material.normal_texture.texture >= 0 && (mesh.arrays & shading::MeshTangents) != 0;
     const bool textured = material.base_color_texture.texture >= 0 ||
                           material.metallic_roughness_texture.texture >= 0 ||
-                          material.emission_texture.texture >= 0;
+                          material.emission_texture.texture >= 0 || mapped;
     // A mirror is a metal without roughness, which a texture may take away.
     const bool smooth = material.metallic_roughness_texture.texture >= 0 ||
                         material.roughness * material.roughness <= shading::MinAlpha;

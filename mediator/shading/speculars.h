@@ -1,0 +1,64 @@
+#ifndef TESSERA_MEDIATOR_SHADING_SPECULARS_H
+#define TESSERA_MEDIATOR_SHADING_SPECULARS_H
+
+#include "mediator/shading/transport.h"
+
+// Perfect speculars followed through both branches (Whitted 1980).
+SHADING_BEGIN
+
+inline constexpr uint MaxSpecularDepth = 8u;
+// A branch that carries less than half a step of an 8-bit picture is not followed.
+inline constexpr float MinBranchWeight = 1.0f / 512.0f;
+
+struct Branch {
+    Ray ray;
+    vec3 weight;        // of what is seen along it
+    float probability;  // with which a path that chooses one lobe at a time would come here
+    uint node;          // in the tree of branches, breadth first: 0, then 2 node + 1 and 2 node + 2
+    uint depth;
+};
+
+// Branches still to follow: depth first, so one sibling per level at most.
+struct BranchStack {
+    Branch branches[MaxSpecularDepth + 1u];
+    uint count;
+};
+
+inline Branch root_branch(IN(Ray) camera_ray) {
+    return Branch(camera_ray, vec3(1.0f), 1.0f, 0u, 0u);
+}
+
+inline void push_children(INOUT(BranchStack) open, IN(Branch) parent, IN(Surface) surface) {
+    if (surface.rough_share == 1.0f || parent.depth == MaxSpecularDepth) return;
+    const LobeChances chances = lobe_chances(surface);
+    for (uint child = 1u; child <= 2u; ++child) {
+        const bool reflects = child == 1u;
+        const vec3 weight =
+            parent.weight * (reflects ? surface.specular.reflection : surface.specular.refraction);
+        if (!(largest(weight) >= MinBranchWeight)) continue;
+        const float probability = parent.probability * (reflects ? chances.reflection : chances.refraction);
+        const Ray ray = leaving(surface, reflects ? surface.specular.reflected : surface.specular.refracted);
+        open.branches[open.count] =
+            Branch(ray, weight, probability, 2u * parent.node + child, parent.depth + 1u);
+        open.count += 1u;
+    }
+}
+
+inline void enter_branch(INOUT(Path) path, IN(Branch) branch) {
+    path.vertex = branch.node;
+    path.throughput = branch.weight;
+    path.probability = branch.probability;
+    path.bsdf_pdf = 0.0f;
+    path.way = direct_way();
+}
+
+// Head light and unoccluded ambient light (Schwenk 2A.3), in [0, 1] for albedos in [0, 1]:
+// sum over branches of weight x albedo / 2 x (1 + max(0, n . -d)); nothing where a branch leaves the scene.
+inline vec3 range_at(IN(Branch) branch, IN(Surface) surface) {
+    const float facing = -dot(surface.frame[2], branch.ray.direction);
+    return branch.weight * surface.albedo * (surface.rough_share * 0.5f * (1.0f + greater_of(facing, 0.0f)));
+}
+
+SHADING_END
+
+#endif

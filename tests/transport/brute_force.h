@@ -1,0 +1,93 @@
+#ifndef TESSERA_TESTS_TRANSPORT_BRUTE_FORCE_H
+#define TESSERA_TESTS_TRANSPORT_BRUTE_FORCE_H
+
+#include "mediator/shading/materials.h"
+#include "mediator/shading/points.h"
+
+// Rays that ask every triangle, the same in C++ and on a device: what is left to differ is the transport.
+SHADING_BEGIN
+
+struct Context {
+    Scene scene;
+    View view;
+};
+
+#ifdef __cplusplus
+inline void tell_camera(IN(Context), IN(Ray)) {}
+inline void tell_miss(IN(Context)) {}
+inline void tell_emission(IN(Context), vec3, vec3) {}
+inline void tell_light(IN(Context), vec3, vec3) {}
+inline void tell_specular(IN(Context), bool, vec3) {}
+struct Surface;
+inline void tell_hit(IN(Context), IN(Surface), vec3) {}
+#endif
+
+inline bool has_specular_trees(IN(Context) context) {
+    return context.scene.instance_count > 0u;
+}
+
+inline vec3 placed(IN(Instance) instance, vec3 p) {
+    return instance.linear * p + instance.translation;
+}
+
+// Möller and Trumbore 1997; `hit` is overwritten by what is nearer.
+inline bool meets(IN(Instance) instance, IN(Triangle) t, vec3 origin, vec3 direction, INOUT(Hit) hit) {
+    const vec3 p = placed(instance, t.p);
+    const vec3 edge1 = placed(instance, t.q) - p;
+    const vec3 edge2 = placed(instance, t.r) - p;
+    const vec3 across = cross(direction, edge2);
+    const float determinant = dot(edge1, across);
+    if (determinant == 0.0f) return false;
+    const vec3 offset = origin - p;
+    const float u = dot(offset, across) / determinant;
+    const vec3 other = cross(offset, edge1);
+    const float v = dot(direction, other) / determinant;
+    const float distance = dot(edge2, other) / determinant;
+    if (u < 0.0f || v < 0.0f || u + v > 1.0f || distance < NearestHit || distance >= hit.distance)
+        return false;
+    hit.barycentric = vec2(u, v);
+    hit.distance = distance;
+    return true;
+}
+
+inline bool trace_instance(IN(Context) context, uint index, IN(Instance) instance, IN(Mesh) mesh, vec3 origin,
+                           vec3 direction, uint seed, INOUT(Hit) nearest) {
+    bool found = false;
+    for (uint i = 0u; i < mesh.triangle_count; ++i) {
+        Hit hit = nearest;
+        if (!meets(instance, triangle_of(mesh, mesh.triangles.items[i]), origin, direction, hit)) continue;
+        if (instance.alpha_tested != 0u && !stops_at(context.scene, index, i, hit.barycentric, seed))
+            continue;
+        nearest = hit;
+        nearest.instance = index;
+        nearest.triangle = i;
+        found = true;
+    }
+    return found;
+}
+
+inline bool trace_all(IN(Context) context, vec3 origin, vec3 direction, float far, uint seed, OUT(Hit) hit) {
+    bool found = false;
+    hit = Hit(0u, 0u, vec2(0.0f), far);
+    for (uint i = 0u; i < context.scene.instance_count; ++i) {
+        const uint mesh = context.scene.instances.items[i].mesh;
+        if (trace_instance(context, i, context.scene.instances.items[i], context.scene.meshes.items[mesh],
+                           origin, direction, seed, hit)) {
+            found = true;
+        }
+    }
+    return found;
+}
+
+inline bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, OUT(Hit) hit) {
+    return trace_all(context, ray.origin, ray.direction, infinity(), seed, hit);
+}
+
+inline bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed) {
+    Hit hit;
+    return trace_all(context, origin, segment, far, seed, hit);
+}
+
+SHADING_END
+
+#endif
