@@ -7,7 +7,7 @@ namespace tessera::vulkan {
 
 namespace {
 
-constexpr std::array Stages{Compute, Transfer, Indirect, Host};
+constexpr std::array<Stage, StageCount> Stages{Compute, Transfer, Indirect, Host, Drawing, Attachment};
 
 std::size_t index(Stage stage) {
     return static_cast<std::size_t>(std::countr_zero(std::uint32_t(stage)));

@@ -8,8 +8,17 @@
 
 namespace tessera::vulkan {
 
-// Who touches memory. Masks of stages are sums of these.
-enum Stage : std::uint32_t { Compute = 1, Transfer = 2, Indirect = 4, Host = 8 };
+// Who touches memory. Masks of stages are sums of these. Drawing is what the shaders of a draw read;
+// Attachment is what its results go to and are compared with.
+enum Stage : std::uint32_t {
+    Compute = 1,
+    Transfer = 2,
+    Indirect = 4,
+    Host = 8,
+    Drawing = 16,
+    Attachment = 32
+};
+inline constexpr std::size_t StageCount = 6;
 using StageMask = std::uint32_t;
 
 struct Access {
@@ -39,10 +48,10 @@ class BarrierPlan final {
 
   private:
     struct History {
-        StageMask writer = 0;   // the stage that wrote last
-        StageMask seen = 0;     // where that is visible
-        StageMask readers = 0;  // stages that read since
-        StageMask after[4]{};   // per reading stage: what comes after its reads
+        StageMask writer = 0;           // the stage that wrote last
+        StageMask seen = 0;             // where that is visible
+        StageMask readers = 0;          // stages that read since
+        StageMask after[StageCount]{};  // per reading stage: what comes after its reads
     };
     Barrier needed(std::span<const Access> accesses) const;
     void pass(const Barrier& barrier);

@@ -27,7 +27,7 @@ std::uint32_t choose_family(VkPhysicalDevice device) {
 
 VkDevice open(const DeviceInfo& info, std::uint32_t family) {
     FeatureChain features;
-    require_features(features);
+    require_features(features, info.handle);
     const float priority = 1.0f;
     const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                         .queueFamilyIndex = family,

@@ -38,14 +38,23 @@ std::set<std::string> extensions_of(VkPhysicalDevice device) {
     return names;
 }
 
-bool has_compute_queue(VkPhysicalDevice device) {
+bool has_queue(VkPhysicalDevice device, VkQueueFlags wanted) {
     std::uint32_t count = 0;
     vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
     vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-    return std::any_of(families.begin(), families.end(), [](const VkQueueFamilyProperties& family) {
-        return (family.queueFlags & VK_QUEUE_COMPUTE_BIT) != 0;
+    return std::any_of(families.begin(), families.end(), [wanted](const VkQueueFamilyProperties& family) {
+        return (family.queueFlags & wanted) == wanted;
     });
+}
+
+// Targets of the colour formats that are drawn to are there on every device with graphics.
+bool can_draw(VkPhysicalDevice device) {
+    VkFormatProperties depth{};
+    vkGetPhysicalDeviceFormatProperties(device, VK_FORMAT_D32_SFLOAT, &depth);
+    return has_queue(device, VK_QUEUE_COMPUTE_BIT | VK_QUEUE_GRAPHICS_BIT) &&
+           (depth.optimalTilingFeatures & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT) != 0 &&
+           (depth.optimalTilingFeatures & VK_FORMAT_FEATURE_TRANSFER_SRC_BIT) != 0;
 }
 
 void read_limits(DeviceInfo& info, const VkPhysicalDeviceLimits& limits) {
@@ -57,6 +66,10 @@ void read_limits(DeviceInfo& info, const VkPhysicalDeviceLimits& limits) {
     info.storage_range_bytes = limits.maxStorageBufferRange;
     info.texel_elements = limits.maxTexelBufferElements;
     info.max_allocations = limits.maxMemoryAllocationCount;
+    info.image_edge =
+        std::min({limits.maxImageDimension2D, limits.maxFramebufferWidth, limits.maxFramebufferHeight,
+                  limits.maxViewportDimensions[0], limits.maxViewportDimensions[1]});
+    info.image_granularity = limits.bufferImageGranularity;
     info.timestamp_period = limits.timestampComputeAndGraphics != VK_FALSE ? limits.timestampPeriod : 0.0f;
 }
 
@@ -123,7 +136,9 @@ DeviceInfo describe(VkPhysicalDevice handle, std::uint32_t index) {
     }
     read_core_1_3(info);
     info.refused = missing_features(handle);
-    if (!has_compute_queue(handle)) info.refused.push_back("no compute queue");
+    info.draws = can_draw(handle);
+    if (offers_draw_lists(handle)) info.draws_per_call = properties.limits.maxDrawIndirectCount;
+    if (!has_queue(handle, VK_QUEUE_COMPUTE_BIT)) info.refused.push_back("no compute queue");
     return info;
 }
 

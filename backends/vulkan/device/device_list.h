@@ -37,12 +37,16 @@ struct DeviceInfo {
     std::uint64_t buffer_bytes = 0;         // of one buffer
     std::uint64_t allocation_bytes = 0;     // of one allocation
     std::uint32_t max_allocations = 0;
+    std::uint32_t image_edge = 0;           // pixels of an image, per axis
+    std::uint64_t image_granularity = 0;    // bytes that images keep from buffers
+    std::uint32_t draws_per_call = 1;       // indirect draws, each of instances of its own
     std::uint64_t device_memory_bytes = 0;  // the largest device-local heap
     bool unified_memory = false;            // device-local memory is host-visible and cached
     float timestamp_period = 0;             // nanoseconds per tick; 0 = no timestamps
 
     bool keeps_denormals = false;  // a shader may demand it of 32-bit floats
     bool rounds_to_even = false;   // likewise
+    bool draws = false;            // has a graphics pipeline, with depth as 32-bit floats
     bool ray_query = false;        // with acceleration structures
     bool memory_budget = false;    // VK_EXT_memory_budget
 

@@ -37,6 +37,8 @@ constexpr std::array Requirements{
                 [](FeatureChain& f) -> VkBool32& { return f.v13.synchronization2; }},
     Requirement{"maintenance4", "workgroup sizes as specialisation constants",
                 [](FeatureChain& f) -> VkBool32& { return f.v13.maintenance4; }},
+    Requirement{"dynamicRendering", "drawing without render passes",
+                [](FeatureChain& f) -> VkBool32& { return f.v13.dynamicRendering; }},
 };
 
 }  // namespace
@@ -63,8 +65,17 @@ std::vector<std::string> missing_features(VkPhysicalDevice device) {
     return missing;
 }
 
-void require_features(FeatureChain& chain) {
+bool offers_draw_lists(VkPhysicalDevice device) {
+    FeatureChain offered;
+    vkGetPhysicalDeviceFeatures2(device, offered.head());
+    const VkPhysicalDeviceFeatures& core = offered.core.features;
+    return core.multiDrawIndirect == VK_TRUE && core.drawIndirectFirstInstance == VK_TRUE;
+}
+
+void require_features(FeatureChain& chain, VkPhysicalDevice device) {
     for (const Requirement& requirement : Requirements) requirement.field(chain) = VK_TRUE;
+    const VkBool32 lists = offers_draw_lists(device) ? VK_TRUE : VK_FALSE;
+    chain.core.features.multiDrawIndirect = chain.core.features.drawIndirectFirstInstance = lists;
 }
 
 }  // namespace tessera::vulkan

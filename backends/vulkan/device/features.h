@@ -26,7 +26,10 @@ class FeatureChain final {
 // can be used. The device is of Vulkan 1.3.
 std::vector<std::string> missing_features(VkPhysicalDevice device);
 
-// Switches on exactly what is needed.
-void require_features(FeatureChain& chain);
+// Whether one call can make many indirect draws, each of instances of its own.
+bool offers_draw_lists(VkPhysicalDevice device);
+
+// Switches on exactly what is needed, and draw lists where they are offered.
+void require_features(FeatureChain& chain, VkPhysicalDevice device);
 
 }  // namespace tessera::vulkan

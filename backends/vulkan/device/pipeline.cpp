@@ -5,23 +5,11 @@
 #include "backends/vulkan/device/device.h"
 #include "backends/vulkan/device/handle.h"
 #include "backends/vulkan/device/result.h"
+#include "backends/vulkan/device/shader_stage.h"
 
 namespace tessera::vulkan {
 
 namespace {
-
-using ShaderModule = Handle<VkShaderModule, vkDestroyShaderModule>;
-
-ShaderModule make_module(VkDevice device, const PipelineSettings& settings) {
-    const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                        .codeSize = settings.code.size_bytes(),
-                                        .pCode = settings.code.data()};
-    VkShaderModule object = VK_NULL_HANDLE;
-    check(vkCreateShaderModule(device, &info, nullptr, &object), "read the code of kernel " + settings.name);
-    return {device, object};
-}
-
-}  // namespace
 
 VkDescriptorType type_of(Binding::Kind kind) {
     return kind == Binding::Kind::Storage ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
@@ -43,6 +31,8 @@ SetLayout make_set_layout(VkDevice device, const std::vector<Binding>& bindings)
     return {device, object};
 }
 
+}  // namespace
+
 struct ComputePipeline::Parts {
     SetLayout set_layout;
     Handle<VkPipelineLayout, vkDestroyPipelineLayout> layout;
@@ -55,12 +45,7 @@ ComputePipeline::ComputePipeline(Device& device, const PipelineSettings& setting
       push_bytes_(settings.push_bytes),
       bindings_(settings.bindings),
       name_(settings.name) {
-    if (settings.push_bytes > device.info().push_constant_bytes) {
-        throw Error(ErrorCode::Internal,
-                    "kernel " + name_ + " asks for " + std::to_string(settings.push_bytes) +
-                        " bytes of push constants where the device allows " +
-                        std::to_string(device.info().push_constant_bytes) + "; report this");
-    }
+    check_push_bytes(name_, settings.push_bytes, device.info().push_constant_bytes);
     if (!bindings_.empty()) parts_->set_layout = make_set_layout(device.get(), bindings_);
     const VkDescriptorSetLayout set_layout = parts_->set_layout.get();
     const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, settings.push_bytes};
@@ -74,24 +59,10 @@ ComputePipeline::ComputePipeline(Device& device, const PipelineSettings& setting
           "lay out the arguments of kernel " + name_);
     parts_->layout = {device.get(), layout};
 
-    std::vector<VkSpecializationMapEntry> entries;
-    for (const Constant& constant : settings.constants) {
-        const auto offset =
-            static_cast<std::uint32_t>(entries.size() * sizeof(Constant) + offsetof(Constant, bits));
-        entries.push_back({constant.id, offset, sizeof constant.bits});
-    }
-    const VkSpecializationInfo specialization{static_cast<std::uint32_t>(entries.size()), entries.data(),
-                                              settings.constants.size() * sizeof(Constant),
-                                              settings.constants.data()};
-    const ShaderModule module = make_module(device.get(), settings);
+    const ShaderStage stage(device.get(), name_, VK_SHADER_STAGE_COMPUTE_BIT, settings.code,
+                            settings.constants);
     const VkComputePipelineCreateInfo info{
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                  .module = module.get(),
-                  .pName = "main",
-                  .pSpecializationInfo = &specialization},
-        .layout = layout};
+        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, .stage = stage.info(), .layout = layout};
     parts_->pipeline = device.pipelines().make(info, settings);
 }
 

@@ -16,6 +16,11 @@ void update(Blake2b& hash, const T& value) {
     hash.update(std::as_bytes(std::span(&value, 1)));
 }
 
+void update(Blake2b& hash, std::span<const Constant> constants) {
+    update(hash, constants.size());
+    for (const Constant& constant : constants) update(hash, constant);
+}
+
 std::vector<std::byte> data_of(VkDevice device, VkPipelineCache cache) {
     std::size_t size = 0;
     check(vkGetPipelineCacheData(device, cache, &size, nullptr), "read a compiled kernel");
@@ -30,27 +35,16 @@ std::vector<std::byte> data_of(VkDevice device, VkPipelineCache cache) {
 PipelineCache::PipelineCache(VkDevice device, const DeviceInfo& info, const std::filesystem::path& folder)
     : device_(device), info_(info), files_(folder, "pipeline", ByteLimit) {}
 
-Hash256 PipelineCache::key_of(const PipelineSettings& settings) const {
-    Blake2b hash;
+void PipelineCache::update_with_driver(Blake2b& hash) const {
     update(hash, info_.cache_uuid);
     update(hash, info_.vendor_id);
     update(hash, info_.device_id);
     update(hash, info_.driver_version);
-    update(hash, settings.push_bytes);
-    update(hash, settings.constants.size());
-    for (const Constant& constant : settings.constants) update(hash, constant);
-    update(hash, settings.bindings.size());
-    for (const Binding& binding : settings.bindings) {
-        update(hash, binding.index);
-        update(hash, binding.kind);
-    }
-    hash.update(std::as_bytes(settings.code));
-    return hash.finish();
 }
 
-Handle<VkPipeline, vkDestroyPipeline> PipelineCache::make(const VkComputePipelineCreateInfo& info,
-                                                          const PipelineSettings& settings) {
-    const Hash256 key = key_of(settings);
+template <class Create>
+Handle<VkPipeline, vkDestroyPipeline> PipelineCache::make(const Hash256& key, const std::string& name,
+                                                          const Create& create) {
     const std::optional<std::vector<std::byte>> kept = files_.load(key);
     const VkPipelineCacheCreateInfo cache_info{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
                                                .initialDataSize = kept ? kept->size() : 0,
@@ -59,11 +53,41 @@ Handle<VkPipeline, vkDestroyPipeline> PipelineCache::make(const VkComputePipelin
     check(vkCreatePipelineCache(device_, &cache_info, nullptr, &object), "open a cache of kernels");
     const Handle<VkPipelineCache, vkDestroyPipelineCache> cache(device_, object);
     VkPipeline pipeline = VK_NULL_HANDLE;
-    check(vkCreateComputePipelines(device_, object, 1, &info, nullptr, &pipeline),
-          "compile kernel " + settings.name);
+    check(create(object, &pipeline), "compile kernel " + name);
     Handle<VkPipeline, vkDestroyPipeline> made(device_, pipeline);
     if (!kept) files_.save(key, data_of(device_, object));
     return made;
+}
+
+Handle<VkPipeline, vkDestroyPipeline> PipelineCache::make(const VkComputePipelineCreateInfo& info,
+                                                          const PipelineSettings& settings) {
+    Blake2b hash;
+    update_with_driver(hash);
+    update(hash, settings.push_bytes);
+    update(hash, std::span(settings.constants));
+    update(hash, settings.bindings.size());
+    for (const Binding& binding : settings.bindings) {
+        update(hash, binding.index);
+        update(hash, binding.kind);
+    }
+    hash.update(std::as_bytes(settings.code));
+    return make(hash.finish(), settings.name, [&](VkPipelineCache cache, VkPipeline* pipeline) {
+        return vkCreateComputePipelines(device_, cache, 1, &info, nullptr, pipeline);
+    });
+}
+
+Handle<VkPipeline, vkDestroyPipeline> PipelineCache::make(const VkGraphicsPipelineCreateInfo& info,
+                                                          const GraphicsSettings& settings) {
+    Blake2b hash;
+    update_with_driver(hash);
+    update(hash, settings.push_bytes);
+    update(hash, std::span(settings.constants));
+    update(hash, settings.vertex.size());
+    hash.update(std::as_bytes(settings.vertex));
+    hash.update(std::as_bytes(settings.fragment));
+    return make(hash.finish(), settings.name, [&](VkPipelineCache cache, VkPipeline* pipeline) {
+        return vkCreateGraphicsPipelines(device_, cache, 1, &info, nullptr, pipeline);
+    });
 }
 
 }  // namespace tessera::vulkan

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "backends/vulkan/device/device_list.h"
+#include "backends/vulkan/device/graphics_pipeline.h"
 #include "backends/vulkan/device/handle.h"
 #include "backends/vulkan/device/pipeline.h"
 #include "mediator/base/disk_cache.h"
@@ -20,14 +21,20 @@ class PipelineCache final {
     // An empty folder: nothing is kept.
     PipelineCache(VkDevice device, const DeviceInfo& info, const std::filesystem::path& folder);
 
-    // What vkCreateComputePipelines gives for `info`, which was made from `settings`.
+    // What the driver gives for `info`, which was made from `settings`.
     Handle<VkPipeline, vkDestroyPipeline> make(const VkComputePipelineCreateInfo& info,
                                                const PipelineSettings& settings);
+    Handle<VkPipeline, vkDestroyPipeline> make(const VkGraphicsPipelineCreateInfo& info,
+                                               const GraphicsSettings& settings);
 
     std::vector<std::string> take_notes() { return files_.take_notes(); }
 
   private:
-    Hash256 key_of(const PipelineSettings& settings) const;
+    void update_with_driver(Blake2b& hash) const;
+    // `create` calls the driver with the cache that it is given.
+    template <class Create>
+    Handle<VkPipeline, vkDestroyPipeline> make(const Hash256& key, const std::string& name,
+                                               const Create& create);
 
     VkDevice device_;
     const DeviceInfo& info_;

@@ -5,8 +5,11 @@
 
 #include "backends/vulkan/device/bindings.h"
 #include "backends/vulkan/device/buffer.h"
+#include "backends/vulkan/device/drawing.h"
+#include "backends/vulkan/device/image.h"
 #include "backends/vulkan/device/pipeline.h"
 #include "backends/vulkan/device/result.h"
+#include "backends/vulkan/device/step_check.h"
 
 namespace tessera::vulkan {
 
@@ -16,16 +19,6 @@ template <class... Functions>
 struct Overloaded : Functions... {
     using Functions::operator()...;
 };
-
-void require(bool holds, const std::string& what) {
-    if (!holds) throw Error(ErrorCode::Internal, what + "; report this");
-}
-
-void check_part(const Buffer* buffer, std::uint64_t offset, std::uint64_t bytes, const std::string& step) {
-    require(buffer != nullptr && buffer->get() != VK_NULL_HANDLE, step + " without a buffer");
-    require(offset <= buffer->size() && bytes <= buffer->size() - offset,
-            step + " beyond the end of a buffer of " + std::to_string(buffer->size()) + " bytes");
-}
 
 void check_pass(const Pass& pass, const DeviceInfo& info) {
     require(pass.pipeline != nullptr && pass.pipeline->get() != VK_NULL_HANDLE, "a pass without a pipeline");
@@ -64,6 +57,13 @@ Scope scope_of(StageMask mask) {
                    VK_ACCESS_2_TRANSFER_WRITE_BIT});
     add(Indirect, {VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT, VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT, 0});
     add(Host, {VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT, VK_ACCESS_2_HOST_WRITE_BIT});
+    add(Drawing, {VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                  VK_ACCESS_2_SHADER_READ_BIT, 0});
+    add(Attachment,
+        {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT |
+             VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+         VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT,
+         VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT});
     return scope;
 }
 
@@ -75,12 +75,9 @@ void memory_barrier(VkCommandBuffer commands, const VkMemoryBarrier2& barrier) {
 
 // The handle names the bytes: one that comes again after its buffer's end can only cost a barrier, never miss
 // one.
-std::uint64_t resource_of(const Buffer& buffer) {
-    return reinterpret_cast<std::uint64_t>(buffer.get());
-}
-
-Access access_to(const Buffer* buffer, Stage stage, Access::Kind kind) {
-    return {resource_of(*buffer), stage, kind};
+template <class Memory>  // a buffer or an image
+Access access_to(const Memory* memory, Stage stage, Access::Kind kind) {
+    return {reinterpret_cast<std::uint64_t>(memory->get()), stage, kind};
 }
 
 // Buffers that a step writes and that the host sees.
@@ -89,7 +86,8 @@ std::vector<const Buffer*> shown_by(const Step& step) {
         std::visit(Overloaded{[](const Pass& pass) { return pass.writes; },
                               [](const Copy& copy) { return std::vector<const Buffer*>{copy.to}; },
                               [](const Fill& fill) { return std::vector<const Buffer*>{fill.buffer}; },
-                              [](const Publish&) { return std::vector<const Buffer*>{}; }},
+                              [](const CopyImage& copy) { return std::vector<const Buffer*>{copy.to}; },
+                              [](const auto&) { return std::vector<const Buffer*>{}; }},
                    step);
     std::erase_if(written, [](const Buffer* buffer) { return buffer->mapped().empty(); });
     return written;
@@ -108,6 +106,12 @@ void check_step(const Step& step, const DeviceInfo& info) {
                               require(fill.offset % 4 == 0 && fill.bytes % 4 == 0,
                                       "a fill that is not of whole words");
                           },
+                          [&](const DrawList& list) { check_draws(list, info); },
+                          [](const CopyImage& copy) { check_copy(copy); },
+                          [](const Prepare& prepare) {
+                              require(prepare.image != nullptr && prepare.image->get() != VK_NULL_HANDLE,
+                                      "a preparation without an image");
+                          },
                           [](const Publish&) {}},
                step);
 }
@@ -115,21 +119,32 @@ void check_step(const Step& step, const DeviceInfo& info) {
 std::vector<Access> accesses_of(const Step& step) {
     using enum Access::Kind;
     std::vector<Access> accesses;
-    const auto add = [&](const Buffer* buffer, Stage stage, Access::Kind kind) {
-        accesses.push_back(access_to(buffer, stage, kind));
+    const auto add = [&](const auto* memory, Stage stage, Access::Kind kind) {
+        accesses.push_back(access_to(memory, stage, kind));
     };
-    std::visit(
-        Overloaded{[&](const Pass& pass) {
-                       for (const Buffer* buffer : pass.reads) add(buffer, Compute, Read);
-                       for (const Buffer* buffer : pass.writes) add(buffer, Compute, Write);
-                       if (pass.groups_from != nullptr) add(pass.groups_from, Indirect, Read);
-                   },
-                   [&](const Copy& copy) {
-                       add(copy.from, Transfer, Read);
-                       add(copy.to, Transfer, Write);
-                   },
-                   [&](const Fill& fill) { add(fill.buffer, Transfer, Write); }, [](const Publish&) {}},
-        step);
+    std::visit(Overloaded{[&](const Pass& pass) {
+                              for (const Buffer* buffer : pass.reads) add(buffer, Compute, Read);
+                              for (const Buffer* buffer : pass.writes) add(buffer, Compute, Write);
+                              if (pass.groups_from != nullptr) add(pass.groups_from, Indirect, Read);
+                          },
+                          [&](const Copy& copy) {
+                              add(copy.from, Transfer, Read);
+                              add(copy.to, Transfer, Write);
+                          },
+                          [&](const Fill& fill) { add(fill.buffer, Transfer, Write); },
+                          [&](const DrawList& list) {
+                              for (const Buffer* buffer : list.reads) add(buffer, Drawing, Read);
+                              add(list.draws, Indirect, Read);
+                              add(list.ids, Attachment, Write);
+                              add(list.depth, Attachment, Write);
+                          },
+                          [&](const CopyImage& copy) {
+                              add(copy.from, Transfer, Read);
+                              add(copy.to, Transfer, Write);
+                          },
+                          [&](const Prepare& prepare) { add(prepare.image, Attachment, Write); },
+                          [](const Publish&) {}},
+               step);
     return accesses;
 }
 
@@ -185,6 +200,9 @@ void Recorder::record(const Step& step) {
                               vkCmdFillBuffer(commands_, fill.buffer->get(), fill.offset, fill.bytes,
                                               fill.word);
                           },
+                          [&](const DrawList& list) { record_draws(commands_, list); },
+                          [&](const CopyImage& copy) { record_copy(commands_, copy); },
+                          [&](const Prepare& prepare) { record_preparation(commands_, *prepare.image); },
                           [&](const Publish&) { publish(); }},
                step);
     for (const Buffer* buffer : shown_by(step)) {

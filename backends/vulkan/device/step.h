@@ -8,10 +8,14 @@
 #include <variant>
 #include <vector>
 
+#include "mediator/base/rect.h"
+
 namespace tessera::vulkan {
 
 class Buffer;
 class ComputePipeline;
+class GraphicsPipeline;
+class Image;
 
 // The push-constant block of one dispatch: any plain struct of at most 128 bytes, laid out as the shader's
 // (scalar layout). Addresses of buffers go in here.
@@ -68,6 +72,36 @@ struct Fill {
 // All before is done and seen before anything after starts, named or not.
 struct Publish {};
 
-using Step = std::variant<Pass, Copy, Fill, Publish>;
+// A list of draws to a part of images, which begins with no ids there: 0xffffffff and 0. The order between
+// steps comes from the images, the list and `reads`, as for a pass.
+struct DrawList {
+    const GraphicsPipeline* pipeline = nullptr;
+    Arguments arguments;
+    const Image* ids = nullptr;
+    const Image* depth = nullptr;
+    enum class Depth { Clear, Keep } depth_before = Depth::Clear;  // cleared: infinitely far, 0
+    Rect area;                   // of the images; nothing outside of it is touched
+    std::uint32_t viewport = 0;  // edge of a square whose corner is the images'; may be larger than they
+    // `count` of VkDrawIndirectCommand from the buffer's start. One call makes up to `per_call` of them, at
+    // most DeviceInfo::draws_per_call; where that is 1, no draw has another first instance than 0.
+    const Buffer* draws = nullptr;
+    std::uint32_t count = 0, per_call = 1;
+    std::vector<const Buffer*> reads;
+};
+
+// A part of an image to a buffer, row after row without gaps; the offset is a multiple of a pixel's bytes.
+struct CopyImage {
+    const Image* from = nullptr;
+    Rect area;
+    const Buffer* to = nullptr;
+    std::uint64_t to_offset = 0;
+};
+
+// The image's contents are gone; only now it can be used. Images do this themselves when they are made.
+struct Prepare {
+    const Image* image = nullptr;
+};
+
+using Step = std::variant<Pass, Copy, Fill, Publish, DrawList, CopyImage, Prepare>;
 
 }  // namespace tessera::vulkan

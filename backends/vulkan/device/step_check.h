@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace tessera::vulkan {
+
+class Buffer;
+
+// Both throw Error{Internal}: a step that is none.
+void require(bool holds, const std::string& what);
+void check_part(const Buffer* buffer, std::uint64_t offset, std::uint64_t bytes, const std::string& step);
+
+}  // namespace tessera::vulkan
