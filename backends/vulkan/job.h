@@ -24,4 +24,18 @@ static_assert(offsetof(Job, top) == 40 && offsetof(Job, x) == 44 && offsetof(Job
 static_assert(offsetof(Job, pixels) == 56 && offsetof(Job, first_item) == 60);
 static_assert(offsetof(Job, item_count) == 64);
 
+// The push constants of shaders/merge.comp: 2^level samples of each pixel become one block. Value k of sample
+// s of pixel i stands at values[((k << level) + s) * pixels + i]; plane p of it goes to planes[p * pixels +
+// i]. The word behind the planes is 0, and stays so unless the host has to merge instead.
+struct MergeJob {
+    std::uint64_t columns = 0, values = 0, planes = 0;  // addresses
+    std::uint32_t pixels = 0, level = 0;
+    std::uint32_t column_count = 0, plane_count = 0;
+};
+constexpr int MaxMergedLevel = 8;  // a pixel's partial sums lie in registers
+
+static_assert(sizeof(MergeJob) == 40);
+static_assert(offsetof(MergeJob, planes) == 16 && offsetof(MergeJob, pixels) == 24);
+static_assert(offsetof(MergeJob, column_count) == 32);
+
 }  // namespace tessera::vulkan

@@ -4,6 +4,7 @@
 
 #include "backends/vulkan/device/device.h"
 #include "backends/vulkan/job.h"
+#include "backends/vulkan/shaders/merge.comp.h"
 #include "backends/vulkan/shaders/trace.comp.h"
 #include "backends/vulkan/shaders/trace_texels.comp.h"
 #include "backends/vulkan/shaders/trace_trees.comp.h"
@@ -44,6 +45,18 @@ const ComputePipeline& Kernels::find(KernelKind kind) {
         kernel = std::make_unique<ComputePipeline>(device_, settings);
     }
     return *kernel;
+}
+
+const ComputePipeline& Kernels::merging() {
+    const std::scoped_lock lock(mutex_);
+    if (!merging_) {
+        merging_ =
+            std::make_unique<ComputePipeline>(device_, PipelineSettings{.name = "merging of samples",
+                                                                        .code = shaders::merge_comp(),
+                                                                        .constants = {{0, group_size_}},
+                                                                        .push_bytes = sizeof(MergeJob)});
+    }
+    return *merging_;
 }
 
 }  // namespace tessera::vulkan

@@ -24,13 +24,15 @@ class Kernels final {
 
     // Invocations of a workgroup.
     std::uint32_t group_size() const { return group_size_; }
-    const ComputePipeline& find(KernelKind kind);
+    const ComputePipeline& find(KernelKind kind);  // traces samples
+    const ComputePipeline& merging();              // merges them into blocks
 
   private:
     Device& device_;
     std::uint32_t group_size_;
     std::mutex mutex_;  // protects:
     std::map<KernelKind, std::unique_ptr<ComputePipeline>> made_;
+    std::unique_ptr<ComputePipeline> merging_;
 };
 
 }  // namespace tessera::vulkan

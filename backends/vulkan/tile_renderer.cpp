@@ -4,128 +4,186 @@
 #include <array>
 #include <bit>
 #include <chrono>
+#include <optional>
 
 #include "backends/vulkan/device/transfer.h"
 #include "backends/vulkan/job.h"
-#include "mediator/frame/block_stack.h"
-#include "mediator/frame/merge.h"
-#include "mediator/shading/sample_values.h"
+#include "backends/vulkan/merge_columns.h"
+#include "backends/vulkan/unit_film.h"
 
 namespace tessera::vulkan {
 
 namespace {
 
-std::uint32_t value_count(frame::ChannelSet channels) {
-    std::uint32_t count = 0;
-    for (const frame::ChannelInfo& info : frame::channel_table()) {
-        if (channels.contains(info.channel)) count += info.components;
-    }
-    return count;
+// One dispatch on its way: single samples, or whole ones of the tile that are merged behind it.
+struct Batch {
+    Buffer values;   // of the samples, where the host reads them
+    Buffer scratch;  // the same for samples that are merged
+    Buffer merged;   // planes, those of the rays, and a word that is not 0 where the host has to merge
+    Submission submission;
+    std::uint32_t items = 0;
+    std::optional<frame::SampleBlock> block;
+};
+
+void make_room(Device& device, Buffer& buffer, std::uint64_t bytes, MemoryKind kind) {
+    if (buffer.size() < bytes) buffer = Buffer(device, bytes, kind);
 }
 
-// The film of a unit, filled by items in their order.
-class UnitFilm {
-  public:
-    UnitFilm(const view::WorkUnit& unit, frame::ChannelSet channels) : unit_(unit), channels_(channels) {
-        begin(unit.block.first);
-    }
+// What the next dispatch takes: the largest block that may be merged on the device, if any.
+std::optional<frame::SampleBlock> next_block(std::uint64_t sample, std::uint64_t end, std::uint64_t most) {
+    if (most < 2 || end - sample < 2) return std::nullopt;
+    const int aligned = sample == 0 ? 63 : std::countr_zero(sample);
+    const int fits = static_cast<int>(std::bit_width(std::min(end - sample, most))) - 1;
+    const int level = std::min({aligned, fits, MaxMergedLevel});
+    if (level == 0) return std::nullopt;
+    return frame::SampleBlock{sample, static_cast<std::uint32_t>(level)};
+}
 
-    // values[k * count + i]: value k of item i.
-    void add(std::span<const float> values, std::uint32_t count, std::uint32_t value_count) {
-        std::array<float, shading::MaxSampleValues> item{};
-        for (std::uint32_t i = 0; i < count; ++i) {
-            for (std::uint32_t k = 0; k < value_count; ++k) item[k] = values[std::size_t{k} * count + i];
-            result.rays += std::bit_cast<std::uint32_t>(values[std::size_t{value_count} * count + i]);
-            frame::put_sample(tile_, pixel_, std::span(item).first(value_count));
-            if (++pixel_ == tile_.pixel_count()) {
-                const std::uint64_t next = tile_.block.first + 1;
-                finished_.push(std::move(tile_));
-                begin(next);
-            }
+// Renders one unit.
+class UnitRun {
+  public:
+    UnitRun(const TileRenderer& with, const shading::View& view, const view::WorkUnit& unit,
+            frame::ChannelSet channels)
+        : device_(with.device),
+          kernels_(with.kernels),
+          pace_(with.pace),
+          scene_(with.scene),
+          unit_(unit),
+          pixels_(static_cast<std::uint32_t>(unit.tile.pixel_count())),
+          values_(value_count(channels)),
+          planes_(channels.plane_count()),
+          all_(unit.block.count() * pixels_),
+          view_(make_buffer(device_, std::vector<shading::View>{view})),
+          film_(unit, channels) {
+        fits_texels_ = scene_.pool().size() / 16 <= device_.info().texel_elements;
+        const bool trees =
+            view.renderer == shading::RendererWhitted || (view.keeps & shading::KeepsRange) != 0;
+        kernel_ = &kernels_.find({scene_.features(), trees, fits_texels_});
+        if (unit.block.level > 0) {
+            const std::vector<MergeColumn> columns = merge_columns(channels);
+            column_count_ = static_cast<std::uint32_t>(columns.size());
+            columns_ = make_buffer(device_, columns);
         }
     }
-    backend::RenderResult take(backend::RenderStatus status) {
-        result.status = status;
-        result.blocks = finished_.take();  // a sample that is not whole is dropped
-        return std::move(result);
+
+    backend::RenderResult finish(const std::stop_token& stop) {
+        std::array<Batch, 2> batches;
+        for (Batch& batch : batches) send(batch);
+        for (std::size_t turn = 0; batches[turn].items > 0; turn = 1 - turn) {
+            Batch& batch = batches[turn];
+            // What still runs is abandoned: a first dispatch may wait for the driver's compiler.
+            while (!batch.submission.wait_for(std::chrono::milliseconds(5)) && !stop.stop_requested()) {
+            }
+            if (stop.stop_requested()) return film_.take(backend::RenderStatus::Stopped);
+            const std::vector<double> seconds = batch.submission.seconds();
+            if (!seconds.empty()) pace_.learn(batch.items, seconds.front());
+            receive(batch);
+            send(batch);
+        }
+        return film_.take(backend::RenderStatus::Done);
     }
 
   private:
-    void begin(std::uint64_t sample) {
-        if (sample < unit_.block.end()) tile_ = finished_.recycled(unit_.tile, {sample, 0}, channels_);
-        pixel_ = 0;
+    void send(Batch& batch) {
+        const std::uint64_t most = pace_.samples(), begun = sent_ % pixels_;
+        batch.block.reset();
+        if (begun == 0 && sent_ < all_) {
+            batch.block = next_block(unit_.block.first + sent_ / pixels_, unit_.block.end(), most / pixels_);
+        }
+        std::uint64_t items = std::min(most, all_ - sent_);
+        if (batch.block) items = batch.block->count() * pixels_;
+        // To the end of a sample, from where on blocks can be merged.
+        if (begun != 0 && most >= 2 * std::uint64_t{pixels_}) items = pixels_ - begun;
+        batch.items = static_cast<std::uint32_t>(items);
+        if (items == 0) return;
+        const std::uint64_t bytes = (std::uint64_t{values_} + 1) * items * sizeof(float);
+        Buffer& values = batch.block ? batch.scratch : batch.values;
+        make_room(device_, values, bytes, batch.block ? MemoryKind::Device : MemoryKind::Readback);
+        std::vector<Step> steps;
+        steps.emplace_back(traced(values, batch.items));
+        if (batch.block) {
+            const std::uint64_t words = (std::uint64_t{planes_} + 1) * pixels_ + 1;
+            make_room(device_, batch.merged, words * sizeof(float), MemoryKind::Readback);
+            steps.emplace_back(
+                Fill{.buffer = &batch.merged, .offset = (words - 1) * sizeof(float), .bytes = sizeof(float)});
+            steps.emplace_back(merged(batch));
+        }
+        batch.submission = device_.queue().submit(steps, Timing::Total);
+        sent_ += items;
     }
 
-    const view::WorkUnit& unit_;
-    frame::ChannelSet channels_;
-    frame::BlockStack finished_;
-    frame::FilmTile tile_;
-    std::size_t pixel_ = 0;
-    backend::RenderResult result;
-};
+    Pass traced(const Buffer& values, std::uint32_t items) const {
+        Pass pass{.pipeline = kernel_,
+                  .arguments = Job{.scene = scene_.record(),
+                                   .view = view_.address(),
+                                   .pool = scene_.pool().address(),
+                                   .values = values.address(),
+                                   .first_sample = unit_.block.first + sent_ / pixels_,
+                                   .top = scene_.top(),
+                                   .x = static_cast<std::uint32_t>(unit_.tile.x),
+                                   .y = static_cast<std::uint32_t>(unit_.tile.y),
+                                   .width = static_cast<std::uint32_t>(unit_.tile.width),
+                                   .pixels = pixels_,
+                                   .first_item = static_cast<std::uint32_t>(sent_ % pixels_),
+                                   .item_count = items},
+                  .groups = {groups_of(items)},
+                  .writes = {&values}};
+        if (fits_texels_) pass.bound = {&scene_.pool()};
+        return pass;
+    }
 
-// One dispatch on its way.
-struct Batch {
-    Buffer values;
-    Submission submission;
-    std::uint32_t items = 0;
+    Pass merged(const Batch& batch) const {
+        return {.pipeline = &kernels_.merging(),
+                .arguments = MergeJob{.columns = columns_.address(),
+                                      .values = batch.scratch.address(),
+                                      .planes = batch.merged.address(),
+                                      .pixels = pixels_,
+                                      .level = batch.block->level,
+                                      .column_count = column_count_,
+                                      .plane_count = planes_ + 1},
+                .groups = {groups_of(pixels_ * column_count_)},
+                .reads = {&batch.scratch},
+                .writes = {&batch.merged}};
+    }
+
+    std::uint32_t groups_of(std::uint32_t invocations) const {
+        return (invocations + kernels_.group_size() - 1) / kernels_.group_size();
+    }
+
+    void receive(const Batch& batch) {
+        if (!batch.block) return film_.add(floats_in(batch.values.mapped()), batch.items);
+        const std::span planes = floats_in(batch.merged.mapped());
+        const std::size_t flag = (std::size_t{planes_} + 1) * pixels_;
+        if (std::bit_cast<std::uint32_t>(planes[flag]) == 0) {
+            film_.add_block(planes.first(flag), *batch.block);
+        } else {
+            film_.add(download<float>(device_, batch.scratch), batch.items);
+        }
+    }
+
+    static std::span<const float> floats_in(std::span<const std::byte> bytes) {
+        return {reinterpret_cast<const float*>(bytes.data()), bytes.size() / sizeof(float)};
+    }
+
+    Device& device_;
+    Kernels& kernels_;
+    Pace& pace_;
+    const GpuScene& scene_;
+    const view::WorkUnit& unit_;
+    std::uint32_t pixels_, values_, planes_;
+    std::uint64_t all_, sent_ = 0;  // items
+    Buffer view_, columns_;
+    std::uint32_t column_count_ = 0;
+    bool fits_texels_ = false;
+    const ComputePipeline* kernel_ = nullptr;
+    UnitFilm film_;
 };
 
 }  // namespace
 
 backend::RenderResult TileRenderer::run(const shading::View& view, const view::WorkUnit& unit,
                                         frame::ChannelSet channels, const std::stop_token& stop) const {
-    const auto pixels = static_cast<std::uint32_t>(unit.tile.pixel_count());
-    const std::uint32_t values = value_count(channels), planes = values + 1;
-    const std::uint64_t samples = unit.block.end() - unit.block.first;
-    const Buffer view_buffer = make_buffer(device, std::vector<shading::View>{view});
-    const bool fits_texels = scene.pool().size() / 16 <= device.info().texel_elements;
-    const bool trees = view.renderer == shading::RendererWhitted || (view.keeps & shading::KeepsRange) != 0;
-    const ComputePipeline& kernel = kernels.find({scene.features(), trees, fits_texels});
-
-    UnitFilm film(unit, channels);
-    std::array<Batch, 2> batches;
-    std::uint64_t sent = 0;  // items
-    const std::uint64_t all = samples * pixels;
-    const auto send = [&](Batch& batch) {
-        batch.items = static_cast<std::uint32_t>(std::min<std::uint64_t>(pace.samples(), all - sent));
-        if (batch.items == 0) return;
-        const std::uint64_t bytes = std::uint64_t{planes} * batch.items * sizeof(float);
-        if (batch.values.size() < bytes) batch.values = Buffer(device, bytes, MemoryKind::Readback);
-        Pass pass{.pipeline = &kernel,
-                  .arguments = Job{.scene = scene.record(),
-                                   .view = view_buffer.address(),
-                                   .pool = scene.pool().address(),
-                                   .values = batch.values.address(),
-                                   .first_sample = unit.block.first + sent / pixels,
-                                   .top = scene.top(),
-                                   .x = static_cast<std::uint32_t>(unit.tile.x),
-                                   .y = static_cast<std::uint32_t>(unit.tile.y),
-                                   .width = static_cast<std::uint32_t>(unit.tile.width),
-                                   .pixels = pixels,
-                                   .first_item = static_cast<std::uint32_t>(sent % pixels),
-                                   .item_count = batch.items},
-                  .groups = {(batch.items + kernels.group_size() - 1) / kernels.group_size()},
-                  .writes = {&batch.values}};
-        if (fits_texels) pass.bound = {&scene.pool()};
-        batch.submission = device.queue().submit(Step(pass), Timing::Total);
-        sent += batch.items;
-    };
-    for (Batch& batch : batches) send(batch);
-    for (std::size_t turn = 0; batches[turn].items > 0; turn = 1 - turn) {
-        Batch& batch = batches[turn];
-        // What still runs is abandoned: a first dispatch may wait for the driver's compiler.
-        while (!batch.submission.wait_for(std::chrono::milliseconds(5)) && !stop.stop_requested()) {
-        }
-        if (stop.stop_requested()) return film.take(backend::RenderStatus::Stopped);
-        const std::vector<double> seconds = batch.submission.seconds();
-        if (!seconds.empty()) pace.learn(batch.items, seconds.front());
-        const auto bytes = batch.values.mapped();
-        const std::span found(reinterpret_cast<const float*>(bytes.data()), bytes.size() / sizeof(float));
-        film.add(found, batch.items, values);
-        send(batch);
-    }
-    return film.take(backend::RenderStatus::Done);
+    return UnitRun(*this, view, unit, channels).finish(stop);
 }
 
 }  // namespace tessera::vulkan

@@ -11,7 +11,8 @@
 namespace tessera::vulkan {
 
 // Traces the samples of a unit in dispatches of a measured size, two on their way at a time, and merges them
-// on the host in the canonical order. Throws DeviceLost.
+// in the canonical order: on the device where a dispatch has several samples of the whole tile, else on the
+// host. Throws DeviceLost.
 struct TileRenderer {
     Device& device;
     Kernels& kernels;

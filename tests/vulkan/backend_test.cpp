@@ -6,6 +6,7 @@
 
 #include "backends/vulkan/vulkan_backend.h"
 #include "mediator/backend/catalog.h"
+#include "mediator/frame/block_stack.h"
 #include "mediator/frame/resolve.h"
 #include "tests/contract/contract_scene.h"
 
@@ -72,6 +73,19 @@ TEST(VulkanParity, SeesTheSampleThatEmbreeSees) {
     }
     EXPECT_LE(error / double(many.values.size()), 1e-4);
     EXPECT_LE(std::fabs(difference), 3.0 * std::sqrt(squares) + 1e-6);
+}
+
+// The squares of its light are beyond the floats: merging is left to the host.
+TEST(VulkanMerging, IsTheSameWhereTheHostHasToDoIt) {
+    Rendering rendering;
+    const auto backend = with_scene(find_backend("vulkan").make({.blobs = rendering.blobs}), rendering);
+    const auto dazzling = rendering.builder.edit({test::SceneBuilder::update<scene::Background>(
+        test::Sky, scene::Background::Field::Color, {.color = glm::vec3(1e25f)})});
+    test::commit(*backend, {dazzling});
+    const frame::FilmTile whole = rendering.film(*backend, {8, 3});
+    frame::BlockStack single;
+    for (std::uint64_t sample = 8; sample < 16; ++sample) single.push(rendering.film(*backend, {sample, 0}));
+    EXPECT_TRUE(frame::identical_bits(whole, single.take().at(0)));
 }
 
 // Loses the device at the n-th submission that is counted over all devices.

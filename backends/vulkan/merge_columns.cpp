@@ -1,0 +1,46 @@
+#include "backends/vulkan/merge_columns.h"
+
+namespace tessera::vulkan {
+
+namespace {
+
+ColumnRule column_rule(frame::MergeRule rule) {
+    switch (rule) {
+        case frame::MergeRule::Moments:
+            return ColumnRule::Moments;
+        case frame::MergeRule::Sum:
+            return ColumnRule::Sum;
+        case frame::MergeRule::Minimum:
+            return ColumnRule::Minimum;
+        case frame::MergeRule::Maximum:
+            return ColumnRule::Maximum;
+        case frame::MergeRule::Nearest:
+            return ColumnRule::Nearest;
+        case frame::MergeRule::First:
+            return ColumnRule::First;
+    }
+    return ColumnRule::First;
+}
+
+}  // namespace
+
+std::vector<MergeColumn> merge_columns(frame::ChannelSet channels) {
+    std::vector<MergeColumn> columns;
+    std::uint32_t value = 0, plane = 0;
+    for (const frame::ChannelInfo& info : frame::channel_table()) {
+        if (!channels.contains(info.channel)) continue;
+        const ColumnRule rule = column_rule(info.rule);
+        const bool is_record = rule == ColumnRule::Nearest || rule == ColumnRule::First;
+        for (std::uint32_t c = 0; c < (is_record ? 1u : info.components); ++c) {
+            // Of one key each, but for records.
+            const bool one_by_one = rule == ColumnRule::Minimum || rule == ColumnRule::Maximum;
+            columns.push_back({rule, value + c, one_by_one ? 1u : info.components, plane + c});
+        }
+        value += info.components;
+        plane += info.plane_count();
+    }
+    columns.push_back({ColumnRule::Count, value, 1, plane});
+    return columns;
+}
+
+}  // namespace tessera::vulkan

@@ -1,0 +1,160 @@
+#version 460
+// Whole-tile samples as their block, the same bits as frame::merge on the host makes of them: one invocation
+// is one pixel of one column of values. What the host's general form is for (a sample that is not finite) and
+// what a device may round in another way than the host (numbers below the normal ones, which many take for 0)
+// is not done here but told: the host then merges the samples itself.
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_scalar_block_layout : require
+
+layout(local_size_x_id = 0) in;
+
+// As in merge_columns.h.
+const uint Moments = 0u, Sum = 1u, Minimum = 2u, Maximum = 3u, Nearest = 4u, First = 5u, Count = 6u;
+struct Column {
+    uint rule;
+    uint value;
+    uint components;
+    uint plane;
+};
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Columns {
+    Column items[];
+};
+// Read and written as bits: a record's payload may look like a signalling NaN.
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Values {
+    uint items[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Planes {
+    uint items[];
+};
+// As struct MergeJob in job.h.
+layout(push_constant, scalar) uniform Arguments {
+    Columns columns;
+    Values values;
+    Planes planes;
+    uint pixels, level;
+    uint column_count, plane_count;
+}
+job;
+
+const uint MaxLevel = 8u;
+const uint ExponentBits = 0x7f800000u;
+
+bool is_finite(uint bits) {
+    return (bits & ExponentBits) != ExponentBits;
+}
+bool is_nan(uint bits) {
+    return (bits & 0x7fffffffu) > ExponentBits;
+}
+bool is_subnormal(uint bits) {
+    return (bits & ExponentBits) == 0u && (bits & 0x7fffffffu) != 0u;
+}
+// Of a result that is not exactly 0: whether it is below the normal numbers, or beyond the largest.
+bool left_range(float x) {
+    const uint exponent = floatBitsToUint(x) & ExponentBits;
+    return exponent == 0u || exponent == ExponentBits;
+}
+
+// Sets `leaves` where the sum is for the host.
+float added(float a, float b, inout bool leaves) {
+    precise const float sum = a + b;
+    leaves = leaves || (a != -b && left_range(sum));
+    return sum;
+}
+
+uint value_of(uint k, uint pixel, uint s) {
+    return job.values.items[((k << job.level) + s) * job.pixels + pixel];
+}
+void put(uint plane, uint pixel, uint bits) {
+    job.planes.items[plane * job.pixels + pixel] = bits;
+}
+
+// Equal neighbours merge like the carries of a binary counter, as in frame::BlockStack.
+void merge_moments(Column column, uint pixel, inout bool leaves) {
+    float means[MaxLevel + 1u], m2s[MaxLevel + 1u];
+    float mean = 0.0, m2 = 0.0;
+    for (uint s = 0u; s < 1u << job.level; ++s) {
+        const uint bits = value_of(column.value, pixel, s);
+        leaves = leaves || !is_finite(bits) || is_subnormal(bits);
+        mean = uintBitsToFloat(bits);
+        m2 = 0.0;
+        uint level = 0u;
+        float half_count = 0.5;
+        for (uint carry = s; (carry & 1u) == 1u; carry >>= 1u) {
+            const float earlier = means[level];
+            precise const float difference = earlier - mean;
+            precise const float square = difference * difference;
+            precise const float spread = square * half_count;
+            leaves = leaves || (earlier != mean &&
+                                (left_range(difference) || left_range(square) || left_range(spread)));
+            m2 = added(added(m2s[level], m2, leaves), spread, leaves);
+            const float both = added(earlier, mean, leaves);
+            precise const float middle = both * 0.5;
+            leaves = leaves || (both != 0.0 && left_range(middle));
+            mean = middle;
+            level += 1u;
+            half_count *= 2.0;
+        }
+        means[level] = mean;
+        m2s[level] = m2;
+    }
+    put(column.plane, pixel, floatBitsToUint(mean));
+    put(column.plane + column.components, pixel, floatBitsToUint(m2));
+}
+
+void merge_sum(Column column, uint pixel, inout bool leaves) {
+    float sums[MaxLevel + 1u];
+    float sum = 0.0;
+    for (uint s = 0u; s < 1u << job.level; ++s) {
+        const uint bits = value_of(column.value, pixel, s);
+        leaves = leaves || !is_finite(bits) || is_subnormal(bits);
+        sum = uintBitsToFloat(bits);
+        uint level = 0u;
+        for (uint carry = s; (carry & 1u) == 1u; carry >>= 1u) {
+            sum = added(sums[level], sum, leaves);
+            level += 1u;
+        }
+        sums[level] = sum;
+    }
+    put(column.plane, pixel, floatBitsToUint(sum));
+}
+
+// The first of the smallest (or largest) keys, with what belongs to it.
+void keep_one(Column column, uint pixel, inout bool leaves) {
+    uint best = 0u;
+    if (column.rule != First) {
+        for (uint s = 0u; s < 1u << job.level; ++s) {
+            const uint bits = value_of(column.value, pixel, s);
+            leaves = leaves || is_nan(bits) || is_subnormal(bits);
+            const float key = uintBitsToFloat(bits);
+            const float kept = uintBitsToFloat(value_of(column.value, pixel, best));
+            if (column.rule == Maximum ? key > kept : key < kept) best = s;
+        }
+    }
+    for (uint c = 0u; c < column.components; ++c) {
+        put(column.plane + c, pixel, value_of(column.value + c, pixel, best));
+    }
+}
+
+void add_counts(Column column, uint pixel) {
+    uint sum = 0u;
+    for (uint s = 0u; s < 1u << job.level; ++s) sum += value_of(column.value, pixel, s);
+    put(column.plane, pixel, sum);
+}
+
+void main() {
+    if (gl_GlobalInvocationID.x >= job.pixels * job.column_count) return;
+    const uint pixel = gl_GlobalInvocationID.x % job.pixels;
+    const Column column = job.columns.items[gl_GlobalInvocationID.x / job.pixels];
+    bool leaves = false;
+    if (column.rule == Moments) {
+        merge_moments(column, pixel, leaves);
+    } else if (column.rule == Sum) {
+        merge_sum(column, pixel, leaves);
+    } else if (column.rule == Count) {
+        add_counts(column, pixel);
+    } else {
+        keep_one(column, pixel, leaves);
+    }
+    if (leaves) atomicOr(job.planes.items[job.plane_count * job.pixels], 1u);
+}

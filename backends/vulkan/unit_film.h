@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "mediator/backend/backend.h"
+#include "mediator/frame/block_stack.h"
+
+namespace tessera::vulkan {
+
+// How many floats one sample has.
+std::uint32_t value_count(frame::ChannelSet channels);
+
+// The film of a unit, filled in the order of its samples: by single ones, or by merged blocks of the whole
+// tile. The unit outlives it.
+class UnitFilm {
+  public:
+    UnitFilm(const view::WorkUnit& unit, frame::ChannelSet channels);
+
+    // values[k * count + i]: value k of item i, which is the next sample of the next pixel; behind the values
+    // the rays, as bits.
+    void add(std::span<const float> values, std::uint32_t count);
+
+    // planes: those of a film tile and one for the rays, as bits. Only where no sample is begun.
+    void add_block(std::span<const float> planes, frame::SampleBlock block);
+
+    // A sample that is not whole is dropped.
+    backend::RenderResult take(backend::RenderStatus status);
+
+  private:
+    void begin(std::uint64_t sample);
+
+    const view::WorkUnit& unit_;
+    frame::ChannelSet channels_;
+    std::uint32_t values_;
+    frame::BlockStack finished_;
+    frame::FilmTile tile_;
+    std::size_t pixel_ = 0;
+    std::uint64_t rays_ = 0;
+};
+
+}  // namespace tessera::vulkan
