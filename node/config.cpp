@@ -57,8 +57,10 @@ std::optional<int> parse_options(int argc, const char* const* argv, NodeOptions&
         line.option("--device", "index or part of a name, as tessera doctor lists them; default: the best",
                     options.device);
     }
-    line.option("--cache", "keep blobs in this folder, for the next start", options.cache);
-    line.option("--cache-size", "MiB that the cache folder may hold", options.cache_mib);
+    line.option("--cache", "keep blobs, built trees and kernels in this folder, for the next start",
+                options.cache);
+    line.option("--cache-size", "MiB of blobs that the cache folder may hold; of all else, it is 320",
+                options.cache_mib);
     line.option("--memory", "MiB of blobs in memory above which unused ones are dropped", options.memory_mib);
     line.option("--name", "what the master calls this node; default: the host's name", options.name);
     line.option("--simulate-cost", "back-end null only: time per sample of a pixel, like 20us", cost);

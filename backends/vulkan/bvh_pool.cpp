@@ -12,6 +12,11 @@ MeshData data_of(const backend::Mesh& mesh) {
     return {backend::elements<glm::vec3>(mesh.positions), backend::elements<glm::uvec3>(mesh.triangles)};
 }
 
+MeshHashes hashes_of(const backend::Mesh& mesh) {
+    const auto hash_of = [](const scene::BlobPtr& blob) { return blob ? blob->hash() : Hash256(); };
+    return {hash_of(mesh.positions), hash_of(mesh.triangles)};
+}
+
 }  // namespace
 
 BvhPool::Work BvhPool::update(const backend::MeshCatalog& meshes, const backend::MeshCatalog::Result& changes,
@@ -32,13 +37,21 @@ BvhPool::Work BvhPool::update(const backend::MeshCatalog& meshes, const backend:
         if (step == backend::MeshStep::ShadingData) continue;
         const backend::Mesh& mesh = *meshes.find(id);
         const auto place = meshes_.find(id);
-        if (step == backend::MeshStep::Refit && place != meshes_.end() && refit(place->second, mesh)) {
+        const bool moves = step == backend::MeshStep::Refit && place != meshes_.end();
+        if (moves && refit(place->second, mesh)) {
             ++work.refitted;
             continue;
         }
         remove(id);
-        build(id, mesh);
-        ++work.rebuilt;
+        const MeshData data = data_of(mesh);
+        // One of many positions of an animation is not worth a file.
+        std::optional<WideTree> tree = moves ? std::nullopt : trees_.load(data, hashes_of(mesh));
+        if (!tree) {
+            tree = build_mesh(builder_, data);
+            if (!moves) trees_.save(*tree, hashes_of(mesh));
+            ++work.rebuilt;
+        }
+        insert(id, std::move(*tree));
     }
     // Nodes have two children at least, so there are fewer of them than instances, but for the root.
     place_rows((2 * instances.size() + 1) * sizeof(shading::BvhNode));
@@ -57,9 +70,9 @@ bool BvhPool::refit(MeshRows& rows, const backend::Mesh& mesh) {
     return refit_mesh(rows.tree, data_of(mesh), rows.built_cost);
 }
 
-void BvhPool::build(ObjectId id, const backend::Mesh& mesh) {
+void BvhPool::insert(ObjectId id, WideTree&& tree) {
     MeshRows rows;
-    rows.tree = build_mesh(builder_, data_of(mesh));
+    rows.tree = std::move(tree);
     rows.built_cost = rows.tree.cost;
     rows.nodes.bytes = std::max<std::uint64_t>(rows.tree.nodes.size() * sizeof(shading::BvhNode), 16);
     rows.triangles.bytes =

@@ -7,6 +7,7 @@
 
 #include "backends/vulkan/bvh/mesh_bvh.h"
 #include "backends/vulkan/bvh/top_bvh.h"
+#include "backends/vulkan/bvh/tree_cache.h"
 #include "backends/vulkan/device/buffer.h"
 #include "backends/vulkan/device/range_allocator.h"
 #include "mediator/backend/tables/tables.h"
@@ -17,10 +18,10 @@ namespace tessera::vulkan {
 // (mediator/shading/bvh_layout.h), in step with its meshes and instances at the cheapest level.
 class BvhPool final {
   public:
-    explicit BvhPool(Device& device) : device_(device) {}
+    BvhPool(Device& device, TreeCache& trees) : device_(device), trees_(trees) {}
 
     struct Work {
-        std::uint32_t rebuilt = 0, refitted = 0;
+        std::uint32_t rebuilt = 0, refitted = 0;  // trees that the cache had are neither
     };
     // Brings the meshes in step with the catalog, then the top level with the instances. A refit that would
     // make a tree bad is a rebuild. Throws Error{OutOfMemory} and DeviceLost; the pool is to be dropped then.
@@ -45,7 +46,7 @@ class BvhPool final {
     };
 
     bool refit(MeshRows& rows, const backend::Mesh& mesh);
-    void build(ObjectId id, const backend::Mesh& mesh);
+    void insert(ObjectId id, WideTree&& tree);
     void update_top(std::span<const shading::Instance> instances);
     // Places all rows that have no place, in a larger pool if need be.
     void place_rows(std::uint64_t top_bytes);
@@ -55,6 +56,7 @@ class BvhPool final {
     void send(MeshRows& rows, const backend::Mesh& mesh);
 
     Device& device_;
+    TreeCache& trees_;
     BinaryTreeBuilder builder_;
     std::map<ObjectId, MeshRows> meshes_;
     Buffer buffer_;

@@ -11,9 +11,9 @@ void set_address(Array& array, const DeviceTable& table) {
 
 }  // namespace
 
-GpuScene::GpuScene(Device& device)
+GpuScene::GpuScene(Device& device, TreeCache& trees)
     : blobs_(device),
-      bvh_(device),
+      bvh_(device, trees),
       textures_(device),
       materials_(device),
       meshes_(device),

@@ -10,7 +10,7 @@ namespace tessera::vulkan {
 // A scene on the device: everything that kernels read of it. Made anew from the host's side at any time.
 class GpuScene final {
   public:
-    explicit GpuScene(Device& device);
+    GpuScene(Device& device, TreeCache& trees);
 
     // Throws Error{OutOfMemory} with the sizes, and DeviceLost; then it is to be dropped.
     BvhPool::Work update(const backend::MeshCatalog& meshes, const backend::MeshCatalog::Result& changes,

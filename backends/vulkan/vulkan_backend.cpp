@@ -22,7 +22,7 @@ constexpr int Attempts = 3;  // a device that is lost so often in a row does not
 class VulkanBackend final : public Backend {
   public:
     VulkanBackend(const BackendSettings& settings, const DeviceSettings& device)
-        : opener_(settings, device), world_(settings.blobs) {
+        : opener_(settings, device), world_(settings.blobs, settings.cache_folder) {
         opened_ = opener_.open();
         world_.move_to(&opened_->device);
         const DeviceInfo& info = opened_->device.info();

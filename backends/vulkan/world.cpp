@@ -1,5 +1,7 @@
 #include "backends/vulkan/world.h"
 
+#include <iterator>
+
 #include "backends/vulkan/device/device.h"
 
 namespace tessera::vulkan {
@@ -21,6 +23,11 @@ backend::SceneDelta everything_in(const scene::Scene& scene) {
     return all;
 }
 
+void add_notes(std::vector<std::string> notes, std::vector<std::string>& problems) {
+    problems.insert(problems.end(), std::make_move_iterator(notes.begin()),
+                    std::make_move_iterator(notes.end()));
+}
+
 }  // namespace
 
 void World::move_to(Device* device) {
@@ -31,7 +38,7 @@ void World::move_to(Device* device) {
 
 void World::rebuild() {
     scene_.reset();
-    auto scene = std::make_unique<GpuScene>(*device_);
+    auto scene = std::make_unique<GpuScene>(*device_, trees_);
     scene->update(meshes_, everything_in(meshes_), tables_);
     scene_ = std::move(scene);
 }
@@ -69,6 +76,8 @@ Expected<backend::EditReport> World::commit() {
         for (std::string& problem : problems_.update(shadow_.scene(), delta)) {
             report.problems.push_back(std::move(problem));
         }
+        add_notes(trees_.take_notes(), report.problems);
+        add_notes(device_->pipelines().take_notes(), report.problems);
         return report;
     } catch (const Error& error) {
         if (error.code() != ErrorCode::OutOfMemory) throw;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 
 #include "backends/vulkan/gpu_scene.h"
@@ -12,7 +13,9 @@ namespace tessera::vulkan {
 // version stays.
 class World final {
   public:
-    explicit World(std::shared_ptr<scene::BlobStore> blobs) : blobs_(std::move(blobs)), meshes_(blobs_) {}
+    // Built trees are kept in the folder, see TreeCache.
+    World(std::shared_ptr<scene::BlobStore> blobs, const std::filesystem::path& cache_folder)
+        : blobs_(std::move(blobs)), meshes_(blobs_), trees_(cache_folder) {}
 
     // To a device that is new, or that was lost: everything is sent there. Null: lets go of it. Throws
     // Error{OutOfMemory} and DeviceLost; nothing is on the device then.
@@ -41,6 +44,7 @@ class World final {
     backend::MeshCatalog meshes_;
     backend::SceneTables tables_;
     bool ahead_ = false;  // meshes and tables are those of a version that is not committed
+    TreeCache trees_;
     Device* device_ = nullptr;
     std::unique_ptr<GpuScene> scene_;
     backend::MaterialProblems problems_;

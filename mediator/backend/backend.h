@@ -31,13 +31,15 @@ struct Capabilities {
 
 struct EditReport {
     std::uint32_t entries = 0, relevant = 0;
-    std::uint32_t rebuilt = 0;        // geometries whose acceleration structure was built anew
+    std::uint32_t rebuilt = 0;        // geometries whose acceleration structure was built anew, not read back
     std::uint32_t refitted = 0;       // geometries refitted in place
     std::uint32_t retransformed = 0;  // instances that only moved
     std::uint64_t triangles = 0, instances = 0, lights = 0;  // of the scene after the edit
     std::uint64_t degenerate_triangles = 0;                  // counted and skipped
     std::vector<std::string> ignored_kinds;                  // object kinds this back-end does not draw
-    std::vector<std::string> problems;  // objects drawn as placeholders, and why; each once per content
+    // Objects drawn as placeholders, and why, each once per content; what the cache folder had that is no
+    // good.
+    std::vector<std::string> problems;
 };
 
 // Lives between begin_edit() and its own end; no render runs meanwhile. Destroying it without commit() leaves

@@ -1,8 +1,10 @@
 // The Vulkan back-end beside the Embree one, and on devices that fail.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <cmath>
+#include <filesystem>
 
 #include "backends/vulkan/vulkan_backend.h"
 #include "mediator/backend/catalog.h"
@@ -14,6 +16,7 @@ namespace tessera::vulkan {
 namespace {
 
 using namespace backend;
+namespace fs = std::filesystem;
 
 class Rendering {
   public:
@@ -168,6 +171,86 @@ TEST(VulkanBackendMemory, ASceneThatDoesNotFitIsRefusedAndTheLastOneStays) {
     }
     EXPECT_EQ(backend->version(), version);
     EXPECT_EQ(rendering.film(*backend, {0, 0}).planes, before.planes);
+}
+
+// A wave of 12,800 triangles; animated.
+scene::Geometry wave(scene::BlobStore& store, float height) {
+    constexpr std::uint32_t Edge = 80;
+    std::vector<float> positions;
+    std::vector<std::uint32_t> indices;
+    for (std::uint32_t y = 0; y <= Edge; ++y) {
+        for (std::uint32_t x = 0; x <= Edge; ++x) {
+            const float u = 2.4f * float(x) / Edge - 1.2f, v = 2.4f * float(y) / Edge - 1.2f;
+            positions.insert(positions.end(), {u, v, height * std::sin(40.0f * u) * std::cos(50.0f * v)});
+            if (x == Edge || y == Edge) continue;
+            const std::uint32_t a = y * (Edge + 1) + x, above = a + Edge + 1;
+            indices.insert(indices.end(), {a, a + 1, above, a + 1, above + 1, above});
+        }
+    }
+    scene::Geometry geometry;
+    geometry.hint = scene::MotionHint::Animated;
+    geometry.positions = test::array_blob<float>(store, positions);
+    geometry.indices = test::array_blob<std::uint32_t>(store, indices);
+    return geometry;
+}
+
+class VulkanBackendTrees : public testing::Test {
+  protected:
+    VulkanBackendTrees() { fs::remove_all(folder); }
+    ~VulkanBackendTrees() override { fs::remove_all(folder); }
+
+    scene::ChangeList wave_of(float height) {
+        using Field = scene::Geometry::Field;
+        return rendering.builder.edit({test::SceneBuilder::update<scene::Geometry>(
+            test::Floor, {Field::Hint, Field::Positions, Field::Indices}, wave(*rendering.blobs, height))});
+    }
+    std::unique_ptr<Backend> start(const fs::path& cache_folder) const {
+        return with_scene(make_backend({.cache_folder = cache_folder, .blobs = rendering.blobs}, {}),
+                          rendering);
+    }
+    static EditReport report_of(Backend& backend, const scene::ChangeList& changes) {
+        const auto scope = backend.begin_edit();
+        EXPECT_TRUE(scope->apply(changes));
+        return scope->commit().value();
+    }
+    std::vector<fs::path> trees() const {
+        std::vector<fs::path> paths;
+        for (const auto& entry : fs::directory_iterator(folder)) {
+            if (entry.path().extension() == ".tree") paths.push_back(entry.path());
+        }
+        return paths;
+    }
+    const fs::path folder = fs::temp_directory_path() / ("tessera-starts-" + std::to_string(::getpid()));
+    Rendering rendering;
+};
+
+TEST_F(VulkanBackendTrees, AreReadBackByTheNextStart) {
+    const scene::ChangeList waved = wave_of(0.1f);
+    const auto without = start("");
+    EXPECT_EQ(report_of(*without, waved).rebuilt, 1u);
+    const frame::FilmTile expected = rendering.film(*without, {0, 1});
+    const auto expect_start = [&](std::uint32_t rebuilt, std::size_t problems) {
+        const auto backend = start(folder);
+        const EditReport report = report_of(*backend, waved);
+        EXPECT_EQ(report.rebuilt, rebuilt);
+        EXPECT_EQ(report.problems.size(), problems);
+        EXPECT_EQ(rendering.film(*backend, {0, 1}).planes, expected.planes);
+        ASSERT_EQ(trees().size(), 1u);
+    };
+    expect_start(1, 0);
+    expect_start(0, 0);
+    fs::resize_file(trees()[0], fs::file_size(trees()[0]) / 2);
+    expect_start(1, 1);
+    expect_start(0, 0);
+}
+
+TEST_F(VulkanBackendTrees, PositionsOfAnAnimationAreNotKept) {
+    const scene::ChangeList low = wave_of(0.0f), higher = wave_of(0.001f), high = wave_of(50.0f);
+    const auto backend = start(folder);
+    EXPECT_EQ(report_of(*backend, low).rebuilt, 1u);
+    EXPECT_EQ(report_of(*backend, higher).refitted, 1u);
+    EXPECT_EQ(report_of(*backend, high).rebuilt, 1u) << "too far for the tree of before";
+    EXPECT_EQ(trees().size(), 1u);
 }
 
 }  // namespace
