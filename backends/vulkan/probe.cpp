@@ -11,10 +11,6 @@ namespace {
 
 // What the shared transport asks for, as in shaders/trace.comp.
 struct HostContext : backend::Teller {
-    HostContext(const shading::Scene& scene, const shading::View& view, shading::BvhItems pool,
-                std::uint32_t top, backend::Story& story)
-        : Teller{&story}, scene(scene), view(view), pool(pool), top(top) {}
-
     const shading::Scene& scene;
     const shading::View& view;
     shading::BvhItems pool;
@@ -47,7 +43,7 @@ std::vector<std::string> replay(Device& device, const GpuScene& scene, const bac
     const auto pool = download<glm::uvec4>(device, scene.pool());
     const shading::Scene on_host = backend::on_host(tables);
     backend::Story story;
-    const HostContext context(on_host, view, {pool.data()}, scene.top(), story);
+    const HostContext context{{&story}, on_host, view, {pool.data()}, scene.top()};
     const shading::Path path = shading::trace_sample(context, pixel.x, pixel.y, sample);
     backend::write_end(story, shading::radiance_of(path.found), path.rays);
     return story;

@@ -1,8 +1,8 @@
 #version 460
 // The path tracer: one invocation is one sample of one pixel. With POOL_AS_TEXELS the acceleration structure
 // is bound as texels instead of being reached by its address. SPECULAR_TREES leaves in what follows all
-// branches of perfect speculars, which most views do not need: it is more than the half of the text, and
-// drivers take seconds for it.
+// branches of perfect speculars, which most views do not need. A variant, no constant for the driver to fold:
+// lavapipe takes 2 s for a scene with glass then instead of 5.7.
 #extension GL_GOOGLE_include_directive : require
 #include "mediator/shading/materials.h"
 #include "mediator/shading/rays.h"
