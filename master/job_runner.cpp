@@ -54,7 +54,8 @@ void JobRunner::start(SessionId session, wire::StartJob request, Version version
 bool JobRunner::suits(const NodeRecord& node) const {
     const wire::StartJob& request = job_->request;
     const bool has_channels = (request.view.channels.bits() & ~node.hello.channels.bits()) == 0;
-    return !node.leaving && !node.stuck && node.bulk && has_channels &&
+    const bool has_room = node.refused != job_->version;
+    return !node.leaving && !node.stuck && node.bulk && has_channels && has_room &&
            (!request.reproducible || node.hello.reproducible);
 }
 
@@ -100,6 +101,18 @@ std::string JobRunner::missing_channels() const {
     return "the back-ends of " + std::to_string(lacking) + " nodes do not give " + names + "; ";
 }
 
+// "the scene does not fit into 2 nodes (node-1: why); ", or nothing when memory is not the trouble.
+std::string JobRunner::missing_room() const {
+    std::uint32_t full = 0;
+    std::string first;
+    for (const auto& [id, node] : nodes_.all()) {
+        if (node.refused != job_->version) continue;
+        if (full++ == 0) first = node.hello.name + ": " + node.refusal;
+    }
+    if (full == 0) return {};
+    return "the scene does not fit into " + std::to_string(full) + " nodes (" + first + "); ";
+}
+
 void JobRunner::wait_for_nodes(TimePoint now) {
     std::uint32_t suitable = 0, prepared = 0;
     for (const auto& [id, node] : nodes_.all()) {
@@ -119,7 +132,8 @@ void JobRunner::wait_for_nodes(TimePoint now) {
     job_->phase = wire::JobPhase::WaitingForNodes;
     if (now - job_->without_nodes_since >= job_->request.wait_limit) {
         decide(wire::JobOutcome::NoNodes,
-               missing_channels() + std::to_string(suitable) + " of " + std::to_string(wanted) +
+               missing_channels() + missing_room() + std::to_string(suitable) + " of " +
+                   std::to_string(wanted) +
                    " nodes came: start more nodes or ask for fewer with --wait-nodes",
                now);
         begin_delivery(now);

@@ -27,6 +27,8 @@ struct NodeRecord {
     Version sent;                       // of the last change list sent to it
     Version reported;                   // committed, hash agrees
     TimePoint sent_at{};                // when
+    Version refused;                    // there was no room for it
+    std::string refusal;                // why
     std::uint32_t hash_mismatches = 0;  // at the version `sent`
     std::uint64_t work_sequence = 0;
     std::map<UnitId, std::uint64_t> pending;  // work sent, by sequence, that no heartbeat has confirmed

@@ -24,6 +24,8 @@ void RenderMaster::from_node(NodeRecord& node, wire::ControlMessage& message, Ti
         }
     } else if (const auto* resync = std::get_if<wire::Resync>(&message)) {
         distributor_.resync(node, *resync, now);
+    } else if (const auto* refused = std::get_if<wire::SceneRefused>(&message)) {
+        distributor_.refused(node, *refused);
     } else if (const auto* release = std::get_if<wire::UnitReleased>(&message)) {
         jobs_.released(node, *release, now);
     } else if (const auto* notice = std::get_if<wire::Notice>(&message)) {

@@ -23,6 +23,7 @@ struct SendersOf {
     unsigned operator()(const wire::Goodbye&) const { return Everybody; }
     unsigned operator()(const wire::VersionReport&) const { return Nodes; }
     unsigned operator()(const wire::Resync&) const { return Nodes; }
+    unsigned operator()(const wire::SceneRefused&) const { return Nodes; }
     unsigned operator()(const wire::UnitReleased&) const { return Nodes; }
     unsigned operator()(const wire::Notice&) const { return Nodes; }
     unsigned operator()(const wire::OpenScene&) const { return Editors; }

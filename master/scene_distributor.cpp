@@ -60,11 +60,20 @@ SceneDistributor::Verdict SceneDistributor::reported(NodeRecord& node, const wir
     return Verdict::Behind;
 }
 
+void SceneDistributor::refused(NodeRecord& node, const wire::SceneRefused& refusal) {
+    if (refusal.version != authority_.version()) return;
+    node.refused = refusal.version;
+    node.refusal = refusal.reason;
+    events_({wire::Severity::Warning, "node " + node.hello.name + " has no room for version " +
+                                          std::to_string(refusal.version.number) + ": " + refusal.reason});
+}
+
 void SceneDistributor::repair(NodeTable& nodes, TimePoint now, Duration patience) {
     for (auto& [id, node] : nodes.all()) {
         const bool busy = node.state.phase == wire::NodePhase::Syncing ||
                           node.state.phase == wire::NodePhase::Building || node.leaving;
-        if (node.reported == authority_.version() || busy || now - node.sent_at < patience) continue;
+        const bool settled = node.reported == authority_.version() || node.refused == authority_.version();
+        if (settled || busy || now - node.sent_at < patience) continue;
         ++resyncs_;
         send_snapshot(node, now);
     }

@@ -31,6 +31,8 @@ class SceneDistributor {
     enum class Verdict { Good, Behind, TakeOut };
     Verdict reported(NodeRecord& node, const wire::VersionReport& report, TimePoint now);
 
+    void refused(NodeRecord& node, const wire::SceneRefused& refusal);
+
     // A node that neither reports nor builds `patience` after it was sent the present version is sent it
     // again.
     void repair(NodeTable& nodes, TimePoint now, Duration patience);

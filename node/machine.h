@@ -142,6 +142,7 @@ class NodeMachine {
     // machine_scene.cpp
     void judged(SceneReplica::Verdict verdict, Version to, TimePoint now);
     void scene_failed(const std::string& reason, Version at, TimePoint now);
+    void scene_too_large(const std::string& reason, Version at);
     void ask_for_snapshot(const std::string& reason, TimePoint now);
     void send_version_report();
     void step_scene(TimePoint now);
@@ -178,7 +179,8 @@ class NodeMachine {
 
     std::set<Hash256> wanted_, looked_up_;
     std::optional<TimePoint> snapshot_retry_at_, absent_retry_at_;
-    Version failed_at_;  // where the scene went wrong last
+    Version failed_at_;                 // where the scene went wrong last
+    std::optional<Version> too_large_;  // the device has no room for it
     wire::VersionReport latest_report_;
 
     std::map<ViewId, view::View> views_;

@@ -36,6 +36,7 @@ void NodeMachine::judged(SceneReplica::Verdict verdict, Version to, TimePoint no
     switch (verdict) {
         case SceneReplica::Verdict::Accepted:
             snapshot_retry_at_.reset();
+            too_large_.reset();
             changed_ = true;
             step_scene(now);
             break;
@@ -44,7 +45,10 @@ void NodeMachine::judged(SceneReplica::Verdict verdict, Version to, TimePoint no
             if (to == replica_.version()) send_version_report();  // the last one may have got lost
             break;
         case SceneReplica::Verdict::Gap:
-            if (!replica_.awaits_snapshot()) {
+            if (too_large_ && to != *too_large_) {
+                too_large_.reset();
+                ask_for_snapshot("version " + std::to_string(to.number) + " may fit", now);
+            } else if (!replica_.awaits_snapshot()) {
                 ask_for_snapshot(to.epoch != epoch_
                                      ? "a change list of another epoch"
                                      : "a change list is missing before version " + std::to_string(to.number),
@@ -73,6 +77,15 @@ void NodeMachine::scene_failed(const std::string& reason, Version at, TimePoint 
     ask_for_snapshot(reason, now);
 }
 
+// The back-end has kept its last version. The next one may be smaller: until it comes, there is nothing to
+// ask for.
+void NodeMachine::scene_too_large(const std::string& reason, Version at) {
+    too_large_ = at;
+    report(wire::Severity::Warning,
+           "version " + std::to_string(at.number) + ": " + reason + "; this node waits for another version");
+    send(wire::SceneRefused{at, reason});
+}
+
 void NodeMachine::step_scene(TimePoint now) {
     if (leaving_) return;
     if (const Expected<void> done = replica_.advance(); !done) {
@@ -96,6 +109,10 @@ void NodeMachine::built(BuildOutcome&& outcome, TimePoint now) {
     changed_ = true;
     if (!outcome.report) {
         const Version at = replica_.announced();
+        if (outcome.report.error().code() == ErrorCode::OutOfMemory) {
+            if (!replica_.declined()) return step_scene(now);
+            return scene_too_large(outcome.report.error().what(), at);
+        }
         if (!replica_.failed()) return step_scene(now);
         return scene_failed("the back-end failed: " + std::string(outcome.report.error().what()), at, now);
     }

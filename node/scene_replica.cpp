@@ -162,6 +162,14 @@ bool SceneReplica::failed() {
     return true;
 }
 
+bool SceneReplica::declined() {
+    building_ = false;
+    if (!building_target_) return false;
+    discard();
+    building_target_.reset();
+    return true;
+}
+
 void SceneReplica::discard() {
     announced_lists_.clear();
     applied_lists_.clear();

@@ -48,9 +48,10 @@ class SceneReplica {
     };
     std::optional<Build> take_build();
     bool is_building() const { return building_; }
-    bool built();   // the back-end is at the build's version now
-    bool failed();  // nobody knows what it holds: nothing that was built counts, a snapshot is due.
-    // Both: false when the build was of another epoch, so that its end means nothing.
+    bool built();     // the back-end is at the build's version now
+    bool failed();    // nobody knows what it holds: nothing that was built counts, a snapshot is due.
+    bool declined();  // it holds what it held, and that version will not do: the next snapshot may.
+    // All: false when the build was of another epoch, so that its end means nothing.
 
     // Starts over from the next snapshot; lists that follow on the present version are gaps until then.
     void await_snapshot();

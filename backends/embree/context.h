@@ -8,9 +8,6 @@
 namespace tessera::embree {
 
 struct Context : backend::Teller {
-    Context(const shading::Scene& scene, const shading::View& view, RTCScene top, backend::Story* story)
-        : Teller{story}, scene(scene), view(view), top(top) {}
-
     const shading::Scene& scene;
     const shading::View& view;
     RTCScene top;

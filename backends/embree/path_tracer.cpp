@@ -13,7 +13,7 @@ PathTracer::PathTracer(const backend::SceneTables& tables, RTCScene top, const v
 
 PathSample PathTracer::trace(std::uint32_t x, std::uint32_t y, std::uint64_t sample, std::uint64_t& rays,
                              std::vector<std::string>* story) const {
-    const shading::Path path = shading::trace_sample(Context(scene_, view_, top_, story), x, y, sample);
+    const shading::Path path = shading::trace_sample(Context{{story}, scene_, view_, top_}, x, y, sample);
     rays += path.rays;
     return path.found;
 }

@@ -49,7 +49,8 @@ class EditScope {
     virtual ~EditScope() = default;
     // Any number of consecutive lists. All blobs they refer to are in the store. InvalidInput: wrong `from`.
     virtual Expected<void> apply(const scene::ChangeList& changes) = 0;
-    // Brings device structures in step at the cheapest level that can hold each change; once.
+    // Brings device structures in step at the cheapest level that can hold each change; once. OutOfMemory:
+    // the device has no room for it, and the last good version stays.
     virtual Expected<EditReport> commit() = 0;
 };
 

@@ -37,6 +37,9 @@ proto::VersionReport& part(proto::Control& c, const VersionReport&) {
 proto::Resync& part(proto::Control& c, const Resync&) {
     return *c.mutable_resync();
 }
+proto::SceneRefused& part(proto::Control& c, const SceneRefused&) {
+    return *c.mutable_scene_refused();
+}
 proto::OpenView& part(proto::Control& c, const OpenView&) {
     return *c.mutable_open_view();
 }

@@ -104,6 +104,12 @@ void map(const Io& io, typename Io::template Ref<Resync> s, proto::Resync& p) {
 }
 
 template <class Io>
+void map(const Io& io, typename Io::template Ref<SceneRefused> s, proto::SceneRefused& p) {
+    io.message(s.version, p.mutable_version());
+    io.text(s.reason, p.mutable_reason());
+}
+
+template <class Io>
 void map(const Io&, typename Io::template Ref<Leave>, proto::Leave&) {}
 
 template <class Io>

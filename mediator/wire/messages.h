@@ -91,6 +91,12 @@ struct Resync {
     Version version;  // what it holds
     std::string reason;
 };
+// Node to master: its device has no room for this version; it keeps the last one that fitted, and tries the
+// next.
+struct SceneRefused {
+    Version version;
+    std::string reason;
+};
 
 // ---- work ----
 
@@ -271,7 +277,7 @@ using ControlMessage =
     std::variant<Hello, Welcome, Refusal, Unknown, Heartbeat, Changes, ChangesByBlob, VersionReport, Resync,
                  OpenView, CloseView, Work, CancelUnits, UnitReleased, Leave, Goodbye, Notice, OpenScene,
                  QueuePlace, SceneOpened, SubmitEdit, SubmitEditByBlob, EditReply, StartJob, StopJob,
-                 JobProgress, JobDone, StatusRequest, StatusReply, SetFilter, FilterSet>;
+                 JobProgress, JobDone, StatusRequest, StatusReply, SetFilter, FilterSet, SceneRefused>;
 
 // ---- bulk link: fixed little-endian header, then raw planes ----
 

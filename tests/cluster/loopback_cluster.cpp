@@ -34,8 +34,18 @@ void LoopbackCluster::add_node(const std::string& backend, const NodeFaults& fau
     auto blobs = std::make_shared<scene::BlobStore>();
     auto made =
         backend::find_backend(backend).make({.threads = 1, .simulated_sample_cost = cost, .blobs = blobs});
+    start_node(backend, std::move(made), blobs, faults);
+}
+
+void LoopbackCluster::add_node(const MakeBackend& make) {
+    auto blobs = std::make_shared<scene::BlobStore>();
+    start_node("test", make({.threads = 1, .blobs = blobs}), blobs, {});
+}
+
+void LoopbackCluster::start_node(const std::string& kind, std::unique_ptr<backend::Backend> made,
+                                 const std::shared_ptr<scene::BlobStore>& blobs, const NodeFaults& faults) {
     node::NodeSettings settings{
-        .name = "node-" + std::to_string(nodes_.size() + 1), .backend = backend, .workers = 1};
+        .name = "node-" + std::to_string(nodes_.size() + 1), .backend = kind, .workers = 1};
     settings.liveness = quick_heartbeats();
     nodes_.push_back(std::make_unique<node::RenderNode>(
         net::with_faults(hub_.client(net::Role::Node), faults.control, faults.bulk), std::move(made), blobs,

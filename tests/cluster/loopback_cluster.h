@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -28,10 +29,16 @@ class LoopbackCluster {
 
     // `cost`: simulated time per sample of the null back-end.
     void add_node(const std::string& backend, const NodeFaults& faults = {}, Duration cost = {});
+    using MakeBackend =
+        std::function<std::unique_ptr<backend::Backend>(const backend::BackendSettings& settings)>;
+    void add_node(const MakeBackend& make);
     std::unique_ptr<client::Session> session(std::shared_ptr<scene::BlobStore> blobs);
     std::vector<std::string> events() const;
 
   private:
+    void start_node(const std::string& kind, std::unique_ptr<backend::Backend> made,
+                    const std::shared_ptr<scene::BlobStore>& blobs, const NodeFaults& faults);
+
     SteadyClock clock_;
     net::LoopbackHub hub_;
     mutable std::mutex mutex_;  // protects events_

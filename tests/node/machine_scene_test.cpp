@@ -107,11 +107,40 @@ TEST_F(MachineSceneTest, AFailedBuildStartsOverFromASnapshot) {
     tell(wire::Changes{camera(50)});
     ASSERT_EQ(take<BuildScene>().size(), 1u);
     BuildOutcome outcome;
-    outcome.report = failure(ErrorCode::OutOfMemory, "no memory");
+    outcome.report = failure(ErrorCode::Internal, "went wrong");
     machine->built(std::move(outcome), now);
     collect();
     ASSERT_EQ(sent<wire::Resync>().size(), 1u);
     EXPECT_EQ(last_heartbeat().version, Version{});  // nobody knows what the back-end holds
+    tell(wire::Changes{snapshot(builder.scene())});
+    build();
+    EXPECT_EQ(last_heartbeat().version, builder.scene().version());
+}
+
+TEST_F(MachineSceneTest, AVersionWithoutRoomIsToldAndTheNextOneTried) {
+    synced();
+    const Version fits = builder.scene().version();
+    tell(wire::Changes{camera(50)});
+    ASSERT_EQ(take<BuildScene>().size(), 1u);
+    const Version too_large = builder.scene().version();
+    BuildOutcome outcome;
+    outcome.report = failure(ErrorCode::OutOfMemory, "3 GiB of 2");
+    machine->built(std::move(outcome), now);
+    collect();
+    const auto refused = sent<wire::SceneRefused>();
+    ASSERT_EQ(refused.size(), 1u);
+    EXPECT_EQ(refused[0].version, too_large);
+    EXPECT_EQ(refused[0].reason, "3 GiB of 2");
+    EXPECT_EQ(last_heartbeat().version, fits) << "the back-end keeps the last good one";
+    for (int i = 0; i < 8; ++i) {
+        tell(wire::Heartbeat{.sent_at = 1});
+        pass(seconds(1));
+    }
+    EXPECT_TRUE(sent<wire::Resync>().empty()) << "the same version would not fit either";
+    EXPECT_EQ(machine->state(), State::Idle);
+
+    tell(wire::Changes{camera(51)});
+    ASSERT_EQ(sent<wire::Resync>().size(), 1u);
     tell(wire::Changes{snapshot(builder.scene())});
     build();
     EXPECT_EQ(last_heartbeat().version, builder.scene().version());

@@ -115,7 +115,8 @@ std::vector<ControlMessage> control_messages() {
         StatusReply{.software = "s",
                     .nodes = {{.summary = node, .phase = NodePhase::Leaving, .stuck = true}}},
         SetFilter{"fdf:radius=3"},
-        FilterSet{true, "from now on"}};
+        FilterSet{true, "from now on"},
+        SceneRefused{{5, 1}, "too large"}};
 }
 
 std::vector<BulkMessage> bulk_messages() {
