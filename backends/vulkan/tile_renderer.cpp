@@ -59,7 +59,8 @@ class UnitRun {
         const bool trees =
             view.renderer == shading::RendererWhitted || (view.keeps & shading::KeepsRange) != 0;
         kernel_ = &kernels_.find({scene_.features(), trees, fits_texels_});
-        if (unit.block.level > 0) {
+        merges_ = unit.block.level > 0 && device_.info().rounds_to_even;
+        if (merges_) {
             const std::vector<MergeColumn> columns = merge_columns(channels);
             column_count_ = static_cast<std::uint32_t>(columns.size());
             columns_ = make_buffer(device_, columns);
@@ -87,13 +88,13 @@ class UnitRun {
     void send(Batch& batch) {
         const std::uint64_t most = pace_.samples(), begun = sent_ % pixels_;
         batch.block.reset();
-        if (begun == 0 && sent_ < all_) {
+        if (merges_ && begun == 0 && sent_ < all_) {
             batch.block = next_block(unit_.block.first + sent_ / pixels_, unit_.block.end(), most / pixels_);
         }
         std::uint64_t items = std::min(most, all_ - sent_);
         if (batch.block) items = batch.block->count() * pixels_;
         // To the end of a sample, from where on blocks can be merged.
-        if (begun != 0 && most >= 2 * std::uint64_t{pixels_}) items = pixels_ - begun;
+        if (merges_ && begun != 0 && most >= 2 * std::uint64_t{pixels_}) items = pixels_ - begun;
         batch.items = static_cast<std::uint32_t>(items);
         if (items == 0) return;
         const std::uint64_t bytes = (std::uint64_t{values_} + 1) * items * sizeof(float);
@@ -174,7 +175,7 @@ class UnitRun {
     std::uint64_t all_, sent_ = 0;  // items
     Buffer view_, columns_;
     std::uint32_t column_count_ = 0;
-    bool fits_texels_ = false;
+    bool fits_texels_ = false, merges_ = false;
     const ComputePipeline* kernel_ = nullptr;
     UnitFilm film_;
 };

@@ -56,6 +56,7 @@ void EmbeddedCluster::add_node(const EmbeddedSettings& settings, std::uint32_t i
                        .make({.threads = std::max(1u, threads / settings.nodes),
                               .isa = settings.isa,
                               .device = settings.device,
+                              .cache_folder = settings.cache,
                               .blobs = blobs});
     node::NodeSettings node_settings{.name = "embedded-" + std::to_string(index + 1),
                                      .host = host_name(),

@@ -20,6 +20,7 @@ struct EmbeddedSettings {
     std::uint32_t nodes = 1;
     std::uint32_t threads = 0;  // of all nodes together; 0 = all cores
     std::string isa, device;    // of the back-end; "" = best
+    std::string cache;          // folder for its trees and kernels; "" = none
 };
 
 // A master and its nodes inside this process, talking over inproc and sharing one store of blobs, so that

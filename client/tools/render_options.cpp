@@ -58,6 +58,7 @@ Expected<EmbeddedSettings> embedded_settings(const RenderOptions& options) {
     settings.threads = static_cast<std::uint32_t>(threads);
     if (options.reproducible) settings.isa = "avx2";
     settings.device = options.device.value_or("");
+    settings.cache = options.cache.value_or("");
     const auto fine = backend::check_device(backend::find_backend(settings.backend), settings.device);
     if (!fine) return tl::unexpected(fine.error());
     return settings;
@@ -133,6 +134,7 @@ void RenderOptions::add_to(cli::CommandLine& command) {
                        "its device: index or part of a name, as tessera doctor lists them (the best)",
                        device);
     }
+    command.option("--cache", "keep built trees and kernels in this folder, for the next start", cache);
     command.option("--nodes", "number of embedded nodes (1)", nodes);
     command.option("--threads", "threads of all embedded nodes together (all cores)", threads);
     command.option("--master", "use a running cluster: tcp://host:port", master);
@@ -161,9 +163,10 @@ Expected<RenderPlan> understand(const RenderOptions& options) {
     plan.embedded = *embedded;
     plan.job.wait_nodes = plan.embedded.nodes;
     if (options.master) {
-        if (options.backend || options.device || options.nodes || options.threads) {
+        if (options.backend || options.device || options.cache || options.nodes || options.threads) {
             return wrong(
-                "--backend, --device, --nodes and --threads are for the embedded cluster; with --master the "
+                "--backend, --device, --cache, --nodes and --threads are for the embedded cluster; with "
+                "--master the "
                 "nodes decide");
         }
         plan.address = {*options.master, options.keys.value_or(""), options.user};

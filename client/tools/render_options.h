@@ -18,7 +18,7 @@ struct RenderOptions {
     ViewOptions view;
     std::vector<std::string> outputs;
     std::optional<std::uint64_t> spp, nodes, threads;
-    std::optional<std::string> time, backend, device, master, keys, wait_nodes;
+    std::optional<std::string> time, backend, device, cache, master, keys, wait_nodes;
     std::string user = "editor";
     std::string policy = "mixed";
     std::string filter;
