@@ -31,7 +31,6 @@ Finding describe(const vulkan::DeviceInfo& device) {
         {"push_constant_bytes", std::uint64_t(device.push_constant_bytes)},
         {"buffer_bytes", device.buffer_bytes},
         {"allocation_bytes", device.allocation_bytes},
-        {"allocations", std::uint64_t(device.max_allocations)},
         {"timestamps", device.timestamp_period > 0},
         {"keeps_denormals", device.keeps_denormals},
         {"rounds_to_even", device.rounds_to_even},

@@ -1,6 +1,7 @@
 #include <array>
 #include <numeric>
 #include <random>
+#include <thread>
 
 #include "tests/vulkan/add.comp.h"
 #include "tests/vulkan/bound.comp.h"
@@ -189,6 +190,31 @@ TEST_F(QueueTest, ReadsOnePartBackWhileTheNextRuns) {
         }
         device().queue().submit(add(kernel, ones, ones, sums[turn], unit));
         parts[turn] = Download(device(), sums[turn], 0, Count * 4);
+    }
+}
+
+TEST_F(QueueTest, ServesSeveralThreadsAtATime) {
+    const ComputePipeline kernel = adder();
+    constexpr std::uint32_t Threads = 4, Turns = 40;
+    std::array<Words, Threads> results;
+    {
+        std::vector<std::jthread> threads;
+        for (std::uint32_t thread = 0; thread < Threads; ++thread) {
+            threads.emplace_back([&, thread] {
+                const Buffer sum = make_buffer(device(), Words(Count, thread)),
+                             zero = make_buffer(device(), Words(Count, 0));
+                for (std::uint32_t turn = 0; turn < Turns; ++turn) {
+                    const Buffer one = make_buffer(device(), Words(Count, 1));
+                    const Submission sent = device().queue().submit(add(kernel, sum, one, sum, 0));
+                    device().queue().submit(add(kernel, sum, zero, sum, 1));
+                    if (turn % 8 == 0) sent.wait();
+                }
+                results[thread] = download<std::uint32_t>(device(), sum);
+            });
+        }
+    }
+    for (std::uint32_t thread = 0; thread < Threads; ++thread) {
+        EXPECT_EQ(results[thread], Words(Count, thread + 2 * Turns)) << "thread " << thread;
     }
 }
 
