@@ -2,6 +2,7 @@
 
 #include <immintrin.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -37,6 +38,11 @@ inline Pack max(Pack a, Pack b) {
 }
 inline Pack min(Pack a, Pack b) {
     return _mm256_min_ps(a, b);
+}
+inline float largest(Pack v) {
+    float most = v[0];
+    for (std::uint32_t i = 1; i < PackSize; ++i) most = std::max(most, v[i]);
+    return most;
 }
 inline Pack abs(Pack v) {
     return bits(bits(v) & 0x7fffffff);

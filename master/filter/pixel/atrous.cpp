@@ -56,7 +56,7 @@ bool iterate(const Guide& guide, Sources sources, std::int64_t step, const Field
     const auto width = static_cast<std::int64_t>(from.values.width());
     const auto height = static_cast<std::int64_t>(from.values.height());
     return for_rows(context, static_cast<std::uint32_t>(height), [&](std::uint32_t y) {
-        for (std::int64_t x = 0; x < width; x += LaneCount) {
+        for (std::int64_t x = 0; x < width; x += BlockWidth) {
             const auto target = target_of<Features>(guide, y, x);
             Sums<Layers> sums;
             for (std::int64_t v = -2; v <= 2; ++v) {
@@ -66,10 +66,10 @@ bool iterate(const Guide& guide, Sources sources, std::int64_t step, const Field
                     neighbourhood<Features, Layers>(guide, sources, from, static_cast<std::uint32_t>(row), x);
                 for (std::int64_t u = -2; u <= 2; ++u) {
                     const std::int64_t at = u * step;
-                    if (x + at < 1 - LaneCount || x + at >= width) continue;
+                    if (x + at < 1 - BlockWidth || x + at >= width) continue;
                     const float cost = Cost[static_cast<std::size_t>(std::abs(u))] +
                                        Cost[static_cast<std::size_t>(std::abs(v))];
-                    add(near, target, splat(cost), at, sums);
+                    add(near, target, all(cost), at, sums);
                 }
             }
             const auto here = neighbourhood<Features, Layers>(guide, sources, from, y, x);

@@ -11,12 +11,12 @@ bool filter_brute(const Guide& guide, const Widths& widths, Field& field, Field&
     const auto height = static_cast<std::int64_t>(field.values.height());
     const bool done = with_shapes(guide, field, [&](auto features, auto layers) {
         return for_rows(context, static_cast<std::uint32_t>(height), [&](std::uint32_t y) {
-            for (std::int64_t x = 0; x < width; x += LaneCount) {
+            for (std::int64_t x = 0; x < width; x += BlockWidth) {
                 const auto target = target_of<features()>(guide, y, x);
-                const Lanes sigma = larger(load(widths.row(0, y) + x), splat(1e-3f));
-                const Lanes spread = 0.5f * 1.44269504f / (sigma * sigma);
+                const Pack sigma = max(load(widths.row(0, y) + x), all(1e-3f));
+                const Pack spread = 0.5f * 1.44269504f / (sigma * sigma);
                 const auto radius = static_cast<std::int64_t>(3.0f * largest(sigma));
-                const std::int64_t first = -std::min(radius, x + LaneCount - 1);
+                const std::int64_t first = -std::min(radius, x + BlockWidth - 1);
                 const std::int64_t last = std::min(radius, width - 1 - x);
                 Sums<layers()> sums;
                 for (std::int64_t d = -std::min<std::int64_t>(radius, y);

@@ -12,24 +12,24 @@ namespace tessera::filter::pixel {
 // open: they are those of the next pixel on that side.
 template <std::size_t Features>
 struct EdgeModel {
-    std::array<Lanes, Features> low, high;
-    Lanes coverage, belief;
+    std::array<Pack, Features> low, high;
+    Pack coverage, belief;
 };
 
 // `before`, `after`: floats to the neighbours across the direction.
 template <std::size_t Features>
 inline EdgeModel<Features> edge_model(const std::array<const float*, Features>& sources,
-                                      const std::array<Lanes, Features>& target, std::ptrdiff_t stride,
+                                      const std::array<Pack, Features>& target, std::ptrdiff_t stride,
                                       std::ptrdiff_t before, std::ptrdiff_t after) {
     EdgeModel<Features> model;
     const auto side = [&](const float* row) {
         return 0.25f * (load(row + before) + load(row + after)) + 0.5f * load(row);
     };
-    Lanes squared{}, along{};
+    Pack squared{}, along{};
     for (std::size_t k = 0; k < 3; ++k) {
         model.low[k] = side(sources[k] - stride);
         model.high[k] = side(sources[k] + stride);
-        const Lanes way = model.high[k] - model.low[k];
+        const Pack way = model.high[k] - model.low[k];
         squared += way * way;
         along += way * (target[k] - model.low[k]);
     }
@@ -37,19 +37,19 @@ inline EdgeModel<Features> edge_model(const std::array<const float*, Features>& 
         model.low[k] = load(sources[k] - stride);
         model.high[k] = load(sources[k] + stride);
     }
-    model.coverage = smaller(larger(along / larger(squared, splat(1e-30f)), Lanes{}), splat(1.0f));
-    Lanes off{};
+    model.coverage = min(max(along / max(squared, all(1e-30f)), Pack{}), all(1.0f));
+    Pack off{};
     for (std::size_t k = 0; k < 3; ++k) {
-        const Lanes way = model.high[k] - model.low[k];
-        const Lanes beside = target[k] - model.low[k] - model.coverage * way;
+        const Pack way = model.high[k] - model.low[k];
+        const Pack beside = target[k] - model.low[k] - model.coverage * way;
         off += beside * beside;
     }
     // Squared distances are in units of 2 sigma_c^2 / log2(e): from 2 to 3 sigma_c the belief grows to whole.
     constexpr float Two = 4.0f * 0.5f * 1.44269504f, Three = 9.0f * 0.5f * 1.44269504f;
-    const Lanes distinct = smaller(larger((squared - Two) / (Three - Two), Lanes{}), splat(1.0f));
+    const Pack distinct = min(max((squared - Two) / (Three - Two), Pack{}), all(1.0f));
     // Beside the picture and in holes there is no region.
-    const Lanes deepest = larger(model.low[Guide::Depth], model.high[Guide::Depth]);
-    model.belief = deepest < Guide::Nowhere ? distinct * exp2_negative(off) : Lanes{};
+    const Pack deepest = max(model.low[Guide::Depth], model.high[Guide::Depth]);
+    model.belief = deepest < Guide::Nowhere ? distinct * exp2_negative(off) : Pack{};
     return model;
 }
 

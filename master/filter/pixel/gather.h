@@ -3,11 +3,13 @@
 #include <array>
 #include <type_traits>
 
+#include "master/filter/pack.h"
 #include "master/filter/pixel/field.h"
-#include "master/filter/pixel/lanes.h"
 
 // The inner loop of every method: weighted sums over the neighbours of eight pixels (Schwenk 3.6).
 namespace tessera::filter::pixel {
+
+inline constexpr std::int64_t BlockWidth = PackSize;  // pixels of a row that are filtered at once
 
 // A pixel whose neighbours weigh less in all has found nothing; only holes can, others weigh 1 themselves.
 inline constexpr float LeastWeight = 1e-6f;
@@ -23,19 +25,19 @@ struct Neighbourhood {
 // Unnormalised: weights, values times weights, and r times squared weights.
 template <std::size_t Layers>
 struct Sums {
-    Lanes weight{}, reduction{};
-    std::array<Lanes, Layers> values{};
+    Pack weight{}, reduction{};
+    std::array<Pack, Layers> values{};
 };
 
 // Adds the neighbour `at` floats away; `cost` is -log2 of its spatial weight.
 template <std::size_t Features, std::size_t Layers>
-inline void add(const Neighbourhood<Features, Layers>& from, const std::array<Lanes, Features>& target,
-                Lanes cost, std::ptrdiff_t at, Sums<Layers>& sums) {
+inline void add(const Neighbourhood<Features, Layers>& from, const std::array<Pack, Features>& target,
+                Pack cost, std::ptrdiff_t at, Sums<Layers>& sums) {
     for (std::size_t k = 0; k < Features; ++k) {
-        const Lanes difference = load(from.sources[k] + at) - target[k];
+        const Pack difference = load(from.sources[k] + at) - target[k];
         cost += difference * difference;
     }
-    const Lanes weight = exp2_negative(cost);
+    const Pack weight = exp2_negative(cost);
     sums.weight += weight;
     for (std::size_t k = 0; k < Layers; ++k) sums.values[k] += weight * load(from.values[k] + at);
     sums.reduction += weight * weight * load(from.reduction + at);
@@ -44,8 +46,8 @@ inline void add(const Neighbourhood<Features, Layers>& from, const std::array<La
 // Adds the neighbours at first, first + spacing, ..., last steps of `stride` floats. `spread` = log2(e) /
 // (2 sigma^2) of the spatial weight, of which `across` is the squared distance in the other dimension.
 template <std::size_t Features, std::size_t Layers>
-inline void gather(const Neighbourhood<Features, Layers>& from, const std::array<Lanes, Features>& target,
-                   Lanes spread, float across, std::int64_t first, std::int64_t last, std::int64_t spacing,
+inline void gather(const Neighbourhood<Features, Layers>& from, const std::array<Pack, Features>& target,
+                   Pack spread, float across, std::int64_t first, std::int64_t last, std::int64_t spacing,
                    std::ptrdiff_t stride, Sums<Layers>& sums) {
     std::ptrdiff_t at = first * stride;
     auto d = static_cast<float>(first);
@@ -58,14 +60,14 @@ inline void gather(const Neighbourhood<Features, Layers>& from, const std::array
 
 template <std::size_t Layers>
 struct Result {
-    std::array<Lanes, Layers> values;
-    Lanes reduction;
+    std::array<Pack, Layers> values;
+    Pack reduction;
 };
 
 template <std::size_t Layers>
 inline Result<Layers> normalised(const Sums<Layers>& sums) {
     Result<Layers> result;
-    const Lanes inverse = 1.0f / larger(sums.weight, splat(LeastWeight));
+    const Pack inverse = 1.0f / max(sums.weight, all(LeastWeight));
     for (std::size_t k = 0; k < Layers; ++k) result.values[k] = sums.values[k] * inverse;
     result.reduction = sums.reduction * inverse * inverse;
     return result;
@@ -82,8 +84,8 @@ inline Neighbourhood<Features, Layers> neighbourhood(const Guide& guide, Sources
 }
 
 template <std::size_t Features>
-inline std::array<Lanes, Features> target_of(const Guide& guide, std::uint32_t y, std::int64_t x) {
-    std::array<Lanes, Features> target;
+inline std::array<Pack, Features> target_of(const Guide& guide, std::uint32_t y, std::int64_t x) {
+    std::array<Pack, Features> target;
     for (std::uint32_t k = 0; k < Features; ++k) target[k] = load(guide.target_row(k, y) + x);
     return target;
 }

@@ -27,8 +27,8 @@ struct Steps {
 // (Schwenk 3.19, 3.20). r is an upper bound: squares of mixtures are convex in belief, and the two sides
 // share but the pixel itself, which is unlike at least one of them.
 template <std::size_t Features, std::size_t Layers>
-void recover_edges(const Neighbourhood<Features, Layers>& from, const std::array<Lanes, Features>& target,
-                   Lanes spread, Steps steps, const Across& line, Result<Layers>& result) {
+void recover_edges(const Neighbourhood<Features, Layers>& from, const std::array<Pack, Features>& target,
+                   Pack spread, Steps steps, const Across& line, Result<Layers>& result) {
     const EdgeModel<Features> model =
         edge_model<Features>(from.sources, target, line.stride, line.before, line.after);
     if (largest(model.belief) < 0.01f) return;
@@ -36,36 +36,36 @@ void recover_edges(const Neighbourhood<Features, Layers>& from, const std::array
     gather(from, model.low, spread, 0.0f, steps.first, -1, 1, line.stride, low);
     gather(from, model.high, spread, 0.0f, 1, steps.last, 1, line.stride, high);
     // Without the pixel itself both sides must have found something that looks like them.
-    const Lanes found = smaller(low.weight, high.weight);
-    const Lanes belief = found > 0.05f ? model.belief : Lanes{};
+    const Pack found = min(low.weight, high.weight);
+    const Pack belief = found > 0.05f ? model.belief : Pack{};
     gather(from, model.low, spread, 0.0f, 0, 0, 1, line.stride, low);
     gather(from, model.high, spread, 0.0f, 0, 0, 1, line.stride, high);
     const Result<Layers> one = normalised(low), two = normalised(high);
-    const Lanes a = model.coverage, b = 1.0f - model.coverage;
+    const Pack a = model.coverage, b = 1.0f - model.coverage;
     for (std::size_t k = 0; k < Layers; ++k) {
-        const Lanes edge = b * one.values[k] + a * two.values[k];
+        const Pack edge = b * one.values[k] + a * two.values[k];
         result.values[k] += belief * (edge - result.values[k]);
     }
-    const Lanes edge = b * b * one.reduction + a * a * two.reduction;
+    const Pack edge = b * b * one.reduction + a * a * two.reduction;
     result.reduction += belief * (edge - result.reduction);
 }
 
 // As far as the kernels of eight pixels reach, of the steps that stay within the picture.
-Steps steps_of(Lanes sigma, const Sweep& plan, std::int64_t before, std::int64_t behind) {
+Steps steps_of(Pack sigma, const Sweep& plan, std::int64_t before, std::int64_t behind) {
     const auto radius = static_cast<std::int64_t>(3.0f * largest(sigma));
     return {-std::min(radius, before) / plan.spacing * plan.spacing,
             std::min(radius, behind) / plan.spacing * plan.spacing};
 }
 
-Lanes sigma_at(const Widths& widths, const Sweep& plan, std::uint32_t y, std::int64_t x) {
-    return larger(load(widths.row(0, y) + x) * plan.width_factor, splat(1e-3f));
+Pack sigma_at(const Widths& widths, const Sweep& plan, std::uint32_t y, std::int64_t x) {
+    return max(load(widths.row(0, y) + x) * plan.width_factor, all(1e-3f));
 }
 
 template <std::size_t Features, std::size_t Layers>
-void filter_block(const Neighbourhood<Features, Layers>& near, const std::array<Lanes, Features>& target,
-                  Lanes sigma, Steps steps, const Sweep& plan, const Across& across, std::uint32_t y,
+void filter_block(const Neighbourhood<Features, Layers>& near, const std::array<Pack, Features>& target,
+                  Pack sigma, Steps steps, const Sweep& plan, const Across& across, std::uint32_t y,
                   std::int64_t x, Field& to) {
-    const Lanes spread = HalfLog2E / (sigma * sigma);
+    const Pack spread = HalfLog2E / (sigma * sigma);
     Sums<Layers> sums;
     gather(near, target, spread, 0.0f, steps.first, steps.last, plan.spacing, across.stride, sums);
     Result<Layers> result = normalised(sums);
@@ -83,9 +83,9 @@ bool sweep_rows(const Guide& guide, const Widths& widths, const Sweep& plan, con
     const auto pitch = static_cast<std::ptrdiff_t>(guide.pitch());
     return for_rows(context, height, [&](std::uint32_t y) {
         const Across across{1, y > 0 ? -pitch : 0, y + 1 < height ? pitch : 0};
-        for (std::int64_t x = 0; x < width; x += LaneCount) {
-            const Lanes sigma = sigma_at(widths, plan, y, x);
-            const Steps steps = steps_of(sigma, plan, x + LaneCount - 1, width - 1 - x);
+        for (std::int64_t x = 0; x < width; x += BlockWidth) {
+            const Pack sigma = sigma_at(widths, plan, y, x);
+            const Steps steps = steps_of(sigma, plan, x + BlockWidth - 1, width - 1 - x);
             const auto near = neighbourhood<Features, Layers>(guide, plan.sources, from, y, x);
             const auto target = target_of<Features>(guide, y, x);
             filter_block(near, target, sigma, steps, plan, across, y, x, to);
@@ -95,7 +95,7 @@ bool sweep_rows(const Guide& guide, const Widths& widths, const Sweep& plan, con
 
 // Columns are read from copies of small strips, whose rows lie next to each other: a column of the picture
 // itself has each plane and row on a page of its own, more pages than a core translates at once.
-constexpr std::int64_t StripWidth = 32, StripHeight = 128, StripBorder = LaneCount;
+constexpr std::int64_t StripWidth = 32, StripHeight = 128, StripBorder = BlockWidth;
 constexpr std::int64_t StripPitch = StripWidth + 2 * StripBorder;
 
 template <std::size_t Features, std::size_t Layers>
@@ -105,10 +105,10 @@ void sweep_strip(const Guide& guide, const Widths& widths, const Sweep& plan, co
     const auto height = static_cast<std::int64_t>(from.values.height());
     const std::int64_t right = std::min(width, left + StripWidth);
     const std::int64_t bottom = std::min(height, top + StripHeight);
-    Lanes widest{};
+    Pack widest{};
     for (std::int64_t y = top; y < bottom; ++y) {
-        for (std::int64_t x = left; x < right; x += LaneCount) {
-            widest = larger(widest, sigma_at(widths, plan, static_cast<std::uint32_t>(y), x));
+        for (std::int64_t x = left; x < right; x += BlockWidth) {
+            widest = max(widest, sigma_at(widths, plan, static_cast<std::uint32_t>(y), x));
         }
     }
     const auto radius = static_cast<std::int64_t>(3.0f * largest(widest));
@@ -131,7 +131,7 @@ void sweep_strip(const Guide& guide, const Widths& widths, const Sweep& plan, co
     for (std::int64_t y = top; y < bottom; ++y) {
         const auto line = static_cast<std::uint32_t>(y);
         const float* row = copy.data() + (y - first) * RowSize + StripBorder;
-        for (std::int64_t x = left; x < right; x += LaneCount) {
+        for (std::int64_t x = left; x < right; x += BlockWidth) {
             Neighbourhood<Features, Layers> near;
             const float* plane = row + (x - left);
             const auto next = [&](const float*& start) {
@@ -141,7 +141,7 @@ void sweep_strip(const Guide& guide, const Widths& widths, const Sweep& plan, co
             std::ranges::for_each(near.sources, next);
             std::ranges::for_each(near.values, next);
             next(near.reduction);
-            const Lanes sigma = sigma_at(widths, plan, line, x);
+            const Pack sigma = sigma_at(widths, plan, line, x);
             const Steps steps = steps_of(sigma, plan, y, height - 1 - y);
             filter_block(near, target_of<Features>(guide, line, x), sigma, steps, plan, across, line, x, to);
         }
