@@ -25,7 +25,12 @@ struct WideTree {
     static constexpr std::uint32_t NoPrimitive = 0xffffffffu;
 };
 
-// A refitted tree may cost so many times what it cost when it was built.
+// A refitted tree may cost so many times what it cost when it was built. Measured on lavapipe with two cores,
+// a ball and a field of columns of 147,000 triangles each, twisted, torn apart and bent: at 1.2, 1.5, 2 and 3
+// times the cost, rays take 1.1, 1.1 to 1.3, 1.1 to 1.5 and 1.0 to 2.5 times as long as with a new tree. What
+// building takes longer than refitting is lost again at 1.2 with 10 and more rays a triangle, at 1.5 with 3
+// to 6, at 2 with 1 to 5. A picture of 1280 x 720 samples asks for some 7 million rays: at 1.5, scenes of 1
+// to 2 million triangles are even after one picture. Faster devices are even later, since the host builds.
 inline constexpr double RefitLimit = 1.5;
 
 // The wide tree's shape: boxes are still missing (fit_boxes). It is at most `max_depth` deep: where the
