@@ -13,10 +13,15 @@ inline bool has_map(IN(Scene) scene) {
     return (scene.features & FeatureEnvironmentMap) != 0u;
 }
 
+// Sine of the angle to the poles, y and -y, from what does not cancel beside them.
+inline float sine_from_pole(vec3 direction) {
+    return sqrt(direction.x * direction.x + direction.z * direction.z);
+}
+
 // Where a direction is in the map, in [0, 1].
 inline vec2 map_place(IN(Environment) sky, vec3 direction) {
-    const float u = 0.5f + (arc_tangent(direction.x, -direction.z) + sky.rotation) / (2.0f * Pi);
-    return vec2(u - floor(u), arc_cosine(clamp(direction.y, -1.0f, 1.0f)) / Pi);
+    const float u = 0.5f + (arc_tangent(direction.x, -direction.z) + sky.rotation) * (0.5f * InversePi);
+    return vec2(u - floor(u), arc_tangent(sine_from_pole(direction), direction.y) * InversePi);
 }
 
 struct Sky {
@@ -35,7 +40,7 @@ inline Sky sky_at(IN(Scene) scene, vec3 direction) {
     const uint y = min(uint(uv.y * float(height)), height - 1u);
     const float row = probability_of(scene.sums, scene.environment.row_sums, y);
     const float column = probability_of(scene.sums, scene.environment.column_sums + y * width, x);
-    const float sine_theta = sqrt(greater_of(0.0f, 1.0f - direction.y * direction.y));
+    const float sine_theta = sine_from_pole(direction);
     const float per_texel = row * column * float(width) * float(height);
     sky.pdf = sine_theta > 0.0f ? per_texel / (2.0f * Pi * Pi * sine_theta) : 0.0f;
     return sky;

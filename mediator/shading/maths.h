@@ -4,7 +4,7 @@
 #include "mediator/shading/language.h"
 
 // Functions that drivers are free to get wrong by 2^-11 (Vulkan: sin, cos) or by as much as they like (pow
-// near 1, acos, atan): our own polynomials, the same in C++ and in GLSL. Coefficients are minimax (Remez),
+// near 1, atan): our own polynomials, the same in C++ and in GLSL. Coefficients are minimax (Remez),
 // with an error of the polynomial itself below 2^-27 of the result. Bounds are against the exact result, in
 // units in the last place (ulp), with exactly rounded +, -, * and /; a device that divides to 2.5 ulp, or
 // contracts what is not PRECISE, may add as much again. Infinities and what is no number are no arguments;
@@ -106,21 +106,6 @@ inline float logarithm(float x) {
 // x^y for x >= 0. 2 + 2 |y ln x| ulp.
 inline float power(float x, float y) {
     return y == 0.0f ? 1.0f : exponential(y * logarithm(x));
-}
-
-// In [0, pi] for x in [-1, 1]. 2 ulp.
-inline float arc_cosine(float x) {
-    const float size = abs(x);
-    const float square = size > 0.5f ? 0.5f * (1.0f - size) : x * x;
-    const float root = size > 0.5f ? sqrt(square) : size;
-    const float p = 0.166667521f +
-                    square * (0.0749530643f +
-                              square * (0.0454697721f + square * (0.0241807718f + square * 0.0421664231f)));
-    PRECISE float arc_sine = root + root * (square * p);
-    PRECISE float near_one = 2.0f * arc_sine;  // arc cosine of |x|
-    near_one = x < 0.0f ? 3.14159274f - near_one : near_one;
-    PRECISE float near_zero = 1.57079637f - (x < 0.0f ? -arc_sine : arc_sine);
-    return size > 0.5f ? near_one : near_zero;
 }
 
 // The angle of the point (x, y), in [-pi, pi]; 0 at the origin, pi for x < 0 and y = 0 of either sign. 3 ulp.
