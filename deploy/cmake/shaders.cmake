@@ -1,14 +1,20 @@
-# tessera_shaders(TARGET FILE.comp ... [DEFINES NAME=VALUE ...] [SUFFIX text])
+# tessera_shaders(TARGET FILE.comp ... [DEFINES NAME=VALUE ...] [SUFFIX text] [KEEP_CALLS])
 # Compiles GLSL for core Vulkan 1.3, checks it with spirv-val and embeds it in the target. Files are named from the
 # repository root, and so are their includes (#include "mediator/shading/..."), which are tracked. The words of
 # backends/vulkan/shaders/trace.comp are then
 #     #include "backends/vulkan/shaders/trace.comp.h"
 #     std::span<const std::uint32_t> tessera::vulkan::shaders::trace_comp()
 # SUFFIX tells variants of one file apart: trace.comp with SUFFIX wide gives trace_wide.comp.h and trace_wide_comp().
+# KEEP_CALLS leaves functions as calls, for kernels of many: glslc's optimiser copies each into every place that calls
+# it (paths of light: 20 times slower to compile, 3 times the words) and drivers do so themselves.
 function(tessera_shaders target)
-  cmake_parse_arguments(ARG "" "SUFFIX" "DEFINES" ${ARGN})
+  cmake_parse_arguments(ARG "KEEP_CALLS" "SUFFIX" "DEFINES" ${ARGN})
   set(generated ${CMAKE_BINARY_DIR}/generated)
   list(TRANSFORM ARG_DEFINES PREPEND -D)
+  set(optimise -O)
+  if(ARG_KEEP_CALLS)
+    set(optimise -O0)
+  endif()
   foreach(file IN LISTS ARG_UNPARSED_ARGUMENTS)
     cmake_path(GET file PARENT_PATH folder)
     cmake_path(GET file STEM LAST_ONLY stem)
@@ -22,7 +28,7 @@ function(tessera_shaders target)
     add_custom_command(
       OUTPUT ${base}.cpp ${base}.h
       BYPRODUCTS ${base}.spv
-      COMMAND Vulkan::glslc --target-env=vulkan1.3 -O -Werror -I ${CMAKE_SOURCE_DIR} ${ARG_DEFINES}
+      COMMAND Vulkan::glslc --target-env=vulkan1.3 ${optimise} -Werror -I ${CMAKE_SOURCE_DIR} ${ARG_DEFINES}
         -MD -MF ${base}.d -MT ${base}.cpp -o ${base}.spv ${CMAKE_SOURCE_DIR}/${file}
       COMMAND ${TESSERA_SPIRV_VAL} --target-env vulkan1.3 --scalar-block-layout ${base}.spv
       COMMAND ${CMAKE_COMMAND} -D SPIRV=${base}.spv -D BASE=${base} -D INCLUDE=${folder}/${stem}${extension}.h

@@ -6,46 +6,82 @@
 #include "mediator/shading/sobol.h"
 #include "mediator/shading/specular.h"
 
-// What the functions of functions.inc are called with and where their results go, on both sides.
+// What the functions of functions/*.inc are called with and where their results go, on both sides. What needs
+// a scene is in world.h.
 SHADING_BEGIN
 
 struct Inputs {
-    vec2 u, v;              // in the unit square
-    vec3 wo, wi;            // directions of the shading frame
-    vec3 n;                 // unit length
-    vec3 vector;            // any length whose square is a float
-    vec3 color;             // in the unit cube
-    float angle;            // up to 1e4 both ways
-    float x;                // in [-1, 1]
-    float positive, other;  // of any size
-    float exponent;         // in [-87, 88]
-    float roughness, metallic, transmission, alpha;
-    float index, eta;  // of refraction, and of two sides
-    uint a, b, c, d;
+    vec2 u;          // in the unit square
+    vec2 v;          // likewise
+    vec2 weights;    // barycentric
+    vec3 wo;         // directions of the shading frame
+    vec3 wi;         // likewise
+    vec3 n;          // unit length
+    vec3 vector;     // any length whose square is a float
+    vec3 color;      // in the unit cube
+    vec3 light;      // likewise
+    float angle;     // up to 1e4 both ways
+    float x;         // in [-1, 1]
+    float positive;  // of any size
+    float other;     // likewise
+    float pdf;       // from 2^-10 to 2^10
+    float exponent;  // in [-87, 88]
+    float roughness;
+    float metallic;
+    float transmission;
+    float alpha;
+    float index;  // of refraction
+    float eta;    // of two sides
+    uint instance;
+    uint a;  // any bits
+    uint b;
+    uint c;
+    uint d;
 };
 
 struct Outputs {
-    uint bits[24];
+    uint bits[64];
     uint count;
-    uint starts;  // bit i: value i is the first of a vector
-    uint exact;   // bit i: no bit of value i may differ
+    uvec2 starts;  // bit i: value i is the first of a vector
+    uvec2 exact;   // bit i: no bit of value i may differ
 };
 
+inline Outputs no_outputs() {
+    Outputs y;
+    y.count = 0u;
+    y.starts = uvec2(0u);
+    y.exact = uvec2(0u);
+    return y;
+}
+
+inline void put_next(INOUT(Outputs) y, float value) {
+    y.bits[y.count] = float_bits(value);
+    y.count += 1u;
+}
+inline void put_next(INOUT(Outputs) y, vec3 value) {
+    put_next(y, value.x);
+    put_next(y, value.y);
+    put_next(y, value.z);
+}
+inline void start_vector(INOUT(Outputs) y) {
+    const uint bit = 1u << (y.count & 31u);
+    y.starts |= y.count < 32u ? uvec2(bit, 0u) : uvec2(0u, bit);
+}
 inline void put(INOUT(Outputs) y, uint value) {
-    y.starts |= 1u << y.count;
-    y.exact |= 1u << y.count;
+    start_vector(y);
+    const uint bit = 1u << (y.count & 31u);
+    y.exact |= y.count < 32u ? uvec2(bit, 0u) : uvec2(0u, bit);
     y.bits[y.count] = value;
-    ++y.count;
+    y.count += 1u;
+}
+inline void put(INOUT(Outputs) y, int value) {
+    put(y, uint(value));
 }
 inline void put(INOUT(Outputs) y, bool value) {
     put(y, value ? 1u : 0u);
 }
-inline void put_next(INOUT(Outputs) y, float value) {
-    y.bits[y.count] = float_bits(value);
-    ++y.count;
-}
 inline void put(INOUT(Outputs) y, float value) {
-    y.starts |= 1u << y.count;
+    start_vector(y);
     put_next(y, value);
 }
 inline void put(INOUT(Outputs) y, vec2 value) {
@@ -53,9 +89,12 @@ inline void put(INOUT(Outputs) y, vec2 value) {
     put_next(y, value.y);
 }
 inline void put(INOUT(Outputs) y, vec3 value) {
-    put(y, value.x);
-    put_next(y, value.y);
-    put_next(y, value.z);
+    start_vector(y);
+    put_next(y, value);
+}
+inline void put(INOUT(Outputs) y, vec4 value) {
+    put(y, vec3(value));
+    put_next(y, value.w);
 }
 inline void put(INOUT(Outputs) y, IN(mat3) value) {
     put(y, value[0]);
@@ -88,16 +127,12 @@ inline void put(INOUT(Outputs) y, IN(Bsdf) value) {
 }
 inline void put(INOUT(Outputs) y, IN(BsdfValue) value) {
     put(y, value.value);
-    put_next(y, value.diffuse.x);  // part of the value
-    put_next(y, value.diffuse.y);
-    put_next(y, value.diffuse.z);
+    put_next(y, value.diffuse);  // part of the value
     put(y, value.pdf);
 }
 inline void put(INOUT(Outputs) y, IN(Specular) value) {
     put(y, value.reflection);
-    put_next(y, value.refraction.x);  // shares of the same light
-    put_next(y, value.refraction.y);
-    put_next(y, value.refraction.z);
+    put_next(y, value.refraction);  // shares of the same light
     put(y, value.reflected);
     put(y, value.refracted);
 }
@@ -107,21 +142,6 @@ inline Mixture mixture_of(IN(Inputs) x) {
 }
 inline Bsdf bsdf_of(IN(Inputs) x) {
     return make_bsdf(x.color, mixture_of(x), x.roughness, x.index, x.wo.z);
-}
-
-// The function at place `function` of the table.
-inline Outputs evaluate(uint function, IN(Inputs) x) {
-    Outputs y;
-    y.count = 0u;
-    y.starts = 0u;
-    y.exact = 0u;
-    uint place = 0u;
-#define FUNCTION(ordinary, edges, call)  \
-    if (function == place) put(y, call); \
-    ++place;
-#include "tests/shading/functions.inc"
-#undef FUNCTION
-    return y;
 }
 
 SHADING_END

@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <limits>
 
+#include "tests/shading/evaluation.h"
+
 namespace tessera::shading {
 
 namespace {
 
 constexpr double Infinite = std::numeric_limits<double>::infinity();
 
-bool has(uint mask, uint place) {
-    return (mask >> place & 1u) != 0u;
+bool has(const uvec2& mask, uint place) {
+    return (mask[int(place / 32)] >> place % 32 & 1u) != 0u;
 }
 
 double ulp_of(double size) {
@@ -19,7 +21,7 @@ double ulp_of(double size) {
     return std::ldexp(1.0, exponent - 24);
 }
 
-double difference(float a, float b, double ulp) {
+double difference_of(float a, float b, double ulp) {
     if (float_bits(a) == float_bits(b) || (is_nan(a) && is_nan(b))) return 0.0;
     if (is_nan(a) || is_nan(b)) return Infinite;
     const auto flushed = [](float value) { return std::fabs(value) < 0x1p-126f ? 0.0 : double(value); };
@@ -40,6 +42,8 @@ std::string text_of(const Outputs& y) {
     return text;
 }
 
+}  // namespace
+
 double difference(const Outputs& a, const Outputs& b) {
     if (a.count != b.count || a.starts != b.starts || a.exact != b.exact) return Infinite;
     double worst = 0.0;
@@ -56,29 +60,55 @@ double difference(const Outputs& a, const Outputs& b) {
         }
         for (uint i = first; i < end; ++i) {
             worst = std::max(
-                worst, difference(float_from_bits(a.bits[i]), float_from_bits(b.bits[i]), ulp_of(size)));
+                worst, difference_of(float_from_bits(a.bits[i]), float_from_bits(b.bits[i]), ulp_of(size)));
         }
     }
     return worst;
 }
 
-}  // namespace
-
-std::vector<SharedFunction> shared_functions() {
-    return {
-#define FUNCTION(ordinary, edges, call) {#call, ordinary, edges},
-#include "tests/shading/functions.inc"
-#undef FUNCTION
+std::vector<SharedFunction> functions_of(std::uint32_t list) {
+#define FUNCTION(ordinary, edges, call) {#call, ordinary, edges, false},
+#define DECIDES(ordinary, edges, call) {#call, ordinary, edges, true},
+    // clang-format off
+    static const std::vector<SharedFunction> Lists[FunctionListCount] = {
+        {
+#include "tests/shading/functions/numbers.inc"
+        },
+        {
+#include "tests/shading/functions/lobes.inc"
+        },
+        {
+#include "tests/shading/functions/textures.inc"
+        },
+        {
+#include "tests/shading/functions/surfaces.inc"
+        },
+        {
+#include "tests/shading/functions/lights.inc"
+        },
+        {
+#include "tests/shading/functions/found.inc"
+        },
+        {
+#include "tests/shading/functions/steps.inc"
+        },
+        {
+#include "tests/shading/functions/branches.inc"
+        },
+        {
+#include "tests/shading/functions/samples.inc"
+        },
     };
+    // clang-format on
+    return Lists[list];
 }
 
-Difference largest_difference(const std::vector<Outputs>& a, const std::vector<Outputs>& b) {
-    Difference worst;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        const double ulp = difference(a[i], b[i]);
-        if (ulp > worst.ulp) worst = {ulp, i, text_of(a[i]) + " and" + text_of(b[i])};
-    }
-    return worst;
+Difference largest_difference(std::span<const Outputs> a, std::span<const Outputs> b, std::size_t outside) {
+    std::vector<std::pair<double, std::size_t>> all;
+    for (std::size_t i = 0; i < a.size(); ++i) all.emplace_back(difference(a[i], b[i]), i);
+    std::sort(all.rbegin(), all.rend());
+    const auto [ulp, input] = all[outside];
+    return {ulp, input, text_of(a[input]) + " and" + text_of(b[input])};
 }
 
 }  // namespace tessera::shading

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -7,21 +9,26 @@
 
 namespace tessera::shading {
 
-// One line of functions.inc.
+// One line of a list.
 struct SharedFunction {
     std::string call;
-    double ordinary = 0.0, edges = 0.0;  // bounds, ulp
+    double ordinary, edges;  // bounds, ulp
+    bool decides;            // by rounded numbers: one input in 200 may differ by more
 };
-std::vector<SharedFunction> shared_functions();
+std::vector<SharedFunction> functions_of(std::uint32_t list);
 
 struct Difference {
-    double ulp = 0.0;  // of the largest component of the vector where both are farthest apart; infinite where
-                       // one of both is no number, or bits that must not differ do
-    std::size_t input = 0;
-    std::string values;  // of both there, for messages
+    double ulp = 0.0;       // the largest that counts
+    std::size_t input = 0;  // where it is
+    std::string values;     // of both there, for messages
 };
 
-// The largest over all inputs. Numbers below 2^-126 count as 0: a device may flush them.
-Difference largest_difference(const std::vector<Outputs>& a, const std::vector<Outputs>& b);
+// Of two results: in ulp of the largest component of the vector where they are farthest apart; infinite where
+// only one is a number, or where bits differ that must not. Numbers below 2^-126 count as 0: a device may
+// flush them.
+double difference(const Outputs& a, const Outputs& b);
+
+// Of all results but `outside`, the farthest apart.
+Difference largest_difference(std::span<const Outputs> a, std::span<const Outputs> b, std::size_t outside);
 
 }  // namespace tessera::shading

@@ -5,8 +5,15 @@
 
 namespace tessera {
 
-// Results of one line of functions.inc: shading::Inputs to shading::Outputs, as many as `count`.
-using Evaluate = void(std::uint32_t function, const void* inputs, void* outputs, std::size_t count);
+// The lists in functions/, by number; shading.comp and CMakeLists.txt count the same.
+inline constexpr const char* FunctionLists[] = {"numbers", "lobes", "textures", "surfaces", "lights",
+                                                "found",   "steps", "branches", "samples"};
+inline constexpr std::uint32_t FunctionListCount = 9;
+
+// Results of all functions of a list: from shading::World and `count` shading::Inputs to shading::Outputs,
+// those of one function after those of the other.
+using Evaluate = void(std::uint32_t list, const void* world, const void* inputs, std::size_t count,
+                      void* outputs);
 
 Evaluate evaluate_plain;  // as C++ is compiled everywhere
 // With products and sums contracted to one rounding, as a device may do where they are not PRECISE.

@@ -1,21 +1,53 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "tests/shading/cases.h"
+// All functions of one of the lists; LIST as in evaluation.h.
+#include "tests/shading/world_puts.h"
 
 layout(local_size_x = 64) in;
-layout(constant_id = 0) const uint Function = 0u;  // a kernel for each: a software device runs all branches
 
 ARRAY_OF(Inputs, InputArray, 4);
 layout(buffer_reference, scalar) writeonly buffer OutputArray { Outputs items[]; };
 
 layout(push_constant, scalar) uniform Arguments {
+    World world;
     InputArray inputs;
     OutputArray outputs;
     uint count;
 };
 
+#define FUNCTION(ordinary, edges, call)       \
+    {                                         \
+        Outputs y = no_outputs();             \
+        put(y, call);                         \
+        outputs.items[place * count + i] = y; \
+        place += 1u;                          \
+    }
+#define DECIDES(ordinary, edges, call) FUNCTION(ordinary, edges, call)
+
 void main() {
     const uint i = gl_GlobalInvocationID.x;
-    if (i < count) outputs.items[i] = evaluate(Function, inputs.items[i]);
+    if (i >= count) return;
+    const Inputs x = inputs.items[i];
+    uint place = 0u;
+    Case c = make_case(world, x);  // left out where it is not used
+#if LIST == 0
+#include "tests/shading/functions/numbers.inc"
+#elif LIST == 1
+#include "tests/shading/functions/lobes.inc"
+#elif LIST == 2
+#include "tests/shading/functions/textures.inc"
+#elif LIST == 3
+#include "tests/shading/functions/surfaces.inc"
+#elif LIST == 4
+#include "tests/shading/functions/lights.inc"
+#elif LIST == 5
+#include "tests/shading/functions/found.inc"
+#elif LIST == 6
+#include "tests/shading/functions/steps.inc"
+#elif LIST == 7
+#include "tests/shading/functions/branches.inc"
+#elif LIST == 8
+#include "tests/shading/functions/samples.inc"
+#endif
 }

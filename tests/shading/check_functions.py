@@ -1,0 +1,44 @@
+#!/usr/bin/env python3
+"""Every function of the shared shading sources is named in the lists that the tests evaluate on both sides.
+
+Usage: check_functions.py ROOT. Prints the names that are missing and exits 1 if there are any. A function counts as
+named in functions/*.inc, or in a function of the tests' own headers that those call. Traversal is not looked at:
+tests/bvh compares whole traversals on both sides.
+"""
+
+import glob
+import os
+import re
+import sys
+
+# Whole paths: tests/transport compares what they find on both sides.
+ELSEWHERE = ("leave_vertex", "trace_sample")
+
+FUNCTION = re.compile(r"^(?:WITH_CONTEXT )?inline (?!constexpr)\w+ (\w+)\(", re.MULTILINE)
+
+
+def text_of(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read()
+
+
+def main():
+    root = sys.argv[1]
+    functions = []
+    for path in sorted(glob.glob(os.path.join(root, "mediator/shading/*.h"))):
+        traversal = os.path.basename(path).startswith(("bvh_", "plain_"))
+        if "SHADING_BEGIN" in text_of(path) and not traversal:
+            functions += FUNCTION.findall(text_of(path))
+    lists = glob.glob(os.path.join(root, "tests/shading/functions/*.inc"))
+    own = [os.path.join(root, "tests/shading", name) for name in ("cases.h", "world.h", "world_cases.h")]
+    named = {word for path in lists + own for word in re.findall(r"\w+", text_of(path))}
+    named.update(ELSEWHERE)
+    missing = [name for name in functions if name not in named]
+    for name in missing:
+        print(f"{name}: no line in tests/shading/functions")
+    print(f"{len(functions)} functions, {len(missing)} missing")
+    return 1 if missing or not functions or not lists else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

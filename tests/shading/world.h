@@ -1,0 +1,84 @@
+#ifndef TESSERA_TESTS_SHADING_WORLD_H
+#define TESSERA_TESTS_SHADING_WORLD_H
+
+#include "mediator/shading/records.h"
+
+SHADING_BEGIN
+
+ARRAY_OF(Scene, SceneArray, 8);
+ARRAY_OF(View, ViewArray, 8);
+
+// Scenes and views that functions are tried in (make_world in world_maker.h).
+inline constexpr uint SceneCount = 2u, ViewCount = 16u, LightCount = 6u, TextureCount = 8u;
+struct World {
+    SceneArray scenes;  // the second has no lights and no map
+    ViewArray views;
+};
+
+// The side of this test: rays hit what their seeds say.
+struct Context {
+    Scene scene;
+    View view;
+};
+
+SHADING_END
+
+#include "mediator/shading/rays.h"
+#include "mediator/shading/sobol.h"
+
+SHADING_BEGIN
+
+// What is no ray hits nothing.
+inline bool is_ray(vec3 origin, vec3 way) {
+    return is_finite(dot(origin, origin)) && dot(way, way) > 0.0f && is_finite(dot(way, way));
+}
+
+inline Hit hit_by(IN(Scene) scene, uint bits) {
+    const uint instance = bits % scene.instance_count;
+    const uint triangles = scene.meshes.items[scene.instances.items[instance].mesh].triangle_count;
+    const vec2 weights = 0.5f * vec2(unit_float(hash_u32(bits)), unit_float(hash_u32(bits + 1u)));
+    return Hit(instance, (bits >> 8) % triangles, weights, 1.0f + unit_float(bits));
+}
+
+inline bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, OUT(Hit) hit) {
+    const uint bits = hash_u32(seed);
+    hit = hit_by(context.scene, bits);
+    return is_ray(ray.origin, ray.direction) && (bits & 7u) != 0u;
+}
+
+inline bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed) {
+    if (!is_ray(origin, segment) || !(far > 0.0f) || context.scene.instance_count == 0u) return false;
+    return (hash_u32(seed) & 3u) == 0u;
+}
+
+inline bool has_specular_trees(IN(Context) context) {
+    return context.scene.instance_count > 0u;
+}
+
+// A sample's values, by sums that show their order: drivers take long to compile an array that is filled at
+// places not known before.
+struct Sink {
+    vec2 sums;  // of the values, and each times its place
+    uint infinite;
+    uint count;
+};
+inline void store_value(INOUT(Sink) sink, float value) {
+    sink.count += 1u;
+    if (is_finite(value)) {
+        sink.sums += value * vec2(1.0f, float(sink.count));
+    } else {
+        sink.infinite += sink.count;
+    }
+}
+
+SHADING_END
+
+#ifdef __cplusplus
+#include "tests/shading/silence.h"
+#endif
+
+// These need what is declared above.
+#include "mediator/shading/sample_values.h"
+#include "mediator/shading/trace.h"
+
+#endif

@@ -1,0 +1,183 @@
+#ifndef TESSERA_TESTS_SHADING_WORLD_CASES_H
+#define TESSERA_TESTS_SHADING_WORLD_CASES_H
+
+#include "tests/shading/cases.h"
+#include "tests/shading/world.h"
+
+// What functions of a scene are called with; functions that change what they are given, by what they leave.
+SHADING_BEGIN
+
+struct Case {
+    Context context;
+    Ray ray;
+    Hit hit;
+    Instance instance;
+    Mesh mesh;
+    Material material;
+    uvec3 corners;
+    Triangle triangle;
+    Texture map;
+    TextureUse use;
+    LightSource light;
+    Instance lit;     // another instance, to stand for a light
+    Surface surface;  // each side's own: bounds of what starts from it are wider
+    vec3 wo;          // in its frame
+    Path path;
+    Way way;
+    Branch branch;
+};
+
+inline Path path_in(IN(Inputs) x) {
+    Path path = start_path(Sampler(x.a, x.d));
+    path.vertex = x.c % 6u;
+    path.throughput = x.color;
+    path.probability = x.transmission;
+    path.bsdf_pdf = x.c % 3u == 0u ? 0.0f : x.pdf;
+    path.last_position = x.wo;
+    path.way = Way(x.c % 4u, x.c % 5u == 0u, x.light);
+    path.found.low = x.light;
+    path.found.high = x.color;
+    path.found.diffuse = x.color * x.metallic;
+    path.found.connections = x.metallic;
+    path.found.albedo = x.light;
+    path.found.normal = x.n;
+    path.found.range = x.color;
+    path.found.depth = x.c % 5u == 0u ? infinity() : x.pdf;
+    path.found.object = x.d;
+    path.rays = x.c;
+    return path;
+}
+
+inline Case make_case(IN(World) world, IN(Inputs) x) {
+    Case made;
+    made.context.scene = world.scenes.items[x.c % 8u == 0u ? 1u : 0u];
+    made.context.view = world.views.items[x.d % ViewCount];
+    made.ray = Ray(x.wi, x.n);
+    made.instance = made.context.scene.instances.items[x.instance];
+    made.mesh = made.context.scene.meshes.items[made.instance.mesh];
+    made.material = made.context.scene.materials.items[made.instance.material];
+    made.hit = Hit(x.instance, x.c % made.mesh.triangle_count, x.weights, x.pdf);
+    made.corners = made.mesh.triangles.items[made.hit.triangle];
+    made.triangle = triangle_of(made.mesh, made.corners);
+    made.map = made.context.scene.textures.items[x.d % TextureCount];
+    made.use = made.material.base_color_texture;
+    if (made.use.texture < 0) made.use.texture = 0;
+    made.lit = made.context.scene.instances.items[x.instance ^ 1u];
+    made.light = made.context.scene.lights.items[x.d % LightCount];
+    made.surface = make_surface(made.context.scene, made.hit, x.n);
+    made.wo = to_local(made.surface, -x.n);
+    made.path = path_in(x);
+    made.way = Way(x.d % 4u, x.d % 5u == 0u, x.light);
+    made.branch = Branch(made.ray, x.color, x.transmission, x.c % 64u, x.c % (MaxSpecularDepth + 1u));
+    return made;
+}
+
+inline LightSample on_lit_mesh(IN(Case) c, vec2 u) {
+    return sample_mesh_light(c.context.scene, c.light, c.lit, c.context.scene.meshes.items[c.lit.mesh],
+                             c.context.scene.materials.items[c.lit.material], c.surface, u);
+}
+inline Surface with_scattering(IN(Case) c) {
+    Surface surface = c.surface;
+    const bool front = dot(c.surface.geometric_normal, c.ray.direction) < 0.0f;
+    set_scattering(surface, c.context.scene, c.mesh, c.material, c.corners, c.hit.barycentric,
+                   c.ray.direction, front);
+    return surface;
+}
+inline PathSample with_light(IN(Case) c, vec3 light) {
+    PathSample found = c.path.found;
+    add_light(found, c.context.view, light, c.way);
+    return found;
+}
+inline PathSample with_connection(IN(Case) c, vec3 light) {
+    PathSample found = c.path.found;
+    connect_light(found, c.context.view, light);
+    return found;
+}
+inline Path with_sky(IN(Case) c) {
+    Path path = c.path;
+    add_sky(c.context, path, c.ray);
+    return path;
+}
+inline Path with_emission(IN(Case) c) {
+    Path path = c.path;
+    add_emission(c.context, path, c.ray, c.surface);
+    return path;
+}
+inline Path with_lights(IN(Case) c) {
+    Path path = c.path;
+    add_lights(c.context, path, c.surface, c.wo);
+    return path;
+}
+
+// A path, what became of it and the ray it goes on with.
+struct Step {
+    Path path;
+    Lobe lobe;
+    Ray ray;
+    bool goes_on;
+};
+
+inline Step first_step(IN(Case) c) {
+    return Step(c.path, rough_lobe(c.path), c.ray, false);
+}
+inline Step chosen_lobe(IN(Case) c) {
+    Step step = first_step(c);
+    step.lobe = choose_lobe(step.path, c.surface, step.lobe);
+    return step;
+}
+inline Step scattered(IN(Case) c) {
+    Step step = first_step(c);
+    step.goes_on = scatter(c.context.view, step.path, c.surface, c.wo, step.lobe, step.ray.direction);
+    return step;
+}
+inline Step passed_on(IN(Case) c, uint kind) {
+    Step step = first_step(c);
+    step.lobe.kind = kind;
+    step.ray.direction = pass_on(c.context, step.path, c.surface, step.lobe);
+    return step;
+}
+inline Step survivor(IN(Case) c, float choice) {
+    Step step = first_step(c);
+    step.goes_on = survives(step.path, choice);
+    return step;
+}
+
+inline BranchStack with_children(IN(Case) c) {
+    BranchStack open;
+    open.branches[0] = c.branch;
+    open.branches[1] = c.branch;
+    open.count = 0u;
+    push_children(open, c.branch, c.surface);
+    return open;
+}
+inline Path in_branch(IN(Case) c) {
+    Path path = c.path;
+    enter_branch(path, c.branch);
+    return path;
+}
+inline Sink empty_sink() {
+    Sink sink;
+    sink.sums = vec2(0.0f);
+    sink.infinite = 0u;
+    sink.count = 0u;
+    return sink;
+}
+inline Sink with_number(IN(Case) c, float value) {
+    Sink sink = empty_sink();
+    put_number(sink, c.context.view, ChannelDepth, value);
+    return sink;
+}
+inline Sink with_vector(IN(Case) c, vec3 value) {
+    Sink sink = empty_sink();
+    put_vector(sink, c.context.view, ChannelNormal, value);
+    return sink;
+}
+inline Sink with_values(IN(Case) c, uint index) {
+    Sink sink = empty_sink();
+    put_sample_values(sink, c.context.view, c.path.found, index);
+    return sink;
+}
+
+SHADING_END
+
+#endif

@@ -1,0 +1,261 @@
+#include "tests/shading/world_maker.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "mediator/backend/tables/tables.h"
+#include "mediator/shading/sampling.h"
+#include "mediator/shading/scaling.h"
+#include "tests/shading/generator.h"
+
+namespace tessera::shading {
+
+namespace {
+
+constexpr uint Vertices = 12, Triangles = 10, Instances = 8, FirstHard = 4;
+
+class Packer {
+  public:
+    explicit Packer(std::uint64_t address) : address_(address) {}
+
+    // An array where it will lie.
+    template <class Array, class Item>
+    Array add(const std::vector<Item>& items) {
+        static_assert(sizeof(Array) == sizeof(std::uint64_t));
+        bytes_.resize((bytes_.size() + 15) / 16 * 16);
+        const std::size_t offset = bytes_.size();
+        bytes_.resize(offset + items.size() * sizeof(Item));
+        std::memcpy(bytes_.data() + offset, items.data(), items.size() * sizeof(Item));
+        return std::bit_cast<Array>(address_ + offset);
+    }
+    std::vector<std::byte> take() { return std::move(bytes_); }
+
+  private:
+    std::uint64_t address_;
+    std::vector<std::byte> bytes_;
+};
+
+// Cumulative sums that end at 1; some steps are 0.
+void add_sums(std::vector<float>& sums, uint count, Generator& random) {
+    std::vector<double> steps;
+    double total = 0.0;
+    for (uint i = 0; i < count; ++i) {
+        steps.push_back(i > 0 && random.bits() % 5u == 0u ? 0.0 : double(random.between(0.1f, 1.0f)));
+        total += steps.back();
+    }
+    double sum = 0.0;
+    for (const double step : steps) sums.push_back(float((sum += step) / total));
+    sums.back() = 1.0f;
+}
+
+std::vector<Texture> make_textures(Packer& packer, Generator& random) {
+    std::vector<Texture> textures;
+    for (uint i = 0; i < TextureCount; ++i) {
+        Texture texture{.width = 1u + i % 5u * 3u,
+                        .height = 1u + i % 3u * 2u,
+                        .format = i % 3u,
+                        .wrap_s = i % 3u,
+                        .wrap_t = (i / 2u) % 3u,
+                        .texture_filter = i == 5u ? TextureNearest : TextureLinear};
+        const bool floats = texture.format == TexelRgbFloat;
+        std::vector<uint> words;
+        for (uint word = 0; word < texture.width * texture.height * (floats ? 3u : 1u); ++word) {
+            words.push_back(floats ? float_bits(random.between(0.0f, 4.0f)) : random.bits());
+        }
+        texture.texels = packer.add<UintArray>(words);
+        textures.push_back(texture);
+    }
+    return textures;
+}
+
+TextureUse use_of(int texture, Generator& random) {
+    const float angle = random.between(-Pi, Pi), scale = random.between(0.5f, 3.0f);
+    return {.texture = texture,
+            .row_u = {scale * std::cos(angle), scale * std::sin(angle)},
+            .row_v = {-scale * std::sin(angle), scale * std::cos(angle)},
+            .offset = {random.between(-1.0f, 1.0f), random.between(-1.0f, 1.0f)}};
+}
+
+// One for each instance.
+std::vector<Material> make_materials(Generator& random) {
+    std::vector<Material> materials;
+    for (uint i = 0; i < Instances; ++i) {
+        Material material{.base_color = vec4(random.color(), 0.8f),
+                          .metallic = random.between(0.1f, 0.9f),
+                          .roughness = random.between(0.4f, 1.0f),
+                          .normal_scale = 0.7f,
+                          .index_of_refraction = 1.5f,
+                          .alpha_cutoff = 0.5f,
+                          .base_color_texture = use_of(i < 6 ? int(i) : -1, random),
+                          .metallic_roughness_texture = use_of(i == 1 || i == 4 ? 6 : -1, random),
+                          .normal_texture = use_of(i < 3 ? 3 : -1, random),
+                          .emission_texture = use_of(i == 2 ? 2 : -1, random),
+                          .alpha_mode = i % 3u,
+                          .double_sided = i % 2u};
+        if (i == 2 || i == 6) material.emission = vec3(1.0f, 2.0f, 3.0f);
+        materials.push_back(material);
+    }
+    materials[3].unlit = 1u;
+    materials[4].roughness = 0.01f;  // alpha = MinAlpha
+    materials[5].transmission = 0.9f;
+    materials[6] = {.base_color = vec4(0.9f), .metallic = 1.0f, .roughness = 0.0f};
+    materials[6].base_color_texture.texture = materials[6].metallic_roughness_texture.texture =
+        materials[6].normal_texture.texture = materials[6].emission_texture.texture = -1;
+    materials[6].emission = vec3(0.5f);
+    materials[7].index_of_refraction = 0.0f;
+    materials[7].transmission = 1.0f;
+    materials[7].metallic = 0.0f;
+    return materials;
+}
+
+Mesh make_mesh(uint number, Packer& packer, Generator& random) {
+    const bool hard = number % 2u == 1u;
+    std::vector<vec3> positions, normals;
+    std::vector<vec4> tangents, colors;
+    std::vector<vec2> tex_coords;
+    for (uint i = 0; i < Vertices; ++i) {
+        positions.emplace_back(random.between(-1.0f, 1.0f), random.between(-1.0f, 1.0f),
+                               random.between(-1.0f, 1.0f));
+        normals.push_back(random.anywhere());
+        tangents.emplace_back(random.anywhere(), random.either_sign(1.0f));
+        colors.emplace_back(random.color(), random.between(0.2f, 1.0f));
+        tex_coords.emplace_back(random.between(-1.0f, 2.0f), random.between(-1.0f, 2.0f));
+    }
+    std::vector<uvec3> triangles;
+    for (uint i = 0; i < Triangles; ++i) triangles.emplace_back(i, i + 1, i + 2);
+    if (hard) {
+        positions[2] = positions[1] + vec3(1e-6f, 0.0f, 0.0f);  // a needle
+        positions[5] = positions[4];                            // no area
+        positions[8] = positions[7] * 1e-20f;
+        triangles[9] = uvec3(3u, 3u, 3u);
+    }
+    Mesh mesh{.positions = packer.add<Vec3Array>(positions),
+              .triangles = packer.add<UVec3Array>(triangles),
+              .normals = packer.add<Vec3Array>(normals),
+              .tangents = packer.add<Vec4Array>(tangents),
+              .colors = packer.add<Vec4Array>(colors),
+              .tex_coords = packer.add<Vec2Array>(tex_coords),
+              .arrays = MeshNormals | MeshTangents | MeshColors | MeshTexCoords,
+              .triangle_count = Triangles};
+    if (number == 2u) mesh.arrays = MeshTexCoords;
+    if (number == 3u) mesh.arrays = 0u;
+    return mesh;
+}
+
+// Meshes 0 and 2 for the first instances, 1 and 3 for the hard ones.
+std::vector<Instance> make_instances(Generator& random) {
+    std::vector<Instance> instances;
+    for (uint i = 0; i < Instances; ++i) {
+        const float size = i == 4 ? 1e-8f : i == 5 ? 1e7f : 1.0f;
+        const mat3 turn = frame_around(random.anywhere());
+        const mat3 linear(turn[0] * (size * random.between(0.5f, 2.0f)),
+                          turn[1] * (size * random.either_sign(random.between(0.5f, 2.0f))), turn[2] * size);
+        mat3 normals(cross(linear[1], linear[2]), cross(linear[2], linear[0]), cross(linear[0], linear[1]));
+        const float scale = unit_scale(largest(max(max(abs(normals[0]), abs(normals[1])), abs(normals[2]))));
+        normals = mat3(normals[0] * scale, normals[1] * scale, normals[2] * scale);
+        instances.push_back({.mesh = i % 2u * 2u + (i < FirstHard ? 0u : 1u),
+                             .material = i,
+                             .object = 100u + i,
+                             .light = i == 2 ? 3 : -1,
+                             .linear = linear,
+                             .translation = size * vec3(1.0f, -2.0f, 3.0f),
+                             .normals = normals,
+                             .alpha_tested = i % 2u});
+    }
+    return instances;
+}
+
+std::vector<LightSource> make_lights(uint area_sums, Generator& random) {
+    constexpr uint Kinds[LightCount] = {LightPoint, LightSpot,        LightDirectional,
+                                        LightMesh,  LightEnvironment, LightMesh};
+    std::vector<LightSource> lights;
+    for (uint i = 0; i < LightCount; ++i) {
+        lights.push_back({.kind = Kinds[i],
+                          .probability = 1.0f / float(LightCount),
+                          .intensity = vec3(3.0f, 2.0f, 1.0f) * random.between(0.5f, 2.0f),
+                          .position = 3.0f * random.anywhere(),
+                          .direction = random.anywhere(),
+                          .cos_inner = 0.6f,
+                          .cos_outer = -0.3f,
+                          .instance = i == 5u ? 6u : 2u,
+                          .area_sums = area_sums,
+                          .inverse_root_area = 0.6f});
+    }
+    return lights;
+}
+
+std::vector<View> make_views(Generator& random) {
+    std::vector<View> views;
+    for (uint i = 0; i < ViewCount; ++i) {
+        const mat3 turn = frame_around(random.anywhere());
+        views.push_back({.seed = (std::uint64_t{random.bits()} << 32) | random.bits(),
+                         .eye = random.anywhere(),
+                         .right = turn[0],
+                         .up = turn[1],
+                         .forward = turn[2],
+                         .middle = {random.between(-0.1f, 0.1f), random.between(-0.1f, 0.1f)},
+                         .step = {0.02f, -0.02f},
+                         .width = 64,
+                         .height = 48,
+                         .pixel_filter = i % 3u,
+                         .filter_radius = i % 3u == FilterBox ? 0.5f : 1.5f,
+                         .max_scatterings = i % 4u == 0u ? UnlimitedScatterings : i % 4u,
+                         .renderer = i % 5u == 0u ? RendererWhitted : RendererPathTracing,
+                         .path_class = i % 5u,
+                         .feature_rule = i % 2u,
+                         .channels = i == 0u ? 0xfffu : random.bits() & 0xfffu,
+                         .keeps = random.bits() & (KeepsDiffuse | KeepsConnections | KeepsRange),
+                         .transparent_background = i % 2u,
+                         .strategy = i % 6u == 4u ? StrategyLightsOnly : StrategyBoth});
+    }
+    return views;
+}
+
+}  // namespace
+
+PackedWorld make_world(std::uint64_t address) {
+    Packer packer(address);
+    Generator random(false);
+    const std::vector<Texture> textures = make_textures(packer, random);
+    std::vector<float> sums;
+    Scene scene{.instance_count = Instances, .light_count = LightCount, .features = 0xffu};
+    add_sums(sums, Triangles, random);
+    scene.light_sums = uint(sums.size());
+    add_sums(sums, LightCount, random);
+    scene.environment = {.map = textures[2],
+                         .color = vec3(0.1f, 0.2f, 0.3f),
+                         .strength = 0.8f,
+                         .rotation = 0.7f,
+                         .row_sums = uint(sums.size()),
+                         .emits = 1u};
+    scene.environment.map.wrap_s = WrapRepeat;
+    scene.environment.map.wrap_t = WrapClamp;
+    const uint width = scene.environment.map.width, height = scene.environment.map.height;
+    add_sums(sums, height, random);
+    scene.environment.column_sums = uint(sums.size());
+    for (uint row = 0; row < height; ++row) add_sums(sums, width, random);
+    scene.environment_light = 4;
+
+    scene.textures = packer.add<TextureArray>(textures);
+    scene.materials = packer.add<MaterialArray>(make_materials(random));
+    std::vector<Mesh> meshes;
+    for (uint i = 0; i < 4; ++i) meshes.push_back(make_mesh(i, packer, random));
+    scene.meshes = packer.add<MeshArray>(meshes);
+    scene.instances = packer.add<InstanceArray>(make_instances(random));
+    scene.lights = packer.add<LightSourceArray>(make_lights(0u, random));
+    scene.sums = packer.add<FloatArray>(sums);
+    const std::span<const float> srgb = backend::srgb_values();
+    scene.srgb = packer.add<FloatArray>(std::vector<float>(srgb.begin(), srgb.end()));
+    Scene dark = scene;
+    dark.light_count = 0;
+    dark.features = 0;
+    dark.environment_light = -1;
+
+    World world{};
+    world.scenes = packer.add<SceneArray>(std::vector<Scene>{scene, dark});
+    world.views = packer.add<ViewArray>(make_views(random));
+    return {packer.take(), world};
+}
+
+}  // namespace tessera::shading

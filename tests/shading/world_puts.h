@@ -1,0 +1,119 @@
+#ifndef TESSERA_TESTS_SHADING_WORLD_PUTS_H
+#define TESSERA_TESTS_SHADING_WORLD_PUTS_H
+
+#include "tests/shading/world_cases.h"
+
+// Where the members of records go that functions of a scene return.
+SHADING_BEGIN
+
+inline void put(INOUT(Outputs) y, IN(Ray) ray) {
+    put(y, ray.origin);
+    put(y, ray.direction);
+}
+inline void put(INOUT(Outputs) y, IN(Measured) measured) {
+    put(y, measured.direction);
+    put(y, measured.distance);
+}
+inline void put(INOUT(Outputs) y, IN(Choice) choice) {
+    put(y, choice.index);
+    put(y, choice.rest);
+}
+inline void put(INOUT(Outputs) y, IN(PointWithError) point) {
+    put(y, point.position);
+    put(y, point.error);
+}
+inline void put(INOUT(Outputs) y, IN(Sky) sky) {
+    put(y, sky.radiance);
+    put(y, sky.pdf);
+}
+inline void put(INOUT(Outputs) y, IN(Triangle) triangle) {
+    put(y, triangle.p);
+    put(y, triangle.q);
+    put(y, triangle.r);
+}
+inline void put(INOUT(Outputs) y, IN(Surface) surface) {
+    put(y, surface.position);
+    put(y, surface.error);
+    put(y, surface.geometric_normal);
+    put(y, surface.frame);
+    put(y, surface.albedo);
+    put(y, surface.emission);
+    put(y, surface.bsdf);
+    put(y, surface.specular);
+    put(y, surface.rough_share);
+    put(y, surface.object);
+    put(y, surface.triangle);
+    put(y, surface.light);
+    put(y, surface.scatters);
+}
+inline void put(INOUT(Outputs) y, IN(LightSample) light) {
+    put(y, light.intensity);
+    put_next(y, light.radiance);
+    // What it counts with. A light seen from its own plane has a density without bound.
+    put_next(y, light.pdf > 0.0f ? light.radiance / light.pdf : vec3(0.0f));
+    put(y, light.direction);
+    put(y, light.delta);
+    put(y, light.distant);
+    put(y, light.target);
+}
+inline void put(INOUT(Outputs) y, IN(Way) way) {
+    put(y, way.scatterings);
+    put(y, way.last_is_delta);
+    put(y, way.diffuse_share);
+}
+inline void put(INOUT(Outputs) y, IN(PathSample) found) {
+    put(y, found.low);
+    put_next(y, found.high);  // parts of one light
+    put_next(y, found.diffuse);
+    put(y, found.connections);
+    put(y, found.albedo);
+    put(y, found.normal);
+    put(y, found.range);
+    put(y, found.depth);
+    put(y, found.object);
+}
+inline void put(INOUT(Outputs) y, IN(Path) path) {
+    put(y, path.numbers);
+    put(y, path.vertex);
+    put(y, path.throughput);
+    put(y, path.probability);
+    put(y, path.bsdf_pdf);
+    put(y, path.last_position);
+    put(y, path.way);
+    put(y, path.found);
+    put(y, path.rays);
+}
+inline void put(INOUT(Outputs) y, IN(LobeChances) chances) {
+    put(y, vec3(chances.reflection, chances.refraction, chances.rough));
+}
+inline void put(INOUT(Outputs) y, IN(Lobe) lobe) {
+    put(y, lobe.kind);
+    put(y, vec3(1.0f, lobe.choice, lobe.roulette));  // numbers of [0, 1), so their ulp is that of 1
+}
+inline void put(INOUT(Outputs) y, IN(Step) step) {
+    put(y, step.path);
+    put(y, step.lobe);
+    put(y, step.ray);
+    put(y, step.goes_on);
+}
+inline void put(INOUT(Outputs) y, IN(Branch) branch) {
+    put(y, branch.ray);
+    put(y, branch.weight);
+    put(y, branch.probability);
+    put(y, branch.node);
+    put(y, branch.depth);
+}
+inline void put(INOUT(Outputs) y, IN(BranchStack) open) {
+    put(y, open.count);
+    put(y, open.branches[0]);
+    put(y, open.branches[1]);
+}
+inline void put(INOUT(Outputs) y, IN(Sink) values) {
+    put(y, vec3(values.sums, 1.0f));
+    put(y, values.infinite);
+    put(y, values.count);
+}
+
+SHADING_END
+
+#endif
