@@ -1,0 +1,79 @@
+#include "tests/parity/jittered.h"
+
+#include <cmath>
+#include <limits>
+
+#include "backends/embree/context.h"
+#include "mediator/backend/tables/view_record.h"
+#include "mediator/base/random.h"
+#include "mediator/frame/merge.h"
+#include "mediator/shading/sample_values.h"
+#include "mediator/shading/trace.h"
+
+namespace tessera::test {
+
+namespace {
+
+struct JitteredContext : embree::Context {};
+
+class Jitter {
+  public:
+    // `seed`: of the ray, so that a sample stays a pure function.
+    Jitter(std::uint32_t seed, const glm::vec3& origin)
+        : random_(seed, shading::float_bits(origin.x) ^ shading::float_bits(origin.y)) {}
+
+    float operator()(float value) {
+        const std::uint64_t way = random_.below(3);
+        constexpr float Infinity = std::numeric_limits<float>::infinity();
+        return way == 0 ? value : std::nextafter(value, way == 1 ? Infinity : -Infinity);
+    }
+    glm::vec3 operator()(const glm::vec3& v) { return {(*this)(v.x), (*this)(v.y), (*this)(v.z)}; }
+
+  private:
+    CounterRandom random_;
+};
+
+bool trace_closest(const JitteredContext& context, const shading::Ray& ray, std::uint32_t seed,
+                   shading::Hit& hit) {
+    Jitter jitter(seed, ray.origin);
+    const embree::Context& exact = context;
+    if (!embree::trace_closest(exact, {ray.origin, jitter(ray.direction)}, seed, hit)) return false;
+    hit.barycentric = {jitter(hit.barycentric.x), jitter(hit.barycentric.y)};
+    hit.distance = jitter(hit.distance);
+    return true;
+}
+
+bool trace_occluded(const JitteredContext& context, const glm::vec3& origin, const glm::vec3& segment,
+                    float far, std::uint32_t seed) {
+    const embree::Context& exact = context;
+    return embree::trace_occluded(exact, origin, Jitter(seed, origin)(segment), far, seed);
+}
+
+}  // namespace
+
+JitteredEmbree::JitteredEmbree(const tools::bench::BenchScene& scene)
+    : device_(embree::make_device({.blobs = blobs_})), world_(device_.get(), blobs_) {
+    for (const scene::BlobPtr& blob : scene.blobs) blobs_->insert(blob);
+    if (auto applied = world_.apply(scene::snapshot(scene.content)); !applied) throw applied.error();
+    if (auto committed = world_.commit(); !committed) throw committed.error();
+}
+
+frame::FilmTile JitteredEmbree::film(const view::View& view, const Rect& tile, std::uint64_t sample) const {
+    frame::FilmTile film(tile, {sample, 0}, view.channels);
+    const shading::Scene scene = backend::on_host(world_.tables());
+    const shading::View record = backend::make_view(view, world_.tables().render_origin);
+    const JitteredContext context{{{}, scene, record, world_.scene()}};
+    std::size_t pixel = 0;
+    for (std::int32_t y = tile.y; y < tile.bottom(); ++y) {
+        for (std::int32_t x = tile.x; x < tile.right(); ++x, ++pixel) {
+            const shading::Path path = shading::trace_sample(context, static_cast<std::uint32_t>(x),
+                                                             static_cast<std::uint32_t>(y), sample);
+            const shading::SampleValues values =
+                shading::sample_values(record, path.found, static_cast<std::uint32_t>(sample));
+            frame::put_sample(film, pixel, {values.items, values.count});
+        }
+    }
+    return film;
+}
+
+}  // namespace tessera::test

@@ -1,0 +1,104 @@
+// The Vulkan back-end sees the light that the Embree one sees, sample by sample: the scenes are those of the
+// benches whose light comes without caustics.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "mediator/frame/merge.h"
+#include "mediator/frame/resolve.h"
+#include "mediator/picture/metrics.h"
+#include "tests/parity/both.h"
+#include "tests/parity/jittered.h"
+
+namespace tessera::test {
+namespace {
+
+using frame::Channel, frame::FilmTile, frame::Image;
+
+constexpr std::uint32_t Size = 96, Spp = 16;
+constexpr float Tolerance = 1e-3f;  // of a value, absolute up to 1
+
+bool agree(float a, float b) {
+    return a == b || std::fabs(a - b) <= Tolerance * std::max(1.0f, std::fabs(b));
+}
+
+// Pixels of which any component of any channel is another.
+std::uint64_t disagreements(const FilmTile& film, const FilmTile& reference) {
+    std::vector<bool> differs(film.pixel_count());
+    for (const frame::ChannelInfo& info : frame::channel_table()) {
+        if (!film.channels.contains(info.channel)) continue;
+        const Image ours = resolve(film, info.channel), theirs = resolve(reference, info.channel);
+        for (std::size_t i = 0; i < ours.values.size(); ++i) {
+            if (!agree(ours.values[i], theirs.values[i])) differs[i / ours.components] = true;
+        }
+    }
+    return static_cast<std::uint64_t>(std::count(differs.begin(), differs.end(), true));
+}
+
+// The mean of the differences of paired values and its standard error.
+struct PairedMean {
+    double sum = 0.0, squares = 0.0, count = 0.0;
+
+    void add(const Image& ours, const Image& theirs) {
+        for (std::size_t i = 0; i < ours.values.size(); ++i) {
+            const double d = double(ours.values[i]) - double(theirs.values[i]);
+            sum += d;
+            squares += d * d;
+            ++count;
+        }
+    }
+    double mean() const { return sum / count; }
+    double error() const { return std::sqrt(squares - sum * sum / count) / count; }
+};
+
+// Samples that are another in each of two pictures of one scene than in the Embree back-end's.
+struct Counts {
+    std::uint64_t vulkan = 0, control = 0;
+};
+
+Counts measure(const std::string& name) {
+    SCOPED_TRACE(name);
+    const tools::bench::BenchScene scene = bench_scene(name);
+    const view::View view = square_view(scene, Size);
+    const Renderer embree("embree", scene), vulkan("vulkan", scene);
+    const JitteredEmbree jittered(scene);
+    Counts counts;
+    PairedMean difference;
+    for (std::uint64_t sample = 0; sample < Spp; ++sample) {
+        const FilmTile expected = embree.film(view, view.window, {sample, 0});
+        const FilmTile found = vulkan.film(view, view.window, {sample, 0});
+        counts.vulkan += disagreements(found, expected);
+        counts.control += disagreements(jittered.film(view, view.window, sample), expected);
+        if (sample == 0) {
+            EXPECT_LE(counts.vulkan, 0.005 * Size * Size) << "of the pixels at one sample";
+        }
+        difference.add(resolve(found, Channel::Radiance), resolve(expected, Channel::Radiance));
+    }
+    EXPECT_LE(std::fabs(difference.mean()), 3.0 * difference.error());
+    const FilmTile found = vulkan.film(view, view.window, {0, 4}),
+                   expected = embree.film(view, view.window, {0, 4});
+    const double relmse =
+        picture::relmse(resolve(found, Channel::Radiance), resolve(expected, Channel::Radiance));
+    EXPECT_LE(relmse, 1e-4);
+    std::printf("%s: of %u samples %u are others (control: %u), mean %.2g +- %.2g, relMSE %.2g\n",
+                name.c_str(), Size * Size * Spp, unsigned(counts.vulkan), unsigned(counts.control),
+                difference.mean(), difference.error(), relmse);
+    return counts;
+}
+
+// One test, since few samples differ: the ratio to the control is that of all scenes.
+TEST(Parity, SampleBySample) {
+    Counts all;
+    for (const char* name : {"cornell", "grids", "room-1", "studio-1"}) {
+        const Counts counts = measure(name);
+        all.vulkan += counts.vulkan;
+        all.control += counts.control;
+    }
+    EXPECT_GE(all.control, 5u) << "the control says little";
+    EXPECT_LE(all.vulkan, 3 * all.control);
+}
+
+}  // namespace
+}  // namespace tessera::test
