@@ -18,7 +18,9 @@ struct OpenedDevice {
     Pace pace;
 
     OpenedDevice(const std::string& wanted, const DeviceSettings& settings)
-        : device(instance, choose_device(list_devices(instance), wanted), settings), kernels(device) {}
+        : instance(settings.validation, settings.listener),
+          device(instance, choose_device(list_devices(instance), wanted), settings),
+          kernels(device) {}
 };
 
 // Opens the device that the settings name, again if need be. `threads` of the settings are those of a

@@ -11,6 +11,11 @@
 
 namespace tessera::vulkan {
 
+// What the tests ask the validation layer for: Calls, or what TESSERA_TEST_VALIDATION says.
+Validation wanted_validation();
+// DeviceSettings::buffer_slack for it.
+std::uint64_t slack_for(Validation validation);
+
 // A fixture with an opened device under the validation layer. Any message of the layer fails the test, and so
 // does a machine without a device. Buffers and pipelines are made inside the test. For example:
 //
@@ -49,8 +54,7 @@ namespace tessera::vulkan {
 //
 // TESSERA_TEST_DEVICE chooses the device as --device does; TESSERA_TEST_VALIDATION=instrumented turns
 // GPU-assisted validation on. Under it, lavapipe 22.3 was seen to skip work in a workgroup of one invocation:
-// keep workgroups at least as large as a subgroup. The layer takes structs of scalar layout for padded ones (as
-// std430), so that the last of a buffer seems to lie beyond its end: give such a buffer room for one more.
+// keep workgroups at least as large as a subgroup.
 class VulkanTest : public testing::Test {
   protected:
     void SetUp() override;

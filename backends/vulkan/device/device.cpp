@@ -54,6 +54,7 @@ Device::Opened::~Opened() {
 
 Device::Device(const Instance&, const DeviceInfo& info, const DeviceSettings& settings)
     : info_(info),
+      buffer_slack_(settings.buffer_slack),
       family_(choose_family(info.handle)),
       device_{open(info, family_)},
       memory_(device_.object, info_, settings.memory),

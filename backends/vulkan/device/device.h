@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "backends/vulkan/device/device_list.h"
+#include "backends/vulkan/device/instance.h"
 #include "backends/vulkan/device/memory.h"
 #include "backends/vulkan/device/pipeline_cache.h"
 #include "backends/vulkan/device/queue.h"
@@ -18,6 +19,11 @@ struct DeviceSettings {
     MemorySettings memory;
     std::filesystem::path cache_folder;  // of compiled kernels; empty: none
     FaultHook fault;                     // for tests
+    Validation validation = Validation::None;
+    MessageListener listener;  // of the validation layer's messages
+    // Bytes behind each buffer that nobody uses. GPU-assisted validation takes structs of scalar layout for
+    // padded ones (as std430), so that the last of a buffer seems to lie beyond its end.
+    std::uint64_t buffer_slack = 0;
 };
 
 // One opened device with its memory and its queue. Outlives all buffers and pipelines made on it.
@@ -35,6 +41,7 @@ class Device final {
     Queue& queue() { return queue_; }
     PipelineCache& pipelines() { return pipelines_; }
 
+    std::uint64_t buffer_slack() const { return buffer_slack_; }
     const Memory& memory() const { return memory_; }
     std::uint64_t uploaded_bytes() const { return uploaded_; }      // so far
     void count_upload(std::uint64_t bytes) { uploaded_ += bytes; }  // for upload()
@@ -50,6 +57,7 @@ class Device final {
 
     // In the order in which they need each other.
     DeviceInfo info_;
+    std::uint64_t buffer_slack_;
     std::uint32_t family_;
     Opened device_;
     Memory memory_;

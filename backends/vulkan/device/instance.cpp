@@ -9,7 +9,8 @@
 namespace tessera::vulkan {
 
 struct Instance::Messages {
-    std::mutex mutex;
+    MessageListener listener;
+    std::mutex mutex;  // protects what follows
     std::vector<Message> list;
 };
 
@@ -26,7 +27,9 @@ Function find_function(VkInstance instance, const char* name) {
 
 }  // namespace
 
-Instance::Instance(Validation validation) : messages_(std::make_unique<Messages>()) {
+Instance::Instance(Validation validation, MessageListener listener)
+    : messages_(std::make_unique<Messages>()) {
+    messages_->listener = std::move(listener);
     const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
                                         .pApplicationName = "tessera",
                                         .apiVersion = VK_API_VERSION_1_3};
@@ -41,10 +44,15 @@ Instance::Instance(Validation validation) : messages_(std::make_unique<Messages>
                             const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) -> VkBool32 {
         auto& messages = *static_cast<Messages*>(user);
         const bool is_error = (severity & VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT) != 0;
+        Message message{is_error ? Message::Severity::Error : Message::Severity::Warning,
+                        data->pMessageIdName != nullptr ? data->pMessageIdName : "",
+                        data->pMessage != nullptr ? data->pMessage : ""};
+        if (messages.listener) {
+            messages.listener(message);
+            return VK_FALSE;
+        }
         const std::scoped_lock lock(messages.mutex);
-        messages.list.push_back({is_error ? Message::Severity::Error : Message::Severity::Warning,
-                                 data->pMessageIdName != nullptr ? data->pMessageIdName : "",
-                                 data->pMessage != nullptr ? data->pMessage : ""});
+        messages.list.push_back(std::move(message));
         return VK_FALSE;
     };
     const VkDebugUtilsMessengerCreateInfoEXT messenger{

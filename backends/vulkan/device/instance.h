@@ -2,6 +2,7 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,11 +23,14 @@ struct Message {
     std::string text;
 };
 
+using MessageListener = std::function<void(const Message&)>;
+
 // The way into Vulkan 1.3: no window system, no extensions but what collects messages. Outlives everything
 // made from it. Throws Error{Unavailable}: no driver, or no validation layer where one is asked for.
 class Instance final {
   public:
-    explicit Instance(Validation validation = Validation::None);
+    // With a listener, messages go there, from any thread, instead of being kept.
+    explicit Instance(Validation validation = Validation::None, MessageListener listener = {});
     ~Instance();
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;
