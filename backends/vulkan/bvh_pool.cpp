@@ -3,14 +3,11 @@
 #include <algorithm>
 
 #include "backends/vulkan/device/transfer.h"
+#include "backends/vulkan/mesh_data.h"
 
 namespace tessera::vulkan {
 
 namespace {
-
-MeshData data_of(const backend::Mesh& mesh) {
-    return {backend::elements<glm::vec3>(mesh.positions), backend::elements<glm::uvec3>(mesh.triangles)};
-}
 
 MeshHashes hashes_of(const backend::Mesh& mesh) {
     const auto hash_of = [](const scene::BlobPtr& blob) { return blob ? blob->hash() : Hash256(); };

@@ -1,5 +1,7 @@
 #include "backends/vulkan/gpu_scene.h"
 
+#include "backends/vulkan/device/device.h"
+
 namespace tessera::vulkan {
 
 namespace {
@@ -11,9 +13,10 @@ void set_address(Array& array, const DeviceTable& table) {
 
 }  // namespace
 
-GpuScene::GpuScene(Device& device, TreeCache& trees)
-    : blobs_(device),
-      bvh_(device, trees),
+GpuScene::GpuScene(Device& device, TreeCache& cache, Trees trees)
+    : device_(device),
+      blobs_(device),
+      bvh_(device, cache),
       textures_(device),
       materials_(device),
       meshes_(device),
@@ -21,14 +24,26 @@ GpuScene::GpuScene(Device& device, TreeCache& trees)
       lights_(device),
       sums_(device),
       srgb_(device),
-      scene_(device) {}
+      scene_(device) {
+    if (trees == Trees::Plain) plain_.emplace(device);
+}
+
+Traversal GpuScene::traversal() const {
+    if (plain_) return Traversal::Plain;
+    return pool().size() / 16 <= device_.info().texel_elements ? Traversal::Texels : Traversal::Address;
+}
 
 BvhPool::Work GpuScene::update(const backend::MeshCatalog& meshes,
                                const backend::MeshCatalog::Result& changes,
                                const backend::SceneTables& tables) {
     backend::SceneTables there = tables;
     backend::set_addresses(there, [&](const scene::BlobPtr& blob) { return blobs_.address_of(blob); });
-    const BvhPool::Work work = bvh_.update(meshes, changes, tables.instances);
+    BvhPool::Work work;
+    if (plain_) {
+        work.rebuilt = plain_->update(meshes, tables.instances);
+    } else {
+        work = bvh_.update(meshes, changes, tables.instances);
+    }
     textures_.update(there.textures);
     materials_.update(there.materials);
     meshes_.update(there.meshes);

@@ -3,14 +3,21 @@
 #include "backends/vulkan/blob_buffers.h"
 #include "backends/vulkan/bvh_pool.h"
 #include "backends/vulkan/device_table.h"
+#include "backends/vulkan/plain_pool.h"
+#include "backends/vulkan/traversal.h"
 #include "mediator/backend/tables/tables.h"
 
 namespace tessera::vulkan {
 
+enum class Trees {
+    Wide,
+    Plain  // the baseline that benches measure
+};
+
 // A scene on the device: everything that kernels read of it. Made anew from the host's side at any time.
 class GpuScene final {
   public:
-    GpuScene(Device& device, TreeCache& trees);
+    GpuScene(Device& device, TreeCache& cache, Trees trees);
 
     // Throws Error{OutOfMemory} with the sizes, and DeviceLost; then it is to be dropped.
     BvhPool::Work update(const backend::MeshCatalog& meshes, const backend::MeshCatalog::Result& changes,
@@ -18,12 +25,15 @@ class GpuScene final {
 
     std::uint64_t record() const { return scene_.address(); }  // of shading::Scene
     std::uint32_t features() const { return features_; }
-    const Buffer& pool() const { return bvh_.buffer(); }
-    std::uint32_t top() const { return bvh_.top(); }
+    const Buffer& pool() const { return plain_ ? plain_->buffer() : bvh_.buffer(); }
+    std::uint32_t top() const { return plain_ ? plain_->top() : bvh_.top(); }
+    Traversal traversal() const;  // what finds hits in the pool
 
   private:
+    Device& device_;
     BlobBuffers blobs_;
     BvhPool bvh_;
+    std::optional<PlainPool> plain_;
     DeviceTable textures_, materials_, meshes_, instances_, lights_, sums_, srgb_, scene_;
     std::uint32_t features_ = 0;
 };

@@ -6,6 +6,7 @@
 #include "backends/vulkan/job.h"
 #include "backends/vulkan/shaders/merge.comp.h"
 #include "backends/vulkan/shaders/trace.comp.h"
+#include "backends/vulkan/shaders/trace_plain.comp.h"
 #include "backends/vulkan/shaders/trace_texels.comp.h"
 #include "backends/vulkan/shaders/trace_trees.comp.h"
 #include "backends/vulkan/shaders/trace_trees_texels.comp.h"
@@ -16,10 +17,12 @@ namespace tessera::vulkan {
 namespace {
 
 std::span<const std::uint32_t> code_of(const KernelKind& kind) {
+    const bool texels = kind.traversal == Traversal::Texels;
+    if (kind.traversal == Traversal::Plain) return shaders::trace_plain_comp();
     if (kind.specular_trees) {
-        return kind.pool_as_texels ? shaders::trace_trees_texels_comp() : shaders::trace_trees_comp();
+        return texels ? shaders::trace_trees_texels_comp() : shaders::trace_trees_comp();
     }
-    return kind.pool_as_texels ? shaders::trace_texels_comp() : shaders::trace_comp();
+    return texels ? shaders::trace_texels_comp() : shaders::trace_comp();
 }
 
 // What the text asks about. The rest is no smaller without, and each mask costs a driver seconds.
@@ -41,7 +44,8 @@ const ComputePipeline& Kernels::find(KernelKind kind) {
                                   .code = code_of(kind),
                                   .constants = {{0, group_size_}, {1, kind.features}},
                                   .push_bytes = sizeof(Job)};
-        if (kind.pool_as_texels) settings.bindings = {{.index = 0, .kind = Binding::Kind::Texels}};
+        if (kind.traversal == Traversal::Texels)
+            settings.bindings = {{.index = 0, .kind = Binding::Kind::Texels}};
         kernel = std::make_unique<ComputePipeline>(device_, settings);
     }
     return *kernel;

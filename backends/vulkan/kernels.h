@@ -5,14 +5,15 @@
 #include <mutex>
 
 #include "backends/vulkan/device/pipeline.h"
+#include "backends/vulkan/traversal.h"
 
 namespace tessera::vulkan {
 
 // What a kernel is made for: what it need not do is left out of it.
 struct KernelKind {
-    std::uint32_t features = 0;   // of the scene: Feature... of records.h
-    bool specular_trees = false;  // the view wants the Whitted renderer or the range channel
-    bool pool_as_texels = false;  // the acceleration structure is bound as texels: faster, where it fits
+    std::uint32_t features = 0;                // of the scene: Feature... of records.h
+    bool specular_trees = false;               // the view wants the Whitted renderer or the range channel
+    Traversal traversal = Traversal::Address;  // Plain: without specular trees
 
     friend auto operator<=>(const KernelKind&, const KernelKind&) = default;
 };

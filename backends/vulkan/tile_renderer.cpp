@@ -55,10 +55,9 @@ class UnitRun {
           all_(unit.block.count() * pixels_),
           view_(make_buffer(device_, std::vector<shading::View>{view})),
           film_(unit, channels) {
-        fits_texels_ = scene_.pool().size() / 16 <= device_.info().texel_elements;
         const bool trees =
             view.renderer == shading::RendererWhitted || (view.keeps & shading::KeepsRange) != 0;
-        kernel_ = &kernels_.find({scene_.features(), trees, fits_texels_});
+        kernel_ = &kernels_.find({scene_.features(), trees, scene_.traversal()});
         merges_ = unit.block.level > 0 && device_.info().rounds_to_even;
         if (merges_) {
             const std::vector<MergeColumn> columns = merge_columns(channels);
@@ -129,7 +128,7 @@ class UnitRun {
                                    .item_count = items},
                   .groups = {groups_of(items)},
                   .writes = {&values}};
-        if (fits_texels_) pass.bound = {&scene_.pool()};
+        if (scene_.traversal() == Traversal::Texels) pass.bound = {&scene_.pool()};
         return pass;
     }
 
@@ -175,7 +174,7 @@ class UnitRun {
     std::uint64_t all_, sent_ = 0;  // items
     Buffer view_, columns_;
     std::uint32_t column_count_ = 0;
-    bool fits_texels_ = false, merges_ = false;
+    bool merges_ = false;
     const ComputePipeline* kernel_ = nullptr;
     UnitFilm film_;
 };

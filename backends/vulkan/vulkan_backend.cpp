@@ -21,8 +21,8 @@ constexpr int Attempts = 3;  // a device that is lost so often in a row does not
 
 class VulkanBackend final : public Backend {
   public:
-    VulkanBackend(const BackendSettings& settings, const DeviceSettings& device)
-        : opener_(settings, device), world_(settings.blobs, settings.cache_folder) {
+    VulkanBackend(const BackendSettings& settings, const DeviceSettings& device, Trees trees)
+        : opener_(settings, device), world_(settings.blobs, settings.cache_folder, trees) {
         opened_ = opener_.open();
         world_.move_to(&opened_->device);
         const DeviceInfo& info = opened_->device.info();
@@ -126,8 +126,9 @@ class VulkanBackend final : public Backend {
 
 }  // namespace
 
-std::unique_ptr<Backend> make_backend(const BackendSettings& settings, const DeviceSettings& device) {
-    return std::make_unique<VulkanBackend>(settings, device);
+std::unique_ptr<Backend> make_backend(const BackendSettings& settings, const DeviceSettings& device,
+                                      Trees trees) {
+    return std::make_unique<VulkanBackend>(settings, device, trees);
 }
 
 BackendEntry entry() {

@@ -38,7 +38,7 @@ void World::move_to(Device* device) {
 
 void World::rebuild() {
     scene_.reset();
-    auto scene = std::make_unique<GpuScene>(*device_, trees_);
+    auto scene = std::make_unique<GpuScene>(*device_, cache_, trees_);
     scene->update(meshes_, everything_in(meshes_), tables_);
     scene_ = std::move(scene);
 }
@@ -60,6 +60,7 @@ void World::restore() {
 Expected<backend::EditReport> World::commit() {
     const backend::SceneDelta delta = shadow_.pending();
     ahead_ = true;
+    const std::uint64_t uploaded = device_->uploaded_bytes();
     const backend::MeshCatalog::Result changes = meshes_.update(shadow_.scene(), delta);
     tables_ = backend::make_tables(shadow_.scene(), shadow_.lowered(), meshes_, *blobs_);
     try {
@@ -70,13 +71,14 @@ Expected<backend::EditReport> World::commit() {
         backend::EditReport report = backend::make_report(delta, meshes_, changes, tables_);
         report.rebuilt = work.rebuilt;
         report.refitted = work.refitted;
+        report.uploaded_bytes = device_->uploaded_bytes() - uploaded;
         if (!delta.everything && !delta.instances_changed) {
             report.retransformed = static_cast<std::uint32_t>(delta.moved_instances.size());
         }
         for (std::string& problem : problems_.update(shadow_.scene(), delta)) {
             report.problems.push_back(std::move(problem));
         }
-        add_notes(trees_.take_notes(), report.problems);
+        add_notes(cache_.take_notes(), report.problems);
         add_notes(device_->pipelines().take_notes(), report.problems);
         return report;
     } catch (const Error& error) {

@@ -14,8 +14,9 @@ namespace tessera::vulkan {
 class World final {
   public:
     // Built trees are kept in the folder, see TreeCache.
-    World(std::shared_ptr<scene::BlobStore> blobs, const std::filesystem::path& cache_folder)
-        : blobs_(std::move(blobs)), meshes_(blobs_), trees_(cache_folder) {}
+    World(std::shared_ptr<scene::BlobStore> blobs, const std::filesystem::path& cache_folder,
+          Trees trees = Trees::Wide)
+        : blobs_(std::move(blobs)), meshes_(blobs_), cache_(cache_folder), trees_(trees) {}
 
     // To a device that is new, or that was lost: everything is sent there. Null: lets go of it. Throws
     // Error{OutOfMemory} and DeviceLost; nothing is on the device then.
@@ -44,7 +45,8 @@ class World final {
     backend::MeshCatalog meshes_;
     backend::SceneTables tables_;
     bool ahead_ = false;  // meshes and tables are those of a version that is not committed
-    TreeCache trees_;
+    TreeCache cache_;
+    Trees trees_;
     Device* device_ = nullptr;
     std::unique_ptr<GpuScene> scene_;
     backend::MaterialProblems problems_;

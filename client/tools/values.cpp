@@ -40,6 +40,16 @@ tl::unexpected<Error> wrong(std::string_view text, const std::string& hint) {
 
 }  // namespace
 
+std::vector<std::string> split_list(std::string_view text) {
+    std::vector<std::string> items;
+    for (std::size_t from = 0; from < text.size();) {
+        const std::size_t comma = std::min(text.find(',', from), text.size());
+        if (comma > from) items.emplace_back(text.substr(from, comma - from));
+        from = comma + 1;
+    }
+    return items;
+}
+
 Expected<Size> parse_size(std::string_view text) {
     const auto parts = split(text, 'x');
     const auto width = number<std::uint32_t>(parts[0]);

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "mediator/base/clock.h"
 #include "mediator/base/error.h"
@@ -21,6 +23,8 @@ struct NodeWait {
     std::uint32_t nodes = 1;
     Duration limit = std::chrono::seconds(60);
 };
+
+std::vector<std::string> split_list(std::string_view text);  // "a,b": what is not empty between commas
 
 Expected<Size> parse_size(std::string_view text);                // "1280x720", edges of 1 to 65536
 Expected<Rect> parse_crop(std::string_view text, Size picture);  // "X,Y,W,H" inside the picture

@@ -36,7 +36,8 @@ struct EditReport {
     std::uint32_t retransformed = 0;  // instances that only moved
     std::uint64_t triangles = 0, instances = 0, lights = 0;  // of the scene after the edit
     std::uint64_t degenerate_triangles = 0;                  // counted and skipped
-    std::vector<std::string> ignored_kinds;                  // object kinds this back-end does not draw
+    std::uint64_t uploaded_bytes = 0;        // by this edit, to a device with memory of its own
+    std::vector<std::string> ignored_kinds;  // object kinds this back-end does not draw
     // Objects drawn as placeholders, and why, each once per content; what the cache folder had that is no
     // good.
     std::vector<std::string> problems;

@@ -3,8 +3,9 @@
 #include <cstring>
 #include <glm/geometric.hpp>
 
+#include "backends/vulkan/ray_cast.h"
 #include "mediator/shading/sampling.h"
-#include "tests/bvh/traced_device.h"
+#include "tests/bvh/traced_scene.h"
 #include "tests/vulkan/vulkan_test.h"
 
 namespace tessera::vulkan {
@@ -40,9 +41,14 @@ class DeviceTrace : public VulkanTest {
   protected:
     std::vector<Hit> trace(const TracedScene& scene, std::span<const TestRay> rays, Traversal traversal,
                            std::uint32_t question = shading::BvhClosest) {
-        const TracedDevice traced(device(), scene, rays, traversal, question);
-        traced.run();
-        return traced.hits();
+        const bool plain = traversal == Traversal::Plain;
+        const Buffer pool = make_buffer(device(), plain ? scene.plain_pool() : scene.pool());
+        std::vector<shading::AskedRay> asked;
+        for (const TestRay& ray : rays) asked.push_back({ray.origin, ray.near, ray.direction, ray.far});
+        const RayCast cast(device(), pool, plain ? scene.plain_top_place() : scene.top_place(), asked,
+                           {.traversal = traversal, .question = question, .passes_every = 3});
+        cast.run();
+        return cast.hits();
     }
 
     void expect_same(const TracedScene& scene, std::uint32_t question) {

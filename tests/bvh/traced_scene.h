@@ -34,7 +34,7 @@ struct TestRay {
     float near = 1.17549435e-38f, far = INFINITY;
 };
 
-// Stops at all but every third triangle.
+// Stops at all but every third triangle: CastSettings{.passes_every = 3}.
 struct ThirdsPass {
     friend bool stops_ray(const ThirdsPass&, const shading::Hit& candidate, std::uint32_t) {
         return candidate.triangle % 3 != 0;

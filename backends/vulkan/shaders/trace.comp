@@ -1,6 +1,6 @@
 #version 460
 // The path tracer: one invocation is one sample of one pixel. With POOL_AS_TEXELS the acceleration structure
-// is bound as texels instead of being reached by its address. SPECULAR_TREES leaves in what follows all
+// is bound as texels instead of being reached by its address; with PLAIN it is the baseline's. SPECULAR_TREES leaves in what follows all
 // branches of perfect speculars, which most views do not need. A variant, no constant for the driver to fold:
 // lavapipe takes 2 s for a scene with glass then instead of 5.7.
 #extension GL_GOOGLE_include_directive : require
@@ -24,7 +24,13 @@ struct Context {
     uint top;
 };
 
+#ifdef PLAIN
+#include "mediator/shading/plain_trace.h"
+#define find_hit plain_trace
+#else
 #include "mediator/shading/bvh_trace.h"
+#define find_hit bvh_trace
+#endif
 
 bool stops_ray(IN(Context) context, IN(Hit) candidate, uint seed) {
     return stops_at(context.scene, candidate.instance, candidate.triangle, candidate.barycentric, seed);
@@ -35,13 +41,13 @@ uint alpha_question() {
 }
 
 bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, OUT(Hit) hit) {
-    hit = bvh_trace(BvhItems(context.pool), context.top, ray.origin, ray.direction, NearestHit, infinity(),
+    hit = find_hit(BvhItems(context.pool), context.top, ray.origin, ray.direction, NearestHit, infinity(),
                     BvhClosest | alpha_question(), context, seed);
     return hit.instance != NoInstance;
 }
 
 bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed) {
-    return bvh_trace(BvhItems(context.pool), context.top, origin, segment, NearestHit, far,
+    return find_hit(BvhItems(context.pool), context.top, origin, segment, NearestHit, far,
                      BvhAny | alpha_question(), context, seed)
                .instance != NoInstance;
 }

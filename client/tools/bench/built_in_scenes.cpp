@@ -1,9 +1,12 @@
 #include "client/tools/bench/built_in_scenes.h"
 
+#include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <span>
 
 #include "client/tools/bench/shapes.h"
+#include "mediator/base/random.h"
 
 namespace tessera::tools::bench {
 
@@ -150,6 +153,29 @@ BenchScene grids() {
 }
 
 }  // namespace
+
+BenchScene balls(std::uint32_t triangles) {
+    constexpr std::uint32_t Count = 50;
+    // A sphere of r rings has 4 r (r - 1) triangles.
+    const auto rings = static_cast<std::uint32_t>(std::sqrt(std::max(triangles, 1000u) / Count / 4.0) + 1.0);
+    Builder builder;
+    add_cornell_walls(builder);
+    CounterRandom random(7);
+    const auto between = [&](float low, float high) {
+        return low + (high - low) * static_cast<float>(random.uniform());
+    };
+    Mesh all;
+    for (std::uint32_t i = 0; i < Count; ++i) {
+        const float radius = between(0.05f, 0.2f), x = between(-0.8f, 0.8f);
+        const float y = between(0.2f, 1.7f), z = between(-0.8f, 0.8f);
+        append(all, sphere({x, y, z}, radius, rings));
+    }
+    builder.place("balls", all, builder.diffuse({0.6f, 0.6f, 0.65f}));
+    return builder.finish({.name = "balls:" + std::to_string(triangles),
+                           .kind = "many triangles",
+                           .summary = std::to_string(all.indices.size() / 3) + " triangles in a box"},
+                          {0.0, 1.0, 3.9}, {0.0, 1.0, 0.0}, 0.66);
+}
 
 const std::vector<BuiltIn>& built_in_scenes() {
     static const std::vector<BuiltIn> scenes{

@@ -20,4 +20,8 @@ struct BuiltIn {
 };
 const std::vector<BuiltIn>& built_in_scenes();
 
+// "balls:N": 50 balls in a box under a light, of about N triangles (at least 1,000) in one mesh. For the
+// speed of rays; in no list.
+BenchScene balls(std::uint32_t triangles);
+
 }  // namespace tessera::tools::bench

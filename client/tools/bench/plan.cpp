@@ -19,20 +19,10 @@ tl::unexpected<Error> wrong(const std::string& option, const std::string& text) 
     return failure(ErrorCode::InvalidInput, option + ": " + text);
 }
 
-std::vector<std::string> split(const std::string& text) {
-    std::vector<std::string> items;
-    for (std::size_t from = 0; from < text.size();) {
-        const std::size_t comma = std::min(text.find(',', from), text.size());
-        if (comma > from) items.push_back(text.substr(from, comma - from));
-        from = comma + 1;
-    }
-    return items;
-}
-
 // "fdf:radius=4,prefilter=off,none": what has a value but no filter's name belongs to the filter before it.
 std::vector<std::string> split_filters(const std::string& text) {
     std::vector<std::string> filters;
-    for (const std::string& item : split(text)) {
+    for (const std::string& item : split_list(text)) {
         const bool is_value = item.find('=') != std::string::npos && item.find(':') == std::string::npos;
         if (is_value && !filters.empty()) {
             filters.back() += "," + item;
@@ -45,7 +35,7 @@ std::vector<std::string> split_filters(const std::string& text) {
 
 Expected<std::vector<std::uint64_t>> parse_spp(const std::string& text) {
     std::vector<std::uint64_t> spp;
-    for (const std::string& item : split(text)) {
+    for (const std::string& item : split_list(text)) {
         std::uint64_t value = 0;
         const auto result = std::from_chars(item.data(), item.data() + item.size(), value);
         if (result.ec != std::errc() || result.ptr != item.data() + item.size() || value == 0 ||
@@ -95,13 +85,9 @@ Expected<BenchPlan> understand(const BenchOptions& options, std::span<const filt
         options.references.empty() ? plan.output / "references" : std::filesystem::path(options.references);
     plan.assets = options.assets;
     plan.jobs = options.jobs != 0 ? options.jobs : core_count();
-    plan.scenes = options.scenes.empty() ? scene_names(plan.assets) : split(options.scenes);
-    for (const std::string& name : plan.scenes) {
-        const auto known = scene_names(plan.assets);
-        const bool is_known = std::find(known.begin(), known.end(), name) != known.end();
-        if (is_known || std::filesystem::exists(name)) continue;
-        return wrong("--scenes", load_scene(name, plan.assets).error().what());
-    }
+    auto scenes = choose_scenes(options.scenes, plan.assets);
+    if (!scenes) return wrong("--scenes", scenes.error().what());
+    plan.scenes = std::move(*scenes);
     auto filters = choose_filters(options.filters, table);
     if (!filters) return tl::unexpected(filters.error());
     plan.filters = std::move(*filters);

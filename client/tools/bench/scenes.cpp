@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <string_view>
 
 #include "client/cli/cli.h"
 #include "client/tools/bench/built_in_scenes.h"
+#include "client/tools/values.h"
 
 namespace tessera::tools::bench {
 
@@ -22,6 +25,19 @@ constexpr std::array Files{
     SceneFile{"still", "environment light", "still life with glass and copper in a studio's light",
               "still.glb", "env-studio.exr"},
 };
+
+constexpr std::string_view Balls = "balls:";
+constexpr std::uint32_t MostBallTriangles = 50'000'000;
+
+// Of "balls:N".
+Expected<std::uint32_t> ball_triangles(const std::string& name) {
+    std::uint32_t triangles = 0;
+    const char* last = name.data() + name.size();
+    const auto read = std::from_chars(name.data() + Balls.size(), last, triangles);
+    if (read.ec == std::errc() && read.ptr == last && triangles <= MostBallTriangles) return triangles;
+    return failure(ErrorCode::InvalidInput, "'" + name + "' names no number of triangles up to " +
+                                                std::to_string(MostBallTriangles) + ": write balls:1000000");
+}
 
 Expected<BenchScene> import_file(const SceneFile& wanted, const fs::path& path, const fs::path& environment) {
     auto imported = import::import_scene(path, {.environment = environment});
@@ -49,11 +65,29 @@ std::vector<std::string> scene_names(const fs::path& assets) {
     return names;
 }
 
+Expected<std::vector<std::string>> choose_scenes(const std::string& list, const fs::path& assets) {
+    const std::vector<std::string> known = scene_names(assets);
+    if (list.empty()) return known;
+    std::vector<std::string> chosen = split_list(list);
+    for (const std::string& name : chosen) {
+        const bool is_known = std::find(known.begin(), known.end(), name) != known.end();
+        if (is_known || fs::exists(name)) continue;
+        if (name.starts_with(Balls) && ball_triangles(name)) continue;
+        return tl::unexpected(load_scene(name, assets).error());
+    }
+    return chosen;
+}
+
 Expected<BenchScene> load_scene(const std::string& name, const fs::path& assets) {
     const auto& built_in = built_in_scenes();
     const auto made = std::find_if(built_in.begin(), built_in.end(),
                                    [&](const BuiltIn& scene) { return scene.name == name; });
     if (made != built_in.end()) return made->make();
+    if (name.starts_with(Balls)) {
+        const auto triangles = ball_triangles(name);
+        if (!triangles) return tl::unexpected(triangles.error());
+        return balls(*triangles);
+    }
     const auto file = std::find_if(Files.begin(), Files.end(),
                                    [&](const SceneFile& candidate) { return candidate.name == name; });
     if (file != Files.end()) {

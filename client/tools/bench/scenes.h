@@ -21,7 +21,11 @@ struct BenchScene {
 // All scenes by name, the default list: files of the folder `assets` that are there, then the built-in ones.
 std::vector<std::string> scene_names(const std::filesystem::path& assets);
 
-// One of those, or a scene file. NotFound, InvalidInput.
+// The scenes of a list "a,b", all for "": whether each is there is known before the work. NotFound.
+Expected<std::vector<std::string>> choose_scenes(const std::string& list,
+                                                 const std::filesystem::path& assets);
+
+// One of those, "balls:N" (built_in_scenes.h), or a scene file. NotFound, InvalidInput.
 Expected<BenchScene> load_scene(const std::string& name, const std::filesystem::path& assets);
 
 }  // namespace tessera::tools::bench

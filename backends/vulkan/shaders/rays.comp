@@ -1,10 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Many rays, one each invocation. With TEXELS pool and rays are read as texels and hits are storage, else all by
+// Bare traversal: many rays, one each invocation. With TEXELS pool and rays are read as texels and hits are storage, else all by
 // address; with PLAIN the trees are the baseline's.
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint Question = 0u;
+layout(constant_id = 1) const uint PassesEvery = 0u;
 
 #ifdef TEXELS
 layout(set = 0, binding = 0) uniform usamplerBuffer pool_texels;
@@ -22,12 +23,7 @@ struct Context {
 #include "mediator/shading/bvh_trace.h"
 #endif
 
-struct AskedRay {
-    vec3 origin;
-    float near;
-    vec3 direction;
-    float far;
-};
+#include "mediator/shading/asked_ray.h"
 
 ARRAY_OF(AskedRay, AskedRays, 16);
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Hits {
@@ -42,9 +38,9 @@ layout(push_constant, scalar) uniform Arguments {
     uint count;
 };
 
-// As ThirdsPass in traced_scene.h.
+// Instead of a texture's alpha.
 bool stops_ray(IN(Context) context, IN(Hit) candidate, uint seed) {
-    return candidate.triangle % 3u != 0u;
+    return PassesEvery == 0u || candidate.triangle % PassesEvery != 0u;
 }
 
 #ifdef TEXELS

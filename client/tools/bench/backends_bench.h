@@ -1,0 +1,16 @@
+#pragma once
+
+#include <optional>
+#include <stop_token>
+
+#include "client/tools/bench/backends_plan.h"
+#include "client/tools/bench/backends_results.h"
+#include "client/tools/bench/scene_bench.h"
+
+namespace tessera::tools::bench {
+
+// Everything that is measured of all entrants, who take turns. Nothing when it was stopped. Throws Error.
+std::optional<BackendsResults> run_backends(const BackendsPlan& plan, const BenchProgress& progress,
+                                            const std::stop_token& stop);
+
+}  // namespace tessera::tools::bench
