@@ -10,6 +10,7 @@
 #include "mediator/backend/tables/view_record.h"
 #include "mediator/base/random.h"
 #include "mediator/shading/camera.h"
+#include "mediator/shading/environment.h"
 #include "mediator/shading/points.h"
 #include "mediator/shading/textures.h"
 
@@ -138,6 +139,36 @@ TEST(TextureNumerics, LookupsAreThoseOfDoublesOverManyRepeats) {
                     << wrap << " " << filter << " " << uv.x << " " << uv.y;
             }
         }
+    }
+}
+
+// Beside the poles of a map, where the height of a direction tells its angle no more.
+TEST(SkyNumerics, PlacesAndDensitiesNearThePolesAreThoseOfDoubles) {
+    constexpr std::uint32_t Size = 4;
+    std::array<glm::vec3, Size * Size> texels;
+    texels.fill(glm::vec3(1.0f));
+    std::array<float, Size + Size * Size> sums;  // of the rows, and of the texels of each row: all alike
+    for (std::uint32_t i = 0; i < sums.size(); ++i) sums[i] = float(i % Size + 1) / Size;
+    const Scene scene{.sums = {sums.data()},
+                      .environment = {.map = {.texels = {reinterpret_cast<const uint*>(texels.data())},
+                                              .width = Size,
+                                              .height = Size,
+                                              .format = TexelRgbFloat},
+                                      .strength = 1.0f,
+                                      .row_sums = 0,
+                                      .column_sums = Size},
+                      .features = FeatureEnvironmentMap};
+    CounterRandom random(6);
+    for (int i = 0; i < 2000; ++i) {
+        const double theta = std::pow(10.0, -6.0 * random.uniform()), phi = 2.0 * M_PI * random.uniform();
+        const double side = i % 2 == 0 ? 1.0 : -1.0;
+        const glm::vec3 direction(std::sin(theta) * std::sin(phi), side * std::cos(theta),
+                                  -std::sin(theta) * std::cos(phi));
+        const double sine = glm::length(glm::dvec2(direction.x, direction.z));
+        const double angle = side > 0.0 ? std::asin(sine) : M_PI - std::asin(sine);
+        EXPECT_NEAR(map_place(scene.environment, direction).y, angle / M_PI, 2e-7);
+        const double expected = 1.0 / (2.0 * M_PI * M_PI * sine);
+        EXPECT_NEAR(sky_at(scene, direction).pdf / expected, 1.0, 1e-6) << theta;
     }
 }
 

@@ -72,11 +72,18 @@ TEST_F(ValidatedBackend, RendersAndIsEditedAtEveryLevel) {
         EXPECT_GT(rays_of(), 0u);
         test::commit(*backend, {builder.move(test::BlockAt, test::moved(0.2, 0.1, -1.5))});  // retransformed
         EXPECT_GT(rays_of(), 0u);
+        using Field = scene::Geometry::Field;
+        test::commit(*backend, {builder.edit({test::SceneBuilder::update<scene::Geometry>(
+                                   test::Block, Field::Hint, {.hint = scene::MotionHint::Animated})})});
         scene::Geometry bent = test::square(*blobs, 0.3f, test::Glow);
         bent.positions = test::array_blob<float>(
             *blobs, {-0.3f, -0.3f, 0, 0.3f, -0.3f, 0.1f, 0.3f, 0.3f, 0, -0.3f, 0.3f, 0});
-        test::commit(*backend, {builder.edit({test::SceneBuilder::update<scene::Geometry>(
-                                   test::Block, scene::Geometry::Field::Positions, bent)})});  // refitted
+        {
+            const auto scope = backend->begin_edit();
+            ASSERT_TRUE(scope->apply(builder.edit(
+                {test::SceneBuilder::update<scene::Geometry>(test::Block, Field::Positions, bent)})));
+            EXPECT_EQ(scope->commit().value().refitted, 1u);
+        }
         EXPECT_GT(rays_of(), 0u);
         test::commit(*backend, {builder.edit({scene::Remove{test::Floor}})});
         EXPECT_GT(rays_of(), 0u);
