@@ -104,9 +104,11 @@ std::string way_of(const wire::StartJob& request) {
 
 std::uint32_t choose_tile_edge(const wire::StartJob& request) {
     constexpr std::uint32_t Large = 64, Small = 32, EnoughTiles = 64;
+    constexpr std::uint32_t Drawn = 128;  // each tile's samples draw all that stands in it
     const view::View& view = request.view;
     std::uint32_t edge = request.tile;
     if (edge == 0) edge = view.window.pixel_count() >= EnoughTiles * Large * Large ? Large : Small;
+    if (request.tile == 0 && view.renderer == view::Renderer::Raster) edge = Drawn;
     const std::size_t bytes_per_pixel = 4 * (view.channels.plane_count() + 1);
     const auto limit =
         static_cast<std::uint32_t>(std::sqrt(double(net::BulkLimit - 4096) / double(bytes_per_pixel)));

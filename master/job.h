@@ -64,8 +64,8 @@ std::string way_of(const wire::StartJob& request);
 view::View feature_view(const view::View& view);
 view::View scaled_view(const view::View& view, std::uint32_t scale);
 
-// The edge of the tiles: what was asked for, else 64 for large pictures and 32 for small ones; never so large
-// that the film of one tile exceeds a bulk message.
+// The edge of the tiles: what was asked for, else 128 for the renderer Raster, 64 for large pictures and 32
+// for small ones; never so large that the film of one tile exceeds a bulk message.
 std::uint32_t choose_tile_edge(const wire::StartJob& request);
 
 inline constexpr std::uint64_t MaxSamplesPerPixel = std::uint64_t{1} << 31;  // counts are 32 bits

@@ -56,6 +56,7 @@ bool JobRunner::suits(const NodeRecord& node) const {
     const bool has_channels = (request.view.channels.bits() & ~node.hello.channels.bits()) == 0;
     const bool has_room = node.refused != job_->version;
     return !node.leaving && !node.stuck && node.bulk && has_channels && has_room &&
+           node.hello.renderers.contains(request.view.renderer) &&
            (!request.reproducible || node.hello.reproducible);
 }
 
@@ -81,6 +82,16 @@ void JobRunner::tick(TimePoint now) {
             break;
     }
     if (job_ && job_->phase != wire::JobPhase::Delivering) send_progress(now);
+}
+
+// "no node has the renderer raster: ...; ", or nothing when one has.
+std::string JobRunner::missing_renderer() const {
+    const view::Renderer renderer = job_->request.view.renderer;
+    for (const auto& [id, node] : nodes_.all()) {
+        if (node.hello.renderers.contains(renderer)) return {};
+    }
+    if (renderer != view::Renderer::Raster) return {};
+    return "no node has the renderer raster: start one with --backend vulkan; ";
 }
 
 // "the back-ends of 2 nodes do not give alpha, range; ", or nothing when channels are not the trouble.
@@ -132,7 +143,7 @@ void JobRunner::wait_for_nodes(TimePoint now) {
     job_->phase = wire::JobPhase::WaitingForNodes;
     if (now - job_->without_nodes_since >= job_->request.wait_limit) {
         decide(wire::JobOutcome::NoNodes,
-               missing_channels() + missing_room() + std::to_string(suitable) + " of " +
+               missing_renderer() + missing_channels() + missing_room() + std::to_string(suitable) + " of " +
                    std::to_string(wanted) +
                    " nodes came: start more nodes or ask for fewer with --wait-nodes",
                now);

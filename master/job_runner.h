@@ -53,6 +53,7 @@ class JobRunner {
   private:
     bool suits(const NodeRecord& node) const;  // could take part, at whatever version
     bool ready(const NodeRecord& node) const;  // suits, and holds the version
+    std::string missing_renderer() const;
     std::string missing_channels() const;
     std::string missing_room() const;
     void wait_for_nodes(TimePoint now);

@@ -34,6 +34,7 @@ void NodeMachine::say_hello(TimePoint now) {
                      .backend = settings_.backend,
                      .kind = capabilities_.kind,
                      .channels = capabilities_.channels,
+                     .renderers = capabilities_.renderers,
                      .preferred_tile = capabilities_.preferred_tile,
                      .concurrent_units =
                          std::max(1u, settings_.workers ? settings_.workers : capabilities_.concurrent_units),

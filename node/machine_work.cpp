@@ -13,22 +13,25 @@ constexpr std::uint32_t MaxBlockLevel = 24;
 constexpr std::size_t UnitsInGoodbye = 1024;
 constexpr std::size_t FilmLimit = net::BulkLimit - 4096;  // without the header of a film part
 
-std::optional<std::string> fault(const view::View& view, frame::ChannelSet offered) {
+std::optional<std::string> fault(const view::View& view, const backend::Capabilities& offered) {
     const Rect picture{0, 0, static_cast<std::int32_t>(view.width), static_cast<std::int32_t>(view.height)};
     if (view.width == 0 || view.height == 0 || view.width > 65536 || view.height > 65536)
         return "its size is out of range";
     if (view.window.empty() || !(intersection(view.window, picture) == view.window))
         return "its window is not inside the picture";
     if (view.channels.empty()) return "it asks for no channel";
-    if ((view.channels.bits() & ~offered.bits()) != 0)
+    if ((view.channels.bits() & ~offered.channels.bits()) != 0)
         return "it asks for a channel that this back-end does not have";
+    if (!offered.renderers.contains(view.renderer))
+        return "it asks for the renderer " + std::string(view::renderer_name(view.renderer)) +
+               ", which this back-end does not have";
     return std::nullopt;
 }
 
 }  // namespace
 
 void NodeMachine::on(wire::OpenView& open, TimePoint) {
-    if (const auto why = fault(open.view, capabilities_.channels)) {
+    if (const auto why = fault(open.view, capabilities_)) {
         const std::string text =
             "view " + std::to_string(open.view.id.value) + " cannot be rendered: " + *why;
         send(wire::Notice{wire::Severity::Error, text});

@@ -40,6 +40,7 @@ class EmbreeBackend final : public Backend {
     std::unique_ptr<EditScope> begin_edit() override { return std::make_unique<Edit>(*this); }
 
     RenderResult render(const view::View& view, const view::WorkUnit& unit, std::stop_token stop) override {
+        require_renderer(view::TracingRenderers, view);
         const std::shared_lock lock(mutex_);
         if (unit.version != world_.version()) return {};
         const PathTracer tracer(world_.tables(), world_.scene(), view);
@@ -59,6 +60,7 @@ class EmbreeBackend final : public Backend {
 
     std::vector<std::string> probe(const view::View& view, std::uint32_t x, std::uint32_t y,
                                    std::uint64_t sample) override {
+        require_renderer(view::TracingRenderers, view);
         const std::shared_lock lock(mutex_);
         const PathTracer tracer(world_.tables(), world_.scene(), view);
         std::vector<std::string> story;

@@ -37,6 +37,7 @@ class NullBackend final : public Backend {
     std::unique_ptr<EditScope> begin_edit() override { return std::make_unique<Edit>(*this); }
 
     RenderResult render(const view::View& view, const view::WorkUnit& unit, std::stop_token stop) override {
+        require_renderer(view::TracingRenderers, view);
         const std::shared_lock lock(mutex_);
         if (unit.version != shadow_.scene().version()) return {};
         const std::uint64_t key = view_key(content_, view);
@@ -57,6 +58,7 @@ class NullBackend final : public Backend {
 
     std::vector<std::string> probe(const view::View& view, std::uint32_t x, std::uint32_t y,
                                    std::uint64_t sample) override {
+        require_renderer(view::TracingRenderers, view);
         const std::shared_lock lock(mutex_);
         const Gradient values = gradient(view, shadow_.lowered(), view_key(content_, view),
                                          static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), sample);

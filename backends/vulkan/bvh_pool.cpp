@@ -89,6 +89,8 @@ void BvhPool::update_top(std::span<const shading::Instance> instances) {
                      .triangles = rows.triangles.item(),
                      .alpha_tested = instance.alpha_tested != 0};
     }
+    boxes_.clear();
+    for (const PlacedMesh& instance : placed) boxes_.push_back(world_box(instance));
     if (refit_top(top_, placed, top_built_cost_)) return;
     top_ = build_top(builder_, placed);
     top_built_cost_ = top_.tree.cost;

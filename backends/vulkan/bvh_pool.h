@@ -29,6 +29,8 @@ class BvhPool final {
                 std::span<const shading::Instance> instances);
 
     const Buffer& buffer() const { return buffer_; }
+    // What each instance can be hit in; empty: it is left out and never hit.
+    const std::vector<Box>& boxes() const { return boxes_; }
     std::uint32_t top() const { return top_row_.item(); }  // where the top level's root is, in items
 
   private:
@@ -64,6 +66,7 @@ class BvhPool final {
     TopBvh top_;
     double top_built_cost_ = 0.0;
     Row top_row_;
+    std::vector<Box> boxes_;
 };
 
 }  // namespace tessera::vulkan

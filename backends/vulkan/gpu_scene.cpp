@@ -1,6 +1,7 @@
 #include "backends/vulkan/gpu_scene.h"
 
 #include "backends/vulkan/device/device.h"
+#include "backends/vulkan/raster/raster_jobs.h"
 
 namespace tessera::vulkan {
 
@@ -9,6 +10,16 @@ namespace {
 template <class Array>
 void set_address(Array& array, const DeviceTable& table) {
     array.items = reinterpret_cast<decltype(array.items)>(table.address());
+}
+
+std::vector<RasterBound> bounds_of(const std::vector<Box>& boxes, const backend::SceneTables& tables) {
+    std::vector<RasterBound> bounds(boxes.size());
+    for (std::size_t i = 0; i < bounds.size(); ++i) {
+        const std::uint32_t triangles = tables.meshes[tables.instances[i].mesh].triangle_count;
+        bounds[i] = {
+            .low = boxes[i].low, .vertices = boxes[i].empty() ? 0 : 3 * triangles, .high = boxes[i].high};
+    }
+    return bounds;
 }
 
 }  // namespace
@@ -24,7 +35,8 @@ GpuScene::GpuScene(Device& device, TreeCache& cache, Trees trees)
       lights_(device),
       sums_(device),
       srgb_(device),
-      scene_(device) {
+      scene_(device),
+      bounds_(device) {
     if (trees == Trees::Plain) plain_.emplace(device);
 }
 
@@ -59,7 +71,9 @@ BvhPool::Work GpuScene::update(const backend::MeshCatalog& meshes,
     set_address(there.scene.sums, sums_);
     set_address(there.scene.srgb, srgb_);
     scene_.update(std::as_bytes(std::span(&there.scene, 1)));
+    if (!plain_) bounds_.update(bounds_of(bvh_.boxes(), tables));
     features_ = there.scene.features;
+    instance_count_ = there.scene.instance_count;
     blobs_.drop_unused();
     return work;
 }

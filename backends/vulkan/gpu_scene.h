@@ -28,14 +28,17 @@ class GpuScene final {
     const Buffer& pool() const { return plain_ ? plain_->buffer() : bvh_.buffer(); }
     std::uint32_t top() const { return plain_ ? plain_->top() : bvh_.top(); }
     Traversal traversal() const;  // what finds hits in the pool
+    std::uint32_t instance_count() const { return instance_count_; }
+    // RasterBound of each instance; none with plain trees.
+    const Buffer& bounds() const { return bounds_.buffer(); }
 
   private:
     Device& device_;
     BlobBuffers blobs_;
     BvhPool bvh_;
     std::optional<PlainPool> plain_;
-    DeviceTable textures_, materials_, meshes_, instances_, lights_, sums_, srgb_, scene_;
-    std::uint32_t features_ = 0;
+    DeviceTable textures_, materials_, meshes_, instances_, lights_, sums_, srgb_, scene_, bounds_;
+    std::uint32_t features_ = 0, instance_count_ = 0;
 };
 
 }  // namespace tessera::vulkan

@@ -16,9 +16,12 @@ struct Job {
     std::uint32_t pixels = 0;  // of the tile
     std::uint32_t first_item = 0, item_count = 0;
     std::uint32_t unused = 0;
+    // Of RASTERISED alone, an address: instance and triangle of each item from the dispatch's first sample
+    // on.
+    std::uint64_t seen = 0;
 };
 
-static_assert(sizeof(Job) == 72);
+static_assert(sizeof(Job) == 80 && offsetof(Job, seen) == 72);
 static_assert(offsetof(Job, values) == 24 && offsetof(Job, first_sample) == 32);
 static_assert(offsetof(Job, top) == 40 && offsetof(Job, x) == 44 && offsetof(Job, width) == 52);
 static_assert(offsetof(Job, pixels) == 56 && offsetof(Job, first_item) == 60);

@@ -7,6 +7,8 @@
 #include "backends/vulkan/shaders/merge.comp.h"
 #include "backends/vulkan/shaders/trace.comp.h"
 #include "backends/vulkan/shaders/trace_plain.comp.h"
+#include "backends/vulkan/shaders/trace_raster.comp.h"
+#include "backends/vulkan/shaders/trace_raster_texels.comp.h"
 #include "backends/vulkan/shaders/trace_texels.comp.h"
 #include "backends/vulkan/shaders/trace_trees.comp.h"
 #include "backends/vulkan/shaders/trace_trees_texels.comp.h"
@@ -19,6 +21,7 @@ namespace {
 std::span<const std::uint32_t> code_of(const KernelKind& kind) {
     const bool texels = kind.traversal == Traversal::Texels;
     if (kind.traversal == Traversal::Plain) return shaders::trace_plain_comp();
+    if (kind.rasterised) return texels ? shaders::trace_raster_texels_comp() : shaders::trace_raster_comp();
     if (kind.specular_trees) {
         return texels ? shaders::trace_trees_texels_comp() : shaders::trace_trees_comp();
     }
@@ -40,7 +43,7 @@ const ComputePipeline& Kernels::find(KernelKind kind) {
     const std::scoped_lock lock(mutex_);
     std::unique_ptr<ComputePipeline>& kernel = made_[kind];
     if (!kernel) {
-        PipelineSettings settings{.name = "path tracing",
+        PipelineSettings settings{.name = kind.rasterised ? "shading" : "path tracing",
                                   .code = code_of(kind),
                                   .constants = {{0, group_size_}, {1, kind.features}},
                                   .push_bytes = sizeof(Job)};

@@ -13,6 +13,7 @@ namespace tessera::vulkan {
 struct KernelKind {
     std::uint32_t features = 0;                // of the scene: Feature... of records.h
     bool specular_trees = false;               // the view wants the Whitted renderer or the range channel
+    bool rasterised = false;                   // from first hits that are drawn; with specular trees
     Traversal traversal = Traversal::Address;  // Plain: without specular trees
 
     friend auto operator<=>(const KernelKind&, const KernelKind&) = default;

@@ -6,6 +6,8 @@
 #include "backends/vulkan/device/device.h"
 #include "backends/vulkan/kernels.h"
 #include "backends/vulkan/pace.h"
+#include "backends/vulkan/raster/raster_kernels.h"
+#include "backends/vulkan/raster/raster_target.h"
 #include "mediator/backend/backend.h"
 
 namespace tessera::vulkan {
@@ -15,12 +17,16 @@ struct OpenedDevice {
     Instance instance;
     Device device;
     Kernels kernels;
-    Pace pace;
+    Pace pace, raster_pace;
+    RasterKernels raster;
+    RasterTargets targets;
 
     OpenedDevice(const std::string& wanted, const DeviceSettings& settings)
         : instance(settings.validation, settings.listener),
           device(instance, choose_device(list_devices(instance), wanted), settings),
-          kernels(device) {}
+          kernels(device),
+          raster(device),
+          targets(device) {}
 };
 
 // Opens the device that the settings name, again if need be. `threads` of the settings are those of a

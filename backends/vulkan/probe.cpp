@@ -3,6 +3,7 @@
 #include "backends/vulkan/device/transfer.h"
 #include "mediator/backend/story.h"
 #include "mediator/shading/bvh_trace.h"
+#include "mediator/shading/raster.h"
 #include "mediator/shading/trace.h"
 
 namespace tessera::vulkan {
@@ -36,6 +37,15 @@ bool trace_occluded(const HostContext& context, const glm::vec3& origin, const g
                .instance != shading::NoInstance;
 }
 
+// As if the rasteriser saw what a ray sees: but at edges, it does.
+shading::Path trace_drawn(const HostContext& context, glm::uvec2 pixel, std::uint64_t sample) {
+    const shading::Path start =
+        shading::start_path(shading::make_sampler(pixel.x, pixel.y, context.view.seed, sample));
+    const shading::Ray ray =
+        shading::camera_ray(context.view, pixel.x, pixel.y, shading::raster_place(context.view, sample));
+    return shading::trace_from(context, start, ray, shading::FirstHit{});
+}
+
 }  // namespace
 
 std::vector<std::string> replay(Device& device, const GpuScene& scene, const backend::SceneTables& tables,
@@ -44,7 +54,9 @@ std::vector<std::string> replay(Device& device, const GpuScene& scene, const bac
     const shading::Scene on_host = backend::on_host(tables);
     backend::Story story;
     const HostContext context{{&story}, on_host, view, {pool.data()}, scene.top()};
-    const shading::Path path = shading::trace_sample(context, pixel.x, pixel.y, sample);
+    const shading::Path path = view.renderer == shading::RendererRaster
+                                   ? trace_drawn(context, pixel, sample)
+                                   : shading::trace_sample(context, pixel.x, pixel.y, sample);
     backend::write_end(story, shading::radiance_of(path.found), path.rays);
     return story;
 }

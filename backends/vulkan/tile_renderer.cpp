@@ -56,8 +56,14 @@ class UnitRun {
           view_(make_buffer(device_, std::vector<shading::View>{view})),
           film_(unit, channels) {
         const bool trees =
-            view.renderer == shading::RendererWhitted || (view.keeps & shading::KeepsRange) != 0;
-        kernel_ = &kernels_.find({scene_.features(), trees, scene_.traversal()});
+            view.renderer != shading::RendererPathTracing || (view.keeps & shading::KeepsRange) != 0;
+        kernel_ = &kernels_.find({.features = scene_.features(),
+                                  .specular_trees = trees,
+                                  .rasterised = with.raster != nullptr,
+                                  .traversal = scene_.traversal()});
+        if (with.raster != nullptr) {
+            raster_.emplace(device_, *with.raster, scene_, view, view_.address(), unit.tile);
+        }
         merges_ = unit.block.level > 0 && device_.info().rounds_to_even;
         if (merges_) {
             const std::vector<MergeColumn> columns = merge_columns(channels);
@@ -85,7 +91,9 @@ class UnitRun {
 
   private:
     void send(Batch& batch) {
-        const std::uint64_t most = pace_.samples(), begun = sent_ % pixels_;
+        const std::uint64_t begun = sent_ % pixels_;
+        std::uint64_t most = pace_.samples();
+        if (raster_) most = std::min(most, std::uint64_t{RasterRun::MostSamples} * pixels_);
         batch.block.reset();
         if (merges_ && begun == 0 && sent_ < all_) {
             batch.block = next_block(unit_.block.first + sent_ / pixels_, unit_.block.end(), most / pixels_);
@@ -94,12 +102,17 @@ class UnitRun {
         if (batch.block) items = batch.block->count() * pixels_;
         // To the end of a sample, from where on blocks can be merged.
         if (merges_ && begun != 0 && most >= 2 * std::uint64_t{pixels_}) items = pixels_ - begun;
+        if (raster_) items = of_whole_draws(items, begun);
         batch.items = static_cast<std::uint32_t>(items);
         if (items == 0) return;
         const std::uint64_t bytes = (std::uint64_t{values_} + 1) * items * sizeof(float);
         Buffer& values = batch.block ? batch.scratch : batch.values;
         make_room(device_, values, bytes, batch.block ? MemoryKind::Device : MemoryKind::Readback);
         std::vector<Step> steps;
+        if (raster_ && begun == 0) {
+            const auto samples = static_cast<std::uint32_t>((items + pixels_ - 1) / pixels_);
+            raster_->draw(steps, unit_.block.first + sent_ / pixels_, samples);
+        }
         steps.emplace_back(traced(values, batch.items));
         if (batch.block) {
             const std::uint64_t words = (std::uint64_t{planes_} + 1) * pixels_ + 1;
@@ -110,6 +123,12 @@ class UnitRun {
         }
         batch.submission = device_.queue().submit(steps, Timing::Total);
         sent_ += items;
+    }
+
+    // A sample is drawn whole; what is drawn together ends together.
+    std::uint64_t of_whole_draws(std::uint64_t items, std::uint64_t begun) const {
+        if (begun != 0) return std::min(items, pixels_ - begun);
+        return items > pixels_ ? items / pixels_ * pixels_ : items;
     }
 
     Pass traced(const Buffer& values, std::uint32_t items) const {
@@ -125,9 +144,11 @@ class UnitRun {
                                    .width = static_cast<std::uint32_t>(unit_.tile.width),
                                    .pixels = pixels_,
                                    .first_item = static_cast<std::uint32_t>(sent_ % pixels_),
-                                   .item_count = items},
+                                   .item_count = items,
+                                   .seen = raster_ ? raster_->seen().address() : 0},
                   .groups = {groups_of(items)},
                   .writes = {&values}};
+        if (raster_) pass.reads = {&raster_->seen()};
         if (scene_.traversal() == Traversal::Texels) pass.bound = {&scene_.pool()};
         return pass;
     }
@@ -177,6 +198,7 @@ class UnitRun {
     bool merges_ = false;
     const ComputePipeline* kernel_ = nullptr;
     UnitFilm film_;
+    std::optional<RasterRun> raster_;
 };
 
 }  // namespace

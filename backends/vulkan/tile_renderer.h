@@ -6,6 +6,7 @@
 #include "backends/vulkan/gpu_scene.h"
 #include "backends/vulkan/kernels.h"
 #include "backends/vulkan/pace.h"
+#include "backends/vulkan/raster/raster_run.h"
 #include "mediator/backend/backend.h"
 
 namespace tessera::vulkan {
@@ -18,6 +19,7 @@ struct TileRenderer {
     Kernels& kernels;
     Pace& pace;
     const GpuScene& scene;
+    const RasterTools* raster = nullptr;  // for first hits that are drawn (view::Renderer::Raster)
 
     backend::RenderResult run(const shading::View& view, const view::WorkUnit& unit,
                               frame::ChannelSet channels, const std::stop_token& stop) const;

@@ -27,7 +27,10 @@ class VulkanBackend final : public Backend {
         world_.move_to(&opened_->device);
         const DeviceInfo& info = opened_->device.info();
         // A card needs many samples at a time.
+        view::RendererSet renderers = view::TracingRenderers;
+        if (info.draws && trees == Trees::Wide) renderers.insert(view::Renderer::Raster);
         capabilities_ = {.channels = AllChannels,
+                         .renderers = renderers,
                          .preferred_tile = info.kind == DeviceKind::Cpu ? 32u : 128u,
                          .concurrent_units = 2,  // one merges while the other one's samples are traced
                          .deterministic = true,
@@ -45,15 +48,22 @@ class VulkanBackend final : public Backend {
     std::unique_ptr<EditScope> begin_edit() override { return std::make_unique<Edit>(*this); }
 
     RenderResult render(const view::View& view, const view::WorkUnit& unit, std::stop_token stop) override {
+        require_renderer(capabilities_.renderers, view);
         return on_device([&]() -> RenderResult {
             if (unit.version != world_.version()) return {};
-            const TileRenderer renderer{opened_->device, opened_->kernels, opened_->pace, world_.scene()};
-            return renderer.run(make_view(view, world_.tables().render_origin), unit, view.channels, stop);
+            const shading::View record = make_view(view, world_.tables().render_origin);
+            const bool rasters = view.renderer == view::Renderer::Raster;
+            const RasterTools tools{opened_->raster, opened_->targets, {}};
+            const TileRenderer renderer{opened_->device, opened_->kernels,
+                                        rasters ? opened_->raster_pace : opened_->pace, world_.scene(),
+                                        rasters ? &tools : nullptr};
+            return renderer.run(record, unit, view.channels, stop);
         });
     }
 
     std::vector<std::string> probe(const view::View& view, std::uint32_t x, std::uint32_t y,
                                    std::uint64_t sample) override {
+        require_renderer(capabilities_.renderers, view);
         return on_device([&] {
             return replay(opened_->device, world_.scene(), world_.tables(),
                           make_view(view, world_.tables().render_origin), {x, y}, sample);

@@ -36,8 +36,10 @@ void ViewOptions::add_to(cli::CommandLine& command) {
     command.choice("--pixel-filter", "how a sample counts for the pixels around it", pixel_filter,
                    {"box", "gaussian", "blackman-harris"});
     command.option("--seed", "another seed, other noise", seed);
-    command.choice("--renderer", "path tracing, or direct light and perfect speculars only", renderer,
-                   {"path", "whitted"});
+    command.choice("--renderer",
+                   "path tracing, or direct light and perfect speculars only; raster: the latter with first "
+                   "hits from a rasteriser, by nodes with --backend vulkan",
+                   renderer, {"path", "whitted", "raster"});
     command.choice("--path-class", "paths that the pixel filter may blur", path_class, path_class_names());
     command.choice("--feature-rule", "what the shading feature of the filter fdf counts", feature_rule,
                    {"demodulated", "connections"});
@@ -78,8 +80,10 @@ Expected<ViewPlan> understand(const ViewOptions& options) {
     plan.import.environment_strength = static_cast<float>(options.environment_strength);
     plan.view.seed = options.seed;
     plan.view.max_bounces = options.bounces;
-    plan.view.renderer =
-        options.renderer == "whitted" ? view::Renderer::Whitted : view::Renderer::PathTracing;
+    for (const view::Renderer renderer :
+         {view::Renderer::PathTracing, view::Renderer::Whitted, view::Renderer::Raster}) {
+        if (options.renderer == view::renderer_name(renderer)) plan.view.renderer = renderer;
+    }
     const auto& classes = path_class_names();
     plan.view.path_class = static_cast<view::PathClass>(
         std::find(classes.begin(), classes.end(), options.path_class) - classes.begin());

@@ -36,6 +36,7 @@ Finding describe(const vulkan::DeviceInfo& device) {
         {"rounds_to_even", device.rounds_to_even},
         {"memory_budget", device.memory_budget},
         {"ray_query", device.ray_query},
+        {"draws", device.draws},
     };
     return finding;
 }

@@ -23,6 +23,7 @@ namespace tessera::backend {
 
 struct Capabilities {
     frame::ChannelSet channels;
+    view::RendererSet renderers = view::TracingRenderers;
     std::uint32_t preferred_tile = 32;   // pixels, edge of a square
     std::uint32_t concurrent_units = 1;  // render() calls worth running at a time
     bool deterministic = true;
@@ -77,13 +78,16 @@ class Backend {
 
     // Thread-safe: several units at a time. Finishes a sample over the whole tile before the next, so a stop
     // leaves whole aligned blocks; returns within 50 ms of the stop. Never throws for content; Error for
-    // device failures.
+    // device failures, and for a renderer that is not among its capabilities.
     virtual RenderResult render(const view::View& view, const view::WorkUnit& unit, std::stop_token stop) = 0;
 
     // Replays one sample and tells each vertex of its path, one line each; the picture is not touched.
     virtual std::vector<std::string> probe(const view::View& view, std::uint32_t x, std::uint32_t y,
                                            std::uint64_t sample) = 0;
 };
+
+// Throws Error{Refused}, naming the remedy, for a view that asks for a renderer that is not among these.
+void require_renderer(view::RendererSet offered, const view::View& view);
 
 struct BackendSettings {
     std::uint32_t threads = 0;           // 0 = all cores

@@ -42,6 +42,28 @@ inline BvhRay bvh_ray(vec3 origin, vec3 direction) {
     return ray;
 }
 
+// Of a triangle's corners where a ray's line crosses its plane, times the area that the ray sees, to its
+// sign.
+struct BvhWeights {
+    float a;
+    float b;
+    float c;
+};
+
+// The corners seen from the ray's origin, turned.
+inline BvhWeights bvh_weights(IN(BvhRay) ray, vec3 ta, vec3 tb, vec3 tc) {
+    PRECISE const float ax = ta.x - ray.shear.x * ta.z;
+    PRECISE const float ay = ta.y - ray.shear.y * ta.z;
+    PRECISE const float bx = tb.x - ray.shear.x * tb.z;
+    PRECISE const float by = tb.y - ray.shear.y * tb.z;
+    PRECISE const float cx = tc.x - ray.shear.x * tc.z;
+    PRECISE const float cy = tc.y - ray.shear.y * tc.z;
+    PRECISE const float weight_a = cx * by - cy * bx;
+    PRECISE const float weight_b = ax * cy - ay * cx;
+    PRECISE const float weight_c = bx * ay - by * ax;
+    return BvhWeights(weight_a, weight_b, weight_c);
+}
+
 struct BvhCrossing {
     float distance;
     vec2 barycentric;  // weights of the second and third corner
@@ -61,16 +83,8 @@ inline BvhCrossing bvh_cross_triangle(IN(BvhRay) ray, vec3 a, vec3 b, vec3 c) {
     const vec3 ta = bvh_turned(ray.axis, from_a);
     const vec3 tb = bvh_turned(ray.axis, b - ray.origin);
     const vec3 tc = bvh_turned(ray.axis, c - ray.origin);
-    PRECISE const float ax = ta.x - ray.shear.x * ta.z;
-    PRECISE const float ay = ta.y - ray.shear.y * ta.z;
-    PRECISE const float bx = tb.x - ray.shear.x * tb.z;
-    PRECISE const float by = tb.y - ray.shear.y * tb.z;
-    PRECISE const float cx = tc.x - ray.shear.x * tc.z;
-    PRECISE const float cy = tc.y - ray.shear.y * tc.z;
-    PRECISE const float weight_a = cx * by - cy * bx;
-    PRECISE const float weight_b = ax * cy - ay * cx;
-    PRECISE const float weight_c = bx * ay - by * ax;
-    const float sum = weight_a + weight_b + weight_c;
+    const BvhWeights weights = bvh_weights(ray, ta, tb, tc);
+    const float sum = weights.a + weights.b + weights.c;
     const float scale = 1.0f / sum;
     const vec3 normal = cross(b - a, c - a);
     const float distance = dot(normal, from_a) / dot(normal, ray.direction);
@@ -78,9 +92,9 @@ inline BvhCrossing bvh_cross_triangle(IN(BvhRay) ray, vec3 a, vec3 b, vec3 c) {
     const float farthest = max(ta.z * ray.shear.z, max(tb.z * ray.shear.z, tc.z * ray.shear.z));
     BvhCrossing crossing;
     crossing.distance = min(max(distance, nearest), farthest);
-    crossing.barycentric = vec2(weight_b * scale, weight_c * scale);
-    const float least = min(weight_a, min(weight_b, weight_c));
-    const float greatest = max(weight_a, max(weight_b, weight_c));
+    crossing.barycentric = vec2(weights.b * scale, weights.c * scale);
+    const float least = min(weights.a, min(weights.b, weights.c));
+    const float greatest = max(weights.a, max(weights.b, weights.c));
     crossing.crosses = (least >= 0.0f || greatest <= 0.0f) && abs(sum) > 0.0f;  // false for what is no number
     return crossing;
 }

@@ -32,8 +32,6 @@ inline float bvh_row(vec4 row, vec3 v) {
     return row.x * v.x + row.y * v.y + row.z * v.z;
 }
 
-inline constexpr uint NoInstance = 0xffffffffu;  // of a Hit: nothing was hit
-
 #ifndef __cplusplus
 bool stops_ray(IN(Context) context, IN(Hit) candidate, uint seed);
 #endif

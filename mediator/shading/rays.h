@@ -10,6 +10,8 @@ struct Ray {
     vec3 direction;  // unit length
 };
 
+inline constexpr uint NoInstance = 0xffffffffu;  // of a Hit: nothing was hit
+
 struct Hit {
     uint instance;     // index
     uint triangle;     // of its mesh

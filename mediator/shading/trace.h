@@ -10,7 +10,7 @@
 // throughput. The renderer Whitted: emission and sky along all branches of perfect speculars, and where one
 // ends on a surface direct light, as path tracing finds it with max_bounces = 0; the features of a sample are
 // the branches' by their weights, the normal by their probabilities. The range is that of all branches in
-// both.
+// both. The renderer Raster is Whitted from first hits that a rasteriser has found (raster.h).
 //
 // All rays but those to lights are asked for at one place and shaded at one place: a shader has all its
 // functions inlined, and what is written twice is compiled twice. The including side says whether its views
@@ -74,11 +74,15 @@ WITH_CONTEXT inline bool leave_vertex(IN(Context) context, INOUT(Path) path, INO
     return true;
 }
 
-WITH_CONTEXT inline Path trace_sample(IN(Context) context, uint x, uint y, uint64_t index) {
-    const bool whitted = has_specular_trees(context) && context.view.renderer == RendererWhitted;
+// What the camera sees, where that is known before the sample is traced; its instance may be NoInstance.
+struct FirstHit {
+    bool is_known;
+    Hit hit;
+};
+
+WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(FirstHit) seen) {
+    const bool whitted = has_specular_trees(context) && context.view.renderer != RendererPathTracing;
     const bool wants_range = has_specular_trees(context) && keeps(context.view, KeepsRange);
-    Path path = start_path(make_sampler(x, y, context.view.seed, index));
-    Ray ray = camera_ray(context.view, x, y, sample_pair(path.numbers, CameraPair));
     tell_camera(context, ray);
     Branch branch = root_branch(ray);
     BranchStack open;
@@ -91,7 +95,14 @@ WITH_CONTEXT inline Path trace_sample(IN(Context) context, uint x, uint y, uint6
         bool goes_on = false;
         path.rays += 1u;
         Hit hit;
-        if (trace_closest(context, ray, closest_seed(path), hit)) {
+        bool is_hit = false;
+        if (first && seen.is_known) {
+            hit = seen.hit;
+            is_hit = hit.instance != NoInstance;
+        } else {
+            is_hit = trace_closest(context, ray, closest_seed(path), hit);
+        }
+        if (is_hit) {
             const Surface surface = make_surface(context.scene, hit, ray.direction);
             tell_hit(context, surface, path.throughput);
             if (first) {
@@ -117,6 +128,14 @@ WITH_CONTEXT inline Path trace_sample(IN(Context) context, uint x, uint y, uint6
             stage = StageBranch;
         }
     }
+}
+
+WITH_CONTEXT inline Path trace_sample(IN(Context) context, uint x, uint y, uint64_t index) {
+    const Path path = start_path(make_sampler(x, y, context.view.seed, index));
+    const Ray ray = camera_ray(context.view, x, y, sample_pair(path.numbers, CameraPair));
+    FirstHit unknown;
+    unknown.is_known = false;
+    return trace_from(context, path, ray, unknown);
 }
 
 SHADING_END

@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <glm/mat4x4.hpp>
+#include <initializer_list>
 #include <limits>
 #include <string>
+#include <string_view>
 
 #include "mediator/base/ids.h"
 #include "mediator/base/rect.h"
@@ -35,7 +37,35 @@ struct PixelFilter {
 enum class Renderer : std::uint8_t {
     PathTracing,
     Whitted,  // direct light and perfect speculars, every branch of them followed (Whitted 1980)
+    Raster,   // the same from first hits of a rasteriser, for navigation; all pixels of a sample share their
+              // place in the pixel
 };
+
+std::string_view renderer_name(Renderer renderer);  // as --renderer has it: "path", "whitted", "raster"
+
+class RendererSet {
+  public:
+    constexpr RendererSet() = default;
+    constexpr RendererSet(std::initializer_list<Renderer> renderers) {
+        for (const Renderer renderer : renderers) bits_ |= bit(renderer);
+    }
+    static constexpr RendererSet from_bits(std::uint32_t bits) {
+        RendererSet set;
+        set.bits_ = bits & (bit(Renderer::Raster) * 2u - 1u);
+        return set;
+    }
+    constexpr std::uint32_t bits() const { return bits_; }
+    constexpr bool contains(Renderer renderer) const { return (bits_ & bit(renderer)) != 0; }
+    constexpr void insert(Renderer renderer) { bits_ |= bit(renderer); }
+    friend constexpr bool operator==(RendererSet, RendererSet) = default;
+
+  private:
+    static constexpr std::uint32_t bit(Renderer renderer) { return 1u << static_cast<unsigned>(renderer); }
+    std::uint32_t bits_ = 0;
+};
+
+// Of every back-end that traces rays.
+inline constexpr RendererSet TracingRenderers{Renderer::PathTracing, Renderer::Whitted};
 
 // Which paths go to the channel HighVariance (Schwenk 3.3). A path's scatterings are counted from the eye;
 // perfect speculars in front of the first other hit only show it somewhere else.

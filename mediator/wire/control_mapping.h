@@ -38,6 +38,7 @@ void map(const Io& io, typename Io::template Ref<Hello> s, proto::Hello& p) {
     io(s.concurrent_units, p, &P::concurrent_units, &P::set_concurrent_units);
     io(s.reproducible, p, &P::reproducible, &P::set_reproducible);
     io(s.resume_token, p, &P::resume_token, &P::set_resume_token);
+    map_renderers(io, s.renderers, p, &P::renderers, &P::set_renderers);
 }
 
 template <class Io>

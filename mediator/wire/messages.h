@@ -31,6 +31,7 @@ struct Hello {
     // of nodes
     std::string backend, kind;
     frame::ChannelSet channels;
+    view::RendererSet renderers = view::TracingRenderers;
     std::uint32_t preferred_tile = 32;
     std::uint32_t concurrent_units = 1;
     bool reproducible = false;  // pinned to AVX2 (design 1.6)

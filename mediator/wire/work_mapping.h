@@ -17,7 +17,7 @@ constexpr view::PixelFilterKind last_of() {
 }
 template <>
 constexpr view::Renderer last_of() {
-    return view::Renderer::Whitted;
+    return view::Renderer::Raster;
 }
 template <>
 constexpr view::PathClass last_of() {
@@ -34,16 +34,25 @@ constexpr ReleaseReason last_of() {
 
 inline constexpr std::size_t MaxList = 65536;  // a control message has 64 KiB
 
+// A set of bits, each of which is known.
+template <class Set, class Io>
+void map_set(const Io& io, typename Io::template Ref<Set> s, auto& p, auto get, auto set,
+             const char* unknown) {
+    std::uint32_t bits = s.bits();
+    io(bits, p, get, set);
+    if constexpr (!std::is_same_v<Io, Writer>) {
+        s = Set::from_bits(bits);
+        if (s.bits() != bits) malformed(unknown);
+    }
+}
 template <class Io>
 void map_channels(const Io& io, typename Io::template Ref<frame::ChannelSet> s, auto& p, auto get, auto set) {
-    std::uint32_t bits = s.bits();
-    if constexpr (std::is_same_v<Io, Writer>) {
-        io(bits, p, get, set);
-    } else {
-        io(bits, p, get, set);
-        s = frame::ChannelSet::from_bits(bits);
-        if (s.bits() != bits) malformed("a channel is unknown");
-    }
+    map_set<frame::ChannelSet>(io, s, p, get, set, "a channel is unknown");
+}
+template <class Io>
+void map_renderers(const Io& io, typename Io::template Ref<view::RendererSet> s, auto& p, auto get,
+                   auto set) {
+    map_set<view::RendererSet>(io, s, p, get, set, "a renderer is unknown");
 }
 
 template <class Io>

@@ -195,6 +195,30 @@ TEST_P(BackendContract, ChoicesOfLightLeaveTheGeometryAlone) {
     expect_same_geometry("renderer");
 }
 
+// What it says to have it renders; the rest it refuses with the remedy.
+TEST_P(BackendContract, HasTheRenderersThatItNames) {
+    const view::RendererSet renderers = backend->capabilities().renderers;
+    EXPECT_TRUE(renderers.contains(view::Renderer::PathTracing));
+    for (const view::Renderer renderer :
+         {view::Renderer::PathTracing, view::Renderer::Whitted, view::Renderer::Raster}) {
+        view.renderer = renderer;
+        ++view.revision;
+        if (renderers.contains(renderer)) {
+            EXPECT_EQ(render(*backend, whole, {0, 1}).counts.at(0), 2u);
+            EXPECT_FALSE(backend->probe(view, 20, 16, 3).empty());
+            continue;
+        }
+        EXPECT_THROW(backend->probe(view, 20, 16, 3), Error);
+        try {
+            (void)backend->render(view, unit(whole, {0, 1}), {});
+            ADD_FAILURE() << "rendered what it does not have: " << view::renderer_name(renderer);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::Refused);
+            EXPECT_NE(std::string(error.what()).find("--backend vulkan"), std::string::npos) << error.what();
+        }
+    }
+}
+
 TEST_P(BackendContract, AnotherSeedIsAnotherPicture) {
     const FilmTile one = render(*backend, whole, {0, 2});
     ++view.seed;

@@ -109,6 +109,12 @@ TEST_F(MachineWorkTest, AViewThatMakesNoSenseIsNotOpened) {
     bad.channels = {frame::Channel::Depth};  // the back-end has only radiance
     tell(wire::OpenView{bad});
     EXPECT_EQ(sent<wire::Notice>().size(), 2u);
+    bad.channels = view.channels;
+    bad.renderer = view::Renderer::Raster;  // which draws, and the back-end traces
+    tell(wire::OpenView{bad});
+    const auto refusals = sent<wire::Notice>();
+    ASSERT_EQ(refusals.size(), 1u);
+    EXPECT_NE(refusals.back().text.find("the renderer raster"), std::string::npos) << refusals.back().text;
     view::WorkUnit unit_of_it = unit(1);
     unit_of_it.view = bad.id;
     tell(wire::Work{++sequence, unit_of_it});

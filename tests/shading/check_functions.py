@@ -11,8 +11,9 @@ import os
 import re
 import sys
 
-# Whole paths: tests/transport compares what they find on both sides.
-ELSEWHERE = ("leave_vertex", "trace_sample")
+# Whole paths: tests/transport compares what they find on both sides. What is drawn: tests/vulkan compares what the
+# device finds with what rays find on the host.
+ELSEWHERE = ("leave_vertex", "trace_from", "trace_sample", "raster_hit")
 
 FUNCTION = re.compile(r"^(?:WITH_CONTEXT )?inline (?!constexpr)\w+ (\w+)\(", re.MULTILINE)
 

@@ -78,6 +78,7 @@ SHADING_END
 #endif
 
 // These need what is declared above.
+#include "mediator/shading/raster.h"
 #include "mediator/shading/sample_values.h"
 #include "mediator/shading/trace.h"
 

@@ -72,6 +72,12 @@ inline Case make_case(IN(World) world, IN(Inputs) x) {
     return made;
 }
 
+// Where a cell of 512 pixels from the picture's corner on has a point, and its depth.
+inline PointWithError clip_of(IN(Case) c, vec3 from_eye) {
+    const RasterCell cell = RasterCell(vec2(0.25f, -0.125f), vec2(-0.5f, 0.75f), 0u, 0u, 512u, 0u);
+    const vec4 clip = raster_clip(c.context.view, cell, from_eye);
+    return PointWithError(vec3(clip.x, clip.y, clip.w), vec3(clip.z));
+}
 inline LightSample on_lit_mesh(IN(Case) c, vec2 u) {
     return sample_mesh_light(c.context.scene, c.light, c.lit, c.context.scene.meshes.items[c.lit.mesh],
                              c.context.scene.materials.items[c.lit.material], c.surface, u);

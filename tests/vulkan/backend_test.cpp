@@ -67,8 +67,11 @@ DeviceSettings lost_at(std::shared_ptr<std::atomic<int>> calls, int call) {
             }};
 }
 
-TEST(VulkanBackendFaults, ALostDeviceIsOpenedAgainAndTheUnitIsTheSame) {
-    const Rendering rendering;
+class VulkanBackendLost : public testing::TestWithParam<view::Renderer> {};
+
+TEST_P(VulkanBackendLost, IsOpenedAgainAndTheUnitIsTheSame) {
+    Rendering rendering;
+    rendering.view.renderer = GetParam();
     const auto calls = std::make_shared<std::atomic<int>>(0);
     const auto sound = with_scene(make_backend({.blobs = rendering.blobs}, lost_at(calls, -1)), rendering);
     const int edits = *calls;
@@ -84,6 +87,12 @@ TEST(VulkanBackendFaults, ALostDeviceIsOpenedAgainAndTheUnitIsTheSame) {
         EXPECT_EQ(film.planes, expected.planes) << call;
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(Renderers, VulkanBackendLost,
+                         testing::Values(view::Renderer::PathTracing, view::Renderer::Raster),
+                         [](const auto& renderer) {
+                             return std::string(view::renderer_name(renderer.param));
+                         });
 
 TEST(VulkanBackendFaults, ADeviceThatIsLostAgainAndAgainIsAnErrorUntilItComesBack) {
     for (const auto mapping : {MemorySettings::Mapping::AsOffered, MemorySettings::Mapping::Apart}) {

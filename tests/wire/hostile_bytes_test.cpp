@@ -2,6 +2,7 @@
 // encodes back to the same message.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <functional>
@@ -20,7 +21,7 @@ view::View some_view() {
     view::View view{.id = ViewId{3}, .revision = 9, .seed = 77, .max_bounces = view::UnlimitedBounces};
     view.camera.left = -0.25;
     view.camera.world_from_camera[3][0] = 1e6;
-    view.renderer = view::Renderer::Whitted;
+    view.renderer = view::Renderer::Raster;
     view.path_class = view::PathClass::Caustics;
     view.feature_rule = view::FeatureRule::Connections;
     view.transparent_background = true;
@@ -55,68 +56,68 @@ scene::ChangeList some_changes() {
 std::vector<ControlMessage> control_messages() {
     const view::WorkUnit unit{UnitId{4}, ViewId{3}, 9, {5, 2}, {32, 64, 32, 32}, {8, 3}};
     const NodeSummary node{NodeId{1}, "n", "host", "embree", "embree/avx2", 4711, 3, 4096, 1.5};
-    return {
-        Hello{.peer = PeerKind::Node,
-              .name = "n",
-              .host = "h",
-              .pid = 5,
-              .channels = {frame::Channel::Albedo},
-              .reproducible = true,
-              .resume_token = 8},
-        Welcome{7, 8, 9, std::chrono::seconds(1), 3},
-        Refusal{"no"},
-        Unknown{},
-        Heartbeat{-5, 6, 7, NodePhase::Building, 8, {5, 2}, {UnitId{1}, UnitId{2}}, 3, 4},
-        Changes{some_changes()},
-        ChangesByBlob{{5, 1}, {5, 2}, {blake2b({}), 100}},
-        VersionReport{{5, 2}, {1, 2}, 3, 4, 5, 6, 7, 8, 9, 10, 11, {"attachment"}, {"broken"}},
-        Resync{{5, 1}, "gap"},
-        OpenView{some_view()},
-        CloseView{ViewId{3}},
-        Work{12, unit},
-        CancelUnits{{UnitId{4}}},
-        UnitReleased{UnitId{4}, ReleaseReason::Failed, "why"},
-        Leave{},
-        Goodbye{"bye", {UnitId{4}}},
-        Notice{Severity::Error, "text"},
-        OpenScene{"title", true},
-        QueuePlace{2},
-        SceneOpened{{5, 1}, 65536, 100},
-        SubmitEdit{{SessionId{2}, 3, {5, 1}, some_changes().entries}},
-        SubmitEditByBlob{SessionId{2}, 3, {5, 1}, {blake2b({}), 5}},
-        EditReply{3, true, {5, 2}, {"p"}},
-        StartJob{.job = JobId{1},
-                 .view = some_view(),
-                 .spp = 5,
-                 .policy = Policy::Cooperative,
-                 .tile = 64,
-                 .picture = PictureEncoding::Png,
-                 .film = false,
-                 .budget = std::chrono::milliseconds(800),
-                 .adapts_size = true},
-        StopJob{JobId{1}},
-        JobProgress{JobId{1}, JobPhase::Delivering, 1, 2, 3, 4, std::chrono::milliseconds(5)},
-        JobDone{.job = JobId{1},
-                .outcome = JobOutcome::TimeUp,
-                .tiles = 3,
-                .seconds_render = 0.25,
-                .nodes = {node},
-                .picture = {.encoding = PictureEncoding::Planes,
-                            .width = 3,
-                            .height = 2,
-                            .components = 4,
-                            .byte_size = 96,
-                            .filter = "gauss:sigma=3",
-                            .passes = {{"gauss", 0.5, 40.0}},
-                            .notes = {"upsampled"}},
-                .samples_least = 3,
-                .samples_most = 9},
-        StatusRequest{},
-        StatusReply{.software = "s",
-                    .nodes = {{.summary = node, .phase = NodePhase::Leaving, .stuck = true}}},
-        SetFilter{"fdf:radius=3"},
-        FilterSet{true, "from now on"},
-        SceneRefused{{5, 1}, "too large"}};
+    return {Hello{.peer = PeerKind::Node,
+                  .name = "n",
+                  .host = "h",
+                  .pid = 5,
+                  .channels = {frame::Channel::Albedo},
+                  .renderers = {view::Renderer::PathTracing, view::Renderer::Raster},
+                  .reproducible = true,
+                  .resume_token = 8},
+            Welcome{7, 8, 9, std::chrono::seconds(1), 3},
+            Refusal{"no"},
+            Unknown{},
+            Heartbeat{-5, 6, 7, NodePhase::Building, 8, {5, 2}, {UnitId{1}, UnitId{2}}, 3, 4},
+            Changes{some_changes()},
+            ChangesByBlob{{5, 1}, {5, 2}, {blake2b({}), 100}},
+            VersionReport{{5, 2}, {1, 2}, 3, 4, 5, 6, 7, 8, 9, 10, 11, {"attachment"}, {"broken"}},
+            Resync{{5, 1}, "gap"},
+            OpenView{some_view()},
+            CloseView{ViewId{3}},
+            Work{12, unit},
+            CancelUnits{{UnitId{4}}},
+            UnitReleased{UnitId{4}, ReleaseReason::Failed, "why"},
+            Leave{},
+            Goodbye{"bye", {UnitId{4}}},
+            Notice{Severity::Error, "text"},
+            OpenScene{"title", true},
+            QueuePlace{2},
+            SceneOpened{{5, 1}, 65536, 100},
+            SubmitEdit{{SessionId{2}, 3, {5, 1}, some_changes().entries}},
+            SubmitEditByBlob{SessionId{2}, 3, {5, 1}, {blake2b({}), 5}},
+            EditReply{3, true, {5, 2}, {"p"}},
+            StartJob{.job = JobId{1},
+                     .view = some_view(),
+                     .spp = 5,
+                     .policy = Policy::Cooperative,
+                     .tile = 64,
+                     .picture = PictureEncoding::Png,
+                     .film = false,
+                     .budget = std::chrono::milliseconds(800),
+                     .adapts_size = true},
+            StopJob{JobId{1}},
+            JobProgress{JobId{1}, JobPhase::Delivering, 1, 2, 3, 4, std::chrono::milliseconds(5)},
+            JobDone{.job = JobId{1},
+                    .outcome = JobOutcome::TimeUp,
+                    .tiles = 3,
+                    .seconds_render = 0.25,
+                    .nodes = {node},
+                    .picture = {.encoding = PictureEncoding::Planes,
+                                .width = 3,
+                                .height = 2,
+                                .components = 4,
+                                .byte_size = 96,
+                                .filter = "gauss:sigma=3",
+                                .passes = {{"gauss", 0.5, 40.0}},
+                                .notes = {"upsampled"}},
+                    .samples_least = 3,
+                    .samples_most = 9},
+            StatusRequest{},
+            StatusReply{.software = "s",
+                        .nodes = {{.summary = node, .phase = NodePhase::Leaving, .stuck = true}}},
+            SetFilter{"fdf:radius=3"},
+            FilterSet{true, "from now on"},
+            SceneRefused{{5, 1}, "too large"}};
 }
 
 std::vector<BulkMessage> bulk_messages() {
@@ -219,6 +220,24 @@ TEST(HostileBytes, InChangeListsAreAValueOrAnError) {
            [](std::span<const std::byte> bytes) { (void)decode_change_list(bytes); });
     attack(encode(scene::Edit{SessionId{1}, 2, {3, 4}, some_changes().entries}), random,
            [](std::span<const std::byte> bytes) { (void)decode_edit(bytes); });
+}
+
+// The number of the field comes before its value, and nothing else in these messages looks like it.
+TEST(HostileBytes, RenderersThatNobodyKnowsAreRefused) {
+    const auto with = [](const ControlMessage& message, std::byte value, std::byte instead) {
+        Bytes bytes = encode(message);
+        const std::array<std::byte, 2> field{std::byte{14 << 3}, value};
+        const auto place = std::search(bytes.begin(), bytes.end(), field.begin(), field.end());
+        EXPECT_NE(place, bytes.end());
+        place[1] = instead;
+        return decode_control(bytes);
+    };
+    const ControlMessage view = OpenView{some_view()};
+    EXPECT_TRUE(with(view, std::byte{2}, std::byte{1}));
+    EXPECT_FALSE(with(view, std::byte{2}, std::byte{3}));
+    const ControlMessage hello = Hello{.peer = PeerKind::Node, .renderers = {view::Renderer::Raster}};
+    EXPECT_TRUE(with(hello, std::byte{4}, std::byte{5}));
+    EXPECT_FALSE(with(hello, std::byte{4}, std::byte{8}));
 }
 
 // Film that would poison the frame does not decode.

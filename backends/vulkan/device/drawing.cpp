@@ -60,7 +60,11 @@ void check_draws(const DrawList& list, const DeviceInfo& info) {
 void check_copy(const CopyImage& copy) {
     require(copy.from != nullptr, "a copy without an image");
     check_area(copy.from, copy.from->kind(), copy.area, "a copy");
-    const std::uint64_t pixels = std::uint64_t(copy.area.width) * std::uint64_t(copy.area.height);
+    const auto width = static_cast<std::uint64_t>(copy.area.width);
+    const auto height = static_cast<std::uint64_t>(copy.area.height);
+    require(copy.row_pixels == 0 || copy.row_pixels >= width, "a copy of rows into shorter ones");
+    const std::uint64_t row = copy.row_pixels == 0 ? width : copy.row_pixels;
+    const std::uint64_t pixels = height == 0 ? 0 : (height - 1) * row + width;
     check_part(copy.to, copy.to_offset, pixels * copy.from->pixel_bytes(), "a copy");
     require(copy.to_offset % copy.from->pixel_bytes() == 0, "a copy to an offset off a pixel");
 }
@@ -102,6 +106,7 @@ void record_copy(VkCommandBuffer commands, const CopyImage& copy) {
     if (copy.area.width == 0 || copy.area.height == 0) return;
     const VkRect2D area = rectangle(copy.area);
     const VkBufferImageCopy region{.bufferOffset = copy.to_offset,
+                                   .bufferRowLength = copy.row_pixels,
                                    .imageSubresource = {.aspectMask = copy.from->aspect(), .layerCount = 1},
                                    .imageOffset = {area.offset.x, area.offset.y, 0},
                                    .imageExtent = {area.extent.width, area.extent.height, 1}};

@@ -89,12 +89,13 @@ struct DrawList {
     std::vector<const Buffer*> reads;
 };
 
-// A part of an image to a buffer, row after row without gaps; the offset is a multiple of a pixel's bytes.
+// A part of an image to a buffer, row after row; the offset is a multiple of a pixel's bytes.
 struct CopyImage {
     const Image* from = nullptr;
     Rect area;
     const Buffer* to = nullptr;
     std::uint64_t to_offset = 0;
+    std::uint32_t row_pixels = 0;  // from row to row in the buffer; 0: without gaps
 };
 
 // The image's contents are gone; only now it can be used. Images do this themselves when they are made.

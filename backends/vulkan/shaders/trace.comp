@@ -2,7 +2,8 @@
 // The path tracer: one invocation is one sample of one pixel. With POOL_AS_TEXELS the acceleration structure
 // is bound as texels instead of being reached by its address; with PLAIN it is the baseline's. SPECULAR_TREES leaves in what follows all
 // branches of perfect speculars, which most views do not need. A variant, no constant for the driver to fold:
-// lavapipe takes 2 s for a scene with glass then instead of 5.7.
+// lavapipe takes 2 s for a scene with glass then instead of 5.7. RASTERISED starts from what a rasteriser has
+// seen.
 #extension GL_GOOGLE_include_directive : require
 #include "mediator/shading/materials.h"
 #include "mediator/shading/rays.h"
@@ -69,6 +70,9 @@ bool has_specular_trees(IN(Context) context) {
 #define tell_specular(context, reflects, direction)
 
 #include "mediator/shading/trace.h"
+#ifdef RASTERISED
+#include "mediator/shading/raster.h"
+#endif
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Values {
     float items[];
@@ -86,6 +90,7 @@ void store_value(INOUT(Sink) sink, float value) {
 
 #include "mediator/shading/sample_values.h"
 
+ARRAY_OF(uvec2, UVec2Array, 8);
 ARRAY_OF(Scene, SceneArray, 8);
 ARRAY_OF(View, ViewArray, 8);
 // As struct Job in job.h.
@@ -99,8 +104,24 @@ layout(push_constant, scalar) uniform Arguments {
     uint x, y, width;
     uint pixels;
     uint first_item, item_count;
+    uint unused;
+    UVec2Array seen;
 }
 job;
+
+Path trace(IN(Context) context, uint x, uint y, uint64_t index, uint at) {
+#ifdef RASTERISED
+    const Ray ray = camera_ray(context.view, x, y, raster_place(context.view, index));
+    const uvec2 ids = job.seen.items[at];
+    FirstHit first;
+    first.is_known = true;
+    first.hit.instance = NoInstance;
+    if (ids.x != NoInstance) first.hit = raster_hit(context.scene, ray, ids.x, ids.y);
+    return trace_from(context, start_path(make_sampler(x, y, context.view.seed, index)), ray, first);
+#else
+    return trace_sample(context, x, y, index);
+#endif
+}
 
 void main() {
     const uint item = gl_GlobalInvocationID.x;
@@ -117,7 +138,7 @@ void main() {
     context.pool = job.pool;
     context.top = job.top;
 
-    const Path path = trace_sample(context, job.x + pixel % job.width, job.y + pixel / job.width, index);
+    const Path path = trace(context, job.x + pixel % job.width, job.y + pixel / job.width, index, at);
     Sink sink = Sink(job.values, item, job.item_count);
     put_sample_values(sink, context.view, path.found, uint(index));
     store_value(sink, float_from_bits(path.rays));

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "mediator/shading/raster.h"
+
+// The push constants of shaders/raster*, and what they read: addresses first.
+namespace tessera::vulkan {
+
+// Which instances a list of draws shows.
+enum class CullStage : std::uint32_t {
+    Seen,      // inside of the area, and unhidden the last time
+    Unhidden,  // inside, and not behind all that the pyramid tells of; this is noted for the next time
+    Inside,
+    All
+};
+
+// Edge of the squares that a pixel of the pyramid's next level stands for.
+inline constexpr std::uint32_t PyramidStep = 4;
+
+struct DrawJob {
+    std::uint64_t scene = 0, view = 0;
+    std::uint64_t index = 0;  // of the sample
+    shading::RasterCell cell{};
+};
+
+struct CullJob {
+    std::uint64_t view = 0, bounds = 0, draws = 0;
+    std::uint64_t seen = 0;    // a number for each instance: 0, or 1 for what was unhidden the last time
+    std::uint64_t depths = 0;  // of the area, and behind it the pyramid's levels
+    shading::RasterCell cell{};
+    std::uint32_t x = 0, y = 0, width = 0, height = 0;  // the area, in the cell
+    std::uint32_t count = 0;                            // of instances
+    std::uint32_t per_call = 1;
+    CullStage stage = CullStage::All;
+    std::uint32_t unused = 0;
+};
+
+// Places are counted in floats.
+struct PyramidJob {
+    std::uint64_t depths = 0;
+    std::uint32_t from = 0, to = 0;
+    std::uint32_t width = 0, height = 0;  // of the level below
+};
+
+// What an instance can be seen in, relative to the render origin as all places.
+struct RasterBound {
+    glm::vec3 low{0.0f};
+    std::uint32_t vertices = 0;  // to draw; 0: it is left out, by rays too
+    glm::vec3 high{0.0f};
+    std::uint32_t unused = 0;
+};
+
+static_assert(sizeof(shading::RasterCell) == 32 && offsetof(shading::RasterCell, shift) == 8);
+static_assert(offsetof(shading::RasterCell, x) == 16 && offsetof(shading::RasterCell, edge) == 24);
+static_assert(sizeof(DrawJob) == 56 && offsetof(DrawJob, index) == 16 && offsetof(DrawJob, cell) == 24);
+static_assert(sizeof(CullJob) == 104 && offsetof(CullJob, seen) == 24 && offsetof(CullJob, cell) == 40);
+static_assert(offsetof(CullJob, x) == 72 && offsetof(CullJob, count) == 88 && offsetof(CullJob, stage) == 96);
+static_assert(sizeof(PyramidJob) == 24 && offsetof(PyramidJob, width) == 16);
+static_assert(sizeof(RasterBound) == 32 && offsetof(RasterBound, vertices) == 12);
+static_assert(offsetof(RasterBound, high) == 16);
+
+}  // namespace tessera::vulkan

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "backends/vulkan/device/graphics_pipeline.h"
+#include "backends/vulkan/device/pipeline.h"
+
+namespace tessera::vulkan {
+
+// What rasterising runs on a device, made when first asked for. Thread-safe.
+class RasterKernels final {
+  public:
+    explicit RasterKernels(Device& device);
+
+    // The device draws (DeviceInfo::draws).
+    struct Set {
+        const GraphicsPipeline& draw;
+        const ComputePipeline& cull;
+        const ComputePipeline& pyramid;
+        std::uint32_t group_size;  // invocations of a workgroup
+    };
+    // For a scene with these features.
+    Set find(std::uint32_t features);
+
+  private:
+    Device& device_;
+    std::uint32_t group_size_;
+    std::mutex mutex_;  // protects:
+    std::unique_ptr<ComputePipeline> cull_, pyramid_;
+    std::map<std::uint32_t, std::unique_ptr<GraphicsPipeline>> draws_;
+};
+
+}  // namespace tessera::vulkan

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "backends/vulkan/device/device.h"
+#include "backends/vulkan/gpu_scene.h"
+#include "backends/vulkan/raster/raster_kernels.h"
+#include "backends/vulkan/raster/raster_target.h"
+#include "mediator/base/rect.h"
+
+namespace tessera::vulkan {
+
+struct RasterSettings {
+    // Whether instances that show nothing are left out; the picture is the same. Hidden ones are looked for
+    // from `hidden_from` instances on: it costs drawing what was seen the last time twice.
+    enum class Culling { Off, On } culling = Culling::On;
+    std::uint32_t hidden_from = 64;
+    std::uint32_t draws_per_call = 0xffffffffu;  // at most; fewer where the device makes fewer
+};
+
+// Draws what each pixel of a tile sees. The view's record is on the device at `view_address`. All that is
+// referred to outlives the steps.
+struct RasterPass {
+    Device& device;
+    const RasterKernels::Set& kernels;
+    const GpuScene& scene;
+    RasterTarget& target;
+    const RasterSettings& settings;
+    const shading::View& view;
+    std::uint64_t view_address;
+
+    // Appends the steps of one sample: afterwards `seen` has instance and triangle of the tile's pixels, two
+    // numbers each (NoInstance and 0: nothing), from byte `offset` on. Throws Error{OutOfMemory}.
+    void add_steps(std::vector<Step>& steps, const Rect& tile, std::uint64_t index, const Buffer& seen,
+                   std::uint64_t offset) const;
+};
+
+}  // namespace tessera::vulkan

@@ -1,0 +1,14 @@
+#include "mediator/backend/backend.h"
+
+namespace tessera::backend {
+
+void require_renderer(view::RendererSet offered, const view::View& view) {
+    if (offered.contains(view.renderer)) return;
+    const std::string name(view::renderer_name(view.renderer));
+    const bool is_drawn = view.renderer == view::Renderer::Raster;
+    throw Error(ErrorCode::Refused, "this back-end has no renderer " + name +
+                                        (is_drawn ? ": start with --backend vulkan, on a device with graphics"
+                                                  : ": choose another one"));
+}
+
+}  // namespace tessera::backend

@@ -1,0 +1,95 @@
+// Views go to the nodes that have their renderer.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "mediator/backend/catalog.h"
+#include "tests/cluster/cluster_scene.h"
+#include "tests/cluster/loopback_cluster.h"
+
+namespace tessera::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+// A null back-end that draws, too: what it draws is its gradient.
+class Drawing final : public backend::Backend {
+  public:
+    explicit Drawing(const backend::BackendSettings& settings)
+        : inner_(backend::find_backend("null").make(settings)) {}
+
+    backend::Capabilities capabilities() const override {
+        backend::Capabilities capabilities = inner_->capabilities();
+        capabilities.renderers.insert(view::Renderer::Raster);
+        return capabilities;
+    }
+    Version version() const override { return inner_->version(); }
+    std::unique_ptr<backend::EditScope> begin_edit() override { return inner_->begin_edit(); }
+    backend::RenderResult render(const view::View& view, const view::WorkUnit& unit,
+                                 std::stop_token stop) override {
+        view::View traced = view;
+        traced.renderer = view::Renderer::PathTracing;
+        return inner_->render(traced, unit, stop);
+    }
+    std::vector<std::string> probe(const view::View& view, std::uint32_t x, std::uint32_t y,
+                                   std::uint64_t sample) override {
+        return inner_->probe(view, x, y, sample);
+    }
+
+  private:
+    std::unique_ptr<Backend> inner_;
+};
+
+struct RenderersTest : testing::Test {
+    client::JobResult render(view::Renderer renderer) {
+        client::JobRequest request{.spp = 16};
+        request.view.width = request.view.height = 200;
+        request.view.window = {0, 0, 200, 200};
+        request.view.channels = {frame::Channel::Radiance};
+        request.view.renderer = renderer;
+        request.wait_limit = 500ms;
+        return session->render(request, [](const client::Progress&) {}, {});
+    }
+    void open() {
+        session = cluster.session(blobs);
+        const auto opened = session->open_scene("test", client::WhenBusy::Queue, [](std::uint32_t) {}, {});
+        const ObjectId first = std::get<client::OpenedScene>(opened).first_id;
+        const auto done = session->submit(scene_entries(first, *blobs), {});
+        ASSERT_TRUE(done && done->accepted);
+    }
+
+    std::shared_ptr<scene::BlobStore> blobs = std::make_shared<scene::BlobStore>();
+    LoopbackCluster cluster;
+    std::unique_ptr<client::Session> session;
+};
+
+TEST_F(RenderersTest, WithoutANodeThatDrawsAViewEndsWithTheRemedy) {
+    cluster.add_node("null");
+    open();
+    const client::JobResult none = render(view::Renderer::Raster);
+    EXPECT_EQ(none.outcome, client::Outcome::NoNodes);
+    EXPECT_NE(none.message.find("no node has the renderer raster: start one with --backend vulkan"),
+              std::string::npos)
+        << none.message;
+    EXPECT_EQ(render(view::Renderer::PathTracing).outcome, client::Outcome::Complete);
+}
+
+// From drawing to paths and back, on the same version of the scene.
+TEST_F(RenderersTest, OnlyNodesThatDrawGetUnitsOfAViewThatDraws) {
+    cluster.add_node("null");
+    cluster.add_node(
+        [](const backend::BackendSettings& settings) { return std::make_unique<Drawing>(settings); });
+    open();
+    const client::JobResult drawn = render(view::Renderer::Raster);
+    ASSERT_EQ(drawn.outcome, client::Outcome::Complete) << drawn.message;
+    std::size_t taking_part = 0;
+    for (const auto& node : drawn.nodes) taking_part += node.samples > 0 ? 1 : 0;
+    EXPECT_EQ(taking_part, 1u);
+    const client::JobResult traced = render(view::Renderer::PathTracing);
+    EXPECT_EQ(traced.outcome, client::Outcome::Complete);
+    EXPECT_EQ(traced.version, drawn.version);
+    EXPECT_EQ(render(view::Renderer::Raster).outcome, client::Outcome::Complete);
+}
+
+}  // namespace
+}  // namespace tessera::test

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "backends/vulkan/kernels.h"
+#include "backends/vulkan/pace.h"
+#include "backends/vulkan/raster/raster_run.h"
+#include "backends/vulkan/tile_renderer.h"
+#include "backends/vulkan/world.h"
+#include "mediator/shading/raster.h"
+#include "tests/backend/scene_builder.h"
+#include "tests/vulkan/vulkan_test.h"
+
+namespace tessera::vulkan {
+
+// A scene on a device under the validation layer, drawn and traced by the parts of the back-end; and on the
+// host, where every triangle is tried.
+class RasterTest : public VulkanTest {
+  protected:
+    RasterTest();
+    void SetUp() override;
+    void TearDown() override;
+
+    // A mesh of its own object, white unless a material is named. Triangles of three indices each.
+    ObjectId mesh(const std::vector<glm::vec3>& positions, const std::vector<std::uint32_t>& indices,
+                  ObjectId material = {});
+    ObjectId sphere(double radius, std::uint32_t rings, ObjectId material = {});
+    ObjectId square(double half_edge, ObjectId material = {});  // in the xy plane
+    ObjectId material(const scene::Material& values);
+    void place(ObjectId mesh, const glm::dmat4& matrix);
+    void light(const glm::dvec3& position, float intensity);
+    void build(const glm::dvec3& render_origin = {});  // on the device; what was placed so far
+
+    frame::FilmTile film(const view::View& view, const Rect& tile, frame::SampleBlock block,
+                         const RasterSettings& settings = {});
+    frame::FilmTile film(const view::View& view, frame::SampleBlock block,
+                         const RasterSettings& settings = {}) {
+        return film(view, view.window, block, settings);
+    }
+    // Instances that the last step of drawing one sample of the tile shows, after drawing so many before.
+    std::uint32_t drawn(const view::View& view, const Rect& tile, const RasterSettings& settings,
+                        std::uint32_t before);
+
+    // What the shared place of a sample sees in each pixel of the picture.
+    struct Seen {
+        std::uint32_t object = 0;  // id
+        float depth = shading::infinity();
+    };
+    std::vector<Seen> seen_by_rays(const view::View& view, std::uint64_t index) const;
+    std::vector<Seen> seen_in(const frame::FilmTile& film, frame::ChannelSet channels) const;
+    // Pixels of which rays see something else, or at a depth that differs by more than the share.
+    std::size_t differing(const view::View& view, std::uint64_t index, double share = 1e-4);
+
+    static view::View view_from(const glm::dvec3& eye, std::uint32_t width, std::uint32_t height);
+
+    std::shared_ptr<scene::BlobStore> blobs_;
+    std::unique_ptr<World> world_;
+
+  private:
+    ObjectId next() { return ObjectId{++last_id_}; }
+
+    test::SceneBuilder builder_;
+    std::vector<scene::Entry> entries_;
+    scene::Root root_;
+    std::uint64_t last_id_ = 100;
+    std::unique_ptr<Kernels> kernels_;
+    std::unique_ptr<RasterKernels> raster_kernels_;
+    std::unique_ptr<RasterTargets> targets_;
+    Pace pace_;
+};
+
+}  // namespace tessera::vulkan
