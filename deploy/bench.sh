@@ -8,3 +8,5 @@ for bench in film embree filter; do
     echo "== $bench"
     "build/release/bin/tessera_${bench}_bench" "$@"
 done
+echo "== back-ends"
+build/release/bin/tessera bench backends --scenes room-1,balls:1000000 --repeat 3

@@ -14,7 +14,8 @@ TEST(BenchBackends, MeasuresEverythingOfEveryBackEnd) {
     const auto plan = understand({.scenes = "cornell", .size = "64x48", .spp = 2, .rays = 4096, .repeat = 2},
                                  tessera::bench::contenders());
     ASSERT_TRUE(plan);
-    const auto results = run_backends(*plan, {[](const std::string&) {}, [](const std::string&) {}}, {});
+    const auto silent = [](const auto&) {};
+    const auto results = run_backends(*plan, {silent, silent}, silent, {});
     ASSERT_TRUE(results);
     ASSERT_EQ(results->scenes.at(0).contenders.size(), 3u);
     for (const ContenderResult& contender : results->scenes[0].contenders) {

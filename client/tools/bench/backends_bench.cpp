@@ -83,15 +83,18 @@ class SceneRun {
         results_[index].kind = renderer->capabilities().kind;
         Measurements ignored;
         Measurements& to = counts ? results_[index].measured : ignored;
-        const double build = edit(*renderer, scene_.everything, "build", to);
-        const std::optional<Picture> first = picture(*renderer, 1);
-        if (!first) return false;
-        to.add("start_to_picture", build + first->seconds);
-        edit(*renderer, scene_.vertices, "refit", to);
-        const double update = edit(*renderer, scene_.place, "update", to);
-        const std::optional<Picture> second = picture(*renderer, 1);
-        if (!second) return false;
-        to.add("edit_to_picture", update + second->seconds);
+        const auto shown = [&](const scene::ChangeList& changes, const std::string& name,
+                               const std::string& measure) {
+            const double time = edit(*renderer, changes, name, to);
+            const std::optional<Picture> made = picture(*renderer, 1);
+            if (made) to.add(measure, time + made->seconds);
+            return made.has_value();
+        };
+        if (!shown(scene_.everything, "build", "build_to_picture") ||
+            !shown(scene_.vertices, "refit", "refit_to_picture") ||
+            !shown(scene_.place, "update", "update_to_picture")) {
+            return false;
+        }
         const std::optional<Picture> paths = picture(*renderer, plan_.spp);
         if (!paths) return false;
         to.add("samples", paths->samples / paths->seconds);
@@ -171,6 +174,7 @@ class SceneRun {
 }  // namespace
 
 std::optional<BackendsResults> run_backends(const BackendsPlan& plan, const BenchProgress& progress,
+                                            const std::function<void(const BackendsScene&)>& show,
                                             const std::stop_token& stop) {
     const SteadyClock clock;
     const TimePoint started = clock.now();
@@ -190,6 +194,7 @@ std::optional<BackendsResults> run_backends(const BackendsPlan& plan, const Benc
         if (!contenders) return std::nullopt;
         results.scenes.push_back(
             {name, scene.scene.summary, scene.triangles, scene.instances, std::move(*contenders)});
+        show(results.scenes.back());
     }
     results.seconds = seconds(clock.now() - started);
     return results;

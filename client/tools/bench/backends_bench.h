@@ -9,8 +9,10 @@
 
 namespace tessera::tools::bench {
 
-// Everything that is measured of all entrants, who take turns. Nothing when it was stopped. Throws Error.
+// Everything that is measured of all entrants, who take turns; each scene is shown when it is done. Nothing
+// when it was stopped. Throws Error.
 std::optional<BackendsResults> run_backends(const BackendsPlan& plan, const BenchProgress& progress,
+                                            const std::function<void(const BackendsScene&)>& show,
                                             const std::stop_token& stop);
 
 }  // namespace tessera::tools::bench

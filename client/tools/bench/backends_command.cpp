@@ -32,17 +32,21 @@ int run(const BackendsOptions& options) {
     std::optional<BackendsResults> results;
     {
         ProgressLine line;
-        results = run_backends(
-            *plan,
-            {.say = [&](const std::string& text) { line.show(text); },
-             .warn = [](const std::string& text) { std::cerr << "tessera bench: " << text << "\n"; }},
-            interrupts.token());
+        const BenchProgress progress{
+            [&](const std::string& text) { line.show(text); },
+            [](const std::string& text) { std::cerr << "tessera bench: " << text << "\n"; }};
+        const auto show = [&](const BackendsScene& scene) {
+            line.show("");
+            if (!options.json) std::cout << as_table(scene) << std::endl;
+        };
+        results = run_backends(*plan, progress, show, interrupts.token());
     }
-    if (!results) return complain(Name, ExitInterrupted, "interrupted; nothing is reported");
+    if (!results)
+        return complain(Name, ExitInterrupted, "interrupted in the middle of a scene; no file is written");
     if (!plan->output.empty()) {
         write(plan->output, plan->output.extension() == ".csv" ? as_csv(*results) : as_json(*results) + "\n");
     }
-    std::cout << (options.json ? as_json(*results) + "\n" : as_table(*results));
+    if (options.json) std::cout << as_json(*results) << "\n";
     if (!plan->output.empty() && !options.json) std::cout << "wrote " << plan->output.string() << "\n";
     return 0;
 }

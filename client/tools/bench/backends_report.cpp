@@ -24,34 +24,31 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
-std::string as_table(const BackendsResults& results) {
+std::string as_table(const BackendsScene& scene) {
     std::ostringstream out;
-    out << std::setprecision(3);
-    for (const BackendsScene& scene : results.scenes) {
-        out << scene.name << ": " << scene.summary << ", " << scene.triangles << " triangles in "
-            << scene.instances << " instances\n"
-            << std::setw(32) << "";
-        for (const ContenderResult& contender : scene.contenders)
-            out << std::setw(12) << contender.name << std::setw(9) << "";
-        out << "\n";
-        for (const Measure& measure : BackendMeasures) {
-            if (scene.contenders.front().measured.all(measure.key).empty()) continue;
-            out << std::left << std::setw(20) << measure.label << std::setw(12) << measure.unit << std::right;
-            for (const ContenderResult& contender : scene.contenders) {
-                const double share = ratio(scene, contender, measure);
-                out << std::setw(12) << contender.measured.median(measure.key) * measure.scale;
-                if (share > 0.0 && &contender != &scene.contenders.front()) {
-                    out << std::setw(7) << share << " x";
-                } else {
-                    out << std::setw(9) << "";
-                }
-            }
-            out << "\n";
-        }
+    out << std::setprecision(3) << scene.name << ": " << scene.summary << ", " << scene.triangles
+        << " triangles in " << scene.instances << " instances\n"
+        << std::setw(32) << "";
+    for (const ContenderResult& contender : scene.contenders) {
+        out << std::setw(12) << contender.name << std::setw(9) << "";
+    }
+    out << "\n";
+    for (const Measure& measure : BackendMeasures) {
+        if (scene.contenders.front().measured.all(measure.key).empty()) continue;
+        out << std::left << std::setw(20) << measure.label << std::setw(12) << measure.unit << std::right;
         for (const ContenderResult& contender : scene.contenders) {
-            out << contender.name << ": " << contender.kind << "\n";
+            const double share = ratio(scene, contender, measure);
+            out << std::setw(12) << contender.measured.median(measure.key) * measure.scale;
+            if (share > 0.0 && &contender != &scene.contenders.front()) {
+                out << std::setw(8) << share << "x";
+            } else {
+                out << std::setw(9) << "";
+            }
         }
         out << "\n";
+    }
+    for (const ContenderResult& contender : scene.contenders) {
+        out << contender.name << ": " << contender.kind << "\n";
     }
     return out.str();
 }

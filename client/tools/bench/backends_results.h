@@ -14,7 +14,6 @@ namespace tessera::tools::bench {
 struct Measure {
     std::string_view key, label, unit;
     double scale = 1.0;
-    enum class Best { High, Low } best = Best::High;
 };
 
 inline constexpr std::array BackendMeasures{
@@ -23,14 +22,15 @@ inline constexpr std::array BackendMeasures{
     Measure{"bounce_rays", "rays: bounce", "Mrays/s", 1e-6},
     Measure{"samples", "paths: samples", "Msamples/s", 1e-6},
     Measure{"path_rays", "paths: rays", "Mrays/s", 1e-6},
-    Measure{"build", "build", "ms", 1e3, Measure::Best::Low},
-    Measure{"refit", "refit of a mesh", "ms", 1e3, Measure::Best::Low},
-    Measure{"update", "update of a place", "ms", 1e3, Measure::Best::Low},
-    Measure{"start_to_picture", "build to picture", "ms", 1e3, Measure::Best::Low},
-    Measure{"edit_to_picture", "update to picture", "ms", 1e3, Measure::Best::Low},
-    Measure{"build_bytes", "upload: build", "MB", 1e-6, Measure::Best::Low},
-    Measure{"refit_bytes", "upload: refit", "MB", 1e-6, Measure::Best::Low},
-    Measure{"update_bytes", "upload: update", "MB", 1e-6, Measure::Best::Low},
+    Measure{"build", "build", "ms", 1e3},
+    Measure{"refit", "refit of a mesh", "ms", 1e3},
+    Measure{"update", "update of a place", "ms", 1e3},
+    Measure{"build_to_picture", "build to picture", "ms", 1e3},
+    Measure{"refit_to_picture", "refit to picture", "ms", 1e3},
+    Measure{"update_to_picture", "update to picture", "ms", 1e3},
+    Measure{"build_bytes", "upload: build", "MB", 1e-6},
+    Measure{"refit_bytes", "upload: refit", "MB", 1e-6},
+    Measure{"update_bytes", "upload: update", "MB", 1e-6},
 };
 
 // The measurements of one contender on one scene, in the order in which they were made.
