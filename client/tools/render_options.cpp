@@ -179,6 +179,10 @@ Expected<RenderPlan> understand(const RenderOptions& options) {
         }
     } else if (options.keys || options.wait_nodes) {
         return wrong("--keys and --wait-nodes are for a running cluster; name it with --master");
+    } else if (view->view.renderer == view::Renderer::Raster &&
+               !backend::find_backend(plan.embedded.backend).chooses_device) {
+        // Nobody else will come who draws. Whether the device does, its node says.
+        return wrong("--renderer raster: " + plan.embedded.backend + " does not draw; add --backend vulkan");
     }
     if (options.no_wait) plan.when_busy = client::WhenBusy::GiveUp;
     if (auto fine = set_amount(options, plan.job); !fine) return tl::unexpected(fine.error());
