@@ -200,7 +200,7 @@ TEST(EdgeModel, FindsTheCoverage) {
             }
         }
         std::array<const float*, 4> sources;
-        std::array<Lanes, 4> target;
+        std::array<Pack, 4> target;
         for (std::size_t k = 0; k < 4; ++k) {
             sources[k] = planes[k].data() + Pitch + 24;
             target[k] = load(sources[k]);
