@@ -93,19 +93,6 @@ TEST_F(QueueTest, ChainsOfDependentStepsGiveTheNumbersOfTheHost) {
     }
 }
 
-TEST_F(QueueTest, TakesGroupCountsFromABuffer) {
-    const ComputePipeline kernel = spinner();
-    const Buffer numbers = make_buffer(device(), Words(100 * 64, 1)), groups(device(), 16);
-    Pass pass = spin(kernel, numbers, 1);
-    pass.groups_from = &groups;
-    pass.groups_offset = 4;
-    const std::array<Step, 3> steps{Fill{&groups, 0, 16, 1}, Fill{&groups, 4, 4, 60}, pass};
-    device().queue().submit(steps).wait();
-    Words expected(100 * 64, 1);
-    std::fill_n(expected.begin(), 60 * 64, 270369u);  // one turn of xorshift from 1
-    EXPECT_EQ(download<std::uint32_t>(device(), numbers), expected);
-}
-
 TEST_F(QueueTest, BindsTexelsAndStorage) {
     struct Bound {
         std::uint64_t to;

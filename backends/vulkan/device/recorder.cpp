@@ -28,10 +28,6 @@ void check_pass(const Pass& pass, const DeviceInfo& info) {
                 std::to_string(pass.arguments.size()));
     require(std::max({pass.groups.x, pass.groups.y, pass.groups.z}) <= info.max_groups,
             name + " has more groups along an axis than the device's " + std::to_string(info.max_groups));
-    if (pass.groups_from != nullptr) {
-        check_part(pass.groups_from, pass.groups_offset, sizeof(Groups), name + " with group counts");
-        require(pass.groups_offset % 4 == 0, name + " with group counts off a word");
-    }
     check_bindings(pass, info);
     for (const auto* list : {&pass.reads, &pass.writes}) {
         for (const Buffer* buffer : *list) check_part(buffer, 0, 0, name);
@@ -125,7 +121,6 @@ std::vector<Access> accesses_of(const Step& step) {
     std::visit(Overloaded{[&](const Pass& pass) {
                               for (const Buffer* buffer : pass.reads) add(buffer, Compute, Read);
                               for (const Buffer* buffer : pass.writes) add(buffer, Compute, Write);
-                              if (pass.groups_from != nullptr) add(pass.groups_from, Indirect, Read);
                           },
                           [&](const Copy& copy) {
                               add(copy.from, Transfer, Read);
@@ -180,11 +175,7 @@ void Recorder::dispatch(const Pass& pass) {
         vkCmdPushConstants(commands_, pass.pipeline->layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0,
                            pass.arguments.size(), pass.arguments.data());
     }
-    if (pass.groups_from != nullptr) {
-        vkCmdDispatchIndirect(commands_, pass.groups_from->get(), pass.groups_offset);
-    } else {
-        vkCmdDispatch(commands_, pass.groups.x, pass.groups.y, pass.groups.z);
-    }
+    vkCmdDispatch(commands_, pass.groups.x, pass.groups.y, pass.groups.z);
 }
 
 void Recorder::record(const Step& step) {

@@ -49,9 +49,6 @@ struct Pass {
     const ComputePipeline* pipeline = nullptr;
     Arguments arguments;
     Groups groups;
-    const Buffer* groups_from =
-        nullptr;                       // instead of `groups`: three words there, which an earlier step wrote
-    std::uint64_t groups_offset = 0;   // a multiple of 4
     std::vector<const Buffer*> bound;  // for the pipeline's bindings, in their order
     std::vector<const Buffer*> reads, writes;
 };
