@@ -33,6 +33,19 @@ struct SendersOf {
     unsigned operator()(const wire::StopJob&) const { return Editors; }
     unsigned operator()(const wire::StatusRequest&) const { return Clients; }
     unsigned operator()(const wire::SetFilter&) const { return Editors; }
+    unsigned operator()(const wire::JoinScene&) const { return Clients; }
+    unsigned operator()(const wire::CloseScene&) const { return Editors; }
+    unsigned operator()(const wire::ReadScene&) const { return Clients; }
+    unsigned operator()(const wire::LockObjects&) const { return Editors; }
+    unsigned operator()(const wire::SetPresence&) const { return Clients; }
+    unsigned operator()(const wire::ReadPeople&) const { return Clients; }
+    unsigned operator()(const wire::ReadHistory&) const { return Clients; }
+    unsigned operator()(const wire::ReadWriters&) const { return Clients; }
+    unsigned operator()(const wire::OpenLiveView&) const { return Clients; }
+    unsigned operator()(const wire::CloseLiveView&) const { return Clients; }
+    unsigned operator()(const wire::FrameTaken&) const { return Clients; }
+    unsigned operator()(const wire::Pick&) const { return Clients; }
+    unsigned operator()(const wire::ReadTrace&) const { return Clients; }
     // What only a master says.
     unsigned operator()(const wire::Welcome&) const { return Nobody; }
     unsigned operator()(const wire::Refusal&) const { return Nobody; }
@@ -51,14 +64,23 @@ struct SendersOf {
     unsigned operator()(const wire::JobDone&) const { return Nobody; }
     unsigned operator()(const wire::StatusReply&) const { return Nobody; }
     unsigned operator()(const wire::FilterSet&) const { return Nobody; }
+    unsigned operator()(const wire::SceneJoined&) const { return Nobody; }
+    unsigned operator()(const wire::RequestDone&) const { return Nobody; }
+    unsigned operator()(const wire::SceneContent&) const { return Nobody; }
+    unsigned operator()(const wire::People&) const { return Nobody; }
+    unsigned operator()(const wire::History&) const { return Nobody; }
+    unsigned operator()(const wire::Writers&) const { return Nobody; }
+    unsigned operator()(const wire::Picked&) const { return Nobody; }
+    unsigned operator()(const wire::Trace&) const { return Nobody; }
     // bulk
     unsigned operator()(const wire::BulkHello&) const { return Everybody; }
-    unsigned operator()(const wire::BlobRequest&) const { return Nodes; }
+    unsigned operator()(const wire::BlobRequest&) const { return Nodes | Clients; }
     unsigned operator()(const wire::BlobChunk&) const { return Editors; }
     unsigned operator()(const wire::BlobAbsent&) const { return Editors; }
     unsigned operator()(const wire::FilmPart&) const { return Nodes; }
     unsigned operator()(const wire::FrameTile&) const { return Nobody; }
     unsigned operator()(const wire::PictureChunk&) const { return Nobody; }
+    unsigned operator()(const wire::LiveFrame&) const { return Nobody; }
 };
 
 }  // namespace

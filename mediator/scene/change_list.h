@@ -44,6 +44,14 @@ struct Edit {
     std::uint64_t sequence = 0;
     Version base;
     std::vector<Entry> entries;
+    // Edits in a row of one session with the same one, not 0, are one transaction: a drag.
+    std::uint64_t gesture = 0;
+    std::int64_t submitted_at = 0;  // ns, the client's clock; 0 = not told
+    // Not 0: no entries, but the transaction whose writes are to be taken back; UndoLatest, RedoLatest: the
+    // latest of this editor that can be.
+    std::uint64_t undo = 0;
 };
+inline constexpr std::uint64_t UndoLatest = ~std::uint64_t{0};
+inline constexpr std::uint64_t RedoLatest = ~std::uint64_t{0} - 1;
 
 }  // namespace tessera::scene

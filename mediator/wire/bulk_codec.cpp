@@ -131,6 +131,25 @@ struct Encoder {
         out.put(chunk.offset);
         out.put_all(std::span(chunk.data));
     }
+    void operator()(const LiveFrame& frame) const {
+        out.put(frame.view);
+        out.put(frame.frame);
+        out.put(frame.version.epoch);
+        out.put(frame.version.number);
+        out.put(frame.revision);
+        out.put(frame.scale);
+        out.put(frame.width);
+        out.put(frame.height);
+        out.put(frame.components);
+        out.put(static_cast<std::uint32_t>(frame.encoding));
+        out.put(frame.picture_bytes);
+        out.put(frame.film_tiles);
+        out.put(frame.complete ? std::uint32_t{1} : std::uint32_t{0});
+        out.put(frame.samples_least);
+        out.put(frame.samples_most);
+        out.put(frame.spp);
+        put(out, frame.film_hash);
+    }
 };
 
 struct Decoder {
@@ -176,6 +195,29 @@ struct Decoder {
     void operator()(PictureChunk& chunk) const {
         chunk.job.value = in.get<std::uint64_t>();
         get_piece(chunk);
+    }
+    void operator()(LiveFrame& frame) const {
+        frame.view = in.get<std::uint64_t>();
+        frame.frame = in.get<std::uint64_t>();
+        frame.version.epoch = in.get<std::uint64_t>();
+        frame.version.number = in.get<std::uint64_t>();
+        frame.revision = in.get<std::uint64_t>();
+        frame.scale = in.get<std::uint32_t>();
+        frame.width = in.get<std::uint32_t>();
+        frame.height = in.get<std::uint32_t>();
+        frame.components = in.get<std::uint32_t>();
+        const auto encoding = in.get<std::uint32_t>();
+        if (encoding > static_cast<std::uint32_t>(PictureEncoding::Exr)) malformed("an encoding is unknown");
+        frame.encoding = static_cast<PictureEncoding>(encoding);
+        frame.picture_bytes = in.get<std::uint64_t>();
+        frame.film_tiles = in.get<std::uint32_t>();
+        frame.complete = in.get<std::uint32_t>() != 0;
+        frame.samples_least = in.get<std::uint64_t>();
+        frame.samples_most = in.get<std::uint64_t>();
+        frame.spp = in.get<std::uint64_t>();
+        frame.film_hash.bytes = in.get<decltype(frame.film_hash.bytes)>();
+        if (frame.scale == 0) malformed("a scale of 0");
+        in.expect_end();
     }
 
   private:
@@ -224,6 +266,13 @@ std::optional<std::size_t> bulk_kind(std::span<const std::byte> bytes) {
     const auto kind = in.get<std::uint32_t>();
     if (magic != Magic || kind >= std::variant_size_v<BulkMessage>) return std::nullopt;
     return kind;
+}
+
+std::optional<ViewId> film_view(std::span<const std::byte> bytes) {
+    const auto kind = bulk_kind(bytes);
+    if (!kind || *kind != BulkMessage(FilmPart{}).index() || bytes.size() < 24) return std::nullopt;
+    ByteReader in(bytes.subspan(16));  // after magic, kind and unit
+    return ViewId{in.get<std::uint64_t>()};
 }
 
 Expected<BulkMessage> decode_bulk(std::span<const std::byte> bytes) {

@@ -106,6 +106,69 @@ proto::SetFilter& part(proto::Control& c, const SetFilter&) {
 proto::FilterSet& part(proto::Control& c, const FilterSet&) {
     return *c.mutable_filter_set();
 }
+proto::JoinScene& part(proto::Control& c, const JoinScene&) {
+    return *c.mutable_join_scene();
+}
+proto::SceneJoined& part(proto::Control& c, const SceneJoined&) {
+    return *c.mutable_scene_joined();
+}
+proto::RequestDone& part(proto::Control& c, const RequestDone&) {
+    return *c.mutable_request_done();
+}
+proto::CloseScene& part(proto::Control& c, const CloseScene&) {
+    return *c.mutable_close_scene();
+}
+proto::ReadScene& part(proto::Control& c, const ReadScene&) {
+    return *c.mutable_read_scene();
+}
+proto::SceneContent& part(proto::Control& c, const SceneContent&) {
+    return *c.mutable_scene_content();
+}
+proto::LockObjects& part(proto::Control& c, const LockObjects&) {
+    return *c.mutable_lock_objects();
+}
+proto::SetPresence& part(proto::Control& c, const SetPresence&) {
+    return *c.mutable_set_presence();
+}
+proto::ReadPeople& part(proto::Control& c, const ReadPeople&) {
+    return *c.mutable_read_people();
+}
+proto::People& part(proto::Control& c, const People&) {
+    return *c.mutable_people();
+}
+proto::ReadHistory& part(proto::Control& c, const ReadHistory&) {
+    return *c.mutable_read_history();
+}
+proto::History& part(proto::Control& c, const History&) {
+    return *c.mutable_history();
+}
+proto::ReadWriters& part(proto::Control& c, const ReadWriters&) {
+    return *c.mutable_read_writers();
+}
+proto::Writers& part(proto::Control& c, const Writers&) {
+    return *c.mutable_writers();
+}
+proto::OpenLiveView& part(proto::Control& c, const OpenLiveView&) {
+    return *c.mutable_open_live_view();
+}
+proto::CloseLiveView& part(proto::Control& c, const CloseLiveView&) {
+    return *c.mutable_close_live_view();
+}
+proto::FrameTaken& part(proto::Control& c, const FrameTaken&) {
+    return *c.mutable_frame_taken();
+}
+proto::Pick& part(proto::Control& c, const Pick&) {
+    return *c.mutable_pick();
+}
+proto::Picked& part(proto::Control& c, const Picked&) {
+    return *c.mutable_picked();
+}
+proto::ReadTrace& part(proto::Control& c, const ReadTrace&) {
+    return *c.mutable_read_trace();
+}
+proto::Trace& part(proto::Control& c, const Trace&) {
+    return *c.mutable_trace();
+}
 
 template <class Message>
 std::vector<std::byte> serialized(const Message& message) {

@@ -96,6 +96,8 @@ void map(const Io& io, typename Io::template Ref<VersionReport> s, proto::Versio
     io(s.retransformed, p, &P::retransformed, &P::set_retransformed);
     io.texts(s.ignored_kinds, p.mutable_ignored_kinds(), MaxList);
     io.texts(s.problems, p.mutable_problems(), MaxList);
+    io(s.received_at, p, &P::received_at, &P::set_received_at);
+    io(s.built_at, p, &P::built_at, &P::set_built_at);
 }
 
 template <class Io>

@@ -22,6 +22,8 @@ Expected<BulkMessage> decode_bulk(std::span<const std::byte> bytes);
 // The alternative of BulkMessage that these bytes say they are, by their header alone; none when they are no
 // bulk message. Lets a loop pass film on without decoding it.
 std::optional<std::size_t> bulk_kind(std::span<const std::byte> bytes);
+// The view that a film message says it is of; none when it is no film.
+std::optional<ViewId> film_view(std::span<const std::byte> bytes);
 
 // Content of blobs that hold scene changes.
 std::vector<std::byte> encode(const scene::ChangeList& changes);

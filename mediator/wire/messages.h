@@ -12,6 +12,7 @@
 #include "mediator/scene/change_list.h"
 #include "mediator/view/view.h"
 #include "mediator/view/work_unit.h"
+#include "mediator/wire/live_messages.h"
 
 // What goes over the control link, as plain values; `envelope.h` turns them into bytes and back. A message
 // arrives complete and checked, or as an Error, never half. Numbers of the protocol live in proto/,
@@ -86,6 +87,7 @@ struct VersionReport {
     std::uint64_t triangles = 0, instances = 0, lights = 0, degenerate_triangles = 0;
     std::uint32_t entries = 0, relevant = 0, rebuilt = 0, refitted = 0, retransformed = 0;
     std::vector<std::string> ignored_kinds, problems;
+    std::int64_t received_at = 0, built_at = 0;  // ns, the node's clock: the list came, was committed
 };
 // Node to master: a gap, another epoch or a wrong hash; asks for a snapshot.
 struct Resync {
@@ -161,14 +163,13 @@ struct SubmitEditByBlob {
 struct EditReply {
     std::uint64_t sequence = 0;
     bool accepted = false;
-    Version version;                    // that holds it
+    Version version;                    // that holds it, or will when it is published
     std::vector<std::string> problems;  // why not
+    std::uint64_t transaction = 0;      // that it is, or is part of
+    std::vector<std::string> notes;     // of an undo: what was left as later edits made it
 };
 
 enum class Policy : std::uint8_t { Tiled, Cooperative, Mixed };
-// What the master makes of the film: nothing, the filtered picture as float32 planes one after another, or a
-// file.
-enum class PictureEncoding : std::uint8_t { None, Planes, Png, Jpeg, Exr };
 struct StartJob {
     JobId job;        // the client's number
     view::View view;  // id and revision are the master's to choose
@@ -260,6 +261,7 @@ struct NodeStatus {
     std::uint32_t units_in_hand = 0;
     double samples_per_second = 0, round_trip_seconds = 0;
     bool stuck = false;
+    double clock_offset_seconds = 0, clock_bound_seconds = 0;  // its clock less the master's, +- bound
 };
 struct StatusReply {
     std::string software;
@@ -271,6 +273,7 @@ struct StatusReply {
     UnitCounts units;
     WireBytes wire_bytes;
     std::vector<NodeStatus> nodes;
+    LiveStatus live;
 };
 
 // The order is the order of the cases in proto/control.proto; codecs rely on it.
@@ -278,7 +281,10 @@ using ControlMessage =
     std::variant<Hello, Welcome, Refusal, Unknown, Heartbeat, Changes, ChangesByBlob, VersionReport, Resync,
                  OpenView, CloseView, Work, CancelUnits, UnitReleased, Leave, Goodbye, Notice, OpenScene,
                  QueuePlace, SceneOpened, SubmitEdit, SubmitEditByBlob, EditReply, StartJob, StopJob,
-                 JobProgress, JobDone, StatusRequest, StatusReply, SetFilter, FilterSet, SceneRefused>;
+                 JobProgress, JobDone, StatusRequest, StatusReply, SetFilter, FilterSet, SceneRefused,
+                 JoinScene, SceneJoined, RequestDone, CloseScene, ReadScene, SceneContent, LockObjects,
+                 SetPresence, ReadPeople, People, ReadHistory, History, ReadWriters, Writers, OpenLiveView,
+                 CloseLiveView, FrameTaken, Pick, Picked, ReadTrace, Trace>;
 
 // ---- bulk link: fixed little-endian header, then raw planes ----
 
@@ -320,7 +326,22 @@ struct PictureChunk {
     std::uint64_t total = 0, offset = 0;
     std::vector<std::byte> data;  // at most 1 MiB
 };
+// Master to client: a frame of a view that it opened, in front of its PictureChunks and FrameTiles, whose job
+// is the frame's number. One is on its way at a time: the next comes after FrameTaken.
+struct LiveFrame {
+    std::uint64_t view = 0, frame = 0;  // the client's number of the view; frames count from 1
+    Version version;                    // of the scene that is seen
+    std::uint64_t revision = 0;         // of the view: grows with every change of its camera
+    std::uint32_t scale = 1;            // 8, 4, 2: a coarse picture of this part of the view's size
+    std::uint32_t width = 0, height = 0, components = 0;
+    PictureEncoding encoding = PictureEncoding::None;
+    std::uint64_t picture_bytes = 0;
+    std::uint32_t film_tiles = 0;
+    std::uint64_t samples_least = 0, samples_most = 0, spp = 0;  // of a pixel, and how many there will be
+    bool complete = false;
+    Hash256 film_hash;  // when complete
+};
 using BulkMessage =
-    std::variant<BulkHello, BlobRequest, BlobChunk, BlobAbsent, FilmPart, FrameTile, PictureChunk>;
+    std::variant<BulkHello, BlobRequest, BlobChunk, BlobAbsent, FilmPart, FrameTile, PictureChunk, LiveFrame>;
 
 }  // namespace tessera::wire

@@ -118,6 +118,9 @@ void write(const scene::Edit& edit, proto::Edit& to) {
     to.set_sequence(edit.sequence);
     map(Writer(), edit.base, *to.mutable_base());
     write_entries(edit.entries, to);
+    to.set_gesture(edit.gesture);
+    to.set_submitted_at(edit.submitted_at);
+    to.set_undo(edit.undo);
 }
 
 void read(proto::Edit& from, scene::Edit& edit) {
@@ -125,6 +128,9 @@ void read(proto::Edit& from, scene::Edit& edit) {
     edit.sequence = from.sequence();
     map(Reader(), edit.base, *from.mutable_base());
     edit.entries = read_entries(from);
+    edit.gesture = from.gesture();
+    edit.submitted_at = from.submitted_at();
+    edit.undo = from.undo();
 }
 
 }  // namespace tessera::wire

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "mediator/wire/scene_codec.h"
-#include "mediator/wire/work_mapping.h"
+#include "mediator/wire/live_mapping.h"
 #include "proto/session.pb.h"
 
 // Private to wire/*.cpp: what clients and the master say to each other.
@@ -14,10 +13,6 @@ constexpr Policy last_of() {
 template <>
 constexpr JobPhase last_of() {
     return JobPhase::Filtering;
-}
-template <>
-constexpr PictureEncoding last_of() {
-    return PictureEncoding::Exr;
 }
 template <>
 constexpr JobOutcome last_of() {
@@ -72,6 +67,8 @@ void map(const Io& io, typename Io::template Ref<EditReply> s, proto::EditReply&
     io(s.accepted, p, &P::accepted, &P::set_accepted);
     io.message(s.version, p.mutable_version());
     io.texts(s.problems, p.mutable_problems(), MaxList);
+    io(s.transaction, p, &P::transaction, &P::set_transaction);
+    io.texts(s.notes, p.mutable_notes(), MaxList);
 }
 
 template <class Io>
@@ -219,6 +216,8 @@ void map(const Io& io, typename Io::template Ref<NodeStatus> s, proto::NodeStatu
     io(s.samples_per_second, p, &P::samples_per_second, &P::set_samples_per_second);
     io(s.round_trip_seconds, p, &P::round_trip_seconds, &P::set_round_trip_seconds);
     io(s.stuck, p, &P::stuck, &P::set_stuck);
+    io(s.clock_offset_seconds, p, &P::clock_offset_seconds, &P::set_clock_offset_seconds);
+    io(s.clock_bound_seconds, p, &P::clock_bound_seconds, &P::set_clock_bound_seconds);
 }
 
 template <class Io>
@@ -235,6 +234,7 @@ void map(const Io& io, typename Io::template Ref<StatusReply> s, proto::StatusRe
     io.message(s.units, p.mutable_units());
     io.message(s.wire_bytes, p.mutable_wire_bytes());
     io.messages(s.nodes, p.mutable_nodes(), MaxList);
+    io.message(s.live, p.mutable_live());
 }
 
 }  // namespace tessera::wire

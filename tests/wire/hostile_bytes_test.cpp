@@ -70,7 +70,7 @@ std::vector<ControlMessage> control_messages() {
             Heartbeat{-5, 6, 7, NodePhase::Building, 8, {5, 2}, {UnitId{1}, UnitId{2}}, 3, 4},
             Changes{some_changes()},
             ChangesByBlob{{5, 1}, {5, 2}, {blake2b({}), 100}},
-            VersionReport{{5, 2}, {1, 2}, 3, 4, 5, 6, 7, 8, 9, 10, 11, {"attachment"}, {"broken"}},
+            VersionReport{{5, 2}, {1, 2}, 3, 4, 5, 6, 7, 8, 9, 10, 11, {"attachment"}, {"broken"}, -12, 13},
             Resync{{5, 1}, "gap"},
             OpenView{some_view()},
             CloseView{ViewId{3}},
@@ -83,9 +83,9 @@ std::vector<ControlMessage> control_messages() {
             OpenScene{"title", true},
             QueuePlace{2},
             SceneOpened{{5, 1}, 65536, 100},
-            SubmitEdit{{SessionId{2}, 3, {5, 1}, some_changes().entries}},
+            SubmitEdit{{SessionId{2}, 3, {5, 1}, some_changes().entries, 4, -5, 6}},
             SubmitEditByBlob{SessionId{2}, 3, {5, 1}, {blake2b({}), 5}},
-            EditReply{3, true, {5, 2}, {"p"}},
+            EditReply{3, true, {5, 2}, {"p"}, 7, {"n"}},
             StartJob{.job = JobId{1},
                      .view = some_view(),
                      .spp = 5,
@@ -114,10 +114,43 @@ std::vector<ControlMessage> control_messages() {
                     .samples_most = 9},
             StatusRequest{},
             StatusReply{.software = "s",
-                        .nodes = {{.summary = node, .phase = NodePhase::Leaving, .stuck = true}}},
+                        .nodes = {{.summary = node,
+                                   .phase = NodePhase::Leaving,
+                                   .stuck = true,
+                                   .clock_offset_seconds = -0.5,
+                                   .clock_bound_seconds = 0.25}},
+                        .live = {.title = "room",
+                                 .members = 2,
+                                 .edits = 7,
+                                 .stages = {{"first picture", 9, 0.02, 0.05}}}},
             SetFilter{"fdf:radius=3"},
             FilterSet{true, "from now on"},
-            SceneRefused{{5, 1}, "too large"}};
+            SceneRefused{{5, 1}, "too large"},
+            JoinScene{"room", "ann", 0xfedcba9876543210, true},
+            SceneJoined{{5, 1}, 65536, 100, 3, "room", "ann (2)"},
+            RequestDone{1, true, "why"},
+            CloseScene{2},
+            ReadScene{3, {5, 1}},
+            SceneContent{4, some_changes(), {blake2b({}), 5}},
+            LockObjects{5, {ObjectId{7}}, true},
+            SetPresence{"looks", {ObjectId{7}}, std::chrono::seconds(5)},
+            ReadPeople{6},
+            People{6,
+                   "room",
+                   {{SessionId{1}, "ann", "editor", "looks", {ObjectId{7}}, true, -0.5, 0.25}},
+                   {{ObjectId{7}, "ann"}},
+                   {{"main", "ann", 64, 32, 5, 9, 2}}},
+            ReadHistory{7, 20},
+            History{7, {{3, "ann", "editor", -4, 5, "set", 2, 6}}},
+            ReadWriters{8, ObjectId{7}},
+            Writers{8, {{2, 3, "ann", "editor", 4}}},
+            OpenLiveView{9, 1, "main", some_view(), 64, PictureEncoding::Jpeg, true, true},
+            CloseLiveView{1},
+            FrameTaken{1, 12},
+            Pick{10, 1, 3, 4},
+            Picked{10, {5, 1}, true, ObjectId{7}, {1, 2, 3}, {0, 1, 0}, 4.5, "none"},
+            ReadTrace{11, 10},
+            Trace{11, {{3, "ann", 40, 1, 2, 3, 4, {{"node-1", 5, 6, 7}}, 8, {5, 2}}}}};
 }
 
 std::vector<BulkMessage> bulk_messages() {
@@ -133,7 +166,9 @@ std::vector<BulkMessage> bulk_messages() {
             FilmPart{UnitId{1}, ViewId{2}, 3, {4, 5}, 0, 2, 6, 7, film},
             FilmPart{UnitId{1}, ViewId{2}, 3, {4, 5}, 1, 2, 6, 7, uneven},
             FrameTile{JobId{1}, 2, 3, uneven},
-            PictureChunk{JobId{1}, 100, 10, std::vector<std::byte>(50)}};
+            PictureChunk{JobId{1}, 100, 10, std::vector<std::byte>(50)},
+            LiveFrame{
+                1, 2, {5, 3}, 4, 8, 160, 90, 3, PictureEncoding::Jpeg, 1000, 4, 1, 2, 64, true, blake2b({})}};
 }
 
 TEST(ControlMessages, EveryKindIsHere) {
