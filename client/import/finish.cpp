@@ -12,7 +12,8 @@ namespace {
 constexpr glm::vec3 SoftSky{0.8f, 0.9f, 1.0f};  // radiance
 
 // From the front right and above, as far as the bounding sphere asks for.
-glm::dmat4 framing_pose(const Bounds& bounds, double vertical_fov) {
+glm::dmat4 framing_pose(Bounds bounds, double vertical_fov) {
+    if (bounds.empty()) bounds = {glm::dvec3(-0.5), glm::dvec3(0.5)};
     const glm::dvec3 center = 0.5 * (bounds.lower + bounds.upper);
     const double extent = 0.5 * glm::length(bounds.upper - bounds.lower);
     const double radius = extent > 0.0 ? extent : 1.0;
@@ -21,6 +22,8 @@ glm::dmat4 framing_pose(const Bounds& bounds, double vertical_fov) {
     const glm::dvec3 eye = center + z * (1.05 * radius / std::sin(0.5 * vertical_fov));
     return {glm::dvec4(x, 0.0), glm::dvec4(glm::cross(z, x), 0.0), glm::dvec4(z, 0.0), glm::dvec4(eye, 1.0)};
 }
+
+}  // namespace
 
 void add_framing_camera(SceneBuilder& builder, const Bounds& bounds) {
     scene::Camera camera;
@@ -37,8 +40,6 @@ void add_framing_camera(SceneBuilder& builder, const Bounds& bounds) {
     builder.notice("no camera: one that frames everything was added");
 }
 
-}  // namespace
-
 void finish(SceneBuilder& builder) {
     Survey found = survey(builder);
     ImportedScene& result = builder.result();
@@ -47,7 +48,8 @@ void finish(SceneBuilder& builder) {
         throw Error(ErrorCode::InvalidInput, "it places no triangles: there is nothing to draw");
     }
     result.cameras = std::move(found.cameras);
-    if (result.cameras.empty()) add_framing_camera(builder, found.bounds);
+    const bool may_add = options.missing == Missing::Add;
+    if (result.cameras.empty() && may_add) add_framing_camera(builder, found.bounds);
 
     scene::Background background;
     background.name = "background";
@@ -58,7 +60,7 @@ void finish(SceneBuilder& builder) {
     }
     const bool lit = result.counts.lights > 0 || result.counts.emissive_geometries > 0 ||
                      background.color != glm::vec3(0.0f) || background.environment;
-    if (!lit && !options.background) {
+    if (!lit && !options.background && may_add) {
         background.color = SoftSky;
         builder.notice("no light: a soft sky was added");
     }

@@ -9,6 +9,7 @@
 #include "client/import/finish.h"
 #include "client/import/gltf_import.h"
 #include "client/import/ply_import.h"
+#include "client/import/tessera_import.h"
 #include "mediator/scene/fields.h"
 
 namespace tessera::import {
@@ -38,6 +39,7 @@ void check_options(const ImportOptions& options) {
 
 void read_into(const std::filesystem::path& file, SceneBuilder& builder) {
     const std::string extension = lower_case_extension(file);
+    if (extension == ".tessera") return import_tessera(file, builder);
     if (extension == ".gltf" || extension == ".glb") {
         import_gltf(file, builder);
     } else if (extension == ".ply") {
@@ -45,9 +47,11 @@ void read_into(const std::filesystem::path& file, SceneBuilder& builder) {
     } else if (is_assimp_extension(extension)) {
         import_with_assimp(file, builder);
     } else {
-        throw Error(ErrorCode::InvalidInput,
-                    "its name ends in none of .gltf, .glb, .obj, .ply and .stl: convert it to glTF 2.0");
+        throw Error(
+            ErrorCode::InvalidInput,
+            "its name ends in none of .gltf, .glb, .obj, .ply, .stl and .tessera: convert it to glTF 2.0");
     }
+    finish(builder);
 }
 
 }  // namespace
@@ -61,7 +65,6 @@ Expected<ImportedScene> import_scene(const std::filesystem::path& file, const Im
         }
         SceneBuilder builder(options);
         read_into(file, builder);
-        finish(builder);
         return std::move(builder.result());
     } catch (const Error& error) {
         return failure(error.code(), named + error.what());

@@ -15,12 +15,17 @@
 
 namespace tessera::import {
 
+// A camera where the file has none, and a soft sky where nothing shines: added for who wants to see the
+// scene, left to who brings it into another.
+enum class Missing { Add, Leave };
+
 struct ImportOptions {
     ObjectId first_id{2};                 // objects get consecutive ids from here
     ObjectId end_id{1ull << 32};          // one past the last id that may be used
     std::optional<glm::vec3> background;  // linear radiance; counts as light when not black
     std::filesystem::path environment;    // latitude-longitude .exr or .hdr; empty = none
     float environment_strength = 1.0f;
+    Missing missing = Missing::Add;
 };
 
 // A place to look from; the Camera object is in the scene, too.
@@ -48,12 +53,13 @@ struct ImportedScene {
     scene::Root root;                    // children and background; its id is scene::RootId
     std::vector<scene::Create> objects;  // all others, ids ascending and consecutive from first_id
     std::vector<scene::BlobPtr> blobs;   // all that the objects refer to, each once
-    std::vector<CameraInfo> cameras;   // never empty; the file's own in file order, else one that frames all
-    std::vector<std::string> notices;  // what was added, replaced or ignored; lower-case phrases, each once
+    std::vector<CameraInfo> cameras;     // the file's own in file order, else the one that was added
+    std::vector<std::string> notices;    // what was added, replaced or ignored; lower-case phrases, each once
     ImportCounts counts;
 };
 
-// glTF 2.0 (.gltf, .glb), PLY or, through assimp, .obj and .stl. A scene without any light
+// glTF 2.0 (.gltf, .glb), PLY, through assimp .obj and .stl, or .tessera, which is taken as it was saved
+// (names, attachments, shared transforms; only a camera is added). Of the others: a scene without any light
 // gets a soft sky, one without a camera gets one. A bad mesh or texture becomes a placeholder and a notice.
 // Photometric units of KHR_lights_punctual are taken one to one as radiometric ones (1 cd = 1 W/sr, 1 lx = 1
 // W/m2), as most renderers do. NotFound: no such file. InvalidInput: damaged, another format, an unknown

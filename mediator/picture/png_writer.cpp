@@ -9,13 +9,25 @@ namespace tessera::picture {
 
 namespace {
 
-png_image describe(std::uint32_t width, std::uint32_t height) {
+png_image describe(std::uint32_t width, std::uint32_t height, png_uint_32 format) {
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
     image.width = width;
     image.height = height;
-    image.format = PNG_FORMAT_RGB;
+    image.format = format;
     return image;
+}
+
+std::vector<std::byte> encode(png_image image, std::span<const std::uint8_t> pixels) {
+    png_alloc_size_t size = 0;
+    const bool is_measured = png_image_write_get_memory_size(image, size, 0, pixels.data(), 0, nullptr) != 0;
+    std::vector<std::byte> bytes(size);
+    if (!is_measured ||
+        png_image_write_to_memory(&image, bytes.data(), &size, 0, pixels.data(), 0, nullptr) == 0) {
+        throw Error(ErrorCode::Io, std::string("cannot encode a PNG: ") + image.message);
+    }
+    bytes.resize(size);
+    return bytes;
 }
 
 }  // namespace
@@ -23,7 +35,7 @@ png_image describe(std::uint32_t width, std::uint32_t height) {
 void write_png(const std::string& path, std::uint32_t width, std::uint32_t height,
                std::span<const std::uint8_t> rgb) {
     write_atomically(path, [&](const std::string& temporary) {
-        png_image image = describe(width, height);
+        png_image image = describe(width, height, PNG_FORMAT_RGB);
         if (png_image_write_to_file(&image, temporary.c_str(), 0, rgb.data(), 0, nullptr) == 0) {
             throw Error(ErrorCode::Io, "cannot write '" + path + "': " + image.message);
         }
@@ -32,16 +44,12 @@ void write_png(const std::string& path, std::uint32_t width, std::uint32_t heigh
 
 std::vector<std::byte> encode_png(std::uint32_t width, std::uint32_t height,
                                   std::span<const std::uint8_t> rgb) {
-    png_image image = describe(width, height);
-    png_alloc_size_t size = 0;
-    const bool is_measured = png_image_write_get_memory_size(image, size, 0, rgb.data(), 0, nullptr) != 0;
-    std::vector<std::byte> bytes(size);
-    if (!is_measured ||
-        png_image_write_to_memory(&image, bytes.data(), &size, 0, rgb.data(), 0, nullptr) == 0) {
-        throw Error(ErrorCode::Io, std::string("cannot encode a PNG: ") + image.message);
-    }
-    bytes.resize(size);
-    return bytes;
+    return encode(describe(width, height, PNG_FORMAT_RGB), rgb);
+}
+
+std::vector<std::byte> encode_rgba_png(std::uint32_t width, std::uint32_t height,
+                                       std::span<const std::uint8_t> rgba) {
+    return encode(describe(width, height, PNG_FORMAT_RGBA), rgba);
 }
 
 }  // namespace tessera::picture

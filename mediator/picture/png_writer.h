@@ -16,4 +16,8 @@ void write_png(const std::string& path, std::uint32_t width, std::uint32_t heigh
 std::vector<std::byte> encode_png(std::uint32_t width, std::uint32_t height,
                                   std::span<const std::uint8_t> rgb);
 
+// With alpha, 4 bytes a pixel: stored as they are, alpha not multiplied in.
+std::vector<std::byte> encode_rgba_png(std::uint32_t width, std::uint32_t height,
+                                       std::span<const std::uint8_t> rgba);
+
 }  // namespace tessera::picture

@@ -41,7 +41,9 @@ ARROWS = {
     "master/main.cpp": CORE + LINK + ["mediator/picture", "client/cli"],
     "client": CORE + LINK + ["client/import", "mediator/picture"],
     "client/session.h": CORE + ["client/import", "mediator/picture"],
-    "client/import": CORE + ["mediator/picture"],
+    "client/import": CORE + ["mediator/picture", "mediator/wire"],
+    "client/export": CORE + ["client/import", "mediator/picture", "mediator/wire"],
+    "client/edit": CORE + ["client/import", "client/export", "client/cli"],
     "client/cli": ["mediator/base"],
     "client/main.cpp": [""],
     "client/tools": [""],
@@ -66,7 +68,9 @@ LIBRARIES = [
      EVERYWHERE),
     (r"png\.h$|jpeglib\.h$|turbojpeg\.h$", ["mediator/picture/", "tests/"], EVERYWHERE),
     (r"stb/", ["mediator/picture/", "client/import/", "tests/"], SOURCES),
-    (r"tiny_gltf|assimp/|draco/|pugi", ["client/import/", "tests/"], EVERYWHERE),
+    (r"tiny_gltf", ["client/import/", "client/export/", "tests/"], EVERYWHERE),
+    (r"assimp/|draco/|pugi", ["client/import/", "tests/"], EVERYWHERE),
+    (r"histedit\.h$", ["client/edit/"], SOURCES),
     (r"(gtest|gmock|benchmark)/", ["tests/"], EVERYWHERE),
 ]
 

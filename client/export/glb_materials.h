@@ -1,0 +1,46 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <tuple>
+
+#include "client/export/glb_buffer.h"
+#include "mediator/scene/scene.h"
+
+namespace tinygltf {
+struct Material;
+}
+
+namespace tessera::exporting {
+
+// Makes glTF materials, textures and images of those that are asked for, each once.
+class GlbMaterials {
+  public:
+    GlbMaterials(tinygltf::Model& model, const scene::Scene& scene, GlbBuffer& buffer,
+                 std::set<std::string>& notices)
+        : model_(model), scene_(scene), buffer_(buffer), notices_(notices) {}
+
+    int material(ObjectId id);  // 0: the default grey
+
+  private:
+    tinygltf::Material make(const scene::Material& material);
+    template <class Info>
+    void fill(Info& info, const scene::TextureSlot& slot);
+    std::optional<int> texture(ObjectId id);  // none for what glTF has no form for; that is told
+    int image(const scene::Texture& texture);
+    int sampler(const scene::Texture& texture);
+    void uses(const char* extension);
+
+    tinygltf::Model& model_;
+    const scene::Scene& scene_;
+    GlbBuffer& buffer_;
+    std::set<std::string>& notices_;
+    std::map<ObjectId, int> materials_;
+    std::map<ObjectId, std::optional<int>> textures_;
+    std::map<std::tuple<Hash256, std::uint32_t, std::string>, int> images_;
+    std::map<std::tuple<scene::Wrap, scene::Wrap, scene::TextureFilter>, int> samplers_;
+};
+
+}  // namespace tessera::exporting

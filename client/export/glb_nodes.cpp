@@ -1,0 +1,174 @@
+#include "client/export/glb_nodes.h"
+
+#include <tiny_gltf.h>
+
+#include <algorithm>
+
+#include "client/export/glb_text.h"
+
+namespace tessera::exporting {
+namespace {
+
+constexpr std::uint64_t MaxPlaces = 1'000'000;
+
+const char* type_name(scene::LightKind kind) {
+    switch (kind) {
+        case scene::LightKind::Point:
+            return "point";
+        case scene::LightKind::Spot:
+            return "spot";
+        case scene::LightKind::Directional:
+            return "directional";
+    }
+    return "point";
+}
+
+void set_light(tinygltf::Node& node, int light) {
+    using tinygltf::Value;
+    node.extensions["KHR_lights_punctual"] = Value(Value::Object{{"light", Value(light)}});
+}
+
+// Looks before nodes are made: shared transforms may unfold to any number.
+void check_size(const scene::Scene& scene, const std::vector<ObjectId>& roots) {
+    std::vector<ObjectId> open = roots;
+    for (std::uint64_t places = 0; !open.empty(); ++places) {
+        if (places > MaxPlaces) {
+            throw Error(ErrorCode::InvalidInput, "the scene has more than " + std::to_string(MaxPlaces) +
+                                                     " places: save it as .tessera, or split it");
+        }
+        const auto* transform = scene.find_as<scene::Transform>(open.back());
+        open.pop_back();
+        if (transform) open.insert(open.end(), transform->children.begin(), transform->children.end());
+    }
+}
+
+}  // namespace
+
+int GlbNodes::add_node(const std::string& name) {
+    tinygltf::Node node;
+    node.name = utf8(name);
+    model_.nodes.push_back(std::move(node));
+    return static_cast<int>(model_.nodes.size()) - 1;
+}
+
+std::vector<int> GlbNodes::build(const std::vector<ObjectId>& roots) {
+    check_size(scene_, roots);
+    std::vector<int> result = hang(roots, -1);
+    while (!open_.empty()) {
+        const Place place = open_.back();
+        open_.pop_back();
+        const auto& transform = *scene_.find_as<scene::Transform>(place.transform);
+        std::vector<int> below = hang(transform.children, place.node);
+        auto& node = model_.nodes[static_cast<std::size_t>(place.node)];
+        node.children = std::move(below);
+        if (transform.matrix == glm::dmat4(1.0)) continue;
+        for (int i = 0; i < 16; ++i) node.matrix.push_back(transform.matrix[i / 4][i % 4]);
+    }
+    return result;
+}
+
+std::vector<int> GlbNodes::hang(const std::vector<ObjectId>& objects, int node) {
+    std::vector<int> below;
+    std::vector<ObjectId> geometries;
+    // The node itself takes the first of each kind, where there is a node.
+    const auto place_for = [&](const std::string& name, auto is_free) {
+        if (node >= 0 && is_free(model_.nodes[static_cast<std::size_t>(node)])) return node;
+        below.push_back(add_node(name));
+        return below.back();
+    };
+    for (const ObjectId id : objects) {
+        const scene::Object& object = *scene_.find(id);
+        const std::string& name = scene::name(object);
+        if (std::holds_alternative<scene::Transform>(object)) {
+            below.push_back(add_node(name));
+            open_.push_back({id, below.back()});
+        } else if (std::holds_alternative<scene::Geometry>(object)) {
+            geometries.push_back(id);
+        } else if (std::holds_alternative<scene::Light>(object)) {
+            const int place =
+                place_for(name, [](const tinygltf::Node& one) { return one.extensions.empty(); });
+            set_light(model_.nodes[static_cast<std::size_t>(place)], light(id));
+        } else if (std::holds_alternative<scene::Camera>(object)) {
+            const int place = place_for(name, [](const tinygltf::Node& one) { return one.camera < 0; });
+            model_.nodes[static_cast<std::size_t>(place)].camera = camera(id);
+        }
+    }
+    if (!geometries.empty()) hang_geometries(geometries, node, below);
+    return below;
+}
+
+void GlbNodes::hang_geometries(const std::vector<ObjectId>& geometries, int node, std::vector<int>& below) {
+    // Names that the importer gives the parts of one mesh make one mesh again.
+    const std::string& first = scene::name(*scene_.find(geometries[0]));
+    bool is_one_mesh = node >= 0;
+    for (std::size_t i = 1; i < geometries.size(); ++i) {
+        is_one_mesh &= scene::name(*scene_.find(geometries[i])) == first + " part " + std::to_string(i);
+    }
+    if (is_one_mesh) {
+        model_.nodes[static_cast<std::size_t>(node)].mesh = mesh(geometries);
+        return;
+    }
+    for (const ObjectId id : geometries) {
+        below.push_back(add_node(scene::name(*scene_.find(id))));
+        model_.nodes[static_cast<std::size_t>(below.back())].mesh = mesh({id});
+    }
+}
+
+int GlbNodes::mesh(const std::vector<ObjectId>& geometries) {
+    const auto [place, is_new] = meshes_.try_emplace(geometries, 0);
+    if (!is_new) return place->second;
+    tinygltf::Mesh mesh;
+    mesh.name = utf8(scene::name(*scene_.find(geometries[0])));
+    using enum GlbBuffer::Role;
+    for (const ObjectId id : geometries) {
+        const auto& geometry = *scene_.find_as<scene::Geometry>(id);
+        tinygltf::Primitive primitive;
+        primitive.mode = TINYGLTF_MODE_TRIANGLES;
+        primitive.material = materials_.material(geometry.material);
+        primitive.indices = buffer_.accessor(geometry.indices, Indices, 1);
+        const auto add = [&](const char* name, const scene::BlobRef& array, GlbBuffer::Role role,
+                             int components) {
+            if (!array.empty()) primitive.attributes[name] = buffer_.accessor(array, role, components);
+        };
+        add("POSITION", geometry.positions, Positions, 3);
+        add("NORMAL", geometry.normals, Other, 3);
+        if (!geometry.normals.empty()) add("TANGENT", geometry.tangents, Other, 4);
+        add("TEXCOORD_0", geometry.tex_coords, Other, 2);
+        add("COLOR_0", geometry.colors, Other, 4);
+        mesh.primitives.push_back(std::move(primitive));
+    }
+    model_.meshes.push_back(std::move(mesh));
+    return place->second = static_cast<int>(model_.meshes.size()) - 1;
+}
+
+int GlbNodes::light(ObjectId id) {
+    const auto [place, is_new] = lights_.try_emplace(id, 0);
+    if (!is_new) return place->second;
+    const auto& light = *scene_.find_as<scene::Light>(id);
+    tinygltf::Light made;
+    made.name = utf8(light.name);
+    made.type = type_name(light.kind);
+    const double brightest = std::max({light.intensity.r, light.intensity.g, light.intensity.b});
+    made.intensity = brightest;
+    for (int i = 0; i < 3; ++i) made.color.push_back(brightest > 0.0 ? light.intensity[i] / brightest : 1.0);
+    made.spot.innerConeAngle = light.inner_cone_angle;
+    made.spot.outerConeAngle = light.outer_cone_angle;
+    model_.lights.push_back(std::move(made));
+    return place->second = static_cast<int>(model_.lights.size()) - 1;
+}
+
+int GlbNodes::camera(ObjectId id) {
+    const auto [place, is_new] = cameras_.try_emplace(id, 0);
+    if (!is_new) return place->second;
+    const auto& camera = *scene_.find_as<scene::Camera>(id);
+    tinygltf::Camera made;
+    made.name = utf8(camera.name);
+    made.type = "perspective";
+    made.perspective.yfov = camera.vertical_fov;
+    made.perspective.aspectRatio = camera.aspect_ratio;  // 0 is not written
+    made.perspective.znear = 0.01;                       // glTF asks for one; ours have none
+    model_.cameras.push_back(std::move(made));
+    return place->second = static_cast<int>(model_.cameras.size()) - 1;
+}
+
+}  // namespace tessera::exporting

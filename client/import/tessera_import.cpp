@@ -1,0 +1,177 @@
+#include "client/import/tessera_import.h"
+
+#include <algorithm>
+#include <set>
+
+#include "client/import/environment.h"
+#include "client/import/finish.h"
+#include "client/import/limits.h"
+#include "client/import/survey.h"
+#include "client/import/tessera_format.h"
+#include "mediator/scene/references.h"
+#include "mediator/scene/scene.h"
+
+namespace tessera::import {
+namespace {
+
+// Places a scene that may share transforms; a builder's own walk knows only trees.
+class Places {
+  public:
+    Places(const scene::Scene& scene, ImportedScene& result) : scene_(scene), result_(result) {
+        for (const scene::BlobPtr& blob : result.blobs) blobs_.insert(blob);
+    }
+
+    Bounds run(const std::vector<ObjectId>& roots) {
+        for (const ObjectId child : roots) stack_.push_back({child, glm::dmat4(1.0)});
+        while (!stack_.empty()) {
+            const Place place = stack_.back();
+            stack_.pop_back();
+            visit(place);
+        }
+        std::stable_sort(cameras_.begin(), cameras_.end(),
+                         [](const auto& a, const auto& b) { return a.first < b.first; });
+        for (auto& [unused, camera] : cameras_) result_.cameras.push_back(std::move(camera));
+        return bounds_;
+    }
+
+  private:
+    struct Place {
+        ObjectId object;
+        glm::dmat4 parent{1.0};
+    };
+
+    void visit(const Place& place) {
+        if (++places_ > MaxInstances) {
+            throw Error(ErrorCode::InvalidInput,
+                        "it places more than " + std::to_string(MaxInstances) + " objects: split the scene");
+        }
+        const scene::Object& object = *scene_.find(place.object);
+        if (const auto* transform = std::get_if<scene::Transform>(&object)) {
+            for (const ObjectId child : transform->children)
+                stack_.push_back({child, place.parent * transform->matrix});
+        } else if (const auto* geometry = std::get_if<scene::Geometry>(&object)) {
+            ++result_.counts.instances;
+            bounds_.add(box(place.object, *geometry), place.parent);
+        } else if (std::holds_alternative<scene::Light>(object)) {
+            ++result_.counts.lights;
+        } else if (const auto* camera = std::get_if<scene::Camera>(&object)) {
+            add_camera(place, *camera);
+        }
+    }
+
+    const Bounds& box(ObjectId id, const scene::Geometry& geometry) {
+        const auto [place, is_new] = boxes_.try_emplace(id);
+        if (is_new) {
+            const scene::BlobPtr positions = blobs_.find(geometry.positions.hash);
+            for (const glm::vec3& point : positions->as<glm::vec3>()) place->second.add(glm::dvec3(point));
+        }
+        return place->second;
+    }
+
+    void add_camera(const Place& place, const scene::Camera& camera) {
+        glm::dmat4 world = place.parent;
+        if (!make_rigid(world)) {
+            result_.notices.push_back("camera '" + camera.name +
+                                      "' is not used: its transform has no direction");
+            return;
+        }
+        const std::string base = camera.name.empty() ? "camera" : camera.name;
+        std::string name = base;
+        for (int suffix = 2; !names_.insert(name).second; ++suffix)
+            name = base + "." + std::to_string(suffix);
+        cameras_.emplace_back(place.object,
+                              CameraInfo{name, world, camera.vertical_fov, camera.aspect_ratio});
+    }
+
+    const scene::Scene& scene_;
+    ImportedScene& result_;
+    scene::BlobStore blobs_;
+    std::vector<Place> stack_;
+    std::uint64_t places_ = 0;
+    Bounds bounds_;
+    std::map<ObjectId, Bounds> boxes_;
+    std::set<std::string> names_;
+    std::vector<std::pair<ObjectId, CameraInfo>> cameras_;
+};
+
+void count(const scene::Scene& scene, ImportCounts& counts) {
+    for (const auto& [id, object] : scene.objects()) {
+        if (std::holds_alternative<scene::Texture>(*object)) ++counts.textures;
+        const auto* geometry = std::get_if<scene::Geometry>(object.get());
+        if (geometry == nullptr) continue;
+        ++counts.geometries;
+        counts.triangles += geometry->indices.byte_size / 12;
+        const auto* material = scene.find_as<scene::Material>(geometry->material);
+        if (material != nullptr && material->emission != glm::vec3(0.0f)) ++counts.emissive_geometries;
+    }
+}
+
+// Ids of the file become consecutive ones; the order stays.
+void bring_in_objects(const scene::Scene& scene, SceneBuilder& builder) {
+    ImportedScene& result = builder.result();
+    const ImportOptions& options = builder.options();
+    if (scene.objects().size() - 1 > options.end_id.value - options.first_id.value) {
+        throw Error(ErrorCode::InvalidInput,
+                    "it needs more than the " +
+                        std::to_string(options.end_id.value - options.first_id.value) +
+                        " objects that may be made: split the scene");
+    }
+    std::map<ObjectId, ObjectId> renumbered{{ObjectId{}, ObjectId{}}};
+    ObjectId next = options.first_id;
+    for (const auto& [id, unused] : scene.objects()) {
+        if (id != scene::RootId) renumbered[id] = {next.value++};
+    }
+    for (const auto& [id, object] : scene.objects()) {
+        scene::Object copy = *object;
+        scene::for_each_reference(copy, [&](ObjectId& reference) { reference = renumbered.at(reference); });
+        if (id == scene::RootId) {
+            result.root = std::get<scene::Root>(std::move(copy));
+        } else {
+            result.objects.push_back({renumbered.at(id), std::move(copy)});
+        }
+    }
+}
+
+void apply_options(SceneBuilder& builder) {
+    const ImportOptions& options = builder.options();
+    if (!options.background && options.environment.empty()) return;
+    scene::Root& root = builder.result().root;
+    if (!root.background) {
+        scene::Background background;
+        background.name = "background";
+        root.background = builder.add(std::move(background));
+    }
+    if (options.background) builder.get<scene::Background>(root.background).color = *options.background;
+    if (options.environment.empty()) return;
+    const ObjectId environment = add_environment(options.environment, builder);
+    auto& background = builder.get<scene::Background>(root.background);
+    background.environment = environment;
+    background.strength = options.environment_strength;
+    auto& blobs = builder.result().blobs;  // the file may have had the same map
+    const Hash256 last = blobs.back()->hash();
+    if (std::any_of(blobs.begin(), blobs.end() - 1, [&](const auto& one) { return one->hash() == last; }))
+        blobs.pop_back();
+}
+
+}  // namespace
+
+void import_tessera(const std::filesystem::path& file, SceneBuilder& builder) {
+    auto content = read_tessera(file);
+    if (!content) throw content.error();
+    scene::Scene scene;
+    if (const auto applied = scene.apply(content->snapshot); !applied) throw applied.error();
+    ImportedScene& result = builder.result();
+    result.blobs = std::move(content->blobs);
+    count(scene, result.counts);
+    bring_in_objects(scene, builder);
+
+    scene::Scene renumbered;
+    if (const auto applied = renumbered.apply_entries(entries(result, RootEntry::Create)); !applied)
+        throw applied.error();
+    const Bounds bounds = Places(renumbered, result).run(result.root.children);
+    apply_options(builder);
+    if (result.cameras.empty() && builder.options().missing == Missing::Add)
+        add_framing_camera(builder, bounds);
+}
+
+}  // namespace tessera::import

@@ -1,0 +1,211 @@
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+#include "client/export/export.h"
+#include "mediator/backend/lowering.h"
+#include "mediator/scene/fields.h"
+#include "tests/export/rich_scene.h"
+#include "tests/import/inspect.h"
+#include "tests/import/scene_file.h"
+
+// A .glb comes back through the importer as the same picture: arrays and transforms to the bit (JSON numbers
+// are written so that they read back), materials to the bit but for emission and light (a factor times a
+// strength: 1e-6 relative, some roundings of a float).
+namespace tessera::exporting {
+namespace {
+
+scene::Scene scene_of(const import::ImportedScene& imported) {
+    scene::Scene scene;
+    const auto applied = scene.apply_entries(entries(imported, import::RootEntry::Create));
+    if (!applied) ADD_FAILURE() << applied.error().what();
+    return scene;
+}
+
+// One placed geometry as it looks, whatever the names and ids around it are.
+struct Look {
+    glm::dmat4 place;
+    scene::Geometry geometry;
+    scene::Material material;
+    std::vector<scene::Texture> textures;
+    std::vector<glm::vec3> normals;
+};
+
+std::vector<Look> looks(const scene::Scene& scene, const scene::BlobStore& blobs) {
+    std::vector<Look> result;
+    const auto lowered = backend::lower(scene);
+    EXPECT_TRUE(lowered);
+    for (const backend::Instance& instance : lowered->instances) {
+        Look look{instance.world_from_object, *scene.find_as<scene::Geometry>(instance.geometry), {}, {}, {}};
+        if (const auto* material = scene.find_as<scene::Material>(look.geometry.material))
+            look.material = *material;
+        for (scene::TextureSlot* slot :
+             {&look.material.base_color_texture, &look.material.metallic_roughness_texture,
+              &look.material.normal_texture, &look.material.emission_texture}) {
+            const auto* texture = scene.find_as<scene::Texture>(slot->texture);
+            look.textures.push_back(texture ? *texture : scene::Texture{});
+            slot->texture = {};
+        }
+        look.geometry.material = {};
+        if (const scene::BlobPtr blob = blobs.find(look.geometry.normals.hash)) {
+            const auto normals = blob->as<glm::vec3>();
+            look.normals.assign(normals.begin(), normals.end());
+        }
+        look.geometry.normals = {};
+        result.push_back(std::move(look));
+    }
+    std::sort(result.begin(), result.end(), [](const Look& a, const Look& b) {
+        const auto key = [](const Look& look) {
+            return std::tuple(look.geometry.positions.hash, look.geometry.name, look.place[3].x,
+                              look.place[3].y, look.place[3].z, look.place[0].x, look.place[1].y);
+        };
+        return key(a) < key(b);
+    });
+    return result;
+}
+
+void expect_same(const Look& a, const Look& b) {
+    EXPECT_EQ(a.place, b.place);
+    ASSERT_EQ(a.normals.size(), b.normals.size());
+    for (std::size_t i = 0; i < a.normals.size(); ++i)
+        ASSERT_LT(glm::distance(a.normals[i], b.normals[i]), 3e-7f);
+    EXPECT_EQ(scene::differing_fields(a.geometry, b.geometry) & ~1u, 0u) << "all but the name";
+    scene::Material rounded = b.material;
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(a.material.emission[i], b.material.emission[i], 1e-6f * a.material.emission[i]);
+    }
+    rounded.emission = a.material.emission;
+    EXPECT_EQ(scene::differing_fields(a.material, rounded) & ~1u, 0u)
+        << a.material.name << " " << scene::differing_fields(a.material, rounded);
+    ASSERT_EQ(a.textures.size(), b.textures.size());
+    for (std::size_t i = 0; i < a.textures.size(); ++i)
+        EXPECT_EQ(scene::differing_fields(a.textures[i], b.textures[i]) & ~1u, 0u);
+}
+
+void expect_same_look(const scene::Scene& a, const scene::BlobStore& blobs,
+                      const import::ImportedScene& imported) {
+    scene::BlobStore other_blobs;
+    for (const scene::BlobPtr& blob : imported.blobs) other_blobs.insert(blob);
+    const std::vector<Look> one = looks(a, blobs), other = looks(scene_of(imported), other_blobs);
+    ASSERT_EQ(one.size(), other.size());
+    for (std::size_t i = 0; i < one.size(); ++i) {
+        SCOPED_TRACE(one[i].geometry.name);
+        expect_same(one[i], other[i]);
+    }
+}
+
+import::ImportedScene through_glb(const scene::Scene& scene, const scene::BlobStore& blobs,
+                                  Notices& notices){const import::TestFolder folder;
+const auto file = folder.path() / "scene.glb";
+const auto written = write_glb(scene, blobs, file);
+if (!written) ADD_FAILURE() << written.error().what();
+notices = written.value_or(Notices{});
+import::ImportedScene imported = import::loaded(file);
+import::expect_sound(imported);
+return imported;
+}  // namespace
+
+class GlbOfFile : public testing::TestWithParam<const char*> {};
+
+TEST_P(GlbOfFile, ComesBackTheSame) {
+    const import::ImportedScene imported = import::loaded(std::filesystem::path(TESSERA_SCENES) / GetParam());
+    scene::BlobStore blobs;
+    for (const scene::BlobPtr& blob : imported.blobs) blobs.insert(blob);
+    Notices notices;
+    const scene::Scene before = scene_of(imported);
+    const import::ImportedScene again = through_glb(before, blobs, notices);
+    expect_same_look(before, blobs, again);
+    EXPECT_EQ(again.counts.triangles, imported.counts.triangles);
+    EXPECT_EQ(again.counts.textures, imported.counts.textures);
+    ASSERT_EQ(again.cameras.size(), imported.cameras.size());
+    for (std::size_t i = 0; i < again.cameras.size(); ++i) {
+        EXPECT_EQ(again.cameras[i].name, imported.cameras[i].name);
+        EXPECT_EQ(again.cameras[i].world_from_camera, imported.cameras[i].world_from_camera);
+        EXPECT_EQ(again.cameras[i].vertical_fov, imported.cameras[i].vertical_fov);
+    }
+    EXPECT_EQ(again.blobs.size(), imported.blobs.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, GlbOfFile, testing::Values("room-1.glb", "studio-1.glb", "still.glb"),
+                         [](const auto& given) {
+                             std::string name = given.param;
+                             std::replace_if(
+                                 name.begin(), name.end(), [](char c) { return !std::isalnum(c); }, '_');
+                             return name;
+                         });
+
+TEST(GlbExport, EverythingThatGltfKnowsComesBack) {
+    RichScene rich;
+    make_rich(rich);
+    Notices notices;
+    const import::ImportedScene imported = through_glb(rich.scene, rich.blobs, notices);
+    // A geometry without normals, drawn with the default grey, keeps its arrays as they are.
+    expect_same_look(rich.scene, rich.blobs, imported);
+    for (const char* name : {"wheel", "left"}) import::named<scene::Transform>(imported, name);
+    import::named<scene::Material>(imported, "my \"red\"");
+    import::named<scene::Texture>(imported, "wood");
+
+    const auto near = [](const glm::vec3& a, const glm::vec3& b) {
+        for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], 1e-6f * b[i]);
+    };
+    near(import::named<scene::Light>(imported, "bulb").intensity, {3.0f, 2.0f, 0.1f});
+    const auto& spot = import::named<scene::Light>(imported, "spot");
+    EXPECT_EQ(spot.kind, scene::LightKind::Spot);
+    near(spot.intensity, {100.0f, 90.0f, 80.0f});
+    EXPECT_EQ(spot.inner_cone_angle, 0.2f);
+    EXPECT_EQ(spot.outer_cone_angle, 0.5f);
+    const auto& sun = import::named<scene::Light>(imported, "sun");
+    EXPECT_EQ(sun.kind, scene::LightKind::Directional);
+    EXPECT_EQ(sun.intensity, glm::vec3(0.0f));
+    ASSERT_EQ(imported.cameras.size(), 1u);
+    EXPECT_EQ(imported.cameras[0].vertical_fov, 0.123456789);
+    EXPECT_EQ(imported.cameras[0].aspect, 1.5);
+}
+
+TEST(GlbExport, WhatGltfLacksIsTold) {
+    RichScene rich;
+    make_rich(rich);
+    Notices notices;
+    through_glb(rich.scene, rich.blobs, notices);
+    EXPECT_THAT(notices, testing::Contains(testing::HasSubstr("background")));
+    EXPECT_THAT(notices, testing::Contains(testing::HasSubstr("attachments are left out: 1")));
+}
+
+TEST(GlbExport, AMapOfFloatsInAMaterialIsLeftOutAndTold) {
+    RichScene rich;
+    make_rich(rich);
+    scene::Material material;
+    for (const auto& [id, object] : rich.scene.objects()) {
+        const auto* found = std::get_if<scene::Material>(object.get());
+        if (found == nullptr) continue;
+        material = *found;
+        for (const auto& [texture, candidate] : rich.scene.objects()) {
+            if (scene::name(*candidate) == "sky") material.emission_texture = {.texture = texture};
+        }
+        ASSERT_TRUE(rich.scene.apply_entries({scene::Update{
+            id, scene::Fields<scene::Material>(scene::Material::Field::EmissionTexture).bits(), material}}));
+        break;
+    }
+    Notices notices;
+    const import::ImportedScene imported = through_glb(rich.scene, rich.blobs, notices);
+    EXPECT_THAT(notices, testing::Contains(testing::HasSubstr("texture 'sky' is left out")));
+    EXPECT_FALSE(import::named<scene::Material>(imported, material.name).emission_texture.texture);
+}
+
+TEST(GlbExport, NamesThatAreNoTextAreWrittenAsText) {
+    RichScene rich;
+    make_rich(rich);
+    scene::Transform odd{.name = "a\xff\xc0z"};
+    odd.children = rich.scene.find_as<scene::Root>(scene::RootId)->children;
+    scene::Root root = *rich.scene.find_as<scene::Root>(scene::RootId);
+    root.children = {ObjectId{900}};
+    ASSERT_TRUE(rich.scene.apply_entries(
+        {scene::Create{ObjectId{900}, odd},
+         scene::Update{scene::RootId, scene::Fields<scene::Root>(scene::Root::Field::Children).bits(),
+                       root}}));
+    Notices notices;
+    const import::ImportedScene imported = through_glb(rich.scene, rich.blobs, notices);
+    import::named<scene::Transform>(imported, "a\xef\xbf\xbd\xef\xbf\xbdz");
+}
+
+}  // namespace tessera::exporting
+}  // namespace tessera::exporting
