@@ -1,0 +1,51 @@
+"""Tessera from Python: join a live scene, edit it in transactions, look at it.
+
+    with tessera.connect("tcp://127.0.0.1:7420", keys="~/.tessera") as session:
+        scene = session.join("room")
+        with session.transaction() as edit:
+            edit.set(scene["materials/red"], base_color=(0.8, 0.1, 0.1, 1.0))
+
+Objects are values (`objects.py`); paths, fields and units are those of the command `tessera edit`.
+"""
+
+from __future__ import annotations
+
+import os
+import secrets
+
+from . import endpoint as _endpoint
+from . import keys as _keys
+from .camera import Pose, look_at, multiply, translation
+from .connection import Connection as _Connection
+from .errors import Error, InvalidInput, Malformed, Refused, Unavailable
+from .film import Film, floats
+from .frame import Frame
+from .link import LinkSettings as _LinkSettings
+from .objects import (ROOT_ID, Attachment, Background, Blob, Camera, Geometry, Light, Material, Object, Root, Texture,
+                      TextureSlot, Transform)
+from .people import Committed, Hit, People, Person, Status, Writer
+from .scene import Scene
+from .session import Session
+from .transaction import Transaction
+from .view import View
+
+__all__ = [
+    "connect", "look_at", "multiply", "translation", "floats", "Session", "Scene", "Transaction", "View", "Frame",
+    "Film", "Pose", "Object", "Root", "Transform", "Geometry", "Material", "Texture", "TextureSlot", "Light", "Camera",
+    "Background", "Attachment", "Blob", "ROOT_ID", "Committed", "Hit", "People", "Person", "Status", "Writer", "Error",
+    "InvalidInput", "Malformed", "Refused", "Unavailable",
+]
+
+
+def connect(where: str = "tcp://127.0.0.1:7420", *, keys: str | os.PathLike[str] | None = None, user: str = "editor",
+            name: str = "python", key: int | None = None, connect_limit: float = 10.0,
+            lost_limit: float = 30.0) -> Session:
+    """A session with the master at `where`. `keys`: the folder of `tessera keys`, of which `user`'s pair is taken, or an
+    exported file; None = not encrypted, on this machine only. `name` is for people. `key`: the same number as an earlier
+    session of this user takes up what that one had; None = somebody new. Raises Unavailable when nobody answers within
+    `connect_limit` seconds; later calls do when the master is silent for `lost_limit`."""
+    place = _endpoint.parse(where)
+    _endpoint.require_keys(place, keys is not None)
+    pair = None if keys is None else _keys.load(keys, user)
+    settings = _LinkSettings(name, "tessera-python", connect_limit, lost_limit)
+    return Session(_Connection(place, pair, settings, secrets.randbits(64) | 1 if key is None else key))

@@ -1,0 +1,192 @@
+"""The bulk link: a fixed little-endian header, then raw data. Decoding takes anything and raises Malformed."""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from typing import Any
+
+from .errors import Malformed
+from .film import FilmTile, channels_known, plane_count
+
+MAGIC = 0x31525354  # "TSR1"
+MAX_CHUNK = 1 << 20
+_MAX_PIXELS = 1 << 16
+_MAX_EDGE = 65536
+_HELLO, _REQUEST, _CHUNK, _ABSENT, _FILM, _TILE, _PICTURE, _FRAME = range(8)
+
+
+@dataclass(frozen=True)
+class BulkHello:
+    token: int
+
+
+@dataclass(frozen=True)
+class BlobRequest:
+    hash: bytes
+    offset: int
+
+
+@dataclass(frozen=True)
+class BlobChunk:
+    hash: bytes
+    total: int
+    offset: int
+    data: bytes
+
+
+@dataclass(frozen=True)
+class BlobAbsent:
+    hash: bytes
+
+
+@dataclass(frozen=True)
+class FrameTile:
+    frame: int
+    index: int
+    count: int
+    film: FilmTile
+
+
+@dataclass(frozen=True)
+class PictureChunk:
+    frame: int
+    total: int
+    offset: int
+    data: bytes
+
+
+@dataclass(frozen=True)
+class LiveFrame:
+    view: int
+    frame: int
+    epoch: int
+    number: int
+    revision: int
+    scale: int
+    width: int
+    height: int
+    components: int
+    encoding: int
+    picture_bytes: int
+    film_tiles: int
+    complete: int
+    samples_least: int
+    samples_most: int
+    spp: int
+    film_hash: bytes
+
+
+BulkMessage = BulkHello | BlobRequest | BlobChunk | BlobAbsent | FrameTile | PictureChunk | LiveFrame
+
+_HEAD = struct.Struct("<II")
+_TOKEN = struct.Struct("<Q")
+_BLOB_REQUEST = struct.Struct("<32sQ")
+_BLOB_CHUNK = struct.Struct("<32sQQ")
+_HASH = struct.Struct("<32s")
+_TILE_HEAD = struct.Struct("<QII")
+_PICTURE_CHUNK = struct.Struct("<QQQ")
+_LIVE_FRAME = struct.Struct("<QQQQQIIIIIQIIQQQ32s")
+_FILM_HEAD = struct.Struct("<iiiiQIIQB")
+
+
+def encode(message: BulkMessage) -> bytes:
+    """What a client, or a master in a test, has to say."""
+    match message:
+        case BulkHello(token):
+            return _HEAD.pack(MAGIC, _HELLO) + _TOKEN.pack(token)
+        case BlobRequest(name, offset):
+            return _HEAD.pack(MAGIC, _REQUEST) + _BLOB_REQUEST.pack(name, offset)
+        case BlobChunk(name, total, offset, data):
+            return _HEAD.pack(MAGIC, _CHUNK) + _BLOB_CHUNK.pack(name, total, offset) + data
+        case BlobAbsent(name):
+            return _HEAD.pack(MAGIC, _ABSENT) + _HASH.pack(name)
+        case FrameTile(frame, index, count, film):
+            return (_HEAD.pack(MAGIC, _TILE) + _TILE_HEAD.pack(frame, index, count) +
+                    _FILM_HEAD.pack(film.x, film.y, film.width, film.height, 0, 0, film.channels, 0, 0) +
+                    film.counts + film.planes)
+        case PictureChunk(frame, total, offset, data):
+            return _HEAD.pack(MAGIC, _PICTURE) + _PICTURE_CHUNK.pack(frame, total, offset) + data
+        case LiveFrame():
+            return _HEAD.pack(MAGIC, _FRAME) + _LIVE_FRAME.pack(
+                message.view, message.frame, message.epoch, message.number, message.revision, message.scale,
+                message.width, message.height, message.components, message.encoding, message.picture_bytes,
+                message.film_tiles, message.complete, message.samples_least, message.samples_most, message.spp,
+                message.film_hash)
+
+
+def decode(data: bytes) -> BulkMessage:
+    """One message. Sizes are checked before anything is kept."""
+    if len(data) < _HEAD.size:
+        raise Malformed("not a bulk message")
+    magic, kind = _HEAD.unpack_from(data)
+    if magic != MAGIC:
+        raise Malformed("not a bulk message")
+    body = memoryview(data)[_HEAD.size:]
+    if kind == _HELLO:
+        return BulkHello(*_whole(_TOKEN, body))
+    if kind == _REQUEST:
+        return BlobRequest(*_whole(_BLOB_REQUEST, body))
+    if kind == _CHUNK:
+        name, total, offset = _front(_BLOB_CHUNK, body)
+        return BlobChunk(name, total, offset, _piece(body[_BLOB_CHUNK.size:], total, offset))
+    if kind == _ABSENT:
+        return BlobAbsent(*_whole(_HASH, body))
+    if kind == _TILE:
+        frame, index, count = _front(_TILE_HEAD, body)
+        if index >= count:
+            raise Malformed("a tile is not one of its frame")
+        return FrameTile(frame, index, count, _film(body[_TILE_HEAD.size:]))
+    if kind == _PICTURE:
+        frame, total, offset = _front(_PICTURE_CHUNK, body)
+        return PictureChunk(frame, total, offset, _piece(body[_PICTURE_CHUNK.size:], total, offset))
+    if kind == _FRAME:
+        live = LiveFrame(*_whole(_LIVE_FRAME, body))
+        if live.scale == 0 or live.encoding >= len(ENCODINGS):
+            raise Malformed("a frame's scale or encoding is unknown")
+        if live.width > _MAX_EDGE or live.height > _MAX_EDGE or live.components > 4:
+            raise Malformed("a frame's size is absurd")
+        return live
+    raise Malformed("a bulk message that no master sends to a client")
+
+
+ENCODINGS = ("none", "planes", "png", "jpeg", "exr")  # by their number on the wire
+
+
+def _front(layout: struct.Struct, body: memoryview) -> tuple[Any, ...]:
+    if len(body) < layout.size:
+        raise Malformed("it ends too early")
+    return layout.unpack_from(body)
+
+
+def _whole(layout: struct.Struct, body: memoryview) -> tuple[Any, ...]:
+    if len(body) != layout.size:
+        raise Malformed("it is shorter or longer than its kind")
+    return layout.unpack(body)
+
+
+def _piece(data: memoryview, total: int, offset: int) -> bytes:
+    if len(data) > MAX_CHUNK or offset > total or len(data) > total - offset:
+        raise Malformed("a chunk reaches beyond its whole")
+    return bytes(data)
+
+
+def _film(body: memoryview) -> FilmTile:
+    if len(body) < _FILM_HEAD.size:
+        raise Malformed("it ends too early")
+    x, y, width, height, _, level, channels, _, uniform = _FILM_HEAD.unpack_from(body)
+    if not (0 < width <= _MAX_EDGE and 0 < height <= _MAX_EDGE and 0 <= x <= _MAX_EDGE and 0 <= y <= _MAX_EDGE and
+            width * height <= _MAX_PIXELS):
+        raise Malformed("the tile's size is absurd")
+    if channels == 0 or not channels_known(channels):
+        raise Malformed("a channel is unknown")
+    if level >= 32:
+        raise Malformed("a block of samples is too large")
+    pixels = width * height
+    rest = body[_FILM_HEAD.size:]
+    count_bytes = 4 if uniform == 1 else 4 * pixels
+    if len(rest) != count_bytes + 4 * pixels * plane_count(channels):
+        raise Malformed("the planes have another size than the header says")
+    counts = bytes(rest[:count_bytes])
+    return FilmTile(x, y, width, height, channels, counts * pixels if uniform == 1 else counts,
+                    bytes(rest[count_bytes:]))

@@ -1,0 +1,80 @@
+"""From where a view looks."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Sequence
+
+from .errors import InvalidInput
+from .objects import Matrix, Vec3
+
+
+@dataclass(frozen=True)
+class Pose:
+    """A pinhole camera in the world: it looks along -z, y is up. Angles in radians."""
+
+    world_from_camera: Matrix
+    vertical_fov: float = 0.7
+
+
+def look_at(eye: Sequence[float], target: Sequence[float], up: Sequence[float] = (0.0, 1.0, 0.0),
+            vertical_fov: float = 0.7) -> Pose:
+    """From `eye` towards `target`. Raises InvalidInput where that is no direction."""
+    if not 0.0 < vertical_fov < math.pi:
+        raise InvalidInput("the field of view is not between 0 and pi")
+    at = _vector(eye)
+    back = _normalized(_difference(at, _vector(target)), "eye and target are the same point")
+    right = _normalized(_cross(_vector(up), back), "the view goes along 'up': give another one")
+    return Pose(_matrix(right, _cross(back, right), back, at), vertical_fov)
+
+
+def rigid(matrix: Matrix) -> Matrix:
+    """The same place and direction without scale or shear. Raises InvalidInput where the directions coincide."""
+    back = _normalized((matrix[8], matrix[9], matrix[10]), "the camera's transform is flat")
+    up = (matrix[4], matrix[5], matrix[6])
+    right = _normalized(_cross(up, back), "the camera's transform is flat")
+    return _matrix(right, _cross(back, right), back, (matrix[12], matrix[13], matrix[14]))
+
+
+def multiply(a: Matrix, b: Matrix) -> Matrix:
+    """a b, column by column."""
+    return tuple(sum(a[4 * k + row] * b[4 * column + k] for k in range(4))
+                 for column in range(4) for row in range(4))
+
+
+def translation(x: float, y: float, z: float) -> Matrix:
+    """A transform's matrix."""
+    return _matrix((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (x, y, z))
+
+
+def frustum(vertical_fov: float, width: int, height: int) -> tuple[float, float, float, float]:
+    """Left, right, bottom, top at distance 1."""
+    top = math.tan(0.5 * vertical_fov)
+    right = top * width / height
+    return -right, right, -top, top
+
+
+def _matrix(x: Vec3, y: Vec3, z: Vec3, at: Vec3) -> Matrix:
+    return (*x, 0.0, *y, 0.0, *z, 0.0, *at, 1.0)
+
+
+def _vector(value: Sequence[float]) -> Vec3:
+    if len(value) != 3 or not all(math.isfinite(v) for v in value):
+        raise InvalidInput("expected 3 finite numbers")
+    return float(value[0]), float(value[1]), float(value[2])
+
+
+def _difference(a: Vec3, b: Vec3) -> Vec3:
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def _cross(a: Vec3, b: Vec3) -> Vec3:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def _normalized(a: Vec3, otherwise: str) -> Vec3:
+    length = math.hypot(*a)
+    if length < 1e-12:
+        raise InvalidInput(otherwise)
+    return a[0] / length, a[1] / length, a[2] / length

@@ -1,0 +1,177 @@
+"""A copy of the master's scene: follows change lists. Pure, no sockets."""
+
+from __future__ import annotations
+
+import difflib
+from typing import Any, Iterator
+
+from .camera import multiply
+from .errors import InvalidInput, Malformed
+from .fields import KINDS, Kind, kind_in, kind_named
+from .objects import IDENTITY, Matrix, Object, ROOT_ID, Root, Transform
+from .proto import scene_pb2
+
+Message = Any
+Version = tuple[int, int]  # epoch, number
+
+_PLACES = {kind.name: i for i, kind in enumerate(KINDS)}
+
+
+class Mirror:
+    """Objects by id, by path, and as values."""
+
+    def __init__(self) -> None:
+        self.version: Version = (0, 0)
+        self._objects: dict[int, tuple[Kind, Message]] = {}
+        self._values: dict[int, Object] = {}  # made when asked for
+        self._ids: dict[tuple[str, bytes], set[int]] = {}  # by kind and name
+
+    def apply(self, changes: Message) -> None:
+        """A snapshot or what leads on from `version`. Raises Malformed, and then is empty: ask for a snapshot."""
+        try:
+            known = getattr(changes, "from")  # a word of the language
+            if known.number == 0:
+                self._clear()
+            elif (known.epoch, known.number) != self.version:
+                raise Malformed("changes to another version than this one")
+            for entry in changes.entries:
+                self._apply(entry)
+            self.version = (changes.to.epoch, changes.to.number)
+        except Malformed:
+            self._clear()
+            self.version = (0, 0)
+            raise
+
+    def _clear(self) -> None:
+        self._objects, self._values, self._ids = {}, {}, {}
+
+    def _apply(self, entry: Message) -> None:
+        self._values.pop(entry.id, None)
+        known = self._objects.get(entry.id)
+        if entry.action == scene_pb2.Entry.REMOVE:
+            if known is None:
+                raise Malformed("an object is removed that is not there")
+            self._forget(entry.id, *known)
+            return
+        kind, message = kind_in(entry.object)
+        if entry.action == scene_pb2.Entry.CREATE:
+            if known is not None:
+                raise Malformed("an object is created twice")
+            self._remember(entry.id, kind, message)
+            return
+        if entry.action != scene_pb2.Entry.UPDATE or known is None or known[0] is not kind:
+            raise Malformed("an update of what is not there, or of another kind")
+        if entry.mask >> len(kind.codecs):
+            raise Malformed("an update has unknown fields")
+        self._forget(entry.id, *known)
+        target = known[1]
+        for i, field in enumerate(kind.codecs):
+            if entry.mask >> i & 1:
+                copy_field(message, target, field)
+        self._remember(entry.id, kind, target)
+
+    def _remember(self, object_id: int, kind: Kind, message: Message) -> None:
+        self._objects[object_id] = (kind, message)
+        self._ids.setdefault((kind.name, message.name), set()).add(object_id)
+
+    def _forget(self, object_id: int, kind: Kind, message: Message) -> None:
+        del self._objects[object_id]
+        same = self._ids[kind.name, message.name]
+        same.discard(object_id)
+        if not same:
+            del self._ids[kind.name, message.name]
+
+    def __len__(self) -> int:
+        return len(self._objects)
+
+    def __contains__(self, object_id: int) -> bool:
+        return object_id in self._objects
+
+    def ids(self) -> list[int]:
+        return sorted(self._objects)
+
+    def entry(self, object_id: int) -> tuple[Kind, Message]:
+        """Raises InvalidInput."""
+        try:
+            return self._objects[object_id]
+        except KeyError:
+            raise InvalidInput(f"the scene has no object {object_id}") from None
+
+    def value(self, object_id: int) -> Object:
+        """Raises InvalidInput for an unknown id, Malformed for what the master should not have let in."""
+        known = self._values.get(object_id)
+        if known is None:
+            kind, message = self.entry(object_id)
+            known = self._values[object_id] = kind.read(object_id, message)
+        return known
+
+    def find(self, path: str) -> int:
+        """The id of "root", "kind/name", "kind/name@id" or "kind/@id". Raises InvalidInput: unknown with the nearest
+        path, ambiguous with all candidates."""
+        if path == "root":
+            return ROOT_ID
+        word, slash, name = path.partition("/")
+        if not slash:
+            raise InvalidInput(f"'{path}' is no path: expected kind/name, as in materials/red, or 'root'")
+        kind = kind_named(word)
+        same = self._ids.get((kind.name, name.encode("utf-8", "surrogateescape")), set())
+        if len(same) == 1:
+            return next(iter(same))
+        if len(same) > 1:
+            raise InvalidInput(f"'{path}' means several objects: " +
+                               ", ".join(self.path(object_id) for object_id in sorted(same)[:10]))
+        front, at, number = name.rpartition("@")
+        if at and number.isdecimal():
+            found = self._objects.get(int(number))
+            if found and found[0] is kind and front in ("", self.name(int(number))):
+                return int(number)
+        names = [known.decode("utf-8", "surrogateescape") for of, known in self._ids if of == kind.name]
+        near = difflib.get_close_matches(name, names, 1)
+        raise InvalidInput(f"the scene has no {path}" + (f": did you mean {kind.plural}/{near[0]}?" if near else ""))
+
+    def name(self, object_id: int) -> str:
+        return bytes(self.entry(object_id)[1].name).decode("utf-8", "surrogateescape")
+
+    def path(self, object_id: int) -> str:
+        """The shortest path that means this object alone."""
+        if object_id == ROOT_ID:
+            return "root"
+        kind, message = self.entry(object_id)
+        name = self.name(object_id)
+        alone = name != "" and len(self._ids[kind.name, message.name]) == 1
+        return f"{kind.plural}/{name}" if alone else f"{kind.plural}/{name}@{object_id}"
+
+    def of_kind(self, kind: Kind) -> Iterator[int]:
+        return (object_id for object_id in self.ids() if self._objects[object_id][0] is kind)
+
+    def world_matrix(self, object_id: int) -> Matrix:
+        """Of the parents of an object's first place in the graph: world from parent. Raises InvalidInput."""
+        parents: dict[int, int] = {}
+        for parent in self.ids():
+            if self._objects[parent][0].type in (Root, Transform):
+                for child in self._objects[parent][1].children:
+                    parents.setdefault(child, parent)
+        matrix, at = IDENTITY, object_id
+        for _ in range(len(self._objects) + 1):
+            if at == ROOT_ID:
+                return matrix
+            value = self.value(at)
+            if isinstance(value, Transform):
+                matrix = multiply(value.matrix, matrix)
+            if at not in parents:
+                break
+            at = parents[at]
+        raise InvalidInput(f"{self.path(object_id)} has no place in the graph: attach it to the root or a transform")
+
+
+def copy_field(source: Message, target: Message, field: str) -> None:
+    """Of two messages of one kind."""
+    target.ClearField(field)
+    value = getattr(source, field)
+    if hasattr(value, "CopyFrom"):
+        getattr(target, field).CopyFrom(value)
+        getattr(target, field).SetInParent()
+    elif hasattr(value, "extend"):
+        getattr(target, field).extend(value)
+    else:
+        setattr(target, field, value)

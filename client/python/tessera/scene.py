@@ -1,0 +1,86 @@
+"""The live scene as a member sees it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Iterator, TypeVar
+
+from .errors import InvalidInput
+from .fields import KIND_OF_TYPE, object_id
+from .mirror import Version
+from .objects import Blob, Object, ROOT_ID, Root
+
+if TYPE_CHECKING:
+    from .session import Session
+
+T = TypeVar("T", bound=Object)
+
+
+class Scene:
+    """A mirror of the master's scene. Looking into it shows at least what this session has committed; `refresh` brings
+    what others did. Objects are values: they stay as they were read."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+
+    @property
+    def title(self) -> str:
+        return self._session.title
+
+    @property
+    def version(self) -> Version:
+        """Epoch and number of what is seen here."""
+        with self._session.reading() as mirror:
+            return mirror.version
+
+    @property
+    def root(self) -> Root:
+        with self._session.reading() as mirror:
+            value = mirror.value(ROOT_ID)
+        assert isinstance(value, Root)
+        return value
+
+    def refresh(self) -> Version:
+        """Asks the master for what has changed."""
+        return self._session.refresh().version
+
+    def __getitem__(self, which: str | int) -> Object:
+        """By path ("materials/red", "lights/lamp@65540", "root") or id. Raises InvalidInput with the nearest path."""
+        with self._session.reading() as mirror:
+            return mirror.value(mirror.find(which) if isinstance(which, str) else which)
+
+    def get(self, kind: type[T], name: str) -> T:
+        """The same with a type: scene.get(tessera.Material, "red")."""
+        with self._session.reading() as mirror:
+            value = mirror.value(mirror.find(f"{KIND_OF_TYPE[kind].plural}/{name}"))
+        assert isinstance(value, kind)
+        return value
+
+    def all(self, kind: type[T]) -> list[T]:
+        """Every object of a kind, by id."""
+        with self._session.reading() as mirror:
+            values = [mirror.value(number) for number in mirror.of_kind(KIND_OF_TYPE[kind])]
+        return [value for value in values if isinstance(value, kind)]
+
+    def path(self, of: Object | int) -> str:
+        """The shortest path that means this object alone."""
+        with self._session.reading() as mirror:
+            return mirror.path(object_id(of))
+
+    def __contains__(self, which: object) -> bool:
+        with self._session.reading() as mirror:
+            try:
+                return (mirror.find(which) if isinstance(which, str) else object_id(which)) in mirror
+            except InvalidInput:
+                return False
+
+    def __len__(self) -> int:
+        with self._session.reading() as mirror:
+            return len(mirror)
+
+    def __iter__(self) -> Iterator[Object]:
+        with self._session.reading() as mirror:
+            return iter([mirror.value(number) for number in mirror.ids()])
+
+    def bytes_of(self, blob: Blob) -> bytes:
+        """What a blob of the scene holds: floats(scene.bytes_of(geometry.positions))."""
+        return self._session.fetch(blob)

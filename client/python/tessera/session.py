@@ -1,0 +1,328 @@
+"""One client of a master: a member of its live scene."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from contextlib import AbstractContextManager, contextmanager
+from typing import Any, Iterable, Iterator, Sequence
+
+from . import bulk, camera
+from .blobs import BlobHeap
+from .connection import Connection, lock_request
+from .errors import Error, InvalidInput, Malformed, Refused, Unavailable
+from .fields import blob_from, object_id
+from .link import CONTROL_LIMIT
+from .mirror import Mirror, Version
+from .objects import Blob, Camera, Object
+from .parsing import parsed
+from .people import Committed, HistoryEntry, People, Status, Writer, history_of, people_of, status_of, text
+from .proto import control_pb2, scene_pb2
+from .scene import Scene
+from .transaction import Transaction
+from .view import CameraLike, View, plain_view
+
+Message = Any
+_LOG = logging.getLogger("tessera")
+_UNDO_LATEST, _REDO_LATEST = (1 << 64) - 1, (1 << 64) - 2
+_PUBLISH_PATIENCE = 30.0  # seconds
+
+
+class Session:
+    """Made by `connect`. A thread of its own keeps the connection: the caller may sleep, compute or stop in a debugger. Calls
+    block until the master has answered, and may come from several threads; a transaction belongs to one. A short break
+    of the connection, and a master that comes back with its journal, are bridged: see Connection. Everything raises
+    Unavailable when nobody answers, Refused when the master says no, InvalidInput for what cannot be meant."""
+
+    def __init__(self, connection: Connection) -> None:
+        self.connection = connection
+        self._editing = threading.RLock()  # one edit or read of the scene at a time; protects what follows
+        self._mirror = Mirror()
+        self._committed: Version = (0, 0)  # holds everything this session did
+        self._last_sequence = self._next_id = 0
+        self._joins_seen = 0
+        self._last_view = self._last_gesture = 0
+
+    def __enter__(self) -> Session:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Says goodbye; the scene stays with the master. Idempotent."""
+        self.connection.close()
+
+    # ---- the scene ----
+
+    def join(self, title: str = "", *, no_wait: bool = False, timeout: float | None = None) -> Scene:
+        """Joins the live scene, or starts one called `title` when the stage is free. While a batch scene has the stage this
+        waits; with `no_wait` it raises Refused."""
+        self.connection.join(title, no_wait, timeout)
+        return Scene(self)
+
+    @property
+    def title(self) -> str:
+        """Of the scene: one that was there keeps its own."""
+        joined = self.connection.joined
+        return text(joined.title) if joined is not None else ""
+
+    @property
+    def name(self) -> str:
+        """What others call this member; the master may have made it unique."""
+        joined = self.connection.joined
+        return text(joined.name) if joined is not None else self.connection.name
+
+    def transaction(self, *, gesture: int = 0) -> AbstractContextManager[Transaction]:
+        """with session.transaction() as edit: ... - committed at the end of the block as a whole. Transactions in a row with
+        the same gesture (see `gesture`) are one for undo. Raises Refused with the master's problems."""
+        return self._transaction(gesture)
+
+    @contextmanager
+    def _transaction(self, gesture: int) -> Iterator[Transaction]:
+        self.connection.require_joined()
+        edit = Transaction(self)
+        yield edit
+        with self._editing:
+            entries = edit.entries()
+            if entries:
+                edit.committed = self._commit(entries, edit.blobs, gesture=gesture)
+
+    def gesture(self) -> int:
+        """A new number for a drag: its transactions are undone together."""
+        with self._editing:
+            self._last_gesture += 1
+            return self._last_gesture
+
+    def undo(self, transaction: int | None = None) -> Committed:
+        """Takes back a transaction, or this member's latest. What others have changed since stays, and is told in notes."""
+        return self._commit([], BlobHeap(), undo=_UNDO_LATEST if transaction is None else transaction)
+
+    def redo(self) -> Committed:
+        """Takes back this member's latest undo."""
+        return self._commit([], BlobHeap(), undo=_REDO_LATEST)
+
+    def _commit(self, entries: Sequence[Message], blobs: BlobHeap, *, gesture: int = 0, undo: int = 0) -> Committed:
+        self.connection.require_joined()
+        with self._editing:
+            self._follow_joins()
+            self._last_sequence += 1
+            sequence, submitted_at, base = self._last_sequence, time.monotonic_ns(), self._mirror.version
+
+            def build() -> Message:
+                edit = scene_pb2.Edit(session=self.connection.number, sequence=sequence, gesture=gesture, undo=undo,
+                                      submitted_at=submitted_at, entries=entries)
+                edit.base.epoch, edit.base.number = base
+                return _edit_request(edit, blobs)
+
+            reply = self.connection.ask(("edit", sequence), "edit_reply", build, None, blobs)
+            self.connection.answered = sequence
+            if not reply.accepted:
+                raise Refused([text(problem) for problem in reply.problems])
+            self._committed = (reply.version.epoch, reply.version.number)
+            return Committed(reply.transaction, self._committed, tuple(text(note) for note in reply.notes))
+
+    def _follow_joins(self) -> None:
+        """Takes over what the latest SceneJoined says: ids, sequence, and where the scene is after a restart."""
+        with self.connection.changed:
+            joined, joins = self.connection.joined, self.connection.joins
+        if joined is None or joins == self._joins_seen:
+            return
+        self._joins_seen = joins
+        if not joined.first_id <= self._next_id <= joined.first_id + joined.id_count:
+            self._next_id = joined.first_id
+        self._last_sequence = max(self._last_sequence, joined.last_sequence)
+        version = (joined.version.epoch, joined.version.number)
+        if version[0] != self._committed[0]:
+            self._committed = version
+
+    def new_id(self) -> int:
+        """For an object that is created."""
+        with self._editing:
+            mirror = self.mirror()
+            joined = self.connection.joined
+            while self._next_id in mirror:
+                self._next_id += 1  # of an earlier life of the same editor
+            if joined is None or self._next_id >= joined.first_id + joined.id_count:
+                raise Unavailable("this session has used up its ids: connect anew")
+            self._next_id += 1
+            return self._next_id - 1
+
+    def mirror(self) -> Mirror:
+        """At least as new as what this session committed. Others may refresh it: read under `reading`."""
+        self.connection.require_joined()
+        with self._editing:
+            self._follow_joins()
+            deadline = time.monotonic() + _PUBLISH_PATIENCE
+            while self._mirror.version[0] != self._committed[0] or not self.shows_all(self._mirror.version):
+                self.refresh()
+                if self.shows_all(self._mirror.version):
+                    break
+                if time.monotonic() > deadline:
+                    raise Unavailable("the master does not publish what it has accepted")
+                time.sleep(0.005)
+            return self._mirror
+
+    @contextmanager
+    def reading(self) -> Iterator[Mirror]:
+        with self._editing:
+            yield self.mirror()
+
+    def shows_all(self, version: Version) -> bool:
+        """True when this version holds everything that this session committed."""
+        return version[0] != self._committed[0] or version[1] >= self._committed[1]
+
+    def refresh(self) -> Mirror:
+        """Asks for what has changed since the last time."""
+        self.connection.require_joined()
+        with self._editing:
+            try:
+                self._read_changes()
+            except Malformed as error:
+                _LOG.warning("the mirror asks for a snapshot: %s", error)
+                self._read_changes()
+            return self._mirror
+
+    def _read_changes(self) -> None:
+        request = control_pb2.Control()
+        request.read_scene.known.epoch, request.read_scene.known.number = self._mirror.version
+        content = self.connection.request(request)
+        changes = content.list
+        if content.blob.byte_size:
+            changes = parsed(scene_pb2.ChangeList, self.connection.fetch(blob_from(content.blob)))
+        self._mirror.apply(changes)
+
+    def fetch(self, blob: Blob) -> bytes:
+        """The bytes of a blob that the master has. Raises Unavailable when it has not."""
+        return self.connection.fetch(blob)
+
+    # ---- the others ----
+
+    def lock(self, objects: Iterable[Object | int]) -> None:
+        """Keeps others from changing these objects, until `unlock` or the end of this session."""
+        ids = [object_id(o) for o in objects]
+        self.connection.request(lock_request(ids, release=False))
+        with self.connection.changed:
+            self.connection.locks |= set(ids)
+
+    def unlock(self, objects: Iterable[Object | int]) -> None:
+        """Of this session's own locks."""
+        ids = [object_id(o) for o in objects]
+        self.connection.request(lock_request(ids, release=True))
+        with self.connection.changed:
+            self.connection.locks -= set(ids)
+
+    def set_presence(self, what: str, selection: Iterable[Object | int] = (), seconds: float = 30.0) -> None:
+        """What this member does, for the others; forgotten after so many seconds."""
+        self.connection.require_joined()
+        message = control_pb2.Control()
+        message.set_presence.text = what.encode("utf-8", "surrogateescape")
+        message.set_presence.selection.extend(object_id(o) for o in selection)
+        message.set_presence.time_to_live = int(seconds * 1e9)
+        self.connection.post(message)
+
+    def people(self) -> People:
+        """Who is there, what they hold, and the views that can be watched."""
+        request = control_pb2.Control()
+        request.read_people.SetInParent()
+        return people_of(self.connection.request(request))
+
+    def history(self, count: int = 20) -> list[HistoryEntry]:
+        """The latest transactions, youngest first."""
+        request = control_pb2.Control()
+        request.read_history.count = count
+        return history_of(self.connection.request(request))
+
+    def writers(self, of: Object | int) -> dict[str, Writer]:
+        """Who wrote which field of an object last; fields without a writer are as they came."""
+        request = control_pb2.Control()
+        request.read_writers.object = object_id(of)
+        with self.reading() as mirror:
+            names = list(mirror.entry(object_id(of))[0].codecs)
+        return {names[w.field]: Writer(w.transaction, text(w.name), text(w.user), w.time * 1e-9)
+                for w in self.connection.request(request).fields if w.field < len(names)}
+
+    def status(self) -> Status:
+        """Of the cluster. Needs no scene."""
+        request = control_pb2.Control()
+        request.status_request.SetInParent()
+        return status_of(self.connection.ask("status", "status_reply", lambda: request, 60.0))
+
+    def close_scene(self) -> None:
+        """The scene and its views go, for all members."""
+        request = control_pb2.Control()
+        request.close_scene.SetInParent()
+        self.connection.request(request)
+        self.connection.leave_scene()
+
+    # ---- views ----
+
+    def open_view(self, at: CameraLike, *, size: tuple[int, int] = (1280, 720), spp: int = 64, picture: str = "png",
+                  film: bool = False, name: str = "", filter: str = "", renderer: str = "path", bounces: int = 8,
+                  seed: int = 0, channels: Sequence[str] = ("radiance",)) -> View:
+        """A view from a camera of the scene (the object or its path) or a Pose (`look_at`). `picture`: "png", "jpeg", "exr",
+        "planes" (filtered float32) or "none"; `film`: the statistics of `channels`, too."""
+        view = plain_view(size, channels=channels, renderer=renderer, bounces=bounces, seed=seed, filter=filter)
+        self.aim(view, at)
+        return self._open(view, spp, picture, film, name, share=False)
+
+    def watch(self, name: str, *, picture: str = "png", film: bool = False) -> View:
+        """The view of somebody else that has this name (see `people`), whatever its camera."""
+        view = plain_view((1, 1), channels=("radiance",), renderer="path", bounces=8, seed=0, filter="")
+        self.aim(view, camera.look_at((0, 0, 1), (0, 0, 0)))
+        return self._open(view, 1, picture, film, name, share=True)
+
+    def _open(self, view: Message, spp: int, picture: str, film: bool, name: str, share: bool) -> View:
+        if picture not in bulk.ENCODINGS:
+            raise InvalidInput(f"there is no picture '{picture}': choose of {', '.join(bulk.ENCODINGS)}")
+        with self.connection.changed:
+            self._last_view += 1
+            request = control_pb2.Control().open_live_view
+            request.number, request.name, request.spp = self._last_view, name.encode(), spp
+            request.picture, request.film, request.share = bulk.ENCODINGS.index(picture), film, share
+            request.view.CopyFrom(view)
+            opened = View(self, request)
+            self.connection.views[opened.number] = opened
+        try:
+            opened.open()
+        except Error:
+            self.forget_view(opened)
+            raise
+        return opened
+
+    def aim(self, view: Message, at: CameraLike) -> None:
+        """Fills in camera and frustum of a View message."""
+        if not isinstance(at, camera.Pose):
+            with self.reading() as mirror:
+                found = mirror.value(mirror.find(at) if isinstance(at, str) else at.id)
+                if not isinstance(found, Camera):
+                    raise InvalidInput(f"{mirror.path(found.id)} is no camera")
+                at = camera.Pose(camera.rigid(mirror.world_matrix(found.id)), found.vertical_fov)
+        for field, values in (("world_from_camera", at.world_from_camera),
+                              ("frustum", camera.frustum(at.vertical_fov, view.width, view.height))):
+            view.ClearField(field)
+            getattr(view, field).extend(values)
+
+    def forget_view(self, view: View) -> None:
+        with self.connection.changed:
+            self.connection.views.pop(view.number, None)
+            self.connection.changed.notify_all()
+        message = control_pb2.Control()
+        message.close_live_view.number = view.number
+        self.connection.post(message)
+
+
+def _edit_request(edit: Message, blobs: BlobHeap) -> Message:
+    """As a message, or as a blob where it is too long for one."""
+    request = control_pb2.Control()
+    request.submit_edit.edit.CopyFrom(edit)
+    if request.ByteSize() <= CONTROL_LIMIT:
+        return request
+    blob = blobs.add(edit.SerializeToString())
+    request.Clear()
+    by_blob = request.submit_edit_by_blob
+    by_blob.session, by_blob.sequence = edit.session, edit.sequence
+    by_blob.base.CopyFrom(edit.base)
+    by_blob.blob.hash, by_blob.blob.byte_size = blob.hash, blob.byte_size
+    return request

@@ -1,0 +1,202 @@
+"""A picture of the scene that goes on getting better."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Any, Sequence
+
+from . import bulk, camera
+from .errors import InvalidInput, Malformed, Refused, Unavailable
+from .film import channel_bits
+from .frame import Assembly, Frame
+from .objects import Camera
+from .people import Hit, text
+from .proto import control_pb2, work_pb2
+
+if TYPE_CHECKING:
+    from .session import Session
+
+Message = Any
+CameraLike = camera.Pose | Camera | str
+RENDERERS = ("path", "whitted", "raster")
+STALL_SECONDS = 5.0  # without a further piece of a frame: the rest was lost
+
+
+class View:
+    """One view of this session. At most one frame is on its way and one waits here: whoever looks away costs nobody
+    anything. A wait takes the frame that is here and lets the master send the next."""
+
+    def __init__(self, session: Session, request: Message) -> None:
+        self._session, self._connection = session, session.connection
+        self.number: int = request.number
+        self._request = request
+        self._assembly: Assembly | None = None
+        self._waiting: Frame | None = None
+        self._seen_revision = 0  # of the latest frame that came
+        self._revision = 0  # that a wait asks for
+        self.is_open = True
+
+    @property
+    def size(self) -> tuple[int, int]:
+        return self._request.view.width, self._request.view.height
+
+    def look(self, at: CameraLike) -> None:
+        """From somewhere else. Pictures of the old place are not waited for any more."""
+        view = work_pb2.View()
+        view.CopyFrom(self._request.view)
+        self._session.aim(view, at)
+        self._replace(view, self._request.spp)
+
+    def change(self, *, size: tuple[int, int] | None = None, spp: int | None = None) -> None:
+        """Another size or quality."""
+        view = work_pb2.View()
+        view.CopyFrom(self._request.view)
+        if size is not None:
+            pose_height = view.frustum[3] - view.frustum[2]
+            set_size(view, size)
+            half = 0.5 * pose_height * size[0] / size[1]
+            view.frustum[0], view.frustum[1] = -half, half
+        self._replace(view, self._request.spp if spp is None else spp)
+
+    def _replace(self, view: Message, spp: int) -> None:
+        self._require_open()
+        if view == self._request.view and spp == self._request.spp:
+            return
+        with self._connection.changed:
+            if view != self._request.view:
+                self._revision = max(self._revision, self._seen_revision) + 1
+            self._request.view.CopyFrom(view)
+            self._request.spp = spp
+        self.open()
+
+    def wait(self, samples: int = 1, timeout: float = 60.0) -> Frame:
+        """The newest frame that shows everything this session has done, from this camera, with at least so many samples in
+        every pixel, or all there will be; 0 takes coarse pictures, too. Raises Unavailable at the timeout."""
+        deadline = time.monotonic() + timeout
+        while True:
+            frame = self.next_frame(max(0.0, deadline - time.monotonic()))
+            if frame is None:
+                raise Unavailable(f"no picture with {samples} samples after {timeout:g} s: is a node connected?")
+            fresh = frame.revision >= self._revision and self._session.shows_all(frame.version)
+            full = samples == 0 or (frame.scale == 1 and frame.samples_least >= samples)
+            if fresh and (full or frame.complete):
+                return frame
+
+    def next_frame(self, timeout: float) -> Frame | None:
+        """The newest frame, each one once; None when none has come in time."""
+        self._require_open()
+        deadline = time.monotonic() + timeout
+        with self._connection.changed:
+            self._connection.wait_until(lambda: self._waiting is not None or not self.is_open, deadline)
+            frame, self._waiting = self._waiting, None
+        if frame is not None:
+            self._acknowledge(frame.number)
+        return frame
+
+    def pick(self, x: int, y: int) -> Hit | None:
+        """What is seen in the middle of a pixel; None for the background."""
+        self._require_open()
+        if not (0 <= x < self.size[0] and 0 <= y < self.size[1]):
+            raise InvalidInput(f"pixel {x},{y} lies outside of the view's {self.size[0]}x{self.size[1]}")
+        request = control_pb2.Control()
+        request.pick.number, request.pick.x, request.pick.y = self.number, x, y
+        picked = self._connection.request(request)
+        if picked.problem:
+            raise Refused(text(picked.problem))
+        if not picked.hit:
+            return None
+        return Hit(picked.object, tuple(picked.position), tuple(picked.normal), picked.distance)
+
+    def close(self) -> None:
+        """The master forgets it. Idempotent."""
+        if self.is_open:
+            self.is_open = False
+            self._session.forget_view(self)
+
+    def _require_open(self) -> None:
+        if not self.is_open:
+            raise InvalidInput("this view is closed: open another one")
+
+    def open(self) -> None:
+        """Says to the master what this view is now, and waits for its word."""
+        request = control_pb2.Control()
+        request.open_live_view.CopyFrom(self._request)
+        try:
+            self._connection.request(request)
+        except Refused:
+            self.is_open = False
+            raise
+
+    # What follows is called by the session, under its lock, on the link's thread.
+
+    def reopened(self) -> Message:
+        """The request for a master that may have lost what was on its way."""
+        self._assembly = None
+        request = control_pb2.Control()
+        request.open_live_view.CopyFrom(self._request)
+        request.open_live_view.request = 0
+        return request
+
+    def began(self, header: bulk.LiveFrame, now: float) -> None:
+        """Raises Malformed; then the frame is passed over."""
+        self._assembly = None
+        try:
+            self._assembly = Assembly(header, None if self._request.share else self.size, now)
+        except Malformed:
+            self._acknowledge(header.frame)
+            raise
+        self._finish_if_done()
+
+    def awaits(self, part: bulk.PictureChunk | bulk.FrameTile) -> bool:
+        return self._assembly is not None and self._assembly.header.frame == part.frame
+
+    def add(self, part: bulk.PictureChunk | bulk.FrameTile, now: float) -> None:
+        """Raises Malformed; then the frame is passed over."""
+        assert self._assembly is not None
+        try:
+            self._assembly.add(part, now)
+        except Malformed:
+            self._pass_over()
+            raise
+        self._finish_if_done()
+
+    def tick(self, now: float) -> None:
+        if self._assembly is not None and now - self._assembly.last_activity > STALL_SECONDS:
+            self._pass_over()
+
+    def _pass_over(self) -> None:
+        if self._assembly is not None:
+            self._acknowledge(self._assembly.header.frame)
+            self._assembly = None
+
+    def _finish_if_done(self) -> None:
+        if self._assembly is not None and self._assembly.is_done:
+            self._waiting = self._assembly.frame()
+            self._seen_revision = max(self._seen_revision, self._waiting.revision)
+            self._assembly = None
+
+    def _acknowledge(self, frame: int) -> None:
+        message = control_pb2.Control()
+        message.frame_taken.number, message.frame_taken.frame = self.number, frame
+        self._connection.post(message)
+
+
+def set_size(view: Message, size: tuple[int, int]) -> None:
+    """Of the whole picture, all of which is rendered."""
+    width, height = size
+    if not (1 <= width <= 65536 and 1 <= height <= 65536):
+        raise InvalidInput("the size is not between 1x1 and 65536x65536")
+    view.width, view.height = width, height
+    view.window.x, view.window.y, view.window.width, view.window.height = 0, 0, width, height
+
+
+def plain_view(size: tuple[int, int], *, channels: Sequence[str], renderer: str, bounces: int, seed: int,
+               filter: str) -> Message:
+    """A View message without a camera."""
+    if renderer not in RENDERERS:
+        raise InvalidInput(f"there is no renderer '{renderer}': choose of {', '.join(RENDERERS)}")
+    view = work_pb2.View(revision=1, seed=seed, max_bounces=bounces, filter_radius=0.5,
+                         channels=channel_bits(list(channels)), renderer=RENDERERS.index(renderer),
+                         filter=filter.encode())
+    set_size(view, size)
+    return view

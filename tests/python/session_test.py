@@ -1,0 +1,378 @@
+#!/usr/bin/env python3
+"""A session against a scripted master: what is said, and what survives forgetting, silence, restarts and lies."""
+
+import logging
+import pathlib
+import random
+import struct
+import tempfile
+import threading
+import time
+import unittest
+from array import array
+
+import tessera
+from scripted_master import PNG, ScriptedMaster
+from tessera import bulk
+from tessera.proto import control_pb2, scene_pb2
+
+logging.disable(logging.CRITICAL)
+
+
+def connect(master, **more):
+    return tessera.connect(master.endpoint, **{"name": "test", "connect_limit": 5.0, "lost_limit": 20.0, **more})
+
+
+class WithMaster(unittest.TestCase):
+    def setUp(self):
+        self.master = ScriptedMaster().start()
+        self.addCleanup(self.master.stop)
+        self.session = connect(self.master)
+        self.addCleanup(self.session.close)
+        self.scene = self.session.join("room")
+
+    def create_red(self):
+        with self.session.transaction() as edit:
+            return edit.create("material", name="red", base_color=(1, 0, 0, 1))
+
+    def wait_for(self, is_there):
+        self.master.wait_for(is_there)
+
+
+class Greeting(unittest.TestCase):
+    def test_nobody_answers(self):
+        start = time.monotonic()
+        with self.assertRaisesRegex(tessera.Unavailable, "is it running there"):
+            tessera.connect("tcp://127.0.0.1:1", connect_limit=0.3)
+        self.assertGreaterEqual(time.monotonic() - start, 0.3)
+
+    def test_a_refused_hello_ends_with_the_reason(self):
+        with ScriptedMaster() as master:
+            master.refuse_hello = True
+            with self.assertRaisesRegex(tessera.Refused, "too many sessions"):
+                connect(master)
+
+    def test_a_scene_has_to_be_joined_first(self):
+        with ScriptedMaster() as master, connect(master) as session:
+            self.assertEqual(session.status().software, "scripted")
+            with self.assertRaisesRegex(tessera.InvalidInput, "join"):
+                session.people()
+
+    def test_a_closed_session_says_so(self):
+        with ScriptedMaster() as master:
+            session = connect(master)
+            session.close()
+            session.close()
+            master.wait_for(lambda: "goodbye" in master.received)
+            with self.assertRaisesRegex(tessera.InvalidInput, "closed"):
+                session.status()
+
+    def test_heartbeats_go_on_while_the_caller_sleeps_and_echo_the_masters(self):
+        with ScriptedMaster() as master, connect(master):
+            time.sleep(12 * master.interval)
+            self.assertGreaterEqual(len(master.heartbeats), 5)
+            self.assertEqual(len(master.members), 1)
+            sent, echo, delay, came = master.heartbeats[-1]
+            self.assertLessEqual(echo + delay, sent)  # one host, one clock: it heard before it spoke
+            self.assertLessEqual(sent, came)
+            self.assertGreaterEqual(delay, 0)
+
+
+class Editing(WithMaster):
+    def test_what_was_created_is_read_back(self):
+        red = self.create_red()
+        self.assertEqual(self.scene["materials/red"], red)
+        self.assertEqual(red.base_color, (1.0, 0.0, 0.0, 1.0))
+        self.assertEqual(self.scene.get(tessera.Material, "red"), red)
+        self.assertEqual(self.scene.path(red), "materials/red")
+        self.assertIn("materials/red", self.scene)
+        self.assertEqual(self.session.title, "room")
+
+    def test_a_set_sends_the_fields_that_were_named_and_no_others(self):
+        red = self.create_red()
+        with self.session.transaction() as edit:
+            edit.set("materials/red", roughness=0.25)
+            edit.set(red, base_color=(0.5, 0, 0, 1))
+        entry, = self.master.submitted[-1].entries
+        self.assertEqual((entry.id, entry.mask), (red.id, 1 << 1 | 1 << 4))
+        now = self.scene.get(tessera.Material, "red")
+        self.assertEqual((now.roughness, now.base_color, now.metallic), (0.25, (0.5, 0.0, 0.0, 1.0), 0.0))
+        self.assertEqual(red.roughness, 1.0)  # a value stays as it was read
+
+    def test_a_block_that_raises_sends_nothing(self):
+        with self.assertRaises(RuntimeError):
+            with self.session.transaction() as edit:
+                edit.create("light", name="lamp")
+                raise RuntimeError
+        with self.assertRaisesRegex(tessera.InvalidInput, "material.base_color: expected 4 numbers"):
+            with self.session.transaction() as edit:
+                edit.create("material", name="red", base_color=(1, 0))
+        self.assertEqual(self.master.submitted, [])
+
+    def test_a_refused_edit_raises_the_problems(self):
+        self.create_red()
+        self.master.refuse_edits = True
+        with self.assertRaises(tessera.Refused) as caught:
+            with self.session.transaction() as edit:
+                edit.set("materials/red", roughness=0.5)
+        self.assertEqual(caught.exception.problems, ("material 'red' is locked by anna",))
+        self.assertEqual(self.scene.get(tessera.Material, "red").roughness, 1.0)
+
+    def test_a_mesh_is_served_to_the_master(self):
+        with self.session.transaction() as edit:
+            red = edit.create("material", name="red")
+            edit.create("geometry", name="floor", material=red, indices=[(0, 1, 2)],
+                        positions=array("f", [0, 0, 0, 1, 0, 0, 0, 0, 1]))
+        floor = self.scene.get(tessera.Geometry, "floor")
+        self.assertEqual(floor.material, red.id)
+        self.assertEqual(self.scene.bytes_of(floor.indices), struct.pack("<3I", 0, 1, 2))
+        self.assertEqual(list(tessera.floats(self.scene.bytes_of(floor.positions))), [0, 0, 0, 1, 0, 0, 0, 0, 1])
+        self.assertIn(floor.id, self.scene.root.children)
+
+    def test_a_large_mesh_and_a_large_edit_go_in_chunks(self):
+        data = bytes(range(256)) * (12 * 1024)  # 3 MiB
+        with self.session.transaction() as edit:
+            edit.create("geometry", name="big", indices=[0, 1, 2], positions=data)
+            for i in range(2000):
+                edit.create("material", name=f"m{i}")
+        self.assertEqual(self.scene.bytes_of(self.scene.get(tessera.Geometry, "big").positions), data)
+        self.assertEqual(len(self.scene.all(tessera.Material)), 2000)
+        self.assertIn("submit_edit_by_blob", self.master.received)
+
+    def test_a_scene_that_comes_as_a_blob(self):
+        self.create_red()
+        self.master.scene_by_blob = True
+        with connect(self.master) as other:
+            self.assertEqual(other.join("room").get(tessera.Material, "red").base_color, (1.0, 0.0, 0.0, 1.0))
+
+    def test_gestures_undo_and_redo(self):
+        self.create_red()
+        drag = self.session.gesture()
+        for value in (0.1, 0.2):
+            with self.session.transaction(gesture=drag) as edit:
+                edit.set("materials/red", roughness=value)
+        self.assertIsNotNone(edit.committed)
+        self.assertEqual([e.gesture for e in self.master.submitted], [0, drag, drag])
+        self.assertEqual(self.session.undo().notes, ("left as it is",))
+        self.session.undo(3)
+        self.session.redo()
+        self.assertEqual([e.undo for e in self.master.submitted[-3:]], [2**64 - 1, 3, 2**64 - 2])
+        self.assertTrue(all(e.submitted_at > 0 for e in self.master.submitted))
+
+    def test_the_mirror_follows_others(self):
+        self.create_red()
+        self.assertEqual(self.scene.get(tessera.Material, "red").roughness, 1.0)
+        with connect(self.master) as other:
+            other.join("room")
+            with other.transaction() as edit:
+                edit.set("materials/red", roughness=0.5)
+        self.assertEqual(self.scene.get(tessera.Material, "red").roughness, 1.0)
+        self.scene.refresh()
+        self.assertEqual(self.scene.get(tessera.Material, "red").roughness, 0.5)
+
+    def test_the_others(self):
+        red = self.create_red()
+        self.session.lock([red])
+        self.session.unlock([red])
+        self.session.set_presence("paints", [red], seconds=2.0)
+        self.wait_for(lambda: "set_presence" in self.master.received)
+        self.assertEqual(self.master.presence.time_to_live, 2_000_000_000)
+        self.assertEqual([p.name for p in self.session.people().people], ["test"])
+        self.assertEqual(self.session.history(5)[0].time, 1.5)
+        self.assertEqual({f: w.name for f, w in self.session.writers(red).items()}, {"base_color": "anna"})
+        self.session.close_scene()
+        with self.assertRaises(tessera.InvalidInput):
+            self.session.people()
+
+
+class Views(WithMaster):
+    POSE = tessera.look_at((0, 1, 5), (0, 0, 0))
+
+    def test_frames_come_one_at_a_time_and_the_newest_is_taken(self):
+        view = self.session.open_view(self.POSE, size=(8, 4), spp=64)
+        time.sleep(0.3)  # nobody looks: one frame waits, none follows
+        self.assertEqual(self.master.members[1].frame[1], 1)
+        frame = view.wait(samples=16)
+        self.assertEqual((frame.samples_least, frame.width, frame.height, frame.data), (16, 8, 4, PNG))
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "room.png"
+            frame.save(path)
+            self.assertEqual(path.read_bytes(), PNG)
+            with self.assertRaisesRegex(tessera.InvalidInput, "png"):
+                frame.save(path.with_suffix(".jpg"))
+        self.assertTrue(view.wait(samples=1000).complete)
+        with self.assertRaisesRegex(tessera.Unavailable, "after 0.1 s"):
+            view.wait(samples=1, timeout=0.1)
+
+    def test_planes_and_film(self):
+        view = self.session.open_view(self.POSE, size=(4, 2), spp=4, picture="planes", film=True,
+                                      channels=("radiance", "depth"))
+        frame = view.wait(samples=4)
+        self.assertEqual([list(p) for p in frame.planes()], [list(range(8 * i, 8 * i + 8)) for i in range(3)])
+        film = frame.film()
+        self.assertEqual(film.channels, ("radiance", "depth"))
+        self.assertEqual(list(film.counts), [4] * 8)
+        self.assertEqual([len(p) for p in film.planes("radiance")], [8] * 6)
+        self.assertEqual([len(p) for p in film.planes("depth")], [8])
+        with self.assertRaises(tessera.InvalidInput):
+            film.planes("albedo")
+
+    def test_a_wait_is_for_what_this_session_did(self):
+        view = self.session.open_view(self.POSE, size=(8, 4), spp=1 << 40)
+        before = view.wait(samples=1)
+        self.create_red()
+        after = view.wait(samples=1)
+        self.assertGreater(after.version, before.version)
+        view.look(tessera.look_at((1, 1, 5), (0, 0, 0)))
+        self.assertGreater(view.wait(samples=1).revision, after.revision)
+
+    def test_the_camera_of_the_scene(self):
+        with self.session.transaction() as edit:
+            camera = edit.create("camera", name="main", vertical_fov=1.0)
+            edit.create("transform", name="stand", matrix=tessera.translation(1, 2, 3), children=[camera])
+        self.assertNotIn(camera.id, self.scene.root.children)  # it has its place already
+        self.session.open_view("cameras/main", size=(200, 100))
+        view = self.master.views[1][0].view
+        self.assertEqual(list(view.world_from_camera)[12:15], [1, 2, 3])
+        self.assertAlmostEqual(view.frustum[1], 2 * view.frustum[3])
+        with self.assertRaisesRegex(tessera.InvalidInput, "is no camera"):
+            self.session.open_view("transforms/stand")
+
+    def test_picking(self):
+        view = self.session.open_view(self.POSE, size=(8, 4))
+        self.assertIsNone(view.pick(0, 0))
+        self.assertEqual(view.pick(2, 0), tessera.Hit(65536, (1.0, 2.0, 3.0), (0.0, 1.0, 0.0), 4.0))
+        with self.assertRaisesRegex(tessera.Refused, "the node is gone"):
+            view.pick(1, 0)
+        with self.assertRaisesRegex(tessera.InvalidInput, "outside"):
+            view.pick(8, 0)
+        view.close()
+        with self.assertRaisesRegex(tessera.InvalidInput, "closed"):
+            view.pick(2, 0)
+
+    def test_a_refused_view(self):
+        with self.assertRaisesRegex(tessera.Refused, "needs samples"):
+            self.session.open_view(self.POSE, spp=0)
+
+    def test_a_frame_that_cannot_be_is_passed_over(self):
+        self.master.withholds_frames = True
+        view = self.session.open_view(self.POSE, size=(8, 4), spp=1 << 40)
+        self.assertIsNotNone(view.next_frame(5.0))
+        member = self.master.members[1]
+        for lie in (dict(width=9), dict(picture_bytes=1 << 40), dict(picture_bytes=7), dict(film_tiles=33)):
+            frame = member.frame[1] + 1
+            self.master.post(lambda lie=lie: self.master.send_frame(member, 1, 2, **lie))
+            self.wait_for(lambda: member.taken.get(1) == frame)
+        self.master.post(lambda: self.master.send_frame(member, 1, 2))
+        self.assertEqual(view.next_frame(5.0).samples_least, 2)
+
+
+class Breaks(WithMaster):
+    def test_a_master_that_forgot_is_joined_again_under_the_same_key(self):
+        red = self.create_red()
+        self.session.lock([red])
+        view = self.session.open_view(Views.POSE, size=(8, 4), spp=1 << 40)
+        key = self.master.members[1].key
+        self.master.forget_sessions()
+        with self.session.transaction() as edit:
+            edit.set("materials/red", roughness=0.5)
+        self.wait_for(lambda: 2 in self.master.members and self.master.members[2].key == key)
+        self.assertEqual(self.scene.get(tessera.Material, "red").roughness, 0.5)
+        self.wait_for(lambda: self.master.received.count("lock_objects") == 2)
+        self.assertEqual(view.wait(samples=1).version, self.scene.version)
+        with self.session.transaction() as edit:
+            self.assertEqual(edit.create("light").id, red.id + 1)  # the old ids go on
+
+    def test_a_master_that_comes_back_with_its_journal(self):
+        self.create_red()
+        self.master.restart()
+        with self.session.transaction() as edit:
+            edit.set("materials/red", roughness=0.5)
+        self.assertEqual(self.scene.version[0], 8)
+        self.assertEqual(self.scene.get(tessera.Material, "red").roughness, 0.5)
+        self.assertEqual([e.sequence for e in self.master.submitted], [1, 2])
+
+    def test_a_master_that_has_lost_accepted_edits_is_told(self):
+        self.create_red()
+        self.master.restart(keep_journal=False)
+        with self.assertRaisesRegex(tessera.Unavailable, "lost edits"):
+            with self.session.transaction() as edit:
+                edit.create("light")
+
+    def test_an_edit_whose_answer_was_lost_is_done_once(self):
+        self.create_red()
+        self.master.ignores_edits = True
+        failures = []
+
+        def change():
+            try:
+                with self.session.transaction() as edit:
+                    edit.set("materials/red", roughness=0.5)
+            except tessera.Error as error:
+                failures.append(error)
+
+        thread = threading.Thread(target=change)
+        thread.start()
+        self.wait_for(lambda: self.master.received.count("submit_edit") == 2)
+        self.master.ignores_edits = False
+        self.master.forget_sessions()
+        thread.join(10)
+        self.assertFalse(thread.is_alive())
+        self.assertEqual(failures, [])
+        self.assertEqual([e.sequence for e in self.master.submitted], [1, 2])
+        self.assertEqual(self.scene.get(tessera.Material, "red").roughness, 0.5)
+
+    def test_silence_is_bridged_with_new_sockets(self):
+        self.master.is_mute = True
+        time.sleep(6 * self.master.interval)
+        self.master.is_mute = False
+        self.assertEqual(self.session.status().software, "scripted")
+        self.assertGreaterEqual(self.master.received.count("hello"), 2)
+
+    def test_a_goodbye_is_told_when_nobody_comes_back(self):
+        with ScriptedMaster() as master, connect(master, lost_limit=0.5) as session:
+            session.join("room")
+            master.stop(goodbye=True)
+            with self.assertRaisesRegex(tessera.Unavailable, "the master left: service ends"):
+                session.people()
+            master.start()
+
+    def test_hostile_bytes_on_both_links_end_nothing(self):
+        source = random.Random(5)
+        view = self.session.open_view(Views.POSE, size=(8, 4), spp=1 << 40)
+        view.wait(samples=1)
+        member = self.master.members[1]
+        frame = bulk.encode(bulk.LiveFrame(1, 1, 7, 1, 1, 1, 8, 4, 3, 2, 10, 0, 0, 1, 1, 1, bytes(32)))
+        chunk = bulk.encode(bulk.PictureChunk(2, 10, 0, bytes(5)))
+        notice = control_pb2.Control(notice=control_pb2.Notice(text=b"text")).SerializeToString()
+        beat = control_pb2.Control(heartbeat=control_pb2.Heartbeat(sent_at=5)).SerializeToString()
+        done = threading.Event()
+
+        def flood():
+            for i in range(3000):
+                valid = (frame, chunk) if i % 2 else (notice, beat)
+                noise = bytearray(source.choice((*valid, source.randbytes(source.randrange(1, 64)))))
+                noise[source.randrange(len(noise))] ^= 1 << source.randrange(8)
+                self.master.say_raw(i % 2, member.bulk if i % 2 else member.control, bytes(noise))
+            done.set()
+
+        self.master.post(flood)
+        self.assertTrue(done.wait(10))
+        self.wait_for(lambda: self.session.connection.link.malformed > 500)
+        time.sleep(4 * self.master.interval)
+        self.create_red()
+        self.assertEqual(self.scene["materials/red"].name, "red")
+        self.assertEqual(view.wait(samples=1).version, self.scene.version)
+
+    def test_a_change_list_that_cannot_be_leads_to_a_snapshot(self):
+        self.create_red()
+        self.scene.refresh()
+        self.master.number += 1
+        self.master.lists.append((self.master.number, [scene_pb2.Entry(id=99, action=scene_pb2.Entry.REMOVE)]))
+        self.scene.refresh()
+        self.assertEqual(self.scene["materials/red"].name, "red")
+        self.assertEqual(self.scene.version, (7, self.master.number))
+
+
+if __name__ == "__main__":
+    unittest.main()
