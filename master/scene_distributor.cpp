@@ -44,7 +44,7 @@ void SceneDistributor::resync(NodeRecord& node, const wire::Resync& request, Tim
 SceneDistributor::Verdict SceneDistributor::reported(NodeRecord& node, const wire::VersionReport& report,
                                                      TimePoint now) {
     if (report.version != authority_.version()) return Verdict::Behind;
-    if (report.state_hash == authority_.scene().state_hash()) {
+    if (report.state_hash == authority_.state_hash()) {
         node.reported = report.version;
         return Verdict::Good;
     }

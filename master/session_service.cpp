@@ -104,7 +104,7 @@ void SessionService::advance(SessionRecord& session, TimePoint now) {
             continue;
         }
         const SceneAuthority::Answer answer = authority_.submit(pending.edit);
-        if (answer.changes) publish_(*answer.changes, now);
+        if (const auto changes = authority_.publish()) publish_(*changes, now);
         outbox_.control(session.control, wire::EditReply{.sequence = pending.edit.sequence,
                                                          .accepted = answer.accepted,
                                                          .version = answer.version,

@@ -41,6 +41,7 @@ scene::ChangeList authority_snapshot(ViewPlan& plan, const std::shared_ptr<scene
         throw Error(ErrorCode::InvalidInput,
                     answer.problems.empty() ? "the scene is not valid" : answer.problems[0]);
     }
+    authority.publish();
     auto chosen = choose_camera(imported->cameras, plan.camera);
     if (!chosen) throw chosen.error();
     camera = *chosen;

@@ -1,8 +1,10 @@
 #include "mediator/scene/validate.h"
 
+#include <algorithm>
 #include <set>
 
 #include "mediator/scene/fields.h"
+#include "mediator/scene/referrers.h"
 #include "mediator/scene/validate_object.h"
 
 namespace tessera::scene {
@@ -11,55 +13,31 @@ namespace {
 
 constexpr std::uint64_t IdLimit = std::uint64_t{1} << 32;
 constexpr std::uint32_t Any = ~0u;
+// Up to so many parents that got children are looked at from below, one by one; more from above, together.
+constexpr std::size_t FewParents = 16;
 
-constexpr std::uint32_t bit(ObjectKind kind) {
-    return 1u << static_cast<unsigned>(kind);
-}
-
-struct Reference {
-    ObjectId id;
-    std::uint32_t kinds;  // allowed
-    const char* role;
-};
-
-std::vector<Reference> references(const Object& object) {
-    constexpr std::uint32_t Children = bit(ObjectKind::Transform) | bit(ObjectKind::Geometry) |
-                                       bit(ObjectKind::Light) | bit(ObjectKind::Camera) |
-                                       bit(ObjectKind::Attachment);
-    std::vector<Reference> found;
-    const auto add = [&](ObjectId id, std::uint32_t kinds, const char* role) {
-        if (id) found.push_back({id, kinds, role});
-    };
-    if (const auto* root = std::get_if<Root>(&object)) {
-        for (const ObjectId child : root->children) found.push_back({child, Children, "child"});
-        add(root->background, bit(ObjectKind::Background), "background");
-    } else if (const auto* transform = std::get_if<Transform>(&object)) {
-        for (const ObjectId child : transform->children) found.push_back({child, Children, "child"});
-    } else if (const auto* geometry = std::get_if<Geometry>(&object)) {
-        add(geometry->material, bit(ObjectKind::Material), "material");
-    } else if (const auto* material = std::get_if<Material>(&object)) {
-        for (const TextureSlot* slot : {&material->base_color_texture, &material->metallic_roughness_texture,
-                                        &material->normal_texture, &material->emission_texture}) {
-            add(slot->texture, bit(ObjectKind::Texture), "texture");
-        }
-    } else if (const auto* background = std::get_if<Background>(&object)) {
-        add(background->environment, bit(ObjectKind::Texture), "environment");
+void check_reference(const Scene& scene, ObjectId id, const Object& object, const Reference& reference,
+                     std::vector<Problem>& problems) {
+    const Object* target = scene.find(reference.id);
+    if (target == nullptr) {
+        problems.push_back({id, describe(id, object) + " refers to object " +
+                                    std::to_string(reference.id.value) + " as its " + reference.role +
+                                    ", which is not there: create it first"});
+    } else if ((reference.kinds & bit(kind(*target))) == 0) {
+        problems.push_back({id, describe(id, object) + " cannot have " + describe(reference.id, *target) +
+                                    " as its " + reference.role});
     }
-    return found;
 }
 
 void check_references(const Scene& scene, ObjectId id, const Object& object, std::vector<Problem>& problems) {
     for (const Reference& reference : references(object)) {
-        const Object* target = scene.find(reference.id);
-        if (target == nullptr) {
-            problems.push_back({id, describe(id, object) + " refers to object " +
-                                        std::to_string(reference.id.value) + " as its " + reference.role +
-                                        ", which is not there: create it first"});
-        } else if ((reference.kinds & bit(kind(*target))) == 0) {
-            problems.push_back({id, describe(id, object) + " cannot have " + describe(reference.id, *target) +
-                                        " as its " + reference.role});
-        }
+        check_reference(scene, id, object, reference, problems);
     }
+}
+
+void still_referred(ObjectId id, const Object& object, ObjectId gone, std::vector<Problem>& problems) {
+    problems.push_back({id, describe(id, object) + " still refers to object " + std::to_string(gone.value) +
+                                ", which is removed: change it as well"});
 }
 
 void check_identity(ObjectId id, const Object& object, std::vector<Problem>& problems) {
@@ -78,10 +56,7 @@ void check_alone(ObjectId id, const Object& object, std::vector<Problem>& proble
 
 const std::vector<ObjectId>& children_of(const Object* object) {
     static const std::vector<ObjectId> None;
-    if (object == nullptr) return None;
-    if (const auto* transform = std::get_if<Transform>(object)) return transform->children;
-    if (const auto* root = std::get_if<Root>(object)) return root->children;
-    return None;
+    return object ? children(*object) : None;
 }
 
 // Depth-first without recursion, since a hostile graph may be a million deep. `done` holds what is known to
@@ -121,6 +96,35 @@ void check_cycles(const Scene& scene, const std::vector<ObjectId>& starts, std::
                         " is among its own descendants: take it out of one of the child lists"});
         return;  // one is enough: others may be the same cycle
     }
+}
+
+struct NewChildren {
+    ObjectId parent;
+    std::vector<ObjectId> children;
+};
+
+// A new child closes a cycle if it is the parent or one of its ancestors.
+bool closes_cycle(const ReferrerIndex& referrers, const NewChildren& link) {
+    std::set<ObjectId> above{link.parent};
+    std::vector<ObjectId> open{link.parent};
+    while (!open.empty()) {
+        const ObjectId next = open.back();
+        open.pop_back();
+        for (const ObjectId parent : referrers.referrers(next)) {
+            if (above.insert(parent).second) open.push_back(parent);
+        }
+    }
+    return std::any_of(link.children.begin(), link.children.end(),
+                       [&](ObjectId child) { return above.contains(child); });
+}
+
+void check_new_children(const Scene& scene, const ReferrerIndex& referrers,
+                        const std::vector<NewChildren>& links, std::vector<Problem>& problems) {
+    std::vector<ObjectId> starts;
+    for (const NewChildren& link : links) {
+        if (links.size() > FewParents || closes_cycle(referrers, link)) starts.push_back(link.parent);
+    }
+    check_cycles(scene, starts, problems);
 }
 
 }  // namespace
@@ -168,11 +172,44 @@ std::vector<Problem> validate_entries(const Scene& scene, const std::vector<Entr
     for (const auto& [id, object] : scene.objects()) {
         for (const Reference& reference : references(*object)) {
             if (!removed.contains(reference.id)) continue;
-            problems.push_back({id, describe(id, *object) + " still refers to object " +
-                                        std::to_string(reference.id.value) +
-                                        ", which is removed: change it as well"});
+            still_referred(id, *object, reference.id, problems);
         }
     }
+    return problems;
+}
+
+std::vector<Problem> validate_changes(const Scene& scene, const ReferrerIndex& referrers,
+                                      const std::vector<ObjectChange>& changes) {
+    std::vector<Problem> problems;
+    std::vector<NewChildren> links;
+    if (scene.find(RootId) == nullptr)
+        problems.push_back({RootId, "the scene has no root: create object 1 as root"});
+    for (const ObjectChange& change : changes) {
+        if (!change.is_update() && change.before) {
+            for (const ObjectId id : referrers.referrers(change.id)) {
+                const Object& object = *scene.find(id);
+                if (!change.after) {
+                    still_referred(id, object, change.id, problems);
+                    continue;
+                }
+                for (const Reference& reference : references(object)) {
+                    if (reference.id == change.id) check_reference(scene, id, object, reference, problems);
+                }
+            }
+        }
+        if (!change.after) continue;
+        check_alone(change.id, *change.after, problems);
+        if (change.is_update() && (change.mask & reference_fields(kind(*change.after))) == 0) continue;
+        NewChildren link{change.id, {}};
+        for (const Reference& reference : reference_change(change.before.get(), change.after.get()).added) {
+            check_reference(scene, change.id, *change.after, reference, problems);
+            const bool may_lead_back =
+                reference.id == change.id || !children_of(scene.find(reference.id)).empty();
+            if (may_lead_back) link.children.push_back(reference.id);
+        }
+        if (!link.children.empty()) links.push_back(std::move(link));
+    }
+    check_new_children(scene, referrers, links, problems);
     return problems;
 }
 

@@ -1,0 +1,138 @@
+#include "master/transaction.h"
+
+#include "mediator/scene/fields.h"
+#include "mediator/scene/referrers.h"
+
+namespace tessera::master {
+
+namespace {
+
+template <class Visit>
+void for_each_bit(std::uint32_t mask, const Visit& visit) {
+    for (std::uint32_t field = 0; mask != 0; ++field, mask >>= 1) {
+        if (mask & 1u) visit(field);
+    }
+}
+
+std::uint32_t children_mask(const scene::ObjectChange& change) {
+    return change.is_update() ? change.mask & scene::children_field(kind(*change.after)) : 0;
+}
+
+// What the object was like before both: what the first wrote is as it was before that, all else as it was
+// before the second.
+std::shared_ptr<const scene::Object> earliest(const scene::ObjectChange& first,
+                                              const scene::ObjectChange& second) {
+    const bool nothing_new = (second.mask & ~first.mask) == 0 && second.is_update();
+    if (!first.before || nothing_new || first.before->index() != second.before->index()) return first.before;
+    auto merged = std::make_shared<scene::Object>(*second.before);
+    assign(*merged, *first.before, first.mask);
+    return merged;
+}
+
+void record_writers(TransactionChange& change, const scene::ObjectChange& step, const WriterPtr& author,
+                    WriterTable& writers) {
+    if (!step.is_update()) {
+        for (auto& [field, writer] : writers.take(step.id)) change.writers_before.try_emplace(field, writer);
+        return;
+    }
+    for_each_bit(step.mask, [&](std::uint32_t field) {
+        change.writers_before.try_emplace(field, writers.of(step.id, field));
+        writers.set(step.id, field, author);
+    });
+}
+
+}  // namespace
+
+WriterPtr WriterTable::of(ObjectId id, std::uint32_t field) const {
+    const ObjectWriters& object = of(id);
+    const auto place = object.find(field);
+    return place == object.end() ? nullptr : place->second;
+}
+
+const ObjectWriters& WriterTable::of(ObjectId id) const {
+    static const ObjectWriters None;
+    const auto place = writers_.find(id);
+    return place == writers_.end() ? None : place->second;
+}
+
+void WriterTable::set(ObjectId id, std::uint32_t field, const WriterPtr& writer) {
+    if (writer) {
+        writers_[id][field] = writer;
+        return;
+    }
+    const auto place = writers_.find(id);
+    if (place == writers_.end()) return;
+    place->second.erase(field);
+    if (place->second.empty()) writers_.erase(place);
+}
+
+void WriterTable::set(ObjectId id, const ObjectWriters& writers) {
+    for (const auto& [field, writer] : writers) set(id, field, writer);
+}
+
+ObjectWriters WriterTable::take(ObjectId id) {
+    auto node = writers_.extract(id);
+    return node ? std::move(node.mapped()) : ObjectWriters();
+}
+
+bool can_extend(const Transaction& transaction, const std::vector<scene::ObjectChange>& changes,
+                const WriterTable& writers) {
+    for (const scene::ObjectChange& step : changes) {
+        const auto place = transaction.changes.find(step.id);
+        if (place == transaction.changes.end()) continue;
+        const scene::ObjectChange& so_far = place->second.object;
+        if (!so_far.after || !step.before || so_far.after->index() != step.before->index()) return false;
+        if (!so_far.is_update()) continue;
+        bool ours = true;
+        for_each_bit(children_mask(so_far) & step.mask, [&](std::uint32_t field) {
+            const WriterPtr writer = writers.of(step.id, field);
+            ours = ours && writer && writer->transaction == transaction.number;
+        });
+        if (!ours) return false;
+    }
+    return true;
+}
+
+void extend(Transaction& transaction, const std::vector<scene::ObjectChange>& changes, WriterTable& writers) {
+    for (const scene::ObjectChange& step : changes) {
+        const auto [place, fresh] = transaction.changes.try_emplace(step.id);
+        TransactionChange& change = place->second;
+        record_writers(change, step, transaction.author, writers);
+        if (fresh) {
+            change.object = step;
+            continue;
+        }
+        change.object.before = earliest(change.object, step);
+        change.object.after = step.after;
+        change.object.mask |= step.mask;
+        if (!change.object.before && !change.object.after) transaction.changes.erase(place);
+    }
+}
+
+void record_undo(Transaction& undo, const std::vector<scene::ObjectChange>& changes,
+                 const std::map<ObjectId, ObjectWriters>& brought_back, const scene::Scene& scene,
+                 WriterTable& writers) {
+    for (const scene::ObjectChange& step : changes) {
+        TransactionChange& change = undo.changes[step.id];
+        change.object = step;
+        if (!step.is_update()) change.writers_before = writers.take(step.id);
+    }
+    for (const auto& [id, fields] : brought_back) {
+        const auto [place, fresh] = undo.changes.try_emplace(id);
+        TransactionChange& change = place->second;
+        if (fresh) {
+            const auto& same = scene.objects().at(id);
+            change.object = {.id = id, .before = same, .after = same};
+        }
+        for (const auto& [field, writer] : fields) {
+            if (change.object.is_update()) {
+                change.object.mask |= 1u << field;
+                change.writers_before[field] = writers.of(id, field);
+            }
+            writers.set(id, field, writer);
+        }
+        change.writers_after = fields;
+    }
+}
+
+}  // namespace tessera::master

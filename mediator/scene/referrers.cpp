@@ -1,0 +1,119 @@
+#include "mediator/scene/referrers.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "mediator/scene/fields.h"
+
+namespace tessera::scene {
+
+namespace {
+
+bool same(const Reference& a, const Reference& b) {
+    return a.id == b.id && a.kinds == b.kinds;
+}
+
+bool before_in_order(const Reference& a, const Reference& b) {
+    return std::tie(a.id, a.kinds) < std::tie(b.id, b.kinds);
+}
+
+}  // namespace
+
+const std::vector<ObjectId>& children(const Object& object) {
+    static const std::vector<ObjectId> None;
+    if (const auto* transform = std::get_if<Transform>(&object)) return transform->children;
+    if (const auto* root = std::get_if<Root>(&object)) return root->children;
+    return None;
+}
+
+std::uint32_t children_field(ObjectKind kind) {
+    if (kind == ObjectKind::Root) return Fields<Root>(Root::Field::Children).bits();
+    if (kind == ObjectKind::Transform) return Fields<Transform>(Transform::Field::Children).bits();
+    return 0;
+}
+
+std::vector<Reference> references(const Object& object) {
+    constexpr std::uint32_t Children = bit(ObjectKind::Transform) | bit(ObjectKind::Geometry) |
+                                       bit(ObjectKind::Light) | bit(ObjectKind::Camera) |
+                                       bit(ObjectKind::Attachment);
+    std::vector<Reference> found;
+    const auto add = [&](ObjectId id, std::uint32_t kinds, const char* role) {
+        if (id) found.push_back({id, kinds, role});
+    };
+    for (const ObjectId child : children(object)) found.push_back({child, Children, "child"});
+    if (const auto* root = std::get_if<Root>(&object)) {
+        add(root->background, bit(ObjectKind::Background), "background");
+    } else if (const auto* geometry = std::get_if<Geometry>(&object)) {
+        add(geometry->material, bit(ObjectKind::Material), "material");
+    } else if (const auto* material = std::get_if<Material>(&object)) {
+        add(material->base_color_texture.texture, bit(ObjectKind::Texture), "base_color_texture");
+        add(material->metallic_roughness_texture.texture, bit(ObjectKind::Texture),
+            "metallic_roughness_texture");
+        add(material->normal_texture.texture, bit(ObjectKind::Texture), "normal_texture");
+        add(material->emission_texture.texture, bit(ObjectKind::Texture), "emission_texture");
+    } else if (const auto* background = std::get_if<Background>(&object)) {
+        add(background->environment, bit(ObjectKind::Texture), "environment");
+    }
+    return found;
+}
+
+std::uint32_t reference_fields(ObjectKind kind) {
+    switch (kind) {
+        case ObjectKind::Root:
+            return Fields<Root>{Root::Field::Children, Root::Field::Background}.bits();
+        case ObjectKind::Geometry:
+            return Fields<Geometry>(Geometry::Field::Material).bits();
+        case ObjectKind::Material:
+            return Fields<Material>{Material::Field::BaseColorTexture,
+                                    Material::Field::MetallicRoughnessTexture, Material::Field::NormalTexture,
+                                    Material::Field::EmissionTexture}
+                .bits();
+        case ObjectKind::Background:
+            return Fields<Background>(Background::Field::Environment).bits();
+        default:
+            return children_field(kind);
+    }
+}
+
+ReferenceChange reference_change(const Object* before, const Object* after) {
+    std::vector<Reference> old = before ? references(*before) : std::vector<Reference>();
+    std::vector<Reference> now = after ? references(*after) : std::vector<Reference>();
+    // Mostly one child comes or goes in a long list: what is the same at both ends needs no sorting.
+    const std::size_t shorter = std::min(old.size(), now.size());
+    std::size_t head = 0, tail = 0;
+    while (head < shorter && same(old[head], now[head])) ++head;
+    while (tail < shorter - head && same(old[old.size() - 1 - tail], now[now.size() - 1 - tail])) ++tail;
+    const auto middle = [&](std::vector<Reference>& list) {
+        std::vector<Reference> part(list.begin() + static_cast<std::ptrdiff_t>(head),
+                                    list.end() - static_cast<std::ptrdiff_t>(tail));
+        std::sort(part.begin(), part.end(), before_in_order);
+        return part;
+    };
+    const std::vector<Reference> from = middle(old), to = middle(now);
+    ReferenceChange change;
+    std::set_difference(to.begin(), to.end(), from.begin(), from.end(), std::back_inserter(change.added),
+                        before_in_order);
+    std::set_difference(from.begin(), from.end(), to.begin(), to.end(), std::back_inserter(change.removed),
+                        before_in_order);
+    return change;
+}
+
+void ReferrerIndex::replace(ObjectId id, const Object* before, const Object* after) {
+    const ReferenceChange change = reference_change(before, after);
+    for (const Reference& reference : change.removed) {
+        const auto place = counts_.find({reference.id, id});
+        if (place != counts_.end() && --place->second == 0) counts_.erase(place);
+    }
+    for (const Reference& reference : change.added) ++counts_[{reference.id, id}];
+}
+
+std::vector<ObjectId> ReferrerIndex::referrers(ObjectId target) const {
+    std::vector<ObjectId> found;
+    for (auto place = counts_.lower_bound({target, ObjectId{}});
+         place != counts_.end() && place->first.first == target; ++place) {
+        found.push_back(place->first.second);
+    }
+    return found;
+}
+
+}  // namespace tessera::scene
