@@ -1,0 +1,214 @@
+#include "client/edit/completion.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "client/edit/commands.h"
+#include "client/edit/help.h"
+#include "client/edit/path_book.h"
+#include "client/edit/script_error.h"
+#include "client/edit/values.h"
+
+namespace tessera::edit {
+namespace {
+
+namespace fs = std::filesystem;
+using scene::ObjectKind;
+
+constexpr std::size_t MostCandidates = 1000;
+
+class Completer {
+  public:
+    Completer(std::string_view before, const scene::Scene& scene) : scene_(scene), book_(scene) {
+        SplitLine line = split_tolerantly(before);
+        words_ = std::move(line.words);
+        if (words_.empty() || !line.ends_with_word) words_.emplace_back();
+        // Where the word at the cursor begins in the text: behind the last blank outside of quotes.
+        begin_ = before.size();
+        if (line.ends_with_word && !words_.empty()) begin_ = start_of_last_word(before);
+        start_ = std::string(before.substr(begin_));
+    }
+
+    Completion run() {
+        const std::size_t index = words_.size() - 1;
+        if (index == 0) {
+            for (const Command& command : commands()) offer(std::string(command.name) + " ");
+        } else if (const Command* command = find_command(words_[0].text())) {
+            argument(*command, index - 1);
+        }
+        std::sort(found_.begin(), found_.end());
+        found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+        return {begin_, std::move(found_)};
+    }
+
+  private:
+    static std::size_t start_of_last_word(std::string_view text) {
+        std::size_t start = 0;
+        bool inside = false;
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            if (text[i] == '\\') {
+                ++i;
+            } else if (text[i] == '"') {
+                inside = !inside;
+            } else if (!inside && (text[i] == ' ' || text[i] == '\t')) {
+                start = i + 1;
+            }
+        }
+        return start;
+    }
+
+    void offer(std::string candidate) {
+        if (candidate.starts_with(start_) && found_.size() < MostCandidates)
+            found_.push_back(std::move(candidate));
+    }
+
+    void argument(const Command& command, std::size_t index) {
+        if (!command.keyword.empty() && index > 0 && words_[index].is(command.keyword)) {
+            paths(ObjectKind::Transform, ObjectKind::Transform, " ");
+            return offer("root ");
+        }
+        if (!command.keyword.empty() && index >= command.least) offer(std::string(command.keyword) + " ");
+        if (command.arguments.empty() || index >= command.most) return;
+        const Argument kind = command.arguments[std::min(index, command.arguments.size() - 1)];
+        switch (kind) {
+            case Argument::Path:
+                offer("root ");
+                return paths(ObjectKind::Transform, ObjectKind::Attachment, " ");
+            case Argument::Transform:
+                return paths(ObjectKind::Transform, ObjectKind::Transform, " ");
+            case Argument::Field:
+                return fields();
+            case Argument::Value:
+                return value();
+            case Argument::Kind:
+                for (std::size_t i = 1; i < KindCount; ++i)
+                    offer(scene::name(static_cast<ObjectKind>(i)) + std::string(" "));
+                return;
+            case Argument::KindOrPath:
+                for (const std::string& word : kind_words()) offer(word + " ");
+                return paths(ObjectKind::Transform, ObjectKind::Attachment, " ");
+            case Argument::Assignments:
+                return assignments();
+            case Argument::File:
+                return files({".gltf", ".glb", ".obj", ".ply", ".stl", ".tessera"});
+            case Argument::SaveFile:
+                return files({".glb", ".tessera"});
+            case Argument::Topic:
+                for (const Command& one : commands()) offer(std::string(one.name) + " ");
+                for (const std::string& word : kind_words()) offer(word + " ");
+                for (const std::string& word : help_topics()) offer(word + " ");
+                return;
+            case Argument::NewName:
+            case Argument::Free:
+                return;
+        }
+    }
+
+    // Kinds first, so that a scene of a million objects is not listed at once.
+    void paths(ObjectKind first, ObjectKind last, const std::string& end, const std::string& before = {}) {
+        for (auto i = static_cast<std::size_t>(first); i <= static_cast<std::size_t>(last); ++i) {
+            const std::string prefix = before + std::string(kind_words()[i]) + "/";
+            if (!start_.starts_with(prefix) && first != last) {
+                if (!book_.names(static_cast<ObjectKind>(i)).empty()) offer(prefix);
+                continue;
+            }
+            const auto& names = book_.names(static_cast<ObjectKind>(i));
+            for (const auto& [name, ids] : names) {
+                for (const ObjectId id : ids) offer(before + book_.path(scene_, id) + end);
+                if (found_.size() >= MostCandidates) return;
+            }
+        }
+    }
+
+    void fields() {
+        const Word& word = words_.back();
+        // Behind any dot that follows a path of something: names may hold dots.
+        for (std::size_t dot = word.find('.'); dot != Word::None; dot = word.find('.', dot + 1)) {
+            const ObjectId id = object_of(word.part(0, dot));
+            if (!id) continue;
+            const std::size_t shown = start_.rfind('.');
+            const std::string path = start_.substr(0, shown + 1);
+            field_words(scene::kind(*scene_.find(id)), path, " ");
+        }
+        offer("root.");
+        paths(ObjectKind::Transform, ObjectKind::Attachment, ".");
+    }
+
+    void field_words(ObjectKind kind, const std::string& before, const std::string& end) {
+        for (unsigned field = 0; field < field_count(kind); ++field) {
+            if (value_form(kind, field).is_settable) offer(before + field_names(kind)[field] + end);
+        }
+        if (kind == ObjectKind::Material) offer(before + "diffuse" + end);
+    }
+
+    ObjectId object_of(const Word& path) const {
+        try {
+            return book_.read(scene_, path);
+        } catch (const ScriptError&) {
+            return {};
+        }
+    }
+
+    void value() {
+        const Word& target = words_[1];
+        const std::size_t dot = target.rfind('.');
+        if (dot == Word::None) return;
+        const ObjectId id = object_of(target.part(0, dot));
+        if (!id) return;
+        const ObjectKind kind = scene::kind(*scene_.find(id));
+        if (const auto field = find_field(kind, target.part(dot + 1).text()))
+            value_of(value_form(kind, *field), "", " ");
+    }
+
+    void value_of(const ValueForm& form, const std::string& before, const std::string& end) {
+        for (const std::string& word : form.words) offer(before + word + (word.ends_with('=') ? "" : end));
+        if (form.takes_paths) paths(ObjectKind::Transform, ObjectKind::Attachment, end, before);
+    }
+
+    void assignments() {
+        ObjectKind kind{};
+        if (!is_kind(words_[1].text(), kind)) return;
+        const std::size_t equals = start_.find('=');
+        if (equals == std::string::npos) return field_words(kind, "", "=");
+        if (const auto field = find_field(kind, start_.substr(0, equals)))
+            value_of(value_form(kind, *field), start_.substr(0, equals + 1), " ");
+    }
+
+    void files(const std::vector<std::string>& endings) {
+        const fs::path typed = words_.back().text();
+        const fs::path folder = typed.parent_path();
+        std::error_code error;
+        fs::directory_iterator entries(folder.empty() ? fs::path(".") : folder, error);
+        for (; !error && entries != fs::directory_iterator(); entries.increment(error)) {
+            const std::string name = (folder / entries->path().filename()).string();
+            if (!name.starts_with(words_.back().text())) continue;
+            std::error_code unreadable;
+            const bool is_folder = entries->is_directory(unreadable);
+            const bool fits =
+                std::find(endings.begin(), endings.end(), entries->path().extension()) != endings.end();
+            // Quotes change the start of the word: what was typed need not be a prefix of it any more.
+            if (is_folder) found_.push_back(unclosed(edit::quoted(name + "/")));
+            if (!is_folder && fits) found_.push_back(edit::quoted(name) + " ");
+            if (found_.size() >= MostCandidates) return;
+        }
+    }
+    static std::string unclosed(std::string text) {
+        if (text.ends_with('"')) text.pop_back();
+        return text;
+    }
+
+    const scene::Scene& scene_;
+    PathBook book_;
+    std::vector<Word> words_;
+    std::size_t begin_ = 0;
+    std::string start_;
+    std::vector<std::string> found_;
+};
+
+}  // namespace
+
+Completion complete(std::string_view text, std::size_t cursor, const scene::Scene& scene) {
+    return Completer(text.substr(0, std::min(cursor, text.size())), scene).run();
+}
+
+}  // namespace tessera::edit

@@ -1,0 +1,137 @@
+#include "client/edit/interpreter.h"
+
+#include "client/edit/commands.h"
+#include "client/edit/script_error.h"
+
+namespace tessera::edit {
+namespace {
+
+std::string trimmed(std::string_view line) {
+    const std::size_t begin = line.find_first_not_of(" \t\r");
+    if (begin == std::string_view::npos) return {};
+    return std::string(line.substr(begin, line.find_last_not_of(" \t\r") - begin + 1));
+}
+
+// Fills the rehearsal with the script; throws ScriptError with its line.
+void rehearse(Rehearsal& rehearsal, std::string_view text) {
+    std::size_t number = 0;
+    try {
+        while (!text.empty() && !rehearsal.has_quit()) {
+            const std::size_t end = std::min(text.find('\n'), text.size());
+            const std::string_view line = text.substr(0, end);
+            text.remove_prefix(std::min(end + 1, text.size()));
+            rehearsal.enter(++number, trimmed(line));
+            run_line(rehearsal, line);
+        }
+        rehearsal.commit();
+    } catch (const ScriptError& error) {
+        throw ScriptError(error.line() ? error.line() : number, error.column(), error.what());
+    }
+}
+
+Error refused(const std::vector<std::string>& problems) {
+    std::string text = "the master does not take it";
+    for (const std::string& problem : problems) text += ": " + problem;
+    return Error(ErrorCode::Refused, text);
+}
+
+// What targets throw is as good as what they return.
+template <class T, class Call>
+Expected<T> answer(const Call& call) {
+    try {
+        return call();
+    } catch (const Error& error) {
+        return tl::unexpected<Error>(error);
+    }
+}
+
+}  // namespace
+
+std::optional<EditInterpreter::Failure> EditInterpreter::play(const std::vector<Step>& steps) {
+    std::vector<std::uint64_t> done;
+    const auto take_back = [&](std::size_t line, const Error& error) {
+        std::string text = error.what();
+        std::size_t undone = 0;
+        for (auto number = done.rbegin(); number != done.rend(); ++number, ++undone) {
+            const auto reply = answer<std::string>([&] { return target_.undo(*number); });
+            if (reply) continue;
+            text += "; transaction " + std::to_string(*number) +
+                    " before it stays, it could not be taken back: " + reply.error().what();
+            return Failure{line, Error(error.code(), text)};
+        }
+        if (undone > 0) text += "; the transactions before it were taken back: " + std::to_string(undone);
+        return Failure{line, Error(error.code(), text)};
+    };
+    for (const Step& step : steps) {
+        if (const auto* transaction = std::get_if<Transaction>(&step)) {
+            for (const scene::BlobPtr& blob : transaction->blobs) target_.add_blob(blob);
+            const auto reply =
+                answer<SubmitReply>([&] { return target_.submit(transaction->entries, transaction->label); });
+            if (!reply) return take_back(transaction->line, reply.error());
+            if (!reply->accepted) return take_back(transaction->line, refused(reply->problems));
+            done.push_back(reply->transaction);
+        } else {
+            const auto& action = std::get<Action>(step);
+            const auto text = answer<std::string>([&] { return action.run(target_); });
+            if (!text) return take_back(action.line, text.error());
+            if (!text->empty()) print_(*text);
+        }
+    }
+    return std::nullopt;
+}
+
+Expected<void> EditInterpreter::run_script(const std::string& name, std::string_view text) {
+    const auto at = [&](std::size_t line, std::size_t column) {
+        return name + ":" + std::to_string(line) + ":" + std::to_string(column) + ": ";
+    };
+    try {
+        target_.refresh();
+        Rehearsal rehearsal(target_, Rehearsal::Actions::Late);
+        rehearse(rehearsal, text);
+        has_quit_ |= rehearsal.has_quit();
+        const auto failed = play(rehearsal.take_steps());
+        if (failed) return failure(failed->error.code(), at(failed->line, 1) + failed->error.what());
+        return {};
+    } catch (const ScriptError& error) {
+        return failure(error.code(), at(error.line(), error.column()) + error.what());
+    } catch (const Error& error) {
+        return failure(error.code(), name + ": " + error.what());
+    }
+}
+
+Rehearsal& EditInterpreter::prompt() {
+    if (!prompt_) prompt_.emplace(target_, Rehearsal::Actions::Soon);
+    return *prompt_;
+}
+
+const scene::Scene& EditInterpreter::scene() {
+    prompt().follow_target();
+    return prompt().scene();
+}
+
+Expected<void> EditInterpreter::run_line(std::string_view line) {
+    try {
+        target_.refresh();
+        Rehearsal& rehearsal = prompt();
+        rehearsal.follow_target();
+        Rehearsal attempt = rehearsal;  // shares the objects
+        attempt.enter(1, trimmed(line));
+        tessera::edit::run_line(attempt, line);
+        if (!attempt.is_open()) attempt.commit();
+        has_quit_ |= attempt.has_quit();
+        const auto failed = play(attempt.take_steps());
+        if (failed) {
+            if (!rehearsal.is_open()) prompt_.reset();
+            return tl::unexpected<Error>(failed->error);
+        }
+        prompt_.emplace(std::move(attempt));
+        if (!prompt_->is_open()) prompt_.reset();
+        return {};
+    } catch (const ScriptError& error) {
+        return failure(error.code(), "column " + std::to_string(error.column()) + ": " + error.what());
+    } catch (const Error& error) {
+        return tl::unexpected<Error>(error);
+    }
+}
+
+}  // namespace tessera::edit

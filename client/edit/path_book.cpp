@@ -1,0 +1,160 @@
+#include "client/edit/path_book.h"
+
+#include <charconv>
+
+#include "client/cli/cli.h"
+#include "client/edit/script_error.h"
+
+namespace tessera::edit {
+namespace {
+
+using scene::ObjectKind;
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
+    const auto best = cli::nearest(word, candidates);
+    return best ? "; did you mean '" + *best + "'?" : "";
+}
+
+}  // namespace
+
+const std::vector<std::string>& kind_words() {
+    static const std::vector<std::string> Words{"root",      "transforms",  "geometries",
+                                                "materials", "textures",    "lights",
+                                                "cameras",   "backgrounds", "attachments"};
+    static_assert(KindCount == 9);
+    return Words;
+}
+
+std::string_view kind_word(ObjectKind kind) {
+    return kind_words()[static_cast<std::size_t>(kind)];
+}
+
+bool is_kind(std::string_view word, ObjectKind& kind) {
+    for (std::size_t i = 0; i < KindCount; ++i) {
+        const auto candidate = static_cast<ObjectKind>(i);
+        if (word != kind_word(candidate) && word != scene::name(candidate)) continue;
+        kind = candidate;
+        return true;
+    }
+    return false;
+}
+
+ObjectKind read_kind(const Word& word) {
+    ObjectKind kind{};
+    if (is_kind(word.text(), kind)) return kind;
+    std::string all;
+    for (const std::string& one : kind_words()) all += (all.empty() ? "" : ", ") + one;
+    const std::string nearest = did_you_mean(word.text(), kind_words());
+    throw ScriptError(word.column(), "there is no kind of object '" + word.text() + "'" +
+                                         (nearest.empty() ? ": there are " + all : nearest));
+}
+
+PathBook::PathBook(const scene::Scene& scene) {
+    for (const auto& [id, object] : scene.objects()) learn(id, *object);
+}
+
+void PathBook::learn(ObjectId id, const scene::Object& object) {
+    names_[object.index()][scene::name(object)].insert(id);
+}
+
+void PathBook::forget(ObjectId id, const scene::Object& object) {
+    auto& names = names_[object.index()];
+    const auto place = names.find(scene::name(object));
+    if (place == names.end()) return;
+    place->second.erase(id);
+    if (place->second.empty()) names.erase(place);
+}
+
+std::string PathBook::full_path(const scene::Scene& scene, ObjectId id) const {
+    if (!id) return "none";
+    if (id == scene::RootId) return "root";
+    const scene::Object* object = scene.find(id);
+    if (object == nullptr) return "@" + std::to_string(id.value) + " (not there)";
+    const std::string& name = scene::name(*object);
+    return std::string(kind_word(scene::kind(*object))) + "/" + (name.empty() ? "" : quoted(name)) + "@" +
+           std::to_string(id.value);
+}
+
+std::string PathBook::path(const scene::Scene& scene, ObjectId id) const {
+    const scene::Object* object = scene.find(id);
+    if (object == nullptr || id == scene::RootId || scene::name(*object).empty()) return full_path(scene, id);
+    const auto& names = names_[object->index()];
+    const auto place = names.find(scene::name(*object));
+    if (place == names.end() || place->second.size() != 1) return full_path(scene, id);
+    return std::string(kind_word(scene::kind(*object))) + "/" + quoted(scene::name(*object));
+}
+
+ObjectId PathBook::read(const scene::Scene& scene, const Word& word) const {
+    const std::size_t slash = word.find('/');
+    const Word kind_part = word.part(0, slash);
+    if (slash == Word::None) {
+        if (word.is("root")) return scene::RootId;
+        ObjectKind kind{};
+        const bool has_kind = is_kind(word.text(), kind);
+        throw ScriptError(word.column(),
+                          has_kind ? "'" + word.text() + "' is a kind: write " + word.text() + "/NAME"
+                                   : "'" + word.text() + "' is no path: write KIND/NAME, as materials/red");
+    }
+    const ObjectKind kind = read_kind(kind_part);
+    if (kind == ObjectKind::Root) return scene::RootId;
+    const std::size_t at = word.rfind('@');
+    if (at != Word::None && at > slash) return read_id(scene, kind, word, at);
+    const Word name = word.part(slash + 1);
+    if (name.empty() && !word.is_quoted()) {
+        throw ScriptError(word.column(), "'" + word.text() + "' lacks a name: objects without one are " +
+                                             std::string(kind_word(kind)) + "/@ID");
+    }
+    return read_name(scene, kind, name);
+}
+
+ObjectId PathBook::read_id(const scene::Scene& scene, ObjectKind kind, const Word& word,
+                           std::size_t at) const {
+    const Word digits = word.part(at + 1);
+    std::uint64_t value = 0;
+    const char* end = digits.text().data() + digits.text().size();
+    const auto parsed = std::from_chars(digits.text().data(), end, value);
+    if (digits.empty() || parsed.ec != std::errc() || parsed.ptr != end) {
+        throw ScriptError(digits.column(),
+                          "'@" + digits.text() + "' is no id: write a number, or quote names that hold an @");
+    }
+    const scene::Object* object = scene.find(ObjectId{value});
+    if (object == nullptr) {
+        throw ScriptError(word.column(), "there is no object " + std::to_string(value) +
+                                             ": it was removed, or never there; see 'list " +
+                                             std::string(kind_word(kind)) + "'");
+    }
+    if (scene::kind(*object) != kind) {
+        throw ScriptError(word.column(), "object " + std::to_string(value) + " is " +
+                                             full_path(scene, ObjectId{value}) + ", not one of the " +
+                                             std::string(kind_word(kind)));
+    }
+    return ObjectId{value};
+}
+
+ObjectId PathBook::read_name(const scene::Scene& scene, ObjectKind kind, const Word& name) const {
+    const auto& names = names_[static_cast<std::size_t>(kind)];
+    const auto place = names.find(name.text());
+    if (place == names.end()) {
+        std::vector<std::string> candidates;
+        for (const auto& [candidate, unused] : names) candidates.push_back(candidate);
+        const std::string nearest = did_you_mean(name.text(), candidates);
+        throw ScriptError(
+            name.column(),
+            "there is no '" + name.text() + "' among the " + std::string(kind_word(kind)) +
+                (nearest.empty() ? ": see 'list " + std::string(kind_word(kind)) + "'" : nearest));
+    }
+    if (place->second.size() == 1) return *place->second.begin();
+    constexpr std::size_t Most = 8;
+    std::string all;
+    std::size_t count = 0;
+    for (const ObjectId id : place->second) {
+        if (count++ == Most) break;
+        all += (all.empty() ? "" : ", ") + full_path(scene, id);
+    }
+    if (place->second.size() > Most) all += ", ...";
+    throw ScriptError(name.column(), std::to_string(place->second.size()) + " " +
+                                         std::string(kind_word(kind)) + " are named '" + name.text() +
+                                         "': choose one of " + all);
+}
+
+}  // namespace tessera::edit

@@ -1,0 +1,183 @@
+#include "client/edit/values.h"
+
+#include <charconv>
+
+#include "client/cli/cli.h"
+#include "client/edit/path_book.h"
+#include "client/edit/script_error.h"
+#include "client/edit/value_reader.h"
+#include "mediator/scene/fields.h"
+
+namespace tessera::edit {
+namespace {
+
+using scene::ObjectKind;
+
+std::string alternatives(const std::vector<std::string>& words) {
+    std::string text;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        text += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+    }
+    return text;
+}
+
+template <class V>
+ValueForm form_of() {
+    if constexpr (std::is_same_v<V, std::string>) {
+        return {"a text, in quotes when it has blanks", {}};
+    } else if constexpr (std::is_same_v<V, bool>) {
+        return {"true or false", {"true", "false"}};
+    } else if constexpr (std::is_same_v<V, std::uint32_t>) {
+        return {"a whole number", {}};
+    } else if constexpr (std::is_arithmetic_v<V>) {
+        return {"a number", {}};
+    } else if constexpr (std::is_same_v<V, glm::vec3>) {
+        return {"3 numbers, or 1 for all", {}};
+    } else if constexpr (std::is_same_v<V, glm::vec4>) {
+        return {"3 or 4 numbers (alpha stays when it is left out)", {}};
+    } else if constexpr (std::is_same_v<V, glm::dvec3>) {
+        return {"3 numbers", {}};
+    } else if constexpr (std::is_same_v<V, glm::dmat4>) {
+        return {"identity, or 16 numbers column by column", {"identity"}};
+    } else if constexpr (std::is_same_v<V, ObjectId>) {
+        return {"a path, or none", {"none"}, true};
+    } else if constexpr (std::is_same_v<V, std::vector<ObjectId>>) {
+        return {"paths, or none", {"none"}, true};
+    } else if constexpr (std::is_same_v<V, scene::TextureSlot>) {
+        return {"a texture's path or none, then offset=U,V scale=U,V rotation=RADIANS as needed",
+                {"none", "offset=", "scale=", "rotation="},
+                true};
+    } else if constexpr (std::is_same_v<V, scene::BlobRef>) {
+        return {"bytes, which cannot be typed: they come with 'load'", {}, false, false};
+    } else {
+        static_assert(std::is_enum_v<V>, "a new type of field needs a form, a reader and a text");
+        return {alternatives(enumerators<V>()), enumerators<V>()};
+    }
+}
+
+template <class N>
+std::string shortest(N value) {
+    char text[40];
+    const auto end = std::to_chars(text, text + sizeof text, value);
+    return {text, end.ptr};
+}
+
+template <class V>
+std::string components(const V& value, const char* separator = " ") {
+    std::string text;
+    for (glm::length_t i = 0; i < value.length(); ++i) text += (i ? separator : "") + shortest(value[i]);
+    return text;
+}
+
+template <class V>
+std::string text_of(const V& value, const WritePath& write_path) {
+    if constexpr (std::is_same_v<V, std::string>) {
+        return quoted(value);
+    } else if constexpr (std::is_same_v<V, bool>) {
+        return value ? "true" : "false";
+    } else if constexpr (std::is_arithmetic_v<V>) {
+        return shortest(value);
+    } else if constexpr (std::is_same_v<V, glm::dmat4>) {
+        if (value == glm::dmat4(1.0)) return "identity";
+        return components(value[0]) + "  " + components(value[1]) + "  " + components(value[2]) + "  " +
+               components(value[3]);
+    } else if constexpr (std::is_same_v<V, ObjectId>) {
+        return write_path(value);
+    } else if constexpr (std::is_same_v<V, std::vector<ObjectId>>) {
+        std::string text;
+        for (const ObjectId id : value) text += (text.empty() ? "" : " ") + write_path(id);
+        return text.empty() ? "none" : text;
+    } else if constexpr (std::is_same_v<V, scene::TextureSlot>) {
+        return write_path(value.texture) + " offset=" + components(value.offset, ",") +
+               " scale=" + components(value.scale, ",") + " rotation=" + shortest(value.rotation);
+    } else if constexpr (std::is_same_v<V, scene::BlobRef>) {
+        return value.empty() ? "no bytes" : std::to_string(value.byte_size) + " bytes";
+    } else if constexpr (std::is_enum_v<V>) {
+        const auto& names = enumerators<V>();
+        const auto index = static_cast<std::size_t>(value);
+        return index < names.size() ? names[index] : std::to_string(index);
+    } else {
+        return components(value);
+    }
+}
+
+// Calls visit(object, pointer to member) for the field.
+template <class O, class Visitor>
+void with_field(O& object, unsigned field, const Visitor& visit) {
+    std::visit(
+        [&]<class T>(T& value) {
+            scene::for_each_field<std::remove_const_t<T>>([&](unsigned index, auto member) {
+                if (index == field) visit(value.*member);
+            });
+        },
+        object);
+}
+
+}  // namespace
+
+scene::Object default_object(ObjectKind kind) {
+    scene::Object object;
+    const auto make = [&]<std::size_t... I>(std::index_sequence<I...>) {
+        ((static_cast<std::size_t>(kind) == I ? (void)object.emplace<I>() : void()), ...);
+    };
+    make(std::make_index_sequence<KindCount>());
+    return object;
+}
+
+unsigned field_count(ObjectKind kind) {
+    return std::visit(
+        []<class T>(const T&) { return static_cast<unsigned>(std::tuple_size_v<decltype(T::fields())>); },
+        default_object(kind));
+}
+
+std::vector<std::string> field_names(ObjectKind kind) {
+    std::vector<std::string> names;
+    for (unsigned field = 0; field < field_count(kind); ++field)
+        names.emplace_back(scene::field_name(kind, field));
+    return names;
+}
+
+std::optional<unsigned> find_field(ObjectKind kind, std::string_view name) {
+    if (kind == ObjectKind::Material && name == "diffuse") name = "base_color";
+    for (unsigned field = 0; field < field_count(kind); ++field) {
+        if (scene::field_name(kind, field) == name) return field;
+    }
+    return std::nullopt;
+}
+
+unsigned read_field(ObjectKind kind, const Word& name) {
+    if (const auto field = find_field(kind, name.text())) return *field;
+    std::string all;
+    for (const std::string& one : field_names(kind)) all += (all.empty() ? "" : ", ") + one;
+    const auto best = cli::nearest(name.text(), field_names(kind));
+    throw ScriptError(name.column(), "a " + std::string(scene::name(kind)) + " has no field '" + name.text() +
+                                         "'" +
+                                         (best ? "; did you mean '" + *best + "'?" : ": it has " + all));
+}
+
+ValueForm value_form(ObjectKind kind, unsigned field) {
+    ValueForm form;
+    scene::Object object = default_object(kind);
+    with_field(object, field, [&]<class V>(V&) { form = form_of<V>(); });
+    return form;
+}
+
+void read_value(scene::Object& object, unsigned field, const std::vector<Word>& words, std::size_t end_column,
+                const ReadPath& read_path) {
+    const ObjectKind kind = scene::kind(object);
+    ValueReader reader(words, end_column, value_form(kind, field).text, read_path);
+    with_field(object, field, [&](auto& value) { reader.read(value); });
+    reader.expect_end();
+}
+
+std::string value_text(const scene::Object& object, unsigned field, const WritePath& write_path) {
+    std::string text;
+    with_field(object, field, [&](const auto& value) { text = text_of(value, write_path); });
+    return text;
+}
+
+std::string number_text(double value) {
+    return shortest(value);
+}
+
+}  // namespace tessera::edit

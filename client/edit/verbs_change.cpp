@@ -1,0 +1,106 @@
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "client/edit/script_error.h"
+#include "client/edit/values.h"
+#include "client/edit/verbs.h"
+#include "mediator/scene/fields.h"
+
+namespace tessera::edit {
+namespace {
+
+std::vector<Word> behind(const Arguments& arguments, std::size_t count) {
+    return {arguments.begin() + static_cast<std::ptrdiff_t>(count), arguments.end()};
+}
+
+// A transform with another matrix, from its path.
+template <class Change>
+void change_matrix(Rehearsal& rehearsal, const Word& path, const Change& change) {
+    const ObjectId id = rehearsal.read(path);
+    const auto* present = rehearsal.scene().find_as<scene::Transform>(id);
+    if (present == nullptr) {
+        throw ScriptError(path.column(),
+                          rehearsal.path(id) +
+                              " is no transform: move the one above it, or put it into one with "
+                              "'create transform'");
+    }
+    scene::Transform transform = *present;
+    change(transform.matrix);
+    using Fields = scene::Fields<scene::Transform>;
+    rehearsal.apply(
+        {scene::Update{id, Fields(scene::Transform::Field::Matrix).bits(), std::move(transform)}});
+}
+
+std::vector<double> numbers(const std::vector<Word>& words) {
+    std::vector<double> values;
+    for (const Word& word : words) {
+        for (const Word& piece : word.split(',')) values.push_back(read_number(piece));
+    }
+    return values;
+}
+
+}  // namespace
+
+void set_field(Rehearsal& rehearsal, const Arguments& arguments, std::size_t end) {
+    const Word& target = arguments[0];
+    const std::size_t dot = target.rfind('.');
+    if (dot == Word::None) {
+        throw ScriptError(
+            target.column(),
+            "'" + target.text() + "' names no field: write PATH.FIELD, as materials/red.roughness");
+    }
+    const ObjectId id = rehearsal.read(target.part(0, dot));
+    scene::Object object = *rehearsal.scene().find(id);
+    const unsigned field = read_field(scene::kind(object), target.part(dot + 1));
+    read_value(object, field, behind(arguments, 1), end,
+               [&](const Word& path) { return rehearsal.read(path); });
+    rehearsal.apply({scene::Update{id, 1u << field, std::move(object)}});
+}
+
+void move_transform(Rehearsal& rehearsal, const Arguments& arguments, std::size_t end) {
+    const std::vector<double> by = numbers(behind(arguments, 1));
+    if (by.size() != 3)
+        throw ScriptError(end, "'move' takes 3 numbers behind the path: metres along x, y and z");
+    change_matrix(rehearsal, arguments[0],
+                  [&](glm::dmat4& matrix) { matrix[3] += glm::dvec4(by[0], by[1], by[2], 0.0); });
+}
+
+void rotate_transform(Rehearsal& rehearsal, const Arguments& arguments, std::size_t end) {
+    const std::vector<Word> words = behind(arguments, 1);
+    glm::dvec3 axis(0.0);
+    double degrees = 0.0;
+    const std::string axes = "xyz";
+    const bool is_named = words[0].text().size() == 1 && axes.find(words[0].text()[0]) != std::string::npos;
+    if (is_named) {
+        if (words.size() != 2) throw ScriptError(end, "'rotate PATH x' takes one number behind it: degrees");
+        axis[static_cast<glm::length_t>(axes.find(words[0].text()[0]))] = 1.0;
+        degrees = read_number(words[1]);
+    } else {
+        const std::vector<double> values = numbers(words);
+        if (values.size() != 4) {
+            throw ScriptError(end,
+                              "'rotate' takes an axis (x, y, z or 3 numbers) and degrees behind the path");
+        }
+        axis = {values[0], values[1], values[2]};
+        degrees = values[3];
+    }
+    if (!(glm::length(axis) > 0.0)) throw ScriptError(words[0].column(), "the axis has no direction");
+    const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), glm::radians(degrees), glm::normalize(axis));
+    change_matrix(rehearsal, arguments[0], [&](glm::dmat4& matrix) {
+        const glm::dvec4 place = matrix[3];
+        matrix = turn * matrix;
+        matrix[3] = place;  // about its own origin
+    });
+}
+
+void scale_transform(Rehearsal& rehearsal, const Arguments& arguments, std::size_t end) {
+    const std::vector<double> by = numbers(behind(arguments, 1));
+    if (by.size() != 1 && by.size() != 3) {
+        throw ScriptError(end, "'scale' takes 1 number for all directions or 3 behind the path");
+    }
+    const glm::dvec3 factors = by.size() == 1 ? glm::dvec3(by[0]) : glm::dvec3(by[0], by[1], by[2]);
+    change_matrix(rehearsal, arguments[0], [&](glm::dmat4& matrix) { matrix = glm::scale(matrix, factors); });
+}
+
+}  // namespace tessera::edit

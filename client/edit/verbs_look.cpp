@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <set>
+
+#include "client/edit/script_error.h"
+#include "client/edit/values.h"
+#include "client/edit/verbs.h"
+#include "mediator/scene/fields.h"
+
+namespace tessera::edit {
+namespace {
+
+using scene::ObjectKind;
+
+// In the order of kinds and names.
+void print_names(Rehearsal& rehearsal, std::string_view kind_pattern, std::string_view name_pattern) {
+    const scene::Scene& scene = rehearsal.scene();
+    std::string text;
+    for (std::size_t i = 0; i < KindCount; ++i) {
+        const auto kind = static_cast<ObjectKind>(i);
+        if (!matches(kind_pattern, kind_word(kind))) continue;
+        for (const auto& [name, ids] : rehearsal.book().names(kind)) {
+            if (!matches(name_pattern, name)) continue;
+            for (const ObjectId id : ids) text += rehearsal.book().path(scene, id) + "\n";
+        }
+    }
+    rehearsal.print(text.empty() ? "nothing\n" : text);
+}
+
+// Depth first with a stack of its own: graphs may be deep. What is placed a second time is not unfolded
+// again.
+class Tree {
+  public:
+    explicit Tree(const Rehearsal& rehearsal) : rehearsal_(rehearsal), scene_(rehearsal.scene()) {}
+
+    std::string text(ObjectId top) {
+        stack_.push_back({top, 0});
+        while (!stack_.empty()) {
+            const Place place = stack_.back();
+            stack_.pop_back();
+            visit(place);
+        }
+        return std::move(text_);
+    }
+
+  private:
+    struct Place {
+        ObjectId id;
+        std::size_t depth;
+    };
+    void visit(const Place& place) {
+        text_ += std::string(2 * place.depth, ' ') + rehearsal_.path(place.id);
+        const auto* transform = scene_.find_as<scene::Transform>(place.id);
+        const auto* root = scene_.find_as<scene::Root>(place.id);
+        const bool has_children =
+            (transform && !transform->children.empty()) || (root && !root->children.empty());
+        if (!has_children || !seen_.insert(place.id).second) {
+            text_ += has_children ? "  (as above)\n" : "\n";
+            return;
+        }
+        text_ += "\n";
+        const auto& children = transform ? transform->children : root->children;
+        for (auto child = children.rbegin(); child != children.rend(); ++child)
+            stack_.push_back({*child, place.depth + 1});
+    }
+
+    const Rehearsal& rehearsal_;
+    const scene::Scene& scene_;
+    std::vector<Place> stack_;
+    std::set<ObjectId> seen_;
+    std::string text_;
+};
+
+struct ShownField {
+    std::string text;
+    bool is_committed = true;
+};
+
+std::string shown(const std::string& title, const std::vector<ShownField>& fields,
+                  const std::vector<FieldWriter>& writers) {
+    std::string text = title + "\n";
+    for (unsigned i = 0; i < fields.size(); ++i) {
+        text += "  " + fields[i].text;
+        const auto writer = std::find_if(writers.begin(), writers.end(),
+                                         [&](const FieldWriter& one) { return one.field == i; });
+        if (!fields[i].is_committed) {
+            text += "   # not committed";
+        } else if (writer != writers.end()) {
+            text += "   # " + quoted(writer->name) + ", transaction " + std::to_string(writer->transaction);
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+}  // namespace
+
+void list_objects(Rehearsal& rehearsal, const Arguments& arguments, std::size_t) {
+    if (arguments.empty()) return print_names(rehearsal, "*", "*");
+    const Word& word = arguments[0];
+    const std::size_t slash = word.find('/');
+    if (word.part(0, slash).text().find_first_of("*?") != std::string::npos) {
+        return print_names(rehearsal, word.part(0, slash).text(),
+                           slash == Word::None ? "*" : word.part(slash + 1).text());
+    }
+    print_names(rehearsal, kind_word(read_kind(word.part(0, slash))),
+                slash == Word::None ? "*" : word.part(slash + 1).text());
+}
+
+void find_objects(Rehearsal& rehearsal, const Arguments& arguments, std::size_t) {
+    print_names(rehearsal, "*", arguments[0].text());
+}
+
+void show_tree(Rehearsal& rehearsal, const Arguments& arguments, std::size_t) {
+    const ObjectId top = arguments.empty() ? scene::RootId : rehearsal.read(arguments[0]);
+    rehearsal.print(Tree(rehearsal).text(top));
+}
+
+void show_object(Rehearsal& rehearsal, const Arguments& arguments, std::size_t) {
+    const ObjectId id = rehearsal.read(arguments[0]);
+    const scene::Scene& scene = rehearsal.scene();
+    const scene::Object& object = *scene.find(id);
+    const ObjectKind kind = scene::kind(object);
+    const std::uint32_t uncommitted = rehearsal.uncommitted_fields(id);
+    std::vector<ShownField> fields;
+    for (unsigned field = 0; field < field_count(kind); ++field) {
+        const std::string name(scene::field_name(kind, field));
+        fields.push_back({name + std::string(name.size() < 27 ? 28 - name.size() : 1, ' ') +
+                              value_text(object, field, [&](ObjectId to) { return rehearsal.path(to); }),
+                          ((uncommitted >> field) & 1u) == 0});
+    }
+    const std::string title = rehearsal.book().full_path(scene, id);
+    // Who wrote what is the master's to know, so it is asked when the line is done in earnest.
+    const bool is_new = uncommitted == ~0u;
+    rehearsal.act([title, fields, id, is_new](EditTarget& target) -> Expected<std::string> {
+        if (is_new) return shown(title, fields, {});
+        const auto writers = target.writers(id);
+        if (!writers) return tl::unexpected<Error>(writers.error());
+        return shown(title, fields, *writers);
+    });
+}
+
+}  // namespace tessera::edit

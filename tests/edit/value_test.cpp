@@ -1,0 +1,181 @@
+#include "client/edit/path_book.h"
+#include "client/edit/script_error.h"
+#include "client/edit/values.h"
+#include "mediator/scene/fields.h"
+#include "tests/edit/fake_target.h"
+
+namespace tessera::edit {
+namespace {
+
+using scene::ObjectKind;
+using testing::HasSubstr;
+
+// For every field a value other than the default, as it is typed, and how it is shown; and one that is wrong.
+// A blob has no value that can be typed.
+struct FieldCase {
+    std::string typed, shown, wrong;
+};
+
+std::map<std::string, FieldCase> cases() {
+    const FieldCase name{"\"two words\"", "\"two words\"", "two words"};
+    const FieldCase hint{"animated", "animated", "fast"};
+    const FieldCase children{"transforms/wheel lights/bulb", "transforms/wheel lights/bulb",
+                             "transforms/weel"};
+    const FieldCase slot{"textures/data offset=1,-2 rotation=0.5",
+                         "textures/data offset=1,-2 scale=1,1 rotation=0.5", "textures/data offset=1"};
+    const FieldCase number{"0.25", "0.25", "0.25x"}, whole{"7", "7", "-7"}, truth{"yes", "true", "maybe"};
+    const FieldCase color{"0.5,0.25 1e-3", "0.5 0.25 0.001", "0.5 0.25"};
+    const FieldCase wrap{"clamp", "clamp", "Clamp"};
+    const FieldCase blob{"", "", "12"};
+    std::map<std::string, FieldCase> all{
+        {"root.children", children},
+        {"root.background", {"none", "none", "5"}},
+        {"root.render_origin", {"1 2 1e9", "1 2 1e+09", "1 2"}},
+        {"transform.matrix",
+         {"1 0 0 0  0 2 0 0  0 0 3 0  4 5 6 1", "1 0 0 0  0 2 0 0  0 0 3 0  4 5 6 1", "1 2 3"}},
+        {"transform.children", children},
+        {"transform.hint", hint},
+        {"geometry.material", {"materials/\"my \\\"red\\\"\"", "materials/\"my \\\"red\\\"\"", "red"}},
+        {"geometry.hint", hint},
+        {"material.base_color", {"0.8 0.1 0.1 0.5", "0.8 0.1 0.1 0.5", "0.8 0.1"}},
+        {"material.base_color_texture", slot},
+        {"material.metallic", number},
+        {"material.roughness", number},
+        {"material.metallic_roughness_texture", slot},
+        {"material.normal_texture", slot},
+        {"material.normal_scale", number},
+        {"material.emission", color},
+        {"material.emission_texture", slot},
+        {"material.alpha_mode", {"blend", "blend", "1"}},
+        {"material.alpha_cutoff", number},
+        {"material.double_sided", truth},
+        {"material.unlit", truth},
+        {"material.index_of_refraction", number},
+        {"material.transmission", number},
+        {"texture.width", whole},
+        {"texture.height", whole},
+        {"texture.format", {"rgb_float", "rgb_float", "rgb"}},
+        {"texture.wrap_s", wrap},
+        {"texture.wrap_t", wrap},
+        {"texture.filter", {"nearest", "nearest", "cubic"}},
+        {"light.kind", {"spot", "spot", "area"}},
+        {"light.intensity", {"5", "5 5 5", "5 6"}},
+        {"light.inner_cone_angle", number},
+        {"light.outer_cone_angle", number},
+        {"camera.vertical_fov", {"0.12345678901234567", "0.12345678901234566", "inf"}},
+        {"camera.aspect_ratio", number},
+        {"background.color", color},
+        {"background.environment", {"textures/sky", "textures/sky", "sky"}},
+        {"background.strength", number},
+        {"background.rotation", {"-1.5", "-1.5", "1e39"}},
+        {"attachment.key", {"k", "k", "k k"}},
+        {"attachment.value", {"\"a\\n,b\"", "\"a\\n,b\"", "a b"}},
+    };
+    for (const char* kind : {"root", "transform", "geometry", "material", "texture", "light", "camera",
+                             "background", "attachment"}) {
+        all[std::string(kind) + ".name"] = name;
+    }
+    for (const char* array :
+         {"geometry.indices", "geometry.positions", "geometry.normals", "geometry.tangents",
+          "geometry.tex_coords", "geometry.colors", "texture.texels"}) {
+        all[array] = blob;
+    }
+    return all;
+}
+
+TEST(Values, EveryFieldOfEveryKindIsReadAndShown) {
+    FakeTarget target;
+    const PathBook book(target.scene());
+    const auto read = [&](const Word& word) { return book.read(target.scene(), word); };
+    const auto write = [&](ObjectId id) { return book.path(target.scene(), id); };
+    const auto all = cases();
+    std::size_t seen = 0;
+    for (std::size_t k = 0; k < KindCount; ++k) {
+        const auto kind = static_cast<ObjectKind>(k);
+        for (unsigned field = 0; field < field_count(kind); ++field, ++seen) {
+            const std::string name =
+                std::string(scene::name(kind)) + "." + std::string(scene::field_name(kind, field));
+            SCOPED_TRACE(name);
+            ASSERT_TRUE(all.contains(name)) << "a new field needs a case here";
+            const FieldCase& one = all.at(name);
+            EXPECT_EQ(find_field(kind, scene::field_name(kind, field)), field);
+            EXPECT_NE(value_form(kind, field).text, "");
+            EXPECT_EQ(value_form(kind, field).is_settable, !one.typed.empty());
+
+            scene::Object object = default_object(kind);
+            EXPECT_EQ(scene::kind(object), kind);
+            EXPECT_THROW(read_value(object, field, split(one.wrong), 1, read), ScriptError);
+            EXPECT_THROW(read_value(object, field, {}, 1, read), ScriptError);
+            EXPECT_EQ(scene::differing_fields(object, default_object(kind)), 0u)
+                << "a wrong value changed it";
+            if (one.typed.empty()) continue;
+            read_value(object, field, split(one.typed), 1, read);
+            const std::uint32_t changed = scene::differing_fields(object, default_object(kind));
+            EXPECT_EQ(changed | (one.typed == "none" ? 1u << field : 0u), 1u << field);
+            EXPECT_EQ(value_text(object, field, write), one.shown);
+
+            scene::Object again = default_object(kind);
+            read_value(again, field, split(value_text(object, field, write)), 1, read);
+            EXPECT_EQ(scene::differing_fields(again, object), 0u) << "what is shown reads back";
+        }
+    }
+    EXPECT_EQ(seen, all.size()) << "a case is for no field";
+}
+
+TEST(Values, ThreeNumbersKeepAlpha) {
+    FakeTarget target;
+    const std::string red = "materials/\"my \\\"red\\\"\"";
+    ASSERT_TRUE(target.script("set " + red + ".diffuse 0.8 0.1 0.1")) << target.error();
+    EXPECT_EQ(target.named<scene::Material>("my \"red\"").base_color, glm::vec4(0.8f, 0.1f, 0.1f, 0.75f));
+    ASSERT_TRUE(target.script("set " + red + ".base_color 0.8,0.1,0.1,0.25")) << target.error();
+    EXPECT_EQ(target.named<scene::Material>("my \"red\"").base_color.a, 0.25f);
+}
+
+TEST(Values, PartsOfATextureSlotThatAreNotNamedStay) {
+    FakeTarget target;
+    ASSERT_TRUE(target.script("set materials/\"my \\\"red\\\"\".base_color_texture scale=4,5"))
+        << target.error();
+    const scene::TextureSlot& slot = target.named<scene::Material>("my \"red\"").base_color_texture;
+    EXPECT_EQ(slot.texture, target.id_of("wood"));
+    EXPECT_EQ(slot.scale, glm::vec2(4.0f, 5.0f));
+    EXPECT_EQ(slot.offset, glm::vec2(0.25f, 0.5f));
+    EXPECT_EQ(slot.rotation, 0.7f);
+    ASSERT_TRUE(target.script("set materials/\"my \\\"red\\\"\".base_color_texture none")) << target.error();
+    EXPECT_FALSE(target.named<scene::Material>("my \"red\"").base_color_texture.texture);
+}
+
+TEST(Values, NumbersAreFinite) {
+    FakeTarget target;
+    for (const char* value : {"inf", "-inf", "nan", "1e999", "1e39", "0x10", "1,", ",", "--1", "1e", ""}) {
+        EXPECT_FALSE(target.script("set lights/bulb.inner_cone_angle " + std::string(value))) << value;
+    }
+}
+
+TEST(Values, ErrorsNameTheNearest) {
+    FakeTarget target;
+    EXPECT_FALSE(target.script("set lights/bulb.intensty 1"));
+    EXPECT_THAT(target.error(), HasSubstr("test.txt:1:17: "));
+    EXPECT_THAT(target.error(), HasSubstr("did you mean 'intensity'?"));
+    EXPECT_FALSE(target.script("set lights/bulb.kind spott"));
+    EXPECT_THAT(target.error(),
+                HasSubstr("test.txt:1:22: 'spott' is none of point, spot or directional; did you mean"));
+    EXPECT_FALSE(target.script("set lights/bulb.intensity 1 2 x"));
+    EXPECT_THAT(target.error(), HasSubstr("test.txt:1:31: 'x' is no number"));
+    EXPECT_FALSE(target.script("set lights/bulb.intensity 1 2"));
+    EXPECT_THAT(target.error(), HasSubstr("test.txt:1:30: the value ends too early: write 3 numbers"));
+    EXPECT_FALSE(target.script("set lights/bulb.intensity 1 2 3 4"));
+    EXPECT_THAT(target.error(), HasSubstr("test.txt:1:33: '4' does not belong here"));
+    EXPECT_FALSE(target.script("set textures/wood.texels 1"));
+    EXPECT_THAT(target.error(), HasSubstr("load FILE"));
+}
+
+TEST(Values, RangesAreTheScenesMatter) {
+    FakeTarget target;
+    EXPECT_FALSE(target.script("set materials/\"my \\\"red\\\"\".roughness 2"));
+    EXPECT_THAT(target.error(), HasSubstr("test.txt:1:1: material 5"));
+    EXPECT_FALSE(target.script("set geometries/square.material lights/bulb"));
+    EXPECT_THAT(target.error(), HasSubstr("cannot have light"));
+}
+
+}  // namespace
+}  // namespace tessera::edit

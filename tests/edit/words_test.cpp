@@ -1,0 +1,89 @@
+#include "client/edit/words.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "client/edit/script_error.h"
+
+namespace tessera::edit {
+namespace {
+
+std::vector<std::string> texts(std::string_view line) {
+    std::vector<std::string> result;
+    for (const Word& word : split(line)) result.push_back(word.text());
+    return result;
+}
+
+std::size_t error_column(std::string_view line) {
+    try {
+        split(line);
+    } catch (const ScriptError& error) {
+        return error.column();
+    }
+    return 0;
+}
+
+TEST(Words, AreSeparatedByBlanks) {
+    EXPECT_THAT(texts("  set a.b\t0.8  1 \r"), testing::ElementsAre("set", "a.b", "0.8", "1"));
+    EXPECT_THAT(texts(""), testing::IsEmpty());
+}
+
+TEST(Words, QuotesHoldBlanksAndJoin) {
+    EXPECT_THAT(texts(R"(show materials/"my red" "")"), testing::ElementsAre("show", "materials/my red", ""));
+}
+
+TEST(Words, EscapesWorkInsideAndOutsideOfQuotes) {
+    EXPECT_THAT(texts(R"(a\ b "c\"d\\" \x41\n "\t" \q)"),
+                testing::ElementsAre("a b", "c\"d\\", "A\n", "\t", "q"));
+}
+
+TEST(Words, CommentsBeginAtTheStartOfAWord) {
+    EXPECT_THAT(texts("set a#b # c d"), testing::ElementsAre("set", "a#b"));
+    EXPECT_THAT(texts("# all"), testing::IsEmpty());
+    EXPECT_THAT(texts("\"# no\""), testing::ElementsAre("# no"));
+}
+
+TEST(Words, KnowTheirColumnsInCharacters) {
+    const std::vector<Word> words = split("s\xc3\xa4t  \"\xe2\x82\xac\"/x,y");
+    ASSERT_EQ(words.size(), 2u);
+    EXPECT_EQ(words[1].column(), 6u);
+    EXPECT_EQ(words[1].split(',')[1].column(), 12u);
+}
+
+TEST(Words, QuotedPunctuationIsNone) {
+    const std::vector<Word> words = split(R"(a"."b.c \@1@2)");
+    EXPECT_EQ(words[0].find('.'), 3u);
+    EXPECT_EQ(words[1].rfind('@'), 2u);
+    EXPECT_EQ(words[1].find('@'), 2u);
+    EXPECT_FALSE(split("\"in\"")[0].is("in"));
+    EXPECT_TRUE(split("in")[0].is("in"));
+}
+
+TEST(Words, ErrorsNameTheColumn) {
+    EXPECT_EQ(error_column("show \"open"), 6u);
+    EXPECT_EQ(error_column(std::string_view("a\0b", 3)), 2u);
+    EXPECT_EQ(error_column("fine"), 0u);
+}
+
+TEST(Words, WhatIsQuotedReadsBack) {
+    for (const std::string text : {"plain", "my red", "a\"b\\c", "", "# x", "a@1", "line\nend\t\x01\x7f",
+                                   "\xff\xfe", "in", "a=b,c*?", "Cube.001", "\xc3\xa4"}) {
+        EXPECT_THAT(texts(edit::quoted(text)), testing::ElementsAre(text)) << edit::quoted(text);
+    }
+    EXPECT_EQ(quoted("Cube.001"), "Cube.001");
+}
+
+TEST(Words, PatternsMatch) {
+    EXPECT_TRUE(matches("*", ""));
+    EXPECT_TRUE(matches("w*l", "wheel"));
+    EXPECT_TRUE(matches("w?eel", "wheel"));
+    EXPECT_TRUE(matches("*el*", "wheel"));
+    EXPECT_FALSE(matches("w?l", "wheel"));
+    EXPECT_FALSE(matches("", "a"));
+    EXPECT_FALSE(matches("a*b", "a"));
+    // Would take forever if stars were tried one inside the other.
+    EXPECT_FALSE(matches("a*a*a*a*a*a*a*a*a*a*b", std::string(2000, 'a')));
+}
+
+}  // namespace
+}  // namespace tessera::edit
