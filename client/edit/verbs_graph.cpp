@@ -7,6 +7,7 @@
 #include "client/edit/verbs.h"
 #include "mediator/scene/fields.h"
 #include "mediator/scene/references.h"
+#include "mediator/scene/referrers.h"
 
 namespace tessera::edit {
 namespace {
@@ -50,9 +51,7 @@ std::vector<ObjectId>& children_of(scene::Object& object) {
 }
 
 scene::Entry children_update(ObjectId id, scene::Object object) {
-    const std::uint32_t mask =
-        id == scene::RootId ? scene::Fields<scene::Root>(scene::Root::Field::Children).bits()
-                            : scene::Fields<scene::Transform>(scene::Transform::Field::Children).bits();
+    const std::uint32_t mask = scene::children_field(scene::kind(object));
     return scene::Update{id, mask, std::move(object)};
 }
 
