@@ -46,6 +46,14 @@ void Link::send(wire::ControlMessage message) {
     channel_->wake();
 }
 
+void Link::ask(const wire::BlobRequest& request) {
+    {
+        const std::scoped_lock lock(mutex_);
+        to_ask_.push_back(request);
+    }
+    channel_->wake();
+}
+
 std::uint64_t Link::join() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return joined_ != 0 || failure_; });
@@ -95,12 +103,18 @@ bool Link::step(std::stop_token stop) {
         return false;
     }
     std::vector<wire::ControlMessage> to_send;
+    std::vector<wire::BlobRequest> to_ask;
     {
         const std::scoped_lock lock(mutex_);
         if (failure_) return false;
-        if (state_ == State::Joined) to_send.swap(to_send_);  // what nobody can take yet stays
+        if (state_ == State::Joined) {  // what nobody can take yet stays
+            to_send.swap(to_send_);
+            to_ask.swap(to_ask_);
+        }
     }
     for (const wire::ControlMessage& message : to_send) push(message);
+    for (const wire::BlobRequest& request : to_ask)
+        outbox_.push_back({net::Link::Bulk, wire::encode(wire::BulkMessage(request))});
     watch(clock_.now());
     flush();
     return true;
@@ -119,6 +133,9 @@ void Link::receive(const net::Message& message, TimePoint now) {
     if (const auto* request = std::get_if<wire::BlobRequest>(&*decoded)) serve(*request);
     if (auto* tile = std::get_if<wire::FrameTile>(&*decoded)) deliver(std::move(*tile));
     if (auto* chunk = std::get_if<wire::PictureChunk>(&*decoded)) deliver(std::move(*chunk));
+    if (auto* frame = std::get_if<wire::LiveFrame>(&*decoded)) deliver(*frame);
+    if (auto* blob = std::get_if<wire::BlobChunk>(&*decoded)) deliver(std::move(*blob));
+    if (const auto* absent = std::get_if<wire::BlobAbsent>(&*decoded)) deliver(*absent);
 }
 
 void Link::control(wire::ControlMessage&& message, TimePoint now) {
@@ -132,6 +149,7 @@ void Link::control(wire::ControlMessage&& message, TimePoint now) {
         if (state_ != State::Away && now - last_greeting_ >= settings_.heartbeat) greet(now);
         return;
     }
+    if (std::holds_alternative<wire::Goodbye>(message) && settings_.returns) return leave_for_a_while(now);
     if (const auto* goodbye = std::get_if<wire::Goodbye>(&message)) {
         return fail(Error(ErrorCode::Unavailable, "the master left: " + goodbye->reason));
     }
@@ -208,12 +226,16 @@ void Link::watch(TimePoint now) {
         return greet(now);
     }
     if (liveness_.dead(now)) {
-        outbox_.clear();  // belongs to the old sockets
-        state_ = State::Away;
-        return_at_ = now + liveness_.next_backoff();
+        leave_for_a_while(now);
     } else if (state_ == State::Joined && liveness_.heartbeat_due(now)) {
         beat(now);
     }
+}
+
+void Link::leave_for_a_while(TimePoint now) {
+    outbox_.clear();  // belongs to the old sockets
+    state_ = State::Away;
+    return_at_ = now + liveness_.next_backoff();
 }
 
 void Link::push(const wire::ControlMessage& message) {

@@ -23,7 +23,8 @@ namespace tessera::client {
 struct Rejoined {
     bool same_session = false;
 };
-using Incoming = std::variant<wire::ControlMessage, wire::FrameTile, wire::PictureChunk, Rejoined>;
+using Incoming = std::variant<wire::ControlMessage, wire::FrameTile, wire::PictureChunk, wire::LiveFrame,
+                              wire::BlobChunk, wire::BlobAbsent, Rejoined>;
 
 // The session's thread: says hello, keeps heartbeats, reconnects after silence, serves blobs. What is meant
 // for the session waits in an inbox, in order per link. Its states:
@@ -42,6 +43,7 @@ class Link {
 
     // Any thread. `send` takes what waits for the connection, too.
     void send(wire::ControlMessage message);
+    void ask(const wire::BlobRequest& request);
     std::uint64_t join();  // blocks until welcome; the session's number. Throws Error.
     // The next one; nothing at the deadline or when stopped. Throws Error when the link is over.
     std::optional<Incoming> next(TimePoint deadline, std::stop_token stop);
@@ -62,6 +64,7 @@ class Link {
     void greet(TimePoint now);
     void beat(TimePoint now);
     void watch(TimePoint now);  // silence, back-off, limits
+    void leave_for_a_while(TimePoint now);
     void push(const wire::ControlMessage& message);
     void flush();
     TimePoint next_wake(TimePoint now) const;
@@ -85,6 +88,7 @@ class Link {
     std::mutex mutex_;  // protects what stands below
     std::condition_variable_any changed_;
     std::vector<wire::ControlMessage> to_send_;
+    std::vector<wire::BlobRequest> to_ask_;
     std::deque<Incoming> inbox_;
     std::optional<Error> failure_;
     std::uint64_t joined_ = 0;  // number of the first welcome

@@ -13,16 +13,17 @@
 #include "client/tools/render.h"
 #include "client/tools/set_filter.h"
 #include "client/tools/status.h"
+#include "client/tools/watch.h"
 
 int main(int argc, char** argv) {
     using namespace tessera;
     cli::CommandLine line(
         "tessera", "Tessera, a distributed path tracer: one master owns scene and picture, nodes render.");
-    const std::vector<tools::Command> commands{tools::render_command(line),  tools::status_command(line),
-                                               tools::probe_command(line),   tools::keys_command(line),
-                                               tools::compare_command(line), tools::filter_command(line),
-                                               tools::filters_command(line), tools::set_filter_command(line),
-                                               tools::bench_command(line),   tools::doctor_command(line)};
+    const std::vector<tools::Command> commands{
+        tools::render_command(line),  tools::status_command(line),     tools::probe_command(line),
+        tools::keys_command(line),    tools::compare_command(line),    tools::filter_command(line),
+        tools::filters_command(line), tools::set_filter_command(line), tools::bench_command(line),
+        tools::doctor_command(line),  tools::watch_command(line)};
     line.examples(
         {"tessera render room.glb -o room.exr -o room.png", "tessera doctor", "tessera render --help"});
     if (const auto exit = line.parse(argc, argv, std::cout, std::cerr)) return *exit;

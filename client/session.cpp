@@ -147,13 +147,12 @@ JobResult Session::render(const JobRequest& request, const std::function<void(co
             if (auto added = film.add(*tile); !added) throw added.error();
         } else if (auto* chunk = std::get_if<wire::PictureChunk>(&*incoming)) {
             if (auto added = picture.add(std::move(*chunk)); !added) throw added.error();
-        } else {
-            const auto& message = std::get<wire::ControlMessage>(*incoming);
-            throw_refusal(message);
-            if (const auto* progress = std::get_if<wire::JobProgress>(&message);
+        } else if (const auto* message = std::get_if<wire::ControlMessage>(&*incoming)) {
+            throw_refusal(*message);
+            if (const auto* progress = std::get_if<wire::JobProgress>(message);
                 progress && progress->job == job) {
                 if (on_progress) on_progress(from_wire(*progress));
-            } else if (const auto* end = std::get_if<wire::JobDone>(&message); end && end->job == job) {
+            } else if (const auto* end = std::get_if<wire::JobDone>(message); end && end->job == job) {
                 done = *end;
             }
         }

@@ -26,6 +26,8 @@ struct SessionSettings {
     Duration lost_limit =
         std::chrono::seconds(30);  // of silence after it, while reconnecting; and of a delivery
     Duration heartbeat = std::chrono::seconds(1);  // until the master's welcome tells its own
+    // A master that says goodbye may be started anew: the connection is tried again, up to `lost_limit`.
+    bool returns = false;
 };
 
 // Where a cluster is, and who we are to it.

@@ -7,7 +7,11 @@
 namespace tessera::master {
 
 FilmMerger::FilmMerger(std::function<void()> wake)
-    : wake_(std::move(wake)), thread_([this](std::stop_token stop) { run(stop); }) {}
+    : wake_(std::move(wake)),
+      pictures_([this](PictureMaker::Made made) {
+          std::visit([this](auto&& result) { put(std::move(result)); }, std::move(made));
+      }),
+      thread_([this](std::stop_token stop) { run(stop); }) {}
 
 FilmMerger::~FilmMerger() = default;
 
@@ -15,16 +19,16 @@ void FilmMerger::open(ViewId view, std::uint64_t revision, FrameAssembler assemb
     enqueue(Open{view, revision, std::make_shared<FrameAssembler>(std::move(assembler))}, 0);
 }
 
-void FilmMerger::close() {
-    enqueue(Close{}, 0);
+void FilmMerger::close(ViewId view) {
+    enqueue(Close{view}, 0);
 }
 
-void FilmMerger::widen(std::uint64_t revision, frame::ChannelSet channels) {
-    enqueue(Widen{revision, channels}, 0);
+void FilmMerger::widen(ViewId view, std::uint64_t revision, frame::ChannelSet channels) {
+    enqueue(Widen{view, revision, channels}, 0);
 }
 
-void FilmMerger::keep_features() {
-    enqueue(KeepFeatures{}, 0);
+void FilmMerger::keep_features(ViewId view, ViewId of_picture) {
+    enqueue(KeepFeatures{view, of_picture}, 0);
 }
 
 void FilmMerger::push(net::PeerId peer, net::Bytes film_message) {
@@ -32,16 +36,21 @@ void FilmMerger::push(net::PeerId peer, net::Bytes film_message) {
     enqueue(Film{peer, std::move(film_message)}, bytes);
 }
 
-void FilmMerger::deliver(JobId job, std::uint32_t first_tile, std::uint32_t last_tile) {
-    enqueue(Deliver{job, first_tile, last_tile}, 0);
+void FilmMerger::deliver(ViewId view, JobId job, std::uint32_t first_tile, std::uint32_t last_tile) {
+    enqueue(Deliver{view, job, first_tile, last_tile}, 0);
 }
 
-void FilmMerger::reconstruct(JobId job, const view::View& view, wire::PictureEncoding encoding) {
-    enqueue(Reconstruct{job, view, encoding}, 0);
+void FilmMerger::copy(ViewId view, JobId job) {
+    enqueue(Copy{view, job}, 0);
+}
+
+void FilmMerger::reconstruct(JobId job, const view::View& view, wire::PictureEncoding encoding,
+                             FilmHash hash) {
+    enqueue(Reconstruct{job, view, encoding, hash}, 0);
 }
 
 void FilmMerger::rehearse(JobId job, const view::View& view, wire::PictureEncoding encoding) {
-    enqueue(Rehearse{{job, view, encoding}}, 0);
+    pictures_.rehearse(job, view, encoding);
 }
 
 std::vector<MergerOutput> FilmMerger::take() {
@@ -78,24 +87,34 @@ void FilmMerger::run(std::stop_token stop) {
     }
 }
 
+FilmMerger::OpenFilm* FilmMerger::film(ViewId view) {
+    const auto place = films_.find(view);
+    return place == films_.end() ? nullptr : &place->second;
+}
+
 void FilmMerger::perform(Open& task) {
-    view_ = task.view;
-    revision_ = task.revision;
-    assembler_ = std::move(task.assembler);
+    OpenFilm opened{.revision = task.revision, .assembler = std::move(task.assembler), .features = {}};
+    if (auto features = features_.extract(task.view)) opened.features = std::move(features.mapped());
+    films_.insert_or_assign(task.view, std::move(opened));
 }
 
-void FilmMerger::perform(Close&) {
-    assembler_.reset();
-    features_.reset();
+void FilmMerger::perform(Close& task) {
+    films_.erase(task.view);
+    features_.erase(task.view);
 }
 
-void FilmMerger::perform(KeepFeatures&) {
-    if (assembler_) features_ = assembler_->whole();
+void FilmMerger::perform(KeepFeatures& task) {
+    if (auto ended = films_.extract(task.view)) {
+        features_[task.of_picture] =
+            std::make_shared<const frame::FilmTile>(ended.mapped().assembler->whole());
+    }
 }
 
 void FilmMerger::perform(Widen& task) {
-    revision_ = task.revision;
-    if (assembler_) assembler_->widen(task.channels);
+    OpenFilm* opened = film(task.view);
+    if (opened == nullptr) return;
+    opened->revision = task.revision;
+    opened->assembler->widen(task.channels);
 }
 
 void FilmMerger::perform(Film& task) {
@@ -117,41 +136,40 @@ void FilmMerger::perform(Film& task) {
     report.nonfinite = part->film.nonfinite_samples;
     report.rays = part->rays;
     report.busy = std::chrono::nanoseconds(part->busy_ns);
-    report.stale = !assembler_ || part->view != view_ || part->revision != revision_;
-    if (!report.stale) report.result = assembler_->insert(std::move(part->film));
+    OpenFilm* opened = film(part->view);
+    report.stale = opened == nullptr || part->revision != opened->revision;
+    if (!report.stale) report.result = opened->assembler->insert(std::move(part->film));
     put(std::move(report));
 }
 
 void FilmMerger::perform(Deliver& task) {
-    if (!assembler_) return;
+    const OpenFilm* opened = film(task.view);
+    if (opened == nullptr) return;
     for (std::uint32_t tile = task.first; tile < task.last; ++tile) {
         wire::FrameTile frame_tile{.job = task.job,
                                    .index = tile,
-                                   .count = assembler_->tile_count(),
-                                   .film = assembler_->merged_tile(tile)};
+                                   .count = opened->assembler->tile_count(),
+                                   .film = opened->assembler->merged_tile(tile)};
         put(EncodedTile{task.job, wire::encode(wire::BulkMessage(std::move(frame_tile)))});
     }
 }
 
-void FilmMerger::perform(Reconstruct& task) {
-    if (!assembler_) return;
-    const frame::FilmTile film = assembler_->whole();
-    const auto [least, most] = std::minmax_element(film.counts.begin(), film.counts.end());
-    Reconstructed output{.job = task.job, .samples_least = *least, .samples_most = *most};
-    const std::optional<frame::FilmTile> later = assembler_->later();
-    output.picture = reconstructor_.reconstruct(
-        {.film = film, .later = later ? &*later : nullptr, .features = features_ ? &*features_ : nullptr},
-        task.view, task.encoding);
-    put(std::move(output));
+void FilmMerger::perform(Copy& task) {
+    const OpenFilm* opened = film(task.view);
+    if (opened != nullptr)
+        put(FilmBlocks{task.job, task.view, opened->revision, opened->assembler->blocks()});
 }
 
-// Small, since somebody is waiting, and a tenth of a megapixel at most.
-void FilmMerger::perform(Rehearse& task) {
-    constexpr std::uint32_t Edge = 256;
-    const auto width = std::min(static_cast<std::uint32_t>(task.view.window.width), Edge);
-    const auto height = std::min(static_cast<std::uint32_t>(task.view.window.height), Edge);
-    const double seconds = reconstructor_.rehearse(task.view, task.encoding, width, height);
-    put(Rehearsed{task.job, std::uint64_t{width} * height, seconds});
+void FilmMerger::perform(Reconstruct& task) {
+    const OpenFilm* opened = film(task.view.id);
+    if (opened == nullptr) return;
+    pictures_.make({.job = task.job,
+                    .film = opened->assembler->whole(),
+                    .later = opened->assembler->later(),
+                    .features = opened->features,
+                    .view = std::move(task.view),
+                    .encoding = task.encoding,
+                    .hash_film = task.hash == FilmHash::Wanted});
 }
 
 void FilmMerger::put(MergerOutput output) {

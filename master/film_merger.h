@@ -3,6 +3,7 @@
 #include <condition_variable>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,7 +12,7 @@
 #include <vector>
 
 #include "master/frame_assembler.h"
-#include "master/reconstruction.h"
+#include "master/picture_maker.h"
 #include "mediator/net/channel.h"
 #include "mediator/wire/messages.h"
 
@@ -36,36 +37,36 @@ struct EncodedTile {
     JobId job;
     net::Bytes bytes;
 };
-// The picture of a job, or why there is none.
-struct Reconstructed {
+// The film of a view as it lies: the blocks of all tiles.
+struct FilmBlocks {
     JobId job;
-    Reconstruction picture;
-    std::uint64_t samples_least = 0, samples_most = 0;
+    ViewId view;
+    std::uint64_t revision = 0;
+    std::vector<frame::FilmTile> blocks;
 };
-// How long a made-up picture took.
-struct Rehearsed {
-    JobId job;
-    std::uint64_t pixels = 0;
-    double seconds = 0.0;
-};
-using MergerOutput = std::variant<MergeReport, EncodedTile, Reconstructed, Rehearsed>;
+using MergerOutput = std::variant<MergeReport, EncodedTile, FilmBlocks, Reconstructed, Rehearsed>;
 
-// Decodes, merges and filters film on a thread of its own, so that the loop that keeps heartbeats never does.
-// Tasks run in the order given; `wake` is called (from the merger's thread) whenever output is there.
+// Decodes and merges film on a thread of its own, so that the loop that keeps heartbeats never does; pictures
+// of it are made on another one. Any number of films, one a view. Tasks run in the order given; `wake` is
+// called (from these threads) whenever output is there.
 class FilmMerger {
   public:
     explicit FilmMerger(std::function<void()> wake);
     ~FilmMerger();
 
-    void open(ViewId view, std::uint64_t revision, FrameAssembler assembler);
-    void close();  // drops the film
-    // The open film goes on under another revision, with more channels.
-    void widen(std::uint64_t revision, frame::ChannelSet channels);
-    void keep_features();  // the film that is open is of the full size: for upsampling the next one's picture
+    void open(ViewId view, std::uint64_t revision, FrameAssembler assembler);  // replaces an older film of it
+    void close(ViewId view);
+    // The film goes on under another revision, with more channels.
+    void widen(ViewId view, std::uint64_t revision, frame::ChannelSet channels);
+    // The film ends here: it has the full size, for upsampling the picture of another one.
+    void keep_features(ViewId view, ViewId of_picture);
     void push(net::PeerId peer, net::Bytes film_message);
-    void deliver(JobId job, std::uint32_t first_tile, std::uint32_t last_tile);  // encodes [first, last)
+    void deliver(ViewId view, JobId job, std::uint32_t first_tile, std::uint32_t last_tile);  // [first, last)
+    void copy(ViewId view, JobId job);  // FilmBlocks, or nothing when there is no such film
 
-    void reconstruct(JobId job, const view::View& view, wire::PictureEncoding encoding);
+    enum class FilmHash { Wanted, NotWanted };
+    // Of the film of view.id. Nothing comes when there is no such film.
+    void reconstruct(JobId job, const view::View& view, wire::PictureEncoding encoding, FilmHash hash);
     void rehearse(JobId job, const view::View& view, wire::PictureEncoding encoding);
 
     std::vector<MergerOutput> take();
@@ -77,9 +78,14 @@ class FilmMerger {
         std::uint64_t revision;
         std::shared_ptr<FrameAssembler> assembler;
     };
-    struct Close {};
-    struct KeepFeatures {};
+    struct Close {
+        ViewId view;
+    };
+    struct KeepFeatures {
+        ViewId view, of_picture;
+    };
     struct Widen {
+        ViewId view;
         std::uint64_t revision;
         frame::ChannelSet channels;
     };
@@ -88,16 +94,26 @@ class FilmMerger {
         net::Bytes bytes;
     };
     struct Deliver {
+        ViewId view;
         JobId job;
         std::uint32_t first, last;
+    };
+    struct Copy {
+        ViewId view;
+        JobId job;
     };
     struct Reconstruct {
         JobId job;
         view::View view;
         wire::PictureEncoding encoding;
+        FilmHash hash;
     };
-    struct Rehearse : Reconstruct {};
-    using Task = std::variant<Open, Close, KeepFeatures, Widen, Film, Deliver, Reconstruct, Rehearse>;
+    using Task = std::variant<Open, Close, KeepFeatures, Widen, Film, Deliver, Copy, Reconstruct>;
+    struct OpenFilm {
+        std::uint64_t revision = 0;
+        std::shared_ptr<FrameAssembler> assembler;
+        std::shared_ptr<const frame::FilmTile> features;
+    };
 
     void enqueue(Task task, std::size_t bytes);
     void run(std::stop_token stop);
@@ -107,17 +123,15 @@ class FilmMerger {
     void perform(Widen& task);
     void perform(Film& task);
     void perform(Deliver& task);
+    void perform(Copy& task);
     void perform(Reconstruct& task);
-    void perform(Rehearse& task);
+    OpenFilm* film(ViewId view);
     void put(MergerOutput output);
 
     std::function<void()> wake_;
     // Of the merger's thread alone:
-    ViewId view_;
-    std::uint64_t revision_ = 0;
-    std::shared_ptr<FrameAssembler> assembler_;
-    std::optional<frame::FilmTile> features_;
-    Reconstructor reconstructor_;
+    std::map<ViewId, OpenFilm> films_;
+    std::map<ViewId, std::shared_ptr<const frame::FilmTile>> features_;  // of pictures that are not open yet
 
     mutable std::mutex mutex_;  // protects what stands below
     std::condition_variable_any changed_;
@@ -125,7 +139,9 @@ class FilmMerger {
     std::vector<MergerOutput> output_;
     std::size_t queued_bytes_ = 0;
 
-    std::jthread thread_;  // last: starts when all else is there
+    // Last: they start when all else is there. The merger's thread ends first, since it feeds the other.
+    PictureMaker pictures_;
+    std::jthread thread_;
 };
 
 }  // namespace tessera::master

@@ -82,6 +82,14 @@ std::optional<frame::FilmTile> FrameAssembler::later() const {
     });
 }
 
+std::vector<frame::FilmTile> FrameAssembler::blocks() const {
+    std::vector<frame::FilmTile> all;
+    for (const auto& forest : forests_) {
+        for (const auto& [first, block] : forest.blocks()) all.push_back(block);
+    }
+    return all;
+}
+
 std::uint64_t FrameAssembler::byte_size() const {
     std::uint64_t bytes = 0;
     for (const auto* forests : {&forests_, &earlier_}) {

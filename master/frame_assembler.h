@@ -31,6 +31,7 @@ class FrameAssembler {
     // After widen(): the later samples alone, with all channels.
     std::optional<frame::FilmTile> later() const;
     std::vector<frame::SampleBlock> roots(std::uint32_t tile) const { return forests_[tile].roots(); }
+    std::vector<frame::FilmTile> blocks() const;  // all that lies here, as it lies; not after widen()
     std::uint64_t byte_size() const;
 
   private:

@@ -20,7 +20,7 @@ void JobRunner::begin_filtering(TimePoint now) {
     }
     job_->phase = wire::JobPhase::Filtering;
     job_->last_progress_sent = {};
-    merger_.reconstruct(request.job, request.view, request.picture);
+    merger_.reconstruct(request.job, request.view, request.picture, FilmMerger::FilmHash::NotWanted);
 }
 
 void JobRunner::take(Reconstructed&& made, TimePoint now) {
@@ -79,7 +79,7 @@ void JobRunner::deliver() {
     if (outbox_.waiting_bytes(net::Link::Bulk, *session->bulk) > BytesAhead) return;
     const std::uint32_t until = std::min(count, job_->tiles_sent + TilesAhead);
     if (until > job_->tiles_requested) {
-        merger_.deliver(job_->request.job, job_->tiles_requested, until);
+        merger_.deliver(view().id, job_->request.job, job_->tiles_requested, until);
         job_->tiles_requested = until;
     }
 }

@@ -48,8 +48,7 @@ wire::FilterSet JobRunner::set_filter(const std::string& filter, TimePoint now) 
     ++wanted.revision;
     request.view = wanted;
     cancel(job_->scheduler->revise(wanted.revision));
-    for (auto& [id, node] : nodes_.all()) node.views.erase(wanted.id);
-    merger_.widen(wanted.revision, wanted.channels);
+    merger_.widen(wanted.id, wanted.revision, wanted.channels);
     deal(now);
     return {
         .accepted = true,

@@ -8,16 +8,6 @@ namespace {
 
 constexpr std::uint64_t UnitsPerJob = std::uint64_t{1} << 40;  // ids of two jobs never meet
 
-void add(wire::UnitCounts& to, const wire::UnitCounts& from) {
-    to.issued += from.issued;
-    to.reissued += from.reissued;
-    to.merged += from.merged;
-    to.duplicate += from.duplicate;
-    to.cancelled += from.cancelled;
-    to.refused += from.refused;
-    to.lost += from.lost;
-}
-
 }  // namespace
 
 JobRunner::JobRunner(const JobSettings& settings, NodeTable& nodes, SessionTable& sessions, Outbox& outbox,
@@ -187,7 +177,7 @@ void JobRunner::render(TimePoint now) {
         if (job_->stage && stage_is_over) {
             cancel(scheduler.cancel_everything());
             close_view(view().id);
-            merger_.keep_features();
+            merger_.keep_features(view().id, job_->request.view.id);
             job_->stage.reset();
             return begin_picture(now);
         }
@@ -217,11 +207,7 @@ void JobRunner::deal(TimePoint now) {
     }
     for (const Assignment& assignment : job_->scheduler->assign(capacities, balancer_, now)) {
         NodeRecord& node = *nodes_.find(assignment.node);
-        if (node.views.insert(view().id).second) {
-            view::View opened = view();
-            opened.filter.clear();  // the master's affair
-            outbox_.control(node.control, wire::OpenView{std::move(opened)});
-        }
+        if (auto opening = node.opening(view())) outbox_.control(node.control, *std::move(opening));
         node.pending[assignment.unit.id] = ++node.work_sequence;
         outbox_.control(node.control, wire::Work{node.work_sequence, assignment.unit});
     }
@@ -257,7 +243,9 @@ void JobRunner::take_merger_output(TimePoint now) {
             take(std::move(*made), now);
             continue;
         }
-        auto& tile = std::get<EncodedTile>(output);
+        auto* delivered = std::get_if<EncodedTile>(&output);
+        if (delivered == nullptr) continue;
+        EncodedTile& tile = *delivered;
         if (!job_ || tile.job != job_->request.job) continue;
         const SessionRecord* session = sessions_.find(job_->session);
         if (session == nullptr || !session->bulk) continue;
@@ -413,7 +401,8 @@ void JobRunner::abandon() {
         add(total_, job_->scheduler->counts());
     }
     close_view(view().id);
-    merger_.close();
+    merger_.close(view().id);
+    if (job_->stage) merger_.close(job_->request.view.id);
     job_.reset();
 }
 

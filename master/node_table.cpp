@@ -12,6 +12,15 @@ NodeCapacity NodeRecord::capacity() const {
             .in_hand = static_cast<std::uint32_t>(state.in_hand.size()) + on_the_way};
 }
 
+std::optional<wire::OpenView> NodeRecord::opening(const view::View& view) {
+    std::uint64_t& revision = views[view.id];
+    if (revision == view.revision) return std::nullopt;
+    revision = view.revision;
+    view::View opened = view;
+    opened.filter.clear();  // the master's affair
+    return wire::OpenView{std::move(opened)};
+}
+
 NodeRecord& NodeTable::add(NodeId id, std::uint64_t token, net::PeerId control, std::string user,
                            wire::Hello hello, TimePoint now) {
     NodeRecord record{.id = id,

@@ -2,7 +2,6 @@
 
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -33,12 +32,15 @@ struct NodeRecord {
     std::uint64_t work_sequence = 0;
     std::map<UnitId, std::uint64_t> pending;  // work sent, by sequence, that no heartbeat has confirmed
     std::map<UnitId, TimePoint> silent;       // neither in hand nor merged, since: film under way, or lost
-    std::set<ViewId> views;                   // opened, at the current revision
+    std::map<ViewId, std::uint64_t> views;    // opened, and at which revision
     bool leaving = false;
     double round_trip_seconds = 0;
     std::uint64_t last_progress = 0;  // for stuck detection
     TimePoint last_progress_at{};
     bool stuck = false;
+
+    // What it has to be told before work on the view; nothing when it knows this revision already.
+    std::optional<wire::OpenView> opening(const view::View& view);
 
     // Free places by the node's own word, less what is on its way to it.
     NodeCapacity capacity() const;

@@ -17,8 +17,9 @@ std::uint64_t random_nonzero() {
     return value;
 }
 
-wire::Heartbeat heartbeat(TimePoint now, std::int64_t echo_sent_at, TimePoint echo_received) {
-    wire::Heartbeat beat{.sent_at = now.time_since_epoch().count()};
+wire::Heartbeat heartbeat(TimePoint now, std::int64_t echo_sent_at, TimePoint echo_received,
+                          Version version) {
+    wire::Heartbeat beat{.sent_at = now.time_since_epoch().count(), .version = version};
     if (echo_sent_at != 0) {
         beat.echo_sent_at = echo_sent_at;
         beat.echo_delay = (now - echo_received).count();
@@ -41,7 +42,10 @@ RenderMaster::RenderMaster(std::unique_ptr<net::Channel> channel, std::shared_pt
       nodes_(settings.liveness, settings.stuck),
       distributor_(authority_, *blobs_, outbox_, events_),
       jobs_(settings.jobs, nodes_, sessions_, outbox_, events_, [this] { channel_->wake(); }),
-      service_(authority_, blobs_, sessions_, jobs_, outbox_,
+      live_runner_(settings.live, nodes_, sessions_, outbox_, events_, [this] { channel_->wake(); }),
+      live_(authority_, blobs_, sessions_, live_runner_, outbox_, events_,
+            [this](const scene::ChangeList& changes, TimePoint now) { publish(changes, now); }),
+      service_(authority_, blobs_, sessions_, jobs_, live_, outbox_,
                [this](const scene::ChangeList& changes, TimePoint now) { publish(changes, now); }) {}
 
 void RenderMaster::post(std::function<void(net::Channel&)> task) {
@@ -76,6 +80,8 @@ void RenderMaster::step(TimePoint now, std::stop_token stop) {
     for (const auto& task : posted) task(*channel_);
     jobs_.tick(now);
     service_.tick(now);
+    live_.tick(now);
+    live_runner_.tick(now);
     distributor_.repair(nodes_, now, 3 * settings_.liveness.interval);
     heartbeats(now);
     outbox_.flush();
@@ -85,7 +91,7 @@ void RenderMaster::step(TimePoint now, std::stop_token stop) {
 
 TimePoint RenderMaster::next_wake(TimePoint now) const {
     TimePoint next = now + settings_.liveness.interval / 4;
-    next = std::min(next, jobs_.next_event(now));
+    next = std::min({next, jobs_.next_event(now), live_.next_event(now), live_runner_.next_event(now)});
     if (outbox_.waiting()) next = std::min(next, now + std::chrono::milliseconds(1));
     return next;
 }
@@ -127,7 +133,7 @@ void RenderMaster::control(net::Message& message, TimePoint now) {
     if (SessionRecord* session = sessions_.by_control(message.peer);
         session && session->user == message.user) {
         session->liveness.heard(now);
-        return from_client(*session, *decoded, now);
+        return from_client(*session, *decoded, message.bytes.size(), now);
     }
     if (!std::holds_alternative<wire::Goodbye>(*decoded)) outbox_.control(message.peer, wire::Unknown{});
 }
@@ -143,6 +149,8 @@ void RenderMaster::bulk(net::Message& message, TimePoint now) {
         }
         outbox_.bytes.film += message.bytes.size();
         node->liveness.heard(now);
+        if (wire::film_view(message.bytes) >= FirstLiveView)
+            return live_runner_.film(message.peer, std::move(message.bytes));
         return jobs_.film(message.peer, std::move(message.bytes));
     }
     auto decoded = wire::decode_bulk(message.bytes);
@@ -162,6 +170,9 @@ void RenderMaster::bulk(net::Message& message, TimePoint now) {
         }
         if (const auto* absent = std::get_if<wire::BlobAbsent>(&*decoded)) {
             return service_.absent(*session, *absent, now);
+        }
+        if (const auto* request = std::get_if<wire::BlobRequest>(&*decoded)) {
+            return outbox_.bulk(message.peer, wire::answer(*request, *blobs_));
         }
         return drop(message, "a client has no business sending this");
     }
@@ -218,11 +229,13 @@ void RenderMaster::hello(const net::Message& message, wire::Hello hello, TimePoi
         session->control = message.peer;
         session->bulk.reset();
         session->liveness.restarted(now);
+        live_runner_.session_resumed(session->id);
         return welcome(message.peer, session->id.value, session->token);
     }
     // A repeated hello of a known peer (its first one was answered, the answer got lost) starts it afresh.
     if (NodeRecord* node = nodes_.by_control(message.peer)) remove_node(node->id, "said hello again");
-    if (SessionRecord* session = sessions_.by_control(message.peer)) remove_session(session->id, now);
+    if (SessionRecord* session = sessions_.by_control(message.peer))
+        remove_session(session->id, LiveRunner::Departure::Silence, now);
     if (is_node ? nodes_.all().size() >= settings_.max_nodes
                 : sessions_.all().size() >= settings_.max_sessions) {
         return refuse("the master is full: try again later");
@@ -242,6 +255,7 @@ void RenderMaster::hello(const net::Message& message, wire::Hello hello, TimePoi
                    .control = message.peer,
                    .bulk = {},
                    .user = message.user,
+                   .role = message.role,
                    .hello = std::move(hello),
                    .liveness = net::Liveness(settings_.liveness, now),
                    .fetcher = wire::BlobFetcher(blobs_, settings_.blob_limits),
@@ -257,12 +271,14 @@ void RenderMaster::heartbeats(TimePoint now) {
     for (auto& [id, node] : nodes_.all()) {
         if (!node.liveness.heartbeat_due(now)) continue;
         node.liveness.sent_heartbeat(now);
-        outbox_.control(node.control, heartbeat(now, node.state.sent_at, node.heartbeat_at));
+        outbox_.control(node.control,
+                        heartbeat(now, node.state.sent_at, node.heartbeat_at, authority_.version()));
     }
     for (auto& [id, session] : sessions_.all()) {
         if (!session.liveness.heartbeat_due(now)) continue;
         session.liveness.sent_heartbeat(now);
-        outbox_.control(session.control, heartbeat(now, session.heartbeat_sent_at, session.heartbeat_at));
+        outbox_.control(session.control, heartbeat(now, session.heartbeat_sent_at, session.heartbeat_at,
+                                                   authority_.version()));
     }
 }
 

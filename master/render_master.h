@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "master/job_runner.h"
+#include "master/live/live_service.h"
 #include "master/node_table.h"
 #include "master/outbox.h"
 #include "master/scene_authority.h"
@@ -25,6 +26,7 @@ struct MasterSettings {
     net::LivenessSettings liveness;
     StuckSettings stuck;
     JobSettings jobs;
+    LiveSettings live;
     wire::BlobLimits blob_limits;
     std::size_t max_sessions = 64, max_nodes = 1024;
 };
@@ -51,10 +53,12 @@ class RenderMaster {
     void hello(const net::Message& message, wire::Hello hello, TimePoint now);
     void welcome(net::PeerId control, std::uint64_t number, std::uint64_t token);
     void from_node(NodeRecord& node, wire::ControlMessage& message, TimePoint now);
-    void from_client(SessionRecord& session, wire::ControlMessage& message, TimePoint now);
+    void from_client(SessionRecord& session, wire::ControlMessage& message, std::size_t byte_size,
+                     TimePoint now);
+    void from_member(SessionRecord& session, wire::ControlMessage& message, TimePoint now);
     void bulk_hello(const net::Message& message, const wire::BulkHello& hello);
     void remove_node(NodeId id, const std::string& why);
-    void remove_session(SessionId id, TimePoint now);
+    void remove_session(SessionId id, LiveRunner::Departure departure, TimePoint now);
     void heartbeats(TimePoint now);
     void bury_the_dead(TimePoint now);
     void drop_lost_peers(TimePoint now);
@@ -77,6 +81,8 @@ class RenderMaster {
     SessionTable sessions_;
     SceneDistributor distributor_;
     JobRunner jobs_;
+    LiveRunner live_runner_;
+    LiveService live_;
     SessionService service_;
     std::uint64_t next_number_ = 1;
     std::uint64_t dropped_messages_ = 0;

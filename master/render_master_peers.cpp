@@ -27,24 +27,27 @@ void RenderMaster::from_node(NodeRecord& node, wire::ControlMessage& message, Ti
     } else if (const auto* refused = std::get_if<wire::SceneRefused>(&message)) {
         distributor_.refused(node, *refused);
     } else if (const auto* release = std::get_if<wire::UnitReleased>(&message)) {
+        if (live_runner_.holds(release->unit)) return live_runner_.released(node, *release);
         jobs_.released(node, *release, now);
     } else if (const auto* notice = std::get_if<wire::Notice>(&message)) {
         events_({notice->severity, "node " + node.hello.name + ": " + notice->text});
     } else if (const auto* goodbye = std::get_if<wire::Goodbye>(&message)) {
         jobs_.goodbye(node, *goodbye);
+        live_runner_.goodbye(node, *goodbye);
         node.leaving = true;  // stays in the table until it falls silent, since film may be on its way
         events_({wire::Severity::Info, "node " + node.hello.name + " leaves: " + goodbye->reason});
     }
 }
 
-void RenderMaster::from_client(SessionRecord& session, wire::ControlMessage& message, TimePoint now) {
+void RenderMaster::from_client(SessionRecord& session, wire::ControlMessage& message, std::size_t byte_size,
+                               TimePoint now) {
     if (const auto* beat = std::get_if<wire::Heartbeat>(&message)) {
         session.heartbeat_sent_at = beat->sent_at;
         session.heartbeat_at = now;
     } else if (const auto* open = std::get_if<wire::OpenScene>(&message)) {
         service_.open_scene(session, *open, now);
     } else if (auto* edit = std::get_if<wire::SubmitEdit>(&message)) {
-        service_.submit(session, std::move(edit->edit), now);
+        service_.submit(session, std::move(edit->edit), byte_size, now);
     } else if (const auto* long_edit = std::get_if<wire::SubmitEditByBlob>(&message)) {
         service_.submit(session, *long_edit, now);
     } else if (auto* job = std::get_if<wire::StartJob>(&message)) {
@@ -55,8 +58,40 @@ void RenderMaster::from_client(SessionRecord& session, wire::ControlMessage& mes
         outbox_.control(session.control, jobs_.set_filter(set->filter, now));
     } else if (std::holds_alternative<wire::StatusRequest>(message)) {
         outbox_.control(session.control, status(now));
+    } else if (const auto* join = std::get_if<wire::JoinScene>(&message)) {
+        service_.join_scene(session, *join, now);
     } else if (std::holds_alternative<wire::Goodbye>(message)) {
-        remove_session(session.id, now);
+        remove_session(session.id, LiveRunner::Departure::Goodbye, now);
+    } else if (live_.is_member(session.id)) {
+        from_member(session, message, now);
+    } else {
+        outbox_.control(session.control, wire::Refusal{"this client is in no live scene: join one first"});
+    }
+}
+
+void RenderMaster::from_member(SessionRecord& session, wire::ControlMessage& message, TimePoint now) {
+    if (auto* open = std::get_if<wire::OpenLiveView>(&message)) {
+        live_.asked(session, std::move(*open), now);
+    } else if (const auto* close = std::get_if<wire::CloseLiveView>(&message)) {
+        live_runner_.close(session.id, close->number);
+    } else if (const auto* taken = std::get_if<wire::FrameTaken>(&message)) {
+        live_runner_.taken(session.id, *taken);
+    } else if (const auto* pick = std::get_if<wire::Pick>(&message)) {
+        live_runner_.pick(session.id, *pick, authority_.version(), now);
+    } else if (const auto* read = std::get_if<wire::ReadScene>(&message)) {
+        live_.asked(session, *read);
+    } else if (const auto* lock = std::get_if<wire::LockObjects>(&message)) {
+        live_.asked(session, *lock);
+    } else if (auto* presence = std::get_if<wire::SetPresence>(&message)) {
+        live_.asked(session, std::move(*presence), now);
+    } else if (const auto* people = std::get_if<wire::ReadPeople>(&message)) {
+        live_.asked(session, *people, now);
+    } else if (const auto* history = std::get_if<wire::ReadHistory>(&message)) {
+        live_.asked(session, *history);
+    } else if (const auto* writers = std::get_if<wire::ReadWriters>(&message)) {
+        live_.asked(session, *writers);
+    } else if (const auto* end = std::get_if<wire::CloseScene>(&message)) {
+        service_.close_live_scene(session, *end, now);
     }
 }
 
@@ -67,15 +102,16 @@ void RenderMaster::remove_node(NodeId id, const std::string& why) {
     outbox_.forget(net::Link::Control, node->control);
     if (node->bulk) outbox_.forget(net::Link::Bulk, *node->bulk);
     jobs_.node_gone(id);
+    live_runner_.node_gone(id);
     nodes_.remove(id);
 }
 
-void RenderMaster::remove_session(SessionId id, TimePoint now) {
+void RenderMaster::remove_session(SessionId id, LiveRunner::Departure departure, TimePoint now) {
     const SessionRecord* session = sessions_.find(id);
     if (session == nullptr) return;
     outbox_.forget(net::Link::Control, session->control);
     if (session->bulk) outbox_.forget(net::Link::Bulk, *session->bulk);
-    service_.closed(id, now);
+    service_.closed(id, departure, now);
 }
 
 void RenderMaster::bury_the_dead(TimePoint now) {
@@ -84,7 +120,7 @@ void RenderMaster::bury_the_dead(TimePoint now) {
     for (const auto& [id, session] : sessions_.all()) {
         if (session.liveness.dead(now)) silent.push_back(id);
     }
-    for (const SessionId id : silent) remove_session(id, now);
+    for (const SessionId id : silent) remove_session(id, LiveRunner::Departure::Silence, now);
 }
 
 void RenderMaster::drop_lost_peers(TimePoint now) {
@@ -94,22 +130,25 @@ void RenderMaster::drop_lost_peers(TimePoint now) {
             remove_node(node->id, "its connection broke");
         } else if (SessionRecord* session =
                        is_control ? sessions_.by_control(peer) : sessions_.by_bulk(peer)) {
-            remove_session(session->id, now);
+            remove_session(session->id, LiveRunner::Departure::Silence, now);
         }
     }
 }
 
 wire::StatusReply RenderMaster::status(TimePoint now) const {
-    wire::StatusReply reply{.software = settings_.software,
-                            .version = authority_.version(),
-                            .uptime_seconds = seconds(now - started_),
-                            .blobs = blobs_->count(),
-                            .blob_bytes = blobs_->byte_size(),
-                            .sessions = static_cast<std::uint32_t>(sessions_.all().size()),
-                            .queued = static_cast<std::uint32_t>(sessions_.queue().size()),
-                            .dropped_messages = dropped_messages_ + jobs_.malformed_film(),
-                            .units = jobs_.total_counts(),
-                            .wire_bytes = outbox_.bytes};
+    wire::StatusReply reply{
+        .software = settings_.software,
+        .version = authority_.version(),
+        .uptime_seconds = seconds(now - started_),
+        .blobs = blobs_->count(),
+        .blob_bytes = blobs_->byte_size(),
+        .sessions = static_cast<std::uint32_t>(sessions_.all().size()),
+        .queued = static_cast<std::uint32_t>(sessions_.queue().size()),
+        .dropped_messages = dropped_messages_ + jobs_.malformed_film() + live_runner_.malformed_film(),
+        .units = jobs_.total_counts(),
+        .wire_bytes = outbox_.bytes,
+        .live = live_.status()};
+    add(reply.units, live_runner_.counts());
     for (const auto& [id, node] : nodes_.all()) {
         wire::NodeStatus entry{
             .summary = {.id = id,
@@ -121,7 +160,8 @@ wire::StatusReply RenderMaster::status(TimePoint now) const {
             .phase = node.state.phase,
             .version = node.state.version,
             .units_in_hand = static_cast<std::uint32_t>(node.state.in_hand.size()),
-            .samples_per_second = jobs_.balancer().rate(id) * std::max(1u, node.hello.concurrent_units),
+            .samples_per_second = std::max(jobs_.balancer().rate(id), live_runner_.balancer().rate(id)) *
+                                  std::max(1u, node.hello.concurrent_units),
             .round_trip_seconds = node.round_trip_seconds,
             .stuck = node.stuck};
         reply.nodes.push_back(std::move(entry));

@@ -6,24 +6,31 @@ namespace tessera::master {
 
 namespace {
 constexpr std::size_t MaxPendingEdits = 256;
+
+std::int64_t since_1970() {
+    return std::chrono::duration_cast<Duration>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
+}  // namespace
 
 SessionService::SessionService(SceneAuthority& authority, std::shared_ptr<scene::BlobStore> blobs,
-                               SessionTable& sessions, JobRunner& jobs, Outbox& outbox,
+                               SessionTable& sessions, JobRunner& jobs, LiveService& live, Outbox& outbox,
                                std::function<void(const scene::ChangeList&, TimePoint)> publish)
     : authority_(authority),
       blobs_(std::move(blobs)),
       sessions_(sessions),
       jobs_(jobs),
+      live_(live),
       outbox_(outbox),
       publish_(std::move(publish)) {}
 
 void SessionService::open_scene(SessionRecord& session, const wire::OpenScene& request, TimePoint now) {
     const bool would_wait = !sessions_.stage_is_free() || !sessions_.queue().empty();
+    if (live_.is_member(session.id)) {
+        outbox_.control(session.control, wire::Refusal{"this client is in a live scene: connect anew"});
+        return;
+    }
     if (request.no_wait && would_wait && sessions_.on_stage() != session.id) {
-        outbox_.control(session.control,
-                        wire::Refusal{"the cluster is rendering another scene: try again later, "
-                                      "or wait in the queue without --no-wait"});
+        outbox_.control(session.control, wire::Refusal{busy_text()});
         return;
     }
     if (sessions_.on_stage() == session.id) {
@@ -34,6 +41,39 @@ void SessionService::open_scene(SessionRecord& session, const wire::OpenScene& r
     tick(now);
 }
 
+std::string SessionService::busy_text() const {
+    if (live_.is_open()) {
+        return "the cluster serves the live scene '" + live_.title() +
+               "': wait in the queue without --no-wait, or close that scene with: tessera edit -c close";
+    }
+    return "the cluster is rendering another scene: try again later, or wait in the queue without --no-wait";
+}
+
+void SessionService::join_scene(SessionRecord& session, const wire::JoinScene& request, TimePoint now) {
+    if (sessions_.on_stage() == session.id) {
+        outbox_.control(session.control, wire::Refusal{"this client has a batch scene open: connect anew"});
+        return;
+    }
+    if (sessions_.stage_is_free() && sessions_.queue().empty()) sessions_.give_stage_to_live_scene();
+    if (sessions_.stage_is_live()) return live_.join(session, request, now);
+    if (request.no_wait) {
+        outbox_.control(session.control, wire::Refusal{busy_text()});
+        return;
+    }
+    session.joining = request;
+    sessions_.queue_for_stage(session.id);
+    tick(now);
+}
+
+void SessionService::close_live_scene(SessionRecord& session, const wire::CloseScene& request,
+                                      TimePoint now) {
+    if (!live_.is_member(session.id)) return;
+    live_.close(now);
+    sessions_.end_live_scene();
+    outbox_.control(session.control, wire::RequestDone{request.request, true, {}});
+    tick(now);
+}
+
 void SessionService::give_stage(SessionId id) {
     const SessionRecord& session = *sessions_.find(id);
     const SceneAuthority::IdRange ids = authority_.lend_ids(id);
@@ -41,12 +81,13 @@ void SessionService::give_stage(SessionId id) {
     outbox_.control(session.control, wire::SceneOpened{authority_.version(), ids.first, ids.count});
 }
 
-void SessionService::submit(SessionRecord& session, scene::Edit edit, TimePoint now) {
+void SessionService::submit(SessionRecord& session, scene::Edit edit, std::uint64_t message_bytes,
+                            TimePoint now) {
     edit.session = session.id;  // whatever the message claims
     if (session.edits.size() >= MaxPendingEdits) {
         return refuse_edit(session, "too many edits wait for their blobs: send the blobs first");
     }
-    session.edits.push_back({std::nullopt, std::move(edit)});
+    session.edits.push_back({std::nullopt, std::move(edit), message_bytes});
     advance(session, now);
 }
 
@@ -56,7 +97,7 @@ void SessionService::submit(SessionRecord& session, const wire::SubmitEditByBlob
     }
     scene::Edit placeholder{
         .session = session.id, .sequence = message.sequence, .base = message.base, .entries = {}};
-    session.edits.push_back({message.blob, std::move(placeholder)});
+    session.edits.push_back({message.blob, std::move(placeholder), 0});
     advance(session, now);
 }
 
@@ -80,7 +121,10 @@ bool SessionService::blobs_are_here(SessionRecord& session, SessionRecord::Pendi
         }
         auto decoded = wire::decode_edit(blob->bytes());
         if (!decoded) throw decoded.error();
-        pending.edit.entries = std::move(decoded->entries);
+        decoded->session = pending.edit.session;  // whatever the blob claims
+        decoded->sequence = pending.edit.sequence;
+        pending.edit = std::move(*decoded);
+        pending.bytes += blob->bytes().size();
         pending.encoded.reset();
     }
     const std::vector<scene::BlobRef> missing = authority_.missing_blobs(pending.edit);
@@ -91,7 +135,8 @@ bool SessionService::blobs_are_here(SessionRecord& session, SessionRecord::Pendi
 void SessionService::advance(SessionRecord& session, TimePoint now) {
     while (!session.edits.empty()) {
         SessionRecord::PendingEdit& pending = session.edits.front();
-        if (sessions_.on_stage() != session.id) {
+        const bool is_live = live_.is_member(session.id);
+        if (!is_live && sessions_.on_stage() != session.id) {
             refuse_edit(session, "this session has no scene open: open one first");
             session.edits.pop_front();
             continue;
@@ -103,12 +148,19 @@ void SessionService::advance(SessionRecord& session, TimePoint now) {
             session.edits.pop_front();
             continue;
         }
-        const SceneAuthority::Answer answer = authority_.submit(pending.edit);
-        if (const auto changes = authority_.publish()) publish_(*changes, now);
+        const EditAnswer answer = authority_.submit(
+            pending.edit,
+            {is_live ? live_.name(session.id) : session.hello.name, session.user, since_1970()});
+        if (!is_live && authority_.has_unpublished()) {
+            if (auto changes = authority_.publish()) publish_(*changes, now);
+        }
+        if (is_live) live_.edited(pending.bytes);
         outbox_.control(session.control, wire::EditReply{.sequence = pending.edit.sequence,
                                                          .accepted = answer.accepted,
                                                          .version = answer.version,
-                                                         .problems = answer.problems});
+                                                         .problems = answer.problems,
+                                                         .transaction = answer.transaction,
+                                                         .notes = answer.notes});
         session.edits.pop_front();
     }
     if (!session.bulk) return;
@@ -148,7 +200,8 @@ void SessionService::start_job(SessionRecord& session, wire::StartJob request, T
     jobs_.start(session.id, std::move(request), authority_.version(), now);
 }
 
-void SessionService::closed(SessionId id, TimePoint now) {
+void SessionService::closed(SessionId id, LiveRunner::Departure departure, TimePoint now) {
+    live_.left(id, departure, now);
     const bool had_stage = sessions_.on_stage() == id;
     sessions_.remove(id);
     authority_.forget(id);
@@ -159,7 +212,21 @@ void SessionService::closed(SessionId id, TimePoint now) {
 }
 
 void SessionService::tick(TimePoint now) {
-    if (const auto next = sessions_.next_on_stage()) give_stage(*next);
+    if (const auto next = sessions_.next_on_stage()) {
+        if (sessions_.find(*next)->joining) {
+            sessions_.leave_stage();
+            sessions_.give_stage_to_live_scene();
+        } else {
+            give_stage(*next);
+        }
+    }
+    // Whoever waits to join does not wait for those in front who want the stage for themselves.
+    for (auto& [id, session] : sessions_.all()) {
+        if (!session.joining || !sessions_.stage_is_live()) continue;
+        sessions_.leave_queue(id);
+        const wire::JoinScene request = *std::exchange(session.joining, std::nullopt);
+        live_.join(session, request, now);
+    }
     for (const SessionId id : sessions_.queue()) {
         SessionRecord& session = *sessions_.find(id);
         const std::uint32_t place = sessions_.place(id);
@@ -167,8 +234,7 @@ void SessionService::tick(TimePoint now) {
         session.told_place = place;
         outbox_.control(session.control, wire::QueuePlace{place});
     }
-    if (const auto id = sessions_.on_stage()) {
-        SessionRecord& session = *sessions_.find(*id);
+    for (auto& [id, session] : sessions_.all()) {
         if (!session.fetcher.idle()) advance(session, now);
     }
 }

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "master/job_runner.h"
+#include "master/live/live_service.h"
 #include "master/scene_authority.h"
 #include "master/session_table.h"
 
@@ -13,16 +14,19 @@ class SessionService {
   public:
     // `publish` hands a change list to all nodes.
     SessionService(SceneAuthority& authority, std::shared_ptr<scene::BlobStore> blobs, SessionTable& sessions,
-                   JobRunner& jobs, Outbox& outbox,
+                   JobRunner& jobs, LiveService& live, Outbox& outbox,
                    std::function<void(const scene::ChangeList&, TimePoint)> publish);
 
     void open_scene(SessionRecord& session, const wire::OpenScene& request, TimePoint now);
-    void submit(SessionRecord& session, scene::Edit edit, TimePoint now);
+    void join_scene(SessionRecord& session, const wire::JoinScene& request, TimePoint now);
+    void close_live_scene(SessionRecord& session, const wire::CloseScene& request, TimePoint now);
+    void submit(SessionRecord& session, scene::Edit edit, std::uint64_t message_bytes, TimePoint now);
     void submit(SessionRecord& session, const wire::SubmitEditByBlob& edit, TimePoint now);
     void chunk(SessionRecord& session, wire::BlobChunk&& chunk, TimePoint now);
     void absent(SessionRecord& session, const wire::BlobAbsent& absent, TimePoint now);
     void start_job(SessionRecord& session, wire::StartJob request, TimePoint now);
-    void closed(SessionId session, TimePoint now);  // said goodbye or is dead: its scene and job go
+    // Its batch scene and job go; of a live scene it is no longer a member.
+    void closed(SessionId session, LiveRunner::Departure departure, TimePoint now);
 
     void tick(TimePoint now);  // who is next on the stage, chunks to ask for
 
@@ -31,11 +35,13 @@ class SessionService {
     bool blobs_are_here(SessionRecord& session, SessionRecord::PendingEdit& edit);
     void refuse_edit(SessionRecord& session, std::string problem);
     void give_stage(SessionId session);
+    std::string busy_text() const;
 
     SceneAuthority& authority_;
     std::shared_ptr<scene::BlobStore> blobs_;
     SessionTable& sessions_;
     JobRunner& jobs_;
+    LiveService& live_;
     Outbox& outbox_;
     std::function<void(const scene::ChangeList&, TimePoint)> publish_;
 };

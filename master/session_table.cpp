@@ -42,7 +42,7 @@ void SessionTable::queue_for_stage(SessionId id) {
 }
 
 std::optional<SessionId> SessionTable::next_on_stage() {
-    if (on_stage_ || queue_.empty()) return std::nullopt;
+    if (!stage_is_free() || queue_.empty()) return std::nullopt;
     on_stage_ = queue_.front();
     queue_.pop_front();
     return on_stage_;

@@ -19,6 +19,7 @@ struct SessionRecord {
     net::PeerId control = 0;
     std::optional<net::PeerId> bulk;
     std::string user;
+    net::Role role = net::Role::Viewer;
     wire::Hello hello;
     net::Liveness liveness;
     wire::BlobFetcher fetcher;
@@ -26,14 +27,17 @@ struct SessionRecord {
     struct PendingEdit {
         std::optional<scene::BlobRef> encoded;  // the edit itself is a blob that is still on its way
         scene::Edit edit;
+        std::uint64_t bytes = 0;  // that it took on the wire
     };
     std::deque<PendingEdit> edits;
     std::int64_t heartbeat_sent_at = 0;  // its latest, and when it came: what our next heartbeat echoes
     TimePoint heartbeat_at{};
-    std::uint32_t told_place = 0;  // in the queue, as last told
+    std::uint32_t told_place = 0;            // in the queue, as last told
+    std::optional<wire::JoinScene> joining;  // waits for the stage to join or start the live scene
 };
 
-// Clients, and who of them has the stage: one batch scene at a time, the others wait in order of arrival.
+// Clients, and who of them has the stage: one batch scene at a time, or the live scene for all that joined
+// it. The others wait in order of arrival.
 class SessionTable {
   public:
     SessionRecord& add(SessionRecord record) {
@@ -49,7 +53,11 @@ class SessionTable {
     const std::map<SessionId, SessionRecord>& all() const { return sessions_; }
 
     void queue_for_stage(SessionId id);  // harmless when already queued or on stage
-    bool stage_is_free() const { return !on_stage_; }
+    bool stage_is_free() const { return !on_stage_ && !live_; }
+    bool stage_is_live() const { return live_; }
+    void give_stage_to_live_scene() { live_ = true; }
+    void end_live_scene() { live_ = false; }
+    void leave_queue(SessionId id) { std::erase(queue_, id); }
     std::optional<SessionId> on_stage() const { return on_stage_; }
     void leave_stage() { on_stage_.reset(); }
     std::optional<SessionId> next_on_stage();  // takes the first of the queue, if the stage is free
@@ -60,6 +68,7 @@ class SessionTable {
     std::map<SessionId, SessionRecord> sessions_;
     std::deque<SessionId> queue_;
     std::optional<SessionId> on_stage_;
+    bool live_ = false;
 };
 
 }  // namespace tessera::master

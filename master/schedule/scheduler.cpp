@@ -190,4 +190,14 @@ std::vector<Cancellation> Scheduler::cancel_everything() {
     return cancellations;
 }
 
+void add(wire::UnitCounts& to, const wire::UnitCounts& from) {
+    to.issued += from.issued;
+    to.reissued += from.reissued;
+    to.merged += from.merged;
+    to.duplicate += from.duplicate;
+    to.cancelled += from.cancelled;
+    to.refused += from.refused;
+    to.lost += from.lost;
+}
+
 }  // namespace tessera::master

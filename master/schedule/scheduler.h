@@ -54,6 +54,9 @@ class Scheduler {
     // The view has a new revision: what is under way is given back, to be dealt again under it.
     std::vector<Cancellation> revise(std::uint64_t revision);
 
+    // The scene is at another version that gives the same samples: units dealt from now on name it.
+    void follow(Version version) { version_ = version; }
+
     std::vector<Cancellation> cancel_everything();  // and deal no more
 
     bool complete() const { return plan_.exhausted() && outstanding_.empty(); }
@@ -93,5 +96,7 @@ class Scheduler {
     std::uint32_t tiles_without_samples_ = 0;
     wire::UnitCounts counts_;
 };
+
+void add(wire::UnitCounts& to, const wire::UnitCounts& from);
 
 }  // namespace tessera::master

@@ -62,6 +62,15 @@ std::unique_ptr<client::Session> LoopbackCluster::session(std::shared_ptr<scene:
                                              clock_, client::SessionSettings{.name = "test"});
 }
 
+std::unique_ptr<client::LiveSession> LoopbackCluster::member(const std::string& name,
+                                                             std::shared_ptr<scene::BlobStore> blobs,
+                                                             net::Role role) {
+    auto session = std::make_unique<client::LiveSession>(hub_.client(role), nullptr, std::move(blobs), clock_,
+                                                         client::SessionSettings{.name = name});
+    session->join("test", client::WhenBusy::Queue, nullptr, {});
+    return session;
+}
+
 std::vector<std::string> LoopbackCluster::events() const {
     const std::scoped_lock lock(mutex_);
     return events_;

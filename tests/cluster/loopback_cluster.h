@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "client/live_session.h"
 #include "client/session.h"
 #include "master/render_master.h"
 #include "mediator/net/fault_plan.h"
@@ -33,6 +34,10 @@ class LoopbackCluster {
         std::function<std::unique_ptr<backend::Backend>(const backend::BackendSettings& settings)>;
     void add_node(const MakeBackend& make);
     std::unique_ptr<client::Session> session(std::shared_ptr<scene::BlobStore> blobs);
+    // A member of the live scene "test", which it joins.
+    std::unique_ptr<client::LiveSession> member(const std::string& name,
+                                                std::shared_ptr<scene::BlobStore> blobs,
+                                                net::Role role = net::Role::Editor);
     std::vector<std::string> events() const;
 
   private:

@@ -1,0 +1,221 @@
+#include "client/tools/watch.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "client/live_cameras.h"
+#include "client/live_session.h"
+#include "client/tools/interrupts.h"
+#include "client/tools/pictures.h"
+#include "client/tools/terminal_picture.h"
+#include "client/tools/this_machine.h"
+#include "client/tools/values.h"
+#include "master/filter/catalog.h"
+#include "mediator/filter/choice.h"
+#include "mediator/picture/tone_map.h"
+
+namespace tessera::tools {
+
+namespace {
+
+constexpr const char* Name = "watch";
+constexpr std::uint64_t View = 1;
+
+struct Options {
+    client::Address address{.endpoint = "tcp://127.0.0.1:7420"};
+    std::string title, name = "watch", view, camera, filter;
+    std::optional<std::string> size, output, time;
+    std::uint64_t spp = 256;
+    std::uint64_t frames = 0;
+    bool once = false, no_wait = false;
+};
+
+// Red, green and blue of the frame in the size of the whole view: a coarse one with larger pixels.
+frame::Image image_of(const client::Frame& frame, std::uint32_t width, std::uint32_t height) {
+    frame::Image image(width, height, 3);
+    const std::size_t pixels = std::size_t{frame.width} * frame.height;
+    if (frame.components < 3 || frame.picture.size() != pixels * frame.components * sizeof(float))
+        throw Error(ErrorCode::InvalidInput, "the master sent a picture of another shape than it said");
+    std::vector<float> values(pixels * frame.components);
+    std::memcpy(values.data(), frame.picture.data(), frame.picture.size());
+    for (std::uint32_t y = 0; y < height; ++y) {
+        const std::size_t row = std::size_t{std::min(y / frame.scale, frame.height - 1)} * frame.width;
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const std::size_t from = row + std::min(x / frame.scale, frame.width - 1);
+            for (std::size_t c = 0; c < 3; ++c)
+                image.values[3 * (std::size_t{y} * width + x) + c] = values[c * pixels + from];
+        }
+    }
+    return image;
+}
+
+// One run of the command: joins, watches until the end, shows.
+class Watch {
+  public:
+    explicit Watch(const Options& options) : options_(options) {}
+
+    int run() {
+        to_terminal_ = !options_.output && is_terminal();
+        if (!options_.output && !to_terminal_)
+            return complain(Name, cli::ExitUsage,
+                            "nowhere to show the frames: standard output is no terminal; add -o FILE");
+        if (options_.output && !picture_format(*options_.output))
+            return complain(Name, cli::ExitUsage, "-o: end the name with .exr, .png or .jpg");
+        if (!options_.filter.empty()) {
+            const auto choice = filter::parse_choice(options_.filter, filter::catalog());
+            if (!choice) return complain(Name, cli::ExitUsage, choice.error().what());
+        }
+        std::optional<Duration> limit;
+        if (options_.time) {
+            const auto parsed = parse_duration(*options_.time);
+            if (!parsed)
+                return complain(Name, cli::ExitUsage, std::string("--time: ") + parsed.error().what());
+            limit = *parsed;
+        }
+        if (const auto code = choose_size()) return *code;
+        session_ = client::connect_live(options_.address, std::make_shared<scene::BlobStore>(), clock_,
+                                        {.name = options_.name,
+                                         .host = host_name(),
+                                         .software = "tessera " + cli::version(),
+                                         .pid = static_cast<std::uint64_t>(::getpid())});
+        const auto joined = session_->join(
+            options_.title, options_.no_wait ? client::WhenBusy::GiveUp : client::WhenBusy::Queue,
+            [](std::uint32_t place) {
+                std::cerr << "tessera watch: the cluster is busy: place " << place << " in the queue\n";
+            },
+            interrupts_.token());
+        if (std::holds_alternative<client::Stopped>(joined)) return ExitInterrupted;
+        if (const auto* busy = std::get_if<client::Busy>(&joined))
+            return complain(Name, cli::ExitTryLater, busy->reason);
+        open_view();
+        return watch(limit ? clock_.now() + *limit : TimePoint::max());
+    }
+
+  private:
+    std::optional<int> choose_size() {
+        const TerminalSize terminal = terminal_size();
+        size_ = to_terminal_ ? Size{terminal.columns, 2 * (terminal.rows - 1)} : Size{1280, 720};
+        if (!options_.size) return std::nullopt;
+        const auto size = parse_size(*options_.size);
+        if (!size) return complain(Name, cli::ExitUsage, std::string("--size: ") + size.error().what());
+        size_ = *size;
+        return std::nullopt;
+    }
+
+    void open_view() {
+        client::LiveViewRequest request{.spp = options_.spp,
+                                        .picture = wire::PictureEncoding::Planes,
+                                        .name = options_.view,
+                                        .share = !options_.view.empty()};
+        if (!request.share) {
+            // Until somebody loads a scene there may be none.
+            while (!client::choose_camera(session_->scene(), "") && !interrupts_.token().stop_requested()) {
+                if (!told_) std::cerr << "tessera watch: the scene has no camera yet: waiting for one\n";
+                told_ = true;
+                ::usleep(100000);
+                session_->refresh();
+            }
+            const auto camera = client::choose_camera(session_->scene(), options_.camera);
+            if (!camera) throw camera.error();
+            request.view.width = size_.width;
+            request.view.height = size_.height;
+            request.view.window = {0, 0, static_cast<std::int32_t>(size_.width),
+                                   static_cast<std::int32_t>(size_.height)};
+            request.view.camera = client::pose(*camera, size_.width, size_.height);
+            request.view.channels = {frame::Channel::Radiance};
+            request.view.filter = options_.filter;
+        }
+        session_->open_view(View, request);
+    }
+
+    int watch(TimePoint end) {
+        if (to_terminal_) std::cout << "\x1b[2J";
+        std::uint64_t count = 0;
+        bool is_complete = false;
+        while (!interrupts_.token().stop_requested() && clock_.now() < end) {
+            const auto frame = session_->next_frame(std::min(end, clock_.now() + std::chrono::seconds(1)),
+                                                    interrupts_.token());
+            if (!frame) continue;
+            show(*frame, ++count);
+            is_complete = frame->complete;
+            if (options_.frames != 0 && count >= options_.frames) return 0;
+            if (options_.once && is_complete) return 0;
+        }
+        if (interrupts_.token().stop_requested()) return options_.once ? ExitInterrupted : 0;
+        return options_.once
+                   ? complain(Name, cli::ExitTryLater, "the time is over before the frame was complete")
+                   : 0;
+    }
+
+    void show(const client::Frame& frame, std::uint64_t count) {
+        const std::uint32_t width = options_.view.empty() ? size_.width : frame.width * frame.scale;
+        const std::uint32_t height = options_.view.empty() ? size_.height : frame.height * frame.scale;
+        const frame::Image image = image_of(frame, width, height);
+        if (options_.output) write_picture(*options_.output, image);
+        char text[160];
+        std::snprintf(text, sizeof text, "frame %llu, version %llu, %ux%u%s, %llu of %llu samples%s",
+                      static_cast<unsigned long long>(count),
+                      static_cast<unsigned long long>(frame.version.number), frame.width, frame.height,
+                      frame.scale > 1 ? (" (1/" + std::to_string(frame.scale) + ")").c_str() : "",
+                      static_cast<unsigned long long>(frame.samples_least),
+                      static_cast<unsigned long long>(frame.spp), frame.complete ? ", complete" : "");
+        if (to_terminal_) {
+            const auto rgb = picture::tone_map(image);
+            const std::string picture = terminal_picture(width, height, rgb);
+            std::cout << picture << text << "\x1b[K" << std::flush;
+        } else {
+            std::cout << text << std::endl;
+        }
+    }
+
+    Interrupts interrupts_;  // before anything that starts threads
+    Options options_;
+    SteadyClock clock_;
+    Size size_;
+    bool to_terminal_ = false, told_ = false;
+    std::unique_ptr<client::LiveSession> session_;
+};
+
+int run(const Options& options) {
+    try {
+        return Watch(options).run();
+    } catch (const Error& error) {
+        return complain(Name, exit_code(error.code()), error.what());
+    }
+}
+
+}  // namespace
+
+Command watch_command(cli::CommandLine& program) {
+    const auto options = std::make_shared<Options>();
+    cli::CommandLine& line =
+        program.command(Name, "Watch a live scene: in the terminal, or in a picture file that is kept new.");
+    line.option("--master", "where the cluster is: tcp://host:port", options->address.endpoint);
+    line.option("--keys", "keys for that cluster: a folder, or an exported file", options->address.keys);
+    line.option("--user", "whose pair in a folder of keys", options->address.user);
+    line.option("--name", "how others see this client", options->name);
+    line.option("--scene", "title of the live scene, if this starts it", options->title);
+    line.option("--view", "watch this view of somebody; tessera edit -c people lists them", options->view);
+    line.option("--camera", "camera of the scene: its name, or its number from 0", options->camera);
+    line.option("--size", "picture size in pixels (1280x720, or that of the terminal)", options->size);
+    line.option("--spp", "samples per pixel of the complete frame", options->spp);
+    line.option("--filter", "reconstruction, NAME[:key=value,...]; tessera filters lists them",
+                options->filter);
+    line.option("-o,--output", "write every frame to this picture, .png, .jpg or .exr", options->output);
+    line.flag("--once", "end when the frame is complete", options->once);
+    line.option("--frames", "end after so many frames; 0 = never", options->frames);
+    line.option("--time", "end after so long, as 10s or 5m", options->time);
+    line.flag("--no-wait", "exit with 75 when a batch has the cluster, instead of waiting", options->no_wait);
+    line.examples({"tessera watch --master tcp://render-1:7420 --keys ~/.tessera",
+                   "tessera watch --master tcp://127.0.0.1:7420 -o now.png --once --spp 64 --filter fdf",
+                   "tessera watch --master tcp://127.0.0.1:7420 --view ann/1"});
+    return {Name, [options](std::string_view) { return run(*options); }};
+}
+
+}  // namespace tessera::tools

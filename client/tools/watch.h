@@ -1,0 +1,10 @@
+#pragma once
+
+#include "client/tools/command.h"
+
+namespace tessera::tools {
+
+// `tessera watch`: shows the frames of a live scene as they get better.
+Command watch_command(cli::CommandLine& program);
+
+}  // namespace tessera::tools

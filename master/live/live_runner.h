@@ -1,0 +1,123 @@
+#pragma once
+
+#include <functional>
+#include <list>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "master/film_merger.h"
+#include "master/live/frame_sender.h"
+#include "master/live/live_view.h"
+#include "master/node_table.h"
+#include "master/outbox.h"
+#include "master/scene_distributor.h"
+
+namespace tessera::master {
+
+struct LiveSettings {
+    Duration overdue_patience = std::chrono::seconds(5);      // film neither in hand nor here: lost
+    Duration orphan_patience = std::chrono::seconds(60);      // a view whose owner fell silent waits so long
+    Duration frame_interval = std::chrono::milliseconds(33);  // between pictures of the same pass
+    std::uint32_t failure_limit = 8;
+    std::size_t max_views = 60;  // of all members: a node keeps 256, and each has four passes
+};
+
+// Renders the views of a live scene on the cluster, all of them at a time: coarse passes first, then in turn.
+// Told of events by the render master; owns no socket.
+class LiveRunner {
+  public:
+    LiveRunner(const LiveSettings& settings, NodeTable& nodes, SessionTable& sessions, Outbox& outbox,
+               EventSink events, std::function<void()> wake);
+
+    // A first picture of `version` is merged.
+    std::function<void(Version version, TimePoint now)> on_first_picture;
+
+    // Again with the same number: another camera, size or quality. "" or what is wrong with it.
+    std::string open(SessionId session, const std::string& member, wire::OpenLiveView request,
+                     Version version, TimePoint now);
+    void close(SessionId session, std::uint64_t number);
+    void taken(SessionId session, const wire::FrameTaken& taken) { frames_.taken(session, taken); }
+    void pick(SessionId session, const wire::Pick& request, Version version, TimePoint now);
+    // Its views stay for a while when it only fell silent.
+    enum class Departure { Goodbye, Silence };
+    void session_left(SessionId session, Departure departure, TimePoint now);
+    void session_resumed(SessionId session) { frames_.resumed(session); }
+    void close_all();
+
+    // No first picture is on its way. Changes wait for it, and no pass begins while they wait.
+    bool may_publish() const;
+    void hold_passes(bool hold) { passes_held_ = hold; }
+    void scene_changed(const scene::ChangeList& changes, const scene::Scene& after, TimePoint now);
+
+    bool holds(UnitId unit) const { return unit >= FirstLiveUnit; }
+    void film(net::PeerId bulk_peer, net::Bytes message) { merger_.push(bulk_peer, std::move(message)); }
+    void released(NodeRecord& node, const wire::UnitReleased& release);
+    void goodbye(NodeRecord& node, const wire::Goodbye& goodbye);
+    void node_gone(NodeId node);
+
+    void tick(TimePoint now);
+    TimePoint next_event(TimePoint now) const;
+
+    const std::map<ViewId, LiveView>& views() const { return views_; }
+    std::uint64_t watchers(ViewId view) const { return frames_.watchers(view); }
+    const wire::UnitCounts& counts() const { return counts_; }
+    std::uint64_t malformed_film() const { return malformed_film_; }
+    const Balancer& balancer() const { return balancer_; }
+
+  private:
+    // What is under a pixel: one sample of a view that sees nothing else.
+    struct PickTask {
+        SessionId session;
+        wire::Pick request;
+        Version version;
+        LivePass pass;
+        glm::dvec3 eye{0.0}, direction{0.0};
+        double along_axis = 1.0;  // distance along the ray = depth along the view's axis x this
+        bool copied = false;
+    };
+
+    bool suits(const NodeRecord& node, const view::View& view, Version version) const;
+    bool ready(const NodeRecord& node, const view::View& view, Version version) const;
+    void restart(LiveView& live, TimePoint now);
+    void begin_pass(LivePass& pass, Version version);
+    void advance(LiveView& live, TimePoint now);
+    void show(LiveView& live, TimePoint now);
+    void end(LivePass& pass);
+    void end_passes(LiveView& live);
+    void fail(LiveView& live, const std::string& problem);
+    void remove(ViewId view);
+    void deal(TimePoint now);
+    void deal(LivePass& pass, Version version, std::vector<NodeCapacity>& capacities, TimePoint now);
+    void collect_overdue(TimePoint now);
+    void take_merger_output(TimePoint now);
+    void take(const MergeReport& report, TimePoint now);
+    void take(const FilmBlocks& film);
+    void answer(PickTask& task, const frame::FilmTile& film);
+    void refuse_pick(const PickTask& task, const std::string& problem);
+    void cancel(const std::vector<Cancellation>& cancellations);
+    void send_frames(TimePoint now);
+    LivePass* pass_of(UnitId unit);
+    LivePass* pass_of(ViewId view);
+    LiveView* view_of(ViewId pass);
+    UnitId next_units();
+
+    LiveSettings settings_;
+    NodeTable& nodes_;
+    SessionTable& sessions_;
+    Outbox& outbox_;
+    EventSink events_;
+    FilmMerger merger_;
+    Balancer balancer_;
+    FrameSender frames_;
+    std::map<ViewId, LiveView> views_;
+    std::list<PickTask> picks_;
+    std::uint64_t next_view_ = FirstLiveView.value, next_unit_ = FirstLiveUnit.value;
+    std::uint64_t turn_ = 0;  // whose turn it is among equals
+    bool passes_held_ = false;
+    wire::UnitCounts counts_;
+    std::uint64_t malformed_film_ = 0;
+};
+
+}  // namespace tessera::master

@@ -1,0 +1,230 @@
+#include "master/live/live_service.h"
+
+#include <algorithm>
+
+#include "mediator/wire/envelope.h"
+
+namespace tessera::master {
+
+namespace {
+
+constexpr Duration VersionInterval = std::chrono::milliseconds(16);
+constexpr std::size_t MaxNameLength = 64, MaxPresenceText = 1024, MaxSelection = 1024;
+constexpr Duration MaxPresence = std::chrono::minutes(10);
+
+}  // namespace
+
+LiveService::LiveService(SceneAuthority& authority, std::shared_ptr<scene::BlobStore> blobs,
+                         SessionTable& sessions, LiveRunner& runner, Outbox& outbox, EventSink events,
+                         std::function<void(const scene::ChangeList&, TimePoint)> publish)
+    : authority_(authority),
+      blobs_(std::move(blobs)),
+      sessions_(sessions),
+      runner_(runner),
+      outbox_(outbox),
+      events_(std::move(events)),
+      publish_(std::move(publish)) {}
+
+std::string LiveService::unique_name(const std::string& wanted) const {
+    const auto taken = [&](const std::string& name) {
+        return std::any_of(members_.begin(), members_.end(),
+                           [&](const auto& entry) { return entry.second.name == name; });
+    };
+    const std::string base = wanted.empty() ? "client" : wanted.substr(0, MaxNameLength);
+    if (!taken(base)) return base;
+    for (int number = 2;; ++number) {
+        const std::string name = base + " (" + std::to_string(number) + ")";
+        if (!taken(name)) return name;
+    }
+}
+
+void LiveService::join(SessionRecord& session, const wire::JoinScene& request, TimePoint now) {
+    if (!open_) {
+        open_ = true;
+        title_ = request.title.empty() ? "untitled" : request.title;
+        counts_ = {};
+        events_({wire::Severity::Info, "live scene '" + title_ + "' is open"});
+    }
+    const auto known = members_.find(session.id);
+    if (known == members_.end()) {
+        Member& member = members_[session.id];
+        member.name = unique_name(request.name);
+        events_({wire::Severity::Info, member.name + " (" + session.user + ") joined '" + title_ + "'"});
+    }
+    const IdRange ids = authority_.join(session.id, session.user, request.key);
+    publish_if_due(now);
+    outbox_.control(session.control, wire::SceneJoined{.version = authority_.version(),
+                                                       .first_id = ids.first,
+                                                       .id_count = ids.count,
+                                                       .last_sequence = authority_.last_sequence(session.id),
+                                                       .title = title_,
+                                                       .name = members_.at(session.id).name});
+}
+
+void LiveService::close(TimePoint now) {
+    if (!open_) return;
+    open_ = false;
+    events_({wire::Severity::Info, "live scene '" + title_ + "' is closed"});
+    runner_.close_all();
+    for (const auto& [id, member] : members_) authority_.forget(id);
+    members_.clear();
+    reads_.clear();
+    if (auto cleared = authority_.clear()) publish(*cleared, now);
+}
+
+void LiveService::left(SessionId session, LiveRunner::Departure departure, TimePoint now) {
+    const auto member = members_.find(session);
+    if (member == members_.end()) return;
+    events_({wire::Severity::Info, member->second.name + " left '" + title_ + "'"});
+    runner_.session_left(session, departure, now);
+    authority_.release_all(session);
+    authority_.forget(session);
+    members_.erase(member);
+    std::erase_if(reads_, [&](const WaitingRead& read) { return read.session == session; });
+}
+
+void LiveService::edited(std::uint64_t message_bytes) {
+    ++counts_.edits;
+    counts_.edit_bytes += message_bytes;
+}
+
+void LiveService::done(const SessionRecord& session, std::uint64_t request, std::string problem) {
+    const bool accepted = problem.empty();
+    outbox_.control(session.control, wire::RequestDone{request, accepted, std::move(problem)});
+}
+
+void LiveService::asked(SessionRecord& session, const wire::ReadScene& request) {
+    reads_.push_back({session.id, request, authority_.pending()});
+}
+
+// At most one content a member is kept; a second question before the first content was fetched gets a newer
+// one.
+void LiveService::answer(const WaitingRead& read) {
+    const SessionRecord* session = sessions_.find(read.session);
+    if (session == nullptr) return;
+    auto changes = authority_.since(read.request.known);
+    wire::SceneContent content{.request = read.request.request,
+                               .list = changes ? std::move(*changes) : authority_.snapshot(),
+                               .blob = {}};
+    if (!wire::fits_control(content)) {
+        const scene::BlobPtr blob = blobs_->insert(wire::encode(content.list));
+        members_.at(read.session).content = blob;
+        content.list = {};
+        content.blob = scene::reference(*blob);
+    }
+    outbox_.control(session->control, std::move(content));
+}
+
+void LiveService::asked(SessionRecord& session, const wire::LockObjects& request) {
+    if (request.release) {
+        authority_.unlock(session.id, request.objects);
+        return done(session, request.request, {});
+    }
+    std::string problems;
+    for (const std::string& problem : authority_.lock(session.id, name(session.id), request.objects)) {
+        problems += (problems.empty() ? "" : "; ") + problem;
+    }
+    done(session, request.request, problems);
+}
+
+void LiveService::asked(SessionRecord& session, wire::SetPresence request, TimePoint now) {
+    Member& member = members_.at(session.id);
+    request.text.resize(std::min(request.text.size(), MaxPresenceText));
+    request.selection.resize(std::min(request.selection.size(), MaxSelection));
+    member.presence_until = now + std::clamp(request.time_to_live, Duration::zero(), MaxPresence);
+    member.presence = std::move(request);
+}
+
+void LiveService::asked(SessionRecord& session, const wire::ReadPeople& request, TimePoint now) {
+    wire::People people{.request = request.request, .title = title_, .locks = authority_.locks()};
+    for (const auto& [id, member] : members_) {
+        const SessionRecord* other = sessions_.find(id);
+        if (other == nullptr) continue;
+        wire::Person person{.session = id,
+                            .name = member.name,
+                            .user = other->user,
+                            .editor = other->role != net::Role::Viewer};
+        if (now < member.presence_until) {
+            person.text = member.presence.text;
+            person.selection = member.presence.selection;
+        }
+        people.people.push_back(std::move(person));
+    }
+    for (const auto& [id, live] : runner_.views()) {
+        people.views.push_back(
+            {.name = live.name,
+             .owner = live.owner_name,
+             .width = live.view.width,
+             .height = live.view.height,
+             .samples = live.shown ? live.shown->samples / live.view.window.pixel_count() : 0,
+             .spp = live.spp,
+             .watchers = runner_.watchers(id)});
+    }
+    outbox_.control(session.control, std::move(people));
+}
+
+void LiveService::asked(SessionRecord& session, const wire::ReadHistory& request) {
+    constexpr std::uint32_t MaxTold = 256;
+    wire::History history{request.request, authority_.history(std::min(request.count, MaxTold))};
+    while (!wire::fits_control(history)) history.transactions.resize(history.transactions.size() / 2);
+    outbox_.control(session.control, std::move(history));
+}
+
+void LiveService::asked(SessionRecord& session, const wire::ReadWriters& request) {
+    outbox_.control(session.control, wire::Writers{request.request, authority_.writers(request.object)});
+}
+
+void LiveService::asked(SessionRecord& session, wire::OpenLiveView request, TimePoint now) {
+    const std::uint64_t number = request.request;
+    const glm::dvec3 eye(request.view.camera.world_from_camera[3]);
+    const bool leads = !request.share && runner_.views().size() <= 1;
+    std::string problem =
+        runner_.open(session.id, name(session.id), std::move(request), authority_.version(), now);
+    // The render origin follows the camera while it is the only one.
+    if (problem.empty() && leads) {
+        if (auto moved = authority_.follow_camera(eye)) publish(*moved, now);
+    }
+    if (number != 0 || !problem.empty()) done(session, number, std::move(problem));
+}
+
+void LiveService::publish(const scene::ChangeList& changes, TimePoint now) {
+    published_at_ = now;
+    ++counts_.versions;
+    // What is out of date is cancelled before the nodes hear of the change: they build sooner.
+    runner_.scene_changed(changes, authority_.scene(), now);
+    publish_(changes, now);
+}
+
+void LiveService::publish_if_due(TimePoint now) {
+    const bool waits = authority_.has_unpublished();
+    runner_.hold_passes(waits);
+    if (!waits || now - published_at_ < VersionInterval || !runner_.may_publish()) return;
+    if (auto changes = authority_.publish()) publish(*changes, now);
+    runner_.hold_passes(false);
+}
+
+void LiveService::tick(TimePoint now) {
+    if (!open_) return;
+    publish_if_due(now);
+    std::erase_if(reads_, [&](const WaitingRead& read) {
+        if (authority_.version().number < read.wanted.number) return false;
+        answer(read);
+        return true;
+    });
+}
+
+TimePoint LiveService::next_event(TimePoint now) const {
+    if (!open_ || !authority_.has_unpublished()) return TimePoint::max();
+    return std::max(now, published_at_ + VersionInterval);
+}
+
+wire::LiveStatus LiveService::status() const {
+    if (!open_) return {};
+    wire::LiveStatus status = counts_;
+    status.title = title_;
+    status.members = static_cast<std::uint32_t>(members_.size());
+    status.views = static_cast<std::uint32_t>(runner_.views().size());
+    return status;
+}
+
+}  // namespace tessera::master

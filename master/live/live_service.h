@@ -1,0 +1,87 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "master/live/live_runner.h"
+#include "master/scene_authority.h"
+#include "master/session_table.h"
+
+namespace tessera::master {
+
+// The live scene: who is in it, what they ask, and when their edits become a version. Told of messages by the
+// render master.
+//
+// Edits are taken and answered at once. A version is published at once when no first picture is on its way
+// and the last version is 16 ms old, else as soon as both are so.
+class LiveService {
+  public:
+    // `publish` hands a change list to all nodes.
+    LiveService(SceneAuthority& authority, std::shared_ptr<scene::BlobStore> blobs, SessionTable& sessions,
+                LiveRunner& runner, Outbox& outbox, EventSink events,
+                std::function<void(const scene::ChangeList&, TimePoint)> publish);
+
+    bool is_open() const { return open_; }
+    bool is_member(SessionId session) const { return members_.contains(session); }
+    const std::string& name(SessionId session) const { return members_.at(session).name; }
+    std::size_t member_count() const { return members_.size(); }
+    const std::string& title() const { return title_; }
+
+    // The stage is the live scene's.
+    void join(SessionRecord& session, const wire::JoinScene& request, TimePoint now);
+    // Everybody is out, the scene is empty, the stage is free again.
+    void close(TimePoint now);
+    void left(SessionId session, LiveRunner::Departure departure, TimePoint now);
+
+    // A member's edit was taken.
+    void edited(std::uint64_t message_bytes);
+
+    void asked(SessionRecord& session, const wire::ReadScene& request);
+    void asked(SessionRecord& session, const wire::LockObjects& request);
+    void asked(SessionRecord& session, wire::SetPresence request, TimePoint now);
+    void asked(SessionRecord& session, const wire::ReadPeople& request, TimePoint now);
+    void asked(SessionRecord& session, const wire::ReadHistory& request);
+    void asked(SessionRecord& session, const wire::ReadWriters& request);
+    void asked(SessionRecord& session, wire::OpenLiveView request, TimePoint now);
+
+    void tick(TimePoint now);
+    TimePoint next_event(TimePoint now) const;
+    wire::LiveStatus status() const;
+
+  private:
+    struct Member {
+        std::string name;
+        wire::SetPresence presence;
+        TimePoint presence_until{};
+        scene::BlobPtr content;  // the scene as it was read last: kept until the client has it
+    };
+    struct WaitingRead {
+        SessionId session;
+        wire::ReadScene request;
+        Version wanted;  // that has all edits made before the question
+    };
+
+    std::string unique_name(const std::string& wanted) const;
+    void answer(const WaitingRead& read);
+    void done(const SessionRecord& session, std::uint64_t request, std::string problem);
+    void publish_if_due(TimePoint now);
+    void publish(const scene::ChangeList& changes, TimePoint now);
+
+    SceneAuthority& authority_;
+    std::shared_ptr<scene::BlobStore> blobs_;
+    SessionTable& sessions_;
+    LiveRunner& runner_;
+    Outbox& outbox_;
+    EventSink events_;
+    std::function<void(const scene::ChangeList&, TimePoint)> publish_;
+    bool open_ = false;
+    std::string title_;
+    std::map<SessionId, Member> members_;
+    std::vector<WaitingRead> reads_;
+    TimePoint published_at_{};
+    wire::LiveStatus counts_;
+};
+
+}  // namespace tessera::master

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "master/schedule/scheduler.h"
+#include "mediator/view/view.h"
+#include "mediator/wire/messages.h"
+
+namespace tessera::master {
+
+// A pass over a live view: coarse ones are pictures of a part of its size with one sample a pixel and a film
+// of their own that ends with them; the last one is the view itself and accumulates.
+struct LivePass {
+    view::View view;  // as nodes render it; its id is the pass's own
+    std::uint32_t scale = 1;
+    std::uint64_t spp = 1;
+    UnitId first_unit;                   // its units have ids from here, UnitsPerPass of them
+    std::optional<Scheduler> scheduler;  // once begun
+};
+
+// What can be shown: a coarse pass when it is complete, the last one from its first whole round on.
+struct Shown {
+    std::size_t pass = 0;
+    std::uint64_t revision = 0, samples = 0;  // samples: merged so far, of all pixels
+    bool complete = false;
+    friend bool operator==(const Shown&, const Shown&) = default;
+};
+
+// A view of a live scene and where its picture is. Whenever the picture changes, the passes start over.
+struct LiveView {
+    ViewId id;  // passes have the ids from here on
+    std::string name;
+    SessionId owner;
+    std::string owner_name;
+    view::View view;  // as asked for, with the channels that its filter needs
+    std::uint64_t spp = 1;
+    std::uint64_t camera_revision = 0;  // of what was asked for
+    std::uint64_t revision = 0;         // of the passes
+    Version version;                    // of the scene in the film
+    std::vector<LivePass> passes;
+    std::size_t current = 0;     // the pass under way
+    bool restart_wanted = true;  // a picture of what is now is due
+    std::optional<Shown> shown;
+    TimePoint shown_at{}, without_nodes_since{};
+    std::optional<TimePoint> orphaned;  // since nobody watches it; it waits for its owner to come back
+    std::uint32_t failures = 0;
+    std::string problem;  // why it is not rendered; "" = it is
+
+    LivePass& pass() { return passes[current]; }
+    const LivePass& pass() const { return passes[current]; }
+    // The first picture after a restart is on its way: what changes meanwhile waits for it, so that something
+    // new is shown however fast edits come.
+    bool is_protected() const {
+        return problem.empty() && !passes.empty() && (!shown || shown->revision != revision);
+    }
+    bool is_complete() const { return shown && shown->complete && shown->revision == revision; }
+};
+
+// The passes of a view: 1/8, 1/4 and 1/2 of its size, each where it still has 16 pixels a side, then the
+// whole.
+std::vector<LivePass> passes_of(const LiveView& view);
+
+inline constexpr std::uint64_t UnitsPerPass = std::uint64_t{1} << 32;
+inline constexpr std::size_t MaxPasses = 4;
+// Units and views of live scenes have ids that no job uses.
+inline constexpr UnitId FirstLiveUnit{std::uint64_t{1} << 63};
+inline constexpr ViewId FirstLiveView{std::uint64_t{1} << 48};
+
+}  // namespace tessera::master

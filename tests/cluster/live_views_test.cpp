@@ -1,0 +1,200 @@
+// Views of a live scene: coarse first, the bits of a batch in the end, and nobody waits for a slow watcher.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "mediator/frame/resolve.h"
+#include "mediator/scene/fields.h"
+#include "tests/cluster/cluster_scene.h"
+#include "tests/cluster/loopback_cluster.h"
+
+namespace tessera::test {
+namespace {
+
+using namespace scene;
+using namespace std::chrono_literals;
+
+client::LiveViewRequest view_of(std::uint32_t width, std::uint32_t height, std::uint64_t spp) {
+    client::LiveViewRequest request{.spp = spp};
+    request.view.width = width;
+    request.view.height = height;
+    request.view.window = {0, 0, std::int32_t(width), std::int32_t(height)};
+    request.view.camera = view::perspective(glm::dmat4(1.0), 0.8, double(width) / height);
+    request.view.channels = {frame::Channel::Radiance};
+    return request;
+}
+
+struct LiveViews : testing::Test {
+    LoopbackCluster cluster;
+    std::shared_ptr<BlobStore> blobs = std::make_shared<BlobStore>();
+    std::unique_ptr<client::LiveSession> ann = cluster.member("ann", blobs);
+    ObjectId first = ann->new_id();
+
+    void SetUp() override {
+        for (int i = 0; i < 3; ++i) ann->new_id();
+        ASSERT_TRUE(ann->submit(scene_entries(first, *blobs)).accepted);
+    }
+    Update paint(glm::vec3 emission) const {
+        return {ObjectId{first.value + 1}, Fields<Material>(Material::Field::Emission).bits(),
+                Material{.emission = emission}};
+    }
+    template <class Done>
+    static std::vector<client::Frame> frames_until(client::LiveSession& session, const Done& done) {
+        std::vector<client::Frame> frames;
+        const auto deadline = std::chrono::steady_clock::now() + 60s;
+        while (auto frame = session.next_frame(deadline, {})) {
+            frames.push_back(std::move(*frame));
+            if (done(frames.back())) return frames;
+        }
+        ADD_FAILURE() << "the frame did not come";
+        return frames;
+    }
+    static bool complete(const client::Frame& frame) { return frame.complete; }
+};
+
+TEST_F(LiveViews, CoarseFirstAndInTheEndTheBitsOfABatch) {
+    cluster.add_node("embree");
+    cluster.add_node("embree");
+    client::LiveViewRequest request = view_of(160, 130, 13);
+    request.film = true;
+    request.picture = wire::PictureEncoding::Png;
+    ann->open_view(1, request);
+    const auto frames = frames_until(*ann, complete);
+    std::vector<std::uint32_t> scales;
+    for (const client::Frame& frame : frames) {
+        if (scales.empty() || scales.back() != frame.scale) scales.push_back(frame.scale);
+        EXPECT_FALSE(frame.picture.empty());
+    }
+    EXPECT_TRUE(std::is_sorted(scales.rbegin(), scales.rend())) << "only ever finer";
+    EXPECT_EQ(scales.front(), 8u);
+    const client::Frame& last = frames.back();
+    EXPECT_EQ(last.samples_least, 13u);
+    ASSERT_TRUE(last.film);
+    EXPECT_EQ(frame::film_hash(*last.film), last.film_hash);
+
+    LoopbackCluster other;
+    other.add_node("embree");
+    auto other_blobs = std::make_shared<BlobStore>();
+    const auto session = other.session(other_blobs);
+    (void)session->open_scene("batch", client::WhenBusy::Queue, [](std::uint32_t) {}, {});
+    ASSERT_TRUE(session->submit(scene_entries(first, *other_blobs), {})->accepted);
+    const auto batch = session->render({.view = request.view, .spp = 13}, [](const client::Progress&) {}, {});
+    EXPECT_EQ(to_hex(frame::film_hash(*batch.film)), to_hex(last.film_hash));
+}
+
+TEST_F(LiveViews, OnlyWhatChangesThePictureStartsItAnew) {
+    cluster.add_node("null");
+    ann->open_view(1, view_of(64, 48, 4));
+    const client::Frame before = frames_until(*ann, complete).back();
+    ASSERT_TRUE(ann->submit({Update{first, Fields<Transform>(Transform::Field::Name).bits(),
+                                    Transform{.name = "renamed"}}})
+                    .accepted);
+    ann->refresh();  // the version with the new name is published
+    EXPECT_FALSE(ann->next_frame(std::chrono::steady_clock::now() + 200ms, {})) << "nothing new to see";
+    ASSERT_TRUE(ann->submit({paint({2, 0, 0})}).accepted);
+    const auto after = frames_until(*ann, complete);
+    EXPECT_GT(after.front().version.number, before.version.number);
+    EXPECT_GT(after.front().scale, 1u);
+}
+
+TEST_F(LiveViews, WhileTheCameraIsDraggedPicturesGoOn) {
+    cluster.add_node("null", {}, 2us);
+    client::LiveViewRequest request = view_of(320, 240, 1024);
+    ann->open_view(1, request);
+    std::set<std::uint64_t> revisions;
+    const auto end = std::chrono::steady_clock::now() + 3s;
+    for (int i = 0; std::chrono::steady_clock::now() < end; ++i) {
+        request.view.camera.world_from_camera[3][0] = 0.001 * i;
+        ann->look(1, request.view.camera);
+        while (auto frame = ann->next_frame(std::chrono::steady_clock::now() + 1ms, {}))
+            revisions.insert(frame->revision);
+    }
+    EXPECT_GE(revisions.size(), 10u) << "a drag must not starve its own pictures";
+}
+
+TEST_F(LiveViews, WhileTheSceneIsEditedPicturesGoOn) {
+    cluster.add_node("null", {}, 2us);
+    ann->open_view(1, view_of(320, 240, 1024));
+    std::set<std::uint64_t> versions;
+    const auto end = std::chrono::steady_clock::now() + 3s;
+    for (int i = 0; std::chrono::steady_clock::now() < end; ++i) {
+        ann->submit_ahead({paint({0.001f * float(i + 1), 0, 0})}, 5);
+        while (auto frame = ann->next_frame(std::chrono::steady_clock::now() + 1ms, {}))
+            versions.insert(frame->version.number);
+    }
+    ann->settle();
+    EXPECT_GE(versions.size(), 10u);
+}
+
+TEST_F(LiveViews, APickFindsObjectPlaceAndNormal) {
+    cluster.add_node("embree");
+    ann->open_view(1, view_of(101, 101, 1));
+    const wire::Picked hit = ann->pick(1, 50, 50);
+    ASSERT_TRUE(hit.hit);
+    EXPECT_EQ(hit.object, (ObjectId{first.value + 2})) << "of two in one place the lower id";
+    EXPECT_NEAR(hit.position.x, 0.0, 1e-6);
+    EXPECT_NEAR(hit.position.y, 0.0, 1e-6);
+    EXPECT_NEAR(hit.position.z, -3.0, 1e-6);
+    EXPECT_NEAR(hit.distance, 3.0, 1e-6);
+    EXPECT_NEAR(std::abs(hit.normal.z), 1.0, 1e-6);
+    // tan(0.4) * 3 is half the picture's height at the triangle; pixel (50, 60) looks 10 pixels down.
+    const wire::Picked lower = ann->pick(1, 50, 60);
+    EXPECT_NEAR(lower.position.y, -std::tan(0.4) * 3.0 * 10.0 / 50.5, 1e-6);
+    EXPECT_FALSE(ann->pick(1, 0, 0).hit);
+    EXPECT_THROW((void)ann->pick(1, 101, 0), Error);
+    EXPECT_THROW((void)ann->pick(2, 0, 0), Error);
+}
+
+TEST_F(LiveViews, ASlowWatcherDelaysNobodyAndSeesTheNewest) {
+    cluster.add_node("null");
+    auto slow_blobs = std::make_shared<BlobStore>();
+    const auto slow = cluster.member("slow", slow_blobs);
+    client::LiveViewRequest request = view_of(64, 48, 4);
+    request.name = "main";
+    ann->open_view(1, request);
+    slow->open_view(1, {.name = "main", .share = true});
+    for (int i = 1; i <= 20; ++i) {
+        ASSERT_TRUE(ann->submit({paint({float(i), 0, 0})}).accepted);
+        (void)frames_until(*ann, complete);
+    }
+    ann->refresh();
+    std::size_t count = 0;
+    const auto frames = frames_until(*slow, [&](const client::Frame& frame) {
+        ++count;
+        return frame.complete && frame.version == ann->scene().version();
+    });
+    EXPECT_LE(count, 6u) << "one on its way when it stopped looking, then only of the newest version";
+}
+
+TEST_F(LiveViews, WhatIsWrongWithAViewIsSaid) {
+    client::LiveViewRequest request = view_of(64, 48, 4);
+    request.view.camera.left = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW(ann->open_view(1, request), Error);
+    EXPECT_THROW(ann->open_view(1, {.name = "nowhere", .share = true}), Error);
+    request = view_of(64, 48, 4);
+    request.view.filter = "no-such-filter";
+    EXPECT_THROW(ann->open_view(1, request), Error);
+    request = view_of(64, 48, 0);
+    EXPECT_THROW(ann->open_view(1, request), Error);
+    request = view_of(8192, 8192, 1);
+    request.film = true;
+    EXPECT_THROW(ann->open_view(1, request), Error) << "too much film for a watcher";
+    request = view_of(64, 48, 1);
+    request.name = "taken";
+    ann->open_view(1, request);
+    EXPECT_THROW(ann->open_view(2, request), Error);
+}
+
+TEST_F(LiveViews, ManyViewsShareTheNodes) {
+    cluster.add_node("null");
+    for (std::uint64_t number = 1; number <= 5; ++number) ann->open_view(number, view_of(64, 48, 8));
+    std::set<std::uint64_t> done;
+    frames_until(*ann, [&](const client::Frame& frame) {
+        if (frame.complete) done.insert(frame.view);
+        return done.size() == 5;
+    });
+    EXPECT_EQ(done.size(), 5u);
+}
+
+}  // namespace
+}  // namespace tessera::test
