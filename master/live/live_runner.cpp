@@ -93,11 +93,11 @@ std::string LiveRunner::open(SessionId session, const std::string& member, wire:
     view::View wanted = std::move(request.view);
     wanted.id = live.view.id;
     wanted.revision = live.view.revision;
-    const bool same = live.camera_revision != 0 && wanted == live.view && live.spp == request.spp;
+    const bool same = live.asked_revision != 0 && wanted == live.view && live.spp == request.spp;
     if (same) return {};
     live.view = std::move(wanted);
     live.spp = request.spp;
-    ++live.camera_revision;
+    ++live.asked_revision;
     live.failures = 0;
     live.problem.clear();
     const bool wait = live.is_protected();
@@ -185,6 +185,7 @@ void LiveRunner::end_passes(LiveView& live) {
 void LiveRunner::restart(LiveView& live, TimePoint now) {
     end_passes(live);
     ++live.revision;
+    live.camera_revision = live.asked_revision;
     live.passes = passes_of(live);
     live.restart_wanted = false;
     live.without_nodes_since = now;
@@ -213,6 +214,7 @@ void LiveRunner::show(LiveView& live, TimePoint now) {
     live.shown = shown;
     live.shown_at = now;
     if (first && on_first_picture) on_first_picture(live.version, now);
+    frames_.offer(live, now, settings_.frame_interval);  // before anything newer ends the pass
     for (std::size_t earlier = 0; earlier < live.current; ++earlier) end(live.passes[earlier]);
 }
 
