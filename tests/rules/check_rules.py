@@ -34,6 +34,7 @@ ARROWS = {
     "node/config.cpp": KIT + LINK + ["client/cli"],
     "node/main.cpp": KIT + LINK + ["client/cli"],
     "master": CORE + LINK + ["mediator/picture"],
+    "master/live": CORE + LINK + ["master"],
     "master/schedule": CORE + ["mediator/wire"],
     "master/filter": KIT + ["master/filter"],
     "master/config.h": CORE + LINK + ["client/cli"],
