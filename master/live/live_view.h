@@ -37,10 +37,10 @@ struct LiveView {
     std::string owner_name;
     view::View view;  // as asked for, with the channels that its filter needs
     std::uint64_t spp = 1;
-    std::uint64_t asked_revision = 0;   // of what was asked for, and of what the passes render
+    std::uint64_t asked_revision = 0;  // of what was asked for, and of what the passes render
     std::uint64_t camera_revision = 0;
-    std::uint64_t revision = 0;         // of the passes
-    Version version;                    // of the scene in the film
+    std::uint64_t revision = 0;  // of the passes
+    Version version;             // of the scene in the film
     std::vector<LivePass> passes;
     std::size_t current = 0;     // the pass under way
     bool restart_wanted = true;  // a picture of what is now is due

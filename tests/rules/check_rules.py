@@ -113,7 +113,7 @@ def may_include(path, included):
         if allowed == "" or target == allowed or target.startswith(allowed + "/"):
             return None
     # A folder may use what lies below it only when it is one target with it.
-    if own == "master" and target in ("master/schedule", "master/filter"):
+    if own == "master" and target in ("master/live", "master/schedule", "master/filter"):
         return None
     return f"is not allowed for {rule}"
 
