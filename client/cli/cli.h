@@ -44,6 +44,8 @@ class CommandLine {
                 const std::vector<std::string>& choices);
     void flag(const std::string& names, const std::string& help, bool& value);
     void positional(const std::string& name, const std::string& help, std::string& value);  // required
+    void optional_positional(const std::string& name, const std::string& help,
+                             std::optional<std::string>& value);
     void required(const std::string& option_name);  // makes an option one that must be given
     void examples(const std::vector<std::string>& lines);
 

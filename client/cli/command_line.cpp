@@ -179,6 +179,11 @@ void CommandLine::positional(const std::string& name, const std::string& help, s
     implementation_->app->add_option(name, value, help)->required();
 }
 
+void CommandLine::optional_positional(const std::string& name, const std::string& help,
+                                      std::optional<std::string>& value) {
+    implementation_->app->add_option(name, value, help);
+}
+
 void CommandLine::required(const std::string& option_name) {
     implementation_->app->get_option(option_name)->required();
 }
