@@ -18,6 +18,7 @@ Expected<SubmitReply> FakeTarget::submit(std::vector<scene::Entry> entries, cons
     EXPECT_TRUE(problems.empty()) << problems.front().message;
     done_.push_back({before, label});
     labels.push_back(label);
+    calls.push_back("submit " + std::to_string(done_.size()));
     return SubmitReply{true, done_.size(), {}};
 }
 

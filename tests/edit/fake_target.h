@@ -54,7 +54,7 @@ class FakeTarget : public EditTarget {
     ObjectId id_of(const std::string& name) const;
 
     std::vector<std::string> labels;            // of accepted transactions
-    std::vector<std::string> calls;             // everything but edits, in order
+    std::vector<std::string> calls;             // in order; of edits those that were accepted
     std::size_t refuse_from = ~std::size_t{0};  // this transaction, counted from 0, and later ones
     bool refuse_undo = false;
 

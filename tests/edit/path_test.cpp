@@ -41,7 +41,8 @@ TEST(Paths, EveryPrintedPathReadsBack) {
         at = end + 1;
     }
     EXPECT_TRUE(target.script(shows)) << target.error();
-    EXPECT_EQ(target.calls.size(), target.scene().objects().size());
+    EXPECT_EQ(target.calls.size(), 1 + target.scene().objects().size())
+        << "the first script, and writers of each";
 }
 
 struct Wrong {

@@ -56,7 +56,7 @@ TEST(Scripts, WhatTheMasterRefusesTakesBackWhatStoodBefore) {
                 testing::StartsWith("test.txt:5:1: the master does not take it: somebody holds it"));
     EXPECT_THAT(target.error(), HasSubstr("were taken back: 2"));
     EXPECT_EQ(target.scene().state_hash(), before);
-    EXPECT_THAT(target.calls, ElementsAre("undo 2", "undo 1"));
+    EXPECT_THAT(target.calls, ElementsAre("submit 1", "submit 2", "undo 2", "undo 1"));
 }
 
 TEST(Scripts, WhatCannotBeTakenBackIsTold) {
@@ -74,7 +74,8 @@ TEST(Scripts, WhatIsNoEditHappensInItsPlace) {
         target.script("lock lights/bulb\nset lights/bulb.intensity 1\nwait 0.5\nunlock lights/bulb\ncommit\n"
                       "lock lights/sun\nundo\n"))
         << target.error();
-    EXPECT_THAT(target.calls, ElementsAre("lock 8", "wait 500000000", "unlock 8", "lock 10", "undo 1"));
+    EXPECT_THAT(target.calls,
+                ElementsAre("lock 8", "submit 1", "wait 500000000", "unlock 8", "lock 10", "undo 1"));
     EXPECT_EQ(target.printed(), "undone: set lights/bulb.intensity 1\n");
 }
 
