@@ -96,6 +96,8 @@ struct NodeState {
     std::uint32_t units_in_hand = 0;
     double samples_per_second = 0, round_trip_seconds = 0;
     bool stuck = false;
+    double clock_offset_seconds = 0,
+           clock_bound_seconds = 0;  // its clock less the master's, +- bound; bound 0 = not known yet
 };
 struct ClusterStatus {
     std::string software;

@@ -169,7 +169,9 @@ ClusterStatus from_wire(const wire::StatusReply& reply) {
                                 .units_in_hand = node.units_in_hand,
                                 .samples_per_second = node.samples_per_second,
                                 .round_trip_seconds = node.round_trip_seconds,
-                                .stuck = node.stuck});
+                                .stuck = node.stuck,
+                                .clock_offset_seconds = node.clock_offset_seconds,
+                                .clock_bound_seconds = node.clock_bound_seconds});
     }
     return status;
 }

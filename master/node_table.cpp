@@ -63,11 +63,9 @@ void NodeTable::heartbeat(NodeRecord& node, const wire::Heartbeat& heartbeat, Ti
     node.leaving = node.leaving || heartbeat.phase == wire::NodePhase::Leaving;
     std::erase_if(node.pending,
                   [&](const auto& work) { return work.second <= heartbeat.last_work_sequence; });
-    if (heartbeat.echo_sent_at != 0) {
-        const std::int64_t round_trip =
-            now.time_since_epoch().count() - heartbeat.echo_sent_at - heartbeat.echo_delay;
-        if (round_trip >= 0) node.round_trip_seconds = static_cast<double>(round_trip) * 1e-9;
-    }
+    const auto round_trip =
+        node.clock.heartbeat(heartbeat.sent_at, heartbeat.echo_sent_at, heartbeat.echo_delay, now);
+    if (round_trip) node.round_trip_seconds = seconds(*round_trip);
     const bool works =
         heartbeat.phase == wire::NodePhase::Rendering || heartbeat.phase == wire::NodePhase::Building;
     if (!works || heartbeat.progress != node.last_progress) {

@@ -7,6 +7,7 @@
 
 #include "master/schedule/scheduler.h"
 #include "mediator/net/channel.h"
+#include "mediator/net/clock_offset.h"
 #include "mediator/net/liveness.h"
 #include "mediator/wire/messages.h"
 
@@ -35,6 +36,7 @@ struct NodeRecord {
     std::map<ViewId, std::uint64_t> views;    // opened, and at which revision
     bool leaving = false;
     double round_trip_seconds = 0;
+    net::PeerClock clock;
     std::uint64_t last_progress = 0;  // for stuck detection
     TimePoint last_progress_at{};
     bool stuck = false;

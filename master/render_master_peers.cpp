@@ -44,6 +44,7 @@ void RenderMaster::from_client(SessionRecord& session, wire::ControlMessage& mes
     if (const auto* beat = std::get_if<wire::Heartbeat>(&message)) {
         session.heartbeat_sent_at = beat->sent_at;
         session.heartbeat_at = now;
+        session.clock.heartbeat(beat->sent_at, beat->echo_sent_at, beat->echo_delay, now);
     } else if (const auto* open = std::get_if<wire::OpenScene>(&message)) {
         service_.open_scene(session, *open, now);
     } else if (auto* edit = std::get_if<wire::SubmitEdit>(&message)) {
@@ -164,6 +165,10 @@ wire::StatusReply RenderMaster::status(TimePoint now) const {
                                   std::max(1u, node.hello.concurrent_units),
             .round_trip_seconds = node.round_trip_seconds,
             .stuck = node.stuck};
+        if (const auto clock = node.clock.offset(now)) {
+            entry.clock_offset_seconds = seconds(clock->offset);
+            entry.clock_bound_seconds = seconds(clock->bound);
+        }
         reply.nodes.push_back(std::move(entry));
     }
     return reply;

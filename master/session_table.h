@@ -6,6 +6,7 @@
 #include <string>
 
 #include "mediator/net/channel.h"
+#include "mediator/net/clock_offset.h"
 #include "mediator/net/liveness.h"
 #include "mediator/wire/blob_transfer.h"
 #include "mediator/wire/messages.h"
@@ -32,6 +33,7 @@ struct SessionRecord {
     std::deque<PendingEdit> edits;
     std::int64_t heartbeat_sent_at = 0;  // its latest, and when it came: what our next heartbeat echoes
     TimePoint heartbeat_at{};
+    net::PeerClock clock;
     std::uint32_t told_place = 0;            // in the queue, as last told
     std::optional<wire::JoinScene> joining;  // waits for the stage to join or start the live scene
 };

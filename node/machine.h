@@ -140,7 +140,8 @@ class NodeMachine {
     }
 
     // machine_scene.cpp
-    void judged(SceneReplica::Verdict verdict, Version to, TimePoint now);
+    void judged(SceneReplica::Verdict verdict, Version from, Version to, TimePoint now);
+    std::int64_t received_at(Version to);  // and forgets what led there
     void scene_failed(const std::string& reason, Version at, TimePoint now);
     void scene_too_large(const std::string& reason, Version at);
     void ask_for_snapshot(const std::string& reason, TimePoint now);
@@ -181,6 +182,8 @@ class NodeMachine {
     std::optional<TimePoint> snapshot_retry_at_, absent_retry_at_;
     Version failed_at_;                 // where the scene went wrong last
     std::optional<Version> too_large_;  // the device has no room for it
+    std::deque<std::pair<Version, TimePoint>>
+        lists_received_;  // where those lead that are not built, and when
     wire::VersionReport latest_report_;
 
     std::map<ViewId, view::View> views_;

@@ -23,20 +23,22 @@ std::vector<std::string> trimmed(std::vector<std::string> texts) {
 }  // namespace
 
 void NodeMachine::on(wire::Changes& changes, TimePoint now) {
-    const Version to = changes.list.to;
-    judged(replica_.offer(std::move(changes.list)), to, now);
+    const Version from = changes.list.from, to = changes.list.to;
+    judged(replica_.offer(std::move(changes.list)), from, to, now);
 }
 
 void NodeMachine::on(wire::ChangesByBlob& changes, TimePoint now) {
-    judged(replica_.offer(changes), changes.to, now);
+    judged(replica_.offer(changes), changes.from, changes.to, now);
 }
 
-void NodeMachine::judged(SceneReplica::Verdict verdict, Version to, TimePoint now) {
+void NodeMachine::judged(SceneReplica::Verdict verdict, Version from, Version to, TimePoint now) {
     if (!welcomed_ || leaving_) return;
     switch (verdict) {
         case SceneReplica::Verdict::Accepted:
             snapshot_retry_at_.reset();
             too_large_.reset();
+            if (from.number == 0) lists_received_.clear();  // nothing before a snapshot matters
+            lists_received_.emplace_back(to, now);
             changed_ = true;
             step_scene(now);
             break;
@@ -56,6 +58,17 @@ void NodeMachine::judged(SceneReplica::Verdict verdict, Version to, TimePoint no
             }
             break;
     }
+}
+
+// Of the first list of those that were built together.
+std::int64_t NodeMachine::received_at(Version to) {
+    std::int64_t first = 0;
+    while (!lists_received_.empty() && lists_received_.front().first <= to) {
+        const auto& [version, when] = lists_received_.front();
+        if (first == 0 && version.epoch == to.epoch) first = when.time_since_epoch().count();
+        lists_received_.pop_front();
+    }
+    return first;
 }
 
 void NodeMachine::ask_for_snapshot(const std::string& reason, TimePoint now) {
@@ -135,7 +148,9 @@ void NodeMachine::built(BuildOutcome&& outcome, TimePoint now) {
                       .refitted = edit.refitted,
                       .retransformed = edit.retransformed,
                       .ignored_kinds = trimmed(edit.ignored_kinds),
-                      .problems = trimmed(std::move(problems))};
+                      .problems = trimmed(std::move(problems)),
+                      .received_at = received_at(replica_.version()),
+                      .built_at = now.time_since_epoch().count()};
     failed_at_ = {};
     send_version_report();
     for (const view::WorkUnit& unit : queue_.waiting()) {

@@ -40,7 +40,9 @@ std::string as_json(const client::ClusterStatus& status) {
                          {"units_in_hand", node.units_in_hand},
                          {"samples_per_second", node.samples_per_second},
                          {"round_trip_seconds", node.round_trip_seconds},
-                         {"stuck", node.stuck}});
+                         {"stuck", node.stuck},
+                         {"clock_offset_seconds", node.clock_offset_seconds},
+                         {"clock_bound_seconds", node.clock_bound_seconds}});
     }
     const client::UnitCounts& units = status.units;
     const Json object{
@@ -82,13 +84,14 @@ void print_table(const client::ClusterStatus& status) {
         std::printf("no nodes: start some with tessera-node --master ...\n");
         return;
     }
-    std::printf("%-16s %-16s %-9s %-10s %8s %6s %14s %9s\n", "node", "host", "back-end", "phase", "version",
-                "units", "Msamples/s", "ping ms");
+    std::printf("%-16s %-16s %-9s %-10s %8s %6s %14s %9s %21s\n", "node", "host", "back-end", "phase",
+                "version", "units", "Msamples/s", "ping ms", "clock ms");
     for (const client::NodeState& node : status.nodes) {
-        std::printf("%-16.16s %-16.16s %-9.9s %-10s %8llu %6u %14.3f %9.2f%s\n", node.share.name.c_str(),
-                    node.share.host.c_str(), node.share.backend.c_str(), node.phase.c_str(),
-                    static_cast<unsigned long long>(node.version.number), node.units_in_hand,
-                    node.samples_per_second * 1e-6, node.round_trip_seconds * 1e3,
+        std::printf("%-16.16s %-16.16s %-9.9s %-10s %8llu %6u %14.3f %9.2f %11.3f +-%7.3f%s\n",
+                    node.share.name.c_str(), node.share.host.c_str(), node.share.backend.c_str(),
+                    node.phase.c_str(), static_cast<unsigned long long>(node.version.number),
+                    node.units_in_hand, node.samples_per_second * 1e-6, node.round_trip_seconds * 1e3,
+                    node.clock_offset_seconds * 1e3, node.clock_bound_seconds * 1e3,
                     node.stuck ? "  stuck" : "");
     }
 }

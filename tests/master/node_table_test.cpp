@@ -45,6 +45,20 @@ TEST_F(NodeTableTest, TellsStuckFromIdle) {
     EXPECT_FALSE(node.stuck);
 }
 
+TEST_F(NodeTableTest, AHeartbeatThatEchoesOursTellsRoundTripAndClock) {
+    table.heartbeat(node, {.sent_at = 5}, TimePoint{1s});
+    EXPECT_FALSE(node.clock.offset(TimePoint{1s}));
+    // Ours left at 2 s, lay there for 0.5 s and came back at 2.6 s; the node's clock is an hour ahead.
+    const std::int64_t there = (TimePoint{3602550ms}).time_since_epoch().count();
+    const wire::Heartbeat beat{.sent_at = there, .echo_sent_at = 2'000'000'000, .echo_delay = 500'000'000};
+    table.heartbeat(node, beat, TimePoint{2600ms});
+    EXPECT_DOUBLE_EQ(node.round_trip_seconds, 0.1);
+    ASSERT_TRUE(node.clock.offset(TimePoint{2600ms}));
+    EXPECT_EQ(node.clock.offset(TimePoint{2600ms})->offset, 1h);
+    table.heartbeat(node, {.sent_at = there, .echo_sent_at = -1, .echo_delay = INT64_MIN}, TimePoint{3s});
+    EXPECT_DOUBLE_EQ(node.round_trip_seconds, 0.1);
+}
+
 TEST_F(NodeTableTest, SilenceIsDeath) {
     node.liveness.heard(TimePoint{1s});
     EXPECT_TRUE(table.dead(TimePoint{3s}).empty());

@@ -6,6 +6,7 @@ namespace tessera::node {
 namespace {
 
 using State = NodeMachine::State;
+using test::milliseconds;
 using test::seconds;
 
 struct MachineSceneTest : test::MachineTest {
@@ -32,6 +33,47 @@ TEST_F(MachineSceneTest, ReportsAVersionWhenItIsBuilt) {
     EXPECT_EQ(reports[0].triangles, 12u);
     EXPECT_EQ(reports[0].problems, (std::vector<std::string>{"b", "c", "a"}));
     EXPECT_EQ(machine->state(), State::Idle);
+}
+
+TEST_F(MachineSceneTest, AReportTellsWhenTheFirstListOfItsBuildCameAndWhenItWasBuilt) {
+    const auto ns = [](TimePoint time) { return time.time_since_epoch().count(); };
+    synced();
+    const TimePoint first = now;
+    tell(wire::Changes{camera(50)});
+    pass(milliseconds(10));
+    const TimePoint second = now;
+    tell(wire::Changes{camera(51)});  // these two wait for the build of the first
+    pass(milliseconds(10));
+    tell(wire::Changes{camera(52)});
+    pass(milliseconds(10));
+    build();
+    const TimePoint built = now;
+    pass(milliseconds(10));
+    build();
+    const auto reports = sent<wire::VersionReport>();
+    ASSERT_EQ(reports.size(), 2u);
+    EXPECT_EQ(reports[0].received_at, ns(first));
+    EXPECT_EQ(reports[0].built_at, ns(built));
+    EXPECT_EQ(reports[1].version, builder.scene().version());
+    EXPECT_EQ(reports[1].received_at, ns(second));
+    EXPECT_EQ(reports[1].built_at, ns(built + milliseconds(10)));
+}
+
+TEST_F(MachineSceneTest, ListsBeforeASnapshotDoNotCountAsReceived) {
+    synced();
+    tell(wire::Changes{camera(50)});
+    tell(wire::Changes{camera(51)});
+    pass(milliseconds(10));
+    const scene::ChangeList lost = camera(52);
+    tell(wire::Changes{camera(53)});  // a gap
+    pass(milliseconds(10));
+    tell(wire::Changes{snapshot(builder.scene())});
+    build();  // of 50
+    build();
+    const auto reports = sent<wire::VersionReport>();
+    ASSERT_EQ(reports.size(), 2u);
+    EXPECT_EQ(reports[0].received_at, 0);  // not known any more
+    EXPECT_EQ(reports[1].received_at, now.time_since_epoch().count());
 }
 
 TEST_F(MachineSceneTest, HeartbeatsGoOnDuringABuild) {
