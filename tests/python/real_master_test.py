@@ -2,65 +2,108 @@
 """The package against the real master with keys. Usage: real_master_test.py BIN_FOLDER"""
 
 import pathlib
-import subprocess
+import queue
+import signal
+import socket
 import sys
-import tempfile
+import threading
+import time
 import unittest
 
 import tessera
+from real_cluster import RealCluster
 from scripted_master import free_port
 
 PROGRAMS = pathlib.Path(sys.argv.pop()).resolve()
 
 
+class Relay:
+    """Passes TCP on to a master's two ports, the way there later than the way back."""
+
+    def __init__(self, master_port, delay):
+        self.port, self.delay = free_port(), delay
+        for link in range(2):
+            listener = socket.create_server(("127.0.0.1", self.port + link))
+            threading.Thread(target=self._serve, args=(listener, master_port + link), daemon=True).start()
+
+    def _serve(self, listener, port):
+        while True:
+            near = listener.accept()[0]
+            far = socket.create_connection(("127.0.0.1", port))
+            for source, target, delay in ((near, far, self.delay), (far, near, 0.0)):
+                source.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+                waiting = queue.Queue()
+                threading.Thread(target=self._read, args=(source, waiting, delay), daemon=True).start()
+                threading.Thread(target=self._write, args=(target, waiting), daemon=True).start()
+
+    @staticmethod
+    def _read(source, waiting, delay):
+        data = b"begin"
+        while data:
+            try:
+                data = source.recv(65536)
+            except OSError:
+                data = b""
+            waiting.put((time.monotonic() + delay, data))
+
+    @staticmethod
+    def _write(target, waiting):
+        while True:
+            due, data = waiting.get()
+            time.sleep(max(0.0, due - time.monotonic()))
+            if not data:
+                return target.close()
+            try:
+                target.sendall(data)
+            except OSError:
+                return None
+
+
 class RealMaster(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.keys = pathlib.Path(cls.folder.name) / "keys"
-        subprocess.run([PROGRAMS / "tessera", "keys", cls.keys], check=True, stdout=subprocess.DEVNULL)
-        cls.endpoint = f"tcp://127.0.0.1:{free_port()}"
-        cls.log = open(pathlib.Path(cls.folder.name) / "master.log", "w+", encoding="utf-8")
-        cls.children = []
-        cls.start("tessera-master", "--listen", cls.endpoint, "--heartbeat", "0.25")
-
-    @classmethod
-    def start(cls, program, *arguments):
-        cls.children.append(subprocess.Popen([PROGRAMS / program, "--keys", cls.keys, *arguments], stdout=cls.log,
-                                             stderr=cls.log))
+        cls.cluster = RealCluster(PROGRAMS)
 
     @classmethod
     def tearDownClass(cls):
-        for child in reversed(cls.children):
-            child.terminate()
-            child.wait(30)
-        cls.log.close()
-        cls.folder.cleanup()
-
-    def connect(self, **more):
-        return tessera.connect(self.endpoint, **{"keys": self.keys, **more})
+        cls.cluster.close()
 
     def test_every_client_role_sees_the_status(self):
         for user in ("viewer", "editor", "operator"):
-            with self.connect(user=user) as session:
+            with self.cluster.connect(user=user) as session:
                 status = session.status()
                 self.assertGreaterEqual(status.sessions, 1)
                 self.assertGreater(status.uptime_seconds, 0)
 
+    def test_clocks_of_one_machine_agree_within_their_bounds_even_through_a_lame_relay(self):
+        relay = Relay(self.cluster.port, 0.02)
+        self.cluster.start("tessera-node", "--master", self.cluster.endpoint, "--name", "near", "--backend", "null")
+        self.cluster.start("tessera-node", "--master", f"tcp://127.0.0.1:{relay.port}", "--name", "far", "--backend", "null")
+        with self.cluster.connect() as session:
+            end = time.monotonic() + 60
+            while True:
+                nodes = {node.name: node for node in session.status().nodes if node.clock_bound_seconds > 0}
+                if len(nodes) == 2:
+                    break
+                self.assertLess(time.monotonic(), end, "a node has no clock after a minute")
+                time.sleep(0.1)
+        for node in nodes.values():
+            self.assertLessEqual(abs(node.clock_offset_seconds), node.clock_bound_seconds, node)
+        self.assertGreaterEqual(nodes["far"].clock_bound_seconds, 0.01)
+
     def test_a_node_key_is_no_clients(self):
         with self.assertRaisesRegex(tessera.Refused, "role"):
-            self.connect(user="node")
+            self.cluster.connect(user="node")
 
     def test_no_keys_are_no_way_in(self):
         with self.assertRaises(tessera.Unavailable):
-            tessera.connect(self.endpoint, connect_limit=1.0)
+            tessera.connect(self.cluster.endpoint, connect_limit=1.0)
 
     def test_an_exported_key_is_one_file(self):
-        export = pathlib.Path(self.folder.name) / "anna.key"
-        subprocess.run([PROGRAMS / "tessera", "keys", self.keys, "add", "anna", "--role", "editor", "--export", export],
-                       check=True, stdout=subprocess.DEVNULL)
-        self.children[0].send_signal(1)  # SIGHUP: it reads the list again
-        with self.connect(keys=export) as session:
+        export = self.cluster.folder / "anna.key"
+        self.cluster.run("tessera", "keys", self.cluster.keys, "add", "anna", "--role", "editor", "--export", export)
+        self.cluster.master.send_signal(signal.SIGHUP)  # SIGHUP: it reads the list again
+        with self.cluster.connect(keys=export) as session:
             self.assertIn("tessera", session.status().software)
 
 

@@ -308,7 +308,8 @@ class ScriptedMaster:
         known = self.views.get(request.number)
         if request.spp == 0:
             return self._done(member, request, False, b"a view needs samples")
-        revision = known[1] + (known[0].view != request.view) if known else 1
+        changed = known and (known[0].view != request.view or known[0].spp != request.spp)
+        revision = known[1] + changed if known else 1
         self.views[request.number] = (request, revision)
         if request.request:
             self._done(member, request)

@@ -225,6 +225,13 @@ class Views(WithMaster):
         self.assertGreater(after.version, before.version)
         view.look(tessera.look_at((1, 1, 5), (0, 0, 0)))
         self.assertGreater(view.wait(samples=1).revision, after.revision)
+        other = self.session.open_view(self.POSE, size=(8, 4), spp=1 << 40)
+        other.change(spp=1 << 41)
+        other.look(tessera.look_at((1, 1, 5), (0, 0, 0)))  # before the first frame was looked at
+        self.assertEqual(other.wait(samples=1).revision, 3)
+        with self.assertRaisesRegex(tessera.Refused, "needs samples"):
+            other.change(spp=0)
+        self.assertEqual(other.wait(samples=1).revision, 3)  # as it was
 
     def test_the_camera_of_the_scene(self):
         with self.session.transaction() as edit:

@@ -100,6 +100,8 @@ class NodeState:
     samples_per_second: float
     round_trip_seconds: float
     stuck: bool
+    clock_offset_seconds: float  # its clock less the master's, +- bound; bound 0 = not known yet
+    clock_bound_seconds: float
 
 
 @dataclass(frozen=True)
@@ -139,4 +141,5 @@ def status_of(message: Message) -> Status:
         tuple(NodeState(text(n.summary.name), text(n.summary.host), text(n.summary.backend),
                         _PHASES[n.phase] if n.phase < len(_PHASES) else "unknown",
                         (n.version.epoch, n.version.number), n.units_in_hand, n.samples_per_second,
-                        n.round_trip_seconds, n.stuck) for n in message.nodes))
+                        n.round_trip_seconds, n.stuck, n.clock_offset_seconds, n.clock_bound_seconds)
+              for n in message.nodes))

@@ -33,7 +33,7 @@ class View:
         self._assembly: Assembly | None = None
         self._waiting: Frame | None = None
         self._seen_revision = 0  # of the latest frame that came
-        self._revision = 0  # that a wait asks for
+        self._revision = 1  # that a wait asks for: grows by one with every change that the master takes
         self.is_open = True
 
     @property
@@ -63,11 +63,19 @@ class View:
         if view == self._request.view and spp == self._request.spp:
             return
         with self._connection.changed:
-            if view != self._request.view:
-                self._revision = max(self._revision, self._seen_revision) + 1
+            before = work_pb2.View()
+            before.CopyFrom(self._request.view)
+            revision, samples = self._revision, self._request.spp
+            self._revision = max(self._revision, self._seen_revision) + 1
             self._request.view.CopyFrom(view)
             self._request.spp = spp
-        self.open()
+        try:
+            self.open()
+        except Refused:  # the master goes on with what it had
+            with self._connection.changed:
+                self._revision, self._request.spp = revision, samples
+                self._request.view.CopyFrom(before)
+            raise
 
     def wait(self, samples: int = 1, timeout: float = 60.0) -> Frame:
         """The newest frame that shows everything this session has done, from this camera, with at least so many samples in
@@ -121,17 +129,14 @@ class View:
         """Says to the master what this view is now, and waits for its word."""
         request = control_pb2.Control()
         request.open_live_view.CopyFrom(self._request)
-        try:
-            self._connection.request(request)
-        except Refused:
-            self.is_open = False
-            raise
+        self._connection.request(request)
 
     # What follows is called by the session, under its lock, on the link's thread.
 
     def reopened(self) -> Message:
         """The request for a master that may have lost what was on its way."""
         self._assembly = None
+        self._seen_revision, self._revision = 0, 1  # a master that was started anew counts anew
         request = control_pb2.Control()
         request.open_live_view.CopyFrom(self._request)
         request.open_live_view.request = 0
