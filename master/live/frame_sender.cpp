@@ -68,7 +68,10 @@ void FrameSender::offer(LiveView& live, TimePoint now, Duration interval) {
     const Shown& shown = *live.shown;
     std::map<Wish, std::vector<Key>> free;
     for (auto& [key, watcher] : watchers_) {
-        if (watcher.view != live.id || watcher.on_its_way != 0 || watcher.seen == shown) continue;
+        if (watcher.view != live.id || watcher.on_its_way != 0 ||
+            (watcher.seen == shown && watcher.seen_version == live.version)) {
+            continue;
+        }
         free[watcher.wish].push_back(key);
     }
     for (auto& [wish, receivers] : free) {
@@ -76,10 +79,12 @@ void FrameSender::offer(LiveView& live, TimePoint now, Duration interval) {
             return entry.second.view == live.id && entry.second.wish == wish;
         });
         Made& last = made_[{live.id, wish}];
-        const bool news = shown.complete || shown.pass + 1 < live.passes.size() || shown.samples == 0;
+        const bool news = last.shown != shown &&
+                          (shown.complete || shown.pass + 1 < live.passes.size() || shown.samples == 0);
         constexpr int CostLimit = 4;
         if (busy || (!news && now - last.started < std::max(interval, CostLimit * last.cost))) continue;
         last.started = now;
+        last.shown = shown;
         const std::uint64_t frame = next_frame_++;
         const LivePass& pass = live.passes[shown.pass];
         const JobId job{frame};
@@ -143,6 +148,7 @@ void FrameSender::send(std::uint64_t frame, Making&& making, const Reconstructed
             continue;
         }
         watcher->second.seen = making.shown;
+        watcher->second.seen_version = header.version;
         header.view = key.second;
         outbox_.bulk(*session->bulk, header);
         const std::span<const std::byte> picture(*made.picture.bytes);

@@ -49,7 +49,8 @@ class FrameSender {
         ViewId view;
         Wish wish;
         std::uint64_t on_its_way = 0;  // frame; 0 = free
-        std::optional<Shown> seen;     // the latest sent
+        std::optional<Shown> seen;     // the latest sent, and of which version: a change that no picture
+        Version seen_version;          // shows is told with the same picture, for those who wait for it
     };
     struct Making {
         ViewId view;
@@ -69,6 +70,7 @@ class FrameSender {
     struct Made {
         TimePoint started{};
         Duration cost{};  // of the latest
+        std::optional<Shown> shown;
     };
     std::map<std::pair<ViewId, Wish>, Made> made_;
     std::uint64_t next_frame_ = 1;
