@@ -1,0 +1,183 @@
+#!/usr/bin/env python3
+"""Live scenes with the real master and a node that renders, over CURVE. Usage: live_master_test.py BIN_FOLDER"""
+
+import pathlib
+import sys
+import tempfile
+import time
+import unittest
+
+import run_block
+import tessera
+from real_cluster import RealCluster
+
+PROGRAMS = pathlib.Path(sys.argv.pop()).resolve()
+POSE = tessera.look_at((0, 0, 3), (0, 0, 0))
+WALL = dict(indices=[(0, 1, 2), (0, 2, 3)], positions=[(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)])
+
+
+class LiveMaster(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.cluster = RealCluster(PROGRAMS)
+        cls.cluster.start("tessera-node", "--master", cls.cluster.endpoint, "--name", "n1", "--threads", "1")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.cluster.close()
+
+    def setUp(self):
+        self.session = self.cluster.connect(name="anna")
+        self.addCleanup(self.session.close)
+        self.scene = self.session.join("room")
+        self.addCleanup(self.session.close_scene)
+
+    def glowing_wall(self, color=(1.0, 0.0, 0.0)):
+        """A wall in front of the camera that shines: its pixels are its colour, without noise."""
+        with self.session.transaction() as edit:
+            self.glow = edit.create("material", name="glow", emission=color, base_color=(0, 0, 0, 1), double_sided=True)
+            self.wall = edit.create("geometry", name="wall", material=self.glow, **WALL)
+        return self.session.open_view(POSE, size=(64, 48), spp=8, picture="planes", film=True)
+
+    def middle(self, frame):
+        at = frame.height // 2 * frame.width + frame.width // 2
+        return tuple(round(plane[at], 3) for plane in frame.planes())
+
+    def test_the_picture_follows_edits_and_undo(self):
+        view = self.glowing_wall()
+        frame = view.wait(samples=8)
+        self.assertEqual(self.middle(frame), (1.0, 0.0, 0.0))
+        self.assertTrue(frame.complete)
+        film = frame.film()
+        self.assertEqual(set(film.counts), {8})
+        self.assertAlmostEqual(film.planes("radiance")[0][24 * 64 + 32], 1.0, 5)
+        with self.session.transaction() as edit:
+            edit.set("materials/glow", emission=(0, 1, 0))
+        self.assertEqual(self.middle(view.wait(samples=0)), (0.0, 1.0, 0.0))
+        self.session.undo()
+        self.assertEqual(self.middle(view.wait(samples=8)), (1.0, 0.0, 0.0))
+        self.session.redo()
+        self.assertEqual(self.middle(view.wait(samples=1)), (0.0, 1.0, 0.0))
+
+    def test_no_picture_claims_a_version_that_it_does_not_show(self):
+        view = self.glowing_wall()
+        for step in range(1, 101):
+            with self.session.transaction() as edit:
+                edit.set("materials/glow", emission=(step, 0, 0))
+            self.assertEqual(self.middle(view.wait(samples=0))[0], step)
+            if step % 10 == 0:
+                self.assertEqual(self.middle(view.wait(samples=8))[0], step)
+
+    def test_a_wait_after_an_edit_that_no_picture_shows_ends(self):
+        view = self.glowing_wall()
+        view.wait(samples=8)
+        with self.session.transaction() as edit:
+            edit.set("materials/glow", name="embers")
+        self.assertEqual(self.middle(view.wait(samples=8, timeout=30)), (1.0, 0.0, 0.0))
+
+    def test_the_camera_and_what_is_picked(self):
+        view = self.glowing_wall()
+        hit = view.pick(32, 24)
+        self.assertEqual(hit.object, self.wall.id)
+        self.assertAlmostEqual(hit.position[2], 0.0, 4)
+        self.assertAlmostEqual(hit.normal[2], 1.0, 4)
+        view.look(tessera.look_at((0, 0, -3), (0, 0, -9)))  # away from it
+        self.assertEqual(self.middle(view.wait(samples=1)), (0.0, 0.0, 0.0))
+        self.assertIsNone(view.pick(32, 24))
+
+    def test_files_of_every_kind(self):
+        self.glowing_wall().close()
+        with tempfile.TemporaryDirectory() as folder:
+            for kind, magic in (("png", b"\x89PNG"), ("jpeg", b"\xff\xd8\xff"), ("exr", b"v/1\x01")):
+                view = self.session.open_view(POSE, size=(64, 48), spp=4, picture=kind)
+                path = pathlib.Path(folder) / f"wall.{kind}"
+                view.wait(samples=4).save(path)
+                self.assertEqual(path.read_bytes()[:len(magic)], magic)
+                view.close()
+
+    def test_two_editors(self):
+        self.glowing_wall().close()
+        with self.cluster.connect(name="anna") as other:
+            theirs = other.join("elsewhere")
+            self.assertEqual(theirs.title, "room")
+            self.assertNotEqual(other.name, "anna")  # two of one name are told apart
+            self.assertEqual(theirs["geometries/wall"], self.scene["geometries/wall"])
+            self.assertEqual(len(theirs.bytes_of(theirs.get(tessera.Geometry, "wall").positions)), 48)
+            self.session.lock([self.glow])
+            with self.assertRaisesRegex(tessera.Refused, "anna"):
+                with other.transaction() as edit:
+                    edit.set("materials/glow", roughness=0.5)
+            self.session.unlock([self.glow])
+            with other.transaction() as edit:
+                edit.set("materials/glow", roughness=0.5)
+            self.scene.refresh()
+            self.assertEqual(self.scene.get(tessera.Material, "glow").roughness, 0.5)
+            self.assertEqual(self.session.writers(self.glow)["roughness"].name, other.name)
+            self.assertEqual(self.session.history(1)[0].name, other.name)
+            other.set_presence("paints", [self.glow])
+            end = time.monotonic() + 30
+            while not any(p.text == "paints" and p.selection == (self.glow.id,) for p in self.session.people().people):
+                self.assertLess(time.monotonic(), end)
+                time.sleep(0.05)
+
+    def test_what_the_master_refuses_changes_nothing(self):
+        self.glowing_wall().close()
+        before = list(self.scene)
+        for change in (lambda edit: edit.remove("materials/glow"), lambda edit: edit.set("materials/glow", metallic=7.0),
+                       lambda edit: edit.create("geometry", name="half", indices=[0, 1, 2])):
+            with self.assertRaises(tessera.Refused) as caught:
+                with self.session.transaction() as edit:
+                    edit.create("light", name="unseen")
+                    change(edit)
+            self.assertTrue(caught.exception.problems)
+        self.scene.refresh()
+        self.assertEqual(list(self.scene), before)
+
+    def test_a_viewer_may_look_and_not_touch(self):
+        self.glowing_wall().close()
+        with self.cluster.connect(user="viewer", name="guest") as guest:
+            scene = guest.join()
+            self.assertIn("geometries/wall", scene)
+            view = guest.open_view(POSE, size=(32, 24), spp=1, picture="planes")
+            self.assertEqual(round(view.wait(samples=1).planes()[0][0], 3), 1.0)
+            with self.assertRaisesRegex(tessera.Refused, "role"):
+                with guest.transaction() as edit:
+                    edit.set("materials/glow", emission=(0, 1, 0))
+
+    def test_somebody_elses_view(self):
+        view = self.session.open_view(POSE, size=(64, 48), spp=4, name="main")
+        view.wait(samples=4)
+        with self.cluster.connect(user="viewer") as guest:
+            guest.join()
+            self.assertEqual(guest.watch("main").wait(samples=4).width, 64)
+
+    def test_a_drag_is_one_undo(self):
+        self.glowing_wall((0.0, 0.0, 0.0)).close()
+        drag = self.session.gesture()
+        for step in range(1, 20):
+            with self.session.transaction(gesture=drag) as edit:
+                edit.set("materials/glow", emission=(step, 0, 0))
+        self.session.undo()
+        self.assertEqual(self.scene.get(tessera.Material, "glow").emission, (0.0, 0.0, 0.0))
+
+    def test_a_large_scene_there_and_back(self):
+        with self.session.transaction() as edit:
+            for i in range(3000):
+                edit.create("material", name=f"m{i}", roughness=0.5)
+            edit.create("geometry", name="big", indices=[0, 1, 2], positions=bytes(12) * 300_000)
+        with self.cluster.connect(name="bert") as other:
+            scene = other.join()
+            self.assertEqual(len(scene.all(tessera.Material)), 3000)
+            big = scene.get(tessera.Geometry, "big")
+            self.assertEqual(scene.bytes_of(big.positions), bytes(12) * 300_000)
+
+    def test_the_example_of_the_readme(self):
+        readme = pathlib.Path(__file__).resolve().parents[2] / "client/python/README.md"
+        with tempfile.TemporaryDirectory() as folder:
+            run_block.run(readme, self.cluster.endpoint, str(self.cluster.keys), folder, ["room.png"])
+        self.scene.refresh()
+        self.assertIn("geometries/tile", self.scene)
+
+
+if __name__ == "__main__":
+    unittest.main()
