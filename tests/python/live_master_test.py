@@ -2,6 +2,7 @@
 """Live scenes with the real master and a node that renders, over CURVE. Usage: live_master_test.py BIN_FOLDER"""
 
 import pathlib
+import signal
 import sys
 import tempfile
 import time
@@ -9,6 +10,7 @@ import unittest
 
 import run_block
 import tessera
+import tessera.people
 from real_cluster import RealCluster
 
 PROGRAMS = pathlib.Path(sys.argv.pop()).resolve()
@@ -170,6 +172,22 @@ class LiveMaster(unittest.TestCase):
             self.assertEqual(len(scene.all(tessera.Material)), 3000)
             big = scene.get(tessera.Geometry, "big")
             self.assertEqual(scene.bytes_of(big.positions), bytes(12) * 300_000)
+
+    def test_a_silent_master_is_joined_again_with_what_was_there(self):
+        view = self.glowing_wall()
+        view.wait(samples=8)
+        self.session.lock([self.glow])
+        self.cluster.master.send_signal(signal.SIGSTOP)
+        time.sleep(2.0)  # both sides take the other for gone
+        self.cluster.master.send_signal(signal.SIGCONT)
+        with self.session.transaction() as edit:
+            edit.set("materials/glow", emission=(0, 0, 1))
+        self.assertEqual(self.middle(view.wait(samples=8)), (0.0, 0.0, 1.0))
+        self.assertEqual(self.session.people().locks, (tessera.people.Lock(self.glow.id, "anna"),))
+        self.session.undo()
+        self.assertEqual(self.scene.get(tessera.Material, "glow").emission, (1.0, 0.0, 0.0))
+        with self.session.transaction() as edit:
+            self.assertNotIn(edit.create("light").id, (self.glow.id, self.wall.id))
 
     def test_the_example_of_the_readme(self):
         readme = pathlib.Path(__file__).resolve().parents[2] / "client/python/README.md"

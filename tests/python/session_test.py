@@ -159,6 +159,15 @@ class Editing(WithMaster):
         self.assertEqual([e.undo for e in self.master.submitted[-3:]], [2**64 - 1, 3, 2**64 - 2])
         self.assertTrue(all(e.submitted_at > 0 for e in self.master.submitted))
 
+    def test_a_drag_reads_nothing(self):
+        red = self.create_red()
+        reads = self.master.received.count("read_scene")
+        for step in range(20):
+            with self.session.transaction(gesture=1) as edit:
+                edit.set(red, roughness=step / 20)
+                edit.create("material")
+        self.assertEqual(self.master.received.count("read_scene"), reads)
+
     def test_the_mirror_follows_others(self):
         self.create_red()
         self.assertEqual(self.scene.get(tessera.Material, "red").roughness, 1.0)

@@ -139,10 +139,13 @@ class Session:
 
     def new_id(self) -> int:
         """For an object that is created."""
+        self.connection.require_joined()
         with self._editing:
-            mirror = self.mirror()
+            self._follow_joins()
+            if self._mirror.version == (0, 0):
+                self.refresh()
             joined = self.connection.joined
-            while self._next_id in mirror:
+            while self._next_id in self._mirror:
                 self._next_id += 1  # of an earlier life of the same editor
             if joined is None or self._next_id >= joined.first_id + joined.id_count:
                 raise Unavailable("this session has used up its ids: connect anew")

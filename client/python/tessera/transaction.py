@@ -126,7 +126,9 @@ class Transaction:
         number = self._number(target)
         entry = self._entries.get(number)
         if entry is None:
-            kind = self._editor.mirror().entry(number)[0]
+            known = KIND_OF_TYPE.get(type(target)) if isinstance(target, Object) else None
+            # Who has the object need not wait until the latest edit can be read: a drag is sent as fast as it comes.
+            kind = known or self._editor.mirror().entry(number)[0]
             entry = self._entry(number, _UPDATE)
             getattr(entry.object, kind.name).SetInParent()
         elif entry.action == _REMOVE:
