@@ -31,6 +31,11 @@ class RealCluster:
         self._children.append(child)
         return child
 
+    def kill_master_and_start_another(self):
+        self.master.kill()
+        self.master.wait(60)
+        self.master = self.start("tessera-master", *self.master_options)
+
     def connect(self, **more):
         return tessera.connect(self.endpoint, **{"keys": self.keys, **more})
 
