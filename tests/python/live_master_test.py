@@ -3,6 +3,7 @@
 
 import pathlib
 import signal
+import subprocess
 import sys
 import tempfile
 import time
@@ -15,6 +16,15 @@ from real_cluster import RealCluster
 
 PROGRAMS = pathlib.Path(sys.argv.pop()).resolve()
 POSE = tessera.look_at((0, 0, 3), (0, 0, 0))
+VIEWER = """
+import sys, tessera
+with tessera.connect(sys.argv[1], keys=sys.argv[2], user="viewer", name="viewer") as session:
+    session.join()
+    view = session.open_view(tessera.look_at((0, 0, 3), (0, 0, 0)), size=(320, 180), spp=4, picture="planes")
+    while True:
+        frame = view.next_frame(60)
+        print(frame.version[1], flush=True)
+"""
 WALL = dict(indices=[(0, 1, 2), (0, 2, 3)], positions=[(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)])
 
 
@@ -194,6 +204,33 @@ class LiveMaster(unittest.TestCase):
         self.assertEqual(self.scene.get(tessera.Material, "glow").emission, (1.0, 0.0, 0.0))
         with self.session.transaction() as edit:
             self.assertNotIn(edit.create("light").id, (self.glow.id, self.wall.id))
+
+    def test_a_stopped_viewer_delays_nobody_and_goes_on_with_the_newest(self):
+        view = self.glowing_wall()
+        viewer = subprocess.Popen([sys.executable, "-c", VIEWER, self.cluster.endpoint, self.cluster.keys],
+                                  stdout=subprocess.PIPE, text=True)
+        try:
+            viewer.stdout.readline()
+            viewer.send_signal(signal.SIGSTOP)
+            for step in range(1, 301):
+                with self.session.transaction() as edit:
+                    edit.set(self.glow, emission=(step, 0, 0))
+                if step % 100 == 0:
+                    self.assertEqual(self.middle(view.wait(samples=8))[0], step)
+            time.sleep(1.5)  # the master takes it for gone
+            viewer.send_signal(signal.SIGCONT)
+            last = edit.committed.version[1]
+            seen = 0
+            frames = 0
+            while seen < last:
+                line = viewer.stdout.readline()
+                self.assertTrue(line, "the viewer ended")
+                seen, frames = int(line), frames + 1
+            self.assertLess(frames, 50)  # not one for each edit
+        finally:
+            viewer.kill()
+            viewer.wait()
+            viewer.stdout.close()
 
     def test_a_master_that_comes_back_without_the_scene_is_told(self):
         self.glowing_wall()
