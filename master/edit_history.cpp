@@ -57,8 +57,8 @@ void EditHistory::mark_undone(Transaction& target, std::uint64_t by) {
 
 const Transaction* EditHistory::remover(ObjectId id) const {
     for (auto entry = transactions_.rbegin(); entry != transactions_.rend(); ++entry) {
-        const auto change = entry->changes.find(id);
-        if (change != entry->changes.end() && !change->second.object.after) return &*entry;
+        const auto change = entry->changes.all().find(id);
+        if (change != entry->changes.all().end() && !change->second.object.after) return &*entry;
     }
     return nullptr;
 }

@@ -98,6 +98,10 @@ void Editors::restore(EditorRecord editor) {
     editors_[number] = std::move(editor);
 }
 
+void Editors::answer_at(Version version) {
+    for (auto& [number, editor] : editors_) editor.last_answer.version = version;
+}
+
 bool Editors::lent(const IdRange& range) const {
     return std::any_of(editors_.begin(), editors_.end(),
                        [&](const auto& entry) { return meet(range, entry.second.ids); });

@@ -53,6 +53,7 @@ class Editors {
 
     const std::map<std::uint64_t, EditorRecord>& all() const { return editors_; }
     void restore(EditorRecord editor);
+    void answer_at(Version version);  // the last answers name a version that is known
     EditorRecord* by_number(std::uint64_t number);
 
   private:

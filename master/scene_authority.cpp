@@ -16,14 +16,6 @@ namespace {
 
 constexpr std::size_t MaxProblems = 20;
 
-std::vector<scene::BlobRef> blobs_of(const scene::Entry& entry) {
-    if (const auto* create = std::get_if<scene::Create>(&entry))
-        return scene::referenced_blobs(create->object);
-    if (const auto* update = std::get_if<scene::Update>(&entry))
-        return scene::referenced_blobs(update->fields);
-    return {};
-}
-
 std::string first_field(const scene::Update& update) {
     for (std::uint32_t field = 0; update.mask >> field != 0; ++field) {
         if ((update.mask >> field) & 1u) return std::string(field_name(kind(update.fields), field));
@@ -83,7 +75,7 @@ SceneAuthority::IdRange SceneAuthority::join(SessionId session, const std::strin
     const EditorRecord* before = editors_.of(session);
     const EditorRecord* editor = editors_.join(session, user, key, scene_);
     if (editor == nullptr) return {};
-    if (recorder_ && key != 0 && editor != before && !recorder_->joined(*editor)) {
+    if (recorder_ && editor != before && !recorder_->joined(recorded(*editor))) {
         editors_.leave(session);
         return {};
     }
@@ -103,7 +95,7 @@ void SceneAuthority::forget(SessionId session) {
 std::vector<scene::BlobRef> SceneAuthority::missing_blobs(const scene::Edit& edit) const {
     std::vector<scene::BlobRef> missing;
     for (const scene::Entry& entry : edit.entries) {
-        for (const scene::BlobRef& blob : blobs_of(entry)) {
+        for (const scene::BlobRef& blob : scene::referenced_blobs(entry)) {
             if (!blob.empty() && !blobs_->find(blob.hash)) missing.push_back(blob);
         }
     }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "master/authority_state.h"
 #include "master/edit_history.h"
 #include "master/edit_recorder.h"
 #include "master/editors.h"
@@ -82,6 +83,17 @@ class SceneAuthority {
     std::vector<wire::FieldWriter> writers(ObjectId object) const;           // of fields that were edited
     std::uint64_t transactions() const { return history_.last(); }           // so many there were
 
+    // ---- checkpoints ----
+    // All that a restarted master needs: a copy that shares its objects, so it costs little; the rest of the
+    // work may be another thread's.
+    AuthorityState save() const;
+    // Before anything else happened, and without a recorder: the saved state, then what was recorded since,
+    // one by one. An error: the record does not fit what is there; nothing after it will.
+    void restore(AuthorityState state);
+    Expected<void> replay(const wire::JournalRecord& record);
+    // The end of it: the state is the first version of this epoch.
+    void start_epoch();
+
   private:
     // What an edit asks for, understood: entries, and of an undo what it takes back.
     struct Request;
@@ -96,6 +108,7 @@ class SceneAuthority {
     void take_back(const std::vector<scene::ObjectChange>& changes);
     Transaction* open_transaction(const EditorRecord& editor, const scene::Edit& edit,
                                   const std::vector<scene::ObjectChange>& changes);
+    Expected<void> replay_edit(const RecordedEdit& edit);
     void commit(EditorRecord& editor, const scene::Edit& edit, const Request& request,
                 const std::vector<scene::ObjectChange>& changes, Transaction* open);
 

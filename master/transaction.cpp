@@ -1,11 +1,25 @@
 #include "master/transaction.h"
 
+#include <atomic>
+
 #include "mediator/scene/fields.h"
 #include "mediator/scene/referrers.h"
 
 namespace tessera::master {
 
 namespace {
+
+// Before `shared` is changed: a copy of its own where another thread may still read it.
+template <class T>
+void own(std::shared_ptr<T>& shared) {
+    if (!shared) {
+        shared = std::make_shared<T>();
+    } else if (shared.use_count() > 1) {
+        shared = std::make_shared<T>(*shared);
+    } else {
+        std::atomic_thread_fence(std::memory_order_acquire);  // after the reads of whoever let go last
+    }
+}
 
 template <class Visit>
 void for_each_bit(std::uint32_t mask, const Visit& visit) {
@@ -43,6 +57,11 @@ void record_writers(TransactionChange& change, const scene::ObjectChange& step, 
 
 }  // namespace
 
+TransactionChanges::Map& TransactionChanges::to_change() {
+    own(changes_);
+    return *changes_;
+}
+
 WriterPtr WriterTable::of(ObjectId id, std::uint32_t field) const {
     const ObjectWriters& object = of(id);
     const auto place = object.find(field);
@@ -52,18 +71,19 @@ WriterPtr WriterTable::of(ObjectId id, std::uint32_t field) const {
 const ObjectWriters& WriterTable::of(ObjectId id) const {
     static const ObjectWriters None;
     const auto place = writers_.find(id);
-    return place == writers_.end() ? None : place->second;
+    return place == writers_.end() ? None : *place->second;
 }
 
 void WriterTable::set(ObjectId id, std::uint32_t field, const WriterPtr& writer) {
+    const auto place = writer ? writers_.try_emplace(id).first : writers_.find(id);
+    if (place == writers_.end()) return;
+    own(place->second);
     if (writer) {
-        writers_[id][field] = writer;
+        (*place->second)[field] = writer;
         return;
     }
-    const auto place = writers_.find(id);
-    if (place == writers_.end()) return;
-    place->second.erase(field);
-    if (place->second.empty()) writers_.erase(place);
+    place->second->erase(field);
+    if (place->second->empty()) writers_.erase(place);
 }
 
 void WriterTable::set(ObjectId id, const ObjectWriters& writers) {
@@ -72,14 +92,14 @@ void WriterTable::set(ObjectId id, const ObjectWriters& writers) {
 
 ObjectWriters WriterTable::take(ObjectId id) {
     auto node = writers_.extract(id);
-    return node ? std::move(node.mapped()) : ObjectWriters();
+    return node ? *node.mapped() : ObjectWriters();
 }
 
 bool can_extend(const Transaction& transaction, const std::vector<scene::ObjectChange>& changes,
                 const WriterTable& writers) {
     for (const scene::ObjectChange& step : changes) {
-        const auto place = transaction.changes.find(step.id);
-        if (place == transaction.changes.end()) continue;
+        const auto place = transaction.changes.all().find(step.id);
+        if (place == transaction.changes.all().end()) continue;
         const scene::ObjectChange& so_far = place->second.object;
         if (!so_far.after || !step.before || so_far.after->index() != step.before->index()) return false;
         if (!so_far.is_update()) continue;
@@ -94,8 +114,9 @@ bool can_extend(const Transaction& transaction, const std::vector<scene::ObjectC
 }
 
 void extend(Transaction& transaction, const std::vector<scene::ObjectChange>& changes, WriterTable& writers) {
+    TransactionChanges::Map& all = transaction.changes.to_change();
     for (const scene::ObjectChange& step : changes) {
-        const auto [place, fresh] = transaction.changes.try_emplace(step.id);
+        const auto [place, fresh] = all.try_emplace(step.id);
         TransactionChange& change = place->second;
         record_writers(change, step, transaction.author, writers);
         if (fresh) {
@@ -105,20 +126,21 @@ void extend(Transaction& transaction, const std::vector<scene::ObjectChange>& ch
         change.object.before = earliest(change.object, step);
         change.object.after = step.after;
         change.object.mask |= step.mask;
-        if (!change.object.before && !change.object.after) transaction.changes.erase(place);
+        if (!change.object.before && !change.object.after) all.erase(place);
     }
 }
 
 void record_undo(Transaction& undo, const std::vector<scene::ObjectChange>& changes,
                  const std::map<ObjectId, ObjectWriters>& brought_back, const scene::Scene& scene,
                  WriterTable& writers) {
+    TransactionChanges::Map& all = undo.changes.to_change();
     for (const scene::ObjectChange& step : changes) {
-        TransactionChange& change = undo.changes[step.id];
+        TransactionChange& change = all[step.id];
         change.object = step;
         if (!step.is_update()) change.writers_before = writers.take(step.id);
     }
     for (const auto& [id, fields] : brought_back) {
-        const auto [place, fresh] = undo.changes.try_emplace(id);
+        const auto [place, fresh] = all.try_emplace(id);
         TransactionChange& change = place->second;
         if (fresh) {
             const auto& same = scene.objects().at(id);

@@ -29,6 +29,17 @@ struct TransactionChange {
     ObjectWriters writers_after;   // of an undo or redo: whom it brought back
 };
 
+// By object. Copies share it until one of them is changed, so that a checkpoint's copy costs nothing.
+class TransactionChanges {
+  public:
+    using Map = std::map<ObjectId, TransactionChange>;
+    const Map& all() const { return *changes_; }
+    Map& to_change();
+
+  private:
+    std::shared_ptr<Map> changes_ = std::make_shared<Map>();
+};
+
 enum class Nature : std::uint8_t { Edit, Undo, Redo };  // a redo takes back an undo
 
 struct Transaction {
@@ -40,7 +51,7 @@ struct Transaction {
     std::uint32_t edits = 1;
     std::uint64_t undoes = 0, undone_by = 0;  // numbers of others; 0 = none
     std::string text;                         // what it did, for people
-    std::map<ObjectId, TransactionChange> changes;
+    TransactionChanges changes;
 };
 
 // Who wrote each field last; only of fields that were edited.
@@ -52,10 +63,12 @@ class WriterTable {
     void set(ObjectId id, const ObjectWriters& writers);
     ObjectWriters take(ObjectId id);
     void clear() { writers_.clear(); }
-    const std::map<ObjectId, ObjectWriters>& all() const { return writers_; }
+    // By object; copies of the table share what neither changes.
+    using Map = std::map<ObjectId, std::shared_ptr<ObjectWriters>>;
+    const Map& all() const { return writers_; }
 
   private:
-    std::map<ObjectId, ObjectWriters> writers_;
+    Map writers_;
 };
 
 // True when the changes can be told as part of the transaction, so that one undo takes both back. Not so

@@ -92,7 +92,7 @@ std::string summary(std::span<const scene::ObjectChange> changes) {
 
 std::string summary(const Transaction& transaction) {
     std::vector<scene::ObjectChange> changes;
-    for (const auto& [id, change] : transaction.changes) changes.push_back(change.object);
+    for (const auto& [id, change] : transaction.changes.all()) changes.push_back(change.object);
     return summary(changes);
 }
 

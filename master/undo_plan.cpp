@@ -26,7 +26,7 @@ class Planner {
         : transaction_(transaction), scene_(scene), writers_(writers), history_(history), author_(author) {}
 
     UndoPlan make() {
-        for (const auto& [id, change] : transaction_.changes) {
+        for (const auto& [id, change] : transaction_.changes.all()) {
             if (!change.object.before) {
                 take_out(id, change);
             } else if (!change.object.after) {
@@ -116,8 +116,8 @@ class Planner {
             without_step(scene::children(*change.object.before), scene::children(*change.object.after),
                          scene::children(now));
         std::erase_if(merged, [&](ObjectId child) {
-            const auto other = transaction_.changes.find(child);
-            const bool comes = other != transaction_.changes.end() && !other->second.object.after;
+            const auto other = transaction_.changes.all().find(child);
+            const bool comes = other != transaction_.changes.all().end() && !other->second.object.after;
             if (comes || scene_.find(child) != nullptr) return false;
             note("object " + std::to_string(child.value) + " does not come back to " + object_path(id, now) +
                  ": it was removed since" + by(child));

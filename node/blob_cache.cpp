@@ -1,12 +1,8 @@
 #include "node/blob_cache.h"
 
-#include <unistd.h>
-
-#include <fstream>
-#include <vector>
-
 #include "mediator/base/disk_cache.h"
 #include "mediator/base/error.h"
+#include "mediator/scene/blob_file.h"
 
 namespace tessera::node {
 
@@ -33,40 +29,21 @@ BlobCache::BlobCache(fs::path folder, std::uint64_t byte_limit)
 }
 
 scene::BlobPtr BlobCache::load(const scene::BlobRef& blob) {
-    const fs::path path = folder_ / to_hex(blob.hash);
     std::error_code error;
-    const std::uint64_t size = fs::file_size(path, error);
-    if (error) return nullptr;
-    if (size == blob.byte_size) {
-        std::vector<std::byte> data(size);
-        std::ifstream file(path, std::ios::binary);
-        file.read(reinterpret_cast<char*>(data.data()), static_cast<std::streamsize>(size));
-        if (file && blake2b(data) == blob.hash) {
-            fs::last_write_time(path, fs::file_time_type::clock::now(), error);  // used just now
-            return std::make_shared<const scene::Blob>(std::move(data), blob.hash);
-        }
+    if (scene::BlobPtr found = scene::read_blob(folder_, blob)) {
+        fs::last_write_time(scene::blob_path(folder_, blob), fs::file_time_type::clock::now(),
+                            error);  // used just now
+        return found;
     }
-    fs::remove(path, error);
+    fs::remove(scene::blob_path(folder_, blob), error);
     return nullptr;
 }
 
 void BlobCache::save(const scene::Blob& blob) {
     if (blob.bytes().size() > byte_limit_) return;
-    const fs::path path = folder_ / to_hex(blob.hash());
-    const fs::path unfinished = folder_ / (to_hex(blob.hash()) + "." + std::to_string(::getpid()) + ".part");
     std::error_code error;
-    if (fs::exists(path, error)) return;
-    {
-        std::ofstream file(unfinished, std::ios::binary);
-        file.write(reinterpret_cast<const char*>(blob.bytes().data()),
-                   static_cast<std::streamsize>(blob.bytes().size()));
-        if (!file.flush()) {
-            file.close();
-            fs::remove(unfinished, error);
-            return;
-        }
-    }
-    fs::rename(unfinished, path, error);
+    if (fs::exists(scene::blob_path(folder_, reference(blob)), error)) return;
+    if (!scene::write_blob(folder_, blob)) return;
     byte_size_ += blob.bytes().size();
     if (byte_size_ > byte_limit_) shrink();
 }

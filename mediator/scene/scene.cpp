@@ -169,6 +169,12 @@ std::vector<BlobRef> referenced_blobs(const Object& object) {
     return blobs;
 }
 
+std::vector<BlobRef> referenced_blobs(const Entry& entry) {
+    if (const auto* create = std::get_if<Create>(&entry)) return referenced_blobs(create->object);
+    if (const auto* update = std::get_if<Update>(&entry)) return referenced_blobs(update->fields);
+    return {};
+}
+
 std::vector<BlobRef> referenced_blobs(const Scene& scene) {
     std::vector<BlobRef> blobs;
     for (const auto& [id, object] : scene.objects()) {

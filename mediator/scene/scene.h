@@ -59,5 +59,6 @@ ChangeList difference(const Scene& a, const Scene& b);
 // Blobs that the objects refer to, each once.
 std::vector<BlobRef> referenced_blobs(const Scene& scene);
 std::vector<BlobRef> referenced_blobs(const Object& object);
+std::vector<BlobRef> referenced_blobs(const Entry& entry);
 
 }  // namespace tessera::scene

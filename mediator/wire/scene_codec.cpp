@@ -52,6 +52,8 @@ scene::Object read(proto::Object& from, std::uint32_t mask) {
     return object;
 }
 
+}  // namespace
+
 void write(const scene::Entry& entry, proto::Entry& to) {
     to.set_id(scene::id(entry).value);
     if (const auto* create = std::get_if<scene::Create>(&entry)) {
@@ -84,16 +86,18 @@ scene::Entry read(proto::Entry& from) {
     }
 }
 
+namespace {
+
 template <class P>
 void write_entries(const std::vector<scene::Entry>& entries, P& to) {
-    for (const scene::Entry& entry : entries) write(entry, *to.add_entries());
+    for (const scene::Entry& entry : entries) wire::write(entry, *to.add_entries());
 }
 
 template <class P>
 std::vector<scene::Entry> read_entries(P& from) {
     if (from.entries_size() > MaxEntries) malformed("it has more than 16 million entries");
     std::vector<scene::Entry> entries;
-    for (proto::Entry& entry : *from.mutable_entries()) entries.push_back(read(entry));
+    for (proto::Entry& entry : *from.mutable_entries()) entries.push_back(wire::read(entry));
     return entries;
 }
 

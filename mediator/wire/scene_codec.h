@@ -8,6 +8,8 @@ namespace tessera::wire {
 
 void write(const scene::ChangeList& changes, proto::ChangeList& to);
 void read(proto::ChangeList& from, scene::ChangeList& changes);
+void write(const scene::Entry& entry, proto::Entry& to);
+scene::Entry read(proto::Entry& from);
 void write(const scene::Edit& edit, proto::Edit& to);
 void read(proto::Edit& from, scene::Edit& edit);
 

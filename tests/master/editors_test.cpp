@@ -164,7 +164,7 @@ TEST_F(EditorsTest, IdsInUseAreNotLentAgain) {
 // What cannot be recorded does not happen.
 TEST_F(EditorsTest, AnEditThatCannotBeRecordedIsTakenBack) {
     struct FullDisk final : EditRecorder {
-        Expected<void> joined(const EditorRecord&) override {
+        Expected<void> joined(const wire::RecordedEditor&) override {
             return failure(ErrorCode::Io, "the disk is full");
         }
         Expected<void> edited(const RecordedEdit& edit) override {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "mediator/base/random.h"
+#include "mediator/scene/blob.h"
 #include "mediator/scene/fields.h"
 #include "mediator/scene/referrers.h"
 #include "mediator/scene/scene_editor.h"
@@ -47,6 +48,12 @@ class RandomEdits {
         }
     }
 
+    // What the blobs of all its meshes are.
+    static const Blob& mesh_bytes() {
+        static const Blob Bytes(std::vector<std::byte>(36));
+        return Bytes;
+    }
+
     std::uint64_t below(std::uint64_t n) { return random_.below(n); }
 
     ObjectId some(const Scene& scene, ObjectKind wanted) {
@@ -59,7 +66,10 @@ class RandomEdits {
 
   private:
     float number() { return static_cast<float>(random_.below(1000)) / 1000.0f; }
-    static Geometry mesh() { return {.indices = {Hash256{}, 12}, .positions = {Hash256{}, 36}}; }
+    static Geometry mesh() {
+        const BlobRef bytes = reference(mesh_bytes());
+        return {.indices = bytes, .positions = bytes};
+    }
 
     void step(const Scene& scene, SceneEditor& editor) {
         switch (random_.below(8)) {
