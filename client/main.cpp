@@ -9,6 +9,7 @@
 #include "client/tools/doctor.h"
 #include "client/tools/filter_tool.h"
 #include "client/tools/keys_tool.h"
+#include "client/tools/log_tool.h"
 #include "client/tools/probe.h"
 #include "client/tools/render.h"
 #include "client/tools/set_filter.h"
@@ -23,7 +24,7 @@ int main(int argc, char** argv) {
         tools::render_command(line),  tools::status_command(line),     tools::probe_command(line),
         tools::keys_command(line),    tools::compare_command(line),    tools::filter_command(line),
         tools::filters_command(line), tools::set_filter_command(line), tools::bench_command(line),
-        tools::doctor_command(line),  tools::watch_command(line)};
+        tools::doctor_command(line),  tools::watch_command(line),      tools::log_command(line)};
     line.examples(
         {"tessera render room.glb -o room.exr -o room.png", "tessera doctor", "tessera render --help"});
     if (const auto exit = line.parse(argc, argv, std::cout, std::cerr)) return *exit;
