@@ -9,6 +9,7 @@
 #include "mediator/base/ids.h"
 #include "mediator/frame/film_tile.h"
 #include "mediator/view/view.h"
+#include "mediator/wire/live_messages.h"
 
 // What a client asks of a cluster and hears back, as plain values.
 namespace tessera::client {
@@ -109,6 +110,8 @@ struct ClusterStatus {
     UnitCounts units;
     WireBytes wire_bytes;
     std::vector<NodeState> nodes;
+    wire::LiveStatus live;
+    std::uint64_t resyncs = 0;  // nodes that had to be sent the whole scene again
 };
 
 }  // namespace tessera::client

@@ -161,7 +161,10 @@ ClusterStatus from_wire(const wire::StatusReply& reply) {
                          .queued = reply.queued,
                          .dropped_messages = reply.dropped_messages,
                          .units = from_wire(reply.units),
-                         .wire_bytes = from_wire(reply.wire_bytes)};
+                         .wire_bytes = from_wire(reply.wire_bytes),
+                         .nodes = {},
+                         .live = reply.live,
+                         .resyncs = reply.resyncs};
     for (const wire::NodeStatus& node : reply.nodes) {
         status.nodes.push_back({.share = from_wire(node.summary),
                                 .phase = name(node.phase),

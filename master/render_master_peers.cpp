@@ -27,7 +27,7 @@ void RenderMaster::from_node(NodeRecord& node, wire::ControlMessage& message, Ti
     } else if (const auto* refused = std::get_if<wire::SceneRefused>(&message)) {
         distributor_.refused(node, *refused);
     } else if (const auto* release = std::get_if<wire::UnitReleased>(&message)) {
-        if (live_runner_.holds(release->unit)) return live_runner_.released(node, *release);
+        if (live_runner_.holds(release->unit)) return live_runner_.released(node, *release, now);
         jobs_.released(node, *release, now);
     } else if (const auto* notice = std::get_if<wire::Notice>(&message)) {
         events_({notice->severity, "node " + node.hello.name + ": " + notice->text});
@@ -148,7 +148,8 @@ wire::StatusReply RenderMaster::status(TimePoint now) const {
         .dropped_messages = dropped_messages_ + jobs_.malformed_film() + live_runner_.malformed_film(),
         .units = jobs_.total_counts(),
         .wire_bytes = outbox_.bytes,
-        .live = live_.status()};
+        .live = live_.status(),
+        .resyncs = distributor_.resyncs()};
     add(reply.units, live_runner_.counts());
     for (const auto& [id, node] : nodes_.all()) {
         wire::NodeStatus entry{

@@ -65,8 +65,11 @@ void LiveRunner::deal(TimePoint now) {
 
 void LiveRunner::cancel(const std::vector<Cancellation>& cancellations) {
     std::map<NodeId, std::vector<UnitId>> by_node;
-    for (const Cancellation& cancellation : cancellations)
+    constexpr std::size_t MaxUnconfirmed = 4096;
+    for (const Cancellation& cancellation : cancellations) {
         by_node[cancellation.node].push_back(cancellation.unit);
+        if (cancelled_.size() < MaxUnconfirmed) cancelled_.emplace(cancellation.unit, now_);
+    }
     for (auto& [id, units] : by_node) {
         if (const NodeRecord* node = nodes_.find(id))
             outbox_.control(node->control, wire::CancelUnits{std::move(units)});
@@ -97,8 +100,13 @@ void LiveRunner::collect_overdue(TimePoint now) {
     }
 }
 
-void LiveRunner::released(NodeRecord& node, const wire::UnitReleased& release) {
+void LiveRunner::confirm_cancelled(UnitId unit, TimePoint now) {
+    if (const auto order = cancelled_.extract(unit)) cancellations_.add(now - order.mapped());
+}
+
+void LiveRunner::released(NodeRecord& node, const wire::UnitReleased& release, TimePoint now) {
     node.pending.erase(release.unit);
+    confirm_cancelled(release.unit, now);
     LivePass* pass = pass_of(release.unit);
     if (pass == nullptr) return;
     pass->scheduler->released(release.unit, node.id, Scheduler::Loss::Released);
@@ -140,6 +148,7 @@ void LiveRunner::goodbye(NodeRecord& node, const wire::Goodbye& goodbye) {
 
 void LiveRunner::node_gone(NodeId node) {
     balancer_.forget(node);
+    cancelled_.clear();  // some will never be confirmed
     for (auto& [id, live] : views_) {
         for (LivePass& pass : live.passes) {
             if (pass.scheduler) pass.scheduler->node_gone(node);
@@ -199,6 +208,7 @@ void LiveRunner::take_merger_output(TimePoint now) {
 
 void LiveRunner::take(const MergeReport& report, TimePoint now) {
     NodeRecord* node = nodes_.by_bulk(report.peer);
+    if (report.part + 1 == report.parts) confirm_cancelled(report.unit, now);  // it was done already
     if (report.malformed) {
         ++malformed_film_;
         events_({wire::Severity::Warning, "malformed film was dropped"});

@@ -42,6 +42,7 @@ UnitId LiveRunner::next_units() {
 
 std::string LiveRunner::open(SessionId session, const std::string& member, wire::OpenLiveView request,
                              Version version, TimePoint now) {
+    now_ = now;
     const FrameSender::Wish wish{request.picture, request.film};
     const auto named = [&](const std::string& name) {
         return std::find_if(views_.begin(), views_.end(),
@@ -233,7 +234,8 @@ bool LiveRunner::may_publish() const {
     });
 }
 
-void LiveRunner::scene_changed(const scene::ChangeList& changes, const scene::Scene& after, TimePoint) {
+void LiveRunner::scene_changed(const scene::ChangeList& changes, const scene::Scene& after, TimePoint now) {
+    now_ = now;
     const bool restarts = changes_pictures(changes, after);
     for (auto& [id, live] : views_) {
         live.version = changes.to;
@@ -260,6 +262,7 @@ void LiveRunner::scene_changed(const scene::ChangeList& changes, const scene::Sc
 // ---- time ----
 
 void LiveRunner::tick(TimePoint now) {
+    now_ = now;
     take_merger_output(now);
     if (views_.empty() && picks_.empty()) return;
     std::vector<ViewId> forgotten;

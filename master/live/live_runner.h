@@ -10,6 +10,7 @@
 #include "master/film_merger.h"
 #include "master/live/frame_sender.h"
 #include "master/live/live_view.h"
+#include "master/live/percentiles.h"
 #include "master/node_table.h"
 #include "master/outbox.h"
 #include "master/scene_distributor.h"
@@ -53,7 +54,7 @@ class LiveRunner {
 
     bool holds(UnitId unit) const { return unit >= FirstLiveUnit; }
     void film(net::PeerId bulk_peer, net::Bytes message) { merger_.push(bulk_peer, std::move(message)); }
-    void released(NodeRecord& node, const wire::UnitReleased& release);
+    void released(NodeRecord& node, const wire::UnitReleased& release, TimePoint now);
     void goodbye(NodeRecord& node, const wire::Goodbye& goodbye);
     void node_gone(NodeId node);
 
@@ -64,6 +65,8 @@ class LiveRunner {
     std::uint64_t watchers(ViewId view) const { return frames_.watchers(view); }
     const wire::UnitCounts& counts() const { return counts_; }
     std::uint64_t malformed_film() const { return malformed_film_; }
+    // From the order to stop to the node's word that it has.
+    const Percentiles& cancellations() const { return cancellations_; }
     const Balancer& balancer() const { return balancer_; }
 
   private:
@@ -97,6 +100,7 @@ class LiveRunner {
     void answer(PickTask& task, const frame::FilmTile& film);
     void refuse_pick(const PickTask& task, const std::string& problem);
     void cancel(const std::vector<Cancellation>& cancellations);
+    void confirm_cancelled(UnitId unit, TimePoint now);
     void send_frames(TimePoint now);
     LivePass* pass_of(UnitId unit);
     LivePass* pass_of(ViewId view);
@@ -116,8 +120,11 @@ class LiveRunner {
     std::uint64_t next_view_ = FirstLiveView.value, next_unit_ = FirstLiveUnit.value;
     std::uint64_t turn_ = 0;  // whose turn it is among equals
     bool passes_held_ = false;
+    TimePoint now_{};  // of the latest event
     wire::UnitCounts counts_;
     std::uint64_t malformed_film_ = 0;
+    std::map<UnitId, TimePoint> cancelled_;  // not confirmed yet
+    Percentiles cancellations_;
 };
 
 }  // namespace tessera::master

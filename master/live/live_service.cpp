@@ -192,7 +192,9 @@ void LiveService::publish(const scene::ChangeList& changes, TimePoint now) {
     ++counts_.versions;
     // What is out of date is cancelled before the nodes hear of the change: they build sooner.
     runner_.scene_changed(changes, authority_.scene(), now);
+    const std::uint64_t before = outbox_.bytes.control;
     publish_(changes, now);
+    counts_.change_bytes += outbox_.bytes.control - before;
 }
 
 void LiveService::publish_if_due(TimePoint now) {
@@ -224,6 +226,8 @@ wire::LiveStatus LiveService::status() const {
     status.title = title_;
     status.members = static_cast<std::uint32_t>(members_.size());
     status.views = static_cast<std::uint32_t>(runner_.views().size());
+    status.transactions = authority_.transactions();
+    status.stages.push_back(runner_.cancellations().summary("cancel to stopped"));
     return status;
 }
 

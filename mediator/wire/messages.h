@@ -274,6 +274,7 @@ struct StatusReply {
     WireBytes wire_bytes;
     std::vector<NodeStatus> nodes;
     LiveStatus live;
+    std::uint64_t resyncs = 0;  // nodes that had to be sent the whole scene again
 };
 
 // The order is the order of the cases in proto/control.proto; codecs rely on it.

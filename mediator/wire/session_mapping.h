@@ -235,6 +235,7 @@ void map(const Io& io, typename Io::template Ref<StatusReply> s, proto::StatusRe
     io.message(s.wire_bytes, p.mutable_wire_bytes());
     io.messages(s.nodes, p.mutable_nodes(), MaxList);
     io.message(s.live, p.mutable_live());
+    io(s.resyncs, p, &P::resyncs, &P::set_resyncs);
 }
 
 }  // namespace tessera::wire

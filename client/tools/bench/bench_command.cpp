@@ -5,15 +5,16 @@
 
 #include "client/tools/bench/backends_command.h"
 #include "client/tools/bench/filters_command.h"
+#include "client/tools/bench/live_command.h"
 #include "client/tools/bench/pictures.h"
 
 namespace tessera::tools {
 
 Command bench_command(cli::CommandLine& program) {
     cli::CommandLine& line =
-        program.command("bench", "Measure speed against error, and back-ends beside each other.");
+        program.command("bench", "Measure speed against error, back-ends beside each other, and edits.");
     const std::vector<Command> commands{bench::backends_command(line), bench::filters_command(line),
-                                        bench::pictures_command(line)};
+                                        bench::live_command(line), bench::pictures_command(line)};
     return {"bench", [commands](std::string_view chosen) {
                 const auto command = std::ranges::find(commands, chosen, &Command::name);
                 return command->run(chosen);

@@ -1,4 +1,4 @@
-#include "tests/process/child_process.h"
+#include "client/tools/child_process.h"
 
 #include <arpa/inet.h>
 #include <fcntl.h>
@@ -10,13 +10,14 @@
 
 #include <fstream>
 #include <sstream>
-#include <stdexcept>
 #include <thread>
 #include <utility>
 
+#include "mediator/base/error.h"
+
 extern char** environ;
 
-namespace tessera::test {
+namespace tessera::tools {
 
 namespace {
 
@@ -43,9 +44,9 @@ bool is_free(int port) {
 }  // namespace
 
 ChildProcess::ChildProcess(const std::filesystem::path& folder, const std::string& label,
-                           const std::string& program, const std::vector<std::string>& arguments)
+                           const std::filesystem::path& program, const std::vector<std::string>& arguments)
     : out_(folder / (label + ".out")), err_(folder / (label + ".err")) {
-    const std::string path = std::string(TESSERA_BIN) + "/" + program;
+    const std::string path = program.string();
     std::vector<char*> argv{const_cast<char*>(path.c_str())};
     for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
@@ -54,9 +55,9 @@ ChildProcess::ChildProcess(const std::filesystem::path& folder, const std::strin
     posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&files, 1, out_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     posix_spawn_file_actions_addopen(&files, 2, err_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    const int error = posix_spawn(&pid_, path.c_str(), &files, nullptr, argv.data(), environ);
+    const int error = posix_spawnp(&pid_, path.c_str(), &files, nullptr, argv.data(), environ);
     posix_spawn_file_actions_destroy(&files);
-    if (error != 0) throw std::runtime_error("cannot start " + path);
+    if (error != 0) throw Error(ErrorCode::NotFound, "cannot start '" + path + "': is it installed?");
 }
 
 ChildProcess::ChildProcess(ChildProcess&& other) noexcept
@@ -103,11 +104,15 @@ std::string ChildProcess::err() const {
     return contents(err_);
 }
 
+std::filesystem::path program_folder() {
+    return std::filesystem::canonical("/proc/self/exe").parent_path();
+}
+
 std::string free_loopback_endpoint() {
-    // Below the ephemeral range, spread by process so that tests running at the same time do not meet.
+    // Below the ephemeral range, spread by process so that several at the same time do not meet.
     int port = 20000 + 2 * (getpid() % 5000);
     while (!is_free(port) || !is_free(port + 1)) port = port >= 31990 ? 20000 : port + 2;
     return "tcp://127.0.0.1:" + std::to_string(port);
 }
 
-}  // namespace tessera::test
+}  // namespace tessera::tools

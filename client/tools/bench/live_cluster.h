@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/live_session.h"
+#include "client/tools/child_process.h"
+
+namespace tessera::tools::bench {
+
+// A master and nodes as processes of their own, with keys made for the bench. All end with it.
+class LiveCluster {
+  public:
+    // Throws Error when a program is not there or does not come up.
+    LiveCluster(std::uint32_t nodes, const std::string& backend);
+    ~LiveCluster();
+
+    std::unique_ptr<client::LiveSession> join(const std::string& name,
+                                              std::shared_ptr<scene::BlobStore> blobs,
+                                              const Clock& clock) const;
+    client::ClusterStatus status(const Clock& clock) const;
+    std::uint64_t master_memory() const;  // bytes in RAM
+
+    const std::string& endpoint() const { return endpoint_; }
+    std::filesystem::path keys() const { return folder_ / "keys"; }
+    const std::filesystem::path& folder() const { return folder_; }
+
+  private:
+    client::SessionSettings settings(const std::string& name) const;
+
+    std::filesystem::path folder_;
+    std::string endpoint_;
+    std::optional<ChildProcess> master_;
+    std::vector<ChildProcess> nodes_;
+};
+
+}  // namespace tessera::tools::bench

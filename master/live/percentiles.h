@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+
+#include "mediator/base/clock.h"
+#include "mediator/wire/live_messages.h"
+
+namespace tessera::master {
+
+// The latest durations of something, for their percentiles.
+class Percentiles {
+  public:
+    static constexpr std::size_t Length = 4096;
+
+    void add(Duration duration);
+    wire::StageTimes summary(const std::string& name) const;  // nearest rank
+
+  private:
+    std::deque<Duration> latest_;
+    std::uint64_t count_ = 0;
+};
+
+}  // namespace tessera::master
