@@ -15,6 +15,8 @@ struct MasterOptions {
     bool insecure = false;
     double heartbeat_seconds = 1.0;
     std::uint64_t blob_quota_mib = 16384;  // per session
+    std::string session;                   // folder; "" = live scenes end with the master
+    double checkpoint_seconds = 10.0;
     cli::LogSettings log{.program = "tessera-master"};
 };
 

@@ -37,6 +37,9 @@ int serve(const master::MasterOptions& options, const sigset_t& signals) {
     master::MasterSettings settings{.software = "tessera " + cli::version()};
     settings.liveness.interval =
         std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options.heartbeat_seconds));
+    settings.session_folder = options.session;
+    settings.checkpoint_interval =
+        std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options.checkpoint_seconds));
     settings.blob_limits.bytes_total = options.blob_quota_mib << 20;
     master::RenderMaster render_master(std::move(channel), std::make_shared<scene::BlobStore>(), clock,
                                        settings, event_log(log));

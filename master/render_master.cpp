@@ -46,7 +46,13 @@ RenderMaster::RenderMaster(std::unique_ptr<net::Channel> channel, std::shared_pt
       live_(authority_, blobs_, sessions_, live_runner_, outbox_, events_,
             [this](const scene::ChangeList& changes, TimePoint now) { publish(changes, now); }),
       service_(authority_, blobs_, sessions_, jobs_, live_, outbox_,
-               [this](const scene::ChangeList& changes, TimePoint now) { publish(changes, now); }) {}
+               [this](const scene::ChangeList& changes, TimePoint now) { publish(changes, now); }) {
+    if (settings.session_folder.empty()) return;
+    live_journal_.emplace(settings.session_folder, settings.checkpoint_interval, authority_, blobs_,
+                          live_runner_, events_);
+    live_.record_to(*live_journal_, started_);
+    if (live_.is_open()) sessions_.give_stage_to_live_scene();
+}
 
 void RenderMaster::post(std::function<void(net::Channel&)> task) {
     {

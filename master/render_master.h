@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -27,6 +28,8 @@ struct MasterSettings {
     StuckSettings stuck;
     JobSettings jobs;
     LiveSettings live;
+    std::filesystem::path session_folder;  // of live scenes, on disk; empty = in memory alone
+    Duration checkpoint_interval = std::chrono::seconds(10);
     wire::BlobLimits blob_limits;
     std::size_t max_sessions = 64, max_nodes = 1024;
 };
@@ -35,6 +38,7 @@ struct MasterSettings {
 // never renders and never merges (FilmMerger does, on a thread of its own).
 class RenderMaster {
   public:
+    // Throws Error when the session folder cannot be used.
     RenderMaster(std::unique_ptr<net::Channel> channel, std::shared_ptr<scene::BlobStore> blobs,
                  const Clock& clock, const MasterSettings& settings, EventSink events);
 
@@ -82,6 +86,7 @@ class RenderMaster {
     SceneDistributor distributor_;
     JobRunner jobs_;
     LiveRunner live_runner_;
+    std::optional<LiveJournal> live_journal_;
     LiveService live_;
     SessionService service_;
     std::uint64_t next_number_ = 1;

@@ -200,8 +200,8 @@ void LiveRunner::take_merger_output(TimePoint now) {
         } else if (auto* made = std::get_if<Reconstructed>(&output)) {
             if (!made->picture.error.empty()) events_({wire::Severity::Error, made->picture.error});
             (void)frames_.take(std::move(*made), now);
-        } else if (const auto* film = std::get_if<FilmBlocks>(&output)) {
-            take(*film);
+        } else if (auto* film = std::get_if<FilmBlocks>(&output)) {
+            film->job == JobId{} ? take(std::move(*film)) : take_copy(std::move(*film));
         }
     }
 }

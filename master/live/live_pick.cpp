@@ -59,7 +59,7 @@ void LiveRunner::refuse_pick(const PickTask& task, const std::string& problem) {
             wire::Picked{.request = task.request.request, .version = task.version, .problem = problem});
 }
 
-void LiveRunner::take(const FilmBlocks& film) {
+void LiveRunner::take(FilmBlocks&& film) {
     for (PickTask& task : picks_) {
         if (task.pass.view.id != film.view || film.blocks.empty()) continue;
         answer(task, film.blocks.front());

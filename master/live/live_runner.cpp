@@ -40,8 +40,8 @@ UnitId LiveRunner::next_units() {
     return first;
 }
 
-std::string LiveRunner::open(SessionId session, const std::string& member, wire::OpenLiveView request,
-                             Version version, TimePoint now) {
+std::string LiveRunner::open(const Owner& owner, wire::OpenLiveView request, Version version, TimePoint now) {
+    const SessionId session = owner.session;
     now_ = now;
     const FrameSender::Wish wish{request.picture, request.film};
     const auto named = [&](const std::string& name) {
@@ -66,9 +66,10 @@ std::string LiveRunner::open(SessionId session, const std::string& member, wire:
                " MiB a frame, more than 128: ask for a picture, fewer channels or a smaller window";
     }
     auto watched = frames_.watched(session, request.number);
-    if (request.name.empty()) request.name = member + "/" + std::to_string(request.number);
+    if (request.name.empty()) request.name = owner.name + "/" + std::to_string(request.number);
     if (const auto known = named(request.name); known != views_.end() && known->first != watched) {
-        if (!known->second.orphaned || known->second.owner_name != member) {
+        const bool is_owner = known->second.owner_user == owner.user && known->second.owner_key == owner.key;
+        if (!known->second.orphaned || !is_owner) {
             return "a view named '" + request.name + "' is there already: choose another name, or share it";
         }
         watched = known->first;  // its owner is back
@@ -86,7 +87,9 @@ std::string LiveRunner::open(SessionId session, const std::string& member, wire:
     }
     LiveView& live = views_.at(*watched);
     live.owner = session;
-    live.owner_name = member;
+    live.owner_name = owner.name;
+    live.owner_user = owner.user;
+    live.owner_key = owner.key;
     live.name = request.name;
     live.orphaned.reset();
     frames_.watch(session, request.number, live.id, wish);
@@ -148,7 +151,7 @@ void LiveRunner::close_all() {
 
 // ---- passes ----
 
-void LiveRunner::begin_pass(LivePass& pass, Version version) {
+void LiveRunner::begin_pass(LivePass& pass, Version version, std::vector<frame::FilmTile>&& film) {
     std::uint32_t workers = 0;
     for (const auto& [id, node] : nodes_.all()) {
         if (suits(node, pass.view, version)) workers += std::max(1u, node.hello.concurrent_units);
@@ -160,8 +163,14 @@ void LiveRunner::begin_pass(LivePass& pass, Version version) {
                             .first_level = 0};
     pass.first_unit = next_units();
     pass.scheduler.emplace(plan, pass.view.id, pass.view.revision, version, pass.first_unit, std::nullopt);
-    merger_.open(pass.view.id, pass.view.revision,
-                 FrameAssembler(pass.scheduler->tiles(), pass.view.channels, pass.spp));
+    FrameAssembler assembler(pass.scheduler->tiles(), pass.view.channels, pass.spp);
+    for (frame::FilmTile& block : film) {
+        const frame::SampleBlock samples = block.block;
+        const FrameAssembler::Result result = assembler.insert(std::move(block));
+        if (result.outcome == FrameAssembler::Outcome::Merged)
+            (void)pass.scheduler->merged(UnitId{}, result.tile, samples);
+    }
+    merger_.open(pass.view.id, pass.view.revision, std::move(assembler));
 }
 
 void LiveRunner::end(LivePass& pass) {

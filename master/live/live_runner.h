@@ -4,6 +4,7 @@
 #include <list>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "master/node_table.h"
 #include "master/outbox.h"
 #include "master/scene_distributor.h"
+#include "mediator/wire/journal_records.h"
 
 namespace tessera::master {
 
@@ -35,9 +37,14 @@ class LiveRunner {
     // A first picture of `version` is merged.
     std::function<void(Version version, TimePoint now)> on_first_picture;
 
+    // Who opens a view. Whoever has the same user and key is the same.
+    struct Owner {
+        SessionId session;
+        std::string name, user;
+        std::uint64_t key = 0;
+    };
     // Again with the same number: another camera, size or quality. "" or what is wrong with it.
-    std::string open(SessionId session, const std::string& member, wire::OpenLiveView request,
-                     Version version, TimePoint now);
+    std::string open(const Owner& owner, wire::OpenLiveView request, Version version, TimePoint now);
     void close(SessionId session, std::uint64_t number);
     void taken(SessionId session, const wire::FrameTaken& taken) { frames_.taken(session, taken); }
     void pick(SessionId session, const wire::Pick& request, Version version, TimePoint now);
@@ -51,6 +58,13 @@ class LiveRunner {
     bool may_publish() const;
     void hold_passes(bool hold) { passes_held_ = hold; }
     void scene_changed(const scene::ChangeList& changes, const scene::Scene& after, TimePoint now);
+
+    // Has all films copied; they are there when take_saved() brings them. `scene_hash`: of what they show.
+    void save(Hash128 scene_hash);
+    bool is_saving() const { return saving_.has_value(); }
+    std::optional<std::vector<wire::SavedView>> take_saved();
+    // Of a master before: they wait for their owners. Films go on where they show this scene.
+    void restore(std::vector<wire::SavedView>&& saved, Version version, Hash128 scene_hash, TimePoint now);
 
     bool holds(UnitId unit) const { return unit >= FirstLiveUnit; }
     void film(net::PeerId bulk_peer, net::Bytes message) { merger_.push(bulk_peer, std::move(message)); }
@@ -84,7 +98,7 @@ class LiveRunner {
     bool suits(const NodeRecord& node, const view::View& view, Version version) const;
     bool ready(const NodeRecord& node, const view::View& view, Version version) const;
     void restart(LiveView& live, TimePoint now);
-    void begin_pass(LivePass& pass, Version version);
+    void begin_pass(LivePass& pass, Version version, std::vector<frame::FilmTile>&& film = {});
     void advance(LiveView& live, TimePoint now);
     void show(LiveView& live, TimePoint now);
     void end(LivePass& pass);
@@ -96,7 +110,8 @@ class LiveRunner {
     void collect_overdue(TimePoint now);
     void take_merger_output(TimePoint now);
     void take(const MergeReport& report, TimePoint now);
-    void take(const FilmBlocks& film);
+    void take(FilmBlocks&& film);
+    void take_copy(FilmBlocks&& film);
     void answer(PickTask& task, const frame::FilmTile& film);
     void refuse_pick(const PickTask& task, const std::string& problem);
     void cancel(const std::vector<Cancellation>& cancellations);
@@ -106,6 +121,13 @@ class LiveRunner {
     LivePass* pass_of(ViewId view);
     LiveView* view_of(ViewId pass);
     UnitId next_units();
+
+    // A save under way.
+    struct Saving {
+        std::map<ViewId, wire::SavedView> views;
+        std::map<ViewId, std::uint64_t> revisions;  // of the views whose film is being copied
+        std::set<ViewId> waiting;                   // films
+    };
 
     LiveSettings settings_;
     NodeTable& nodes_;
@@ -117,6 +139,7 @@ class LiveRunner {
     FrameSender frames_;
     std::map<ViewId, LiveView> views_;
     std::list<PickTask> picks_;
+    std::optional<Saving> saving_;
     std::uint64_t next_view_ = FirstLiveView.value, next_unit_ = FirstLiveUnit.value;
     std::uint64_t turn_ = 0;  // whose turn it is among equals
     bool passes_held_ = false;

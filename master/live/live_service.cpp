@@ -38,17 +38,33 @@ std::string LiveService::unique_name(const std::string& wanted) const {
     }
 }
 
-void LiveService::join(SessionRecord& session, const wire::JoinScene& request, TimePoint now) {
-    if (!open_) {
-        open_ = true;
-        title_ = request.title.empty() ? "untitled" : request.title;
-        counts_ = {};
-        events_({wire::Severity::Info, "live scene '" + title_ + "' is open"});
+void LiveService::open(const std::string& title) {
+    if (journal_ != nullptr) journal_->opened(title);
+    open_ = true;
+    title_ = title;
+    counts_ = {};
+    events_({wire::Severity::Info, "live scene '" + title_ + "' is open"});
+}
+
+void LiveService::record_to(LiveJournal& journal, TimePoint now) {
+    journal_ = &journal;
+    const Recovery& recovery = journal.recovery();
+    if (!recovery.found || recovery.title.empty()) {
+        (void)authority_.clear();
+        return;
     }
+    open(recovery.title);
+    std::vector<wire::SavedView> views = recovery.views;
+    runner_.restore(std::move(views), authority_.version(), authority_.state_hash(), now);
+}
+
+void LiveService::join(SessionRecord& session, const wire::JoinScene& request, TimePoint now) {
+    if (!open_) open(request.title.empty() ? "untitled" : request.title);
     const auto known = members_.find(session.id);
     if (known == members_.end()) {
         Member& member = members_[session.id];
         member.name = unique_name(request.name);
+        member.key = request.key;
         events_({wire::Severity::Info, member.name + " (" + session.user + ") joined '" + title_ + "'"});
     }
     const IdRange ids = authority_.join(session.id, session.user, request.key);
@@ -70,6 +86,7 @@ void LiveService::close(TimePoint now) {
     members_.clear();
     reads_.clear();
     if (auto cleared = authority_.clear()) publish(*cleared, now);
+    if (journal_ != nullptr) journal_->closed();
 }
 
 void LiveService::left(SessionId session, LiveRunner::Departure departure, TimePoint now) {
@@ -179,7 +196,8 @@ void LiveService::asked(SessionRecord& session, wire::OpenLiveView request, Time
     const glm::dvec3 eye(request.view.camera.world_from_camera[3]);
     const bool leads = !request.share && runner_.views().size() <= 1;
     std::string problem =
-        runner_.open(session.id, name(session.id), std::move(request), authority_.version(), now);
+        runner_.open({session.id, name(session.id), session.user, members_.at(session.id).key},
+                     std::move(request), authority_.version(), now);
     // The render origin follows the camera while it is the only one.
     if (problem.empty() && leads) {
         if (auto moved = authority_.follow_camera(eye)) publish(*moved, now);
@@ -206,6 +224,7 @@ void LiveService::publish_if_due(TimePoint now) {
 }
 
 void LiveService::tick(TimePoint now) {
+    if (journal_ != nullptr) journal_->tick(title_, now);
     if (!open_) return;
     publish_if_due(now);
     std::erase_if(reads_, [&](const WaitingRead& read) {
@@ -227,6 +246,10 @@ wire::LiveStatus LiveService::status() const {
     status.members = static_cast<std::uint32_t>(members_.size());
     status.views = static_cast<std::uint32_t>(runner_.views().size());
     status.transactions = authority_.transactions();
+    if (journal_ != nullptr) {
+        status.journal_bytes = journal_->byte_size();
+        status.checkpoints = journal_->checkpoints();
+    }
     status.stages.push_back(runner_.cancellations().summary("cancel to stopped"));
     return status;
 }

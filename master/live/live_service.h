@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "master/live/live_journal.h"
 #include "master/live/live_runner.h"
 #include "master/scene_authority.h"
 #include "master/session_table.h"
@@ -22,6 +23,9 @@ class LiveService {
     LiveService(SceneAuthority& authority, std::shared_ptr<scene::BlobStore> blobs, SessionTable& sessions,
                 LiveRunner& runner, Outbox& outbox, EventSink events,
                 std::function<void(const scene::ChangeList&, TimePoint)> publish);
+
+    // From now on edits are recorded in it. What it recovered is open again. Must outlive its use.
+    void record_to(LiveJournal& journal, TimePoint now);
 
     bool is_open() const { return open_; }
     bool is_member(SessionId session) const { return members_.contains(session); }
@@ -53,6 +57,7 @@ class LiveService {
   private:
     struct Member {
         std::string name;
+        std::uint64_t key = 0;
         wire::SetPresence presence;
         TimePoint presence_until{};
         scene::BlobPtr content;  // the scene as it was read last: kept until the client has it
@@ -63,6 +68,7 @@ class LiveService {
         Version wanted;  // that has all edits made before the question
     };
 
+    void open(const std::string& title);
     std::string unique_name(const std::string& wanted) const;
     void answer(const WaitingRead& read);
     void done(const SessionRecord& session, std::uint64_t request, std::string problem);
@@ -73,6 +79,7 @@ class LiveService {
     std::shared_ptr<scene::BlobStore> blobs_;
     SessionTable& sessions_;
     LiveRunner& runner_;
+    LiveJournal* journal_ = nullptr;
     Outbox& outbox_;
     EventSink events_;
     std::function<void(const scene::ChangeList&, TimePoint)> publish_;

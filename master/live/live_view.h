@@ -34,8 +34,9 @@ struct LiveView {
     ViewId id;  // passes have the ids from here on
     std::string name;
     SessionId owner;
-    std::string owner_name;
-    view::View view;  // as asked for, with the channels that its filter needs
+    std::string owner_name, owner_user;
+    std::uint64_t owner_key = 0;  // as it joined: who comes back with it has the view again
+    view::View view;              // as asked for, with the channels that its filter needs
     std::uint64_t spp = 1;
     std::uint64_t asked_revision = 0;  // of what was asked for, and of what the passes render
     std::uint64_t camera_revision = 0;
