@@ -48,6 +48,21 @@ struct Session::Implementation {
         }
         return std::nullopt;
     }
+
+    // Asks again after a break.
+    template <class Answer>
+    Answer ask(const wire::ControlMessage& question) {
+        link.send(question);
+        const TimePoint deadline = clock.now() + settings.lost_limit;
+        while (const auto incoming = link.next(deadline, {})) {
+            if (std::holds_alternative<Rejoined>(*incoming)) link.send(question);
+            const auto* message = std::get_if<wire::ControlMessage>(&*incoming);
+            if (message == nullptr) continue;
+            throw_refusal(*message);
+            if (const auto* answer = std::get_if<Answer>(message)) return *answer;
+        }
+        throw Error(ErrorCode::Unavailable, "the master does not answer");
+    }
 };
 
 Session::Session(std::unique_ptr<net::Channel> channel, std::function<void()> reconnect,
@@ -164,35 +179,17 @@ JobResult Session::render(const JobRequest& request, const std::function<void(co
 }
 
 ClusterStatus Session::status() {
-    Implementation& self = *implementation_;
-    self.link.send(wire::StatusRequest{});
-    const TimePoint deadline = self.clock.now() + self.settings.lost_limit;
-    while (const auto incoming = self.link.next(deadline, {})) {
-        if (std::holds_alternative<Rejoined>(*incoming)) self.link.send(wire::StatusRequest{});
-        const auto* message = std::get_if<wire::ControlMessage>(&*incoming);
-        if (message == nullptr) continue;
-        throw_refusal(*message);
-        if (const auto* reply = std::get_if<wire::StatusReply>(message)) return from_wire(*reply);
-    }
-    throw Error(ErrorCode::Unavailable, "the master does not tell its status");
+    return from_wire(implementation_->ask<wire::StatusReply>(wire::StatusRequest{}));
+}
+
+wire::Trace Session::trace(std::uint32_t count) {
+    return implementation_->ask<wire::Trace>(wire::ReadTrace{.request = 1, .count = count});
 }
 
 std::string Session::set_filter(const std::string& filter) {
-    Implementation& self = *implementation_;
-    const wire::SetFilter request{filter};
-    self.link.send(request);
-    const TimePoint deadline = self.clock.now() + self.settings.lost_limit;
-    while (const auto incoming = self.link.next(deadline, {})) {
-        if (std::holds_alternative<Rejoined>(*incoming)) self.link.send(request);
-        const auto* message = std::get_if<wire::ControlMessage>(&*incoming);
-        if (message == nullptr) continue;
-        throw_refusal(*message);
-        const auto* reply = std::get_if<wire::FilterSet>(message);
-        if (reply == nullptr) continue;
-        if (!reply->accepted) throw Error(ErrorCode::Refused, reply->text);
-        return reply->text;
-    }
-    throw Error(ErrorCode::Unavailable, "the master does not answer");
+    const auto reply = implementation_->ask<wire::FilterSet>(wire::SetFilter{filter});
+    if (!reply.accepted) throw Error(ErrorCode::Refused, reply.text);
+    return reply.text;
 }
 
 std::unique_ptr<Session> connect(const Address& address, std::shared_ptr<scene::BlobStore> blobs,

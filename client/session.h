@@ -81,6 +81,9 @@ class Session {
 
     ClusterStatus status();
 
+    // Where the time of the latest edits of the live scene went, oldest first.
+    wire::Trace trace(std::uint32_t count);
+
     // Another filter for the frame that is being rendered, whoever asked for it; what the master answers.
     // Throws Error{Refused} with the master's reason.
     std::string set_filter(const std::string& filter);

@@ -12,6 +12,7 @@ void RenderMaster::from_node(NodeRecord& node, wire::ControlMessage& message, Ti
         switch (distributor_.reported(node, *report, now)) {
             case SceneDistributor::Verdict::Good:
                 jobs_.scene_facts(*report);
+                live_.node_built(node, *report, now);
                 for (const std::string& problem : report->problems)
                     events_({wire::Severity::Warning, problem});
                 break;
@@ -63,6 +64,8 @@ void RenderMaster::from_client(SessionRecord& session, wire::ControlMessage& mes
         service_.join_scene(session, *join, now);
     } else if (std::holds_alternative<wire::Goodbye>(message)) {
         remove_session(session.id, LiveRunner::Departure::Goodbye, now);
+    } else if (const auto* traced = std::get_if<wire::ReadTrace>(&message)) {
+        outbox_.control(session.control, live_.trace(*traced));
     } else if (live_.is_member(session.id)) {
         from_member(session, message, now);
     } else {
@@ -104,6 +107,7 @@ void RenderMaster::remove_node(NodeId id, const std::string& why) {
     if (node->bulk) outbox_.forget(net::Link::Bulk, *node->bulk);
     jobs_.node_gone(id);
     live_runner_.node_gone(id);
+    live_.node_gone(id);
     nodes_.remove(id);
 }
 

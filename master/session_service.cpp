@@ -154,7 +154,7 @@ void SessionService::advance(SessionRecord& session, TimePoint now) {
         if (!is_live && authority_.has_unpublished()) {
             if (auto changes = authority_.publish()) publish_(*changes, now);
         }
-        if (is_live) live_.edited(pending.bytes);
+        if (is_live) live_.edited(session, pending.edit, answer, pending.bytes, now);
         outbox_.control(session.control, wire::EditReply{.sequence = pending.edit.sequence,
                                                          .accepted = answer.accepted,
                                                          .version = answer.version,

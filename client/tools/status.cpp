@@ -3,12 +3,15 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "client/session.h"
+#include "client/tools/chrome_trace.h"
 #include "client/tools/this_machine.h"
+#include "mediator/picture/atomic_file.h"
 
 namespace tessera::tools {
 
@@ -20,10 +23,31 @@ constexpr const char* Name = "status";
 struct StatusOptions {
     client::Address address{.endpoint = "tcp://127.0.0.1:7420"};
     bool json = false;
+    std::string chrome_trace;
 };
 
 Json version_value(const Version& version) {
     return {{"epoch", version.epoch}, {"number", version.number}};
+}
+
+Json live_value(const wire::LiveStatus& live) {
+    if (live.title.empty()) return nullptr;
+    Json stages = Json::object();
+    for (const wire::StageTimes& stage : live.stages) {
+        stages[stage.name] = {
+            {"count", stage.count}, {"p50_seconds", stage.p50_seconds}, {"p99_seconds", stage.p99_seconds}};
+    }
+    return {{"title", live.title},
+            {"members", live.members},
+            {"views", live.views},
+            {"edits", live.edits},
+            {"transactions", live.transactions},
+            {"edit_bytes", live.edit_bytes},
+            {"versions", live.versions},
+            {"change_bytes", live.change_bytes},
+            {"journal_bytes", live.journal_bytes},
+            {"checkpoints", live.checkpoints},
+            {"stages", stages}};
 }
 
 std::string as_json(const client::ClusterStatus& status) {
@@ -66,6 +90,8 @@ std::string as_json(const client::ClusterStatus& status) {
          {{"control", status.wire_bytes.control},
           {"blobs", status.wire_bytes.blobs},
           {"film", status.wire_bytes.film}}},
+        {"resyncs", status.resyncs},
+        {"live", live_value(status.live)},
         {"nodes", nodes},
     };
     return object.dump(2);
@@ -80,6 +106,16 @@ void print_table(const client::ClusterStatus& status) {
                 static_cast<unsigned long long>(status.units.merged),
                 static_cast<unsigned long long>(status.units.reissued),
                 static_cast<unsigned long long>(status.units.lost));
+    if (const wire::LiveStatus& live = status.live; !live.title.empty()) {
+        std::printf("live scene '%s': %u members, %u views, %llu edits, %llu transactions\n",
+                    live.title.c_str(), live.members, live.views, static_cast<unsigned long long>(live.edits),
+                    static_cast<unsigned long long>(live.transactions));
+        for (const wire::StageTimes& stage : live.stages) {
+            if (stage.count == 0) continue;
+            std::printf("  %-22s %8.1f ms, 99 %% within %8.1f ms\n", stage.name.c_str(),
+                        1e3 * stage.p50_seconds, 1e3 * stage.p99_seconds);
+        }
+    }
     if (status.nodes.empty()) {
         std::printf("no nodes: start some with tessera-node --master ...\n");
         return;
@@ -104,6 +140,17 @@ int run(const StatusOptions& options) {
                                               .host = host_name(),
                                               .software = "tessera " + cli::version(),
                                               .pid = static_cast<std::uint64_t>(::getpid())});
+        if (!options.chrome_trace.empty()) {
+            constexpr std::uint32_t Edits = 4096;  // as many as the master keeps and a message holds
+            picture::write_atomically(options.chrome_trace, [&](const std::string& temporary) {
+                std::ofstream file(temporary, std::ios::binary);
+                file << chrome_trace(session->trace(Edits));
+                file.close();
+                if (!file)
+                    throw Error(ErrorCode::Io,
+                                "cannot write '" + options.chrome_trace + "': is the disk full?");
+            });
+        }
         const client::ClusterStatus status = session->status();
         if (options.json) {
             std::cout << as_json(status) << std::endl;
@@ -125,6 +172,9 @@ Command status_command(cli::CommandLine& program) {
     command.option("--keys", "keys for that cluster: a folder, or an exported file", options->address.keys);
     command.option("--user", "whose pair in a folder of keys", options->address.user);
     command.flag("--json", "print one JSON object", options->json);
+    command.option("--chrome-trace",
+                   "write where the time of the latest edits went, for ui.perfetto.dev or chrome://tracing",
+                   options->chrome_trace);
     command.examples({"tessera status --master tcp://render-1:7420 --keys ~/.tessera",
                       "tessera status --master tcp://127.0.0.1:7420 --json"});
     return {Name, [options](std::string_view) { return run(*options); }};

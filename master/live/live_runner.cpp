@@ -243,7 +243,7 @@ bool LiveRunner::may_publish() const {
     });
 }
 
-void LiveRunner::scene_changed(const scene::ChangeList& changes, const scene::Scene& after, TimePoint now) {
+bool LiveRunner::scene_changed(const scene::ChangeList& changes, const scene::Scene& after, TimePoint now) {
     now_ = now;
     const bool restarts = changes_pictures(changes, after);
     for (auto& [id, live] : views_) {
@@ -266,6 +266,7 @@ void LiveRunner::scene_changed(const scene::ChangeList& changes, const scene::Sc
         task.version = changes.to;
         if (task.pass.scheduler) task.pass.scheduler->follow(changes.to);
     }
+    return restarts;
 }
 
 // ---- time ----

@@ -57,7 +57,8 @@ class LiveRunner {
     // No first picture is on its way. Changes wait for it, and no pass begins while they wait.
     bool may_publish() const;
     void hold_passes(bool hold) { passes_held_ = hold; }
-    void scene_changed(const scene::ChangeList& changes, const scene::Scene& after, TimePoint now);
+    // Whether pictures start anew.
+    bool scene_changed(const scene::ChangeList& changes, const scene::Scene& after, TimePoint now);
 
     // Has all films copied; they are there when take_saved() brings them. `scene_hash`: of what they show.
     void save(Hash128 scene_hash);

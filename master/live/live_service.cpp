@@ -23,7 +23,9 @@ LiveService::LiveService(SceneAuthority& authority, std::shared_ptr<scene::BlobS
       runner_(runner),
       outbox_(outbox),
       events_(std::move(events)),
-      publish_(std::move(publish)) {}
+      publish_(std::move(publish)) {
+    runner_.on_first_picture = [this](Version version, TimePoint now) { traces_.merged(version, now); };
+}
 
 std::string LiveService::unique_name(const std::string& wanted) const {
     const auto taken = [&](const std::string& name) {
@@ -100,9 +102,32 @@ void LiveService::left(SessionId session, LiveRunner::Departure departure, TimeP
     std::erase_if(reads_, [&](const WaitingRead& read) { return read.session == session; });
 }
 
-void LiveService::edited(std::uint64_t message_bytes) {
+void LiveService::edited(const SessionRecord& session, const scene::Edit& edit, const EditAnswer& answer,
+                         std::uint64_t message_bytes, TimePoint now) {
     ++counts_.edits;
     counts_.edit_bytes += message_bytes;
+    if (!answer.accepted || answer.transaction == 0) return;
+    traces_.submitted({.transaction = answer.transaction,
+                       .name = name(session.id),
+                       .bytes = message_bytes,
+                       .submitted_at = edit.submitted_at,
+                       .clock = session.clock.offset(now),
+                       .received = now,
+                       .version = answer.version});
+}
+
+void LiveService::node_built(const NodeRecord& node, const wire::VersionReport& report, TimePoint now) {
+    if (!open_) return;
+    traces_.node_built(node.id, node.hello.name, report.version, report.received_at, report.built_at,
+                       node.clock.offset(now));
+}
+
+wire::Trace LiveService::trace(const wire::ReadTrace& request) const {
+    wire::Trace trace{request.request, traces_.latest(request.count)};
+    while (!wire::fits_control(trace))  // the older ones go
+        trace.edits.erase(trace.edits.begin(),
+                          trace.edits.begin() + static_cast<std::ptrdiff_t>((trace.edits.size() + 1) / 2));
+    return trace;
 }
 
 void LiveService::done(const SessionRecord& session, std::uint64_t request, std::string problem) {
@@ -161,6 +186,10 @@ void LiveService::asked(SessionRecord& session, const wire::ReadPeople& request,
                             .name = member.name,
                             .user = other->user,
                             .editor = other->role != net::Role::Viewer};
+        if (const auto clock = other->clock.offset(now)) {
+            person.clock_offset_seconds = seconds(clock->offset);
+            person.clock_bound_seconds = seconds(clock->bound);
+        }
         if (now < member.presence_until) {
             person.text = member.presence.text;
             person.selection = member.presence.selection;
@@ -209,10 +238,16 @@ void LiveService::publish(const scene::ChangeList& changes, TimePoint now) {
     published_at_ = now;
     ++counts_.versions;
     // What is out of date is cancelled before the nodes hear of the change: they build sooner.
-    runner_.scene_changed(changes, authority_.scene(), now);
+    const bool restarts = runner_.scene_changed(changes, authority_.scene(), now);
     const std::uint64_t before = outbox_.bytes.control;
     publish_(changes, now);
     counts_.change_bytes += outbox_.bytes.control - before;
+    traces_.published(changes.to, now);
+    if (runner_.views().empty()) {
+        traces_.nobody_looks();
+    } else if (!restarts) {
+        traces_.merged(changes.to, now);  // the pictures that there are show it
+    }
 }
 
 void LiveService::publish_if_due(TimePoint now) {
@@ -250,6 +285,7 @@ wire::LiveStatus LiveService::status() const {
         status.journal_bytes = journal_->byte_size();
         status.checkpoints = journal_->checkpoints();
     }
+    status.stages = traces_.stages();
     status.stages.push_back(runner_.cancellations().summary("cancel to stopped"));
     return status;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "master/edit_trace.h"
 #include "master/live/live_journal.h"
 #include "master/live/live_runner.h"
 #include "master/scene_authority.h"
@@ -39,8 +40,11 @@ class LiveService {
     void close(TimePoint now);
     void left(SessionId session, LiveRunner::Departure departure, TimePoint now);
 
-    // A member's edit was taken.
-    void edited(std::uint64_t message_bytes);
+    // A member's edit was answered.
+    void edited(const SessionRecord& session, const scene::Edit& edit, const EditAnswer& answer,
+                std::uint64_t message_bytes, TimePoint now);
+    void node_built(const NodeRecord& node, const wire::VersionReport& report, TimePoint now);
+    void node_gone(NodeId node) { traces_.node_gone(node); }
 
     void asked(SessionRecord& session, const wire::ReadScene& request);
     void asked(SessionRecord& session, const wire::LockObjects& request);
@@ -49,6 +53,8 @@ class LiveService {
     void asked(SessionRecord& session, const wire::ReadHistory& request);
     void asked(SessionRecord& session, const wire::ReadWriters& request);
     void asked(SessionRecord& session, wire::OpenLiveView request, TimePoint now);
+
+    wire::Trace trace(const wire::ReadTrace& request) const;
 
     void tick(TimePoint now);
     TimePoint next_event(TimePoint now) const;
@@ -89,6 +95,7 @@ class LiveService {
     std::vector<WaitingRead> reads_;
     TimePoint published_at_{};
     wire::LiveStatus counts_;
+    EditTraceLog traces_;
 };
 
 }  // namespace tessera::master
