@@ -10,11 +10,8 @@
 #include "client/tools/edit.h"
 #include "client/tools/filter_tool.h"
 #include "client/tools/keys_tool.h"
-<<<<<<< HEAD
-#include "client/tools/log_tool.h"
-=======
 #include "client/tools/live_target.h"
->>>>>>> ac3aba8 (Live scenes on disk: journal, checkpoints with films, and the way back; tessera edit reaches a master)
+#include "client/tools/log_tool.h"
 #include "client/tools/probe.h"
 #include "client/tools/render.h"
 #include "client/tools/set_filter.h"
@@ -26,19 +23,13 @@ int main(int argc, char** argv) {
     cli::CommandLine line(
         "tessera", "Tessera, a distributed path tracer: one master owns scene and picture, nodes render.");
     const std::vector<tools::Command> commands{
-<<<<<<< HEAD
-        tools::render_command(line),  tools::status_command(line),     tools::probe_command(line),
-        tools::keys_command(line),    tools::compare_command(line),    tools::filter_command(line),
-        tools::filters_command(line), tools::set_filter_command(line), tools::bench_command(line),
-        tools::doctor_command(line),  tools::watch_command(line),      tools::log_command(line)};
-=======
-        tools::render_command(line),  tools::status_command(line),
-        tools::probe_command(line),   tools::keys_command(line),
-        tools::compare_command(line), tools::filter_command(line),
-        tools::filters_command(line), tools::set_filter_command(line),
-        tools::bench_command(line),   tools::doctor_command(line),
-        tools::watch_command(line),   tools::edit_command(line, tools::connect_scene)};
->>>>>>> ac3aba8 (Live scenes on disk: journal, checkpoints with films, and the way back; tessera edit reaches a master)
+        tools::render_command(line),     tools::edit_command(line, tools::connect_scene),
+        tools::watch_command(line),      tools::log_command(line),
+        tools::status_command(line),     tools::probe_command(line),
+        tools::keys_command(line),       tools::compare_command(line),
+        tools::filter_command(line),     tools::filters_command(line),
+        tools::set_filter_command(line), tools::bench_command(line),
+        tools::doctor_command(line)};
     line.examples(
         {"tessera render room.glb -o room.exr -o room.png", "tessera doctor", "tessera render --help"});
     if (const auto exit = line.parse(argc, argv, std::cout, std::cerr)) return *exit;
