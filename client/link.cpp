@@ -161,7 +161,8 @@ void Link::control(wire::ControlMessage&& message, TimePoint now) {
 
 void Link::welcome(const wire::Welcome& welcome, TimePoint now) {
     const bool first = number_ == 0;
-    const bool same = welcome.peer_number == number_;
+    // The number alone may be the same by chance at a master that was started anew.
+    const bool same = welcome.peer_number == number_ && welcome.token == token_;
     const bool repeated = same && state_ == State::Joined;
     number_ = welcome.peer_number;
     token_ = welcome.token;

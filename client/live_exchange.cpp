@@ -35,6 +35,8 @@ void LiveSession::Implementation::take(Rejoined&& rejoined) {
 
 void LiveSession::Implementation::take(wire::ControlMessage&& message) {
     if (const auto* welcome = std::get_if<wire::SceneJoined>(&message)) return take(*welcome);
+    // Whatever went out between the new greeting and the new joining was refused; it is sent again.
+    if (state == State::Joining) return;
     if (auto* reply = std::get_if<wire::EditReply>(&message)) return take(std::move(*reply));
     if (const auto* refusal = std::get_if<wire::Refusal>(&message)) {
         refusals.push_back(refusal->reason);

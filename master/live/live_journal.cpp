@@ -48,6 +48,9 @@ void LiveJournal::tick(const std::string& title, TimePoint now) {
         last_ = now;
     }
     if (now - last_ < interval_ || writer_.busy() || runner_.is_saving()) return;
+    const std::pair present(authority_.transactions(), runner_.film_progress());
+    if (present == saved_) return;
+    saved_ = present;
     runner_.save(authority_.state_hash());
 }
 

@@ -40,6 +40,7 @@ class LiveJournal {
     std::optional<Journal> journal_;
     CheckpointWriter writer_;
     TimePoint last_{};
+    std::pair<std::uint64_t, std::uint64_t> saved_{};  // transactions and film of the last checkpoint
     bool is_open_ = false;
     std::uint64_t checkpoints_ = 0;
 };

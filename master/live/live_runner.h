@@ -64,6 +64,8 @@ class LiveRunner {
     void save(Hash128 scene_hash);
     bool is_saving() const { return saving_.has_value(); }
     std::optional<std::vector<wire::SavedView>> take_saved();
+    // Grows whenever there is more or other film to save.
+    std::uint64_t film_progress() const;
     // Of a master before: they wait for their owners. Films go on where they show this scene.
     void restore(std::vector<wire::SavedView>&& saved, Version version, Hash128 scene_hash, TimePoint now);
 

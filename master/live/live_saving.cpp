@@ -29,6 +29,15 @@ void LiveRunner::save(Hash128 scene_hash) {
     }
 }
 
+std::uint64_t LiveRunner::film_progress() const {
+    std::uint64_t progress = next_view_ + next_unit_;  // passes take new ids
+    for (const auto& [id, live] : views_) {
+        if (!live.passes.empty() && live.pass().scheduler)
+            progress += live.pass().scheduler->merged_samples();
+    }
+    return progress;
+}
+
 std::optional<std::vector<wire::SavedView>> LiveRunner::take_saved() {
     if (!saving_) return std::nullopt;
     // A film that ended meanwhile does not come any more.

@@ -1,6 +1,7 @@
 #include "tests/process/real_cluster.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <unistd.h>
 
 namespace tessera::test {
@@ -31,11 +32,26 @@ std::string scene_file(const std::string& name) {
     return std::string(TESSERA_SCENES) + "/" + name;
 }
 
-RealCluster::RealCluster() : endpoint_(free_loopback_endpoint()) {
+RealCluster::RealCluster(std::vector<std::string> master_options, Session session)
+    : endpoint_(free_loopback_endpoint()), master_options_(std::move(master_options)) {
     ChildProcess keys_tool(folder_.path(), "keys", "tessera", {"keys", keys()});
     EXPECT_EQ(keys_tool.wait(Patience).value_or(-1), 0) << keys_tool.err();
-    master_.emplace(folder_.path(), "master", "tessera-master",
-                    std::vector<std::string>{"--listen", endpoint_, "--keys", keys(), "--heartbeat", "0.25"});
+    if (session == Session::Kept) {
+        master_options_.push_back("--session");
+        master_options_.push_back(folder_ / "session");
+    }
+    start_master();
+}
+
+void RealCluster::kill_master() {
+    master_->signal(SIGKILL);
+    (void)master_->wait(Patience);
+}
+
+void RealCluster::start_master() {
+    std::vector<std::string> arguments{"--listen", endpoint_, "--keys", keys()};
+    arguments.insert(arguments.end(), master_options_.begin(), master_options_.end());
+    master_.emplace(folder_.path(), "master" + std::to_string(++masters_), "tessera-master", arguments);
 }
 
 ChildProcess RealCluster::start_node(const std::string& name, std::vector<std::string> more) {

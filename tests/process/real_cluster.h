@@ -24,7 +24,12 @@ class TemporaryFolder {
 // A master and nodes as processes of their own: TCP on loopback, CURVE keys made for the test.
 class RealCluster {
   public:
-    RealCluster();
+    RealCluster() : RealCluster({"--heartbeat", "0.25"}, Session::None) {}
+    enum class Session { None, Kept };  // on disk
+    RealCluster(std::vector<std::string> master_options, Session session);
+
+    void kill_master();   // without a word
+    void start_master();  // again, at the same place
 
     ChildProcess start_node(const std::string& name, std::vector<std::string> more = {});
     // `tessera render` on this cluster; the picture goes to the folder.
@@ -51,7 +56,9 @@ class RealCluster {
   private:
     TemporaryFolder folder_;
     std::string endpoint_;
+    std::vector<std::string> master_options_;
     std::optional<ChildProcess> master_;
+    int masters_ = 0;
     int next_status_ = 0;
 };
 

@@ -1,0 +1,136 @@
+// A live scene across the death of its master.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <random>
+#include <thread>
+
+#include "client/import/import.h"
+#include "client/live_cameras.h"
+#include "client/live_session.h"
+#include "mediator/base/hash.h"
+#include "mediator/scene/fields.h"
+#include "tests/process/real_cluster.h"
+
+namespace tessera::test {
+namespace {
+
+using namespace scene;
+using namespace std::chrono_literals;
+
+// A master that keeps its session, started again as often as a test likes, and a node.
+struct LiveProcess : testing::Test {
+    RealCluster cluster{{"--heartbeat", "0.1", "--checkpoint", "0.3"}, RealCluster::Session::Kept};
+    std::optional<ChildProcess> node;
+    SteadyClock clock;
+    std::shared_ptr<BlobStore> blobs = std::make_shared<BlobStore>();
+    std::unique_ptr<client::LiveSession> session;
+    ObjectId material;
+    client::LiveViewRequest view{.spp = 64};
+
+    void join() {
+        session = client::connect_live({cluster.endpoint(), cluster.keys()}, blobs, clock,
+                                       {.name = "ann", .lost_limit = 60s});
+        session->join("room", client::WhenBusy::Queue, nullptr, {});
+    }
+    void SetUp() override {
+        join();
+        node.emplace(cluster.start_node("node-1"));
+        auto imported = import::import_scene(scene_file("still.glb"), {.first_id = session->new_id()});
+        ASSERT_TRUE(imported);
+        for (const BlobPtr& blob : imported->blobs) blobs->insert(blob);
+        for (const Create& create : imported->objects) {
+            if (std::holds_alternative<Material>(create.object)) material = create.id;
+        }
+        ASSERT_TRUE(session->submit(import::entries(*imported, import::RootEntry::Update)).accepted);
+        session->refresh();
+        const auto camera = client::choose_camera(session->scene(), "");
+        ASSERT_TRUE(camera);
+        view.view.width = 96;
+        view.view.height = 64;
+        view.view.window = {0, 0, 96, 64};
+        view.view.camera = client::pose(*camera, 96, 64);
+        view.view.channels = {frame::Channel::Radiance};
+    }
+    std::vector<Entry> paint(float red) const {
+        return {Update{material, Fields<Material>(Material::Field::BaseColor).bits(),
+                       Material{.base_color = {red, 0.5f, 0.5f, 1.0f}}}};
+    }
+    Hash256 finished_film() {
+        const auto deadline = std::chrono::steady_clock::now() + 120s;
+        while (const auto frame = session->next_frame(deadline, {})) {
+            if (frame->complete) return frame->film_hash;
+        }
+        ADD_FAILURE() << "the frame was not finished";
+        return {};
+    }
+};
+
+TEST_F(LiveProcess, KilledAtRandomMomentsItHasEveryAcknowledgedEdit) {
+    std::mt19937 random(7);
+    float last = 0.0f;
+    std::uint64_t edits = 0;
+    for (int kill = 0; kill < 50; ++kill) {
+        std::jthread killer([&, after = std::chrono::milliseconds(random() % 120)] {
+            std::this_thread::sleep_for(after);
+            cluster.kill_master();
+            cluster.start_master();
+        });
+        for (int i = 0; i < 20; ++i) {
+            last = float(random() % 1000) / 1000.0f;
+            const auto result = session->submit(paint(last));  // also across the master's death
+            ASSERT_TRUE(result.accepted) << result.problems.front();
+            ++edits;
+        }
+        killer.join();
+        session->refresh();
+        ASSERT_EQ(session->scene().find_as<Material>(material)->base_color.x, last) << "kill " << kill;
+    }
+    const auto late = client::connect_live({cluster.endpoint(), cluster.keys()},
+                                           std::make_shared<BlobStore>(), clock, {.name = "late"});
+    late->join("room", client::WhenBusy::Queue, nullptr, {});
+    EXPECT_EQ(late->scene().state_hash(), session->scene().state_hash());
+    EXPECT_EQ(late->history(256).size(), 256u) << "of " << edits;
+}
+
+TEST_F(LiveProcess, TheFinishedFrameHasTheBitsOfOneThatWasNeverInterrupted) {
+    session->open_view(1, view);
+    const Hash256 whole = finished_film();
+    session->close_view(1);
+    view.name = "interrupted";
+    view.spp = 64;
+    session->open_view(2, view);
+    for (int kill = 0; kill < 3; ++kill) {
+        std::this_thread::sleep_for(150ms);
+        cluster.kill_master();
+        cluster.start_master();
+        (void)session->people();  // it has joined again
+    }
+    EXPECT_EQ(to_hex(finished_film()), to_hex(whole));
+}
+
+TEST_F(LiveProcess, WhatWasMergedBeforeTheDeathIsNotLost) {
+    view.spp = 1u << 20;
+    session->open_view(1, view);
+    std::uint64_t before = 0, after = 0;
+    const auto deadline = std::chrono::steady_clock::now() + 60s;
+    while (before < 256) {
+        const auto frame = session->next_frame(deadline, {});
+        ASSERT_TRUE(frame);
+        if (frame->scale == 1) before = frame->samples_least;
+    }
+    std::this_thread::sleep_for(1s);  // three checkpoints
+    cluster.kill_master();
+    node->signal(SIGSTOP);  // nothing new is rendered
+    cluster.start_master();
+    (void)session->people();
+    while (const auto frame = session->next_frame(std::chrono::steady_clock::now() + 3s, {})) {
+        if (frame->scale == 1) after = frame->samples_least;
+        if (after >= 256) break;
+    }
+    node->signal(SIGCONT);
+    EXPECT_GE(after, 256u);
+}
+
+}  // namespace
+}  // namespace tessera::test
