@@ -2,46 +2,24 @@
 # Sets up and does the main job: a master, an Embree node and a Vulkan node as processes of their own (TCP on
 # loopback, CURVE keys made for this run) render a glTF scene by tiles and cooperative samples into out/demo.exr and out/demo.png.
 # Arguments go to the render, as in: deploy/demo.sh --spp 16
+# With --live: a tour of live editing instead (deploy/tour.sh); --live --once ends after it.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 deploy/setup.sh release
+if [ "${1:-}" = --live ]; then
+    shift
+    exec deploy/tour.sh "$@"
+fi
 
 bin=build/release/bin
 folder=$(mktemp -d)
 children=()
 
-# Whatever was started ends here, asked first and then made to.
-stop_everything() {
-    trap '' INT TERM
-    local i child waited
-    # Nodes before the master, so that they can say goodbye.
-    for ((i = ${#children[@]} - 1; i >= 0; --i)); do kill -TERM "${children[i]}" 2>/dev/null || true; done
-    for child in "${children[@]}"; do
-        for ((waited = 0; waited < 50; ++waited)); do
-            kill -0 "$child" 2>/dev/null || break
-            sleep 0.1
-        done
-        kill -KILL "$child" 2>/dev/null || true
-        wait "$child" 2>/dev/null || true
-    done
-    rm -rf "$folder"
-}
+# shellcheck source=deploy/children.sh
+. deploy/children.sh
 trap stop_everything EXIT
 trap 'exit 130' INT
 trap 'exit 143' TERM
-
-start() {
-    local name=$1
-    shift
-    "$@" >"$folder/$name.log" 2>&1 &
-    children+=("$!")
-}
-
-fail() {
-    echo "demo: $1" >&2
-    tail -n 5 "$folder"/*.log >&2 || true
-    exit "${2:-1}"
-}
 
 mkdir -p out
 keys=$folder/keys
