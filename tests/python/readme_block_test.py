@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The example of the package's README against a scripted master. Usage: readme_block_test.py SOURCE_FOLDER"""
+"""The Python example of the README against a scripted master. Usage: readme_block_test.py SOURCE_FOLDER"""
 
 import pathlib
 import sys
@@ -10,7 +10,7 @@ from scripted_master import PNG, ScriptedMaster
 
 
 def main():
-    readme = pathlib.Path(sys.argv[1]).resolve() / "client/python/README.md"
+    readme = pathlib.Path(sys.argv[1]).resolve() / "README.md"
     with ScriptedMaster() as master, tempfile.TemporaryDirectory() as folder:
         run_block.run(readme, master.endpoint, "-", folder, ["room.png"])
         assert (pathlib.Path(folder) / "room.png").read_bytes() == PNG
