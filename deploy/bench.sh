@@ -10,3 +10,6 @@ for bench in film embree filter; do
 done
 echo "== back-ends"
 build/release/bin/tessera bench backends --scenes room-1,balls:1000000 --repeat 3
+echo "== live"
+build/release/bin/tessera bench live
+PYTHONPATH=build/release/python /usr/bin/python3 deploy/bench_join.py build/release/bin

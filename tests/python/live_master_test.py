@@ -245,7 +245,7 @@ class LiveMaster(unittest.TestCase):
         self.assertEqual(self.middle(self.glowing_wall().wait(samples=8)), (1.0, 0.0, 0.0))  # the node is back, too
 
     def test_the_example_of_the_readme(self):
-        readme = pathlib.Path(__file__).resolve().parents[2] / "client/python/README.md"
+        readme = pathlib.Path(__file__).resolve().parents[2] / "README.md"
         with tempfile.TemporaryDirectory() as folder:
             run_block.run(readme, self.cluster.endpoint, str(self.cluster.keys), folder, ["room.png"])
         self.scene.refresh()
