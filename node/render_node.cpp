@@ -53,6 +53,7 @@ class RenderNode::Loop {
           machine_(node.settings_, capabilities, node.blobs_, node.clock_.now()),
           outbox_(*node.channel_),
           builder_(),
+          cache_thread_(),
           workers_(
               *node.backend_, node.clock_,
               std::max(1u, node.settings_.workers ? node.settings_.workers : capabilities.concurrent_units),
@@ -161,7 +162,7 @@ class RenderNode::Loop {
         });
     }
     void perform(LoadBlobs& load) {
-        builder_.post([&node = node_, cache = node_.cache_, blobs = std::move(load.blobs)] {
+        cache_thread_.post([&node = node_, cache = node_.cache_, blobs = std::move(load.blobs)] {
             for (const scene::BlobRef& blob : blobs) {
                 if (scene::BlobPtr found = cache->load(blob)) node.blobs_->insert(std::move(found));
             }
@@ -169,7 +170,7 @@ class RenderNode::Loop {
         });
     }
     void perform(SaveBlob& save) {
-        builder_.post([cache = node_.cache_, blob = std::move(save.blob)] { cache->save(*blob); });
+        cache_thread_.post([cache = node_.cache_, blob = std::move(save.blob)] { cache->save(*blob); });
     }
     void perform(Report& report) {
         if (node_.callbacks_.event) node_.callbacks_.event(report);
@@ -198,6 +199,7 @@ class RenderNode::Loop {
     NodeMachine machine_;
     Outbox outbox_;
     TaskThread builder_;
+    TaskThread cache_thread_;  // the disk's: no build waits for what is being saved
     WorkerPool workers_;  // ends first: a build waits for what is being rendered
 };
 
