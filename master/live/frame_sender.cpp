@@ -143,12 +143,16 @@ void FrameSender::send(std::uint64_t frame, Making&& making, const Reconstructed
         const auto watcher = watchers_.find(key);
         if (watcher == watchers_.end() || watcher->second.on_its_way != frame) continue;
         const SessionRecord* session = sessions_.find(key.first);
-        if (session == nullptr || !session->bulk || !made.picture.error.empty()) {
+        const bool has_failed = !made.picture.error.empty();
+        const bool is_reachable = session != nullptr && session->bulk;
+        if (has_failed || is_reachable) {  // what cannot be made is not tried again until there is newer
+            watcher->second.seen = making.shown;
+            watcher->second.seen_version = header.version;
+        }
+        if (has_failed || !is_reachable) {
             watcher->second.on_its_way = 0;
             continue;
         }
-        watcher->second.seen = making.shown;
-        watcher->second.seen_version = header.version;
         header.view = key.second;
         outbox_.bulk(*session->bulk, header);
         const std::span<const std::byte> picture(*made.picture.bytes);
