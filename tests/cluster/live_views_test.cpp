@@ -5,6 +5,7 @@
 
 #include "mediator/frame/resolve.h"
 #include "mediator/scene/fields.h"
+#include "mediator/wire/envelope.h"
 #include "tests/cluster/cluster_scene.h"
 #include "tests/cluster/loopback_cluster.h"
 
@@ -168,6 +169,50 @@ TEST_F(LiveViews, ASlowWatcherDelaysNobodyAndSeesTheNewest) {
         return frame.complete && frame.version == ann->scene().version();
     });
     EXPECT_LE(count, 6u) << "one on its way when it stopped looking, then only of the newest version";
+}
+
+TEST_F(LiveViews, AWatcherThatTakesNothingIsSentOneFrame) {
+    cluster.add_node("null");
+    client::LiveViewRequest request = view_of(64, 48, 4);
+    request.name = "main";
+    ann->open_view(1, request);
+    const auto watcher = cluster.channel(net::Role::Viewer);
+    const auto say = [&](const wire::ControlMessage& message) {
+        (void)watcher->send(net::Link::Control, net::ServerPeer, wire::encode(message));
+    };
+    std::size_t frames = 0;
+    const auto listen = [&] {
+        say(wire::Heartbeat{.sent_at = 1});
+        const auto now = std::chrono::steady_clock::now();
+        for (auto received = watcher->receive(now + 5ms); std::holds_alternative<net::Message>(received);
+             received = watcher->receive(now)) {
+            const net::Message& message = std::get<net::Message>(received);
+            if (message.link == net::Link::Bulk) {
+                const auto bulk = wire::decode_bulk(message.bytes);
+                frames += bulk && std::holds_alternative<wire::LiveFrame>(*bulk) ? 1 : 0;
+                continue;
+            }
+            const auto control = wire::decode_control(message.bytes);
+            const auto* welcome = control ? std::get_if<wire::Welcome>(&*control) : nullptr;
+            if (welcome == nullptr) continue;
+            const wire::BulkMessage token = wire::BulkHello{welcome->token};
+            (void)watcher->send(net::Link::Bulk, net::ServerPeer, wire::encode(token));
+            say(wire::JoinScene{.title = "test", .name = "watcher"});
+            say(wire::OpenLiveView{.number = 1, .name = "main", .share = true});
+        }
+    };
+    say(wire::Hello{.name = "watcher"});
+    const auto deadline = std::chrono::steady_clock::now() + 30s;
+    while (frames == 0 && std::chrono::steady_clock::now() < deadline) listen();
+    for (int i = 1; i <= 20; ++i) {
+        ASSERT_TRUE(ann->submit({paint({float(i), 0, 0})}).accepted);
+        (void)frames_until(*ann, complete);
+        listen();
+    }
+    EXPECT_EQ(frames, 1u);
+    say(wire::FrameTaken{.number = 1, .frame = 0});  // not the one on its way
+    for (int i = 0; i < 20; ++i) listen();
+    EXPECT_EQ(frames, 1u);
 }
 
 TEST_F(LiveViews, WhatIsWrongWithAViewIsSaid) {

@@ -38,6 +38,8 @@ class LoopbackCluster {
     std::unique_ptr<client::LiveSession> member(const std::string& name,
                                                 std::shared_ptr<scene::BlobStore> blobs,
                                                 net::Role role = net::Role::Editor);
+    // A peer that speaks for itself.
+    std::unique_ptr<net::Channel> channel(net::Role role) { return hub_.client(role); }
     std::vector<std::string> events() const;
 
   private:
