@@ -38,6 +38,10 @@ void LiveSession::Implementation::take(wire::ControlMessage&& message) {
     // Whatever went out between the new greeting and the new joining was refused; it is sent again.
     if (state == State::Joining) return;
     if (auto* reply = std::get_if<wire::EditReply>(&message)) return take(std::move(*reply));
+    if (auto* notice = std::get_if<wire::Notice>(&message)) {
+        notices.push_back(std::move(notice->text));
+        return;
+    }
     if (const auto* refusal = std::get_if<wire::Refusal>(&message)) {
         refusals.push_back(refusal->reason);
         return;

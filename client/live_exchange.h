@@ -44,6 +44,7 @@ struct LiveSession::Implementation {
     std::map<std::uint64_t, wire::ControlMessage> asked, answers;  // by request
     std::map<std::uint64_t, LiveViewRequest> views;
     std::deque<std::string> refusals;
+    std::vector<std::string> notices;
     std::map<std::uint64_t, Frame> frames;  // the newest of each view
     FrameCollector collector;
     wire::BlobFetcher fetcher;

@@ -195,6 +195,10 @@ std::optional<Frame> LiveSession::next_frame(TimePoint deadline, std::stop_token
     return frame;
 }
 
+std::vector<std::string> LiveSession::take_notices() {
+    return std::exchange(implementation_->notices, {});
+}
+
 wire::Picked LiveSession::pick(std::uint64_t number, std::uint32_t x, std::uint32_t y) {
     auto picked = implementation_->ask<wire::Picked>(wire::Pick{.number = number, .x = x, .y = y});
     if (!picked.problem.empty()) throw Error(ErrorCode::Refused, picked.problem);

@@ -97,6 +97,8 @@ class LiveSession {
     void close_view(std::uint64_t number);
     // The newest frame that has come, and tells the master to send the next one.
     std::optional<Frame> next_frame(TimePoint deadline, std::stop_token stop);
+    // What the master had to say since the last call: that a view waits for nodes, or cannot be rendered.
+    std::vector<std::string> take_notices();
     wire::Picked pick(std::uint64_t number, std::uint32_t x, std::uint32_t y);
 
     // Takes in what has come, so that an idle caller notices an end of the link; next_frame() does it, too.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "master/suitable_nodes.h"
+
 namespace tessera::master {
 
 namespace {
@@ -43,15 +45,12 @@ void JobRunner::start(SessionId session, wire::StartJob request, Version version
 
 bool JobRunner::suits(const NodeRecord& node) const {
     const wire::StartJob& request = job_->request;
-    const bool has_channels = (request.view.channels.bits() & ~node.hello.channels.bits()) == 0;
-    const bool has_room = node.refused != job_->version;
-    return !node.leaving && !node.stuck && node.bulk && has_channels && has_room &&
-           node.hello.renderers.contains(request.view.renderer) &&
+    return master::suits(node, request.view, job_->version) &&
            (!request.reproducible || node.hello.reproducible);
 }
 
 bool JobRunner::ready(const NodeRecord& node) const {
-    return suits(node) && node.reported == job_->version && node.state.version == job_->version;
+    return suits(node) && master::ready(node, job_->request.view, job_->version);
 }
 
 void JobRunner::tick(TimePoint now) {
@@ -74,46 +73,6 @@ void JobRunner::tick(TimePoint now) {
     if (job_ && job_->phase != wire::JobPhase::Delivering) send_progress(now);
 }
 
-// "no node has the renderer raster: ...; ", or nothing when one has.
-std::string JobRunner::missing_renderer() const {
-    const view::Renderer renderer = job_->request.view.renderer;
-    for (const auto& [id, node] : nodes_.all()) {
-        if (node.hello.renderers.contains(renderer)) return {};
-    }
-    if (renderer != view::Renderer::Raster) return {};
-    return "no node has the renderer raster: start one with --backend vulkan; ";
-}
-
-// "the back-ends of 2 nodes do not give alpha, range; ", or nothing when channels are not the trouble.
-std::string JobRunner::missing_channels() const {
-    const std::uint32_t wanted = job_->request.view.channels.bits();
-    std::uint32_t lacking = 0, missing = 0;
-    for (const auto& [id, node] : nodes_.all()) {
-        const std::uint32_t lacks = wanted & ~node.hello.channels.bits();
-        lacking += lacks != 0 ? 1 : 0;
-        missing |= lacks;
-    }
-    if (lacking == 0) return {};
-    std::string names;
-    for (const frame::ChannelInfo& entry : frame::channel_table()) {
-        if (!frame::ChannelSet::from_bits(missing).contains(entry.channel)) continue;
-        names += (names.empty() ? "" : ", ") + std::string(entry.name);
-    }
-    return "the back-ends of " + std::to_string(lacking) + " nodes do not give " + names + "; ";
-}
-
-// "the scene does not fit into 2 nodes (node-1: why); ", or nothing when memory is not the trouble.
-std::string JobRunner::missing_room() const {
-    std::uint32_t full = 0;
-    std::string first;
-    for (const auto& [id, node] : nodes_.all()) {
-        if (node.refused != job_->version) continue;
-        if (full++ == 0) first = node.hello.name + ": " + node.refusal;
-    }
-    if (full == 0) return {};
-    return "the scene does not fit into " + std::to_string(full) + " nodes (" + first + "); ";
-}
-
 void JobRunner::wait_for_nodes(TimePoint now) {
     std::uint32_t suitable = 0, prepared = 0;
     for (const auto& [id, node] : nodes_.all()) {
@@ -133,7 +92,7 @@ void JobRunner::wait_for_nodes(TimePoint now) {
     job_->phase = wire::JobPhase::WaitingForNodes;
     if (now - job_->without_nodes_since >= job_->request.wait_limit) {
         decide(wire::JobOutcome::NoNodes,
-               missing_renderer() + missing_channels() + missing_room() + std::to_string(suitable) + " of " +
+               obstacles(nodes_, job_->request.view, job_->version) + std::to_string(suitable) + " of " +
                    std::to_string(wanted) +
                    " nodes came: start more nodes or ask for fewer with --wait-nodes",
                now);

@@ -53,9 +53,6 @@ class JobRunner {
   private:
     bool suits(const NodeRecord& node) const;  // could take part, at whatever version
     bool ready(const NodeRecord& node) const;  // suits, and holds the version
-    std::string missing_renderer() const;
-    std::string missing_channels() const;
-    std::string missing_room() const;
     void wait_for_nodes(TimePoint now);
     bool budget_is_planned(TimePoint now);
     void choose_scale(TimePoint now);

@@ -55,7 +55,7 @@ void SessionService::join_scene(SessionRecord& session, const wire::JoinScene& r
         return;
     }
     if (sessions_.stage_is_free() && sessions_.queue().empty()) sessions_.give_stage_to_live_scene();
-    if (sessions_.stage_is_live()) return live_.join(session, request, now);
+    if (sessions_.stage_is_live()) return let_in(session, request, now);
     if (request.no_wait) {
         outbox_.control(session.control, wire::Refusal{busy_text()});
         return;
@@ -63,6 +63,15 @@ void SessionService::join_scene(SessionRecord& session, const wire::JoinScene& r
     session.joining = request;
     sessions_.queue_for_stage(session.id);
     tick(now);
+}
+
+void SessionService::let_in(SessionRecord& session, const wire::JoinScene& request, TimePoint now) {
+    try {
+        live_.join(session, request, now);
+    } catch (const Error& error) {
+        if (!live_.is_open()) sessions_.end_live_scene();
+        outbox_.control(session.control, wire::Refusal{error.what()});
+    }
 }
 
 void SessionService::close_live_scene(SessionRecord& session, const wire::CloseScene& request,
@@ -225,7 +234,7 @@ void SessionService::tick(TimePoint now) {
         if (!session.joining || !sessions_.stage_is_live()) continue;
         sessions_.leave_queue(id);
         const wire::JoinScene request = *std::exchange(session.joining, std::nullopt);
-        live_.join(session, request, now);
+        let_in(session, request, now);
     }
     for (const SessionId id : sessions_.queue()) {
         SessionRecord& session = *sessions_.find(id);

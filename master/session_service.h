@@ -35,6 +35,7 @@ class SessionService {
     bool blobs_are_here(SessionRecord& session, SessionRecord::PendingEdit& edit);
     void refuse_edit(SessionRecord& session, std::string problem);
     void give_stage(SessionId session);
+    void let_in(SessionRecord& session, const wire::JoinScene& request, TimePoint now);
     std::string busy_text() const;
 
     SceneAuthority& authority_;

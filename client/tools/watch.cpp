@@ -141,6 +141,8 @@ class Watch {
         while (!interrupts_.token().stop_requested() && clock_.now() < end) {
             const auto frame = session_->next_frame(std::min(end, clock_.now() + std::chrono::seconds(1)),
                                                     interrupts_.token());
+            for (const std::string& notice : session_->take_notices())
+                std::cerr << "tessera watch: " << notice << "\n";
             if (!frame) continue;
             show(*frame, ++count);
             is_complete = frame->complete;

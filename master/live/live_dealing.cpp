@@ -3,18 +3,9 @@
 #include <cmath>
 
 #include "master/live/live_runner.h"
+#include "master/suitable_nodes.h"
 
 namespace tessera::master {
-
-bool LiveRunner::suits(const NodeRecord& node, const view::View& view, Version version) const {
-    return !node.leaving && !node.stuck && node.bulk && node.refused != version &&
-           (view.channels.bits() & ~node.hello.channels.bits()) == 0 &&
-           node.hello.renderers.contains(view.renderer);
-}
-
-bool LiveRunner::ready(const NodeRecord& node, const view::View& view, Version version) const {
-    return suits(node, view, version) && node.reported == version && node.state.version == version;
-}
 
 void LiveRunner::deal(LivePass& pass, Version version, std::vector<NodeCapacity>& capacities, TimePoint now) {
     std::vector<NodeCapacity> suitable;
@@ -44,7 +35,7 @@ void LiveRunner::deal(TimePoint now) {
     std::vector<LiveView*> order;
     for (auto& [id, live] : views_) {
         if (live.restart_wanted && !passes_held_ && !live.is_protected() && live.problem.empty())
-            restart(live, now);
+            restart(live);
         if (!live.passes.empty() && live.pass().scheduler) order.push_back(&live);
     }
     if (order.empty()) return;

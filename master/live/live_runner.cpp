@@ -4,6 +4,7 @@
 
 #include "master/job.h"
 #include "master/live/picture_effect.h"
+#include "master/suitable_nodes.h"
 
 namespace tessera::master {
 
@@ -191,13 +192,12 @@ void LiveRunner::end_passes(LiveView& live) {
     live.shown.reset();
 }
 
-void LiveRunner::restart(LiveView& live, TimePoint now) {
+void LiveRunner::restart(LiveView& live) {
     end_passes(live);
     ++live.revision;
     live.camera_revision = live.asked_revision;
     live.passes = passes_of(live);
     live.restart_wanted = false;
-    live.without_nodes_since = now;
     begin_pass(live.pass(), live.version);
 }
 
@@ -221,7 +221,6 @@ void LiveRunner::show(LiveView& live, TimePoint now) {
     if (live.shown == shown) return;
     const bool first = !live.shown || live.shown->revision != live.revision;
     live.shown = shown;
-    live.shown_at = now;
     if (first && on_first_picture) on_first_picture(live.version, now);
     frames_.offer(live, now, settings_.frame_interval);  // before anything newer ends the pass
     for (std::size_t earlier = 0; earlier < live.current; ++earlier) end(live.passes[earlier]);
@@ -229,8 +228,33 @@ void LiveRunner::show(LiveView& live, TimePoint now) {
 
 void LiveRunner::fail(LiveView& live, const std::string& problem) {
     live.problem = problem;
-    events_({wire::Severity::Error, "view " + live.name + " is not rendered: " + problem});
+    const std::string text = "view " + live.name + " is not rendered: " + problem;
+    events_({wire::Severity::Error, text});
+    tell_owner(live, text);
     end_passes(live);
+}
+
+void LiveRunner::tell_owner(const LiveView& live, const std::string& text) {
+    if (const SessionRecord* owner = sessions_.find(live.owner))
+        outbox_.control(owner->control, wire::Notice{wire::Severity::Warning, text});
+}
+
+// Once, as long as it lasts.
+void LiveRunner::tell_of_waiting(LiveView& live, TimePoint now) {
+    const bool has_node = std::any_of(nodes_.all().begin(), nodes_.all().end(), [&](const auto& node) {
+        return suits(node.second, live.view, live.version);
+    });
+    if (has_node || live.is_complete()) {
+        live.without_nodes_since = now;
+        live.told_of_waiting = false;
+    }
+    if (live.told_of_waiting || now - live.without_nodes_since < settings_.patience_without_nodes) return;
+    live.told_of_waiting = true;
+    const std::size_t count = nodes_.all().size();
+    tell_owner(live, "view " + live.name + " waits: " +
+                         (count == 0 ? "there are no nodes: start some with tessera-node"
+                                     : obstacles(nodes_, live.view, live.version) + "none of " +
+                                           std::to_string(count) + " nodes can render it"));
 }
 
 bool LiveRunner::may_publish() const {
@@ -281,6 +305,7 @@ void LiveRunner::tick(TimePoint now) {
             forgotten.push_back(id);
     }
     for (const ViewId view : forgotten) remove(view);
+    for (auto& [id, live] : views_) tell_of_waiting(live, now);
     // A pass that waited for changes to be published goes on.
     for (auto& [id, live] : views_) {
         if (!live.passes.empty() && live.pass().scheduler && live.pass().scheduler->complete())

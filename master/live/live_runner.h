@@ -24,6 +24,7 @@ struct LiveSettings {
     Duration orphan_patience = std::chrono::seconds(60);      // a view whose owner fell silent waits so long
     Duration frame_interval = std::chrono::milliseconds(33);  // between pictures of the same pass
     std::uint32_t failure_limit = 8;
+    Duration patience_without_nodes = std::chrono::seconds(3);  // before its owner is told that a view waits
     std::size_t max_views = 60;  // of all members: a node keeps 256, and each has four passes
 };
 
@@ -98,15 +99,15 @@ class LiveRunner {
         bool copied = false;
     };
 
-    bool suits(const NodeRecord& node, const view::View& view, Version version) const;
-    bool ready(const NodeRecord& node, const view::View& view, Version version) const;
-    void restart(LiveView& live, TimePoint now);
+    void restart(LiveView& live);
     void begin_pass(LivePass& pass, Version version, std::vector<frame::FilmTile>&& film = {});
     void advance(LiveView& live, TimePoint now);
     void show(LiveView& live, TimePoint now);
     void end(LivePass& pass);
     void end_passes(LiveView& live);
     void fail(LiveView& live, const std::string& problem);
+    void tell_of_waiting(LiveView& live, TimePoint now);
+    void tell_owner(const LiveView& live, const std::string& text);
     void remove(ViewId view);
     void deal(TimePoint now);
     void deal(LivePass& pass, Version version, std::vector<NodeCapacity>& capacities, TimePoint now);

@@ -45,6 +45,7 @@ void LiveService::open(const std::string& title) {
     open_ = true;
     title_ = title;
     counts_ = {};
+    traces_ = {};
     events_({wire::Severity::Info, "live scene '" + title_ + "' is open"});
 }
 
@@ -61,15 +62,22 @@ void LiveService::record_to(LiveJournal& journal, TimePoint now) {
 }
 
 void LiveService::join(SessionRecord& session, const wire::JoinScene& request, TimePoint now) {
+    const bool may_edit = session.role != net::Role::Viewer;
+    if (may_edit && request.key == 0)
+        throw Error(ErrorCode::Refused, "a member needs a key that it has chosen, not 0");
     if (!open_) open(request.title.empty() ? "untitled" : request.title);
-    const auto known = members_.find(session.id);
-    if (known == members_.end()) {
+    // Who only looks needs neither ids nor a place in the journal.
+    const IdRange ids = may_edit ? authority_.join(session.id, session.user, request.key) : IdRange{};
+    if (may_edit && ids.count == 0) {
+        throw Error(ErrorCode::Refused,
+                    "no ids are left to lend, or the session folder cannot be written: see the master's log");
+    }
+    if (!members_.contains(session.id)) {
         Member& member = members_[session.id];
         member.name = unique_name(request.name);
         member.key = request.key;
         events_({wire::Severity::Info, member.name + " (" + session.user + ") joined '" + title_ + "'"});
     }
-    const IdRange ids = authority_.join(session.id, session.user, request.key);
     publish_if_due(now);
     outbox_.control(session.control, wire::SceneJoined{.version = authority_.version(),
                                                        .first_id = ids.first,

@@ -34,7 +34,7 @@ class LiveService {
     std::size_t member_count() const { return members_.size(); }
     const std::string& title() const { return title_; }
 
-    // The stage is the live scene's.
+    // The stage is the live scene's. Throws Error when the session cannot be let in.
     void join(SessionRecord& session, const wire::JoinScene& request, TimePoint now);
     // Everybody is out, the scene is empty, the stage is free again.
     void close(TimePoint now);

@@ -46,7 +46,8 @@ struct LiveView {
     std::size_t current = 0;     // the pass under way
     bool restart_wanted = true;  // a picture of what is now is due
     std::optional<Shown> shown;
-    TimePoint shown_at{}, without_nodes_since{};
+    TimePoint without_nodes_since{};
+    bool told_of_waiting = false;
     std::optional<TimePoint> orphaned;  // since nobody watches it; it waits for its owner to come back
     std::uint32_t failures = 0;
     std::string problem;  // why it is not rendered; "" = it is

@@ -234,6 +234,20 @@ TEST_F(LiveViews, WhatIsWrongWithAViewIsSaid) {
     EXPECT_THROW(ann->open_view(2, request), Error);
 }
 
+TEST_F(LiveViews, WhoWaitsForANodeIsToldWhy) {
+    cluster.add_node("embree");
+    client::LiveViewRequest request = view_of(64, 48, 1);
+    request.view.renderer = view::Renderer::Raster;
+    ann->open_view(1, request);
+    std::string notice;
+    const auto deadline = std::chrono::steady_clock::now() + 30s;
+    while (notice.empty() && std::chrono::steady_clock::now() < deadline) {
+        EXPECT_FALSE(ann->next_frame(std::chrono::steady_clock::now() + 100ms, {}));
+        for (const std::string& text : ann->take_notices()) notice += text;
+    }
+    EXPECT_NE(notice.find("raster: start one with --backend vulkan"), std::string::npos) << notice;
+}
+
 TEST_F(LiveViews, ManyViewsShareTheNodes) {
     cluster.add_node("null");
     for (std::uint64_t number = 1; number <= 5; ++number) ann->open_view(number, view_of(64, 48, 8));
