@@ -6,39 +6,21 @@
 
 namespace tessera::master {
 
-PictureMaker::PictureMaker(std::function<void(Made)> done)
-    : done_(std::move(done)), thread_([this](std::stop_token stop) { run(stop); }) {}
-
-PictureMaker::~PictureMaker() = default;
-
 void PictureMaker::make(PictureTask task) {
-    enqueue(std::move(task));
+    thread_.post([this, task = std::make_shared<PictureTask>(std::move(task))] { done_(made(*task)); });
 }
 
 void PictureMaker::rehearse(JobId job, const view::View& view, wire::PictureEncoding encoding) {
-    enqueue(Rehearsal{job, view, encoding});
+    thread_.post([this, job, view, encoding] {
+        constexpr std::uint32_t Edge = 256;
+        const auto width = std::min(static_cast<std::uint32_t>(view.window.width), Edge);
+        const auto height = std::min(static_cast<std::uint32_t>(view.window.height), Edge);
+        const double seconds = reconstructor_.rehearse(view, encoding, width, height);
+        done_(Rehearsed{job, std::uint64_t{width} * height, seconds});
+    });
 }
 
-void PictureMaker::enqueue(Task task) {
-    {
-        const std::scoped_lock lock(mutex_);
-        tasks_.push_back(std::move(task));
-    }
-    changed_.notify_one();
-}
-
-void PictureMaker::run(std::stop_token stop) {
-    while (true) {
-        std::unique_lock lock(mutex_);
-        if (!changed_.wait(lock, stop, [this] { return !tasks_.empty(); })) return;
-        Task task = std::move(tasks_.front());
-        tasks_.pop_front();
-        lock.unlock();
-        done_(std::visit([this](auto& chosen) { return perform(chosen); }, task));
-    }
-}
-
-PictureMaker::Made PictureMaker::perform(PictureTask& task) {
+Reconstructed PictureMaker::made(const PictureTask& task) {
     const auto [least, most] = std::minmax_element(task.film.counts.begin(), task.film.counts.end());
     Reconstructed made{.job = task.job, .picture = {}, .samples_least = *least, .samples_most = *most};
     made.picture.bytes = std::make_shared<const std::vector<std::byte>>();
@@ -50,14 +32,6 @@ PictureMaker::Made PictureMaker::perform(PictureTask& task) {
                                                   task.view, task.encoding);
     }
     return made;
-}
-
-PictureMaker::Made PictureMaker::perform(Rehearsal& task) {
-    constexpr std::uint32_t Edge = 256;
-    const auto width = std::min(static_cast<std::uint32_t>(task.view.window.width), Edge);
-    const auto height = std::min(static_cast<std::uint32_t>(task.view.window.height), Edge);
-    const double seconds = reconstructor_.rehearse(task.view, task.encoding, width, height);
-    return Rehearsed{task.job, std::uint64_t{width} * height, seconds};
 }
 
 }  // namespace tessera::master

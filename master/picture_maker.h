@@ -1,14 +1,12 @@
 #pragma once
 
-#include <condition_variable>
-#include <deque>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
-#include <thread>
+#include <variant>
 
 #include "master/reconstruction.h"
+#include "mediator/base/task_thread.h"
 
 namespace tessera::master {
 
@@ -38,39 +36,23 @@ struct Rehearsed {
     double seconds = 0.0;
 };
 
-// Filters and encodes on a thread of its own, so that merging goes on meanwhile. One picture after another,
-// in the order asked for.
+// Filters and encodes on a thread of its own, so that merging goes on meanwhile. One picture after another, in
+// the order asked for.
 class PictureMaker {
   public:
     using Made = std::variant<Reconstructed, Rehearsed>;
-    explicit PictureMaker(std::function<void(Made)> done);  // called on that thread
-    ~PictureMaker();
+    explicit PictureMaker(std::function<void(Made)> done) : done_(std::move(done)) {}  // on that thread
 
     void make(PictureTask task);
     // A made-up film of at most 256 x 256 pixels, since somebody is waiting.
     void rehearse(JobId job, const view::View& view, wire::PictureEncoding encoding);
 
   private:
-    struct Rehearsal {
-        JobId job;
-        view::View view;
-        wire::PictureEncoding encoding;
-    };
-    using Task = std::variant<PictureTask, Rehearsal>;
-
-    void enqueue(Task task);
-    void run(std::stop_token stop);
-    Made perform(PictureTask& task);
-    Made perform(Rehearsal& task);
+    Reconstructed made(const PictureTask& task);
 
     std::function<void(Made)> done_;
     Reconstructor reconstructor_;  // of the thread alone
-
-    std::mutex mutex_;  // protects tasks_
-    std::condition_variable_any changed_;
-    std::deque<Task> tasks_;
-
-    std::jthread thread_;  // last: starts when all else is there
+    TaskThread thread_;            // last: it ends first
 };
 
 }  // namespace tessera::master

@@ -7,7 +7,7 @@
 #include "mediator/wire/envelope.h"
 #include "node/blob_cache.h"
 #include "node/outbox.h"
-#include "node/task_thread.h"
+#include "mediator/base/task_thread.h"
 #include "node/worker_pool.h"
 
 namespace tessera::node {

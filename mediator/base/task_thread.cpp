@@ -1,6 +1,6 @@
-#include "node/task_thread.h"
+#include "mediator/base/task_thread.h"
 
-namespace tessera::node {
+namespace tessera {
 
 TaskThread::TaskThread() : thread_([this](std::stop_token end) { work(end); }) {}
 
@@ -28,4 +28,4 @@ void TaskThread::work(std::stop_token end) {
     }
 }
 
-}  // namespace tessera::node
+}  // namespace tessera

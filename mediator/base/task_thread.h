@@ -6,9 +6,9 @@
 #include <mutex>
 #include <thread>
 
-namespace tessera::node {
+namespace tessera {
 
-// One thread for what takes long and has an order: builds, the disk cache. The destructor drops what waits
+// One thread for what takes long and has an order: builds, pictures, the disk. The destructor drops what waits
 // and lets the task at hand end.
 class TaskThread {
   public:
@@ -25,4 +25,4 @@ class TaskThread {
     std::jthread thread_;
 };
 
-}  // namespace tessera::node
+}  // namespace tessera
