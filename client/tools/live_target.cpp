@@ -1,13 +1,11 @@
 #include "client/tools/live_target.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <iostream>
 #include <thread>
 
 #include "client/live_session.h"
-#include "client/tools/this_machine.h"
+#include "client/tools/cluster_options.h"
 
 namespace tessera::tools {
 
@@ -38,10 +36,7 @@ class LiveTarget final : public edit::EditTarget {
   public:
     explicit LiveTarget(const SceneAddress& address)
         : session_(client::connect_live({address.master, address.keys, address.user}, blobs_, clock_,
-                                        {.name = address.name,
-                                         .host = host_name(),
-                                         .software = "tessera " + cli::version(),
-                                         .pid = static_cast<std::uint64_t>(::getpid())})) {
+                                        session_settings(address.name))) {
         (void)session_->join(address.title, client::WhenBusy::Queue,
                              [](std::uint32_t place) {
                                  std::cerr << "tessera edit: the cluster renders a batch: waiting, place "

@@ -4,7 +4,6 @@
 #include <cctype>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
 #include <span>
@@ -109,12 +108,8 @@ frame::Image interleaved(const client::Picture& picture) {
 }
 
 void write_bytes(const std::string& path, std::span<const std::byte> bytes) {
-    picture::write_atomically(path, [&](const std::string& temporary) {
-        std::ofstream file(temporary, std::ios::binary);
-        file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-        file.close();
-        if (!file) throw Error(ErrorCode::Io, "cannot write '" + path + "': is the disk full?");
-    });
+    picture::write_atomically(path,
+                              std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
 }  // namespace

@@ -1,18 +1,16 @@
 #include "client/tools/render.h"
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <iostream>
 #include <memory>
 
 #include "client/session.h"
+#include "client/tools/cluster_options.h"
 #include "client/tools/interrupts.h"
 #include "client/tools/pictures.h"
 #include "client/tools/progress_line.h"
 #include "client/tools/render_options.h"
 #include "client/tools/render_report.h"
-#include "client/tools/this_machine.h"
 #include "mediator/frame/resolve.h"
 
 namespace tessera::tools {
@@ -23,13 +21,6 @@ constexpr const char* Name = "render";
 
 // Ids that a master lends first; a scene imported with them need not be read again.
 constexpr ObjectId UsualFirstId{1u << 16};
-
-client::SessionSettings session_settings() {
-    return {.name = "tessera render",
-            .host = host_name(),
-            .software = "tessera " + cli::version(),
-            .pid = static_cast<std::uint64_t>(::getpid())};
-}
 
 master::EventSink quiet_log(const cli::Log& log) {
     return [&log](const master::Event& event) {
@@ -80,11 +71,11 @@ class Render {
 
     void connect() {
         if (plan_.address) {
-            session_ = client::connect(*plan_.address, blobs_, clock_, session_settings());
+            session_ = client::connect(*plan_.address, blobs_, clock_, session_settings("tessera render"));
             return;
         }
         embedded_.emplace(plan_.embedded, blobs_, clock_, quiet_log(log_));
-        client::SessionSettings settings = session_settings();
+        client::SessionSettings settings = session_settings("tessera render");
         settings.lost_limit = std::chrono::minutes(10);  // silence in here is a busy machine
         session_ = std::make_unique<client::Session>(embedded_->client(), std::function<void()>(), blobs_,
                                                      clock_, settings);

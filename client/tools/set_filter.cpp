@@ -1,12 +1,10 @@
 #include "client/tools/set_filter.h"
 
-#include <unistd.h>
-
 #include <iostream>
 #include <memory>
 
 #include "client/session.h"
-#include "client/tools/this_machine.h"
+#include "client/tools/cluster_options.h"
 
 namespace tessera::tools {
 
@@ -23,10 +21,7 @@ int run(const Options& options) {
     try {
         const SteadyClock clock;
         const auto session = client::connect(options.address, std::make_shared<scene::BlobStore>(), clock,
-                                             {.name = "tessera set-filter",
-                                              .host = host_name(),
-                                              .software = "tessera " + cli::version(),
-                                              .pid = static_cast<std::uint64_t>(::getpid())});
+                                             session_settings("tessera set-filter"));
         std::cout << session->set_filter(options.filter) << std::endl;
         return 0;
     } catch (const Error& error) {
@@ -41,10 +36,8 @@ Command set_filter_command(cli::CommandLine& program) {
     cli::CommandLine& line =
         program.command(Name, "Give the frame that a cluster is rendering another filter, or other values.");
     line.positional("FILTER", "NAME[:key=value,...]; tessera filters lists them", options->filter);
-    line.option("--master", "where the cluster is: tcp://host:port", options->address.endpoint);
+    add_cluster_options(line, options->address);
     line.required("--master");
-    line.option("--keys", "keys for that cluster: a folder, or an exported file", options->address.keys);
-    line.option("--user", "whose pair in a folder of keys", options->address.user);
     line.examples({"tessera set-filter fdf --master tcp://render-1:7420 --keys ~/.tessera",
                    "tessera set-filter pixel:t=0.002 --master tcp://127.0.0.1:7420"});
     return {Name, [options](std::string_view) { return run(*options); }};

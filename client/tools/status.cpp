@@ -1,16 +1,13 @@
 #include "client/tools/status.h"
 
-#include <unistd.h>
-
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "client/session.h"
 #include "client/tools/chrome_trace.h"
-#include "client/tools/this_machine.h"
+#include "client/tools/cluster_options.h"
 #include "mediator/picture/atomic_file.h"
 
 namespace tessera::tools {
@@ -136,20 +133,10 @@ int run(const StatusOptions& options) {
     try {
         const SteadyClock clock;
         const auto session = client::connect(options.address, std::make_shared<scene::BlobStore>(), clock,
-                                             {.name = "tessera status",
-                                              .host = host_name(),
-                                              .software = "tessera " + cli::version(),
-                                              .pid = static_cast<std::uint64_t>(::getpid())});
+                                             session_settings("tessera status"));
         if (!options.chrome_trace.empty()) {
             constexpr std::uint32_t Edits = 4096;  // as many as the master keeps and a message holds
-            picture::write_atomically(options.chrome_trace, [&](const std::string& temporary) {
-                std::ofstream file(temporary, std::ios::binary);
-                file << chrome_trace(session->trace(Edits));
-                file.close();
-                if (!file)
-                    throw Error(ErrorCode::Io,
-                                "cannot write '" + options.chrome_trace + "': is the disk full?");
-            });
+            picture::write_atomically(options.chrome_trace, chrome_trace(session->trace(Edits)));
         }
         const client::ClusterStatus status = session->status();
         if (options.json) {
@@ -168,9 +155,7 @@ int run(const StatusOptions& options) {
 Command status_command(cli::CommandLine& program) {
     const auto options = std::make_shared<StatusOptions>();
     cli::CommandLine& command = program.command(Name, "Show a cluster's nodes, versions, units and rates.");
-    command.option("--master", "where the cluster is: tcp://host:port", options->address.endpoint);
-    command.option("--keys", "keys for that cluster: a folder, or an exported file", options->address.keys);
-    command.option("--user", "whose pair in a folder of keys", options->address.user);
+    add_cluster_options(command, options->address);
     command.flag("--json", "print one JSON object", options->json);
     command.option("--chrome-trace",
                    "write where the time of the latest edits went, for ui.perfetto.dev or chrome://tracing",

@@ -11,10 +11,10 @@
 
 #include "client/live_cameras.h"
 #include "client/live_session.h"
+#include "client/tools/cluster_options.h"
 #include "client/tools/interrupts.h"
 #include "client/tools/pictures.h"
 #include "client/tools/terminal_picture.h"
-#include "client/tools/this_machine.h"
 #include "client/tools/values.h"
 #include "master/filter/catalog.h"
 #include "mediator/filter/choice.h"
@@ -80,10 +80,7 @@ class Watch {
         }
         if (const auto code = choose_size()) return *code;
         session_ = client::connect_live(options_.address, std::make_shared<scene::BlobStore>(), clock_,
-                                        {.name = options_.name,
-                                         .host = host_name(),
-                                         .software = "tessera " + cli::version(),
-                                         .pid = static_cast<std::uint64_t>(::getpid())});
+                                        session_settings(options_.name));
         const auto joined = session_->join(
             options_.title, options_.no_wait ? client::WhenBusy::GiveUp : client::WhenBusy::Queue,
             [](std::uint32_t place) {
@@ -198,9 +195,7 @@ Command watch_command(cli::CommandLine& program) {
     const auto options = std::make_shared<Options>();
     cli::CommandLine& line =
         program.command(Name, "Watch a live scene: in the terminal, or in a picture file that is kept new.");
-    line.option("--master", "where the cluster is: tcp://host:port", options->address.endpoint);
-    line.option("--keys", "keys for that cluster: a folder, or an exported file", options->address.keys);
-    line.option("--user", "whose pair in a folder of keys", options->address.user);
+    add_cluster_options(line, options->address);
     line.option("--name", "how others see this client", options->name);
     line.option("--scene", "title of the live scene, if this starts it", options->title);
     line.option("--view", "watch this view of somebody; tessera edit -c people lists them", options->view);

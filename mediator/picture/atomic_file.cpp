@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 
 #include "mediator/base/error.h"
 
@@ -37,6 +38,15 @@ void write_atomically(const std::string& path, const std::function<void(const st
         unlink(temporary.c_str());
         throw error;
     }
+}
+
+void write_atomically(const std::string& path, std::string_view content) {
+    write_atomically(path, [&](const std::string& temporary) {
+        std::ofstream file(temporary, std::ios::binary);
+        file.write(content.data(), static_cast<std::streamsize>(content.size()));
+        file.close();
+        if (!file) throw Error(ErrorCode::Io, "cannot write '" + path + "': is the disk full?");
+    });
 }
 
 }  // namespace tessera::picture

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 
 namespace tessera::picture {
 
@@ -9,5 +10,8 @@ namespace tessera::picture {
 // `write` throws goes on, after the temporary file was removed. Throws Error{Io} with the path and the
 // remedy.
 void write_atomically(const std::string& path, const std::function<void(const std::string&)>& write);
+
+// The same for content that is there already.
+void write_atomically(const std::string& path, std::string_view content);
 
 }  // namespace tessera::picture

@@ -94,11 +94,11 @@ TEST_F(LiveProcess, KilledAtRandomMomentsItHasEveryAcknowledgedEdit) {
 }
 
 TEST_F(LiveProcess, TheFinishedFrameHasTheBitsOfOneThatWasNeverInterrupted) {
+    view.spp = 256;  // seconds on one thread: it is not finished before it is interrupted
     session->open_view(1, view);
     const Hash256 whole = finished_film();
     session->close_view(1);
     view.name = "interrupted";
-    view.spp = 64;
     session->open_view(2, view);
     for (int kill = 0; kill < 3; ++kill) {
         std::this_thread::sleep_for(150ms);

@@ -1,6 +1,5 @@
 #include "client/tools/bench/backends_command.h"
 
-#include <fstream>
 #include <iostream>
 #include <memory>
 
@@ -15,15 +14,6 @@ namespace tessera::tools::bench {
 namespace {
 
 constexpr const char* Name = "bench backends";
-
-void write(const std::filesystem::path& path, const std::string& content) {
-    picture::write_atomically(path.string(), [&](const std::string& temporary) {
-        std::ofstream file(temporary, std::ios::binary);
-        file << content;
-        file.close();
-        if (!file) throw Error(ErrorCode::Io, "cannot write '" + path.string() + "': is the disk full?");
-    });
-}
 
 int run(const BackendsOptions& options) {
     const Interrupts interrupts;  // before anything that starts threads
@@ -44,7 +34,9 @@ int run(const BackendsOptions& options) {
     if (!results)
         return complain(Name, ExitInterrupted, "interrupted in the middle of a scene; no file is written");
     if (!plan->output.empty()) {
-        write(plan->output, plan->output.extension() == ".csv" ? as_csv(*results) : as_json(*results) + "\n");
+        picture::write_atomically(plan->output.string(), plan->output.extension() == ".csv"
+                                                             ? as_csv(*results)
+                                                             : as_json(*results) + "\n");
     }
     if (options.json) std::cout << as_json(*results) << "\n";
     if (!plan->output.empty() && !options.json) std::cout << "wrote " << plan->output.string() << "\n";

@@ -1,6 +1,5 @@
 #include "client/tools/bench/bench_files.h"
 
-#include <fstream>
 #include <span>
 
 #include "client/tools/bench/html_report.h"
@@ -23,12 +22,7 @@ std::vector<std::string> BenchFiles::write(const BenchResults& results) const {
     std::vector<std::string> written;
     const auto write_file = [&](const char* name, std::string_view content) {
         const std::string path = (folder_ / name).string();
-        picture::write_atomically(path, [&](const std::string& temporary) {
-            std::ofstream file(temporary, std::ios::binary);
-            file.write(content.data(), static_cast<std::streamsize>(content.size()));
-            file.close();
-            if (!file) throw Error(ErrorCode::Io, "cannot write '" + path + "': is the disk full?");
-        });
+        picture::write_atomically(path, content);
         written.push_back(path);
     };
     write_file("filters.json", as_json(results) + "\n");

@@ -1,0 +1,22 @@
+#include "client/tools/cluster_options.h"
+
+#include <unistd.h>
+
+#include "client/tools/this_machine.h"
+
+namespace tessera::tools {
+
+void add_cluster_options(cli::CommandLine& line, client::Address& address) {
+    line.option("--master", "where the cluster is: tcp://host:port", address.endpoint);
+    line.option("--keys", "keys for that cluster: a folder, or an exported file", address.keys);
+    line.option("--user", "whose pair in a folder of keys", address.user);
+}
+
+client::SessionSettings session_settings(const std::string& name) {
+    return {.name = name,
+            .host = host_name(),
+            .software = "tessera " + cli::version(),
+            .pid = static_cast<std::uint64_t>(::getpid())};
+}
+
+}  // namespace tessera::tools
