@@ -8,7 +8,7 @@ import os
 import re
 import sys
 
-CORE = ["mediator/base", "mediator/scene", "mediator/view", "mediator/frame", "mediator/filter"]
+CORE = ["mediator/base", "mediator/scene", "mediator/view", "mediator/frame", "mediator/filter", "mediator/display"]
 KIT = CORE + ["mediator/backend", "mediator/shading"]
 LINK = ["mediator/net", "mediator/wire"]
 
@@ -19,7 +19,8 @@ ARROWS = {
     "mediator/scene": ["mediator/base"],
     "mediator/frame": ["mediator/base", "mediator/scene"],
     "mediator/view": ["mediator/base", "mediator/scene", "mediator/frame"],
-    "mediator/filter": CORE,
+    "mediator/filter": ["mediator/base", "mediator/scene", "mediator/view", "mediator/frame"],
+    "mediator/display": ["mediator/base", "mediator/scene", "mediator/view", "mediator/frame"],
     "mediator/shading": CORE,
     "mediator/backend": KIT,
     "mediator/picture": CORE,
@@ -46,6 +47,7 @@ ARROWS = {
     "client/export": CORE + ["client/import", "mediator/picture", "mediator/wire"],
     "client/edit": CORE + ["client/import", "client/export", "client/cli"],
     "client/cli": ["mediator/base"],
+    "client/display_file": CORE + ["mediator/picture"],
     "client/main.cpp": [""],
     "client/tools": [""],
     "client/display": [""],

@@ -1,0 +1,135 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "mediator/scene/blob.h"
+#include "mediator/view/view.h"
+
+// What stands in front of people: screens in space, and outputs, each the picture of one device. Plain
+// values. Display space: metres, right-handed, y up; origin and axes are those of the scene camera that
+// carries the display, so a wall two metres in front of it has z = -2.
+namespace tessera::display {
+
+// How an output shows the two eyes.
+enum class Stereo : std::uint8_t {
+    Mono,  // one picture, seen from between the eyes
+    Left,  // this eye alone: the other has an output of its own
+    Right,
+    Separate,        // two pictures of the full size: files
+    SideBySide,      // left eye in the left half, each squeezed to half the width
+    TopBottom,       // left eye in the upper half
+    InterlacedRows,  // even rows of the desktop show the left eye
+    AnaglyphPlain,   // red of the left eye, green and blue of the right
+    AnaglyphDubois,  // least-squares red-cyan (Dubois 2001)
+};
+
+// How far the device is turned clockwise as it hangs, so its picture is turned the other way.
+enum class Turn : std::uint8_t { None, Quarter, Half, ThreeQuarters };
+
+// Values over an output's picture, float32, row by row from the top left, bilinear in between.
+struct Grid {
+    enum class Nodes : std::uint8_t {
+        Edges,   // node (i, j) lies at (i / (columns - 1), j / (rows - 1)) of the picture
+        Centres  // at ((i + 0.5) / columns, (j + 0.5) / rows): one a pixel, for example
+    };
+    std::uint32_t columns = 0, rows = 0, components = 1;
+    Nodes nodes = Nodes::Edges;
+    scene::BlobRef values;  // columns x rows x components
+    bool empty() const { return values.empty(); }
+    friend bool operator==(const Grid&, const Grid&) = default;
+};
+
+// The flat plane that an output's view is rendered for. The picture is the bounding box, along `right` and
+// `up`, of the hull as it is seen from the eye.
+struct ViewPlane {
+    glm::dvec3 origin{0.0, 0.0, -1.0};                   // any point of it
+    glm::dvec3 right{1.0, 0.0, 0.0}, up{0.0, 1.0, 0.0};  // unit, orthogonal; eyes are where right x up points
+    std::vector<glm::dvec3> hull;                        // of what is shown; a flat wall: its four corners
+    friend bool operator==(const ViewPlane&, const ViewPlane&) = default;
+};
+
+// Where pictures of several projectors overlap. All in linear light.
+struct Blend {
+    // Soft edges: the weight rises from 0 to 1 over so many pixels from each edge, as f(t) = (2t)^shape / 2
+    // below one half and 1 - f(1 - t) above, so that two ramps that meet add up to 1.
+    double left = 0, right = 0, top = 0, bottom = 0;
+    double shape = 1.0;
+    Grid weights;  // 1 component in [0, 1], instead of ramps
+    // Black-level lift: what is added (1 component, in [0, 1) of full white) where fewer projectors' blacks
+    // overlap than elsewhere; a pixel shows lift + (1 - lift) x value.
+    Grid lift;
+    friend bool operator==(const Blend&, const Blend&) = default;
+};
+
+// From linear light to what the device is sent: matrix, gain, then curve or gamma.
+struct Color {
+    glm::dmat3 matrix{1.0};  // device rgb from linear Rec. 709
+    glm::dvec3 gain{1.0};
+    double gamma = 0.0;        // 0 = the curve of sRGB
+    std::vector<float> curve;  // device value at linear 0 ... 1, evenly spaced; empty = gamma
+    friend bool operator==(const Color&, const Color&) = default;
+};
+
+struct Output {
+    std::string name;
+    std::uint32_t width = 1920, height = 1080;  // pixels of the device
+    std::int32_t x = 0, y = 0;                  // of its top left pixel on the desktop
+    Turn turn = Turn::None;
+    Stereo stereo = Stereo::Mono;
+    std::uint32_t priority = 1;  // 1, 2, 4 or 8: samples a pixel, compared with the others
+    ViewPlane plane;
+    std::uint32_t view_width = 1920, view_height = 1080;  // of the picture that is rendered for it, an eye
+    Grid points;  // 3 components: where on the screen the device's pixels are seen; empty = the plane's box
+    Blend blend;
+    Color color;
+    friend bool operator==(const Output&, const Output&) = default;
+};
+
+// What is in the picture, composed by depth and alpha (Schwenk 5.3.2).
+struct Layer {
+    std::string name;
+    view::Renderer renderer = view::Renderer::PathTracing;
+    std::uint32_t layers = 0xffffffffu;  // of the scene's objects: those that it shows
+    bool shown = true;
+    friend bool operator==(const Layer&, const Layer&) = default;
+};
+
+// The eyes of who looks, at rest or tracked.
+struct Head {
+    glm::dvec3 position{0.0};                    // between the eyes
+    glm::dquat orientation{1.0, 0.0, 0.0, 0.0};  // (w, x, y, z), unit; identity looks along -z
+    friend bool operator==(const Head&, const Head&) = default;
+};
+
+struct Display {
+    std::string name;
+    std::string camera;            // of the scene, that carries the display; "" = its first
+    double units_per_metre = 1.0;  // of the scene
+    Head head;
+    double eye_separation = 0.064;  // metres
+    double zero_parallax = 0.0;     // metres from the head; 0 = on the screens
+    std::uint64_t spp = 256;        // of outputs with priority 1
+    std::uint32_t coarsest = 8;     // 8, 4, 2: the first picture after a change is of this part of the size
+    std::uint32_t max_bounces = 8;
+    double rate = 60.0;         // frames a second, at most
+    std::string filter;         // NAME[:key=value,...]
+    std::vector<Layer> layers;  // none: one, of everything, path traced
+    std::vector<Output> outputs;
+    friend bool operator==(const Display&, const Display&) = default;
+};
+
+// Whether an output process works on linear light: it warps, blends or corrects colour. Else it is sent what
+// it shows.
+bool takes_linear_light(const Output& output);
+
+// Beyond these a display is refused.
+inline constexpr std::size_t MaxOutputs = 64, MaxLayers = 4, MaxHull = 4096, MaxCurve = 4096;
+inline constexpr std::uint32_t MaxEdge = 16384;
+
+}  // namespace tessera::display
