@@ -46,6 +46,12 @@ struct SendersOf {
     unsigned operator()(const wire::FrameTaken&) const { return Clients; }
     unsigned operator()(const wire::Pick&) const { return Clients; }
     unsigned operator()(const wire::ReadTrace&) const { return Clients; }
+    unsigned operator()(const wire::OpenDisplay&) const { return Editors; }
+    unsigned operator()(const wire::CloseDisplay&) const { return Editors; }
+    unsigned operator()(const wire::AdjustDisplay&) const { return Editors; }
+    unsigned operator()(const wire::MoveHead&) const { return Editors; }
+    unsigned operator()(const wire::JoinOutput&) const { return Clients; }
+    unsigned operator()(const wire::OutputReady&) const { return Clients; }
     // What only a master says.
     unsigned operator()(const wire::Welcome&) const { return Nobody; }
     unsigned operator()(const wire::Refusal&) const { return Nobody; }
@@ -72,6 +78,8 @@ struct SendersOf {
     unsigned operator()(const wire::Writers&) const { return Nobody; }
     unsigned operator()(const wire::Picked&) const { return Nobody; }
     unsigned operator()(const wire::Trace&) const { return Nobody; }
+    unsigned operator()(const wire::OutputOpened&) const { return Nobody; }
+    unsigned operator()(const wire::PresentFrame&) const { return Nobody; }
     // bulk
     unsigned operator()(const wire::BulkHello&) const { return Everybody; }
     unsigned operator()(const wire::BlobRequest&) const { return Nodes | Clients; }
@@ -81,6 +89,7 @@ struct SendersOf {
     unsigned operator()(const wire::FrameTile&) const { return Nobody; }
     unsigned operator()(const wire::PictureChunk&) const { return Nobody; }
     unsigned operator()(const wire::LiveFrame&) const { return Nobody; }
+    unsigned operator()(const wire::OutputPicture&) const { return Nobody; }
 };
 
 }  // namespace

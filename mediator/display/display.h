@@ -117,9 +117,14 @@ struct Display {
     std::uint64_t spp = 256;        // of outputs with priority 1
     std::uint32_t coarsest = 8;     // 8, 4, 2: the first picture after a change is of this part of the size
     std::uint32_t max_bounces = 8;
-    double rate = 60.0;         // frames a second, at most
-    std::string filter;         // NAME[:key=value,...]
-    std::vector<Layer> layers;  // none: one, of everything, path traced
+    double rate = 60.0;     // frames a second, at most
+    std::string filter;     // NAME[:key=value,...]
+    double exposure = 0.0;  // stops
+    // The smallest luminance that becomes white: L (1 + L / white^2) / (1 + L), as Reinhard et al. 2002 have
+    // it; 0 = light is shown as it is, up to 1. The same for all outputs, so that no seam shows.
+    double white = 0.0;
+    bool stereo_difference = false;  // measure how well the eyes fit together (costs the depth channel)
+    std::vector<Layer> layers;       // none: one, of everything, path traced
     std::vector<Output> outputs;
     friend bool operator==(const Display&, const Display&) = default;
 };

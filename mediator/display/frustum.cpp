@@ -11,7 +11,8 @@ namespace tessera::display {
 
 std::span<const view::Eye> eyes(Stereo stereo) {
     using enum view::Eye;
-    static constexpr std::array Middle{Mono}, LeftEye{Left}, RightEye{Right}, Both{Left, Right};
+    static constexpr std::array<view::Eye, 1> Middle{Mono}, LeftEye{Left}, RightEye{Right};
+    static constexpr std::array<view::Eye, 2> Both{Left, Right};
     switch (stereo) {
         case Stereo::Mono:
             return Middle;

@@ -150,6 +150,24 @@ struct Encoder {
         out.put(frame.spp);
         put(out, frame.film_hash);
     }
+    void operator()(const OutputPicture& picture) const {
+        out.put(picture.frame);
+        out.put(static_cast<std::uint32_t>(picture.eye));
+        out.put(picture.eyes);
+        out.put(picture.version.epoch);
+        out.put(picture.version.number);
+        out.put(picture.camera.world_from_camera);
+        for (const double edge :
+             {picture.camera.left, picture.camera.right, picture.camera.bottom, picture.camera.top})
+            out.put(edge);
+        out.put(picture.width);
+        out.put(picture.height);
+        out.put(static_cast<std::uint32_t>(picture.encoding));
+        out.put(picture.samples);
+        out.put(picture.total);
+        out.put(picture.offset);
+        out.put_all(std::span(picture.data));
+    }
 };
 
 struct Decoder {
@@ -220,6 +238,39 @@ struct Decoder {
         in.expect_end();
     }
 
+    void operator()(OutputPicture& picture) const {
+        picture.frame = in.get<std::uint64_t>();
+        const auto eye = in.get<std::uint32_t>();
+        if (eye > static_cast<std::uint32_t>(view::Eye::Right)) malformed("an eye is unknown");
+        picture.eye = static_cast<view::Eye>(eye);
+        picture.eyes = in.get<std::uint32_t>();
+        if (picture.eyes != 1 && picture.eyes != 2) malformed("a frame for another number of eyes");
+        picture.version.epoch = in.get<std::uint64_t>();
+        picture.version.number = in.get<std::uint64_t>();
+        picture.camera.world_from_camera = in.get<glm::dmat4>();
+        picture.camera.left = in.get<double>();
+        picture.camera.right = in.get<double>();
+        picture.camera.bottom = in.get<double>();
+        picture.camera.top = in.get<double>();
+        picture.width = in.get<std::uint32_t>();
+        picture.height = in.get<std::uint32_t>();
+        const auto encoding = in.get<std::uint32_t>();
+        if (encoding == static_cast<std::uint32_t>(PictureEncoding::Bytes)) {
+            picture.encoding = PictureEncoding::Bytes;
+        } else if (encoding == static_cast<std::uint32_t>(PictureEncoding::Half)) {
+            picture.encoding = PictureEncoding::Half;
+        } else {
+            malformed("an output's picture is neither bytes nor half floats");
+        }
+        picture.samples = in.get<std::uint64_t>();
+        get_piece(picture);
+        const std::uint64_t bytes_per_pixel = picture.encoding == PictureEncoding::Bytes ? 3 : 6;
+        if (picture.width == 0 || picture.height == 0 || picture.width > display::MaxEdge ||
+            picture.height > display::MaxEdge ||
+            picture.total != bytes_per_pixel * picture.width * picture.height)
+            malformed("an output's picture has another size than its header says");
+    }
+
   private:
     template <class Chunk>
     void get_piece(Chunk& chunk) const {
@@ -244,6 +295,7 @@ BulkMessage alternative(std::size_t index, std::index_sequence<I...>) {
 std::size_t size_of_data(const BulkMessage& message) {
     if (const auto* chunk = std::get_if<BlobChunk>(&message)) return chunk->data.size();
     if (const auto* piece = std::get_if<PictureChunk>(&message)) return piece->data.size();
+    if (const auto* picture = std::get_if<OutputPicture>(&message)) return picture->data.size();
     if (const auto* part = std::get_if<FilmPart>(&message)) return part->film.byte_size();
     if (const auto* tile = std::get_if<FrameTile>(&message)) return tile->film.byte_size();
     return 0;

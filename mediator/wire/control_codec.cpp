@@ -169,6 +169,30 @@ proto::ReadTrace& part(proto::Control& c, const ReadTrace&) {
 proto::Trace& part(proto::Control& c, const Trace&) {
     return *c.mutable_trace();
 }
+proto::OpenDisplay& part(proto::Control& c, const OpenDisplay&) {
+    return *c.mutable_open_display();
+}
+proto::CloseDisplay& part(proto::Control& c, const CloseDisplay&) {
+    return *c.mutable_close_display();
+}
+proto::AdjustDisplay& part(proto::Control& c, const AdjustDisplay&) {
+    return *c.mutable_adjust_display();
+}
+proto::MoveHead& part(proto::Control& c, const MoveHead&) {
+    return *c.mutable_move_head();
+}
+proto::JoinOutput& part(proto::Control& c, const JoinOutput&) {
+    return *c.mutable_join_output();
+}
+proto::OutputOpened& part(proto::Control& c, const OutputOpened&) {
+    return *c.mutable_output_opened();
+}
+proto::OutputReady& part(proto::Control& c, const OutputReady&) {
+    return *c.mutable_output_ready();
+}
+proto::PresentFrame& part(proto::Control& c, const PresentFrame&) {
+    return *c.mutable_present_frame();
+}
 
 template <class Message>
 std::vector<std::byte> serialized(const Message& message) {

@@ -13,9 +13,10 @@
 // comes back with the answer.
 namespace tessera::wire {
 
-// What the master makes of the film: nothing, the filtered picture as float32 planes one after another, or a
-// file.
-enum class PictureEncoding : std::uint8_t { None, Planes, Png, Jpeg, Exr };
+// What the master makes of the film: nothing, the filtered picture as float32 planes one after another, a
+// file, or (of outputs of displays alone) red, green and blue of each pixel: 8-bit sRGB, or linear half
+// floats.
+enum class PictureEncoding : std::uint8_t { None, Planes, Png, Jpeg, Exr, Bytes, Half };
 
 // Joins the live scene, or starts one when the stage is free. Answered by QueuePlace while a batch scene has
 // the stage, then SceneJoined; or Refusal.

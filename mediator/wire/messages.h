@@ -12,6 +12,7 @@
 #include "mediator/scene/change_list.h"
 #include "mediator/view/view.h"
 #include "mediator/view/work_unit.h"
+#include "mediator/wire/display_messages.h"
 #include "mediator/wire/live_messages.h"
 
 // What goes over the control link, as plain values; `envelope.h` turns them into bytes and back. A message
@@ -275,6 +276,7 @@ struct StatusReply {
     std::vector<NodeStatus> nodes;
     LiveStatus live;
     std::uint64_t resyncs = 0;  // nodes that had to be sent the whole scene again
+    DisplayStatus display;
 };
 
 // The order is the order of the cases in proto/control.proto; codecs rely on it.
@@ -285,7 +287,8 @@ using ControlMessage =
                  JobProgress, JobDone, StatusRequest, StatusReply, SetFilter, FilterSet, SceneRefused,
                  JoinScene, SceneJoined, RequestDone, CloseScene, ReadScene, SceneContent, LockObjects,
                  SetPresence, ReadPeople, People, ReadHistory, History, ReadWriters, Writers, OpenLiveView,
-                 CloseLiveView, FrameTaken, Pick, Picked, ReadTrace, Trace>;
+                 CloseLiveView, FrameTaken, Pick, Picked, ReadTrace, Trace, OpenDisplay, CloseDisplay,
+                 AdjustDisplay, MoveHead, JoinOutput, OutputOpened, OutputReady, PresentFrame>;
 
 // ---- bulk link: fixed little-endian header, then raw planes ----
 
@@ -342,7 +345,20 @@ struct LiveFrame {
     bool complete = false;
     Hash256 film_hash;  // when complete
 };
-using BulkMessage =
-    std::variant<BulkHello, BlobRequest, BlobChunk, BlobAbsent, FilmPart, FrameTile, PictureChunk, LiveFrame>;
+// Master to output process: a piece of an eye's picture of a frame; pieces of one picture come in order.
+struct OutputPicture {
+    std::uint64_t frame = 0;
+    view::Eye eye = view::Eye::Mono;
+    std::uint32_t eyes = 1;   // pictures of this frame for this output
+    Version version;          // of the scene that is seen
+    view::CameraPose camera;  // in display space, that it was rendered with
+    std::uint32_t width = 0, height = 0;
+    PictureEncoding encoding = PictureEncoding::Bytes;  // or Half
+    std::uint64_t samples = 0;                          // of a pixel, the least
+    std::uint64_t total = 0, offset = 0;                // bytes of the picture
+    std::vector<std::byte> data;                        // at most 1 MiB
+};
+using BulkMessage = std::variant<BulkHello, BlobRequest, BlobChunk, BlobAbsent, FilmPart, FrameTile,
+                                 PictureChunk, LiveFrame, OutputPicture>;
 
 }  // namespace tessera::wire

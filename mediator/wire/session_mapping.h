@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mediator/wire/display_mapping.h"
 #include "mediator/wire/live_mapping.h"
 #include "proto/session.pb.h"
 
@@ -236,6 +237,7 @@ void map(const Io& io, typename Io::template Ref<StatusReply> s, proto::StatusRe
     io.messages(s.nodes, p.mutable_nodes(), MaxList);
     io.message(s.live, p.mutable_live());
     io(s.resyncs, p, &P::resyncs, &P::set_resyncs);
+    io.message(s.display, p.mutable_display());
 }
 
 }  // namespace tessera::wire

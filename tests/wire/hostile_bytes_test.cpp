@@ -150,7 +150,15 @@ std::vector<ControlMessage> control_messages() {
             Pick{10, 1, 3, 4},
             Picked{10, {5, 1}, true, ObjectId{7}, {1, 2, 3}, {0, 1, 0}, 4.5, "none"},
             ReadTrace{11, 10},
-            Trace{11, {{3, "ann", 40, 1, 2, 3, 4, {{"node-1", 5, 6, 7}}, 8, {5, 2}}}}};
+            Trace{11, {{3, "ann", 40, 1, 2, 3, 4, {{"node-1", 5, 6, 7}}, 8, {5, 2}}}},
+            OpenDisplay{12, {blake2b({}), 100}},
+            CloseDisplay{13},
+            AdjustDisplay{14, 0.06, 2.0, -1.0, true, 3},
+            MoveHead{{{0.1, 1.7, 0.0}, {1.0, 0.0, 0.0, 0.0}}},
+            JoinOutput{15, "left"},
+            OutputOpened{15, {blake2b({}), 100}, 3, true},
+            OutputReady{9},
+            PresentFrame{9, {5, 3}, 1000, 10}};
 }
 
 std::vector<BulkMessage> bulk_messages() {
@@ -168,7 +176,18 @@ std::vector<BulkMessage> bulk_messages() {
             FrameTile{JobId{1}, 2, 3, uneven},
             PictureChunk{JobId{1}, 100, 10, std::vector<std::byte>(50)},
             LiveFrame{
-                1, 2, {5, 3}, 4, 8, 160, 90, 3, PictureEncoding::Jpeg, 1000, 4, 1, 2, 64, true, blake2b({})}};
+                1, 2, {5, 3}, 4, 8, 160, 90, 3, PictureEncoding::Jpeg, 1000, 4, 1, 2, 64, true, blake2b({})},
+            OutputPicture{.frame = 7,
+                          .eye = view::Eye::Right,
+                          .eyes = 2,
+                          .version = {5, 3},
+                          .width = 8,
+                          .height = 4,
+                          .encoding = PictureEncoding::Half,
+                          .samples = 2,
+                          .total = 192,
+                          .offset = 10,
+                          .data = std::vector<std::byte>(50)}};
 }
 
 TEST(ControlMessages, EveryKindIsHere) {
