@@ -38,7 +38,7 @@ std::string problem_of(const wire::StartJob& request) {
     }
     if (view.window.pixel_count() > MaxPixels) return "the window has more than 2^28 pixels: crop it";
     if (!finite(view.camera)) return "the camera is not finite or has an empty frustum";
-    if (view.channels.empty()) return "no channel is asked for: ask for radiance at least";
+    if (view.channels.empty()) return "no channel is asked for: ask for color at least";
     if (!(view.pixel_filter.radius > 0.0f) || view.pixel_filter.radius > 16.0f) {
         return "the pixel filter's radius is not between 0 and 16 pixels";
     }
@@ -62,7 +62,8 @@ std::string problem_of(const wire::StartJob& request) {
 
 void complete(view::View& view) {
     const auto filter = filter::parse_choice(view.filter, filter::catalog());
-    view.channels = frame::ChannelSet::from_bits(view.channels.bits() | filter->channels().bits());
+    view.channels =
+        frame::ChannelSet::from_bits(view.channels.bits() | filter::lacking(*filter, view.channels).bits());
     if (view.transparent_background) view.channels.insert(frame::Channel::Alpha);
     const view::PathClass wanted = filter->entry->description.path_class;
     if (wanted != view::PathClass::Indirect) view.path_class = wanted;

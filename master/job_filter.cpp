@@ -39,6 +39,11 @@ wire::FilterSet JobRunner::set_filter(const std::string& filter, TimePoint now) 
                   "' works on other paths than this frame tells apart: start the frame with it");
     }
     const auto added = frame::ChannelSet::from_bits(wanted.channels.bits() & ~request.view.channels.bits());
+    if (added.contains(frame::Channel::Radiance)) {
+        return no(
+            "filter '" + std::string(description.name) +
+            "' reads the variance of the light, and this frame keeps color alone: start the frame with it");
+    }
     if (added.empty() || !job_->rendering()) {
         request.view.filter = wanted.filter;
         request.view.channels = wanted.channels;

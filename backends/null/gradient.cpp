@@ -89,6 +89,7 @@ void append_values(const Gradient& sample, std::uint64_t index, frame::ChannelSe
         for (const float value : radiance) values.push_back(even ? value : 0.0f);
         values.push_back(even ? 1.0f : 0.0f);
     }
+    add(Channel::Color, radiance);
 }
 
 }  // namespace tessera::null_backend

@@ -87,7 +87,7 @@ struct FilterOptions {
 // What the filter needs and the film lacks is an error: nothing would stand for it.
 Expected<void> check(const filter::Choice& choice, const picture::FilmFile& file, const view::View& view) {
     const filter::Description& filter = choice.entry->description;
-    const auto missing = frame::ChannelSet::from_bits(choice.channels().bits() & ~file.film.channels.bits());
+    const auto missing = filter::lacking(choice, file.film.channels);
     if (!missing.empty()) {
         return failure(ErrorCode::InvalidInput,
                        "filter '" + std::string(filter.name) + "' needs " + channels_text(missing) +

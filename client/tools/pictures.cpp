@@ -77,14 +77,14 @@ std::map<std::string, std::string> provenance(const client::JobRequest& request,
     return attributes;
 }
 
-// The radiance as sampled, with alpha where the film has it.
+// The picture as sampled, with alpha where the film has it.
 frame::Image unfiltered(const frame::FilmTile& film) {
-    const frame::Image radiance = frame::resolve(film, frame::Channel::Radiance);
-    if (!film.channels.contains(frame::Channel::Alpha)) return radiance;
+    const frame::Image light = frame::resolve_picture(film);
+    if (!film.channels.contains(frame::Channel::Alpha)) return light;
     const frame::Image alpha = frame::resolve(film, frame::Channel::Alpha);
-    frame::Image image(radiance.width, radiance.height, 4);
+    frame::Image image(light.width, light.height, 4);
     for (std::size_t i = 0; i < image.pixel_count(); ++i) {
-        std::copy_n(radiance.pixel(i).begin(), 3, image.pixel(i).begin());
+        std::copy_n(light.pixel(i).begin(), 3, image.pixel(i).begin());
         image.pixel(i)[3] = alpha.values[i];
     }
     return image;

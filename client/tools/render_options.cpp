@@ -87,7 +87,11 @@ bool any_exr(const std::vector<std::string>& outputs) {
 
 frame::ChannelSet channels_for(const RenderOptions& options) {
     using enum frame::Channel;
-    if (options.save_statistics) return frame::ChannelSet::from_bits(~0u);
+    if (options.save_statistics) {
+        auto all = frame::ChannelSet::from_bits(~0u);
+        all.erase(Color);  // Radiance says more
+        return all;
+    }
     if (any_exr(options.outputs))
         return {Radiance, LowVariance, HighVariance, Albedo, Normal, Depth, ObjectIndex};
     return {Radiance};

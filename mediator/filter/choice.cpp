@@ -97,6 +97,12 @@ Expected<Choice> parse_choice(std::string_view text, std::span<const FilterEntry
     return choice;
 }
 
+frame::ChannelSet lacking(const Choice& choice, frame::ChannelSet there) {
+    const bool is_none = choice.entry->description.name == "none";
+    if (is_none && there.contains(frame::Channel::Color)) there.insert(frame::Channel::Radiance);
+    return frame::ChannelSet::from_bits(choice.channels().bits() & ~there.bits());
+}
+
 std::string to_text(const Choice& choice) {
     const Description& filter = choice.entry->description;
     std::string text;

@@ -41,11 +41,13 @@ struct Inputs {
     }
     std::size_t pixel_count() const { return std::size_t{width} * height; }
 
-    // The picture to be filtered: r, g, b of the radiance and, when there is one, premultiplied alpha.
+    // The picture to be filtered: r, g, b of the radiance, or of the colour where the film has no radiance,
+    // and, when there is one, premultiplied alpha.
     std::uint32_t color_components() const { return has(frame::Channel::Alpha) ? 4 : 3; }
     std::span<const float> color(std::uint32_t component) const {
-        return component < 3 ? mean(frame::Channel::Radiance).plane(component)
-                             : mean(frame::Channel::Alpha).plane(0);
+        if (component == 3) return mean(frame::Channel::Alpha).plane(0);
+        const bool has_radiance = has(frame::Channel::Radiance);
+        return mean(has_radiance ? frame::Channel::Radiance : frame::Channel::Color).plane(component);
     }
 };
 

@@ -17,6 +17,7 @@ constexpr std::array<ChannelInfo, ChannelCount> Table{{
     {Channel::ShadingFeature, "shading", MergeRule::Moments, 1},
     {Channel::Irradiance, "irradiance", MergeRule::Moments, 3},
     {Channel::EvenHalf, "even_half", MergeRule::Sum, 4},
+    {Channel::Color, "color", MergeRule::Sum, 3},
 }};
 
 }  // namespace

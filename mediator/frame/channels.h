@@ -32,8 +32,10 @@ enum class Channel : std::uint8_t {
     ShadingFeature = 9,  // light found by the path, in grey, without the surface's colour (Lardinoije 4.2)
     Irradiance = 10,     // light of the diffuse lobe at the first non-delta hit: times albedo = its radiance
     EvenHalf = 11,       // r, g, b of the samples of even index, and 1 for each of them
+    Color = 12,  // all light that reaches the pixel, without second moments: half of Radiance's planes, for
+                 // who only wants the picture
 };
-inline constexpr std::size_t ChannelCount = 12;
+inline constexpr std::size_t ChannelCount = 13;
 
 struct ChannelInfo {
     Channel channel;
@@ -61,6 +63,7 @@ class ChannelSet {
     constexpr std::uint32_t bits() const { return bits_; }
     constexpr bool contains(Channel channel) const { return (bits_ >> static_cast<unsigned>(channel)) & 1u; }
     constexpr void insert(Channel channel) { bits_ |= 1u << static_cast<unsigned>(channel); }
+    constexpr void erase(Channel channel) { bits_ &= ~(1u << static_cast<unsigned>(channel)); }
     constexpr bool empty() const { return bits_ == 0; }
     std::uint32_t plane_count() const;                 // over all channels in the set
     std::uint32_t first_plane(Channel channel) const;  // planes are in the order of the enum

@@ -32,6 +32,10 @@ Image resolve(const FilmTile& film, Channel channel) {
     return image;
 }
 
+Image resolve_picture(const FilmTile& film) {
+    return resolve(film, film.channels.contains(Channel::Radiance) ? Channel::Radiance : Channel::Color);
+}
+
 Image resolve_variance_of_mean(const FilmTile& film, Channel channel) {
     const ChannelInfo& entry = info(channel);
     Image image = blank(film, entry.components);

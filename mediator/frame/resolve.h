@@ -9,12 +9,13 @@
 namespace tessera::frame {
 
 // The one place that divides by n. Pixels without samples resolve to 0 (+inf for depth).
-Image resolve(const FilmTile& film, Channel channel);            // mean, sum / n, or the value itself
+Image resolve(const FilmTile& film, Channel channel);  // mean, sum / n, or the value itself
+Image resolve_picture(const FilmTile& film);           // Radiance, or Color where that is not there
 Image resolve_variance_of_mean(const FilmTile& film, Channel channel);  // M2 / (n (n - 1)); 0 for n < 2
-Image resolve_counts(const FilmTile& film);                      // accepted samples per pixel, 1 component
+Image resolve_counts(const FilmTile& film);  // accepted samples per pixel, 1 component
 
-// BLAKE2b over the merged planes: size, then counts, then each channel's planes in raster order; little-endian.
-// Independent of tiles, nodes and time.
+// BLAKE2b over the merged planes: size, then counts, then each channel's planes in raster order;
+// little-endian. Independent of tiles, nodes and time.
 Hash256 film_hash(const FilmTile& film);
 
 }  // namespace tessera::frame

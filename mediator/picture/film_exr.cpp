@@ -109,7 +109,9 @@ FilmFile read(const std::string& path) {
         }
         if (all) channels.insert(entry.channel);
     }
-    if (!channels.contains(frame::Channel::Radiance) || !holds("samples.count", Imf::UINT)) {
+    const bool has_picture =
+        channels.contains(frame::Channel::Radiance) || channels.contains(frame::Channel::Color);
+    if (!has_picture || !holds("samples.count", Imf::UINT)) {
         throw Error(ErrorCode::InvalidInput,
                     "it holds no statistics: render it again with --save-statistics");
     }
@@ -161,6 +163,7 @@ void write_film_exr(const std::string& path, const FilmFile& file,
     using frame::Channel;
     const frame::FilmTile& film = file.film;
     const std::vector<std::string> rgb{"R", "G", "B"};
+    const Channel picture = film.channels.contains(Channel::Radiance) ? Channel::Radiance : Channel::Color;
     std::vector<Layer> layers;
     if (filtered) {
         layers.push_back(
@@ -173,8 +176,9 @@ void write_film_exr(const std::string& path, const FilmFile& file,
         if (statistics == Statistics::Saved) layers.push_back(statistics_layer(film, entry));
         if (entry.channel == Channel::ObjectIndex) {
             layers.push_back(object_layer(film));
-        } else if (entry.channel == Channel::Radiance) {
-            layers.push_back({filtered ? "raw" : "", rgb, frame::resolve(film, Channel::Radiance)});
+        } else if (entry.channel == picture) {
+            layers.push_back({filtered ? "raw" : "", rgb, frame::resolve_picture(film)});
+            if (picture != Channel::Radiance) continue;
             layers.push_back({"variance", rgb, frame::resolve_variance_of_mean(film, Channel::Radiance)});
         } else if (entry.channel == Channel::Alpha && !filtered) {
             layers.push_back({"", {"A"}, frame::resolve(film, Channel::Alpha)});

@@ -9,9 +9,9 @@ SHADING_BEGIN
 inline constexpr uint ChannelRadiance = 0u, ChannelLowVariance = 1u, ChannelHighVariance = 2u,
                       ChannelAlbedo = 3u, ChannelNormal = 4u, ChannelDepth = 5u, ChannelObjectIndex = 6u,
                       ChannelAlpha = 7u, ChannelRange = 8u, ChannelShadingFeature = 9u,
-                      ChannelIrradiance = 10u, ChannelEvenHalf = 11u;
+                      ChannelIrradiance = 10u, ChannelEvenHalf = 11u, ChannelColor = 12u;
 // Components of all channels together.
-inline constexpr uint MaxSampleValues = 30u;
+inline constexpr uint MaxSampleValues = 33u;
 
 inline bool has_channel(IN(View) view, uint channel) {
     return ((view.channels >> channel) & 1u) != 0u;
@@ -49,6 +49,7 @@ inline void put_sample_values(INOUT(Sink) sink, IN(View) view, IN(PathSample) fo
     const bool even = index % 2u == 0u;
     put_vector(sink, view, ChannelEvenHalf, even ? radiance : vec3(0.0f));
     put_number(sink, view, ChannelEvenHalf, even ? 1.0f : 0.0f);
+    put_vector(sink, view, ChannelColor, radiance);
 }
 
 #ifdef __cplusplus

@@ -110,6 +110,26 @@ TEST(PictureRequest, FilesAreWhatTheyAreCalled) {
     starts_with(PictureEncoding::Exr, {0x76, 0x2f, 0x31, 0x01});
 }
 
+// Three planes on nodes, wire and master, and the picture made of them; no filter can do with that.
+TEST(PictureRequest, OfColorAloneKeepsNoSecondMoments) {
+    client::JobRequest request = picture_request("none");
+    request.film = true;
+    request.view.channels = {frame::Channel::Color};
+    const client::JobResult result = render(2, request);
+    ASSERT_TRUE(result.film) << result.message;
+    EXPECT_EQ(result.film->channels.plane_count(), 3u);
+    ASSERT_TRUE(result.picture);
+    const frame::Image picture = frame::resolve(*result.film, frame::Channel::Color);
+    std::vector<float> planes;
+    for (std::uint32_t c = 0; c < 3; ++c) {
+        for (std::size_t i = 0; i < picture.pixel_count(); ++i) planes.push_back(picture.pixel(i)[c]);
+    }
+    const auto bytes = std::as_bytes(std::span(planes));
+    EXPECT_TRUE(std::ranges::equal(result.picture->bytes, bytes));
+    request.view.filter = "gauss";
+    EXPECT_TRUE(render(1, request).film->channels.contains(frame::Channel::Radiance));
+}
+
 // The clock decides how many samples there are; every pixel has at least the two that a variance takes.
 TEST(PictureRequest, WithABudgetEveryPixelHasTwoSamples) {
     client::JobRequest request = picture_request("gauss");

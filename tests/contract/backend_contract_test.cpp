@@ -146,6 +146,7 @@ TEST_P(BackendContract, TheChannelsOfASampleFitTogether) {
             ASSERT_EQ(radiance,
                       value(Channel::LowVariance, c, pixel) + value(Channel::HighVariance, c, pixel));
             ASSERT_EQ(value(Channel::EvenHalf, c, pixel), radiance);
+            ASSERT_EQ(value(Channel::Color, c, pixel), radiance);
             ASSERT_GE(value(Channel::Range, c, pixel), 0.0f);
             ASSERT_LE(value(Channel::Range, c, pixel), 1.0f);
             if (!hit) {

@@ -34,6 +34,18 @@ TEST(FilterChoice, RefusesWithTheReasonAndTheRemedy) {
     }
 }
 
+TEST(FilterChoice, ColorIsEnoughWithoutAFilter) {
+    using enum frame::Channel;
+    const auto lacks = [](std::string_view filter, frame::ChannelSet there) {
+        return lacking(*parse_choice(filter, catalog()), there);
+    };
+    EXPECT_EQ(lacks("", {Color}), frame::ChannelSet{});
+    EXPECT_EQ(lacks("none", {Color, Depth}), frame::ChannelSet{});
+    EXPECT_EQ(lacks("none", {Depth}), frame::ChannelSet{Radiance});
+    EXPECT_EQ(lacks("gauss", {Color}), frame::ChannelSet{Radiance});
+    EXPECT_EQ(lacks("gauss", {Radiance}), frame::ChannelSet{});
+}
+
 TEST(FilterChoice, EveryDescriptionIsUsable) {
     for (const FilterEntry& entry : catalog()) {
         const Description& filter = entry.description;

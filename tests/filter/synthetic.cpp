@@ -33,6 +33,7 @@ void append(std::vector<float>& values, const SyntheticSample& s, frame::Channel
     add(Channel::Irradiance, s.irradiance);
     const float one = even ? 1.0f : 0.0f;
     add(Channel::EvenHalf, std::array{one * radiance[0], one * radiance[1], one * radiance[2], one});
+    add(Channel::Color, radiance);
 }
 
 struct TextureAndLight {

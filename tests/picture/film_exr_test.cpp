@@ -59,6 +59,17 @@ TEST_F(FilmExr, StatisticsComeBackToTheBit) {
     }
 }
 
+TEST_F(FilmExr, OfColorAloneColorIsThePicture) {
+    const frame::FilmTile color = frame::with_channels(film(), {frame::Channel::Color});
+    write_film_exr(file("a.exr"), {37, 23, color, {}}, {}, Statistics::Saved);
+    EXPECT_TRUE(frame::identical_bits(read_film_exr(file("a.exr")).film, color));
+    const Picture main = read_exr(file("a.exr"));
+    EXPECT_EQ(main.image.values, frame::resolve(color, frame::Channel::Color).values);
+    const frame::FilmTile albedo = frame::with_channels(film(), {frame::Channel::Albedo});
+    write_film_exr(file("b.exr"), {37, 23, albedo, {}}, {}, Statistics::Saved);
+    EXPECT_THROW(read_film_exr(file("b.exr")), Error) << "no picture is in it";
+}
+
 TEST_F(FilmExr, WithoutStatisticsItSaysHowToGetThem) {
     write_film_exr(file("a.exr"), {37, 23, film(), {}});
     try {

@@ -33,6 +33,7 @@ CHANNELS: tuple[tuple[str, Rule, int], ...] = (
     ("shading", Rule.MOMENTS, 1),
     ("irradiance", Rule.MOMENTS, 3),
     ("even_half", Rule.SUM, 4),
+    ("color", Rule.SUM, 3),
 )
 
 

@@ -37,7 +37,8 @@ static_assert(is_number_of(shading::ChannelRadiance, Channel::Radiance) &&
               is_number_of(shading::ChannelRange, Channel::Range) &&
               is_number_of(shading::ChannelShadingFeature, Channel::ShadingFeature) &&
               is_number_of(shading::ChannelIrradiance, Channel::Irradiance) &&
-              is_number_of(shading::ChannelEvenHalf, Channel::EvenHalf) && frame::ChannelCount == 12);
+              is_number_of(shading::ChannelEvenHalf, Channel::EvenHalf) &&
+              is_number_of(shading::ChannelColor, Channel::Color) && frame::ChannelCount == 13);
 
 std::uint32_t kept(const view::View& view) {
     const bool feature = view.channels.contains(Channel::ShadingFeature);
