@@ -1,0 +1,207 @@
+#include "client/display_file/display_file.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <set>
+
+#include "client/cli/cli.h"
+#include "client/display_file/output_keys.h"
+#include "client/display_file/output_reader.h"
+#include "client/display_file/screens.h"
+#include "mediator/display/frustum.h"
+
+namespace tessera::display_file {
+
+namespace {
+
+using display::Display;
+
+void read_settings(Section section, Display& display) {
+    display.name = section.text("name").value_or(display.name);
+    display.camera = section.text("camera").value_or("");
+    display.units_per_metre = section.number("units_per_metre", 1e-6, 1e6).value_or(display.units_per_metre);
+    display.rate = section.number("rate", 0.01, 1000.0).value_or(display.rate);
+    display.spp =
+        std::uint64_t(section.whole("spp", 1, std::int64_t{1} << 30).value_or(std::int64_t(display.spp)));
+    display.filter = section.text("filter").value_or("");
+    display.coarsest = std::uint32_t(section.whole("coarsest", 2, 8).value_or(display.coarsest));
+    if (display.coarsest != 2 && display.coarsest != 4 && display.coarsest != 8)
+        section.refuse("coarsest", "'coarsest' must be 2, 4 or 8: the part of the size that comes first");
+    display.max_bounces = std::uint32_t(section.whole("max_bounces", 0, 1024).value_or(display.max_bounces));
+    display.exposure = section.number("exposure", -100.0, 100.0).value_or(display.exposure);
+    display.white = section.number("white", 0.0, 1e6).value_or(display.white);
+    display.stereo_difference = section.truth("stereo_difference").value_or(false);
+    section.refuse_unknown();
+}
+
+// That turns -z to `look` and keeps the head upright.
+glm::dquat looking(const glm::dvec3& look) {
+    const glm::dvec3 side = glm::cross(look, glm::dvec3(0.0, 1.0, 0.0));
+    const glm::dvec3 right = glm::length(side) > 1e-6 ? glm::normalize(side) : glm::dvec3(1.0, 0.0, 0.0);
+    return glm::normalize(glm::quat_cast(glm::dmat3(right, glm::cross(right, look), -look)));
+}
+
+void read_head(Section section, Display& display) {
+    display.head.position = section.point("position").value_or(display.head.position);
+    const auto look = section.direction("look");
+    if (look) display.head.orientation = looking(*look);
+    if (const auto turn = section.numbers("orientation", -1e3, 1e3)) {
+        if (look) section.refuse("orientation", "has both 'look' and 'orientation': give one of them");
+        if (turn->size() != 4) section.refuse("orientation", "'orientation' must be [w, x, y, z]");
+        const glm::dquat q((*turn)[0], (*turn)[1], (*turn)[2], (*turn)[3]);
+        if (!(glm::length(q) > 1e-6)) section.refuse("orientation", "'orientation' has no length");
+        display.head.orientation = glm::normalize(q);
+    }
+    display.eye_separation = section.number("eye_separation", 0.0, 10.0).value_or(display.eye_separation);
+    display.zero_parallax = section.number("zero_parallax", 0.0, 1e6).value_or(display.zero_parallax);
+    section.refuse_unknown();
+}
+
+display::Layer read_layer(Section section) {
+    constexpr std::array<std::string_view, 3> Renderers{"path", "whitted", "raster"};
+    constexpr std::array Kinds{view::Renderer::PathTracing, view::Renderer::Whitted, view::Renderer::Raster};
+    display::Layer layer;
+    const auto name = section.text("name");
+    if (!name) section.require("name");
+    layer.name = *name;
+    section.call("layer '" + layer.name + "'");
+    if (const auto index = section.choice("renderer", Renderers)) layer.renderer = Kinds[*index];
+    if (const auto numbers = section.numbers("layers", 0.0, 31.0)) {
+        layer.layers = 0;
+        for (const double number : *numbers) {
+            if (number != std::uint32_t(number))
+                section.refuse("layers", "'layers' must be whole numbers from 0 to 31");
+            layer.layers |= 1u << std::uint32_t(number);
+        }
+        if (layer.layers == 0) section.refuse("layers", "'layers' is empty: it would show nothing");
+    }
+    layer.shown = section.truth("shown").value_or(true);
+    section.refuse_unknown();
+    return layer;
+}
+
+void read_layers(Section& document, Display& display) {
+    std::set<std::string> names;
+    for (Section& section : document.sections("layer")) {
+        display.layers.push_back(read_layer(section));
+        if (!names.insert(display.layers.back().name).second)
+            section.refuse("name", "two layers are called '" + display.layers.back().name + "'");
+    }
+    if (display.layers.size() > display::MaxLayers) {
+        document.refuse("layer", "a display has at most " + std::to_string(display::MaxLayers) + " layers");
+    }
+}
+
+std::map<std::string, display::Screen> read_screens(Section& document) {
+    std::map<std::string, display::Screen> screens;
+    for (Section& section : document.sections("screen")) {
+        const auto name = section.text("name");
+        if (!name) section.require("name");
+        section.call("screen '" + *name + "'");
+        if (section.has("fov")) section.refuse("fov", "has 'fov': that is for an output's own screen");
+        if (!has_screen(section))
+            section.refuse("needs lower_left, lower_right and upper_left, or cylinder, or dome");
+        if (!screens.emplace(*name, read_screen(section, 1.0)).second)
+            section.refuse("name", "two screens are called so");
+        section.refuse_unknown();
+    }
+    return screens;
+}
+
+void adjust(Section section, std::vector<ReadOutput>& outputs) {
+    const auto name = section.text("output");
+    if (!name) section.require("output");
+    section.call("adjust '" + *name + "'");
+    const auto found =
+        std::ranges::find(outputs, *name, [](const ReadOutput& read) { return read.output.name; });
+    if (found == outputs.end()) {
+        std::vector<std::string> names;
+        for (const ReadOutput& read : outputs) names.push_back(read.output.name);
+        const auto meant = cli::nearest(*name, names);
+        section.refuse("output",
+                       "there is no such output" + (meant ? "; did you mean '" + *meant + "'?" : ""));
+    }
+    if (section.has("turn"))
+        section.refuse("turn", "'turn' is of a whole wall: write this output as an [[output]] of its own");
+    read_output_keys(section, found->output);
+    section.refuse_unknown();
+}
+
+void check(const ReadOutput& read, const Display& display) {
+    const display::Output& output = read.output;
+    const auto refuse = [&](const std::string& key, const std::string& why) {
+        read.section.refuse(key, why);
+    };
+    if (output.stereo == display::Stereo::InterlacedRows && !output.points.empty())
+        refuse("stereo",
+               "has interlaced rows and a warp or points: rows of both eyes lie on a panel's own "
+               "rows, so nothing may bend them; use another stereo mode");
+    if (output.stereo == display::Stereo::SideBySide && output.width % 2 != 0)
+        refuse("size", "shares its width between the eyes: it must be even");
+    if (output.stereo == display::Stereo::TopBottom && output.height % 2 != 0)
+        refuse("size", "shares its height between the eyes: it must be even");
+    const Pixels size = picture_size(output);
+    if (!(output.blend.left + output.blend.right <= size.width &&
+          output.blend.top + output.blend.bottom <= size.height))
+        refuse("blend", "its soft edges meet in the middle: make them narrower");
+    try {
+        for (const view::Eye eye : display::eyes(output.stereo)) {
+            display::frustum(output.plane, display.head, eye, display.eye_separation, display.zero_parallax);
+        }
+    } catch (const Error& error) {
+        read.section.refuse(error.what());
+    }
+}
+
+void check_names(const std::vector<ReadOutput>& outputs) {
+    std::set<std::string> names;
+    for (const ReadOutput& read : outputs) {
+        if (!names.insert(read.output.name).second)
+            read.section.refuse(
+                "name", "two outputs are called '" + read.output.name + "': the names overlap; rename one");
+    }
+}
+
+}  // namespace
+
+DisplayFile parse_display(std::string_view text, const std::string& path, scene::BlobStore& blobs) {
+    const Value root = parse_document(text, path);
+    Section document(root, path, "");
+    DisplayFile file;
+    Display& display = file.display;
+    display.name = std::filesystem::path(path).stem().string();
+    if (const auto section = document.section("display")) read_settings(*section, display);
+    if (const auto section = document.section("head")) read_head(*section, display);
+    read_layers(document, display);
+    ReadContext context{.folder = std::filesystem::path(path).parent_path().string(),
+                        .screens = read_screens(document),
+                        .head = display.head,
+                        .blobs = blobs};
+    std::vector<ReadOutput> outputs;
+    for (const Section& section : document.sections("wall"))
+        std::ranges::move(read_wall_outputs(section), std::back_inserter(outputs));
+    for (const Section& section : document.sections("output"))
+        outputs.push_back(read_output(section, context));
+    for (const Section& section : document.sections("adjust")) adjust(section, outputs);
+    document.refuse_unknown();
+    if (outputs.empty()) document.refuse("has no outputs: write an [[output]] or a [[wall]]");
+    if (outputs.size() > display::MaxOutputs) {
+        outputs[display::MaxOutputs].section.refuse("is one too many: a display has at most " +
+                                                    std::to_string(display::MaxOutputs) + " outputs");
+    }
+    check_names(outputs);
+    for (ReadOutput& read : outputs) {
+        check(read, display);
+        display.outputs.push_back(std::move(read.output));
+        file.geometry.push_back(std::move(read.geometry));
+    }
+    return file;
+}
+
+DisplayFile read_display(const std::string& path, scene::BlobStore& blobs) {
+    return parse_display(read_text(path), path, blobs);
+}
+
+}  // namespace tessera::display_file

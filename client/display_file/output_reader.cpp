@@ -1,0 +1,226 @@
+#include "client/display_file/output_reader.h"
+
+#include <algorithm>
+
+#include "client/cli/cli.h"
+#include "client/display_file/output_keys.h"
+#include "client/display_file/screens.h"
+#include "mediator/display/projector.h"
+#include "mediator/display/wall_grid.h"
+
+namespace tessera::display_file {
+
+namespace {
+
+constexpr std::int64_t FarthestPixel = 1 << 20;
+
+std::string read_name(Section& section, const char* what) {
+    const auto name = section.text("name");
+    if (!name) section.require("name");
+    // Names become files of pictures and words of command lines.
+    const auto is_fine = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+               c == '_' || c == '.';
+    };
+    if (name->empty() || name->size() > 64 || !std::ranges::all_of(*name, is_fine) || name->front() == '.' ||
+        name->front() == '-')
+        section.refuse("name", "'name' must be letters, digits, '-', '_' and '.', at most 64");
+    section.call(std::string(what) + " '" + *name + "'");
+    return *name;
+}
+
+// The named screen, or one that the output has for itself.
+void find_screen(Section& section, const ReadContext& context, double aspect_ratio,
+                 OutputGeometry& geometry) {
+    if (section.kind("screen") == Value::Kind::Text) {
+        geometry.screen = *section.text("screen");
+        const auto found = context.screens.find(geometry.screen);
+        if (found == context.screens.end()) {
+            std::vector<std::string> names;
+            for (const auto& [name, screen] : context.screens) names.push_back(name);
+            const auto meant = cli::nearest(geometry.screen, names);
+            section.refuse("screen", "there is no [[screen]] '" + geometry.screen + "'" +
+                                         (meant ? "; did you mean '" + *meant + "'?" : ""));
+        }
+        geometry.surface = found->second;
+    } else if (auto own = section.section("screen")) {
+        geometry.surface = read_screen(*own, aspect_ratio);
+        own->refuse_unknown();
+    } else {
+        geometry.surface = read_screen(section, aspect_ratio);
+    }
+}
+
+display::PointGrid corners(const display::Wall& wall, const display::Part& part) {
+    display::PointGrid grid{.columns = 2, .rows = 2, .nodes = display::Grid::Nodes::Edges, .points = {}};
+    for (const double v : {1.0 - part.top, 1.0 - part.bottom}) {
+        for (const double u : {part.left, part.right}) grid.points.push_back(display::point(wall, u, v));
+    }
+    return grid;
+}
+
+// The picture lies flat on the screen, pixel by pixel.
+void lay_flat(const display::Wall& wall, const display::Part& part, ReadOutput& read) {
+    const Pixels size = picture_size(read.output);
+    read.output.plane = display::view_plane(wall, part);
+    read.output.view_width = size.width;
+    read.output.view_height = size.height;
+    read.geometry.points = corners(wall, part);
+}
+
+// The picture's pixels are seen at the points of the geometry.
+void lay_out(ReadOutput& read, ReadContext& context) {
+    display::Output& output = read.output;
+    if (output.turn != display::Turn::None)
+        read.section.refuse("turn",
+                            "has points or a warp and 'turn': these are of the device's own pixels, "
+                            "so they hold the turn already; leave 'turn' out");
+    const display::PointGrid& grid = read.geometry.points;
+    output.plane = display::view_plane(grid, context.head.position);
+    const auto* wall = read.geometry.surface ? std::get_if<display::Wall>(&*read.geometry.surface) : nullptr;
+    if (wall) {  // one plane for all outputs on it
+        output.plane = display::view_plane(*wall);
+        output.plane.hull = display::hull(grid);
+    }
+    const display::Size size =
+        display::view_size(grid, output.plane, context.head.position, output.width, output.height);
+    output.view_width = size.width;
+    output.view_height = size.height;
+    std::vector<float> values;
+    values.reserve(grid.points.size() * 3);
+    for (const glm::dvec3& point : grid.points) {
+        for (int axis = 0; axis < 3; ++axis) values.push_back(float(point[axis]));
+    }
+    output.points = {.columns = grid.columns,
+                     .rows = grid.rows,
+                     .components = 3,
+                     .nodes = grid.nodes,
+                     .values = scene::reference(*context.blobs.insert(std::as_bytes(std::span(values))))};
+}
+
+display::PointGrid thrown(const view::CameraPose& projector, const display::Screen& screen,
+                          const display::Output& output) {
+    const glm::dvec3 lens(projector.world_from_camera[3]);
+    const auto point_at = [&](double u, double v) {
+        const auto point = display::hit(screen, lens, display::ray(projector, u, v));
+        if (!point)
+            throw Error(ErrorCode::InvalidInput,
+                        "a pixel of the projector does not meet the screen: turn it towards the screen");
+        return *point;
+    };
+    return display::sample(point_at, output.width, output.height);
+}
+
+void place(ReadOutput& read, ReadContext& context) {
+    Section& section = read.section;
+    const Pixels size = picture_size(read.output);
+    const double aspect_ratio = double(size.width) / size.height;
+    find_screen(section, context, aspect_ratio, read.geometry);
+    const display::Screen& screen = *read.geometry.surface;
+    if (auto projector = section.section("projector")) {
+        read.geometry.projector = read_projector(*projector, aspect_ratio);
+        read.geometry.points = thrown(*read.geometry.projector, screen, read.output);
+        lay_out(read, context);
+    } else if (const auto* wall = std::get_if<display::Wall>(&screen)) {
+        lay_flat(*wall, {}, read);
+    } else {
+        read.geometry.points = display::sample(
+            [&](double u, double v) { return display::point(screen, u, v); }, size.width, size.height);
+        lay_out(read, context);
+    }
+}
+
+}  // namespace
+
+ReadOutput read_output(Section section, ReadContext& context) {
+    ReadOutput read{.output = {}, .geometry = {}, .section = section};
+    Section& keys = read.section;
+    display::Output& output = read.output;
+    output.name = read_name(keys, "output");
+    if (const auto size = keys.size("size")) {
+        output.width = (*size)[0];
+        output.height = (*size)[1];
+    }
+    output.x = std::int32_t(keys.whole("x", -FarthestPixel, FarthestPixel).value_or(0));
+    output.y = std::int32_t(keys.whole("y", -FarthestPixel, FarthestPixel).value_or(0));
+    read_output_keys(keys, output);
+    try {
+        place(read, context);
+    } catch (const Error& error) {
+        if (std::string_view(error.what()).starts_with(keys.file() + ":")) throw;
+        keys.refuse(error.what());
+    }
+    if (const auto view = keys.size("view")) {
+        output.view_width = (*view)[0];
+        output.view_height = (*view)[1];
+    }
+    keys.refuse_unknown();
+    return read;
+}
+
+std::vector<ReadOutput> read_wall_outputs(Section section) {
+    const std::string name = read_name(section, "wall");
+    const display::Wall wall = read_wall(section);
+    display::Output pattern;
+    if (const auto size = section.size("size")) {
+        pattern.width = (*size)[0];
+        pattern.height = (*size)[1];
+    }
+    read_output_keys(section, pattern);
+    const Pixels picture = picture_size(pattern);
+    display::WallGrid grid{.width = picture.width, .height = picture.height};
+    grid.columns = std::uint32_t(section.whole("columns", 1, 64).value_or(1));
+    grid.rows = std::uint32_t(section.whole("rows", 1, 64).value_or(1));
+    if (grid.columns * grid.rows > display::MaxOutputs) {
+        section.refuse("columns", "has " + std::to_string(grid.columns * grid.rows) +
+                                      " outputs; a display has at most " +
+                                      std::to_string(display::MaxOutputs));
+    }
+    if (const auto bezel = section.pair("bezel", 0.0, 10.0)) {
+        grid.bezel_across = bezel->x;
+        grid.bezel_upward = bezel->y;
+    }
+    if (const auto overlap = section.counts("overlap", 0, display::MaxEdge)) {
+        grid.overlap_across = (*overlap)[0];
+        grid.overlap_upward = (*overlap)[1];
+    }
+    const auto view = section.size("view");
+    const auto desktop = section.counts("desktop", 1, 64).value_or(std::array{1u, 1u});
+    const std::int64_t x = section.whole("x", -FarthestPixel, FarthestPixel).value_or(0);
+    const std::int64_t y = section.whole("y", -FarthestPixel, FarthestPixel).value_or(0);
+    section.refuse_unknown();
+
+    std::vector<display::Part> parts;
+    try {
+        parts = display::parts(wall, grid);
+    } catch (const Error& error) {
+        section.refuse(error.what());
+    }
+    const bool has_ramps = !section.has("blend");
+    std::vector<ReadOutput> outputs;
+    for (std::uint32_t i = 0; i < parts.size(); ++i) {
+        const std::uint32_t column = i % grid.columns, row = i / grid.columns;
+        ReadOutput read{.output = pattern, .geometry = {}, .section = section};
+        read.output.name = name + "-" + std::to_string(column + 1) + "-" + std::to_string(row + 1);
+        read.section.call("output '" + read.output.name + "'");
+        read.output.x = std::int32_t(x + std::int64_t{column % desktop[0]} * pattern.width);
+        read.output.y = std::int32_t(y + std::int64_t{row % desktop[1]} * pattern.height);
+        read.geometry.screen = name;
+        read.geometry.surface = wall;
+        lay_flat(wall, parts[i], read);
+        if (view) {
+            read.output.view_width = (*view)[0];
+            read.output.view_height = (*view)[1];
+        }
+        if (has_ramps) {
+            read.output.blend.left = column > 0 ? grid.overlap_across : 0;
+            read.output.blend.right = column + 1 < grid.columns ? grid.overlap_across : 0;
+            read.output.blend.top = row > 0 ? grid.overlap_upward : 0;
+            read.output.blend.bottom = row + 1 < grid.rows ? grid.overlap_upward : 0;
+        }
+        outputs.push_back(std::move(read));
+    }
+    return outputs;
+}
+
+}  // namespace tessera::display_file

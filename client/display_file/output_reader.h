@@ -1,0 +1,31 @@
+#pragma once
+
+#include <map>
+
+#include "client/display_file/display_file.h"
+#include "client/display_file/section.h"
+
+namespace tessera::display_file {
+
+// What outputs are read with.
+struct ReadContext {
+    std::string folder;  // that names of files are relative to
+    std::map<std::string, display::Screen> screens;
+    display::Head head;
+    scene::BlobStore& blobs;
+};
+
+// An output with the place in the file that errors about it name.
+struct ReadOutput {
+    display::Output output;
+    OutputGeometry geometry;
+    Section section;
+};
+
+// [[output]]
+ReadOutput read_output(Section section, ReadContext& context);
+
+// [[wall]]: the outputs of a grid, row by row from the top left, named WALL-COLUMN-ROW from 1-1.
+std::vector<ReadOutput> read_wall_outputs(Section section);
+
+}  // namespace tessera::display_file

@@ -1,0 +1,20 @@
+#include "client/tools/display/display_command.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "client/tools/display/check_command.h"
+
+namespace tessera::tools {
+
+Command display_command(cli::CommandLine& program) {
+    cli::CommandLine& line =
+        program.command("display", "Check and run what stands in front of people: screens and outputs.");
+    const std::vector<Command> commands{check_display_command(line)};
+    return {"display", [commands](std::string_view chosen) {
+                const auto command = std::ranges::find(commands, chosen, &Command::name);
+                return command->run(chosen);
+            }};
+}
+
+}  // namespace tessera::tools

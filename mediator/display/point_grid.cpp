@@ -1,0 +1,219 @@
+#include "mediator/display/point_grid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "mediator/base/error.h"
+
+namespace tessera::display {
+
+namespace {
+
+using glm::dvec3;
+
+constexpr double Tolerance = 0.005;  // pixels, in each direction: both together a hundredth
+constexpr double MostDegrees = 80.0;
+constexpr std::uint32_t BorderNodes = 129, InnerNodes = 16;
+
+bool is_finite(const dvec3& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+PointGrid evaluated(const PointAt& point_at, std::uint32_t cells_across, std::uint32_t cells_down) {
+    PointGrid grid{
+        .columns = cells_across + 1, .rows = cells_down + 1, .nodes = Grid::Nodes::Edges, .points = {}};
+    grid.points.reserve(std::size_t{grid.columns} * grid.rows);
+    for (std::uint32_t row = 0; row < grid.rows; ++row) {
+        for (std::uint32_t column = 0; column < grid.columns; ++column)
+            grid.points.push_back(point_at(double(column) / cells_across, double(row) / cells_down));
+    }
+    return grid;
+}
+
+PointGrid on_pixels(const PointAt& point_at, std::uint32_t width, std::uint32_t height) {
+    PointGrid grid{.columns = width, .rows = height, .nodes = Grid::Nodes::Centres, .points = {}};
+    grid.points.reserve(std::size_t{width} * height);
+    for (std::uint32_t row = 0; row < height; ++row) {
+        for (std::uint32_t column = 0; column < width; ++column)
+            grid.points.push_back(point_at((column + 0.5) / width, (row + 0.5) / height));
+    }
+    return grid;
+}
+
+// How far `middle` is from the middle between `from` and `to`, in pixels: along the edge, which has `pixels`
+// of them, and across it, where one is as large as `other`.
+double off(const dvec3& from, const dvec3& middle, const dvec3& to, double pixels, double other) {
+    const dvec3 edge = to - from, deviation = middle - 0.5 * (from + to);
+    const double length = glm::length(edge);
+    const double along = length > 0.0 ? std::abs(glm::dot(deviation, edge)) / length : 0.0;
+    const double across = std::sqrt(std::max(0.0, glm::dot(deviation, deviation) - along * along));
+    return (along > 0.0 ? along * pixels / length : 0.0) + (across > 0.0 ? across / other : 0.0);
+}
+
+// Every second node of `fine` is one that would stand; the others are what they would interpolate.
+std::array<double, 2> deviation(const PointGrid& fine, std::uint32_t width, std::uint32_t height) {
+    const double pixels_across = 2.0 * width / (fine.columns - 1),
+                 pixels_down = 2.0 * height / (fine.rows - 1);
+    std::array<double, 2> most{0.0, 0.0};
+    for (std::uint32_t row = 0; row + 2 < fine.rows; row += 2) {
+        for (std::uint32_t column = 0; column + 2 < fine.columns; column += 2) {
+            const dvec3 &a = fine.at(column, row), &b = fine.at(column + 2, row),
+                        &c = fine.at(column, row + 2);
+            const double pixel_across = glm::distance(a, b) / pixels_across;
+            const double pixel_down = glm::distance(a, c) / pixels_down;
+            most[0] = std::max(most[0], off(a, fine.at(column + 1, row), b, pixels_across, pixel_down));
+            most[1] = std::max(most[1], off(a, fine.at(column, row + 1), c, pixels_down, pixel_across));
+        }
+    }
+    return most;
+}
+
+// The corners of the cell right and below of a node, when all of them are there.
+struct Cell {
+    dvec3 a, b, c, d;  // top left, top right, bottom left, bottom right
+};
+
+template <class Visit>
+void for_each_cell(const PointGrid& grid, const Visit& visit) {
+    for (std::uint32_t row = 0; row + 1 < grid.rows; ++row) {
+        for (std::uint32_t column = 0; column + 1 < grid.columns; ++column) {
+            const Cell cell{grid.at(column, row), grid.at(column + 1, row), grid.at(column, row + 1),
+                            grid.at(column + 1, row + 1)};
+            if (is_finite(cell.a) && is_finite(cell.b) && is_finite(cell.c) && is_finite(cell.d)) visit(cell);
+        }
+    }
+}
+
+// The direction along the surface that is most upright for people; on a floor the picture's own.
+dvec3 upright(const dvec3& up_of_picture, const dvec3& normal) {
+    const dvec3 up = glm::normalize(up_of_picture - glm::dot(up_of_picture, normal) * normal);
+    const dvec3 side = glm::cross(up, normal);
+    dvec3 best = up;
+    for (const dvec3& candidate : {side, -side, -up}) {
+        if (candidate.y > best.y + 1e-6) best = candidate;
+    }
+    return best;
+}
+
+std::vector<std::uint32_t> spread(std::uint32_t count, std::uint32_t most) {
+    std::vector<std::uint32_t> indices;
+    const std::uint32_t taken = std::min(count, most);
+    for (std::uint32_t i = 0; i < taken; ++i)
+        indices.push_back(taken > 1 ? std::uint32_t(std::uint64_t{i} * (count - 1) / (taken - 1)) : 0);
+    return indices;
+}
+
+void refuse_grazing(const PointGrid& grid, const dvec3& head, const dvec3& normal) {
+    double least = 1.0;
+    for (const dvec3& point : grid.points) {
+        if (is_finite(point)) least = std::min(least, glm::dot(glm::normalize(head - point), normal));
+    }
+    const double degrees = std::acos(std::clamp(least, -1.0, 1.0)) * 180.0 / std::numbers::pi;
+    if (degrees <= MostDegrees) return;
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "a point of it is seen at %.0f degrees from the middle's direction, more than %.0f: one flat "
+        "view would be stretched; split the output, or move the head",
+        degrees, MostDegrees);
+    throw Error(ErrorCode::InvalidInput, text);
+}
+
+}  // namespace
+
+PointGrid sample(const PointAt& point_at, std::uint32_t width, std::uint32_t height) {
+    std::uint32_t across = 1, down = 1;
+    while (across < width && down < height) {
+        const std::array<double, 2> most =
+            deviation(evaluated(point_at, 2 * across, 2 * down), width, height);
+        // At least four cells each way: an S has its middle on the straight line.
+        const bool is_coarse_across = across < 4 || most[0] > Tolerance;
+        const bool is_coarse_down = down < 4 || most[1] > Tolerance;
+        if (!is_coarse_across && !is_coarse_down) return evaluated(point_at, across, down);
+        if (is_coarse_across) across *= 2;
+        if (is_coarse_down) down *= 2;
+    }
+    return on_pixels(point_at, width, height);
+}
+
+std::vector<dvec3> hull(const PointGrid& grid) {
+    std::vector<dvec3> points;
+    const auto take = [&](std::uint32_t column, std::uint32_t row) {
+        const dvec3& point = grid.at(column, row);
+        if (is_finite(point)) points.push_back(point);
+    };
+    for (const std::uint32_t column : spread(grid.columns, BorderNodes)) {
+        take(column, 0);
+        if (grid.rows > 1) take(column, grid.rows - 1);
+    }
+    for (const std::uint32_t row : spread(grid.rows, BorderNodes)) {
+        if (row == 0 || row + 1 == grid.rows) continue;
+        take(0, row);
+        if (grid.columns > 1) take(grid.columns - 1, row);
+    }
+    for (const std::uint32_t row : spread(grid.rows, InnerNodes)) {
+        if (row == 0 || row + 1 == grid.rows) continue;
+        for (const std::uint32_t column : spread(grid.columns, InnerNodes)) {
+            if (column != 0 && column + 1 != grid.columns) take(column, row);
+        }
+    }
+    return points;
+}
+
+ViewPlane view_plane(const PointGrid& grid, const dvec3& head) {
+    dvec3 centroid{0.0}, normal{0.0}, up{0.0};
+    double area = 0.0;
+    for_each_cell(grid, [&](const Cell& cell) {
+        const dvec3 facing = glm::cross(cell.b - cell.c, cell.a - cell.d);
+        const double size = glm::length(facing);
+        normal += facing;
+        area += size;
+        centroid += size * 0.25 * (cell.a + cell.b + cell.c + cell.d);
+        up += cell.a + cell.b - cell.c - cell.d;
+    });
+    if (!(area > 0.0 && glm::length(normal) > 1e-6 * area && glm::length(up) > 0.0))
+        throw Error(ErrorCode::InvalidInput, "its points make no surface: are they all on one line?");
+    centroid /= area;
+    normal = glm::normalize(normal);
+    if (glm::dot(head - centroid, normal) < 0.0) normal = -normal;
+    refuse_grazing(grid, head, normal);
+    up = upright(up, normal);
+    return {.origin = centroid, .right = glm::cross(up, normal), .up = up, .hull = hull(grid)};
+}
+
+Size view_size(const PointGrid& grid, const ViewPlane& plane, const dvec3& head, std::uint32_t width,
+               std::uint32_t height) {
+    const dvec3 normal = glm::cross(plane.right, plane.up);
+    const auto seen = [&](const dvec3& point) {
+        const dvec3 way = point - head;
+        return glm::dvec2(glm::dot(way, plane.right), glm::dot(way, plane.up)) / -glm::dot(way, normal);
+    };
+    const bool on_edges = grid.nodes == Grid::Nodes::Edges;
+    const double pixels = double(width) / (on_edges ? grid.columns - 1 : grid.columns) * double(height) /
+                          (on_edges ? grid.rows - 1 : grid.rows);
+    std::vector<double> areas;  // of one pixel
+    for_each_cell(grid, [&](const Cell& cell) {
+        const glm::dvec2 one = seen(cell.b) - seen(cell.c), two = seen(cell.a) - seen(cell.d);
+        const double area = 0.5 * std::abs(one.x * two.y - one.y * two.x) / pixels;
+        if (area > 0.0) areas.push_back(area);
+    });
+    if (areas.empty()) return {width, height};
+    std::nth_element(areas.begin(), areas.begin() + std::ptrdiff_t(areas.size() / 2), areas.end());
+    const double pitch = std::sqrt(areas[areas.size() / 2]);
+    glm::dvec2 least(std::numeric_limits<double>::infinity()), most(-least);
+    for (const dvec3& point : plane.hull) {
+        least = glm::min(least, seen(point));
+        most = glm::max(most, seen(point));
+    }
+    const auto edge = [&](double extent) {
+        // A rounding error is no further pixel.
+        return std::uint32_t(std::clamp(std::ceil(extent / pitch - 1e-3), 1.0, double(MaxEdge)));
+    };
+    return {edge(most.x - least.x), edge(most.y - least.y)};
+}
+
+}  // namespace tessera::display
