@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+
+#include "mediator/display/planar_row.h"
+
+namespace tessera::display {
+
+// Linear red, green and blue of each pixel as half floats, rows from the top; at least two pixels wide.
+struct HalfPicture {
+    const std::uint16_t* values = nullptr;
+    std::uint32_t width = 0, height = 0;
+};
+
+// The picture at `count` places, bilinear; x and y in its pixels, the first pixel's centre is (0, 0); beyond
+// the outermost centres the edge is repeated; not a number: black. x, y and the row are padded.
+void sample_row(const HalfPicture& picture, const float* x, const float* y, std::size_t count, PlanarRow out);
+
+// Row y of the picture as it is; the row's padding is left alone.
+void copy_row(const HalfPicture& picture, std::size_t y, PlanarRow out);
+
+}  // namespace tessera::display

@@ -1,0 +1,64 @@
+#include "mediator/display/warp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mediator/display/planar_row.h"
+
+namespace tessera::display {
+
+namespace {
+
+constexpr float Nowhere = std::numeric_limits<float>::quiet_NaN();
+
+float inside(double place, double margin) {
+    return place >= -margin && place <= 1.0 + margin ? static_cast<float>(std::clamp(place, 0.0, 1.0))
+                                                     : Nowhere;
+}
+
+}  // namespace
+
+Warp::Warp(const DeviceGrid& points, const Output& output)
+    : points_(points),
+      width_(output.width),
+      stride_(padded(output.width)),
+      margin_u_(0.5 / output.view_width),
+      margin_v_(0.5 / output.view_height),
+      u_(stride_ * output.height, Nowhere),
+      v_(stride_ * output.height, Nowhere),
+      is_made_(output.height, 0) {}
+
+void Warp::set_frustum(const view::CameraPose& in_display) {
+    if (in_display == camera_) return;
+    camera_ = in_display;
+    std::fill(is_made_.begin(), is_made_.end(), std::uint8_t{0});
+}
+
+Warp::Row Warp::row(std::size_t y, std::span<float> space) {
+    if (is_made_[y] == 0) {
+        make_row(y, space);
+        is_made_[y] = 1;
+    }
+    return {u_.data() + y * stride_, v_.data() + y * stride_};
+}
+
+void Warp::make_row(std::size_t y, std::span<float> space) {
+    float* const at = space.data();
+    for (std::size_t c = 0; c < 3; ++c) points_.row(c, y, at + c * width_, at + 3 * width_);
+    const glm::dvec3 right(camera_.world_from_camera[0]), up(camera_.world_from_camera[1]),
+        back(camera_.world_from_camera[2]), eye(camera_.world_from_camera[3]);
+    // u and v of a direction are its parts along these two, over its part along the third: its depth.
+    const glm::dvec3 along_u = (right + camera_.left * back) / (camera_.right - camera_.left);
+    const glm::dvec3 along_v = -(up + camera_.top * back) / (camera_.top - camera_.bottom);
+    float *const u = u_.data() + y * stride_, *const v = v_.data() + y * stride_;
+    for (std::size_t x = 0; x < width_; ++x) {
+        const glm::dvec3 way = glm::dvec3(at[x], at[width_ + x], at[2 * width_ + x]) - eye;
+        const double depth = -glm::dot(back, way);
+        const double scale = depth > 0.0 ? 1.0 / depth : std::numeric_limits<double>::quiet_NaN();
+        u[x] = inside(glm::dot(along_u, way) * scale, margin_u_);
+        v[x] = inside(glm::dot(along_v, way) * scale, margin_v_);
+    }
+}
+
+}  // namespace tessera::display
