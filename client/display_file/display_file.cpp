@@ -142,9 +142,8 @@ void check(const ReadOutput& read, const Display& display) {
         refuse("size", "shares its width between the eyes: it must be even");
     if (output.stereo == display::Stereo::TopBottom && output.height % 2 != 0)
         refuse("size", "shares its height between the eyes: it must be even");
-    const Pixels size = picture_size(output);
-    if (!(output.blend.left + output.blend.right <= size.width &&
-          output.blend.top + output.blend.bottom <= size.height))
+    if (!(output.blend.left + output.blend.right <= output.width &&
+          output.blend.top + output.blend.bottom <= output.height))
         refuse("blend", "its soft edges meet in the middle: make them narrower");
     try {
         for (const view::Eye eye : display::eyes(output.stereo)) {

@@ -58,6 +58,9 @@ void read_blend(Section section, display::Blend& blend) {
 }  // namespace
 
 void read_output_keys(Section& section, display::Output& output) {
+    constexpr std::int64_t Farthest = 1 << 20;
+    output.x = std::int32_t(section.whole("x", -Farthest, Farthest).value_or(output.x));
+    output.y = std::int32_t(section.whole("y", -Farthest, Farthest).value_or(output.y));
     if (const auto index = section.choice("stereo", StereoWords)) output.stereo = StereoModes[*index];
     if (const auto turn = section.whole("turn", 0, 270)) {
         if (*turn % 90 != 0) section.refuse("turn", "'turn' must be 0, 90, 180 or 270 (degrees clockwise)");

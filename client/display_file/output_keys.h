@@ -5,8 +5,8 @@
 
 namespace tessera::display_file {
 
-// The keys that an output, all outputs of a wall, and [[adjust]] have in common: stereo, turn, priority,
-// blend, color. Sets those that are there.
+// The keys that an output, all outputs of a wall, and [[adjust]] have in common: x, y, stereo, turn,
+// priority, blend, color. Sets those that are there.
 void read_output_keys(Section& section, display::Output& output);
 
 // Width and height of the output's picture as people see it.

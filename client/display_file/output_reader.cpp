@@ -6,28 +6,10 @@
 #include "client/display_file/output_keys.h"
 #include "client/display_file/screens.h"
 #include "mediator/display/projector.h"
-#include "mediator/display/wall_grid.h"
 
 namespace tessera::display_file {
 
 namespace {
-
-constexpr std::int64_t FarthestPixel = 1 << 20;
-
-std::string read_name(Section& section, const char* what) {
-    const auto name = section.text("name");
-    if (!name) section.require("name");
-    // Names become files of pictures and words of command lines.
-    const auto is_fine = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
-               c == '_' || c == '.';
-    };
-    if (name->empty() || name->size() > 64 || !std::ranges::all_of(*name, is_fine) || name->front() == '.' ||
-        name->front() == '-')
-        section.refuse("name", "'name' must be letters, digits, '-', '_' and '.', at most 64");
-    section.call(std::string(what) + " '" + *name + "'");
-    return *name;
-}
 
 // The named screen, or one that the output has for itself.
 void find_screen(Section& section, const ReadContext& context, double aspect_ratio,
@@ -57,15 +39,6 @@ display::PointGrid corners(const display::Wall& wall, const display::Part& part)
         for (const double u : {part.left, part.right}) grid.points.push_back(display::point(wall, u, v));
     }
     return grid;
-}
-
-// The picture lies flat on the screen, pixel by pixel.
-void lay_flat(const display::Wall& wall, const display::Part& part, ReadOutput& read) {
-    const Pixels size = picture_size(read.output);
-    read.output.plane = display::view_plane(wall, part);
-    read.output.view_width = size.width;
-    read.output.view_height = size.height;
-    read.geometry.points = corners(wall, part);
 }
 
 // The picture's pixels are seen at the points of the geometry.
@@ -132,6 +105,29 @@ void place(ReadOutput& read, ReadContext& context) {
 
 }  // namespace
 
+std::string read_name(Section& section, const char* what) {
+    const auto name = section.text("name");
+    if (!name) section.require("name");
+    // Names become files of pictures and words of command lines.
+    const auto is_fine = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+               c == '_' || c == '.';
+    };
+    if (name->empty() || name->size() > 64 || !std::ranges::all_of(*name, is_fine) || name->front() == '.' ||
+        name->front() == '-')
+        section.refuse("name", "'name' must be letters, digits, '-', '_' and '.', at most 64");
+    section.call(std::string(what) + " '" + *name + "'");
+    return *name;
+}
+
+void lay_flat(const display::Wall& wall, const display::Part& part, ReadOutput& read) {
+    const Pixels size = picture_size(read.output);
+    read.output.plane = display::view_plane(wall, part);
+    read.output.view_width = size.width;
+    read.output.view_height = size.height;
+    read.geometry.points = corners(wall, part);
+}
+
 ReadOutput read_output(Section section, ReadContext& context) {
     ReadOutput read{.output = {}, .geometry = {}, .section = section};
     Section& keys = read.section;
@@ -141,8 +137,6 @@ ReadOutput read_output(Section section, ReadContext& context) {
         output.width = (*size)[0];
         output.height = (*size)[1];
     }
-    output.x = std::int32_t(keys.whole("x", -FarthestPixel, FarthestPixel).value_or(0));
-    output.y = std::int32_t(keys.whole("y", -FarthestPixel, FarthestPixel).value_or(0));
     read_output_keys(keys, output);
     try {
         place(read, context);
@@ -156,71 +150,6 @@ ReadOutput read_output(Section section, ReadContext& context) {
     }
     keys.refuse_unknown();
     return read;
-}
-
-std::vector<ReadOutput> read_wall_outputs(Section section) {
-    const std::string name = read_name(section, "wall");
-    const display::Wall wall = read_wall(section);
-    display::Output pattern;
-    if (const auto size = section.size("size")) {
-        pattern.width = (*size)[0];
-        pattern.height = (*size)[1];
-    }
-    read_output_keys(section, pattern);
-    const Pixels picture = picture_size(pattern);
-    display::WallGrid grid{.width = picture.width, .height = picture.height};
-    grid.columns = std::uint32_t(section.whole("columns", 1, 64).value_or(1));
-    grid.rows = std::uint32_t(section.whole("rows", 1, 64).value_or(1));
-    if (grid.columns * grid.rows > display::MaxOutputs) {
-        section.refuse("columns", "has " + std::to_string(grid.columns * grid.rows) +
-                                      " outputs; a display has at most " +
-                                      std::to_string(display::MaxOutputs));
-    }
-    if (const auto bezel = section.pair("bezel", 0.0, 10.0)) {
-        grid.bezel_across = bezel->x;
-        grid.bezel_upward = bezel->y;
-    }
-    if (const auto overlap = section.counts("overlap", 0, display::MaxEdge)) {
-        grid.overlap_across = (*overlap)[0];
-        grid.overlap_upward = (*overlap)[1];
-    }
-    const auto view = section.size("view");
-    const auto desktop = section.counts("desktop", 1, 64).value_or(std::array{1u, 1u});
-    const std::int64_t x = section.whole("x", -FarthestPixel, FarthestPixel).value_or(0);
-    const std::int64_t y = section.whole("y", -FarthestPixel, FarthestPixel).value_or(0);
-    section.refuse_unknown();
-
-    std::vector<display::Part> parts;
-    try {
-        parts = display::parts(wall, grid);
-    } catch (const Error& error) {
-        section.refuse(error.what());
-    }
-    const bool has_ramps = !section.has("blend");
-    std::vector<ReadOutput> outputs;
-    for (std::uint32_t i = 0; i < parts.size(); ++i) {
-        const std::uint32_t column = i % grid.columns, row = i / grid.columns;
-        ReadOutput read{.output = pattern, .geometry = {}, .section = section};
-        read.output.name = name + "-" + std::to_string(column + 1) + "-" + std::to_string(row + 1);
-        read.section.call("output '" + read.output.name + "'");
-        read.output.x = std::int32_t(x + std::int64_t{column % desktop[0]} * pattern.width);
-        read.output.y = std::int32_t(y + std::int64_t{row % desktop[1]} * pattern.height);
-        read.geometry.screen = name;
-        read.geometry.surface = wall;
-        lay_flat(wall, parts[i], read);
-        if (view) {
-            read.output.view_width = (*view)[0];
-            read.output.view_height = (*view)[1];
-        }
-        if (has_ramps) {
-            read.output.blend.left = column > 0 ? grid.overlap_across : 0;
-            read.output.blend.right = column + 1 < grid.columns ? grid.overlap_across : 0;
-            read.output.blend.top = row > 0 ? grid.overlap_upward : 0;
-            read.output.blend.bottom = row + 1 < grid.rows ? grid.overlap_upward : 0;
-        }
-        outputs.push_back(std::move(read));
-    }
-    return outputs;
 }
 
 }  // namespace tessera::display_file

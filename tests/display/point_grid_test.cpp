@@ -1,0 +1,145 @@
+#include "mediator/display/point_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <random>
+
+#include "mediator/base/error.h"
+#include "mediator/display/frustum.h"
+#include "mediator/display/surface.h"
+#include "tests/display/seen.h"
+
+namespace tessera::display {
+
+namespace {
+
+constexpr double Degree = std::numbers::pi / 180.0;
+constexpr std::uint32_t Width = 1920, Height = 1080;
+
+glm::dvec3 interpolated(const PointGrid& grid, double u, double v) {
+    const bool on_edges = grid.nodes == Grid::Nodes::Edges;
+    const double x =
+        std::clamp(on_edges ? u * (grid.columns - 1) : u * grid.columns - 0.5, 0.0, double(grid.columns - 1));
+    const double y =
+        std::clamp(on_edges ? v * (grid.rows - 1) : v * grid.rows - 0.5, 0.0, double(grid.rows - 1));
+    const auto i = std::min(std::uint32_t(x), grid.columns - 2),
+               j = std::min(std::uint32_t(y), grid.rows - 2);
+    return glm::mix(glm::mix(grid.at(i, j), grid.at(i + 1, j), x - i),
+                    glm::mix(grid.at(i, j + 1), grid.at(i + 1, j + 1), x - i), y - j);
+}
+
+// The ray through the place in the view where each device pixel's point is looked for meets the known point
+// of the screen, for every eye, to a hundredth of a pixel.
+void expect_every_pixel_hits(const Screen& screen, const Head& head) {
+    const PointGrid grid = sample([&](double u, double v) { return point(screen, u, v); }, Width, Height);
+    EXPECT_LT(grid.points.size(), std::size_t{Width} * Height / 10);
+    const ViewPlane plane = view_plane(grid, head.position);
+    std::mt19937 random(11);
+    std::uniform_int_distribution<std::uint32_t> column(0, Width - 1), row(0, Height - 1);
+    for (const view::Eye eye : {view::Eye::Left, view::Eye::Right}) {
+        const view::CameraPose camera = frustum(plane, head, eye, 0.064, 0.0);
+        const glm::dvec3 from(camera.world_from_camera[3]);
+        for (int trial = 0; trial < 2000; ++trial) {
+            const double u = (column(random) + 0.5) / Width, v = (row(random) + 0.5) / Height;
+            const glm::dvec3 known = point(screen, u, v);
+            const glm::dvec2 place = seen_at(camera, interpolated(grid, u, v));
+            ASSERT_TRUE(place.x > 0.0 && place.x < 1.0 && place.y > 0.0 && place.y < 1.0)
+                << place.x << " " << place.y;
+            const double pixel = std::min(glm::distance(known, point(screen, u + 1.0 / Width, v)),
+                                          glm::distance(known, point(screen, u, v + 1.0 / Height)));
+            const glm::dvec3 off = glm::cross(direction_through(camera, place), known - from);
+            ASSERT_LT(glm::length(off), 0.01 * pixel) << u << " " << v;
+        }
+    }
+}
+
+TEST(PointGrid, ACurvedScreenIsMetByEveryPixel) {
+    expect_every_pixel_hits(
+        Cylinder{
+            .centre = {0.1, 0.0, 0.2}, .radius = 3.0, .from = -0.8, .to = 0.7, .bottom = -1.0, .top = 1.2},
+        {.position = {0.3, 0.1, 0.4}});
+}
+
+TEST(PointGrid, ADomeIsMetByEveryPixel) {
+    expect_every_pixel_hits(Dome{.radius = 4.0,
+                                 .from = -40 * Degree,
+                                 .to = 35 * Degree,
+                                 .bottom = 5 * Degree,
+                                 .top = 65 * Degree,
+                                 .tilt = 20 * Degree},
+                            {.position = {0.2, -0.1, 0.1}});
+}
+
+TEST(PointGrid, AConvexScreenLiesWithinItsPicture) {
+    // A column that people walk around: bulges towards them.
+    const auto column = [](double u, double v) {
+        const double angle = (u - 0.5) * 1.8;
+        return glm::dvec3(0.5 * std::sin(angle), 1.0 - 2.0 * v, -3.0 + 0.5 * std::cos(angle));
+    };
+    const PointGrid grid = sample(column, 600, 1000);
+    const view::CameraPose camera = frustum(view_plane(grid, glm::dvec3(0)), {}, view::Eye::Mono, 0.064, 0.0);
+    for (int i = 0; i < 600; ++i) {
+        for (int j = 0; j < 1000; j += 7) {
+            const glm::dvec2 place = seen_at(camera, column((i + 0.5) / 600, (j + 0.5) / 1000));
+            ASSERT_TRUE(place.x > 0.0 && place.x < 1.0 && place.y > 0.0 && place.y < 1.0);
+        }
+    }
+}
+
+TEST(PointGrid, AFlatScreenNeedsNoMoreNodesThanTheLeast) {
+    const Wall screen{};
+    const PointGrid grid = sample([&](double u, double v) { return point(screen, u, v); }, Width, Height);
+    EXPECT_EQ(grid.columns, 5u);
+    EXPECT_EQ(grid.rows, 5u);
+}
+
+TEST(PointGrid, ARoughSurfaceGetsANodeOnEveryPixel) {
+    const auto rough = [](double u, double v) {
+        return glm::dvec3(u + 0.002 * std::sin(900.0 * u), -v, -1.0 + 0.002 * std::cos(800.0 * v));
+    };
+    const PointGrid grid = sample(rough, 200, 100);
+    EXPECT_EQ(grid.nodes, Grid::Nodes::Centres);
+    EXPECT_EQ(grid.columns, 200u);
+    EXPECT_EQ(grid.rows, 100u);
+    EXPECT_EQ(grid.at(3, 5), rough(3.5 / 200, 5.5 / 100));
+}
+
+TEST(PointGrid, ThePlaneFacesTheHeadAlsoWhenTheDeviceShowsMirrored) {
+    const auto mirrored = [](double u, double v) { return glm::dvec3(1.0 - 2.0 * u, 0.5 - v, -2.0); };
+    const ViewPlane plane = view_plane(sample(mirrored, 320, 200), glm::dvec3(0));
+    EXPECT_NEAR(glm::cross(plane.right, plane.up).z, 1.0, 1e-12);
+    EXPECT_NEAR(plane.up.y, 1.0, 1e-12);
+    const auto upside_down = [](double u, double v) { return glm::dvec3(1.0 - 2.0 * u, v - 0.5, -2.0); };
+    EXPECT_NEAR(view_plane(sample(upside_down, 320, 200), glm::dvec3(0)).up.y, 1.0, 1e-12);
+}
+
+TEST(PointGrid, TheViewIsAsFineAsTheDevice) {
+    const Wall screen{};
+    const PointGrid grid = sample([&](double u, double v) { return point(screen, u, v); }, Width, Height);
+    const ViewPlane plane = view_plane(grid, glm::dvec3(0, 0, 0.3));
+    // Its pixels are not square: the view has as many in all.
+    const Size size = view_size(grid, plane, glm::dvec3(0, 0, 0.3), Width, Height);
+    EXPECT_NEAR(double(size.width) * size.height, double(Width) * Height, 2.0 * (Width + Height));
+    EXPECT_EQ(size.width, size.height);
+}
+
+TEST(PointGrid, WhatOneFlatViewCannotShowIsRefused) {
+    const auto around = [](double u, double v) {
+        const double angle = (u - 0.5) * 170.0 * Degree;
+        return glm::dvec3(std::sin(angle), 0.5 - v, -std::cos(angle));
+    };
+    const PointGrid grid = sample(around, 1000, 500);
+    try {
+        view_plane(grid, glm::dvec3(0));
+        FAIL() << "a screen of 170 degrees was taken";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("split"), std::string::npos) << error.what();
+    }
+    const auto line = [](double u, double) { return glm::dvec3(u, 0.0, -1.0); };
+    EXPECT_THROW(view_plane(sample(line, 100, 100), glm::dvec3(0)), Error);
+}
+
+}  // namespace
+
+}  // namespace tessera::display
