@@ -4,7 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "client/tools/bench/pixel_font.h"
+#include "client/tools/canvas.h"
+#include "mediator/display/pixel_font.h"
 #include "mediator/picture/png_writer.h"
 
 namespace tessera::tools::bench {
@@ -82,8 +83,8 @@ Strip make_strip(const BenchResults& results) {
     std::size_t longest = 1;
     for (const Cell& cell : cells) longest = std::max({longest, cell.name.size(), cell.numbers.size()});
     const std::uint32_t scale =
-        std::clamp(size.crop_width / (static_cast<std::uint32_t>(longest) * GlyphAdvance), 1u, 2u);
-    const std::uint32_t line_height = (GlyphHeight + 2) * scale;
+        std::clamp(size.crop_width / (static_cast<std::uint32_t>(longest) * display::GlyphAdvance), 1u, 2u);
+    const std::uint32_t line_height = (display::GlyphHeight + 2) * scale;
     const std::uint32_t cell_width = size.crop_width + Gap,
                         cell_height = size.crop_height + 2 * line_height + Gap;
     Canvas canvas(across * cell_width + Gap, lines * cell_height + Gap, 255);
