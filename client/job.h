@@ -9,6 +9,7 @@
 #include "mediator/base/ids.h"
 #include "mediator/frame/film_tile.h"
 #include "mediator/view/view.h"
+#include "mediator/wire/display_messages.h"
 #include "mediator/wire/live_messages.h"
 
 // What a client asks of a cluster and hears back, as plain values.
@@ -112,6 +113,7 @@ struct ClusterStatus {
     std::vector<NodeState> nodes;
     wire::LiveStatus live;
     std::uint64_t resyncs = 0;  // nodes that had to be sent the whole scene again
+    wire::DisplayStatus display;
 };
 
 }  // namespace tessera::client

@@ -134,6 +134,7 @@ void Link::receive(const net::Message& message, TimePoint now) {
     if (auto* tile = std::get_if<wire::FrameTile>(&*decoded)) deliver(std::move(*tile));
     if (auto* chunk = std::get_if<wire::PictureChunk>(&*decoded)) deliver(std::move(*chunk));
     if (auto* frame = std::get_if<wire::LiveFrame>(&*decoded)) deliver(*frame);
+    if (auto* picture = std::get_if<wire::OutputPicture>(&*decoded)) deliver(std::move(*picture));
     if (auto* blob = std::get_if<wire::BlobChunk>(&*decoded)) deliver(std::move(*blob));
     if (const auto* absent = std::get_if<wire::BlobAbsent>(&*decoded)) deliver(*absent);
 }

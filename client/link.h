@@ -24,7 +24,7 @@ struct Rejoined {
     bool same_session = false;
 };
 using Incoming = std::variant<wire::ControlMessage, wire::FrameTile, wire::PictureChunk, wire::LiveFrame,
-                              wire::BlobChunk, wire::BlobAbsent, Rejoined>;
+                              wire::OutputPicture, wire::BlobChunk, wire::BlobAbsent, Rejoined>;
 
 // The session's thread: says hello, keeps heartbeats, reconnects after silence, serves blobs. What is meant
 // for the session waits in an inbox, in order per link. Its states:

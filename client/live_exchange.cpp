@@ -46,6 +46,7 @@ void LiveSession::Implementation::take(wire::ControlMessage&& message) {
         refusals.push_back(refusal->reason);
         return;
     }
+    if (take_for_output(message)) return;
     const std::uint64_t request = request_of(message);
     if (request == 0) {
         // A camera drag that nobody waits for was refused.
@@ -91,6 +92,7 @@ void LiveSession::Implementation::resend() {
     for (const SentEdit& edit : unanswered) link.send(edit.message);
     for (const auto& [request, message] : asked) link.send(message);
     for (const auto& [number, request] : views) link.send(opening(number, request, 0));
+    if (!output.empty()) ask_for_output();
 }
 
 void LiveSession::Implementation::throw_refusals() {

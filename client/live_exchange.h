@@ -7,6 +7,7 @@
 #include "client/frame_collector.h"
 #include "client/link.h"
 #include "client/live_session.h"
+#include "client/output_collector.h"
 #include "mediator/wire/blob_transfer.h"
 #include "mediator/wire/envelope.h"
 
@@ -47,6 +48,10 @@ struct LiveSession::Implementation {
     std::vector<std::string> notices;
     std::map<std::uint64_t, Frame> frames;  // the newest of each view
     FrameCollector collector;
+    std::string output;                // shown by this session; "" = none
+    std::uint64_t output_request = 0;  // the latest question for it
+    OutputCollector output_collector;
+    std::deque<OutputEvent> output_events;
     wire::BlobFetcher fetcher;
 
     Implementation(std::unique_ptr<net::Channel> channel, std::function<void()> reconnect,
@@ -87,6 +92,13 @@ struct LiveSession::Implementation {
         if (auto added = collector.add(std::move(tile)); !added) throw added.error();
         frame_may_be_here();
     }
+    void take(wire::OutputPicture&& picture) {
+        auto frame = output_collector.add(std::move(picture));
+        if (!frame) throw frame.error();
+        if (*frame) output_events.emplace_back(std::move(**frame));
+    }
+    bool take_for_output(wire::ControlMessage& message);
+    void ask_for_output();
     void take(wire::BlobChunk&& chunk) { (void)fetcher.receive(std::move(chunk), clock.now()); }
     void take(const wire::BlobAbsent& absent) { fetcher.absent(absent.hash); }
 

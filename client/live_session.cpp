@@ -45,7 +45,7 @@ JoinOutcome LiveSession::join(const std::string& title, WhenBusy when_busy,
         }
         std::visit([&](auto&& body) { self.take(std::forward<decltype(body)>(body)); }, *std::move(incoming));
     }
-    refresh();
+    if (self.settings.mirrors_scene) refresh();
     return Joined{self.joined.title, self.joined.name};
 }
 

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "client/output_event.h"
 #include "client/session.h"
+#include "mediator/display/display.h"
 #include "mediator/frame/film_tile.h"
 #include "mediator/scene/scene.h"
 #include "mediator/view/view.h"
@@ -100,6 +102,16 @@ class LiveSession {
     // What the master had to say since the last call: that a view waits for nodes, or cannot be rendered.
     std::vector<std::string> take_notices();
     wire::Picked pick(std::uint64_t number, std::uint32_t x, std::uint32_t y);
+
+    // The display in front of the live scene. Its description and arrays go through the session's blob store.
+    void open_display(const display::Display& display);
+    void close_display();
+    void adjust_display(const wire::AdjustDisplay& adjustment);
+    void move_head(const display::Head& head);  // the latest wins; does not wait
+    // Shows an output of it from now on, also after a break: next_output_event() brings what is to be done.
+    void join_output(const std::string& name);
+    std::optional<OutputEvent> next_output_event(TimePoint deadline, std::stop_token stop);
+    void output_ready(std::uint64_t frame);
 
     // Takes in what has come, so that an idle caller notices an end of the link; next_frame() does it, too.
     void pump();

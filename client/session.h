@@ -28,6 +28,7 @@ struct SessionSettings {
     Duration heartbeat = std::chrono::seconds(1);  // until the master's welcome tells its own
     // A master that says goodbye may be started anew: the connection is tried again, up to `lost_limit`.
     bool returns = false;
+    bool mirrors_scene = true;  // of a live scene; else LiveSession::scene() stays empty until a refresh
 };
 
 // Where a cluster is, and who we are to it.

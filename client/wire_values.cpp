@@ -164,7 +164,8 @@ ClusterStatus from_wire(const wire::StatusReply& reply) {
                          .wire_bytes = from_wire(reply.wire_bytes),
                          .nodes = {},
                          .live = reply.live,
-                         .resyncs = reply.resyncs};
+                         .resyncs = reply.resyncs,
+                         .display = reply.display};
     for (const wire::NodeStatus& node : reply.nodes) {
         status.nodes.push_back({.share = from_wire(node.summary),
                                 .phase = name(node.phase),

@@ -49,6 +49,10 @@ void FilmMerger::reconstruct(JobId job, const view::View& view, wire::PictureEnc
     enqueue(Reconstruct{job, view, encoding, hash}, 0);
 }
 
+void FilmMerger::make_output(OutputOrder order) {
+    enqueue(std::move(order), 0);
+}
+
 void FilmMerger::rehearse(JobId job, const view::View& view, wire::PictureEncoding encoding) {
     pictures_.rehearse(job, view, encoding);
 }
@@ -170,6 +174,23 @@ void FilmMerger::perform(Reconstruct& task) {
                     .view = std::move(task.view),
                     .encoding = task.encoding,
                     .hash_film = task.hash == FilmHash::Wanted});
+}
+
+void FilmMerger::perform(OutputOrder& task) {
+    std::vector<frame::FilmTile> films;
+    for (const OutputOrder::EyePicture& eye : task.eyes) {
+        for (const view::View& layer : eye.layers) {
+            const OpenFilm* opened = film(layer.id);
+            if (opened == nullptr || opened->revision != layer.revision) {
+                put(MadeOutput{.order = std::move(task),
+                               .eyes = {},
+                               .error = "its film is gone: the scene changed meanwhile"});
+                return;
+            }
+            films.push_back(opened->assembler->whole());
+        }
+    }
+    pictures_.make(std::move(task), std::move(films));
 }
 
 void FilmMerger::put(MergerOutput output) {

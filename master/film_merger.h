@@ -44,7 +44,7 @@ struct FilmBlocks {
     std::uint64_t revision = 0;
     std::vector<frame::FilmTile> blocks;
 };
-using MergerOutput = std::variant<MergeReport, EncodedTile, FilmBlocks, Reconstructed, Rehearsed>;
+using MergerOutput = std::variant<MergeReport, EncodedTile, FilmBlocks, Reconstructed, Rehearsed, MadeOutput>;
 
 // Decodes and merges film on a thread of its own, so that the loop that keeps heartbeats never does; pictures
 // of it are made on another one. Any number of films, one a view. Tasks run in the order given; `wake` is
@@ -67,6 +67,8 @@ class FilmMerger {
     enum class FilmHash { Wanted, NotWanted };
     // Of the film of view.id. Nothing comes when there is no such film.
     void reconstruct(JobId job, const view::View& view, wire::PictureEncoding encoding, FilmHash hash);
+    // Of the films of all layers of all eyes. Always comes; with an error when a film is gone.
+    void make_output(OutputOrder order);
     void rehearse(JobId job, const view::View& view, wire::PictureEncoding encoding);
 
     std::vector<MergerOutput> take();
@@ -108,7 +110,8 @@ class FilmMerger {
         wire::PictureEncoding encoding;
         FilmHash hash;
     };
-    using Task = std::variant<Open, Close, KeepFeatures, Widen, Film, Deliver, Copy, Reconstruct>;
+    using Task =
+        std::variant<Open, Close, KeepFeatures, Widen, Film, Deliver, Copy, Reconstruct, OutputOrder>;
     struct OpenFilm {
         std::uint64_t revision = 0;
         std::shared_ptr<FrameAssembler> assembler;
@@ -125,6 +128,7 @@ class FilmMerger {
     void perform(Deliver& task);
     void perform(Copy& task);
     void perform(Reconstruct& task);
+    void perform(OutputOrder& task);
     OpenFilm* film(ViewId view);
     void put(MergerOutput output);
 

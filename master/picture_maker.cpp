@@ -10,6 +10,13 @@ void PictureMaker::make(PictureTask task) {
     thread_.post([this, task = std::make_shared<PictureTask>(std::move(task))] { done_(made(*task)); });
 }
 
+void PictureMaker::make(OutputOrder order, std::vector<frame::FilmTile> films) {
+    thread_.post([this, order = std::move(order),
+                  films = std::make_shared<std::vector<frame::FilmTile>>(std::move(films))] {
+        done_(make_output(order, *films, reconstructor_));
+    });
+}
+
 void PictureMaker::rehearse(JobId job, const view::View& view, wire::PictureEncoding encoding) {
     thread_.post([this, job, view, encoding] {
         constexpr std::uint32_t Edge = 256;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <variant>
 
+#include "master/display/output_maker.h"
 #include "master/reconstruction.h"
 #include "mediator/base/task_thread.h"
 
@@ -36,14 +37,15 @@ struct Rehearsed {
     double seconds = 0.0;
 };
 
-// Filters and encodes on a thread of its own, so that merging goes on meanwhile. One picture after another, in
-// the order asked for.
+// Filters and encodes on a thread of its own, so that merging goes on meanwhile. One picture after another,
+// in the order asked for.
 class PictureMaker {
   public:
-    using Made = std::variant<Reconstructed, Rehearsed>;
+    using Made = std::variant<Reconstructed, Rehearsed, MadeOutput>;
     explicit PictureMaker(std::function<void(Made)> done) : done_(std::move(done)) {}  // on that thread
 
     void make(PictureTask task);
+    void make(OutputOrder order, std::vector<frame::FilmTile> films);
     // A made-up film of at most 256 x 256 pixels, since somebody is waiting.
     void rehearse(JobId job, const view::View& view, wire::PictureEncoding encoding);
 

@@ -36,6 +36,8 @@ std::vector<std::byte> encode(const filter::Planes& picture, wire::PictureEncodi
             return picture::encode_picture(interleaved(picture), picture::FileFormat::Exr);
         case wire::PictureEncoding::Planes:
         case wire::PictureEncoding::None:
+        case wire::PictureEncoding::Bytes:  // of outputs: master/display/output_maker.h
+        case wire::PictureEncoding::Half:
             break;
     }
     const auto bytes = std::as_bytes(picture.values());
@@ -93,6 +95,16 @@ Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& 
         result.error = "the filter " + summary.filter + " failed: " + error.what();
     }
     return result;
+}
+
+const filter::Planes& Reconstructor::filtered(const frame::FilmTile& film, const view::View& view) {
+    const auto choice = filter::parse_choice(view.filter, filter::catalog());
+    if (!choice) throw choice.error();
+    const filter::Inputs inputs = filter::make_inputs(film, view);
+    filter::Filter& filter = instance(*choice, inputs.width, inputs.height);
+    filter.reset();
+    filter.run(inputs, choice->values, output_, {arena_, {}});
+    return output_.picture;
 }
 
 double Reconstructor::rehearse(const view::View& view, wire::PictureEncoding encoding, std::uint32_t width,

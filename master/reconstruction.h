@@ -30,6 +30,10 @@ class Reconstructor {
   public:
     Reconstruction reconstruct(const Films& films, const view::View& view, wire::PictureEncoding encoding);
 
+    // The filtered picture alone, in memory of this object until the next call. Throws Error.
+    const filter::Planes& filtered(const frame::FilmTile& film, const view::View& view);
+    tbb::task_arena& arena() { return arena_; }
+
     // Seconds that the same takes on a made-up film of about `pixels`: for the first prediction.
     double rehearse(const view::View& view, wire::PictureEncoding encoding, std::uint32_t width,
                     std::uint32_t height);

@@ -43,7 +43,8 @@ RenderMaster::RenderMaster(std::unique_ptr<net::Channel> channel, std::shared_pt
       distributor_(authority_, *blobs_, outbox_, events_),
       jobs_(settings.jobs, nodes_, sessions_, outbox_, events_, [this] { channel_->wake(); }),
       live_runner_(settings.live, nodes_, sessions_, outbox_, events_, [this] { channel_->wake(); }),
-      live_(authority_, blobs_, sessions_, live_runner_, outbox_, events_,
+      display_(authority_, sessions_, live_runner_, outbox_, events_),
+      live_(authority_, blobs_, sessions_, live_runner_, display_, outbox_, events_,
             [this](const scene::ChangeList& changes, TimePoint now) { publish(changes, now); }),
       service_(authority_, blobs_, sessions_, jobs_, live_, outbox_,
                [this](const scene::ChangeList& changes, TimePoint now) { publish(changes, now); }) {
@@ -88,6 +89,7 @@ void RenderMaster::step(TimePoint now, std::stop_token stop) {
     service_.tick(now);
     live_.tick(now);
     live_runner_.tick(now);
+    display_.tick(now);
     distributor_.repair(nodes_, now, 3 * settings_.liveness.interval);
     heartbeats(now);
     outbox_.flush();
@@ -97,7 +99,8 @@ void RenderMaster::step(TimePoint now, std::stop_token stop) {
 
 TimePoint RenderMaster::next_wake(TimePoint now) const {
     TimePoint next = now + settings_.liveness.interval / 4;
-    next = std::min({next, jobs_.next_event(now), live_.next_event(now), live_runner_.next_event(now)});
+    next = std::min({next, jobs_.next_event(now), live_.next_event(now), live_runner_.next_event(now),
+                     display_.next_event()});
     if (outbox_.waiting()) next = std::min(next, now + std::chrono::milliseconds(1));
     return next;
 }

@@ -31,7 +31,7 @@ struct MasterSettings {
     std::filesystem::path session_folder;  // of live scenes, on disk; empty = in memory alone
     Duration checkpoint_interval = std::chrono::seconds(10);
     wire::BlobLimits blob_limits;
-    std::size_t max_sessions = 64, max_nodes = 1024;
+    std::size_t max_sessions = 256, max_nodes = 1024;
 };
 
 // The event loop: one thread that owns the channel, keeps heartbeats and hands messages to the parts. It
@@ -86,6 +86,7 @@ class RenderMaster {
     SceneDistributor distributor_;
     JobRunner jobs_;
     LiveRunner live_runner_;
+    DisplayService display_;
     std::optional<LiveJournal> live_journal_;
     LiveService live_;
     SessionService service_;

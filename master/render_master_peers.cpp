@@ -96,6 +96,18 @@ void RenderMaster::from_member(SessionRecord& session, wire::ControlMessage& mes
         live_.asked(session, *writers);
     } else if (const auto* end = std::get_if<wire::CloseScene>(&message)) {
         service_.close_live_scene(session, *end, now);
+    } else if (const auto* ready = std::get_if<wire::OutputReady>(&message)) {
+        display_.ready(session.id, *ready, now);
+    } else if (const auto* head = std::get_if<wire::MoveHead>(&message)) {
+        display_.move_head(head->head);
+    } else if (const auto* output = std::get_if<wire::JoinOutput>(&message)) {
+        live_.asked(session, *output, now);
+    } else if (const auto* shown = std::get_if<wire::OpenDisplay>(&message)) {
+        service_.open_display(session, *shown, now);
+    } else if (const auto* hidden = std::get_if<wire::CloseDisplay>(&message)) {
+        live_.asked(session, *hidden);
+    } else if (const auto* adjusted = std::get_if<wire::AdjustDisplay>(&message)) {
+        live_.asked(session, *adjusted);
     }
 }
 
@@ -153,7 +165,8 @@ wire::StatusReply RenderMaster::status(TimePoint now) const {
         .units = jobs_.total_counts(),
         .wire_bytes = outbox_.bytes,
         .live = live_.status(),
-        .resyncs = distributor_.resyncs()};
+        .resyncs = distributor_.resyncs(),
+        .display = display_.status(now)};
     add(reply.units, live_runner_.counts());
     for (const auto& [id, node] : nodes_.all()) {
         wire::NodeStatus entry{

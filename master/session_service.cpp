@@ -1,5 +1,6 @@
 #include "master/session_service.h"
 
+#include "mediator/wire/display_codec.h"
 #include "mediator/wire/envelope.h"
 
 namespace tessera::master {
@@ -172,8 +173,46 @@ void SessionService::advance(SessionRecord& session, TimePoint now) {
                                                          .notes = answer.notes});
         session.edits.pop_front();
     }
+    if (session.opening) advance_display(session, now);
     if (!session.bulk) return;
     for (const wire::BlobRequest& request : session.fetcher.due(now)) outbox_.bulk(*session.bulk, request);
+}
+
+void SessionService::open_display(SessionRecord& session, const wire::OpenDisplay& request, TimePoint now) {
+    session.opening = request;
+    advance(session, now);
+}
+
+void SessionService::advance_display(SessionRecord& session, TimePoint now) {
+    std::string problem;
+    try {
+        const auto here = [&](const scene::BlobRef& blob) {
+            scene::BlobPtr found = blobs_->find(blob.hash);
+            if (found) return found;
+            if (auto wanted = session.fetcher.want(blob); !wanted) throw wanted.error();
+            return found;
+        };
+        const scene::BlobPtr description = here(session.opening->description);
+        if (!description) return;
+        const auto display = wire::decode_display(description->bytes());
+        if (!display) throw display.error();
+        std::vector<scene::BlobPtr> content;
+        bool complete = true;
+        for (const display::Output& output : display->outputs) {
+            for (const display::Grid& grid : {output.points, output.blend.weights, output.blend.lift}) {
+                if (grid.empty()) continue;
+                content.push_back(here(grid.values));
+                complete = complete && content.back() != nullptr;
+            }
+        }
+        if (!complete) return;
+        problem = live_.open_display(description, std::move(content), now);
+    } catch (const Error& error) {
+        problem = error.what();
+    }
+    const wire::OpenDisplay request = *std::exchange(session.opening, std::nullopt);
+    const bool accepted = problem.empty();
+    outbox_.control(session.control, wire::RequestDone{request.request, accepted, std::move(problem)});
 }
 
 void SessionService::chunk(SessionRecord& session, wire::BlobChunk&& chunk, TimePoint now) {
@@ -185,6 +224,14 @@ void SessionService::chunk(SessionRecord& session, wire::BlobChunk&& chunk, Time
 
 void SessionService::absent(SessionRecord& session, const wire::BlobAbsent& absent, TimePoint now) {
     session.fetcher.absent(absent.hash);
+    if (session.edits.empty() && session.opening) {
+        const wire::OpenDisplay request = *std::exchange(session.opening, std::nullopt);
+        session.fetcher.forget_all();
+        return outbox_.control(session.control,
+                               wire::RequestDone{request.request, false,
+                                                 "the client does not have blob " + to_hex(absent.hash) +
+                                                     " that its display refers to"});
+    }
     if (session.edits.empty()) return;
     refuse_edit(session, "the client does not have blob " + to_hex(absent.hash) + " that its edit refers to");
     session.edits.pop_front();

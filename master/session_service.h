@@ -22,6 +22,7 @@ class SessionService {
     void close_live_scene(SessionRecord& session, const wire::CloseScene& request, TimePoint now);
     void submit(SessionRecord& session, scene::Edit edit, std::uint64_t message_bytes, TimePoint now);
     void submit(SessionRecord& session, const wire::SubmitEditByBlob& edit, TimePoint now);
+    void open_display(SessionRecord& session, const wire::OpenDisplay& request, TimePoint now);
     void chunk(SessionRecord& session, wire::BlobChunk&& chunk, TimePoint now);
     void absent(SessionRecord& session, const wire::BlobAbsent& absent, TimePoint now);
     void start_job(SessionRecord& session, wire::StartJob request, TimePoint now);
@@ -33,6 +34,7 @@ class SessionService {
   private:
     void advance(SessionRecord& session, TimePoint now);  // edits whose blobs are here
     bool blobs_are_here(SessionRecord& session, SessionRecord::PendingEdit& edit);
+    void advance_display(SessionRecord& session, TimePoint now);
     void refuse_edit(SessionRecord& session, std::string problem);
     void give_stage(SessionId session);
     void let_in(SessionRecord& session, const wire::JoinScene& request, TimePoint now);

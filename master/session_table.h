@@ -31,7 +31,8 @@ struct SessionRecord {
         std::uint64_t bytes = 0;  // that it took on the wire
     };
     std::deque<PendingEdit> edits;
-    std::int64_t heartbeat_sent_at = 0;  // its latest, and when it came: what our next heartbeat echoes
+    std::optional<wire::OpenDisplay> opening;  // waits until its blobs are here
+    std::int64_t heartbeat_sent_at = 0;        // its latest, and when it came: what our next heartbeat echoes
     TimePoint heartbeat_at{};
     net::PeerClock clock;
     std::uint32_t told_place = 0;            // in the queue, as last told

@@ -8,6 +8,7 @@
 #include "client/session.h"
 #include "client/tools/chrome_trace.h"
 #include "client/tools/cluster_options.h"
+#include "client/tools/display_status.h"
 #include "mediator/picture/atomic_file.h"
 
 namespace tessera::tools {
@@ -45,6 +46,25 @@ Json live_value(const wire::LiveStatus& live) {
             {"journal_bytes", live.journal_bytes},
             {"checkpoints", live.checkpoints},
             {"stages", stages}};
+}
+
+Json display_value(const wire::DisplayStatus& display) {
+    if (display.name.empty()) return nullptr;
+    Json outputs = Json::array();
+    for (const wire::OutputStatus& output : display.outputs) {
+        outputs.push_back({{"name", output.name},
+                           {"host", output.host},
+                           {"state", output_state_name(output.state)},
+                           {"frames", output.frames},
+                           {"late", output.late},
+                           {"samples", output.samples},
+                           {"stereo_difference", output.stereo_difference}});
+    }
+    return {{"name", display.name},
+            {"frames", display.frames},
+            {"version", {{"epoch", display.version.epoch}, {"number", display.version.number}}},
+            {"rate", display.rate},
+            {"outputs", outputs}};
 }
 
 std::string as_json(const client::ClusterStatus& status) {
@@ -89,6 +109,7 @@ std::string as_json(const client::ClusterStatus& status) {
           {"film", status.wire_bytes.film}}},
         {"resyncs", status.resyncs},
         {"live", live_value(status.live)},
+        {"display", display_value(status.display)},
         {"nodes", nodes},
     };
     return object.dump(2);
@@ -113,6 +134,7 @@ void print_table(const client::ClusterStatus& status) {
                         1e3 * stage.p50_seconds, 1e3 * stage.p99_seconds);
         }
     }
+    print_display(status.display);
     if (status.nodes.empty()) {
         std::printf("no nodes: start some with tessera-node --master ...\n");
         return;

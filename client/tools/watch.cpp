@@ -9,7 +9,7 @@
 #include <memory>
 #include <optional>
 
-#include "client/live_cameras.h"
+#include "mediator/view/placed_cameras.h"
 #include "client/live_session.h"
 #include "client/tools/cluster_options.h"
 #include "client/tools/interrupts.h"
@@ -112,19 +112,19 @@ class Watch {
                                         .share = !options_.view.empty()};
         if (!request.share) {
             // Until somebody loads a scene there may be none.
-            while (!client::choose_camera(session_->scene(), "") && !interrupts_.token().stop_requested()) {
+            while (!view::choose_camera(session_->scene(), "") && !interrupts_.token().stop_requested()) {
                 if (!told_) std::cerr << "tessera watch: the scene has no camera yet: waiting for one\n";
                 told_ = true;
                 ::usleep(100000);
                 session_->refresh();
             }
-            const auto camera = client::choose_camera(session_->scene(), options_.camera);
+            const auto camera = view::choose_camera(session_->scene(), options_.camera);
             if (!camera) throw camera.error();
             request.view.width = size_.width;
             request.view.height = size_.height;
             request.view.window = {0, 0, static_cast<std::int32_t>(size_.width),
                                    static_cast<std::int32_t>(size_.height)};
-            request.view.camera = client::pose(*camera, size_.width, size_.height);
+            request.view.camera = view::pose(*camera, size_.width, size_.height);
             request.view.channels = {frame::Channel::Radiance};
             request.view.filter = options_.filter;
         }

@@ -33,8 +33,10 @@ void LiveRunner::deal(TimePoint now) {
         if (task.pass.scheduler) deal(task.pass, task.version, capacities, now);
     }
     std::vector<LiveView*> order;
+    if (group_ && group_->restart_wanted && !passes_held_ && !group_is_protected()) restart_group();
     for (auto& [id, live] : views_) {
-        if (live.restart_wanted && !passes_held_ && !live.is_protected() && live.problem.empty())
+        if (!live.in_group && live.restart_wanted && !passes_held_ && !live.is_protected() &&
+            live.problem.empty())
             restart(live);
         if (!live.passes.empty() && live.pass().scheduler) order.push_back(&live);
     }
@@ -45,8 +47,9 @@ void LiveRunner::deal(TimePoint now) {
     std::stable_sort(order.begin(), order.end(), [](const LiveView* a, const LiveView* b) {
         const auto rank = [](const LiveView& live) {
             const double pixels = static_cast<double>(live.view.window.pixel_count());
-            const double spp =
-                live.pass().scale > 1 ? 0.0 : double(live.pass().scheduler->merged_samples()) / pixels;
+            const double spp = live.pass().scale > 1
+                                   ? 0.0
+                                   : double(live.pass().scheduler->merged_samples()) / pixels / live.priority;
             return std::pair(-static_cast<int>(live.pass().scale), std::floor(spp));
         };
         return rank(*a) < rank(*b);
@@ -191,6 +194,8 @@ void LiveRunner::take_merger_output(TimePoint now) {
         } else if (auto* made = std::get_if<Reconstructed>(&output)) {
             if (!made->picture.error.empty()) events_({wire::Severity::Error, made->picture.error});
             (void)frames_.take(std::move(*made), now);
+        } else if (auto* output_made = std::get_if<MadeOutput>(&output)) {
+            if (on_output) on_output(std::move(*output_made), now);
         } else if (auto* film = std::get_if<FilmBlocks>(&output)) {
             film->job == JobId{} ? take(std::move(*film)) : take_copy(std::move(*film));
         }

@@ -77,8 +77,9 @@ std::string LiveRunner::open(const Owner& owner, wire::OpenLiveView request, Ver
     }
     if (watched && views_.at(*watched).owner != session && !views_.at(*watched).orphaned) watched.reset();
     if (!watched) {
-        if (views_.size() >= settings_.max_views) {
-            return "there are " + std::to_string(views_.size()) + " views already: close some";
+        const std::size_t count = views_.size() - (group_ ? group_->views.size() : 0);
+        if (count >= settings_.max_views) {
+            return "there are " + std::to_string(count) + " views already: close some";
         }
         watched = ViewId{next_view_};
         next_view_ += MaxPasses;
@@ -114,7 +115,7 @@ std::string LiveRunner::open(const Owner& owner, wire::OpenLiveView request, Ver
 void LiveRunner::close(SessionId session, std::uint64_t number) {
     const auto view = frames_.watched(session, number);
     frames_.leave(session, number);
-    if (view && frames_.watchers(*view) == 0) remove(*view);
+    if (view && frames_.watchers(*view) == 0 && !views_.at(*view).in_group) remove(*view);
 }
 
 void LiveRunner::session_left(SessionId session, Departure departure, TimePoint now) {
@@ -145,6 +146,7 @@ void LiveRunner::remove(ViewId view) {
 }
 
 void LiveRunner::close_all() {
+    close_group();
     while (!views_.empty()) remove(views_.begin()->first);
     for (PickTask& task : picks_) end(task.pass);
     picks_.clear();
@@ -153,15 +155,18 @@ void LiveRunner::close_all() {
 // ---- passes ----
 
 void LiveRunner::begin_pass(LivePass& pass, Version version, std::vector<frame::FilmTile>&& film) {
+    const LiveView* const live = view_of(pass.view.id);
+    const bool live_in_group = live != nullptr && live->in_group;
     std::uint32_t workers = 0;
     for (const auto& [id, node] : nodes_.all()) {
         if (suits(node, pass.view, version)) workers += std::max(1u, node.hello.concurrent_units);
     }
-    const PlanSettings plan{.window = pass.view.window,
-                            .tile = tile_edge(pass, workers),
-                            .spp = pass.spp,
-                            .policy = wire::Policy::Mixed,
-                            .first_level = 0};
+    const PlanSettings plan{
+        .window = pass.view.window,
+        .tile = live_in_group ? group_tile_edge(pass.view, version) : tile_edge(pass, workers),
+        .spp = pass.spp,
+        .policy = wire::Policy::Mixed,
+        .first_level = 0};
     pass.first_unit = next_units();
     pass.scheduler.emplace(plan, pass.view.id, pass.view.revision, version, pass.first_unit, std::nullopt);
     FrameAssembler assembler(pass.scheduler->tiles(), pass.view.channels, pass.spp);
@@ -203,6 +208,7 @@ void LiveRunner::restart(LiveView& live) {
 
 // The pass under way has new samples.
 void LiveRunner::advance(LiveView& live, TimePoint now) {
+    if (live.in_group) return advance_group(now);
     LivePass& pass = live.pass();
     const bool is_last = live.current + 1 == live.passes.size();
     const bool is_whole = pass.scheduler->tiles_without_samples() == 0;
@@ -235,6 +241,7 @@ void LiveRunner::fail(LiveView& live, const std::string& problem) {
 }
 
 void LiveRunner::tell_owner(const LiveView& live, const std::string& text) {
+    if (live.in_group) events_({wire::Severity::Warning, text});
     if (const SessionRecord* owner = sessions_.find(live.owner))
         outbox_.control(owner->control, wire::Notice{wire::Severity::Warning, text});
 }
@@ -270,6 +277,10 @@ bool LiveRunner::may_publish() const {
 bool LiveRunner::scene_changed(const scene::ChangeList& changes, const scene::Scene& after, TimePoint now) {
     now_ = now;
     const bool restarts = changes_pictures(changes, after);
+    if (group_) {
+        group_->version = changes.to;
+        group_->restart_wanted = group_->restart_wanted || restarts;
+    }
     for (auto& [id, live] : views_) {
         live.version = changes.to;
         if (restarts) {
@@ -298,7 +309,7 @@ bool LiveRunner::scene_changed(const scene::ChangeList& changes, const scene::Sc
 void LiveRunner::tick(TimePoint now) {
     now_ = now;
     take_merger_output(now);
-    if (views_.empty() && picks_.empty()) return;
+    if (views_.empty() && picks_.empty() && !group_) return;
     std::vector<ViewId> forgotten;
     for (const auto& [id, live] : views_) {
         if (live.orphaned && frames_.watchers(id) == 0 && now - *live.orphaned > settings_.orphan_patience)
@@ -307,8 +318,10 @@ void LiveRunner::tick(TimePoint now) {
     for (const ViewId view : forgotten) remove(view);
     for (auto& [id, live] : views_) tell_of_waiting(live, now);
     // A pass that waited for changes to be published goes on.
+    advance_group(now);
     for (auto& [id, live] : views_) {
-        if (!live.passes.empty() && live.pass().scheduler && live.pass().scheduler->complete())
+        if (!live.in_group && !live.passes.empty() && live.pass().scheduler &&
+            live.pass().scheduler->complete())
             advance(live, now);
     }
     collect_overdue(now);
@@ -327,8 +340,8 @@ void LiveRunner::tick(TimePoint now) {
 void LiveRunner::send_frames(TimePoint now) {
     for (auto& [id, live] : views_) {
         // What accumulates is newer than what was shown last.
-        if (!live.passes.empty() && live.current + 1 == live.passes.size() && live.pass().scheduler &&
-            live.pass().scheduler->tiles_without_samples() == 0) {
+        if (!live.in_group && !live.passes.empty() && live.current + 1 == live.passes.size() &&
+            live.pass().scheduler && live.pass().scheduler->tiles_without_samples() == 0) {
             show(live, now);
         }
         frames_.offer(live, now, settings_.frame_interval);
@@ -336,7 +349,7 @@ void LiveRunner::send_frames(TimePoint now) {
 }
 
 TimePoint LiveRunner::next_event(TimePoint now) const {
-    if (views_.empty() && picks_.empty()) return TimePoint::max();
+    if (views_.empty() && picks_.empty() && !group_) return TimePoint::max();
     const bool all_complete = std::all_of(views_.begin(), views_.end(),
                                           [](const auto& entry) { return entry.second.is_complete(); });
     return now +

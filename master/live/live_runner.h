@@ -12,6 +12,7 @@
 #include "master/live/frame_sender.h"
 #include "master/live/live_view.h"
 #include "master/live/percentiles.h"
+#include "master/live/view_group.h"
 #include "master/node_table.h"
 #include "master/outbox.h"
 #include "master/scene_distributor.h"
@@ -54,6 +55,14 @@ class LiveRunner {
     void session_left(SessionId session, Departure departure, TimePoint now);
     void session_resumed(SessionId session) { frames_.resumed(session); }
     void close_all();
+
+    // Views in lockstep instead of those there were. They take their turns with all others.
+    void open_group(GroupOwner owner, std::uint64_t spp, std::uint32_t coarsest, Version version);
+    void close_group();
+    void group_changed();  // its pictures start anew
+    // From GroupOwner::take. What becomes of it goes to on_output, in the order of the orders.
+    void make_output(OutputOrder order);
+    std::function<void(MadeOutput&& made, TimePoint now)> on_output;
 
     // No first picture is on its way. Changes wait for it, and no pass begins while they wait.
     bool may_publish() const;
@@ -105,6 +114,12 @@ class LiveRunner {
     void show(LiveView& live, TimePoint now);
     void end(LivePass& pass);
     void end_passes(LiveView& live);
+    bool group_is_protected() const;
+    std::uint32_t group_tile_edge(const view::View& view, Version version) const;
+    void restart_group();
+    void begin_group_pass(LiveView& live);
+    void advance_group(TimePoint now);
+    void show_group(bool is_last, TimePoint now);
     void fail(LiveView& live, const std::string& problem);
     void tell_of_waiting(LiveView& live, TimePoint now);
     void tell_owner(const LiveView& live, const std::string& text);
@@ -144,6 +159,7 @@ class LiveRunner {
     std::map<ViewId, LiveView> views_;
     std::list<PickTask> picks_;
     std::optional<Saving> saving_;
+    std::optional<ViewGroup> group_;
     std::uint64_t next_view_ = FirstLiveView.value, next_unit_ = FirstLiveUnit.value;
     std::uint64_t turn_ = 0;  // whose turn it is among equals
     bool passes_held_ = false;

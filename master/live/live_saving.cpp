@@ -12,6 +12,7 @@ constexpr JobId SaveTag{1};  // what the merger's copies are for; 0 = a pick
 void LiveRunner::save(Hash128 scene_hash) {
     saving_.emplace();
     for (auto& [id, live] : views_) {
+        if (live.in_group) continue;
         wire::SavedView& saved = saving_->views[id];
         saved = {.name = live.name,
                  .owner_user = live.owner_user,
@@ -32,7 +33,7 @@ void LiveRunner::save(Hash128 scene_hash) {
 std::uint64_t LiveRunner::film_progress() const {
     std::uint64_t progress = next_view_ + next_unit_;  // passes take new ids
     for (const auto& [id, live] : views_) {
-        if (!live.passes.empty() && live.pass().scheduler)
+        if (!live.in_group && !live.passes.empty() && live.pass().scheduler)
             progress += live.pass().scheduler->merged_samples();
     }
     return progress;

@@ -15,12 +15,13 @@ constexpr Duration MaxPresence = std::chrono::minutes(10);
 }  // namespace
 
 LiveService::LiveService(SceneAuthority& authority, std::shared_ptr<scene::BlobStore> blobs,
-                         SessionTable& sessions, LiveRunner& runner, Outbox& outbox, EventSink events,
-                         std::function<void(const scene::ChangeList&, TimePoint)> publish)
+                         SessionTable& sessions, LiveRunner& runner, DisplayService& display, Outbox& outbox,
+                         EventSink events, std::function<void(const scene::ChangeList&, TimePoint)> publish)
     : authority_(authority),
       blobs_(std::move(blobs)),
       sessions_(sessions),
       runner_(runner),
+      display_(display),
       outbox_(outbox),
       events_(std::move(events)),
       publish_(std::move(publish)) {
@@ -91,6 +92,7 @@ void LiveService::close(TimePoint now) {
     if (!open_) return;
     open_ = false;
     events_({wire::Severity::Info, "live scene '" + title_ + "' is closed"});
+    display_.close();
     runner_.close_all();
     for (const auto& [id, member] : members_) authority_.forget(id);
     members_.clear();
@@ -104,6 +106,7 @@ void LiveService::left(SessionId session, LiveRunner::Departure departure, TimeP
     if (member == members_.end()) return;
     events_({wire::Severity::Info, member->second.name + " left '" + title_ + "'"});
     runner_.session_left(session, departure, now);
+    display_.left(session, now);
     authority_.release_all(session);
     authority_.forget(session);
     members_.erase(member);
@@ -242,6 +245,37 @@ void LiveService::asked(SessionRecord& session, wire::OpenLiveView request, Time
     if (number != 0 || !problem.empty()) done(session, number, std::move(problem));
 }
 
+std::string LiveService::open_display(const scene::BlobPtr& description, std::vector<scene::BlobPtr> content,
+                                      TimePoint now) {
+    if (!open_) return "there is no live scene: join one first";
+    std::string problem = display_.open(description, std::move(content), now);
+    if (problem.empty()) follow_display(now);
+    return problem;
+}
+
+void LiveService::asked(SessionRecord& session, const wire::CloseDisplay& request) {
+    const std::string problem = display_.is_open() ? "" : "no display is open";
+    display_.close();
+    done(session, request.request, problem);
+}
+
+void LiveService::asked(SessionRecord& session, const wire::AdjustDisplay& request) {
+    done(session, request.request, display_.adjust(request));
+}
+
+void LiveService::asked(SessionRecord& session, const wire::JoinOutput& request, TimePoint now) {
+    if (std::string problem = display_.join(session, request, now); !problem.empty())
+        done(session, request.request, std::move(problem));
+}
+
+// The render origin follows the display while nobody else looks.
+void LiveService::follow_display(TimePoint now) {
+    const auto& views = runner_.views();
+    if (!std::all_of(views.begin(), views.end(), [](const auto& entry) { return entry.second.in_group; }))
+        return;
+    if (auto moved = authority_.follow_camera(display_.head_in_world())) publish(*moved, now);
+}
+
 void LiveService::publish(const scene::ChangeList& changes, TimePoint now) {
     published_at_ = now;
     ++counts_.versions;
@@ -251,6 +285,7 @@ void LiveService::publish(const scene::ChangeList& changes, TimePoint now) {
     publish_(changes, now);
     counts_.change_bytes += outbox_.bytes.control - before;
     traces_.published(changes.to, now);
+    if (display_.scene_changed()) follow_display(now);
     if (runner_.views().empty()) {
         traces_.nobody_looks();
     } else if (!restarts) {

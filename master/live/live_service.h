@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "master/display/display_service.h"
 #include "master/edit_trace.h"
 #include "master/live/live_journal.h"
 #include "master/live/live_runner.h"
@@ -22,7 +23,7 @@ class LiveService {
   public:
     // `publish` hands a change list to all nodes.
     LiveService(SceneAuthority& authority, std::shared_ptr<scene::BlobStore> blobs, SessionTable& sessions,
-                LiveRunner& runner, Outbox& outbox, EventSink events,
+                LiveRunner& runner, DisplayService& display, Outbox& outbox, EventSink events,
                 std::function<void(const scene::ChangeList&, TimePoint)> publish);
 
     // From now on edits are recorded in it. What it recovered is open again. Must outlive its use.
@@ -54,6 +55,13 @@ class LiveService {
     void asked(SessionRecord& session, const wire::ReadWriters& request);
     void asked(SessionRecord& session, wire::OpenLiveView request, TimePoint now);
 
+    // "" or what is wrong.
+    std::string open_display(const scene::BlobPtr& description, std::vector<scene::BlobPtr> content,
+                             TimePoint now);
+    void asked(SessionRecord& session, const wire::CloseDisplay& request);
+    void asked(SessionRecord& session, const wire::AdjustDisplay& request);
+    void asked(SessionRecord& session, const wire::JoinOutput& request, TimePoint now);
+
     wire::Trace trace(const wire::ReadTrace& request) const;
 
     void tick(TimePoint now);
@@ -78,6 +86,7 @@ class LiveService {
     std::string unique_name(const std::string& wanted) const;
     void answer(const WaitingRead& read);
     void done(const SessionRecord& session, std::uint64_t request, std::string problem);
+    void follow_display(TimePoint now);
     void publish_if_due(TimePoint now);
     void publish(const scene::ChangeList& changes, TimePoint now);
 
@@ -85,6 +94,7 @@ class LiveService {
     std::shared_ptr<scene::BlobStore> blobs_;
     SessionTable& sessions_;
     LiveRunner& runner_;
+    DisplayService& display_;
     LiveJournal* journal_ = nullptr;
     Outbox& outbox_;
     EventSink events_;

@@ -10,13 +10,15 @@ namespace {
 constexpr std::int32_t LeastEdge = 16;  // of a coarse picture
 }
 
-std::vector<LivePass> passes_of(const LiveView& live) {
+bool has_coarse_pass(const view::View& view, std::uint32_t scale) {
+    return std::min(view.window.width, view.window.height) >= LeastEdge * static_cast<std::int32_t>(scale);
+}
+
+std::vector<LivePass> passes_of(const LiveView& live, std::uint32_t coarsest) {
     std::vector<LivePass> passes;
-    const Rect& window = live.view.window;
-    for (const std::int32_t scale : {8, 4, 2}) {
-        if (std::min(window.width, window.height) < LeastEdge * scale) continue;
-        LivePass pass{.view = scaled_view(live.view, static_cast<std::uint32_t>(scale)),
-                      .scale = static_cast<std::uint32_t>(scale)};
+    for (const std::uint32_t scale : {8u, 4u, 2u}) {
+        if (scale > coarsest || !has_coarse_pass(live.view, scale)) continue;
+        LivePass pass{.view = scaled_view(live.view, scale), .scale = scale};
         pass.view.channels = live.view.channels;
         pass.view.filter.clear();  // most filters need more than a sample a pixel
         passes.push_back(std::move(pass));

@@ -38,6 +38,8 @@ struct LiveView {
     std::uint64_t owner_key = 0;  // as it joined: who comes back with it has the view again
     view::View view;              // as asked for, with the channels that its filter needs
     std::uint64_t spp = 1;
+    bool in_group = false;             // in lockstep with others (view_group.h), without an owner
+    std::uint32_t priority = 1;        // in a group
     std::uint64_t asked_revision = 0;  // of what was asked for, and of what the passes render
     std::uint64_t camera_revision = 0;
     std::uint64_t revision = 0;  // of the passes
@@ -62,9 +64,11 @@ struct LiveView {
     bool is_complete() const { return shown && shown->complete && shown->revision == revision; }
 };
 
-// The passes of a view: 1/8, 1/4 and 1/2 of its size, each where it still has 16 pixels a side, then the
-// whole.
-std::vector<LivePass> passes_of(const LiveView& view);
+// Whether a picture of 1/`scale` of its size still has 16 pixels a side.
+bool has_coarse_pass(const view::View& view, std::uint32_t scale);
+// The passes of a view: 1/8, 1/4 and 1/2 of its size, each where there is one and it is not coarser than
+// 1/`coarsest`, then the whole.
+std::vector<LivePass> passes_of(const LiveView& view, std::uint32_t coarsest = 8);
 
 inline constexpr std::uint64_t UnitsPerPass = std::uint64_t{1} << 32;
 inline constexpr std::size_t MaxPasses = 4;

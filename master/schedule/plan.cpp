@@ -71,7 +71,7 @@ std::optional<Plan::Chunk> Plan::next(std::uint64_t max_count, std::uint32_t way
         remaining_samples_ -= chunk.block.count() * tiles_[chunk.tile].pixel_count();
         return chunk;
     }
-    if (round_ == rounds_.size()) return std::nullopt;
+    if (round_ == rounds_.size() || is_held()) return std::nullopt;
     const SampleBlock& round = rounds_[round_];
     const std::uint64_t limit = std::min(std::max<std::uint64_t>(max_count, 1), share(round, ways));
     const std::uint64_t left = round.count() - offset_;

@@ -41,7 +41,11 @@ class Plan {
     std::optional<Chunk> next(std::uint64_t max_count, std::uint32_t ways);
     void give_back(const Chunk& chunk);
 
+    // Rounds that begin with this sample or a later one wait until the limit is raised.
+    void hold_at(std::uint64_t sample) { hold_ = sample; }
+
     bool exhausted() const { return returned_.empty() && round_ == rounds_.size(); }
+    bool paused() const { return returned_.empty() && (round_ == rounds_.size() || is_held()); }
     std::uint64_t remaining_samples() const { return remaining_samples_; }  // pixel samples not dealt
 
     // For deadlines: is the next chunk the first of its round, how large is that round, and deal it in
@@ -51,6 +55,7 @@ class Plan {
     void deal_round_in_eighths();
 
   private:
+    bool is_held() const { return rounds_[round_].first >= hold_; }
     std::uint64_t share(const frame::SampleBlock& round, std::uint32_t ways) const;
     void advance(std::uint64_t count);
 
@@ -62,6 +67,7 @@ class Plan {
     std::uint64_t offset_ = 0;  // samples of rounds_[round_] already dealt for order_[cursor_]
     std::deque<Chunk> returned_;
     std::uint64_t remaining_samples_ = 0;
+    std::uint64_t hold_ = ~std::uint64_t{0};
 };
 
 // [0, spp) in rounds: 2^first_level samples, then as many again each time, then what is left as aligned

@@ -59,6 +59,11 @@ class Scheduler {
 
     std::vector<Cancellation> cancel_everything();  // and deal no more
 
+    // Samples from this one on are not dealt until the limit is raised; a power of two. paused(): all before
+    // it is merged.
+    void hold_at(std::uint64_t sample) { plan_.hold_at(sample); }
+    bool paused() const { return plan_.paused() && outstanding_.empty(); }
+
     bool complete() const { return plan_.exhausted() && outstanding_.empty(); }
     bool idle() const { return outstanding_.empty(); }
     const std::vector<Rect>& tiles() const { return plan_.tiles(); }

@@ -8,14 +8,15 @@
 
 namespace tessera::view {
 
-// What one node is asked to do at a time. Its content follows from these values alone; the id only names the order.
+// What one node is asked to do at a time. Its content follows from these values alone; the id only names the
+// order.
 struct WorkUnit {
     UnitId id;
     ViewId view;
     std::uint64_t revision = 0;  // of the view
     Version version;             // of the scene
     Rect tile;
-    frame::SampleBlock block;    // one aligned block of samples for every pixel of the tile
+    frame::SampleBlock block;  // one aligned block of samples for every pixel of the tile
     friend bool operator==(const WorkUnit&, const WorkUnit&) = default;
 };
 

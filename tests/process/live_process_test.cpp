@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "client/import/import.h"
-#include "client/live_cameras.h"
+#include "mediator/view/placed_cameras.h"
 #include "client/live_session.h"
 #include "mediator/base/hash.h"
 #include "mediator/scene/fields.h"
@@ -44,12 +44,12 @@ struct LiveProcess : testing::Test {
         }
         ASSERT_TRUE(session->submit(import::entries(*imported, import::RootEntry::Update)).accepted);
         session->refresh();
-        const auto camera = client::choose_camera(session->scene(), "");
+        const auto camera = view::choose_camera(session->scene(), "");
         ASSERT_TRUE(camera);
         view.view.width = 96;
         view.view.height = 64;
         view.view.window = {0, 0, 96, 64};
-        view.view.camera = client::pose(*camera, 96, 64);
+        view.view.camera = view::pose(*camera, 96, 64);
         view.view.channels = {frame::Channel::Radiance};
     }
     std::vector<Entry> paint(float red) const {

@@ -36,6 +36,7 @@ ARROWS = {
     "node/main.cpp": KIT + LINK + ["client/cli"],
     "master": CORE + LINK + ["mediator/picture"],
     "master/live": CORE + LINK + ["master"],
+    "master/display": CORE + LINK + ["master", "mediator/picture"],
     "master/schedule": CORE + ["mediator/wire"],
     "master/filter": KIT + ["master/filter"],
     "master/config.h": CORE + LINK + ["client/cli"],
@@ -115,7 +116,7 @@ def may_include(path, included):
         if allowed == "" or target == allowed or target.startswith(allowed + "/"):
             return None
     # A folder may use what lies below it only when it is one target with it.
-    if own == "master" and target in ("master/live", "master/schedule", "master/filter"):
+    if own == "master" and target in ("master/display", "master/live", "master/schedule", "master/filter"):
         return None
     return f"is not allowed for {rule}"
 

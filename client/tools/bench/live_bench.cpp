@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "client/import/import.h"
-#include "client/live_cameras.h"
+#include "mediator/view/placed_cameras.h"
 #include "client/tools/bench/live_cluster.h"
 #include "mediator/scene/fields.h"
 
@@ -75,13 +75,13 @@ class LiveBench {
     }
 
     void open_view() {
-        const auto camera = client::choose_camera(watcher_->scene(), "");
+        const auto camera = view::choose_camera(watcher_->scene(), "");
         if (!camera) throw camera.error();
         request_.spp = 1u << 20;
         request_.view.width = options_.width;
         request_.view.height = options_.height;
         request_.view.window = {0, 0, std::int32_t(options_.width), std::int32_t(options_.height)};
-        request_.view.camera = client::pose(*camera, options_.width, options_.height);
+        request_.view.camera = view::pose(*camera, options_.width, options_.height);
         request_.view.channels = {frame::Channel::Radiance};
         watcher_->open_view(View, request_);
     }

@@ -1,9 +1,9 @@
-#include "client/live_cameras.h"
+#include "mediator/view/placed_cameras.h"
 
 #include <glm/geometric.hpp>
 #include <set>
 
-namespace tessera::client {
+namespace tessera::view {
 
 namespace {
 
@@ -46,8 +46,8 @@ std::vector<PlacedCamera> placed_cameras(const scene::Scene& scene) {
     return std::move(walk.found);
 }
 
-view::CameraPose pose(const PlacedCamera& camera, std::uint32_t width, std::uint32_t height) {
-    return view::perspective(camera.world_from_camera, camera.vertical_fov, double(width) / double(height));
+CameraPose pose(const PlacedCamera& camera, std::uint32_t width, std::uint32_t height) {
+    return perspective(camera.world_from_camera, camera.vertical_fov, double(width) / double(height));
 }
 
 Expected<PlacedCamera> choose_camera(const scene::Scene& scene, const std::string& choice) {
@@ -62,4 +62,4 @@ Expected<PlacedCamera> choose_camera(const scene::Scene& scene, const std::strin
     return failure(ErrorCode::NotFound, "the scene has no camera '" + choice + "'; it has: " + list);
 }
 
-}  // namespace tessera::client
+}  // namespace tessera::view

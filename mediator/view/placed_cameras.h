@@ -8,7 +8,7 @@
 #include "mediator/scene/scene.h"
 #include "mediator/view/view.h"
 
-namespace tessera::client {
+namespace tessera::view {
 
 // A Camera object as it stands in a scene; where it is placed several times, the first time.
 struct PlacedCamera {
@@ -21,9 +21,9 @@ struct PlacedCamera {
 // In the order of the graph. A view takes their values, since nodes know no cameras.
 std::vector<PlacedCamera> placed_cameras(const scene::Scene& scene);
 
-view::CameraPose pose(const PlacedCamera& camera, std::uint32_t width, std::uint32_t height);
+CameraPose pose(const PlacedCamera& camera, std::uint32_t width, std::uint32_t height);
 
 // By name, else by its number in the list from 0; "" = the first. The failure names those that there are.
 Expected<PlacedCamera> choose_camera(const scene::Scene& scene, const std::string& choice);
 
-}  // namespace tessera::client
+}  // namespace tessera::view

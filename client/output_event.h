@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "mediator/wire/messages.h"
+
+namespace tessera::client {
+
+// All pictures of one frame of an output. To be answered with output_ready() when it could be shown.
+struct OutputFrame {
+    struct Picture {
+        view::Eye eye = view::Eye::Mono;
+        view::CameraPose camera;  // in display space
+        std::uint32_t width = 0, height = 0;
+        wire::PictureEncoding encoding = wire::PictureEncoding::Bytes;  // or Half
+        std::vector<std::byte> bytes;
+    };
+    std::uint64_t number = 0;
+    Version version;
+    std::uint64_t samples = 0;      // of a pixel, the least
+    std::vector<Picture> pictures;  // left eye first
+};
+
+// The master has no such output now, and why; it is to be asked for again.
+struct OutputUnavailable {
+    std::string reason;
+};
+
+using OutputEvent = std::variant<wire::OutputOpened, OutputFrame, wire::PresentFrame, OutputUnavailable>;
+
+}  // namespace tessera::client

@@ -1,0 +1,402 @@
+#include "master/display/display_service.h"
+
+#include <algorithm>
+
+#include "master/filter/catalog.h"
+#include "master/job.h"
+#include "mediator/display/frustum.h"
+#include "mediator/display/validate.h"
+#include "mediator/filter/choice.h"
+#include "mediator/view/placed_cameras.h"
+#include "mediator/wire/display_codec.h"
+
+namespace tessera::master {
+
+using wire::OutputState;
+
+namespace {
+
+constexpr std::size_t PictureChunk = std::size_t{1} << 20;
+
+std::size_t layer_count(const display::Display& display) {
+    return std::max<std::size_t>(1, display.layers.size());
+}
+
+bool is_shown(const display::Display& display, std::size_t layer) {
+    return display.layers.empty() || display.layers[layer].shown;
+}
+
+// Where the screen itself is seen as the picture shows it. With zero parallax at d instead of at the screen's
+// distance D the screen is scaled by d / D about the head, which is the same as eyes D / d as far apart.
+view::CameraPose screen_pose(const display::ViewPlane& plane, const display::Display& display,
+                             view::Eye eye) {
+    double separation = display.eye_separation;
+    if (display.zero_parallax > 0.0) {
+        const glm::dvec3 normal = glm::cross(plane.right, plane.up);
+        separation *= glm::dot(display.head.position - plane.origin, normal) / display.zero_parallax;
+    }
+    return display::frustum(plane, display.head, eye, separation, 0.0);
+}
+
+std::string first_problem(const display::Display& display) {
+    if (const auto found = display::problems(display); !found.empty())
+        return found.front() +
+               (found.size() > 1 ? " (and " + std::to_string(found.size() - 1) + " more)" : "");
+    if (const auto choice = filter::parse_choice(display.filter, filter::catalog()); !choice)
+        return choice.error().what();
+    return {};
+}
+
+}  // namespace
+
+DisplayService::DisplayService(SceneAuthority& authority, SessionTable& sessions, LiveRunner& runner,
+                               Outbox& outbox, EventSink events)
+    : authority_(authority),
+      sessions_(sessions),
+      runner_(runner),
+      outbox_(outbox),
+      events_(std::move(events)) {
+    runner_.on_output = [this](MadeOutput&& output, TimePoint now) { made(std::move(output), now); };
+}
+
+std::string DisplayService::open(const scene::BlobPtr& description, std::vector<scene::BlobPtr> content,
+                                 TimePoint now) {
+    auto decoded = wire::decode_display(description->bytes());
+    if (!decoded) return decoded.error().what();
+    if (std::string problem = first_problem(*decoded); !problem.empty()) return problem;
+    const std::size_t count = decoded->outputs.size();
+    const auto interval =
+        std::chrono::duration_cast<Duration>(std::chrono::duration<double>(1.0 / decoded->rate));
+    // Who shows an output of that name already goes on with it.
+    std::map<std::string, Shower> showers;
+    if (open_) {
+        for (std::size_t i = 0; i < open_->showers.size(); ++i) {
+            if (open_->showers[i]) showers[open_->display.outputs[i].name] = *open_->showers[i];
+        }
+    }
+    close();
+    open_.emplace(Open{.display = std::move(*decoded),
+                       .description = scene::reference(*description),
+                       .content = std::move(content),
+                       .lock = FrameLock({}, count, interval),
+                       .showers = std::vector<std::optional<Shower>>(count),
+                       .stereo_differences = std::vector<double>(count),
+                       .samples = std::vector<std::uint64_t>(count)});
+    open_->content.push_back(description);
+    events_({wire::Severity::Info, "display '" + open_->display.name + "' is open: " + std::to_string(count) +
+                                       (count == 1 ? " output" : " outputs")});
+    (void)find_camera();
+    runner_.open_group({.views = [this] { return views(); },
+                        .can_take = [this] { return !open_->making && !open_->waiting; },
+                        .take = [this](const GroupStage& stage, TimePoint when) { take(stage, when); }},
+                       open_->display.spp, open_->display.coarsest, authority_.version());
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto shower = showers.find(open_->display.outputs[i].name);
+        if (shower == showers.end() || sessions_.find(shower->second.session) == nullptr) continue;
+        open_->showers[i] = shower->second;
+        open_->lock.joined(i);
+        tell(i, 0);
+    }
+    tick(now);
+    return {};
+}
+
+void DisplayService::close() {
+    if (!open_) return;
+    events_({wire::Severity::Info, "display '" + open_->display.name + "' is closed"});
+    runner_.close_group();
+    open_.reset();
+}
+
+std::string DisplayService::adjust(const wire::AdjustDisplay& request) {
+    if (!open_) return "no display is open: open one with tessera display open";
+    display::Display adjusted = open_->display;
+    if (request.eye_separation) adjusted.eye_separation = *request.eye_separation;
+    if (request.zero_parallax) adjusted.zero_parallax = *request.zero_parallax;
+    if (request.exposure) adjusted.exposure = *request.exposure;
+    if (request.shown_layers) {
+        for (std::size_t i = 0; i < adjusted.layers.size(); ++i)
+            adjusted.layers[i].shown = ((*request.shown_layers >> i) & 1u) != 0;
+    }
+    if (std::string problem = first_problem(adjusted); !problem.empty()) return problem;
+    open_->display = std::move(adjusted);
+    if (request.pattern && open_->pattern != *request.pattern) {
+        open_->pattern = *request.pattern;
+        for (std::size_t i = 0; i < open_->showers.size(); ++i) {
+            if (open_->showers[i]) tell(i, 0);
+        }
+    }
+    runner_.group_changed();
+    return {};
+}
+
+void DisplayService::move_head(const display::Head& head) {
+    if (!open_ || open_->display.head == head) return;
+    // Out of sight of a screen its picture would be behind the eye: the last place where all could be seen
+    // stays.
+    const display::Display& display = open_->display;
+    try {
+        for (const display::Output& output : display.outputs) {
+            for (const view::Eye eye : display::eyes(output.stereo))
+                (void)display::frustum(output.plane, head, eye, display.eye_separation,
+                                       display.zero_parallax);
+        }
+    } catch (const Error&) {
+        return;
+    }
+    open_->display.head = head;
+    runner_.group_changed();
+}
+
+std::string DisplayService::join(const SessionRecord& session, const wire::JoinOutput& request,
+                                 TimePoint now) {
+    if (!open_) return "no display is open yet: open one with tessera display open";
+    const auto& outputs = open_->display.outputs;
+    const auto found = std::find_if(outputs.begin(), outputs.end(),
+                                    [&](const auto& output) { return output.name == request.name; });
+    if (found == outputs.end()) {
+        std::string names;
+        for (const auto& output : outputs) names += (names.empty() ? "" : ", ") + output.name;
+        return "the display has no output '" + request.name + "'; it has: " + names;
+    }
+    const auto index = static_cast<std::size_t>(found - outputs.begin());
+    std::optional<Shower>& shower = open_->showers[index];
+    if (shower && shower->session != session.id)
+        return "output '" + request.name + "' is shown already, by a process on " + shower->host +
+               ": stop that one first";
+    if (!shower)
+        events_({wire::Severity::Info, "output '" + request.name + "' is shown on " + session.hello.host});
+    shower = Shower{session.id, session.hello.host};
+    open_->lock.joined(index);
+    tell(index, request.request);
+    send_waiting(now);
+    return {};
+}
+
+void DisplayService::tell(std::size_t output, std::uint64_t request) {
+    const SessionRecord* session = sessions_.find(open_->showers[output]->session);
+    if (session == nullptr) return;
+    outbox_.control(session->control, wire::OutputOpened{.request = request,
+                                                         .description = open_->description,
+                                                         .index = static_cast<std::uint32_t>(output),
+                                                         .pattern = open_->pattern});
+}
+
+std::optional<std::size_t> DisplayService::output_of(SessionId session) const {
+    if (!open_) return std::nullopt;
+    for (std::size_t i = 0; i < open_->showers.size(); ++i) {
+        if (open_->showers[i] && open_->showers[i]->session == session) return i;
+    }
+    return std::nullopt;
+}
+
+void DisplayService::left(SessionId session, TimePoint now) {
+    while (const auto output = output_of(session)) {
+        events_({wire::Severity::Warning, "output '" + open_->display.outputs[*output].name +
+                                              "' has disappeared: the others go on without it"});
+        open_->showers[*output].reset();
+        present(open_->lock.left(*output, now), now);
+    }
+}
+
+bool DisplayService::find_camera() {
+    const auto camera = view::choose_camera(authority_.scene(), open_->display.camera);
+    if (!camera) return false;
+    const bool moved = open_->world_from_display != camera->world_from_camera;
+    open_->world_from_display = camera->world_from_camera;
+    return moved;
+}
+
+bool DisplayService::scene_changed() {
+    if (!open_ || !find_camera()) return false;
+    runner_.group_changed();
+    return true;
+}
+
+glm::dvec3 DisplayService::head_in_world() const {
+    const glm::dvec3 head = open_->display.units_per_metre * open_->display.head.position;
+    return open_->world_from_display * glm::dvec4(head, 1.0);
+}
+
+std::vector<GroupView> DisplayService::views() {
+    const display::Display& display = open_->display;
+    std::vector<GroupView> wanted;
+    open_->poses.clear();
+    if (!view::choose_camera(authority_.scene(), display.camera)) return wanted;
+    for (const display::Output& output : display.outputs) {
+        for (const view::Eye eye : display::eyes(output.stereo)) {
+            const view::CameraPose pose = display::frustum(output.plane, display.head, eye,
+                                                           display.eye_separation, display.zero_parallax);
+            const view::CameraPose seen_from = screen_pose(output.plane, display, eye);
+            for (std::size_t layer = 0; layer < layer_count(display); ++layer) {
+                if (!is_shown(display, layer)) continue;
+                GroupView view{.name = "display/" + output.name, .view = {}, .priority = output.priority};
+                if (eye != view::Eye::Mono) view.name += eye == view::Eye::Left ? "/left" : "/right";
+                if (!display.layers.empty()) view.name += "/" + display.layers[layer].name;
+                view.view.camera =
+                    display::in_world(pose, open_->world_from_display, display.units_per_metre);
+                view.view.eye = eye;
+                view.view.width = output.view_width;
+                view.view.height = output.view_height;
+                view.view.window = {0, 0, static_cast<std::int32_t>(output.view_width),
+                                    static_cast<std::int32_t>(output.view_height)};
+                view.view.max_bounces = display.max_bounces;
+                view.view.filter = display.filter;
+                view.view.channels = {frame::Channel::Color};
+                if (display.stereo_difference && eye != view::Eye::Mono)
+                    view.view.channels.insert(frame::Channel::Depth);
+                complete(view.view);
+                wanted.push_back(std::move(view));
+                open_->poses.push_back(seen_from);
+            }
+        }
+    }
+    return wanted;
+}
+
+void DisplayService::take(const GroupStage& stage, TimePoint) {
+    const display::Display& display = open_->display;
+    Frame& frame = open_->making.emplace(Frame{.number = next_frame_++, .version = stage.version});
+    frame.missing = display.outputs.size();
+    frame.outputs.resize(display.outputs.size());
+    std::size_t view = 0;
+    for (std::size_t i = 0; i < display.outputs.size(); ++i) {
+        const display::Output& output = display.outputs[i];
+        OutputOrder order{.frame = frame.number, .output = i, .eyes = {}};
+        order.encoding =
+            display::takes_linear_light(output) ? wire::PictureEncoding::Half : wire::PictureEncoding::Bytes;
+        order.look = {display.exposure, display.white};
+        order.stereo_difference = display.stereo_difference && stage.scale == 1;
+        for (std::size_t eye = 0; eye < display::eyes(output.stereo).size(); ++eye) {
+            OutputOrder::EyePicture picture{.layers = {}, .in_display = open_->poses.at(view)};
+            for (std::size_t layer = 0; layer < layer_count(display); ++layer) {
+                if (is_shown(display, layer)) picture.layers.push_back(stage.views.at(view++));
+            }
+            order.eyes.push_back(std::move(picture));
+        }
+        runner_.make_output(std::move(order));
+    }
+}
+
+void DisplayService::made(MadeOutput&& output, TimePoint now) {
+    if (!open_ || !open_->making || open_->making->number != output.order.frame) return;
+    Frame& frame = *open_->making;
+    if (!output.error.empty() && !std::exchange(frame.failed, true))
+        events_({wire::Severity::Warning, "a frame of the display is left out: " + output.error});
+    frame.outputs.at(output.order.output) = std::move(output);
+    if (--frame.missing > 0) return;
+    Frame complete = *std::exchange(open_->making, std::nullopt);
+    if (!complete.failed) open_->waiting = std::move(complete);
+    send_waiting(now);
+}
+
+void DisplayService::send_waiting(TimePoint now) {
+    if (!open_->lock.free()) return;
+    const bool is_new = open_->waiting.has_value();
+    if (!is_new && !(open_->latest && open_->lock.anybody_joins())) return;
+    for (std::size_t i = 0; i < open_->showers.size(); ++i) {
+        const SessionRecord* session =
+            open_->showers[i] ? sessions_.find(open_->showers[i]->session) : nullptr;
+        if (session == nullptr) continue;
+        if (const auto clock = session->clock.offset(now)) open_->lock.clock_bound(i, clock->bound);
+    }
+    if (is_new) open_->latest = std::exchange(open_->waiting, std::nullopt);
+    const Frame& frame = *open_->latest;
+    open_->version = frame.version;
+    for (std::size_t i = 0; i < frame.outputs.size(); ++i) {
+        open_->samples[i] = frame.outputs[i].samples_least;
+        if (frame.outputs[i].order.stereo_difference)
+            open_->stereo_differences[i] = frame.outputs[i].stereo_difference;
+    }
+    const auto whom = is_new ? FrameLock::Whom::All : FrameLock::Whom::Joining;
+    for (const std::size_t output : open_->lock.begin(frame.number, whom, now)) send(output);
+}
+
+void DisplayService::send(std::size_t index) {
+    const SessionRecord* session = sessions_.find(open_->showers[index]->session);
+    if (session == nullptr || !session->bulk) return;
+    const Frame& frame = *open_->latest;
+    const MadeOutput& output = frame.outputs[index];
+    const auto eyes = display::eyes(open_->display.outputs[index].stereo);
+    for (std::size_t eye = 0; eye < output.eyes.size(); ++eye) {
+        const MadeOutput::Picture& picture = output.eyes[eye];
+        wire::OutputPicture piece{.frame = frame.number,
+                                  .eye = eyes[eye],
+                                  .eyes = static_cast<std::uint32_t>(eyes.size()),
+                                  .version = frame.version,
+                                  .camera = output.order.eyes[eye].in_display,
+                                  .width = picture.width,
+                                  .height = picture.height,
+                                  .encoding = output.order.encoding,
+                                  .samples = output.samples_least,
+                                  .total = picture.bytes->size()};
+        const std::span<const std::byte> bytes(*picture.bytes);
+        for (; piece.offset < bytes.size(); piece.offset += PictureChunk) {
+            const auto part =
+                bytes.subspan(piece.offset, std::min(PictureChunk, bytes.size() - piece.offset));
+            piece.data.assign(part.begin(), part.end());
+            outbox_.bulk(*session->bulk, piece);
+        }
+    }
+}
+
+void DisplayService::ready(SessionId session, const wire::OutputReady& ready, TimePoint now) {
+    const auto output = output_of(session);
+    if (!output) return;
+    present(open_->lock.ready(*output, ready.frame, now), now);
+}
+
+void DisplayService::present(const std::optional<FrameLock::Present>& present, TimePoint now) {
+    if (present) {
+        for (const std::size_t output : present->outputs) {
+            const SessionRecord* session =
+                open_->showers[output] ? sessions_.find(open_->showers[output]->session) : nullptr;
+            if (session == nullptr) continue;
+            wire::PresentFrame order{.frame = present->frame, .version = open_->version};
+            // Without a word of its clock yet: at once.
+            if (const auto clock = session->clock.offset(now)) {
+                order.at = (present->at.time_since_epoch() + clock->offset).count();
+                order.bound = clock->bound.count();
+            }
+            outbox_.control(session->control, order);
+        }
+    }
+    send_waiting(now);
+}
+
+void DisplayService::tick(TimePoint now) {
+    if (!open_) return;
+    const auto before = open_->lock.outputs();
+    present(open_->lock.tick(now), now);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        if (open_->lock.outputs()[i].late > before[i].late)
+            events_({wire::Severity::Warning,
+                     "output '" + open_->display.outputs[i].name + "' is late: the others go on without it"});
+    }
+}
+
+TimePoint DisplayService::next_event() const {
+    return open_ ? open_->lock.next_event() : TimePoint::max();
+}
+
+wire::DisplayStatus DisplayService::status(TimePoint now) const {
+    if (!open_) return {};
+    wire::DisplayStatus status{.name = open_->display.name.empty() ? "display" : open_->display.name,
+                               .frames = open_->lock.frames(),
+                               .version = open_->version,
+                               .rate = open_->lock.rate(now),
+                               .outputs = {}};
+    for (std::size_t i = 0; i < open_->showers.size(); ++i) {
+        const FrameLock::Output& output = open_->lock.outputs()[i];
+        status.outputs.push_back({.name = open_->display.outputs[i].name,
+                                  .host = open_->showers[i] ? open_->showers[i]->host : "",
+                                  .state = output.state,
+                                  .frames = output.frames,
+                                  .late = output.late,
+                                  .stereo_difference = open_->stereo_differences[i],
+                                  .samples = open_->samples[i]});
+    }
+    return status;
+}
+
+}  // namespace tessera::master

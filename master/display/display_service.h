@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "master/display/frame_lock.h"
+#include "master/live/live_runner.h"
+#include "master/scene_authority.h"
+#include "master/session_table.h"
+#include "mediator/display/display.h"
+
+namespace tessera::master {
+
+// The display in front of the live scene: who shows which output, what each eye sees, and the frames on their
+// way to all outputs. The views go in lockstep (view_group.h); one frame is made while another is sent and
+// presented (frame_lock.h). Told of messages by the render master.
+class DisplayService {
+  public:
+    DisplayService(SceneAuthority& authority, SessionTable& sessions, LiveRunner& runner, Outbox& outbox,
+                   EventSink events);
+
+    // `content`: the description's blob and those that it refers to; kept as long as the display. "" or what
+    // is wrong with it.
+    std::string open(const scene::BlobPtr& description, std::vector<scene::BlobPtr> content, TimePoint now);
+    void close();
+    bool is_open() const { return open_.has_value(); }
+
+    // "" or what is wrong.
+    std::string adjust(const wire::AdjustDisplay& request);
+    void move_head(const display::Head& head);
+    std::string join(const SessionRecord& session, const wire::JoinOutput& request, TimePoint now);
+    void ready(SessionId session, const wire::OutputReady& ready, TimePoint now);
+    void left(SessionId session, TimePoint now);
+    // A version is published. True: the camera that carries the display is somewhere else.
+    bool scene_changed();
+    glm::dvec3 head_in_world() const;
+
+    void tick(TimePoint now);
+    TimePoint next_event() const;
+    wire::DisplayStatus status(TimePoint now) const;
+
+  private:
+    struct Shower {
+        SessionId session;
+        std::string host;
+    };
+    // A frame whose pictures are being made, or wait for the lock.
+    struct Frame {
+        std::uint64_t number = 0;
+        Version version;
+        std::size_t missing = 0;          // outputs whose pictures are not made yet
+        std::vector<MadeOutput> outputs;  // by index
+        bool failed = false;
+    };
+    struct Open {
+        display::Display display;  // adjusted, with the head as it is now
+        scene::BlobRef description;
+        std::vector<scene::BlobPtr> content;
+        bool pattern = false;
+        glm::dmat4 world_from_display{1.0};
+        FrameLock lock;
+        std::vector<std::optional<Shower>> showers;    // by output
+        std::vector<double> stereo_differences;        // by output; 0 = unknown
+        std::vector<std::uint64_t> samples;            // by output, in the latest frame
+        std::vector<view::CameraPose> poses;           // of the views, in display space
+        std::optional<Frame> making, waiting, latest;  // latest: for outputs that come later
+        Version version;                               // of the latest frame
+    };
+
+    std::vector<GroupView> views();
+    void take(const GroupStage& stage, TimePoint now);
+    void made(MadeOutput&& made, TimePoint now);
+    void send_waiting(TimePoint now);
+    void send(std::size_t output);  // the latest frame
+    void present(const std::optional<FrameLock::Present>& present, TimePoint now);
+    bool find_camera();
+    std::optional<std::size_t> output_of(SessionId session) const;
+    void tell(std::size_t output, std::uint64_t request);
+
+    SceneAuthority& authority_;
+    SessionTable& sessions_;
+    LiveRunner& runner_;
+    Outbox& outbox_;
+    EventSink events_;
+    std::optional<Open> open_;
+    std::uint64_t next_frame_ = 1;  // over all displays
+};
+
+}  // namespace tessera::master

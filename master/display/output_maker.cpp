@@ -1,0 +1,135 @@
+#include "master/display/output_maker.h"
+
+#include <immintrin.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "mediator/picture/color.h"
+#include "mediator/picture/srgb_bytes.h"
+#include "mediator/picture/stereo_difference.h"
+
+namespace tessera::master {
+
+namespace {
+
+using frame::Channel;
+
+// Red, green and blue planes of a picture, and what each value is to be multiplied by.
+struct Light {
+    std::uint32_t width = 0, height = 0;
+    std::array<const float*, 3> planes{};
+    const std::uint32_t* counts = nullptr;  // not null: planes are sums over so many samples
+};
+
+// In display-referred light: exposure, then the curve on the luminance, so that colours keep their ratios.
+struct Tone {
+    explicit Tone(const Look& look)
+        : gain(static_cast<float>(std::exp2(look.exposure))),
+          inverse_white_square(look.white > 0.0 ? static_cast<float>(1.0 / (look.white * look.white)) : 0.0f),
+          has_curve(look.white > 0.0) {}
+    float gain, inverse_white_square;
+    bool has_curve;
+
+    float scale(float r, float g, float b) const {
+        if (!has_curve) return gain;
+        const float y = gain * (0.2126f * r + 0.7152f * g + 0.0722f * b);
+        return gain * (1.0f + y * inverse_white_square) / (1.0f + std::max(y, 0.0f));
+    }
+};
+
+template <class Store>
+void for_each_pixel(const Light& light, const Tone& tone, tbb::task_arena& arena, const Store& store) {
+    arena.execute([&] {
+        tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, light.height, 32), [&](const auto& rows) {
+            for (std::size_t i = std::size_t{rows.begin()} * light.width,
+                             end = std::size_t{rows.end()} * light.width;
+                 i < end; ++i) {
+                float r = light.planes[0][i], g = light.planes[1][i], b = light.planes[2][i];
+                if (light.counts != nullptr) {
+                    const float weight = light.counts[i] == 0 ? 0.0f : 1.0f / float(light.counts[i]);
+                    r *= weight;
+                    g *= weight;
+                    b *= weight;
+                }
+                const float scale = tone.scale(r, g, b);
+                store(i, scale * r, scale * g, scale * b);
+            }
+        });
+    });
+}
+
+MadeOutput::Picture encoded(const Light& light, const Tone& tone, wire::PictureEncoding encoding,
+                            tbb::task_arena& arena) {
+    static const picture::SrgbBytes to_srgb;
+    const std::size_t pixels = std::size_t{light.width} * light.height;
+    auto bytes = std::make_shared<std::vector<std::byte>>();
+    if (encoding == wire::PictureEncoding::Bytes) {
+        bytes->resize(3 * pixels);
+        auto* const out = reinterpret_cast<std::uint8_t*>(bytes->data());
+        for_each_pixel(light, tone, arena, [&](std::size_t i, float r, float g, float b) {
+            out[3 * i] = to_srgb(r);
+            out[3 * i + 1] = to_srgb(g);
+            out[3 * i + 2] = to_srgb(b);
+        });
+    } else {
+        bytes->resize(6 * pixels);
+        auto* const out = reinterpret_cast<std::uint16_t*>(bytes->data());
+        for_each_pixel(light, tone, arena, [&](std::size_t i, float r, float g, float b) {
+            out[3 * i] = static_cast<std::uint16_t>(_cvtss_sh(r, _MM_FROUND_TO_NEAREST_INT));
+            out[3 * i + 1] = static_cast<std::uint16_t>(_cvtss_sh(g, _MM_FROUND_TO_NEAREST_INT));
+            out[3 * i + 2] = static_cast<std::uint16_t>(_cvtss_sh(b, _MM_FROUND_TO_NEAREST_INT));
+        });
+    }
+    return {light.width, light.height, std::move(bytes)};
+}
+
+// Sums of colour that nothing filters are divided and encoded in one sweep.
+bool is_plain(const view::View& view) {
+    return view.filter.empty() && view.channels.contains(Channel::Color) &&
+           !view.channels.contains(Channel::Alpha);
+}
+
+Light light_of(const frame::FilmTile& film, const view::View& view, Reconstructor& reconstructor) {
+    Light light{static_cast<std::uint32_t>(film.rect.width), static_cast<std::uint32_t>(film.rect.height)};
+    if (is_plain(view)) {
+        const std::uint32_t first = film.channels.first_plane(Channel::Color);
+        for (std::uint32_t c = 0; c < 3; ++c) light.planes[c] = film.plane(first + c).data();
+        light.counts = film.counts.data();
+        return light;
+    }
+    const filter::Planes& picture = reconstructor.filtered(film, view);
+    for (std::uint32_t c = 0; c < 3; ++c) light.planes[c] = picture.plane(c).data();
+    return light;
+}
+
+}  // namespace
+
+MadeOutput make_output(OutputOrder order, const std::vector<frame::FilmTile>& films,
+                       Reconstructor& reconstructor) {
+    MadeOutput made{.order = std::move(order), .eyes = {}};
+    made.samples_least = ~std::uint64_t{0};
+    try {
+        const Tone tone(made.order.look);
+        auto film = films.begin();
+        for (const OutputOrder::EyePicture& eye : made.order.eyes) {
+            for (std::size_t layer = 0; layer < eye.layers.size(); ++layer) {
+                const auto& counts = film[static_cast<std::ptrdiff_t>(layer)].counts;
+                made.samples_least = std::min<std::uint64_t>(made.samples_least,
+                                                             *std::min_element(counts.begin(), counts.end()));
+            }
+            const Light light = light_of(*film, eye.layers.front(), reconstructor);
+            made.eyes.push_back(encoded(light, tone, made.order.encoding, reconstructor.arena()));
+            film += static_cast<std::ptrdiff_t>(eye.layers.size());
+        }
+    } catch (const std::exception& error) {
+        made.error = std::string("the picture of an output failed: ") + error.what();
+        made.eyes.clear();
+    }
+    return made;
+}
+
+}  // namespace tessera::master

@@ -1,0 +1,340 @@
+// Displays: all outputs show the same frame of the same version, whoever stops, comes or goes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "mediator/backend/catalog.h"
+#include "mediator/display/frustum.h"
+#include "mediator/scene/fields.h"
+#include "mediator/wire/envelope.h"
+#include "tests/cluster/cluster_scene.h"
+#include "tests/cluster/loopback_cluster.h"
+
+namespace tessera::test {
+namespace {
+
+using namespace scene;
+using namespace std::chrono_literals;
+
+display::Output half_of_wall(const std::string& name, double left, double right) {
+    display::Output output{.name = name, .width = 64, .height = 48};
+    output.view_width = 64;
+    output.view_height = 48;
+    output.plane = {{left, -1, -2},
+                    {1, 0, 0},
+                    {0, 1, 0},
+                    {{left, -1, -2}, {right, -1, -2}, {left, 1, -2}, {right, 1, -2}}};
+    return output;
+}
+
+// One output process: answers like tessera-display.
+struct Shower {
+    std::unique_ptr<client::LiveSession> session;
+    std::vector<client::OutputFrame> frames;
+    std::vector<wire::PresentFrame> orders;
+    std::vector<wire::OutputOpened> opened;
+    std::string problem;
+    bool answers = true;
+
+    void step() {
+        while (auto event = session->next_output_event(std::chrono::steady_clock::now(), {})) {
+            if (auto* frame = std::get_if<client::OutputFrame>(&*event)) {
+                if (answers) session->output_ready(frame->number);
+                frames.push_back(std::move(*frame));
+            } else if (const auto* order = std::get_if<wire::PresentFrame>(&*event)) {
+                orders.push_back(*order);
+            } else if (const auto* open = std::get_if<wire::OutputOpened>(&*event)) {
+                opened.push_back(*open);
+            } else {
+                problem = std::get<client::OutputUnavailable>(*event).reason;
+            }
+        }
+    }
+};
+
+struct Displays : testing::Test {
+    LoopbackCluster cluster;
+    std::shared_ptr<BlobStore> blobs = std::make_shared<BlobStore>();
+    std::unique_ptr<client::LiveSession> ann = cluster.member("ann", blobs);
+    ObjectId first = ann->new_id();
+    display::Display wall{.name = "wall"};
+    std::map<std::string, Shower> showers;
+
+    void SetUp() override {
+        for (int i = 0; i < 8; ++i) ann->new_id();
+        ASSERT_TRUE(ann->submit(scene_entries(first, *blobs)).accepted);
+        ASSERT_TRUE(ann->submit({Create{camera_id(), Camera{.name = "main"}},
+                                 Create{place_id(), Transform{.name = "place", .children = {camera_id()}}},
+                                 Update{RootId, Fields<Root>(Root::Field::Children).bits(),
+                                        Root{.children = {first, place_id()}}}})
+                        .accepted);
+        wall.outputs = {half_of_wall("left", -2, 0), half_of_wall("right", 0, 2)};
+        wall.spp = 4;
+        wall.rate = 1000;
+    }
+    ObjectId camera_id() const { return ObjectId{first.value + 6}; }
+    ObjectId place_id() const { return ObjectId{first.value + 7}; }
+
+    Shower& show(const std::string& output) {
+        Shower& shower = showers[output];
+        shower.session = cluster.member(output, std::make_shared<BlobStore>(), net::Role::Viewer);
+        shower.session->join_output(output);
+        return shower;
+    }
+    template <class Done>
+    void until(const Done& done) {
+        const auto deadline = std::chrono::steady_clock::now() + 60s;
+        while (!done()) {
+            for (auto& [name, shower] : showers) shower.step();
+            if (std::chrono::steady_clock::now() > deadline) {
+                FAIL() << "it did not happen";
+            }
+            std::this_thread::sleep_for(1ms);
+        }
+    }
+    static bool shows(const Shower& shower, std::uint64_t samples) {
+        return !shower.orders.empty() && !shower.frames.empty() && shower.frames.back().samples >= samples &&
+               shower.orders.back().frame == shower.frames.back().number;
+    }
+    bool all_show(std::uint64_t samples) const {
+        return std::all_of(showers.begin(), showers.end(),
+                           [&](const auto& entry) { return shows(entry.second, samples); });
+    }
+    client::ClusterStatus status() {
+        const auto session = cluster.session(std::make_shared<BlobStore>());
+        return session->status();
+    }
+    void move_camera(double x) {
+        Transform moved;
+        moved.matrix[3][0] = x;
+        ASSERT_TRUE(
+            ann->submit({Update{place_id(), Fields<Transform>(Transform::Field::Matrix).bits(), moved}})
+                .accepted);
+    }
+};
+
+TEST_F(Displays, AllOutputsAreToldToShowTheSameFramesOfTheSameVersion) {
+    cluster.add_node("null");
+    cluster.add_node("null");
+    ann->open_display(wall);
+    show("left");
+    show("right");
+    until([&] { return all_show(4); });
+    for (int i = 1; i < 10; ++i) {
+        const std::uint64_t before = showers["left"].frames.back().version.number;
+        move_camera(0.1 * i);
+        until([&] { return all_show(4) && showers["left"].frames.back().version.number > before; });
+    }
+    std::map<std::uint64_t, std::set<std::uint64_t>> versions, samples;
+    std::map<std::uint64_t, int> seen;
+    for (const auto& [name, shower] : showers) {
+        std::uint64_t last = 0;
+        for (const wire::PresentFrame& order : shower.orders) {
+            EXPECT_GT(order.frame, last) << "frames only ever get newer";
+            last = order.frame;
+            ++seen[order.frame];
+            versions[order.frame].insert(order.version.number);
+        }
+        for (const client::OutputFrame& frame : shower.frames) {
+            versions[frame.number].insert(frame.version.number);
+            samples[frame.number].insert(frame.samples);
+        }
+    }
+    for (const auto& [frame, numbers] : versions) EXPECT_EQ(numbers.size(), 1u) << "frame " << frame;
+    for (const auto& [frame, counts] : samples) EXPECT_EQ(counts.size(), 1u) << "frame " << frame;
+    EXPECT_GT(std::count_if(seen.begin(), seen.end(), [](const auto& entry) { return entry.second == 2; }),
+              10);
+    until([&] { return status().display.outputs.at(1).samples == 4; });
+    const auto now = status().display;
+    EXPECT_EQ(now.name, "wall");
+    ASSERT_EQ(now.outputs.size(), 2u);
+    EXPECT_EQ(now.outputs[0].state, wire::OutputState::Locked);
+    EXPECT_EQ(now.outputs[0].samples, 4u);
+}
+
+TEST_F(Displays, CoarsePicturesComeFirst) {
+    cluster.add_node("null");
+    for (display::Output& output : wall.outputs) {
+        output.width = output.view_width = 256;
+        output.height = output.view_height = 192;
+    }
+    show("left");
+    show("right");
+    ann->open_display(wall);
+    until([&] {
+        for (auto& [name, shower] : showers) {
+            if (!shower.problem.empty()) {
+                shower.problem.clear();
+                shower.session->join_output(name);
+            }
+        }
+        return all_show(4) && showers["left"].frames.back().pictures[0].width == 256;
+    });
+    EXPECT_EQ(showers["left"].frames.front().pictures.at(0).bytes.size(),
+              std::size_t{3} * showers["left"].frames.front().pictures[0].width *
+                  showers["left"].frames.front().pictures[0].height);
+}
+
+TEST_F(Displays, BothEyesHaveTheSameSamplesAndCamerasASeparationApart) {
+    cluster.add_node("null");
+    wall.outputs[0].stereo = display::Stereo::SideBySide;
+    wall.outputs.pop_back();
+    ann->open_display(wall);
+    Shower& left = show("left");
+    until([&] { return all_show(4); });
+    const auto& pictures = left.frames.back().pictures;
+    ASSERT_EQ(pictures.size(), 2u);
+    EXPECT_EQ(pictures[0].eye, view::Eye::Left);
+    EXPECT_EQ(pictures[1].eye, view::Eye::Right);
+    const auto apart = pictures[1].camera.world_from_camera[3] - pictures[0].camera.world_from_camera[3];
+    EXPECT_NEAR(apart.x, wall.eye_separation, 1e-12);
+    ann->adjust_display({.eye_separation = 0.5});
+    const std::size_t before = left.frames.size();
+    until([&] {
+        return left.frames.size() > before && all_show(4) &&
+               left.frames.back().pictures[1].camera.world_from_camera[3][0] > 0.2;
+    });
+}
+
+TEST_F(Displays, AnOutputWithPriorityHasMoreSamples) {
+    cluster.add_node("null");
+    wall.outputs[1].priority = 4;
+    ann->open_display(wall);
+    show("left");
+    show("right");
+    until([&] { return shows(showers["left"], 4) && shows(showers["right"], 16); });
+    for (const client::OutputFrame& left : showers["left"].frames) {
+        for (const client::OutputFrame& right : showers["right"].frames) {
+            if (left.number == right.number) {  // coarse pictures have one sample a pixel
+                const bool is_coarse = right.pictures[0].width < 64;
+                EXPECT_EQ((is_coarse ? 1 : 4) * left.samples, right.samples);
+            }
+        }
+    }
+}
+
+TEST_F(Displays, AnOutputThatStopsIsDroppedAndComesBack) {
+    cluster.add_node("null");
+    ann->open_display(wall);
+    Shower& left = show("left");
+    Shower& right = show("right");
+    until([&] { return all_show(4); });
+    right.answers = false;
+    move_camera(1.0);
+    const std::size_t before = left.orders.size();
+    until([&] { return left.orders.size() > before + 1 && shows(left, 4); });
+    auto outputs = status().display.outputs;
+    EXPECT_EQ(outputs[0].state, wire::OutputState::Locked);
+    EXPECT_EQ(outputs[1].state, wire::OutputState::Late);
+    EXPECT_EQ(outputs[1].late, 1u);
+    right.answers = true;
+    const std::size_t right_before = right.orders.size();
+    right.session->output_ready(right.frames.back().number);  // it goes on where it stopped
+    until([&] { return right.orders.size() > right_before && shows(right, 4); });
+    EXPECT_EQ(right.orders.back().frame, left.orders.back().frame);
+    EXPECT_EQ(status().display.outputs[1].state, wire::OutputState::Locked);
+}
+
+TEST_F(Displays, WhoComesLaterIsShownWhatTheOthersShow) {
+    cluster.add_node("null");
+    ann->open_display(wall);
+    Shower& left = show("left");
+    until([&] { return all_show(4); });
+    const std::size_t before = left.orders.size();
+    Shower& right = show("right");
+    until([&] { return all_show(4); });
+    EXPECT_EQ(right.orders.back().frame, left.orders.back().frame);
+    EXPECT_EQ(left.orders.size(), before) << "the others are not bothered";
+    right.session.reset();
+    showers.erase("right");
+    until([&] { return status().display.outputs[1].state == wire::OutputState::Absent; });
+    move_camera(2.0);
+    until([&] { return left.orders.size() > before && all_show(4); });
+}
+
+TEST_F(Displays, HeadsMoveAndTheLatestPlaceCounts) {
+    cluster.add_node("null");
+    ann->open_display(wall);
+    Shower& left = show("left");
+    until([&] { return all_show(4); });
+    for (int i = 0; i <= 200; ++i) ann->move_head({.position = {0.005 * i, 0, 0}});
+    ann->move_head({.position = {0, 0, -3}});  // behind the wall: nothing could be seen
+    until([&] {
+        return shows(left, 4) && left.frames.back().pictures[0].camera.world_from_camera[3][0] == 1.0;
+    });
+    EXPECT_LT(left.frames.size(), 201u);
+    const view::CameraPose expected =
+        display::frustum(wall.outputs[0].plane, {.position = {1, 0, 0}}, view::Eye::Mono, 0, 0);
+    EXPECT_EQ(left.frames.back().pictures[0].camera, expected);
+}
+
+TEST_F(Displays, WhatCannotBeShownIsRefusedWithTheReason) {
+    const auto refused = [&](const auto& act, const std::string& reason) {
+        try {
+            act();
+            ADD_FAILURE() << "not refused: " << reason;
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+        }
+    };
+    refused([&] { ann->adjust_display({.exposure = 1.0}); }, "no display is open");
+    refused([&] { ann->close_display(); }, "no display is open");
+    display::Display bad = wall;
+    bad.outputs[1].name = "left";
+    refused([&] { ann->open_display(bad); }, "two outputs have the name 'left'");
+    bad = wall;
+    bad.head.position = {0, 0, -2};
+    refused([&] { ann->open_display(bad); }, "in front of the screen");
+    bad = wall;
+    bad.filter = "nonesuch";
+    refused([&] { ann->open_display(bad); }, "nonesuch");
+    bad = wall;
+    bad.outputs[0].points = {2, 2, 3, display::Grid::Nodes::Edges, {blake2b({}), 48}};
+    refused([&] { ann->open_display(bad); }, "does not have blob");
+    ann->open_display(wall);
+    refused([&] { ann->adjust_display({.eye_separation = -1.0}); }, "eye separation");
+    Shower& middle = show("middle");
+    until([&] { return !middle.problem.empty(); });
+    EXPECT_NE(middle.problem.find("no output 'middle'; it has: left, right"), std::string::npos);
+    show("left");
+    until([&] { return !showers["left"].opened.empty(); });
+    const auto twin = cluster.member("twin", std::make_shared<BlobStore>(), net::Role::Viewer);
+    twin->join_output("left");
+    const auto event = twin->next_output_event(std::chrono::steady_clock::now() + 30s, {});
+    ASSERT_TRUE(event && std::holds_alternative<client::OutputUnavailable>(*event));
+    EXPECT_NE(std::get<client::OutputUnavailable>(*event).reason.find("shown already"), std::string::npos);
+    const auto viewer = cluster.member("viewer", blobs, net::Role::Viewer);
+    viewer->move_head({.position = {9, 9, 9}});  // dropped: viewers move nothing
+    ann->close_display();
+    EXPECT_EQ(status().display.name, "");
+}
+
+TEST_F(Displays, ThePatternIsSwitchedOnForAll) {
+    ann->open_display(wall);
+    show("left");
+    show("right");
+    until([&] { return !showers["left"].opened.empty() && !showers["right"].opened.empty(); });
+    ann->adjust_display({.pattern = true});
+    until([&] { return showers["left"].opened.back().pattern && showers["right"].opened.back().pattern; });
+}
+
+// One back-end, so one scene, for both eyes and all outputs.
+TEST_F(Displays, OneSceneCopyForAllEyes) {
+    std::atomic<int> made = 0;
+    cluster.add_node([&](const backend::BackendSettings& settings) {
+        ++made;
+        return backend::find_backend("embree").make(settings);
+    });
+    for (display::Output& output : wall.outputs) output.stereo = display::Stereo::TopBottom;
+    ann->open_display(wall);
+    show("left");
+    show("right");
+    until([&] { return all_show(4); });
+    EXPECT_EQ(made, 1);
+    EXPECT_EQ(showers["left"].frames.back().pictures.size(), 2u);
+}
+
+}  // namespace
+}  // namespace tessera::test
