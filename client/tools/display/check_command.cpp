@@ -3,9 +3,13 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "client/display_file/display_file.h"
 #include "client/tools/display/display_table.h"
+#include "client/tools/display/plan.h"
+#include "mediator/picture/atomic_file.h"
+#include "mediator/picture/png_writer.h"
 
 namespace tessera::tools {
 
@@ -13,24 +17,48 @@ namespace {
 
 constexpr const char* Name = "display check";
 
-int run(const std::string& path) {
+struct CheckOptions {
+    std::string file;
+    std::vector<std::string> plans;
+};
+
+void write_plan(const Drawing& drawing, const std::string& path) {
+    if (path.ends_with(".svg")) {
+        picture::write_atomically(path, as_svg(drawing));
+    } else {
+        const Canvas canvas = as_canvas(drawing);
+        picture::write_png(path, canvas.width, canvas.height, canvas.rgb);
+    }
+    std::cout << "wrote " << path << "\n";
+}
+
+int run(const CheckOptions& options) {
+    for (const std::string& path : options.plans) {
+        if (!path.ends_with(".svg") && !path.ends_with(".png"))
+            return complain(Name, cli::ExitUsage,
+                            "'" + path + "' is no .svg or .png: plans are drawn as these");
+    }
     scene::BlobStore blobs;
-    const display_file::DisplayFile file = display_file::read_display(path, blobs);
+    const display_file::DisplayFile file = display_file::read_display(options.file, blobs);
     std::cout << as_table(file.display);
+    if (options.plans.empty()) return 0;
+    const Drawing drawing = plan(file);
+    for (const std::string& path : options.plans) write_plan(drawing, path);
     return 0;
 }
 
 }  // namespace
 
 Command check_display_command(cli::CommandLine& display) {
-    const auto path = std::make_shared<std::string>();
+    const auto options = std::make_shared<CheckOptions>();
     cli::CommandLine& line =
         display.command("check", "Read a display file, say what is wrong with it, and what it needs.");
-    line.positional("FILE", "the display, as TOML: docs/displays.md", *path);
-    line.examples({"tessera display check wall.toml"});
-    return {Name, [path](std::string_view) {
+    line.positional("FILE", "the display, as TOML: docs/displays.md", options->file);
+    line.option("-o,--output", "draw a plan of it: .svg or .png (repeatable)", options->plans);
+    line.examples({"tessera display check wall.toml", "tessera display check wall.toml -o plan.png"});
+    return {Name, [options](std::string_view) {
                 try {
-                    return run(*path);
+                    return run(*options);
                 } catch (const Error& error) {
                     return complain(Name, exit_code(error.code()), error.what());
                 }
