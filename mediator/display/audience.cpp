@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "mediator/base/parallel.h"
+#include "mediator/display/bilinear_patch.h"
 #include "mediator/display/grid_places.h"
 #include "mediator/display/projector.h"
 #include "mediator/display/turn.h"
@@ -43,59 +44,17 @@ frame::Image upright_light(const Output& output, const Light& light, double blac
     return image;
 }
 
-// A cell between four nodes as the camera sees it: the bilinear patch of its corners in pixels of the
-// picture.
-struct SeenCell {
-    GridCell places;
-    std::array<glm::dvec2, 4> corners;  // top left, top right, bottom left, bottom right
-
-    // Where in the cell, in [0, 1], the patch meets a place of the picture: Newton's method.
-    glm::dvec2 inverse(const glm::dvec2& at) const {
-        const glm::dvec2 right = corners[1] - corners[0], down = corners[2] - corners[0],
-                         twist = corners[3] - corners[2] - right;
-        glm::dvec2 way(0.5);
-        for (int step = 0; step < 12; ++step) {
-            const glm::dvec2 off = corners[0] + way.x * right + way.y * down + way.x * way.y * twist - at;
-            const glm::dvec2 by_x = right + way.y * twist, by_y = down + way.x * twist;
-            const double area = by_x.x * by_y.y - by_x.y * by_y.x;
-            if (area == 0.0) return glm::dvec2(Nowhere);
-            const glm::dvec2 move((off.x * by_y.y - off.y * by_y.x) / area,
-                                  (by_x.x * off.y - by_x.y * off.x) / area);
-            way -= move;
-            if (std::abs(move.x) + std::abs(move.y) < 1e-9) return way;
-        }
-        return glm::dvec2(Nowhere);
-    }
-};
-
 // For each pixel of the picture the place of an output's picture that is seen there.
 class Places {
   public:
     Places(std::uint32_t width, std::uint32_t height)
         : width_(width), height_(height), places_(std::size_t{width} * height, glm::dvec2(Nowhere)) {}
 
-    void draw(const SeenCell& cell) {
-        glm::dvec2 least = cell.corners[0], most = least;
-        for (const glm::dvec2& corner : cell.corners) {
-            least = glm::min(least, corner);
-            most = glm::max(most, corner);
-        }
-        if (!(most.x >= 0.0 && most.y >= 0.0 && least.x <= width_ && least.y <= height_)) return;
-        const auto first = [](double edge) { return std::size_t(std::max(std::ceil(edge - 0.5), 0.0)); };
-        const auto end = [](double edge, std::uint32_t size) {
-            return std::size_t(std::clamp(std::floor(edge - 0.5) + 1.0, 0.0, double(size)));
-        };
-        constexpr double Rounding = 1e-7;  // of a cell: neighbours leave no gap
-        for (std::size_t y = first(least.y); y < end(most.y, height_); ++y)
-            for (std::size_t x = first(least.x); x < end(most.x, width_); ++x) {
-                const glm::dvec2 way = cell.inverse({double(x) + 0.5, double(y) + 0.5});
-                if (!(way.x >= -Rounding && way.y >= -Rounding && way.x <= 1 + Rounding &&
-                      way.y <= 1 + Rounding))
-                    continue;
-                const GridCell& in = cell.places;
-                places_[y * width_ + x] = {in.left + way.x * (in.right - in.left),
-                                           in.top + way.y * (in.bottom - in.top)};
-            }
+    void draw(const GridCell& in, const BilinearPatch& patch) {
+        patch.for_each_pixel(width_, height_, [&](std::size_t x, std::size_t y, const glm::dvec2& way) {
+            places_[y * width_ + x] = {in.left + way.x * (in.right - in.left),
+                                       in.top + way.y * (in.bottom - in.top)};
+        });
     }
 
     const glm::dvec2& at(std::size_t x, std::size_t y) const { return places_[y * width_ + x]; }
@@ -116,9 +75,8 @@ Places places_of(const PointGrid& grid, const view::CameraPose& camera, std::uin
     for (std::uint32_t row = 0; row < cell_rows(grid); ++row)
         for (std::uint32_t column = 0; column < cell_columns(grid); ++column) {
             const GridCell in = cell(grid, column, row);
-            places.draw({in,
-                         {project(in.left, in.top), project(in.right, in.top), project(in.left, in.bottom),
-                          project(in.right, in.bottom)}});
+            places.draw(in, {{project(in.left, in.top), project(in.right, in.top),
+                              project(in.left, in.bottom), project(in.right, in.bottom)}});
         }
     return places;
 }
