@@ -55,6 +55,7 @@ class ScriptedMaster:
         self.scene_by_blob = self.withholds_frames = False
         self.views = {}
         self.submitted = []
+        self.heads, self.adjustments = [], []
         self._next = 1
         self._posted = []
         self._stop = threading.Event()
@@ -287,6 +288,16 @@ class ScriptedMaster:
 
     def _done(self, member, request, accepted=True, text=b""):
         self._say(member.control, "request_done", request=request.request, accepted=accepted, text=text)
+
+    def _on_move_head(self, member, move):
+        if not member.name:
+            return self._say(member.control, "refusal", reason=b"this client is in no live scene: join one first")
+        self.heads.append(move.head)
+        return None
+
+    def _on_adjust_display(self, member, change):
+        self.adjustments.append(change)
+        self._done(member, change, change.eye_separation <= 10.0, b"the eye separation is not within 0 and 10 m")
 
     def _on_set_presence(self, member, presence):
         self.presence = presence

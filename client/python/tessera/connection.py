@@ -22,7 +22,7 @@ Message = Any
 _LOG = logging.getLogger("tessera")
 _MAX_BLOB = 4 << 30
 _ANSWERS = {
-    "close_scene": "request_done", "lock_objects": "request_done", "open_live_view": "request_done",
+    "adjust_display": "request_done", "close_scene": "request_done", "lock_objects": "request_done", "open_live_view": "request_done",
     "read_scene": "scene_content", "read_people": "people", "read_history": "history", "read_writers": "writers",
     "pick": "picked", "read_trace": "trace",
 }
@@ -106,8 +106,10 @@ class Connection:
                 raise InvalidInput("no scene is joined: call session.join(title) first")
 
     def post(self, message: Message) -> None:
-        """What has no answer. Lost when nobody is there."""
-        self.link.send(message)
+        """What has no answer. Lost when nobody is there, and while the scene is joined again."""
+        with self.changed:
+            if not self._rejoining:
+                self.link.send(message)
 
     def request(self, message: Message, timeout: float = 60.0) -> Message:
         """Asks for what has a number; raises Refused when the master says no."""
@@ -189,6 +191,7 @@ class Connection:
         with self.changed:
             self._is_new = self._is_new or number != self.number
             self.number = number
+            self.link.forget_waiting()
             if self.joined is not None:
                 self._rejoining = True
                 self.link.send(self._join_request(False))

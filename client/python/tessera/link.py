@@ -99,6 +99,11 @@ class Link:
         """Any thread."""
         self._queue(1, bulk.encode(message))
 
+    def forget_waiting(self) -> None:
+        """What waits to be sent: a new welcome comes first, and whoever is there says again what still counts."""
+        with self._lock:
+            self._to_send.clear()
+
     def close(self) -> None:
         """Says goodbye and waits for the thread; what it has queued is flushed for at most a second. Idempotent."""
         with self._lock:

@@ -8,7 +8,7 @@ import time
 from contextlib import AbstractContextManager, contextmanager
 from typing import Any, Iterable, Iterator, Sequence
 
-from . import bulk, camera
+from . import bulk, camera, display
 from .blobs import BlobHeap
 from .connection import Connection, lock_request
 from .errors import Error, InvalidInput, Malformed, Refused, Unavailable
@@ -258,6 +258,23 @@ class Session:
         request.close_scene.SetInParent()
         self.connection.request(request)
         self.connection.leave_scene()
+
+    # ---- the display ----
+
+    def move_head(self, position: Sequence[float], orientation: Sequence[float] = (1.0, 0.0, 0.0, 0.0)) -> None:
+        """Where the tracked head is, in display space: metres; (w, x, y, z), of any length but zero, the identity looks along
+        -z. The latest wins, so call this as often as the tracker measures: it does not wait and is lost while nobody is
+        there. Where an eye would not see a screen the last place stays."""
+        self.connection.require_joined()
+        self.connection.post(display.move_head(position, orientation))
+
+    def adjust_display(self, *, eye_separation: float | None = None, zero_parallax: float | None = None,
+                       exposure: float | None = None, pattern: bool | None = None,
+                       shown_layers: Iterable[int] | None = None) -> None:
+        """Changes what is given, on all outputs at once: metres between the eyes; metres from the head where nothing has
+        parallax (0 = on the screens); stops; the test pattern instead of the scene; the layers that are shown, counted from
+        0 as the display's file names them. Raises Refused while no display is open."""
+        self.connection.request(display.adjustment(eye_separation, zero_parallax, exposure, pattern, shown_layers))
 
     # ---- views ----
 
