@@ -9,6 +9,7 @@
 #include "client/cli/cli.h"
 #include "client/display_file/output_keys.h"
 #include "client/display_file/output_reader.h"
+#include "client/display_file/overlaps.h"
 #include "client/display_file/screens.h"
 #include "mediator/display/frustum.h"
 
@@ -94,8 +95,8 @@ void read_layers(Section& document, Display& display) {
     }
 }
 
-std::map<std::string, display::Screen> read_screens(Section& document) {
-    std::map<std::string, display::Screen> screens;
+std::map<std::string, NamedScreen> read_screens(Section& document) {
+    std::map<std::string, NamedScreen> screens;
     for (Section& section : document.sections("screen")) {
         const auto name = section.text("name");
         if (!name) section.require("name");
@@ -103,8 +104,9 @@ std::map<std::string, display::Screen> read_screens(Section& document) {
         if (section.has("fov")) section.refuse("fov", "has 'fov': that is for an output's own screen");
         if (!has_screen(section))
             section.refuse("needs lower_left, lower_right and upper_left, or cylinder, or dome");
-        if (!screens.emplace(*name, read_screen(section, 1.0)).second)
-            section.refuse("name", "two screens are called so");
+        const NamedScreen screen{.surface = read_screen(section, 1.0),
+                                 .black = section.number("black", 0.0, 0.5).value_or(0.0)};
+        if (!screens.emplace(*name, screen).second) section.refuse("name", "two screens are called so");
         section.refuse_unknown();
     }
     return screens;
@@ -125,6 +127,7 @@ void adjust(Section section, std::vector<ReadOutput>& outputs) {
     }
     if (section.has("turn"))
         section.refuse("turn", "'turn' is of a whole wall: write this output as an [[output]] of its own");
+    found->has_own_blend = found->has_own_blend || section.has("blend");
     read_output_keys(section, found->output);
     section.refuse_unknown();
 }
@@ -191,6 +194,7 @@ DisplayFile parse_display(std::string_view text, const std::string& path, scene:
                                                     std::to_string(display::MaxOutputs) + " outputs");
     }
     check_names(outputs);
+    blend_overlaps(outputs, context);
     for (ReadOutput& read : outputs) {
         check(read, display);
         display.outputs.push_back(std::move(read.output));

@@ -11,6 +11,8 @@ namespace tessera::display_file {
 
 namespace {
 
+constexpr std::uint64_t MaxBentPixels = std::uint64_t{1} << 25;  // 8K; each may get a point, 12 bytes
+
 // The named screen, or one that the output has for itself.
 void find_screen(Section& section, const ReadContext& context, double aspect_ratio,
                  OutputGeometry& geometry) {
@@ -24,7 +26,7 @@ void find_screen(Section& section, const ReadContext& context, double aspect_rat
             section.refuse("screen", "there is no [[screen]] '" + geometry.screen + "'" +
                                          (meant ? "; did you mean '" + *meant + "'?" : ""));
         }
-        geometry.surface = found->second;
+        geometry.surface = found->second.surface;
     } else if (auto own = section.section("screen")) {
         geometry.surface = read_screen(*own, aspect_ratio);
         own->refuse_unknown();
@@ -86,17 +88,23 @@ display::PointGrid thrown(const view::CameraPose& projector, const display::Scre
 
 void place(ReadOutput& read, ReadContext& context) {
     Section& section = read.section;
+    const auto check_size = [&] {
+        if (std::uint64_t{read.output.width} * read.output.height > MaxBentPixels)
+            section.refuse("size", "is bent and has more than 33 megapixels: split the output");
+    };
     const Pixels size = picture_size(read.output);
     const double aspect_ratio = double(size.width) / size.height;
     find_screen(section, context, aspect_ratio, read.geometry);
     const display::Screen& screen = *read.geometry.surface;
     if (auto projector = section.section("projector")) {
+        check_size();
         read.geometry.projector = read_projector(*projector, aspect_ratio);
         read.geometry.points = thrown(*read.geometry.projector, screen, read.output);
         lay_out(read, context);
     } else if (const auto* wall = std::get_if<display::Wall>(&screen)) {
         lay_flat(*wall, {}, read);
     } else {
+        check_size();
         read.geometry.points = display::sample(
             [&](double u, double v) { return display::point(screen, u, v); }, size.width, size.height);
         lay_out(read, context);
@@ -137,6 +145,7 @@ ReadOutput read_output(Section section, ReadContext& context) {
         output.width = (*size)[0];
         output.height = (*size)[1];
     }
+    read.has_own_blend = keys.has("blend");
     read_output_keys(keys, output);
     try {
         place(read, context);

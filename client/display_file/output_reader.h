@@ -7,10 +7,16 @@
 
 namespace tessera::display_file {
 
+// [[screen]]
+struct NamedScreen {
+    display::Screen surface;
+    double black = 0.0;  // light of a projector that is sent black, as a part of its white
+};
+
 // What outputs are read with.
 struct ReadContext {
     std::string folder;  // that names of files are relative to
-    std::map<std::string, display::Screen> screens;
+    std::map<std::string, NamedScreen> screens;
     display::Head head;
     scene::BlobStore& blobs;
 };
@@ -20,6 +26,7 @@ struct ReadOutput {
     display::Output output;
     OutputGeometry geometry;
     Section section;
+    bool has_own_blend = false;  // the file says something about its soft edges
 };
 
 // Takes the key `name`, after which errors call the section: `what` 'NAME'.

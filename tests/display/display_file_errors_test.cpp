@@ -56,6 +56,9 @@ TEST(DisplayFileErrors, SayWhereWhatAndHowToMendIt) {
          "wall.toml:3:", "leave 'turn' out"},
         {output + "cylinder = { radius = 2, from = -90, to = 90, bottom = -1, top = 1 }\n",
          "wall.toml:1:", "split"},
+        {output +
+             "size = [16384, 16384]\ncylinder = { radius = 2, from = -9, to = 9, bottom = -1, top = 1 }\n",
+         "wall.toml:3:", "split"},
         {output + "stereo = 'side-by-side'\nsize = [101, 100]\n", "wall.toml:4:", "even"},
         {wall + "[head]\nposition = [0, 0, -2]\n", "wall.toml:1:1: output 'w-1-1': ", "in front"},
         {wall + "[head]\nposition = [0, 0, -5]\n", "wall.toml:1:", "in front"},

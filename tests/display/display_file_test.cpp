@@ -188,6 +188,55 @@ projector = { position = [-1, 1.5, 0.5], look_at = [-0.9, 0, -3], throw = 1.5 }
     EXPECT_NEAR(glm::cross(output.plane.right, output.plane.up).z, 1.0, 1e-12);
 }
 
+constexpr std::string_view TwoProjectors = R"(
+[[screen]]
+name = "w"
+lower_left = [-2, -1, -3]
+lower_right = [2, -1, -3]
+upper_left = [-2, 1, -3]
+black = 0.01
+[[output]]
+name = "left"
+size = [160, 100]
+screen = "w"
+projector = { position = [-0.8, 0, 0], look_at = [-0.8, 0, -3], throw = 1.5 }
+[[output]]
+name = "right"
+size = [160, 100]
+screen = "w"
+projector = { position = [0.8, 0, 0], look_at = [0.8, 0, -3], throw = 1.5 }
+)";
+
+TEST(DisplayFile, ProjectorsOnOneScreenGetSoftEdgesWhereTheyOverlap) {
+    scene::BlobStore blobs;
+    const DisplayFile file = parse_display(TwoProjectors, "wall.toml", blobs);
+    const auto values = [&](const display::Grid& grid) { return blobs.find(grid.values.hash)->as<float>(); };
+    const display::Blend &left = file.display.outputs.at(0).blend, &right = file.display.outputs.at(1).blend;
+    ASSERT_FALSE(left.weights.empty());
+    // Pictures of 2 m with middles 1.6 m apart: 0.4 m or 32 of 160 pixels are shared; pixels lie on pixels.
+    const auto of_left = values(left.weights), of_right = values(right.weights);
+    const auto lift = values(left.lift);
+    const std::size_t row = 50 * 160;
+    for (std::size_t x = 2; x < 30; ++x) {
+        const float one = of_left[row + 128 + x], two = of_right[row + x];
+        EXPECT_GT(one, 0.0f);
+        EXPECT_GT(two, 0.0f);
+        EXPECT_NEAR(one + two, 1.0f, 0.03f) << x;
+        EXPECT_EQ(lift[row + 128 + x], 0.0f);
+    }
+    EXPECT_NEAR(lift[row + 60], 0.01f, 0.002f);
+    EXPECT_EQ(of_left[row + 130] > of_left[row + 150], true);
+}
+
+TEST(DisplayFile, SoftEdgesThatTheFileNamesStand) {
+    const std::string text =
+        std::string(TwoProjectors) + "[[adjust]]\noutput = 'left'\nblend = { right = 32 }\n";
+    const DisplayFile file = parsed(text);
+    EXPECT_TRUE(file.display.outputs[0].blend.weights.empty());
+    EXPECT_EQ(file.display.outputs[0].blend.right, 32.0);
+    EXPECT_TRUE(file.display.outputs[1].blend.weights.empty());
+}
+
 }  // namespace
 
 }  // namespace tessera::display_file

@@ -1,0 +1,45 @@
+#include "client/display_file/overlaps.h"
+
+#include <algorithm>
+
+#include "mediator/display/overlap.h"
+
+namespace tessera::display_file {
+
+namespace {
+
+display::Grid grid(const std::vector<float>& values, const display::Output& output, ReadContext& context) {
+    return {.columns = output.width,
+            .rows = output.height,
+            .components = 1,
+            .nodes = display::Grid::Nodes::Centres,
+            .values = scene::reference(*context.blobs.insert(std::as_bytes(std::span(values))))};
+}
+
+}  // namespace
+
+void blend_overlaps(std::span<ReadOutput> outputs, ReadContext& context) {
+    for (const auto& [name, screen] : context.screens) {
+        std::vector<ReadOutput*> projectors;
+        std::vector<display::Thrower> throwers;
+        for (ReadOutput& read : outputs) {
+            if (read.geometry.screen != name || !read.geometry.projector || read.has_own_blend) continue;
+            projectors.push_back(&read);
+            throwers.push_back({.projector = *read.geometry.projector,
+                                .points = read.geometry.points,
+                                .width = read.output.width,
+                                .height = read.output.height});
+        }
+        if (throwers.size() < 2) continue;
+        tbb::task_arena arena;
+        const std::vector<display::OverlapMaps> maps = display::overlap(throwers, screen.black, arena);
+        for (std::size_t i = 0; i < maps.size(); ++i) {
+            display::Output& output = projectors[i]->output;
+            const bool is_alone = std::ranges::all_of(maps[i].weights, [](float w) { return w == 1.0f; });
+            if (!is_alone) output.blend.weights = grid(maps[i].weights, output, context);
+            if (!maps[i].lift.empty()) output.blend.lift = grid(maps[i].lift, output, context);
+        }
+    }
+}
+
+}  // namespace tessera::display_file
