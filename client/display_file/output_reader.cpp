@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "client/cli/cli.h"
+#include "client/display_file/calibration.h"
 #include "client/display_file/output_keys.h"
 #include "client/display_file/screens.h"
 #include "mediator/display/projector.h"
@@ -51,11 +52,12 @@ void lay_out(ReadOutput& read, ReadContext& context) {
                             "has points or a warp and 'turn': these are of the device's own pixels, "
                             "so they hold the turn already; leave 'turn' out");
     const display::PointGrid& grid = read.geometry.points;
-    output.plane = display::view_plane(grid, context.head.position);
-    const auto* wall = read.geometry.surface ? std::get_if<display::Wall>(&*read.geometry.surface) : nullptr;
-    if (wall) {  // one plane for all outputs on it
-        output.plane = display::view_plane(*wall);
+    if (read.geometry.surface && std::holds_alternative<display::Wall>(*read.geometry.surface)) {
+        // One plane for all outputs on it.
+        output.plane = display::view_plane(std::get<display::Wall>(*read.geometry.surface));
         output.plane.hull = display::hull(grid);
+    } else {
+        output.plane = display::view_plane(grid, context.head.position);
     }
     const display::Size size =
         display::view_size(grid, output.plane, context.head.position, output.width, output.height);
@@ -88,27 +90,37 @@ display::PointGrid thrown(const view::CameraPose& projector, const display::Scre
 
 void place(ReadOutput& read, ReadContext& context) {
     Section& section = read.section;
-    const auto check_size = [&] {
-        if (std::uint64_t{read.output.width} * read.output.height > MaxBentPixels)
-            section.refuse("size", "is bent and has more than 33 megapixels: split the output");
-    };
-    const Pixels size = picture_size(read.output);
+    display::Output& output = read.output;
+    OutputGeometry& geometry = read.geometry;
+    const Pixels size = picture_size(output);
     const double aspect_ratio = double(size.width) / size.height;
-    find_screen(section, context, aspect_ratio, read.geometry);
-    const display::Screen& screen = *read.geometry.surface;
-    if (auto projector = section.section("projector")) {
-        check_size();
-        read.geometry.projector = read_projector(*projector, aspect_ratio);
-        read.geometry.points = thrown(*read.geometry.projector, screen, read.output);
-        lay_out(read, context);
-    } else if (const auto* wall = std::get_if<display::Wall>(&screen)) {
-        lay_flat(*wall, {}, read);
-    } else {
-        check_size();
-        read.geometry.points = display::sample(
-            [&](double u, double v) { return display::point(screen, u, v); }, size.width, size.height);
-        lay_out(read, context);
+    if (int(section.has("points")) + int(section.has("warp")) + int(section.has("projector")) > 1)
+        section.refuse(
+            "has several of 'points', 'warp' and 'projector': each says where its pixels are seen");
+    section.knows({"points", "warp"});
+    if (section.has("points")) {
+        if (has_screen(section) || section.has("screen"))
+            section.refuse("points", "has 'points' and a screen: points say where the screen is");
+        geometry.points = read_points(section, context);
+        return lay_out(read, context);
     }
+    find_screen(section, context, aspect_ratio, geometry);
+    const display::Screen& screen = *geometry.surface;
+    const auto* wall = std::get_if<display::Wall>(&screen);
+    auto projector = section.section("projector");
+    if (wall && !projector && !section.has("warp")) return lay_flat(*wall, {}, read);
+    if (std::uint64_t{output.width} * output.height > MaxBentPixels)
+        section.refuse("size", "is bent and has more than 33 megapixels: split the output");
+    if (projector) {
+        geometry.projector = read_projector(*projector, aspect_ratio);
+        geometry.points = thrown(*geometry.projector, screen, output);
+    } else if (section.has("warp")) {
+        geometry.points = read_warp(section, context, screen, output);
+    } else {
+        geometry.points = display::sample([&](double u, double v) { return display::point(screen, u, v); },
+                                          size.width, size.height);
+    }
+    lay_out(read, context);
 }
 
 }  // namespace
@@ -149,6 +161,7 @@ ReadOutput read_output(Section section, ReadContext& context) {
     read_output_keys(keys, output);
     try {
         place(read, context);
+        read.has_own_blend = read_light_files(keys, context, output) || read.has_own_blend;
     } catch (const Error& error) {
         if (std::string_view(error.what()).starts_with(keys.file() + ":")) throw;
         keys.refuse(error.what());

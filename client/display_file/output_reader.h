@@ -3,6 +3,7 @@
 #include <map>
 
 #include "client/display_file/display_file.h"
+#include "client/display_file/loaded_grid.h"
 #include "client/display_file/section.h"
 
 namespace tessera::display_file {

@@ -2,18 +2,15 @@
 
 #include <algorithm>
 
+#include "client/display_file/calibration.h"
 #include "mediator/display/overlap.h"
 
 namespace tessera::display_file {
 
 namespace {
 
-display::Grid grid(const std::vector<float>& values, const display::Output& output, ReadContext& context) {
-    return {.columns = output.width,
-            .rows = output.height,
-            .components = 1,
-            .nodes = display::Grid::Nodes::Centres,
-            .values = scene::reference(*context.blobs.insert(std::as_bytes(std::span(values))))};
+LoadedGrid on_pixels(std::vector<float> values, const display::Output& output) {
+    return {.columns = output.width, .rows = output.height, .components = 1, .values = std::move(values)};
 }
 
 }  // namespace
@@ -32,12 +29,14 @@ void blend_overlaps(std::span<ReadOutput> outputs, ReadContext& context) {
         }
         if (throwers.size() < 2) continue;
         tbb::task_arena arena;
-        const std::vector<display::OverlapMaps> maps = display::overlap(throwers, screen.black, arena);
+        std::vector<display::OverlapMaps> maps = display::overlap(throwers, screen.black, arena);
         for (std::size_t i = 0; i < maps.size(); ++i) {
             display::Output& output = projectors[i]->output;
             const bool is_alone = std::ranges::all_of(maps[i].weights, [](float w) { return w == 1.0f; });
-            if (!is_alone) output.blend.weights = grid(maps[i].weights, output, context);
-            if (!maps[i].lift.empty()) output.blend.lift = grid(maps[i].lift, output, context);
+            if (!is_alone)
+                output.blend.weights = stored(on_pixels(std::move(maps[i].weights), output), context.blobs);
+            if (!maps[i].lift.empty())
+                output.blend.lift = stored(on_pixels(std::move(maps[i].lift), output), context.blobs);
         }
     }
 }
