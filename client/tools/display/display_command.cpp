@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "client/tools/display/audience_command.h"
 #include "client/tools/display/check_command.h"
 #include "client/tools/display/pattern_command.h"
 
@@ -11,7 +12,8 @@ namespace tessera::tools {
 Command display_command(cli::CommandLine& program) {
     cli::CommandLine& line =
         program.command("display", "Check and run what stands in front of people: screens and outputs.");
-    const std::vector<Command> commands{check_display_command(line), pattern_command(line)};
+    const std::vector<Command> commands{check_display_command(line), pattern_command(line),
+                                        audience_command(line)};
     return {"display", [commands](std::string_view chosen) {
                 const auto command = std::ranges::find(commands, chosen, &Command::name);
                 return command->run(chosen);
