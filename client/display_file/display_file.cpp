@@ -11,7 +11,7 @@
 #include "client/display_file/output_reader.h"
 #include "client/display_file/overlaps.h"
 #include "client/display_file/screens.h"
-#include "mediator/display/frustum.h"
+#include "mediator/display/validate.h"
 
 namespace tessera::display_file {
 
@@ -23,15 +23,15 @@ void read_settings(Section section, Display& display) {
     display.name = section.text("name").value_or(display.name);
     display.camera = section.text("camera").value_or("");
     display.units_per_metre = section.number("units_per_metre", 1e-6, 1e6).value_or(display.units_per_metre);
-    display.rate = section.number("rate", 0.01, 1000.0).value_or(display.rate);
+    display.rate = section.number("rate", 0.1, 1000.0).value_or(display.rate);
     display.spp =
-        std::uint64_t(section.whole("spp", 1, std::int64_t{1} << 30).value_or(std::int64_t(display.spp)));
+        std::uint64_t(section.whole("spp", 1, std::int64_t{1} << 24).value_or(std::int64_t(display.spp)));
     display.filter = section.text("filter").value_or("");
-    display.coarsest = std::uint32_t(section.whole("coarsest", 2, 8).value_or(display.coarsest));
-    if (display.coarsest != 2 && display.coarsest != 4 && display.coarsest != 8)
-        section.refuse("coarsest", "'coarsest' must be 2, 4 or 8: the part of the size that comes first");
+    display.coarsest = std::uint32_t(section.whole("coarsest", 1, 8).value_or(display.coarsest));
+    if (display.coarsest != 1 && display.coarsest != 2 && display.coarsest != 4 && display.coarsest != 8)
+        section.refuse("coarsest", "'coarsest' must be 1, 2, 4 or 8: the part of the size that comes first");
     display.max_bounces = std::uint32_t(section.whole("max_bounces", 0, 1024).value_or(display.max_bounces));
-    display.exposure = section.number("exposure", -100.0, 100.0).value_or(display.exposure);
+    display.exposure = section.number("exposure", -60.0, 60.0).value_or(display.exposure);
     display.white = section.number("white", 0.0, 1e6).value_or(display.white);
     display.stereo_difference = section.truth("stereo_difference").value_or(false);
     section.refuse_unknown();
@@ -132,7 +132,7 @@ void adjust(Section section, std::vector<ReadOutput>& outputs) {
     section.refuse_unknown();
 }
 
-void check(const ReadOutput& read, const Display& display) {
+void check(const ReadOutput& read) {
     const display::Output& output = read.output;
     const auto refuse = [&](const std::string& key, const std::string& why) {
         read.section.refuse(key, why);
@@ -148,13 +148,6 @@ void check(const ReadOutput& read, const Display& display) {
     if (!(output.blend.left + output.blend.right <= output.width &&
           output.blend.top + output.blend.bottom <= output.height))
         refuse("blend", "its soft edges meet in the middle: make them narrower");
-    try {
-        for (const view::Eye eye : display::eyes(output.stereo)) {
-            display::frustum(output.plane, display.head, eye, display.eye_separation, display.zero_parallax);
-        }
-    } catch (const Error& error) {
-        read.section.refuse(error.what());
-    }
 }
 
 void check_names(const std::vector<ReadOutput>& outputs) {
@@ -164,6 +157,17 @@ void check_names(const std::vector<ReadOutput>& outputs) {
             read.section.refuse(
                 "name", "two outputs are called '" + read.output.name + "': the names overlap; rename one");
     }
+}
+
+// What the master would refuse: said where its output stands.
+void check_all(const Section& document, const std::vector<ReadOutput>& outputs, const Display& display) {
+    const std::vector<std::string> problems = display::problems(display);
+    if (problems.empty()) return;
+    for (const ReadOutput& read : outputs) {
+        const std::string name = "output '" + read.output.name + "': ";
+        if (problems.front().starts_with(name)) read.section.refuse(problems.front().substr(name.size()));
+    }
+    document.refuse(problems.front());
 }
 
 }  // namespace
@@ -196,10 +200,11 @@ DisplayFile parse_display(std::string_view text, const std::string& path, scene:
     check_names(outputs);
     blend_overlaps(outputs, context);
     for (ReadOutput& read : outputs) {
-        check(read, display);
-        display.outputs.push_back(std::move(read.output));
+        check(read);
+        display.outputs.push_back(read.output);
         file.geometry.push_back(std::move(read.geometry));
     }
+    check_all(document, outputs, display);
     return file;
 }
 

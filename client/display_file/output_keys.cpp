@@ -34,7 +34,7 @@ display::Color read_color(Section section) {
         }
     }
     color.gain = read_gain(section);
-    color.gamma = section.number("gamma", 0.1, 10.0).value_or(0.0);
+    color.gamma = section.number("gamma", 0.5, 5.0).value_or(0.0);
     if (const auto curve = section.numbers("curve", 0.0, 1.0)) {
         if (color.gamma != 0.0) section.refuse("curve", "has both 'gamma' and 'curve': give one of them");
         if (curve->size() < 2 || curve->size() > display::MaxCurve)

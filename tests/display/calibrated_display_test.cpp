@@ -122,8 +122,8 @@ TEST_F(CalibratedDisplay, AMeshBringsItsBrightness) {
 }
 
 TEST_F(CalibratedDisplay, WeightsAndLiftAreLight) {
-    const std::vector<std::uint8_t> rgb(2 * 1 * 3, 51);
-    picture::write_png((folder_ / "w.png").string(), 2, 1, rgb);
+    const std::vector<std::uint8_t> rgb(2 * 2 * 3, 51);
+    picture::write_png((folder_ / "w.png").string(), 2, 2, rgb);
     const DisplayFile file = read(Flat + "weights = 'w.png'\nlift = 'w.png'\n");
     const display::Blend& blend = file.display.outputs.at(0).blend;
     EXPECT_NEAR(values(blend.weights)[0], 0.2f, 1e-6f);

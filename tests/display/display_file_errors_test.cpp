@@ -59,6 +59,8 @@ TEST(DisplayFileErrors, SayWhereWhatAndHowToMendIt) {
         {output +
              "size = [16384, 16384]\ncylinder = { radius = 2, from = -9, to = 9, bottom = -1, top = 1 }\n",
          "wall.toml:3:", "split"},
+        {output + "size = [16384, 16384]\n", "wall.toml:1:1: output 'a': ", "200 MiB"},
+        {"[display]\nwhite = 1e-9\n" + output, "wall.toml:1:", "white"},
         {output + "stereo = 'side-by-side'\nsize = [101, 100]\n", "wall.toml:4:", "even"},
         {wall + "[head]\nposition = [0, 0, -2]\n", "wall.toml:1:1: output 'w-1-1': ", "in front"},
         {wall + "[head]\nposition = [0, 0, -5]\n", "wall.toml:1:", "in front"},
@@ -78,8 +80,8 @@ TEST(DisplayFileErrors, SayWhereWhatAndHowToMendIt) {
         {output + "projector = { position = [0, 0, 0], look_at = [0, 0, 1], throw = 1 }\n",
          "wall.toml:1:", "towards the screen"},
         {output + "projector = { position = [0, 0, 0], look_at = [0, 0, -1] }\n", "wall.toml:3:", "throw"},
-        {"[display]\nrate = 0\n" + output, "wall.toml:2:", "0.01"},
-        {"[display]\ncoarsest = 3\n" + output, "wall.toml:2:", "2, 4 or 8"},
+        {"[display]\nrate = 0\n" + output, "wall.toml:2:", "0.1"},
+        {"[display]\ncoarsest = 3\n" + output, "wall.toml:2:", "1, 2, 4 or 8"},
         {"[display]\nname = 1979-05-27\n" + output, "wall.toml:2:", "a date"},
     };
     for (const Wrong& wrong : all) {
