@@ -18,6 +18,7 @@ pkg_check_modules(libedit REQUIRED IMPORTED_TARGET libedit)
 find_package(TinyGLTF REQUIRED CONFIG)
 find_package(draco REQUIRED CONFIG)
 find_package(assimp REQUIRED CONFIG)
+find_package(SDL2 REQUIRED CONFIG)
 if(TESSERA_BACKEND_EMBREE OR TESSERA_BACKEND_VULKAN)  # Vulkan: builds trees
   find_package(embree 3 REQUIRED CONFIG)
 endif()

@@ -26,18 +26,6 @@ bool is_shown(const display::Display& display, std::size_t layer) {
     return display.layers.empty() || display.layers[layer].shown;
 }
 
-// Where the screen itself is seen as the picture shows it. With zero parallax at d instead of at the screen's
-// distance D the screen is scaled by d / D about the head, which is the same as eyes D / d as far apart.
-view::CameraPose screen_pose(const display::ViewPlane& plane, const display::Display& display,
-                             view::Eye eye) {
-    double separation = display.eye_separation;
-    if (display.zero_parallax > 0.0) {
-        const glm::dvec3 normal = glm::cross(plane.right, plane.up);
-        separation *= glm::dot(display.head.position - plane.origin, normal) / display.zero_parallax;
-    }
-    return display::frustum(plane, display.head, eye, separation, 0.0);
-}
-
 std::string first_problem(const display::Display& display) {
     if (const auto found = display::problems(display); !found.empty())
         return found.front() +
@@ -227,7 +215,8 @@ std::vector<GroupView> DisplayService::views() {
         for (const view::Eye eye : display::eyes(output.stereo)) {
             const view::CameraPose pose = display::frustum(output.plane, display.head, eye,
                                                            display.eye_separation, display.zero_parallax);
-            const view::CameraPose seen_from = screen_pose(output.plane, display, eye);
+            const view::CameraPose seen_from = display::screen_pose(
+                output.plane, display.head, eye, display.eye_separation, display.zero_parallax);
             for (std::size_t layer = 0; layer < layer_count(display); ++layer) {
                 if (!is_shown(display, layer)) continue;
                 GroupView view{.name = "display/" + output.name, .view = {}, .priority = output.priority};

@@ -61,6 +61,14 @@ view::CameraPose frustum(const ViewPlane& plane, const Head& head, view::Eye eye
     return {.world_from_camera = pose, .left = left, .right = right, .bottom = bottom, .top = top};
 }
 
+view::CameraPose screen_pose(const ViewPlane& plane, const Head& head, view::Eye eye, double separation,
+                             double zero_parallax) {
+    if (zero_parallax > 0.0)
+        separation *=
+            glm::dot(head.position - plane.origin, glm::cross(plane.right, plane.up)) / zero_parallax;
+    return frustum(plane, head, eye, separation, 0.0);
+}
+
 view::CameraPose in_world(const view::CameraPose& in_display, const glm::dmat4& world_from_display,
                           double units_per_metre) {
     view::CameraPose camera = in_display;

@@ -22,6 +22,12 @@ glm::dvec3 eye_position(const Head& head, view::Eye eye, double separation);
 view::CameraPose frustum(const ViewPlane& plane, const Head& head, view::Eye eye, double separation,
                          double zero_parallax);
 
+// Where the screen itself is seen as that picture shows it: with zero parallax at d instead of at the
+// screen's distance D the screen is scaled by d / D about the head, which is the same as eyes D / d as far
+// apart.
+view::CameraPose screen_pose(const ViewPlane& plane, const Head& head, view::Eye eye, double separation,
+                             double zero_parallax);
+
 // The same camera in the world: `world_from_camera` of the scene camera that carries the display, rigid.
 view::CameraPose in_world(const view::CameraPose& in_display, const glm::dmat4& world_from_display,
                           double units_per_metre);

@@ -56,7 +56,7 @@ ARROWS = {
     "tests": [""],
 }
 
-PROGRAMS = ["client/cli/", "client/tools/", "client/main.cpp", "master/main.cpp", "node/main.cpp"]
+PROGRAMS = ["client/cli/", "client/display/", "client/tools/", "client/main.cpp", "master/main.cpp", "node/main.cpp"]
 EVERYWHERE = r"\.(h|cpp)$"
 SOURCES = r"\.cpp$"
 
@@ -74,6 +74,7 @@ LIBRARIES = [
     (r"stb/", ["mediator/picture/", "client/import/", "tests/"], SOURCES),
     (r"tiny_gltf", ["client/import/", "client/export/", "tests/"], EVERYWHERE),
     (r"assimp/|draco/|pugi", ["client/import/", "tests/"], EVERYWHERE),
+    (r"SDL", ["client/display/"], SOURCES),
     (r"histedit\.h$", ["client/edit/"], SOURCES),
     (r"(gtest|gmock|benchmark)/", ["tests/"], EVERYWHERE),
 ]

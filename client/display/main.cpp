@@ -1,0 +1,114 @@
+#include <unistd.h>
+
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "client/cli/cli.h"
+#include "client/display/output_player.h"
+#include "client/display/picture_files.h"
+#include "client/display/shared_memory.h"
+#include "client/display/window.h"
+#include "client/tools/command.h"
+#include "client/tools/interrupts.h"
+#include "client/tools/this_machine.h"
+
+namespace {
+
+using namespace tessera;
+
+struct Options {
+    client::Address address{.endpoint = "tcp://127.0.0.1:7420", .user = "viewer"};
+    std::string output, log, png, shm;
+    bool headless = false, window = false;
+    std::uint64_t frames = 0;
+};
+
+// Shows nothing anywhere: to measure, or to see that the lock works.
+class Nowhere final : public client_display::Presenter {
+  public:
+    void prepare(client_display::DevicePictures) override {}
+    void present(std::uint64_t) override {}
+};
+
+client_display::MakePresenter presenter(const Options& options) {
+    if (!options.png.empty())
+        return [&](const display::Output& output) {
+            return client_display::make_picture_files(options.png, output);
+        };
+    if (!options.shm.empty())
+        return [&](const display::Output& output) {
+            return client_display::make_shared_memory(options.shm, output);
+        };
+    if (options.headless) return [](const display::Output&) { return std::make_unique<Nowhere>(); };
+    const auto mode =
+        options.window ? client_display::WindowMode::Framed : client_display::WindowMode::FullScreen;
+    return [mode](const display::Output& output) { return client_display::make_window(mode, output); };
+}
+
+int show(const Options& options) {
+    const tools::Interrupts interrupts;  // before anything that starts threads
+    const SteadyClock clock;
+    const auto blobs = std::make_shared<scene::BlobStore>();
+    client_display::FrameLog log;
+    if (!options.log.empty()) log = client_display::FrameLog(options.log);
+    const auto tell = [&](const std::string& text) { std::cerr << "tessera-display: " << text << std::endl; };
+    const auto session = client::connect_live(options.address, blobs, clock,
+                                              {.name = "output " + options.output,
+                                               .host = tools::host_name(),
+                                               .software = "tessera-display " + cli::version(),
+                                               .pid = static_cast<std::uint64_t>(::getpid()),
+                                               .connect_limit = std::chrono::hours(24),
+                                               .lost_limit = std::chrono::hours(24 * 365),
+                                               .mirrors_scene = false});
+    const auto joined = session->join(
+        "", client::WhenBusy::Queue, [&](std::uint32_t) { tell("a batch has the cluster: waiting"); },
+        interrupts.token());
+    if (std::holds_alternative<client::Stopped>(joined)) return tools::ExitInterrupted;
+    client_display::OutputPlayer player(*session, *blobs, clock, options.output, presenter(options), log,
+                                        tell);
+    player.run(options.frames, interrupts.token());
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Options options;
+    cli::CommandLine line(
+        "tessera-display",
+        "Shows one output of the display in front of a live scene, in step with all others.");
+    line.option("--master", "where the cluster is: tcp://host:port", options.address.endpoint);
+    line.option("--keys", "keys for that cluster: a folder, or an exported file; none: not encrypted",
+                options.address.keys);
+    line.option("--user", "whose pair in a folder of keys; a viewer's will do", options.address.user);
+    line.option("--output", "which output of the display file this process shows", options.output);
+    line.flag("--window", "in a window of the output's size, instead of the full screen", options.window);
+    line.flag("--headless", "without a window; for what it shows, see --png and --shm", options.headless);
+    line.option("--png", "headless: keep FOLDER/OUTPUT.png at what is shown now", options.png);
+    line.option("--shm", "headless: show in POSIX shared memory of this name, as /left", options.shm);
+    line.option("--log", "append what was shown when to this file, a JSON object a line", options.log);
+    line.option("--frames", "end after so many frames; 0 = never", options.frames);
+    line.required("--output");
+    line.examples({"tessera-display --master tcp://wall-master:7420 --keys ~/.tessera --output left",
+                   "tessera-display --output left --headless --png shown --log left.log",
+                   "tessera-display --output left --window"});
+    if (const auto exit = line.parse(argc, argv, std::cout, std::cerr)) return *exit;
+    const auto usage = [](const std::string& text) {
+        std::cerr << "tessera-display: " << text << "\n";
+        return cli::ExitUsage;
+    };
+    if (options.window && options.headless) return usage("--window and --headless exclude each other");
+    if ((!options.png.empty() || !options.shm.empty()) && !options.headless)
+        return usage("--png and --shm go with --headless");
+    if (!options.png.empty() && !options.shm.empty()) return usage("--png and --shm exclude each other");
+    if (!options.shm.empty() &&
+        (!options.shm.starts_with('/') || options.shm.find('/', 1) != std::string::npos))
+        return usage("--shm: a name has a slash in front and no other, like /left");
+    try {
+        return show(options);
+    } catch (const Error& error) {
+        std::cerr << "tessera-display: " << error.what() << "\n";
+        return tools::exit_code(error.code());
+    }
+}
