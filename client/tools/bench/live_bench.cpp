@@ -8,9 +8,9 @@
 #include <thread>
 
 #include "client/import/import.h"
-#include "mediator/view/placed_cameras.h"
 #include "client/tools/bench/live_cluster.h"
 #include "mediator/scene/fields.h"
+#include "mediator/view/placed_cameras.h"
 
 namespace tessera::tools::bench {
 

@@ -11,18 +11,23 @@
 
 namespace tessera::tools::bench {
 
+enum class Encryption { Curve, None };
+
 // A master and nodes as processes of their own, with keys made for the bench. All end with it.
 class LiveCluster {
   public:
     // Throws Error when a program is not there or does not come up.
-    LiveCluster(std::uint32_t nodes, const std::string& backend);
+    LiveCluster(std::uint32_t nodes, const std::string& backend, Encryption encryption = Encryption::Curve);
     ~LiveCluster();
 
     std::unique_ptr<client::LiveSession> join(const std::string& name,
                                               std::shared_ptr<scene::BlobStore> blobs,
                                               const Clock& clock) const;
     client::ClusterStatus status(const Clock& clock) const;
-    std::uint64_t master_memory() const;  // bytes in RAM
+    std::uint64_t master_memory() const;       // bytes in RAM
+    std::uint64_t master_peak_memory() const;  // the most so far
+    pid_t master_pid() const { return master_->pid(); }
+    std::vector<pid_t> node_pids() const;
 
     const std::string& endpoint() const { return endpoint_; }
     std::filesystem::path keys() const { return folder_ / "keys"; }
@@ -30,9 +35,11 @@ class LiveCluster {
 
   private:
     client::SessionSettings settings(const std::string& name) const;
+    client::Address address() const;
 
     std::filesystem::path folder_;
     std::string endpoint_;
+    Encryption encryption_;
     std::optional<ChildProcess> master_;
     std::vector<ChildProcess> nodes_;
 };
