@@ -1,6 +1,7 @@
 #include "mediator/frame/merge.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstring>
@@ -102,10 +103,11 @@ void merge_channel(FilmTile& into, const FilmTile& later, const ChannelInfo& inf
     }
 }
 
+// Loops that run once a sample go over the bits of the set: most sets have few.
 bool acceptable(const ChannelSet& channels, std::span<const float> values) {
     std::size_t next = 0;
-    for (const ChannelInfo& info : channel_table()) {
-        if (!channels.contains(info.channel)) continue;
+    for (std::uint32_t rest = channels.bits(); rest != 0; rest &= rest - 1) {
+        const ChannelInfo& info = channel_table()[static_cast<std::size_t>(std::countr_zero(rest))];
         for (std::uint32_t c = 0; c < info.components; ++c) {
             const float value = values[next++];
             if ((info.rule == MergeRule::Moments || info.rule == MergeRule::Sum) && !std::isfinite(value))
@@ -127,8 +129,8 @@ void put_sample(FilmTile& tile, std::size_t pixel, std::span<const float> values
     tile.counts[pixel] = 1;
     std::size_t next = 0;
     std::uint32_t plane = 0;
-    for (const ChannelInfo& info : channel_table()) {
-        if (!tile.channels.contains(info.channel)) continue;
+    for (std::uint32_t rest = tile.channels.bits(); rest != 0; rest &= rest - 1) {
+        const ChannelInfo& info = channel_table()[static_cast<std::size_t>(std::countr_zero(rest))];
         for (std::uint32_t c = 0; c < info.components; ++c) {
             std::memcpy(&tile.plane(plane + c)[pixel], &values[next++], sizeof(float));
         }

@@ -1,6 +1,7 @@
 #include "mediator/picture/srgb_bytes.h"
 
 #include <cmath>
+#include <limits>
 
 namespace tessera::picture {
 
@@ -13,7 +14,8 @@ double linear_from_srgb(double code) {
 }  // namespace
 
 SrgbBytes::SrgbBytes() {
-    for (std::size_t code = 0; code < thresholds_.size(); ++code) {
+    thresholds_.back() = std::numeric_limits<float>::infinity();
+    for (std::size_t code = 0; code + 1 < thresholds_.size(); ++code) {
         const double limit = linear_from_srgb((static_cast<double>(code) + 0.5) / 255.0);
         auto least = static_cast<float>(limit);
         if (double{least} < limit) least = std::nextafter(least, 1.0f);
