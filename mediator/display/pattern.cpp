@@ -51,9 +51,10 @@ class Label {
     dvec2 corner_;
 };
 
-// Steps of light from left to right; null where (u, v) is not on one of the ramps.
+// Steps of light from left to right, where overlaps of a fifth do not reach; null where (u, v) is not on one
+// of the ramps.
 std::optional<vec3> ramp(double u, double v) {
-    constexpr double Left = 0.15, Right = 0.85, Top = 0.70, Height = 0.04;
+    constexpr double Left = 0.15, Right = 0.85, Top = 0.60, Height = 0.032;
     if (u < Left || u >= Right || v < Top) return std::nullopt;
     const double along = (u - Left) / (Right - Left);
     const int bar = int((v - Top) / Height);

@@ -55,12 +55,12 @@ TEST(Pattern, RampsHaveEveryStepOfEightBits) {
         }
         return found.size();
     };
-    EXPECT_GE(steps(0.72, 1), 31u);
-    for (int component = 0; component < 3; ++component) EXPECT_GE(steps(0.76, component), 252u);
-    EXPECT_GE(steps(0.80, 0), 252u);
-    EXPECT_EQ(steps(0.80, 1), 1u);
-    EXPECT_GE(steps(0.84, 1), 252u);
-    EXPECT_GE(steps(0.88, 2), 252u);
+    EXPECT_GE(steps(0.616, 1), 31u);
+    for (int component = 0; component < 3; ++component) EXPECT_GE(steps(0.648, component), 252u);
+    EXPECT_GE(steps(0.680, 0), 252u);
+    EXPECT_EQ(steps(0.680, 1), 1u);
+    EXPECT_GE(steps(0.712, 1), 252u);
+    EXPECT_GE(steps(0.744, 2), 252u);
 }
 
 TEST(Pattern, EyesAreToldApart) {
