@@ -1,0 +1,94 @@
+#include "client/tools/display/adjust_command.h"
+
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "client/tools/cluster_options.h"
+#include "client/tools/display/live_display.h"
+#include "client/tools/values.h"
+
+namespace tessera::tools {
+
+namespace {
+
+constexpr const char* Name = "display adjust";
+
+struct AdjustOptions {
+    client::Address address;
+    std::optional<double> eye_separation, zero_parallax, exposure;
+    std::string pattern;
+    std::optional<std::string> layers;
+};
+
+// "0,2", or "none".
+Expected<std::uint32_t> parse_layers(const std::string& text) {
+    std::uint32_t layers = 0;
+    if (text == "none") return layers;
+    for (const std::string& word : split_list(text)) {
+        if (word.size() != 1 || word[0] < '0' || word[0] >= char('0' + display::MaxLayers))
+            return failure(ErrorCode::InvalidInput,
+                           "--layers: '" + word +
+                               "' is no layer: give their numbers from 0, as 0,2, or "
+                               "none");
+        layers |= 1u << (word[0] - '0');
+    }
+    if (layers == 0)
+        return failure(ErrorCode::InvalidInput, "--layers: give numbers from 0, as 0,2, or none");
+    return layers;
+}
+
+int run(const AdjustOptions& options) {
+    wire::AdjustDisplay change{.eye_separation = options.eye_separation,
+                               .zero_parallax = options.zero_parallax,
+                               .exposure = options.exposure,
+                               .pattern = {},
+                               .shown_layers = {}};
+    if (!options.pattern.empty()) change.pattern = options.pattern == "on";
+    if (options.layers) {
+        const auto layers = parse_layers(*options.layers);
+        if (!layers) return complain(Name, cli::ExitUsage, layers.error().what());
+        change.shown_layers = *layers;
+    }
+    if (!change.eye_separation && !change.zero_parallax && !change.exposure && !change.pattern &&
+        !change.shown_layers)
+        return complain(Name, cli::ExitUsage, "nothing to adjust: give one of its options, as --exposure 1");
+    const SteadyClock clock;
+    const DisplayMember member = join_display(options.address, "tessera display adjust", clock);
+    member.session->adjust_display(change);
+    std::cout << "display '" << member.display << "' is adjusted\n";
+    return 0;
+}
+
+}  // namespace
+
+Command adjust_display_command(cli::CommandLine& display) {
+    const auto options = std::make_shared<AdjustOptions>();
+    cli::CommandLine& line = display.command(
+        "adjust", "Change the open display, on all outputs at once: what is given, and nothing else.");
+    add_cluster_options(line, options->address);
+    line.required("--master");
+    line.option("--eye-separation", "metres between the eyes", options->eye_separation);
+    line.option("--zero-parallax", "metres from the head where nothing has parallax; 0 = on the screens",
+                options->zero_parallax);
+    line.option("--exposure", "stops", options->exposure);
+    line.choice("--pattern", "show the test pattern instead of the scene", options->pattern, {"on", "off"});
+    line.option(
+        "--layers",
+        "the layers that are shown: their numbers, from 0 as the display's file names them, as 0,2; or "
+        "none",
+        options->layers);
+    line.examples(
+        {"tessera display adjust --eye-separation 0.06 --zero-parallax 2.5 --master "
+         "tcp://render-1:7420 --keys ~/.tessera",
+         "tessera display adjust --pattern on --master tcp://127.0.0.1:7420"});
+    return {Name, [options](std::string_view) {
+                try {
+                    return run(*options);
+                } catch (const Error& error) {
+                    return complain(Name, exit_code(error.code()), error.what());
+                }
+            }};
+}
+
+}  // namespace tessera::tools

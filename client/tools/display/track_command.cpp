@@ -1,0 +1,109 @@
+#include "client/tools/display/track_command.h"
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <thread>
+
+#include "client/tools/cluster_options.h"
+#include "client/tools/display/head_socket.h"
+#include "client/tools/display/live_display.h"
+#include "client/tools/interrupts.h"
+
+namespace tessera::tools {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr const char* Name = "display track";
+constexpr Duration Interval = std::chrono::nanoseconds(1s) / 240;  // between two heads, at least
+constexpr Duration LookAgain = 100ms;                              // for the end, and for the master's
+
+struct TrackOptions {
+    client::Address address;
+    std::string bind = "127.0.0.1";
+    std::uint32_t port = 0;
+};
+
+// Passes the newest head on, again and again.
+class Tracking {
+  public:
+    explicit Tracking(const TrackOptions& options)
+        : socket_(options.bind, static_cast<std::uint16_t>(options.port)),
+          member_(join_display(options.address, "tessera display track", clock_)) {
+        std::cout << "display '" << member_.display << "' follows the heads that come to UDP " << options.bind
+                  << " port " << socket_.port() << std::endl;
+    }
+
+    void run() {
+        while (!interrupts_.token().stop_requested()) {
+            socket_.wait(LookAgain);
+            const TimePoint began = clock_.now();
+            const HeadSocket::Packets packets = socket_.drain();
+            if (packets.newest) member_.session->move_head(*packets.newest);
+            member_.session->pump();
+            count(packets, began);
+            if (packets.good + packets.bad > 0) std::this_thread::sleep_until(began + Interval);
+        }
+        std::cout << good_ << " packets, " << sent_ << " heads passed on, " << bad_ << " bad packets"
+                  << std::endl;
+    }
+
+  private:
+    void count(const HeadSocket::Packets& packets, TimePoint now) {
+        good_ += packets.good;
+        bad_ += packets.bad;
+        sent_ += packets.newest ? 1 : 0;
+        if (packets.bad > 0) problem_ = packets.problem;
+        if (bad_ == told_ || now < tell_at_) return;
+        std::cerr << "tessera display track: " << bad_ - told_ << " bad packets, the latest " << problem_
+                  << std::endl;
+        told_ = bad_;
+        tell_at_ = now + 1s;
+    }
+
+    Interrupts interrupts_;  // before anything that starts threads
+    SteadyClock clock_;
+    HeadSocket socket_;
+    DisplayMember member_;
+    std::uint64_t good_ = 0, bad_ = 0, sent_ = 0, told_ = 0;
+    std::string problem_;
+    TimePoint tell_at_{};
+};
+
+int run(const TrackOptions& options) {
+    if (options.port > 65535)
+        return complain(Name, cli::ExitUsage, "--udp: a port is within 1 and 65535, or 0 for a free one");
+    Tracking(options).run();
+    return 0;
+}
+
+}  // namespace
+
+Command track_command(cli::CommandLine& display) {
+    const auto options = std::make_shared<TrackOptions>();
+    cli::CommandLine& line = display.command(
+        "track",
+        "Let the open display follow a tracked head: UDP packets of one line of text each, x y z or x y z qw "
+        "qx qy qz, in metres of the display's space; the word head may stand before them. The latest wins, "
+        "240 are passed on a second at most. UDP is not authenticated: whoever reaches the port can move the "
+        "head (and do nothing else), so bind it to a network of the tracker's own.");
+    line.option("--udp", "port that the packets come to; 0 = a free one, which is told", options->port);
+    line.required("--udp");
+    line.option("--bind", "numeric address of this machine that it listens on", options->bind);
+    add_cluster_options(line, options->address);
+    line.required("--master");
+    line.examples({"tessera display track --udp 7500 --master tcp://127.0.0.1:7420",
+                   "tessera display track --udp 7500 --bind 10.0.9.1 --master tcp://render-1:7420 --keys "
+                   "~/.tessera"});
+    return {Name, [options](std::string_view) {
+                try {
+                    return run(*options);
+                } catch (const Error& error) {
+                    return complain(Name, exit_code(error.code()), error.what());
+                }
+            }};
+}
+
+}  // namespace tessera::tools
