@@ -15,6 +15,8 @@ find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
 pkg_check_modules(libedit REQUIRED IMPORTED_TARGET libedit)
+pkg_check_modules(libzip REQUIRED IMPORTED_TARGET libzip)  # its CMake files ask for its programs, too
+find_package(pugixml REQUIRED CONFIG)
 find_package(TinyGLTF REQUIRED CONFIG)
 find_package(draco REQUIRED CONFIG)
 find_package(assimp REQUIRED CONFIG)

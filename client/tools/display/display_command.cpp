@@ -7,6 +7,7 @@
 #include "client/tools/display/audience_command.h"
 #include "client/tools/display/check_command.h"
 #include "client/tools/display/close_command.h"
+#include "client/tools/display/import_command.h"
 #include "client/tools/display/open_command.h"
 #include "client/tools/display/pattern_command.h"
 #include "client/tools/display/track_command.h"
@@ -19,7 +20,7 @@ Command display_command(cli::CommandLine& program) {
     const std::vector<Command> commands{check_display_command(line),  pattern_command(line),
                                         audience_command(line),       open_display_command(line),
                                         adjust_display_command(line), track_command(line),
-                                        close_display_command(line)};
+                                        close_display_command(line),  import_command(line)};
     return {"display", [commands](std::string_view chosen) {
                 const auto command = std::ranges::find(commands, chosen, &Command::name);
                 return command->run(chosen);

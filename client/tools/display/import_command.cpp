@@ -1,0 +1,55 @@
+#include "client/tools/display/import_command.h"
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string_view>
+
+#include "client/display_file/mpcdi_import.h"
+#include "mediator/picture/atomic_file.h"
+
+namespace tessera::tools {
+
+namespace {
+
+constexpr const char* Name = "display import";
+
+int run(const std::string& archive, const std::string& output) {
+    const auto mpcdi = display_file::load_mpcdi(archive);
+    if (!mpcdi) throw mpcdi.error();
+    const std::filesystem::path path(output);
+    const display_file::ImportedDisplay imported = display_file::import_mpcdi(*mpcdi, path.stem().string());
+    for (const auto& file : imported.files)
+        picture::write_atomically((path.parent_path() / file.name).string(),
+                                  {reinterpret_cast<const char*>(file.content.data()), file.content.size()});
+    picture::write_atomically(output, imported.text);
+    std::cout << "wrote " << output << " and " << imported.files.size() << " files beside it\n";
+    for (const std::string& notice : imported.notices) std::cout << "note: " << notice << "\n";
+    return 0;
+}
+
+}  // namespace
+
+Command import_command(cli::CommandLine& display) {
+    struct Options {
+        std::string archive, output;
+    };
+    const auto options = std::make_shared<Options>();
+    cli::CommandLine& line = display.command(
+        "import",
+        "Make a display file, and the files of calibration that it names, of an archive in VESA's "
+        "MPCDI format: profiles 2d, 3d, a3, and sl without the distortion of lenses.");
+    line.positional("FILE", "the archive", options->archive);
+    line.option("-o,--output", "display file to write; its files go beside it", options->output);
+    line.required("--output");
+    line.examples({"tessera display import wall.mpcdi -o wall.toml"});
+    return {Name, [options](std::string_view) {
+                try {
+                    return run(options->archive, options->output);
+                } catch (const Error& error) {
+                    return complain(Name, exit_code(error.code()), error.what());
+                }
+            }};
+}
+
+}  // namespace tessera::tools
