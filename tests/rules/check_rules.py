@@ -39,6 +39,7 @@ ARROWS = {
     "master/display": CORE + LINK + ["master", "mediator/picture"],
     "master/schedule": CORE + ["mediator/wire"],
     "master/filter": KIT + ["master/filter"],
+    "master/compose": CORE + ["master/filter"],
     "master/config.h": CORE + LINK + ["client/cli"],
     "master/config.cpp": CORE + LINK + ["client/cli"],
     "master/main.cpp": CORE + LINK + ["mediator/picture", "client/cli"],
