@@ -30,7 +30,7 @@ bool trace_closest(const Context& context, const shading::Ray& ray, std::uint32_
                  ray.direction.z,
                  0.0f,
                  std::numeric_limits<float>::infinity(),
-                 ~0u,
+                 context.view.layers,
                  0,
                  0};
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -44,8 +44,8 @@ bool trace_closest(const Context& context, const shading::Ray& ray, std::uint32_
 bool trace_occluded(const Context& context, const glm::vec3& origin, const glm::vec3& segment, float far,
                     std::uint32_t seed) {
     TraceContext started = start(context, seed);
-    RTCRay ray{origin.x, origin.y, origin.z, shading::NearestHit, segment.x, segment.y, segment.z, 0.0f, far,
-               ~0u,      0,        0};
+    RTCRay ray{origin.x,  origin.y, origin.z, shading::NearestHit, segment.x, segment.y,
+               segment.z, 0.0f,     far,      context.view.layers, 0,         0};
     rtcOccluded1(context.top, &started.embree, &ray);
     return ray.tfar < 0.0f;
 }

@@ -67,6 +67,11 @@ DeviceHandle make_device(const backend::BackendSettings& settings) {
         throw Error(ErrorCode::Unavailable, std::string("Embree cannot start (") +
                                                 reason(rtcGetDeviceError(nullptr)) + ") with " + config);
     }
+    if (rtcGetDeviceProperty(device.get(), RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED) == 0) {
+        throw Error(
+            ErrorCode::Unavailable,
+            "this Embree was built without ray masks, which layers of objects need: use another build");
+    }
     return device;
 }
 

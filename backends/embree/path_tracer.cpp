@@ -8,6 +8,7 @@ namespace tessera::embree {
 PathTracer::PathTracer(const backend::SceneTables& tables, RTCScene top, const view::View& view,
                        Strategy strategy)
     : scene_(backend::on_host(tables)), view_(backend::make_view(view, tables.render_origin)), top_(top) {
+    scene_.features = backend::features_for(tables, view.layers);
     view_.strategy = static_cast<std::uint32_t>(strategy);
 }
 

@@ -2,7 +2,6 @@
 
 #include <array>
 
-
 namespace tessera::embree {
 
 World::World(RTCDevice device, std::shared_ptr<scene::BlobStore> blobs)
@@ -36,7 +35,7 @@ Expected<backend::EditReport> World::commit() {
     return edit;
 }
 
-void World::set_transform(std::uint32_t instance) {
+void World::place(std::uint32_t instance) {
     const shading::Instance& data = tables_.instances[instance];
     const std::array<float, 12> columns{data.linear[0].x,   data.linear[0].y,   data.linear[0].z,
                                         data.linear[1].x,   data.linear[1].y,   data.linear[1].z,
@@ -44,6 +43,7 @@ void World::set_transform(std::uint32_t instance) {
                                         data.translation.x, data.translation.y, data.translation.z};
     const RTCGeometry geometry = rtcGetGeometry(top_.get(), instance);
     rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
+    rtcSetGeometryMask(geometry, data.layers);
     rtcCommitGeometry(geometry);
 }
 
@@ -56,13 +56,13 @@ void World::rebuild_top() {
                                      mesh_scenes_.find(ObjectId{tables_.instances[i].object}));
         rtcSetGeometryTimeStepCount(geometry.get(), 1);
         rtcAttachGeometryByID(top_.get(), geometry.get(), i);
-        set_transform(i);
+        place(i);
     }
     rtcCommitScene(top_.get());
 }
 
 std::uint32_t World::retransform(const backend::SceneDelta& delta) {
-    for (const std::uint32_t instance : delta.moved_instances) set_transform(instance);
+    for (const std::uint32_t instance : delta.moved_instances) place(instance);
     if (!delta.geometries.empty()) {
         // Instances of a refitted mesh have other bounds.
         std::set<ObjectId> changed;

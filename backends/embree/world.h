@@ -26,7 +26,7 @@ class World {
   private:
     void rebuild_top();
     std::uint32_t retransform(const backend::SceneDelta& delta);
-    void set_transform(std::uint32_t instance);
+    void place(std::uint32_t instance);
     void mark_alpha_tested();
 
     RTCDevice device_;

@@ -52,7 +52,7 @@ Gradient gradient(const view::View& view, const backend::Lowered& lowered, std::
     const auto& instances = lowered.instances;
     const std::size_t cell =
         static_cast<std::size_t>(x / 16 + y / 16 * 7) % (instances.size() + 1);  // the last one is a miss
-    const bool hit = cell < instances.size();
+    const bool hit = cell < instances.size() && (instances[cell].layers & view.layers) != 0;
     const float depth = hit ? 1.0f + u + v + noise : std::numeric_limits<float>::infinity();
     return {.direct = {u * noise, v * noise, 0.5f * noise},
             .indirect = {0.1f * static_cast<float>(random.uniform()), 0.05f, 0.025f * noise},

@@ -87,7 +87,8 @@ void BvhPool::update_top(std::span<const shading::Instance> instances) {
                      .box = rows.tree.box,
                      .nodes = rows.nodes.item(),
                      .triangles = rows.triangles.item(),
-                     .alpha_tested = instance.alpha_tested != 0};
+                     .alpha_tested = instance.alpha_tested != 0,
+                     .layers = instance.layers};
     }
     boxes_.clear();
     for (const PlacedMesh& instance : placed) boxes_.push_back(world_box(instance));

@@ -15,9 +15,12 @@ void set_address(Array& array, const DeviceTable& table) {
 std::vector<RasterBound> bounds_of(const std::vector<Box>& boxes, const backend::SceneTables& tables) {
     std::vector<RasterBound> bounds(boxes.size());
     for (std::size_t i = 0; i < bounds.size(); ++i) {
-        const std::uint32_t triangles = tables.meshes[tables.instances[i].mesh].triangle_count;
-        bounds[i] = {
-            .low = boxes[i].low, .vertices = boxes[i].empty() ? 0 : 3 * triangles, .high = boxes[i].high};
+        const shading::Instance& instance = tables.instances[i];
+        const std::uint32_t triangles = tables.meshes[instance.mesh].triangle_count;
+        bounds[i] = {.low = boxes[i].low,
+                     .vertices = boxes[i].empty() ? 0 : 3 * triangles,
+                     .high = boxes[i].high,
+                     .layers = instance.layers};
     }
     return bounds;
 }

@@ -41,6 +41,7 @@ std::uint32_t PlainPool::update(const backend::MeshCatalog& meshes,
         mesh.linear = instance.linear;
         mesh.translation = instance.translation;
         mesh.alpha_tested = instance.alpha_tested != 0;
+        mesh.layers = instance.layers;
         placed.push_back(mesh);
     }
     top_ = append(pool, build_plain_top(builder_, placed));

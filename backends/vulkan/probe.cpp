@@ -26,14 +26,15 @@ bool stops_ray(const HostContext& context, const shading::Hit& candidate, std::u
 bool trace_closest(const HostContext& context, const shading::Ray& ray, std::uint32_t seed,
                    shading::Hit& hit) {
     hit = shading::bvh_trace(context.pool, context.top, ray.origin, ray.direction, shading::NearestHit,
-                             shading::infinity(), shading::BvhClosest | shading::BvhAlpha, context, seed);
+                             shading::infinity(), shading::BvhClosest | shading::BvhAlpha,
+                             context.view.layers, context, seed);
     return hit.instance != shading::NoInstance;
 }
 
 bool trace_occluded(const HostContext& context, const glm::vec3& origin, const glm::vec3& segment, float far,
                     std::uint32_t seed) {
     return shading::bvh_trace(context.pool, context.top, origin, segment, shading::NearestHit, far,
-                              shading::BvhAny | shading::BvhAlpha, context, seed)
+                              shading::BvhAny | shading::BvhAlpha, context.view.layers, context, seed)
                .instance != shading::NoInstance;
 }
 
@@ -51,7 +52,8 @@ shading::Path trace_drawn(const HostContext& context, glm::uvec2 pixel, std::uin
 std::vector<std::string> replay(Device& device, const GpuScene& scene, const backend::SceneTables& tables,
                                 const shading::View& view, glm::uvec2 pixel, std::uint64_t sample) {
     const auto pool = download<glm::uvec4>(device, scene.pool());
-    const shading::Scene on_host = backend::on_host(tables);
+    shading::Scene on_host = backend::on_host(tables);
+    on_host.features = backend::features_for(tables, view.layers);
     backend::Story story;
     const HostContext context{{&story}, on_host, view, {pool.data()}, scene.top()};
     const shading::Path path = view.renderer == shading::RendererRaster

@@ -57,7 +57,7 @@ class UnitRun {
           film_(unit, channels) {
         const bool trees =
             view.renderer != shading::RendererPathTracing || (view.keeps & shading::KeepsRange) != 0;
-        kernel_ = &kernels_.find({.features = scene_.features(),
+        kernel_ = &kernels_.find({.features = with.features,
                                   .specular_trees = trees,
                                   .rasterised = with.raster != nullptr,
                                   .traversal = scene_.traversal()});

@@ -19,6 +19,7 @@ struct TileRenderer {
     Kernels& kernels;
     Pace& pace;
     const GpuScene& scene;
+    std::uint32_t features = 0;           // of the scene for the view (backend::features_for)
     const RasterTools* raster = nullptr;  // for first hits that are drawn (view::Renderer::Raster)
 
     backend::RenderResult run(const shading::View& view, const view::WorkUnit& unit,

@@ -54,8 +54,11 @@ class VulkanBackend final : public Backend {
             const shading::View record = make_view(view, world_.tables().render_origin);
             const bool rasters = view.renderer == view::Renderer::Raster;
             const RasterTools tools{opened_->raster, opened_->targets, {}};
-            const TileRenderer renderer{opened_->device, opened_->kernels,
-                                        rasters ? opened_->raster_pace : opened_->pace, world_.scene(),
+            const TileRenderer renderer{opened_->device,
+                                        opened_->kernels,
+                                        rasters ? opened_->raster_pace : opened_->pace,
+                                        world_.scene(),
+                                        features_for(world_.tables(), view.layers),
                                         rasters ? &tools : nullptr};
             return renderer.run(record, unit, view.channels, stop);
         });

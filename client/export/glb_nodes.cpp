@@ -28,6 +28,11 @@ void set_light(tinygltf::Node& node, int light) {
     node.extensions["KHR_lights_punctual"] = Value(Value::Object{{"light", Value(light)}});
 }
 
+void set_layers(tinygltf::Node& node, std::uint32_t layers) {
+    using tinygltf::Value;
+    node.extras = Value(Value::Object{{"tessera_layers", Value(static_cast<double>(layers))}});
+}
+
 // Looks before nodes are made: shared transforms may unfold to any number.
 void check_size(const scene::Scene& scene, const std::vector<ObjectId>& roots) {
     std::vector<ObjectId> open = roots;
@@ -61,6 +66,7 @@ std::vector<int> GlbNodes::build(const std::vector<ObjectId>& roots) {
         std::vector<int> below = hang(transform.children, place.node);
         auto& node = model_.nodes[static_cast<std::size_t>(place.node)];
         node.children = std::move(below);
+        if (transform.layers != 0) set_layers(node, transform.layers);
         if (transform.matrix == glm::dmat4(1.0)) continue;
         for (int i = 0; i < 16; ++i) node.matrix.push_back(transform.matrix[i / 4][i % 4]);
     }

@@ -98,6 +98,13 @@ std::vector<ObjectId> GltfNodes::build() {
             builder_.notice("node '" + transform.name + "': " + matrix.error().what() +
                             "; it is drawn unmoved");
         }
+        const auto layers = node_layers(model_.nodes[static_cast<std::size_t>(node)]);
+        if (layers) {
+            transform.layers = *layers;
+        } else {
+            builder_.notice("node '" + transform.name + "': " + layers.error().what() +
+                            "; it is in its parent's layers");
+        }
         ids[node] = builder_.add(std::move(transform));
     }
     for (const auto& [index, below] : tree.children) {

@@ -67,6 +67,19 @@ Expected<glm::dmat4> node_matrix(const tinygltf::Node& node) {
                      vector(node.scale, 1.0));
 }
 
+Expected<std::uint32_t> node_layers(const tinygltf::Node& node) {
+    constexpr const char* Name = "tessera_layers";
+    if (!node.extras.IsObject() || !node.extras.Has(Name)) return 0u;
+    const tinygltf::Value& value = node.extras.Get(Name);
+    // The reader makes ints of whole numbers, those from 2^31 on with another sign.
+    if (value.IsInt()) return static_cast<std::uint32_t>(value.GetNumberAsInt());
+    const double number = value.IsNumber() ? value.GetNumberAsDouble() : -1.0;
+    if (!(number >= 0.0 && number < 4294967296.0) || number != std::floor(number)) {
+        return invalid("its tessera_layers are no whole number from 0 to 4294967295");
+    }
+    return static_cast<std::uint32_t>(number);
+}
+
 Expected<scene::Light> punctual_light(const tinygltf::Light& source) {
     scene::Light light;
     light.name = source.name;

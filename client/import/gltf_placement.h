@@ -25,6 +25,9 @@ Expected<glm::dmat4> placement(const glm::dvec3& translation, const glm::dvec4& 
 // The node's matrix, or that of its translation, rotation and scale.
 Expected<glm::dmat4> node_matrix(const tinygltf::Node& node);
 
+// What its extras name as "tessera_layers": a mask, 0 where there is none.
+Expected<std::uint32_t> node_layers(const tinygltf::Node& node);
+
 Expected<scene::Light> punctual_light(const tinygltf::Light& light);
 Expected<scene::Camera> perspective_camera(const tinygltf::Camera& camera);
 

@@ -50,6 +50,16 @@ std::vector<std::string> split_list(std::string_view text) {
     return items;
 }
 
+Expected<std::uint32_t> parse_layers(std::string_view text) {
+    std::uint32_t mask = 0;
+    for (const std::string_view part : split(text, ',')) {
+        const auto layer = number<std::uint32_t>(part);
+        if (!layer || *layer > 31) return wrong(text, "names no layers; write numbers of 0 to 31 like 0,2");
+        mask |= 1u << *layer;
+    }
+    return mask;
+}
+
 Expected<Size> parse_size(std::string_view text) {
     const auto parts = split(text, 'x');
     const auto width = number<std::uint32_t>(parts[0]);

@@ -31,6 +31,8 @@ Expected<Rect> parse_crop(std::string_view text, Size picture);  // "X,Y,W,H" in
 Expected<glm::vec3> parse_color(std::string_view text);     // "R,G,B", finite and not negative; or one number
 Expected<Duration> parse_duration(std::string_view text);   // "800ms", "2.5s", "3m", "1h", above zero
 Expected<NodeWait> parse_node_wait(std::string_view text);  // "N" or "N:seconds"
+Expected<std::uint32_t> parse_layers(
+    std::string_view text);  // "0,2", each of 0 to 31: a mask, bit i is layer i
 Expected<PixelPlace> parse_pixel(std::string_view text, Size picture);  // "X,Y" inside the picture
 
 }  // namespace tessera::tools

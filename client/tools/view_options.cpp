@@ -43,6 +43,7 @@ void ViewOptions::add_to(cli::CommandLine& command) {
     command.choice("--path-class", "paths that the pixel filter may blur", path_class, path_class_names());
     command.choice("--feature-rule", "what the shading feature of the filter fdf counts", feature_rule,
                    {"demodulated", "connections"});
+    command.option("--layers", "see only objects in these layers of the scene, 0 to 31: 0,2 (all)", layers);
     command.flag("--transparent", "nothing behind the scene: write alpha", transparent);
 }
 
@@ -89,6 +90,11 @@ Expected<ViewPlan> understand(const ViewOptions& options) {
         std::find(classes.begin(), classes.end(), options.path_class) - classes.begin());
     plan.view.feature_rule = options.feature_rule == "connections" ? view::FeatureRule::Connections
                                                                    : view::FeatureRule::Demodulated;
+    if (options.layers) {
+        const auto layers = parse_layers(*options.layers);
+        if (!layers) return wrong("--layers", layers.error());
+        plan.view.layers = *layers;
+    }
     plan.view.transparent_background = options.transparent;
     if (options.transparent) plan.view.channels.insert(frame::Channel::Alpha);
     plan.view.pixel_filter = pixel_filter(options.pixel_filter);

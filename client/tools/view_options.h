@@ -17,7 +17,7 @@ namespace tessera::tools {
 struct ViewOptions {
     std::string scene;
     std::string size = "1280x720";
-    std::optional<std::string> camera, background, environment, crop;
+    std::optional<std::string> camera, background, environment, crop, layers;
     std::vector<std::string> hidden, materials;
     double environment_strength = 1.0;
     std::uint32_t bounces = 8;

@@ -44,6 +44,7 @@ void LiveRunner::pick(SessionId session, const wire::Pick& request, Version vers
     view.width = view.height = 1;
     view.window = {0, 0, 1, 1};
     view.max_bounces = 0;
+    view.layers = seen.layers;
     view.channels = PickChannels;
     task.along_axis = std::sqrt(1.0 + x * x + y * y);
     task.eye = glm::dvec3(camera.world_from_camera[3]);

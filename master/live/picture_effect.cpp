@@ -41,7 +41,8 @@ struct Matters {
     }
     bool operator()(const Transform&) const {
         if (any<Transform>(Transform::Field::Children)) return true;
-        return any<Transform>(Transform::Field::Matrix) && holds_content(after, update.id);
+        return any<Transform>({Transform::Field::Matrix, Transform::Field::Layers}) &&
+               holds_content(after, update.id);
     }
     bool operator()(const Geometry&) const {
         return any_but<Geometry>({Geometry::Field::Name, Geometry::Field::Hint});

@@ -78,24 +78,36 @@ class Counting {
     std::unordered_map<ObjectId, Below> known_;  // placements < 0: being walked
 };
 
+// What a branch of the graph has from the transforms above it.
+struct Inherited {
+    glm::dmat4 world{1.0};
+    MotionHint hint = MotionHint::Unflagged;
+    std::uint32_t layers = scene::RootLayers;
+
+    Inherited below(const scene::Transform& transform) const {
+        return {.world = world * transform.matrix,
+                .hint = transform.hint == MotionHint::Unflagged ? hint : transform.hint,
+                .layers = transform.layers == 0 ? layers : transform.layers};
+    }
+};
+
 class Unfolding {
   public:
     Unfolding(const scene::Scene& scene, const Counting& counted) : scene_(scene), counted_(counted) {}
 
-    void children(const std::vector<ObjectId>& ids, const glm::dmat4& world, MotionHint hint) {
+    void children(const std::vector<ObjectId>& ids, const Inherited& above) {
         for (const ObjectId id : distinct(ids)) {
             const scene::Object* object = scene_.find(id);
             if (!object) continue;
             if (const auto* geometry = std::get_if<scene::Geometry>(object)) {
-                const MotionHint own = geometry->hint == MotionHint::Unflagged ? hint : geometry->hint;
-                result.instances.push_back({id, world, own, path_});
+                const MotionHint own = geometry->hint == MotionHint::Unflagged ? above.hint : geometry->hint;
+                result.instances.push_back({id, above.world, own, above.layers, path_});
             } else if (std::holds_alternative<scene::Light>(*object)) {
-                result.lights.push_back({id, world, path_});
+                result.lights.push_back({id, above.world, above.layers, path_});
             } else if (const auto* transform = std::get_if<scene::Transform>(object)) {
                 if (!counted_.anything_below(id)) continue;
                 path_.push_back(id);
-                children(transform->children, world * transform->matrix,
-                         transform->hint == MotionHint::Unflagged ? hint : transform->hint);
+                children(transform->children, above.below(*transform));
                 path_.pop_back();
             }
         }
@@ -124,7 +136,7 @@ Expected<Lowered> lower(const scene::Scene& scene, std::size_t limit) {
                                                     " instances; share less, or split the scene");
     }
     Unfolding unfolding(scene, counting);
-    unfolding.children(root->children, glm::dmat4(1.0), MotionHint::Unflagged);
+    unfolding.children(root->children, {});
     Lowered lowered = std::move(unfolding.result);
     std::sort(lowered.instances.begin(), lowered.instances.end(), [](const Instance& a, const Instance& b) {
         return std::tie(a.geometry, a.path) < std::tie(b.geometry, b.path);

@@ -16,13 +16,15 @@ struct Instance {
     ObjectId geometry;
     glm::dmat4 world_from_object{1.0};
     scene::MotionHint hint =
-        scene::MotionHint::Unflagged;  // of the geometry or the nearest flagged transform
-    std::vector<ObjectId> path;        // transforms from the root down
+        scene::MotionHint::Unflagged;          // of the geometry or the nearest flagged transform
+    std::uint32_t layers = scene::RootLayers;  // never 0
+    std::vector<ObjectId> path;                // transforms from the root down
 };
 
 struct PlacedLight {
     ObjectId light;
     glm::dmat4 world_from_light{1.0};
+    std::uint32_t layers = scene::RootLayers;  // never 0
     std::vector<ObjectId> path;
 };
 

@@ -123,12 +123,16 @@ void ShadowScene::record_relowering(const Lowered& before) {
         return a.geometry == b.geometry && a.path == b.path && a.hint == b.hint;
     };
     const auto same_light = [](const PlacedLight& a, const PlacedLight& b) {
-        return a.light == b.light && a.path == b.path && a.world_from_light == b.world_from_light;
+        return a.light == b.light && a.path == b.path && a.world_from_light == b.world_from_light &&
+               a.layers == b.layers;
     };
     const auto& now = lowered_.instances;
     if (std::equal(now.begin(), now.end(), before.instances.begin(), before.instances.end(), same_member)) {
         for (std::uint32_t i = 0; i < now.size(); ++i) {
-            if (now[i].world_from_object != before.instances[i].world_from_object) moved_.insert(i);
+            const Instance& old = before.instances[i];
+            const bool is_same =
+                now[i].world_from_object == old.world_from_object && now[i].layers == old.layers;
+            if (!is_same) moved_.insert(i);
         }
     } else {
         delta_.instances_changed = true;
@@ -300,7 +304,8 @@ void ShadowScene::touch_updated(Touched& touched, const scene::Update& update) c
         touched.render_origin |= fields.contains(Root::Field::RenderOrigin);
     } else if (std::holds_alternative<Transform>(update.fields)) {
         const auto fields = Fields<Transform>::from_bits(mask);
-        touched.structure |= fields.intersects({Transform::Field::Children, Transform::Field::Hint});
+        touched.structure |=
+            fields.intersects({Transform::Field::Children, Transform::Field::Hint, Transform::Field::Layers});
         if (fields.contains(Transform::Field::Matrix)) touched.moved_transforms.push_back(update.id);
     } else if (std::holds_alternative<Geometry>(update.fields)) {
         const auto fields = Fields<Geometry>::from_bits(mask);

@@ -17,8 +17,8 @@ struct SceneDelta {
     bool everything = false;         // a snapshot: nothing of before counts
     bool instances_changed = false;  // the flat list has other members; compare by value, not by index
     bool lights_changed = false;     // placed lights: members, places or values
-    std::vector<std::uint32_t>
-        moved_instances;  // indices into lowered().instances, when not instances_changed
+    // Indices into lowered().instances, when not instances_changed: at another place or in other layers.
+    std::vector<std::uint32_t> moved_instances;
     struct GeometryChange {
         ObjectId id;
         scene::Fields<scene::Geometry> fields;

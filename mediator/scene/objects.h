@@ -23,15 +23,18 @@ namespace tessera::scene {
 enum class MotionHint : std::uint8_t { Unflagged, Static, Animated };
 
 // The graph's inner node. Children may be transforms, geometries, lights, cameras and attachments; shared
-// children are instances. No cycles.
+// children are instances. No cycles. Layers (Schwenk F55) are for views to leave out: an object is in those
+// of the nearest transform above it that names some, else in RootLayers.
 struct Transform {
-    enum class Field : std::uint8_t { Name, Matrix, Children, Hint };
+    enum class Field : std::uint8_t { Name, Matrix, Children, Hint, Layers };
     std::string name;
     glm::dmat4 matrix{1.0};  // parent from local, affine
     std::vector<ObjectId> children;
     MotionHint hint = MotionHint::Unflagged;
+    std::uint32_t layers = 0;  // bit i: what hangs below is in layer i; 0 = as the parent says
     static constexpr auto fields() {
-        return std::tuple(&Transform::name, &Transform::matrix, &Transform::children, &Transform::hint);
+        return std::tuple(&Transform::name, &Transform::matrix, &Transform::children, &Transform::hint,
+                          &Transform::layers);
     }
 };
 
@@ -207,6 +210,7 @@ struct Root {
 };
 
 inline constexpr ObjectId RootId{1};
+inline constexpr std::uint32_t RootLayers = 1;  // layer 0
 
 using Object =
     std::variant<Root, Transform, Geometry, Material, Texture, Light, Camera, Background, Attachment>;

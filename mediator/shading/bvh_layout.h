@@ -50,7 +50,8 @@ struct BvhInstance {
     uint nodes, triangles;              // where the mesh's rows begin, in items of the pool
     uint instance;                      // index in the scene
     uint flags;                         // BvhAlphaTested
-    uvec4 unused;
+    uint layers;                        // rays of none of them pass it by
+    uvec3 unused;
 };
 
 inline constexpr uint BvhAlphaTested = 2u;  // what it hits has to be asked
@@ -73,7 +74,7 @@ static_assert(offsetof(BvhInstance, object_x) == 0 && offsetof(BvhInstance, obje
 static_assert(offsetof(BvhInstance, object_z) == 32);
 static_assert(offsetof(BvhInstance, nodes) == 48 && offsetof(BvhInstance, triangles) == 52);
 static_assert(offsetof(BvhInstance, instance) == 56 && offsetof(BvhInstance, flags) == 60);
-static_assert(offsetof(BvhInstance, unused) == 64);
+static_assert(offsetof(BvhInstance, layers) == 64 && offsetof(BvhInstance, unused) == 68);
 static_assert(BvhStackSize >= BvhTopDepth + BvhMeshDepth + 2);
 
 #endif

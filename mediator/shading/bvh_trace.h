@@ -75,6 +75,11 @@ inline BvhPlace bvh_enter(BvhItems pool, uint at, vec3 origin, vec3 direction) {
     return place;
 }
 
+// Whether a ray of these layers passes the instance there by.
+inline bool bvh_is_hidden(BvhItems pool, uint at, uint layers) {
+    return layers != AllLayers && (bvh_item(pool, at + 4u).x & layers) == 0u;
+}
+
 struct BvhStep {
     uint first_child, first_triangle;
     BvhVisit visit;
@@ -108,12 +113,13 @@ inline Hit bvh_meet(BvhItems pool, uint at, IN(BvhPlace) place, float near, IN(H
 }
 
 // The closest hit with near < distance <= far, or any; distance = far where there is none. `top`: where the
-// top level's root is, in items. Whoever includes this says what Context is and defines
+// top level's root is, in items. `layers`: instances in none of them are not there; AllLayers, as a constant,
+// costs nothing. Whoever includes this says what Context is and defines
 //     bool stops_ray(IN(Context) context, IN(Hit) candidate, uint seed)
 // before. Memory: BvhStackSize entries of 8 bytes; the builder bounds the depth of every tree.
 WITH_CONTEXT
 inline Hit bvh_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float near, float far,
-                     uint question, IN(Context) context, uint seed) {
+                     uint question, uint layers, IN(Context) context, uint seed) {
     Hit hit;
     hit.distance = far;
     hit.barycentric = vec2(0.0f, 0.0f);
@@ -175,7 +181,8 @@ inline Hit bvh_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float
             if (bvh_is_node(list)) place = bvh_top(top, origin, direction);
         }
         if (triangles == 0u && list > BvhLeave && !bvh_is_node(list)) {  // into an instance
-            place = bvh_enter(pool, top + (first + (list & 7u)) * BvhInstanceItems, origin, direction);
+            const uint at = top + (first + (list & 7u)) * BvhInstanceItems;
+            place = bvh_enter(pool, at, origin, direction);
             list = bvh_without_nearest(list);
             stack_first[height + 1u] = first;
             stack_list[height + 1u] = list;
@@ -183,6 +190,10 @@ inline Hit bvh_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float
             stack_list[height] = BvhLeave;
             first = 0u;
             list = BvhRoot;
+            if (bvh_is_hidden(pool, at, layers)) {  // and out again
+                list = BvhLeave;
+                height -= 1u;
+            }
         }
     }
     return hit;

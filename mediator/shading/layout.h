@@ -51,7 +51,7 @@ static_assert(offsetof(Mesh, tex_coords) == 40);
 static_assert(offsetof(Mesh, arrays) == 48);
 static_assert(offsetof(Mesh, triangle_count) == 52);
 
-static_assert(sizeof(Instance) == 104);
+static_assert(sizeof(Instance) == 108);
 static_assert(offsetof(Instance, mesh) == 0);
 static_assert(offsetof(Instance, material) == 4);
 static_assert(offsetof(Instance, object) == 8);
@@ -60,8 +60,9 @@ static_assert(offsetof(Instance, linear) == 16);
 static_assert(offsetof(Instance, translation) == 52);
 static_assert(offsetof(Instance, normals) == 64);
 static_assert(offsetof(Instance, alpha_tested) == 100);
+static_assert(offsetof(Instance, layers) == 104);
 
-static_assert(sizeof(LightSource) == 64);
+static_assert(sizeof(LightSource) == 68);
 static_assert(offsetof(LightSource, kind) == 0);
 static_assert(offsetof(LightSource, probability) == 4);
 static_assert(offsetof(LightSource, intensity) == 8);
@@ -72,6 +73,7 @@ static_assert(offsetof(LightSource, cos_outer) == 48);
 static_assert(offsetof(LightSource, instance) == 52);
 static_assert(offsetof(LightSource, area_sums) == 56);
 static_assert(offsetof(LightSource, inverse_root_area) == 60);
+static_assert(offsetof(LightSource, layers) == 64);
 
 static_assert(sizeof(Environment) == 64);
 static_assert(offsetof(Environment, map) == 0);
@@ -98,7 +100,7 @@ static_assert(offsetof(Scene, environment_light) == 132);
 static_assert(offsetof(Scene, features) == 136);
 static_assert(offsetof(Scene, unused) == 140);
 
-static_assert(sizeof(View) == 120);
+static_assert(sizeof(View) == 128);
 static_assert(offsetof(View, seed) == 0);
 static_assert(offsetof(View, eye) == 8);
 static_assert(offsetof(View, right) == 20);
@@ -118,5 +120,7 @@ static_assert(offsetof(View, channels) == 104);
 static_assert(offsetof(View, keeps) == 108);
 static_assert(offsetof(View, transparent_background) == 112);
 static_assert(offsetof(View, strategy) == 116);
+static_assert(offsetof(View, layers) == 120);
+static_assert(offsetof(View, unused) == 124);
 
 }  // namespace tessera::shading

@@ -119,9 +119,15 @@ inline LightSample sample_source(IN(Scene) scene, IN(LightSource) light, IN(Surf
     return sample_point_light(light, surface);
 }
 
-inline LightSample sample_light(IN(Scene) scene, IN(Surface) surface, float choice, vec2 u) {
+// Of a light in none of the layers comes nothing: who chose it has lost the sample, so that the choice is the
+// same for all views. With a share p of the choice hidden, the light found has 1 / (1 - p) times the
+// variance.
+inline LightSample sample_light(IN(Scene) scene, uint layers, IN(Surface) surface, float choice, vec2 u) {
     if (scene.light_count == 0u) return no_light();
     const uint index = first_above(scene.sums, scene.light_sums, scene.light_count, choice);
+    if ((scene.features & FeatureLayers) != 0u && (scene.lights.items[index].layers & layers) == 0u) {
+        return no_light();
+    }
     return sample_source(scene, scene.lights.items[index], surface, u);
 }
 

@@ -51,7 +51,7 @@ inline float plain_enter(IN(BvhRay) ray, uint child, uvec4 low_item, uvec4 high_
 
 WITH_CONTEXT
 inline Hit plain_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float near, float far,
-                       uint question, IN(Context) context, uint seed) {
+                       uint question, uint layers, IN(Context) context, uint seed) {
     Hit hit;
     hit.distance = far;
     hit.barycentric = vec2(0.0f, 0.0f);
@@ -84,10 +84,12 @@ inline Hit plain_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, flo
                 height -= height > 0u ? 1u : 0u;
             }
         } else if (place.instance == NoInstance) {
-            place = bvh_enter(pool, instances + (child & ~PlainLeaf) * BvhInstanceItems, origin, direction);
-            height += 1u;
-            stack[height] = PlainLeave;
-            child = 0u;
+            const uint at = instances + (child & ~PlainLeaf) * BvhInstanceItems;
+            place = bvh_enter(pool, at, origin, direction);
+            const bool hidden = bvh_is_hidden(pool, at, layers);
+            stack[height + 1u] = PlainLeave;
+            height += hidden ? 0u : 1u;
+            child = hidden ? PlainLeave : 0u;
         } else {
             const uint first = (child & ~PlainLeaf) >> 2u;
             for (uint i = 0u; i < (child & 3u); ++i) {

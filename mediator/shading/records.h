@@ -74,6 +74,8 @@ struct Mesh {
     uint triangle_count;
 };
 
+inline constexpr uint AllLayers = 0xffffffffu;
+
 struct Instance {
     uint mesh;      // index
     uint material;  // index
@@ -83,6 +85,7 @@ struct Instance {
     vec3 translation;
     mat3 normals;       // cofactors of `linear` times a power of two: they turn normals, to their own side
     uint alpha_tested;  // whether a hit has to be asked (stops_at)
+    uint layers;        // not there for views that see none of them
 };
 
 inline constexpr uint LightPoint = 0u, LightSpot = 1u, LightDirectional = 2u, LightMesh = 3u,
@@ -99,6 +102,7 @@ struct LightSource {
     uint instance;            // of a mesh light:
     uint area_sums;           // index of its triangles' cumulative areas in the world, normalised to end at 1
     float inverse_root_area;  // 1 / square root of its area in the world, which may leave the range of floats
+    uint layers;              // as of an instance
 };
 
 // Light from infinitely far: color + strength x map. A map of width 0 is none.
@@ -116,6 +120,8 @@ struct Environment {
 inline constexpr uint FeatureTextures = 1u, FeatureNormalMaps = 2u, FeatureAlpha = 4u, FeatureSpecular = 8u,
                       FeaturePlacedLights = 16u, FeatureMeshLights = 32u, FeatureEnvironment = 64u,
                       FeatureEnvironmentMap = 128u;
+// Of a scene and a view together: some of it is in none of the view's layers.
+inline constexpr uint FeatureLayers = 256u;
 
 ARRAY_OF(Texture, TextureArray, 8);
 ARRAY_OF(Material, MaterialArray, 4);
@@ -172,6 +178,8 @@ struct View {
     uint keeps;
     uint transparent_background;
     uint strategy;
+    uint layers;  // that it sees
+    uint unused;  // keeps the size a multiple of the seed's
 };
 
 SHADING_END

@@ -102,7 +102,7 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
     if (context.scene.light_count == 0u) return;
     const vec2 choice = pair_at(path, PairLightChoice);
     const vec2 u = pair_at(path, PairLightPoint);
-    const LightSample light = sample_light(context.scene, surface, choice.x, u);
+    const LightSample light = sample_light(context.scene, context.view.layers, surface, choice.x, u);
     if (!(light.pdf > 0.0f) || !(largest(light.radiance) > 0.0f)) return;
     if (context.view.strategy == StrategyBsdfOnly && !light.delta) return;
     if (!(dot(light.direction, surface.geometric_normal) > 0.0f)) return;

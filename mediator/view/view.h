@@ -86,6 +86,8 @@ enum class FeatureRule : std::uint8_t {
 
 inline constexpr std::uint32_t UnlimitedBounces = std::numeric_limits<std::uint32_t>::max();
 
+inline constexpr std::uint32_t AllLayers = 0xffffffff;  // of objects: bit i is layer i
+
 // What to render, by value: a sample is a pure function of (scene content, view, pixel, sample index).
 // A new revision means: old film is of no use. A moved camera is a revision, never a scene version.
 struct View {
@@ -102,6 +104,7 @@ struct View {
     PathClass path_class = PathClass::Indirect;
     FeatureRule feature_rule = FeatureRule::Demodulated;
     bool transparent_background = false;  // camera rays that leave the scene bring no light (alpha 0)
+    std::uint32_t layers = AllLayers;     // for its rays and its light there is nothing else
     frame::ChannelSet channels;
     std::string filter;  // NAME[:key=value,...] of the reconstruction, done on the master; empty = none
     friend bool operator==(const View&, const View&) = default;

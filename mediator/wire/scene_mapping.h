@@ -61,6 +61,7 @@ void map(const Io& io, typename Io::template Ref<scene::Transform> s, proto::Tra
     if (io.has(Matrix)) io.matrix(s.matrix, p.mutable_matrix());
     if (io.has(Children)) io.list(s.children, p.mutable_children(), MaxChildren);
     if (io.has(Hint)) io(s.hint, p, &P::hint, &P::set_hint);
+    if (io.has(Layers)) io(s.layers, p, &P::layers, &P::set_layers);
 }
 
 template <class Io>

@@ -83,6 +83,9 @@ void map(const Io& io, typename Io::template Ref<view::View> s, proto::View& p) 
     io(s.transparent_background, p, &P::transparent_background, &P::set_transparent_background);
     map_channels(io, s.channels, p, &P::channels, &P::set_channels);
     io.text(s.filter, p.mutable_filter());
+    std::uint32_t hidden = ~s.layers;
+    io(hidden, p, &P::hidden_layers, &P::set_hidden_layers);
+    if constexpr (std::is_same_v<Io, Reader>) s.layers = ~hidden;
 }
 
 template <class Io>

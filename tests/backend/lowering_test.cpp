@@ -133,6 +133,23 @@ TEST(Lowering, TheHintIsTheGeometrysOrThatOfTheNearestFlaggedTransform) {
     EXPECT_EQ(own->instances[0].hint, MotionHint::Static);
 }
 
+TEST(Lowering, TheLayersAreThoseOfTheNearestTransformThatNamesSome) {
+    std::vector<scene::Entry> entries = two_copies();
+    const auto layers = [&](std::size_t entry) -> std::uint32_t& {
+        return std::get<scene::Transform>(std::get<Create>(entries[entry]).object).layers;
+    };
+    const auto found = [&] {
+        const Lowered lowered = lower(made(entries)).value();
+        return std::vector{lowered.instances.at(0).layers, lowered.instances.at(1).layers,
+                           lowered.lights.at(0).layers};
+    };
+    EXPECT_EQ(found(), (std::vector{1u, 1u, 1u})) << "nobody names any: layer 0";
+    layers(2) = 6;
+    EXPECT_EQ(found(), (std::vector{1u, 6u, 6u}));
+    layers(3) = 8;  // below both, above the geometry
+    EXPECT_EQ(found(), (std::vector{8u, 8u, 6u}));
+}
+
 TEST(Lowering, TheLimitCountsInstancesAndLights) {
     const scene::Scene scene = made(two_copies());
     EXPECT_TRUE(lower(scene, 3));

@@ -37,11 +37,13 @@ void expect_like_rebuilt(const ShadowScene& shadow) {
         EXPECT_EQ(a.instances[i].geometry, b.instances[i].geometry);
         EXPECT_EQ(a.instances[i].path, b.instances[i].path);
         EXPECT_EQ(a.instances[i].hint, b.instances[i].hint);
+        EXPECT_EQ(a.instances[i].layers, b.instances[i].layers);
         EXPECT_EQ(a.instances[i].world_from_object, b.instances[i].world_from_object);
     }
     ASSERT_EQ(a.lights.size(), b.lights.size());
     for (std::size_t i = 0; i < a.lights.size(); ++i) {
         EXPECT_EQ(a.lights[i].world_from_light, b.lights[i].world_from_light);
+        EXPECT_EQ(a.lights[i].layers, b.lights[i].layers);
     }
 }
 
@@ -114,6 +116,23 @@ TEST_F(ShadowSceneTest, ReparentingThatKeepsTheMembersIsNoChangeOfTheList) {
         {SceneBuilder::update<Transform>(Left, Transform::Field::Children, transform({}, {Inner, Inner}))});
     EXPECT_FALSE(delta.instances_changed);
     EXPECT_TRUE(delta.moved_instances.empty());
+}
+
+TEST_F(ShadowSceneTest, OtherLayersAreToldAsMovesOfWhatHangsBelow) {
+    const auto put = [](ObjectId id, std::uint32_t layers) {
+        return SceneBuilder::update<Transform>(id, Transform::Field::Layers, Transform{.layers = layers});
+    };
+    SceneDelta delta = edit({put(Left, 4)});
+    EXPECT_FALSE(delta.instances_changed);
+    EXPECT_EQ(delta.moved_instances, std::vector<std::uint32_t>{0});
+    EXPECT_FALSE(delta.lights_changed);
+    delta = edit({put(Right, 2)});
+    EXPECT_EQ(delta.moved_instances, std::vector<std::uint32_t>{1});
+    EXPECT_TRUE(delta.lights_changed);
+    ASSERT_TRUE(shadow.apply(builder.edit({put(Right, 16)})));
+    shadow.rollback();
+    EXPECT_EQ(shadow.lowered().instances.at(1).layers, 2u);
+    expect_like_rebuilt(shadow);
 }
 
 TEST_F(ShadowSceneTest, ARemovedAndANewGeometryAreTold) {

@@ -123,6 +123,30 @@ TEST(Tables, LightsAreChosenByPowerAndATenthUniformly) {
               shading::FeatureMeshLights | shading::FeaturePlacedLights | shading::FeatureEnvironment);
 }
 
+TEST(Tables, WhatIsInLayersIsMarkedAndSoIsAViewThatDoesNotSeeAll) {
+    Stage stage;
+    scene::Transform place = transform(moved(0.0, 0.0, 0.0), {Corner, Bulb});
+    place.layers = 6;
+    const SceneTables tables = stage.make(
+        {Create{scene::RootId, scene::Root{.children = {Panel, Place}, .background = Sky}},
+         Create{Place, place}, Create{Corner, stage.corner(Glow)}, Create{Panel, stage.corner(Paint)},
+         Create{Bulb, scene::Light{}}, Create{Paint, scene::Material{}},
+         Create{Glow, scene::Material{.emission = glm::vec3(2.0f)}},
+         Create{Sky, scene::Background{.color = glm::vec3(0.5f)}}});
+    ASSERT_EQ(tables.lights.size(), 3u);
+    EXPECT_EQ(tables.instances.at(0).layers, 6u);
+    EXPECT_EQ(tables.instances.at(1).layers, 1u);
+    EXPECT_EQ(tables.lights[0].layers, 6u) << "the panel that glows";
+    EXPECT_EQ(tables.lights[1].layers, 6u) << "the bulb";
+    EXPECT_EQ(tables.lights[2].layers, shading::AllLayers) << "the sky is for all";
+    for (const std::uint32_t sees_all : {shading::AllLayers, 3u, 5u}) {
+        EXPECT_EQ(features_for(tables, sees_all), tables.scene.features);
+    }
+    for (const std::uint32_t hides : {0u, 1u, 4u, 8u}) {
+        EXPECT_EQ(features_for(tables, hides), tables.scene.features | shading::FeatureLayers) << hides;
+    }
+}
+
 TEST(Tables, AFlattenedLampIsNoLightAndABlackSkyNeither) {
     Stage stage;
     const glm::dmat4 flat = glm::scale(glm::dmat4(1.0), glm::dvec3(0.0));

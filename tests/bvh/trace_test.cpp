@@ -24,7 +24,8 @@ std::string text(const Hit& hit) {
 }
 
 // Rays of many kinds around a scene of that size.
-std::vector<TestRay> rays_around(const TracedScene& scene, float size, std::uint32_t count) {
+std::vector<TestRay> rays_around(const TracedScene& scene, float size, std::uint32_t count,
+                                 std::uint32_t layers) {
     CounterRandom random(17);
     std::vector<TestRay> rays;
     const TestMesh& mesh = scene.mesh(0);
@@ -51,14 +52,16 @@ std::vector<TestRay> rays_around(const TracedScene& scene, float size, std::uint
             default:
                 break;
         }
+        ray.layers = layers;
         rays.push_back(ray);
     }
     return rays;
 }
 
-void expect_tree_unseen(const TracedScene& scene, float size, std::uint32_t count) {
+void expect_tree_unseen(const TracedScene& scene, float size, std::uint32_t count,
+                        std::uint32_t layers = shading::AllLayers) {
     std::uint32_t hits = 0, different = 0;
-    for (const TestRay& ray : rays_around(scene, size, count)) {
+    for (const TestRay& ray : rays_around(scene, size, count, layers)) {
         for (const std::uint32_t question : {shading::BvhClosest, shading::BvhAlpha}) {
             const Hit all = scene.ask_all(ray, question), found = scene.trace(ray, question);
             EXPECT_TRUE(equal(all, scene.trace_plain(ray, question)));
@@ -97,6 +100,21 @@ TEST(Trace, TreeIsUnseenWithInstances) {
         instances);
     EXPECT_GE(scene.top().tree.depth, 2u);
     expect_tree_unseen(scene, 10.0f, 6000);
+}
+
+TEST(Trace, InstancesInOtherLayersAreNotThere) {
+    CounterRandom random(12);
+    std::vector<TestInstance> instances;
+    for (std::uint32_t i = 0; i < 120; ++i) {
+        instances.push_back(placed(i % 2, random, 0.6f, 10.0f));
+        instances.back().layers = 1u << random.below(4);
+    }
+    const TracedScene scene({random_mesh(random, 40, 10.0f), ball(6, 4.0f, {1.0f, 2.0f, 0.0f})}, instances);
+    for (const std::uint32_t layers : {1u, 2u, 5u, 14u}) expect_tree_unseen(scene, 10.0f, 1500, layers);
+    for (const TestRay& ray : rays_around(scene, 10.0f, 100, 16u)) {
+        EXPECT_EQ(scene.trace(ray).instance, shading::NoInstance);
+        EXPECT_EQ(scene.trace_plain(ray).instance, shading::NoInstance);
+    }
 }
 
 TEST(Trace, TreeIsUnseenAtAllScales) {

@@ -60,6 +60,7 @@ std::vector<PlacedMesh> TracedScene::placed(const std::vector<PlacedMesh>& rows)
         mesh.linear = instance.linear;
         mesh.translation = instance.translation;
         mesh.alpha_tested = true;
+        mesh.layers = instance.layers;
         all.push_back(mesh);
     }
     return all;
@@ -137,12 +138,12 @@ void TracedScene::move(std::uint32_t mesh, const std::vector<glm::vec3>& positio
 
 shading::Hit TracedScene::trace(const TestRay& ray, std::uint32_t question) const {
     return shading::bvh_trace(shading::BvhItems{pool_.data()}, top_place_, ray.origin, ray.direction,
-                              ray.near, ray.far, question, ThirdsPass{}, 0);
+                              ray.near, ray.far, question, ray.layers, ThirdsPass{}, 0);
 }
 
 shading::Hit TracedScene::trace_plain(const TestRay& ray, std::uint32_t question) const {
     return shading::plain_trace(shading::BvhItems{plain_pool_.data()}, plain_top_place_, ray.origin,
-                                ray.direction, ray.near, ray.far, question, ThirdsPass{}, 0);
+                                ray.direction, ray.near, ray.far, question, ray.layers, ThirdsPass{}, 0);
 }
 
 shading::Hit TracedScene::ask_all(const TestRay& ray, std::uint32_t question) const {
@@ -160,6 +161,7 @@ shading::Hit TracedScene::ask_all(const TestRay& ray, std::uint32_t question) co
             to_object(ray.origin) + glm::vec3(instance.object_x.w, instance.object_y.w, instance.object_z.w),
             to_object(ray.direction));
         const std::uint32_t mesh = instances_[instance.instance].mesh;
+        if ((instances_[instance.instance].layers & ray.layers) == 0) continue;
         for (const std::uint32_t triangle : trees_[mesh].primitives) {
             const glm::uvec3& t = meshes_[mesh].triangles[triangle];
             const auto& p = meshes_[mesh].positions;

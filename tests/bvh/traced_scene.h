@@ -27,11 +27,13 @@ struct TestInstance {
     std::uint32_t mesh = 0;
     glm::mat3 linear{1.0f};
     glm::vec3 translation{0.0f};
+    std::uint32_t layers = shading::AllLayers;
 };
 
 struct TestRay {
     glm::vec3 origin, direction;
     float near = 1.17549435e-38f, far = INFINITY;
+    std::uint32_t layers = shading::AllLayers;
 };
 
 // Stops at all but every third triangle: CastSettings{.passes_every = 3}.

@@ -15,6 +15,14 @@ TEST(Values, Sizes) {
     }
 }
 
+TEST(Values, LayersAreBitsOfAMask) {
+    EXPECT_EQ(*parse_layers("0"), 1u);
+    EXPECT_EQ(*parse_layers("0,2,31"), 0x80000005u);
+    for (const char* text : {"", "32", "-1", "1,", ",1", "1 2", "0x1", "all", "4294967296"}) {
+        EXPECT_FALSE(parse_layers(text)) << text;
+    }
+}
+
 TEST(Values, CropsLieInsideThePicture) {
     const Size picture{100, 50};
     EXPECT_EQ(*parse_crop("10,20,30,30", picture), (Rect{10, 20, 30, 30}));

@@ -148,6 +148,10 @@ TEST_F(LiveViews, APickFindsObjectPlaceAndNormal) {
     EXPECT_FALSE(ann->pick(1, 0, 0).hit);
     EXPECT_THROW((void)ann->pick(1, 101, 0), Error);
     EXPECT_THROW((void)ann->pick(2, 0, 0), Error);
+    client::LiveViewRequest other_layers = view_of(101, 101, 1);
+    other_layers.view.layers = 2;
+    ann->open_view(3, other_layers);
+    EXPECT_FALSE(ann->pick(3, 50, 50).hit) << "everything is in layer 0";
 }
 
 TEST_F(LiveViews, ASlowWatcherDelaysNobodyAndSeesTheNewest) {

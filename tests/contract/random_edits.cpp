@@ -43,7 +43,11 @@ void RandomEdits::change(scene::SceneEditor& editor) {
             return tint(editor);
         default:
             if (const ObjectId id = any(ObjectKind::Transform); editor.find(id)) {
-                editor.update<Transform>(id, Transform::Field::Matrix, transform(placement(), {}));
+                Transform changed = transform(placement(), {});
+                changed.layers = layers();
+                const bool moves = random_.below(4) != 0;
+                editor.update<Transform>(id, moves ? Transform::Field::Matrix : Transform::Field::Layers,
+                                         changed);
             }
     }
 }
@@ -59,6 +63,7 @@ void RandomEdits::grow(scene::SceneEditor& editor) {
     }
     Transform made = transform(placement(), {content_id});
     made.hint = static_cast<scene::MotionHint>(random_.below(3));
+    made.layers = layers();
     editor.create(transform_id, made);
     hook(editor, any(ObjectKind::Transform), transform_id);
 }

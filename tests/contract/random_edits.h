@@ -7,8 +7,9 @@
 namespace tessera::test {
 
 // Starts from the contract scene and edits it at random, repeatably: transforms move, appear, are shared and
-// unhooked; geometries are made, bent, repainted and removed; lights, materials, hints, sky and render origin
-// change. Never a cycle (a child's id is above its parent's), never more than some hundred instances.
+// unhooked; geometries are made, bent, repainted and removed; lights, materials, hints, layers, sky and
+// render origin change. Never a cycle (a child's id is above its parent's), never more than some hundred
+// instances.
 class RandomEdits {
   public:
     RandomEdits(std::uint64_t seed, scene::BlobStore& blobs) : random_(seed), blobs_(blobs) {}
@@ -28,6 +29,8 @@ class RandomEdits {
     ObjectId any(scene::ObjectKind kind);
     glm::dmat4 placement();
     void hook(scene::SceneEditor& editor, ObjectId parent, ObjectId child);
+    // None half of the time, else any of three.
+    std::uint32_t layers() { return static_cast<std::uint32_t>(random_.below(2) * random_.below(8)); }
     float unit() { return static_cast<float>(random_.uniform()); }
 
     CounterRandom random_;

@@ -15,12 +15,14 @@ void expect_equal(const Lowered& a, const Lowered& b, int step) {
         ASSERT_EQ(a.instances[i].geometry, b.instances[i].geometry) << "step " << step;
         ASSERT_EQ(a.instances[i].path, b.instances[i].path) << "step " << step;
         ASSERT_EQ(a.instances[i].hint, b.instances[i].hint) << "step " << step;
+        ASSERT_EQ(a.instances[i].layers, b.instances[i].layers) << "step " << step;
         ASSERT_EQ(a.instances[i].world_from_object, b.instances[i].world_from_object) << "step " << step;
     }
     ASSERT_EQ(a.lights.size(), b.lights.size()) << "step " << step;
     for (std::size_t i = 0; i < a.lights.size(); ++i) {
         ASSERT_EQ(a.lights[i].light, b.lights[i].light) << "step " << step;
         ASSERT_EQ(a.lights[i].path, b.lights[i].path) << "step " << step;
+        ASSERT_EQ(a.lights[i].layers, b.lights[i].layers) << "step " << step;
         ASSERT_EQ(a.lights[i].world_from_light, b.lights[i].world_from_light) << "step " << step;
     }
 }
@@ -80,8 +82,9 @@ TEST_P(EditedBackend, RendersTheSameBitsAsOneThatWasBuiltAnew) {
     const auto make = [&] {
         return find_backend(GetParam()).make({.threads = 2, .isa = {}, .blobs = blobs});
     };
-    const auto picture = [](Backend& backend) {
+    const auto picture = [](Backend& backend, int step) {
         view::View view = test::contract_view(backend.capabilities().channels);
+        if (step % 8 == 0) view.layers = 3;
         const view::WorkUnit unit{.id = UnitId{1},
                                   .view = view.id,
                                   .revision = view.revision,
@@ -101,7 +104,7 @@ TEST_P(EditedBackend, RendersTheSameBitsAsOneThatWasBuiltAnew) {
             if (step % 4 != 0) continue;
             const auto rebuilt = make();
             test::commit(*rebuilt, {snapshot(edits.scene())});
-            const RenderResult a = picture(*edited), b = picture(*rebuilt);
+            const RenderResult a = picture(*edited, step), b = picture(*rebuilt, step);
             ASSERT_EQ(a.status, RenderStatus::Done);
             ASSERT_TRUE(frame::identical_bits(a.blocks.at(0), b.blocks.at(0)))
                 << "seed " << seed << " step " << step;

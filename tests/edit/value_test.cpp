@@ -35,6 +35,7 @@ std::map<std::string, FieldCase> cases() {
          {"1 0 0 0  0 2 0 0  0 0 3 0  4 5 6 1", "1 0 0 0  0 2 0 0  0 0 3 0  4 5 6 1", "1 2 3"}},
         {"transform.children", children},
         {"transform.hint", hint},
+        {"transform.layers", whole},
         {"geometry.material", {"materials/\"my \\\"red\\\"\"", "materials/\"my \\\"red\\\"\"", "red"}},
         {"geometry.hint", hint},
         {"material.base_color", {"0.8 0.1 0.1 0.5", "0.8 0.1 0.1 0.5", "0.8 0.1"}},

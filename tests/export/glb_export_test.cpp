@@ -141,6 +141,8 @@ TEST(GlbExport, EverythingThatGltfKnowsComesBack) {
     // A geometry without normals, drawn with the default grey, keeps its arrays as they are.
     expect_same_look(rich.scene, rich.blobs, imported);
     for (const char* name : {"wheel", "left"}) import::named<scene::Transform>(imported, name);
+    EXPECT_EQ(import::named<scene::Transform>(imported, "wheel").layers, 0x80000006u);
+    EXPECT_EQ(import::named<scene::Transform>(imported, "left").layers, 0u);
     import::named<scene::Material>(imported, "my \"red\"");
     import::named<scene::Texture>(imported, "wood");
 

@@ -111,6 +111,7 @@ void make_rich(RichScene& to) {
     scene::Transform wheel{.name = "wheel", .children = {one, two, tag}};
     wheel.matrix = glm::rotate(glm::translate(glm::dmat4(1.0), {0.1, 1.0 / 3.0, -2e5}), 0.3, {1.0, 2.0, 0.5});
     wheel.hint = scene::MotionHint::Animated;
+    wheel.layers = 0x80000006;
     const ObjectId wheel_id = maker.add(wheel);
     scene::Transform left{.name = "left", .children = {wheel_id, point}};
     left.matrix = glm::scale(glm::dmat4(1.0), {1.0, -2.0, 3.0});

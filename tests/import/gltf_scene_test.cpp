@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -121,6 +122,34 @@ TEST(GltfScene, GpuInstancesAreTransformsOverOneGeometry) {
     const glm::dvec4 b = flat.instances[1].world_from_object * glm::dvec4(1, 0, 0, 1);
     EXPECT_NEAR(glm::distance(a, glm::dvec4(2, 0, 9, 1)), 0.0, 1e-6);
     EXPECT_NEAR(glm::distance(b, glm::dvec4(-3, 0, 9, 1)), 0.0, 1e-6);
+}
+
+TEST(GltfScene, LayersAreInTheExtrasOfNodes) {
+    SceneFile file;
+    add_mesh(file);
+    const std::vector<std::string> extras{R"({"tessera_layers":6})",
+                                          R"({"tessera_layers":4294967295})",
+                                          R"({"tessera_layers":2.0})",
+                                          R"({"tessera_layers":2.5})",
+                                          R"({"tessera_layers":"two"})",
+                                          R"({"tessera_layers":1e12})",
+                                          R"({"other":2})",
+                                          "3"};
+    const std::vector<std::uint32_t> expected{6, 0xffffffff, 2, 0, 0, 0, 0, 0};
+    std::string roots;
+    for (std::size_t i = 0; i < extras.size(); ++i) {
+        file.add("nodes", R"({"mesh":0,"name":"n)" + std::to_string(i) + R"(","extras":)" + extras[i] + "}");
+        roots += (i == 0 ? "" : ",") + std::to_string(i);
+    }
+    file.add("scenes", R"({"nodes":[)" + roots + "]}");
+    const ImportedScene scene = load(file);
+    for (std::size_t i = 0; i < extras.size(); ++i) {
+        EXPECT_EQ(named<Transform>(scene, "n" + std::to_string(i)).layers, expected[i]) << extras[i];
+    }
+    const auto told = std::count_if(scene.notices.begin(), scene.notices.end(), [](const std::string& text) {
+        return text.find("tessera_layers") != std::string::npos;
+    });
+    EXPECT_EQ(told, 3);
 }
 
 TEST(GltfScene, GpuInstancesOfUnequalLengthsDrawOneAndSaySo) {

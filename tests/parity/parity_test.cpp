@@ -9,6 +9,7 @@
 #include "mediator/frame/merge.h"
 #include "mediator/frame/resolve.h"
 #include "mediator/picture/metrics.h"
+#include "mediator/scene/fields.h"
 #include "tests/parity/both.h"
 #include "tests/parity/jittered.h"
 
@@ -58,10 +59,11 @@ struct Counts {
     std::uint64_t vulkan = 0, control = 0;
 };
 
-Counts measure(const std::string& name) {
+Counts measure(const std::string& name, const tools::bench::BenchScene& scene,
+               std::uint32_t layers = view::AllLayers) {
     SCOPED_TRACE(name);
-    const tools::bench::BenchScene scene = bench_scene(name);
-    const view::View view = square_view(scene, Size);
+    view::View view = square_view(scene, Size);
+    view.layers = layers;
     const Renderer embree("embree", scene), vulkan("vulkan", scene);
     const JitteredEmbree jittered(scene);
     Counts counts;
@@ -92,12 +94,34 @@ Counts measure(const std::string& name) {
 TEST(Parity, SampleBySample) {
     Counts all;
     for (const char* name : {"cornell", "grids", "room-1", "studio-1"}) {
-        const Counts counts = measure(name);
+        const Counts counts = measure(name, bench_scene(name));
         all.vulkan += counts.vulkan;
         all.control += counts.control;
     }
     EXPECT_GE(all.control, 5u) << "the control says little";
     EXPECT_LE(all.vulkan, 3 * all.control);
+}
+
+// Every third transform, with what shines below it, is in a layer that the view does not see.
+TEST(Parity, WhereLayersAreHidden) {
+    Counts all;
+    for (const char* name : {"studio-1", "room-1"}) {
+        tools::bench::BenchScene scene = bench_scene(name);
+        std::vector<scene::Entry> entries;
+        std::size_t transforms = 0;
+        for (const auto& [id, object] : scene.content.objects()) {
+            if (!std::holds_alternative<scene::Transform>(*object) || transforms++ % 3 != 2) continue;
+            entries.push_back(
+                scene::Update{id, scene::Fields<scene::Transform>(scene::Transform::Field::Layers).bits(),
+                              scene::Transform{.layers = 2}});
+        }
+        ASSERT_GE(entries.size(), 1u);
+        ASSERT_TRUE(scene.content.apply_entries(entries));
+        const Counts counts = measure(name, scene, 1);
+        all.vulkan += counts.vulkan;
+        all.control += counts.control;
+    }
+    EXPECT_LE(all.vulkan, 3 * std::max<std::uint64_t>(all.control, 5));
 }
 
 }  // namespace

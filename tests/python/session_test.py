@@ -254,6 +254,17 @@ class Views(WithMaster):
         with self.assertRaisesRegex(tessera.InvalidInput, "is no camera"):
             self.session.open_view("transforms/stand")
 
+    def test_layers(self):
+        with self.session.transaction() as edit:
+            edit.create("transform", name="gui", layers=5)
+        self.assertEqual(self.scene["transforms/gui"].layers, 5)
+        self.session.open_view(self.POSE, size=(8, 4))
+        self.assertEqual(self.master.views[1][0].view.hidden_layers, 0)
+        self.session.open_view(self.POSE, size=(8, 4), layers=5)
+        self.assertEqual(self.master.views[2][0].view.hidden_layers, 0xFFFFFFFA)
+        with self.assertRaisesRegex(tessera.InvalidInput, "32 bits"):
+            self.session.open_view(self.POSE, layers=1 << 32)
+
     def test_picking(self):
         view = self.session.open_view(self.POSE, size=(8, 4))
         self.assertIsNone(view.pick(0, 0))

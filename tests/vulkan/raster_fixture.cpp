@@ -122,7 +122,12 @@ frame::FilmTile RasterTest::film(const view::View& view, const Rect& tile, frame
                                  const RasterSettings& settings) {
     const RasterTools tools{*raster_kernels_, *targets_, settings};
     const bool rasters = view.renderer == view::Renderer::Raster;
-    const TileRenderer renderer{device(), *kernels_, pace_, world_->scene(), rasters ? &tools : nullptr};
+    const TileRenderer renderer{device(),
+                                *kernels_,
+                                pace_,
+                                world_->scene(),
+                                backend::features_for(world_->tables(), view.layers),
+                                rasters ? &tools : nullptr};
     const view::WorkUnit unit{.view = view.id,
                               .revision = view.revision,
                               .version = world_->version(),

@@ -26,6 +26,7 @@ view::View some_view() {
     view.feature_rule = view::FeatureRule::Connections;
     view.transparent_background = true;
     view.filter = "fdf:radius=4";
+    view.layers = 0x80000005;
     view.channels = {frame::Channel::Radiance, frame::Channel::Depth};
     return view;
 }
@@ -36,12 +37,15 @@ scene::ChangeList some_changes() {
     geometry.indices = {blake2b({}), 12};
     scene::Transform moved;
     moved.matrix[3][1] = -0.0;
+    moved.layers = 0x80000001;
     moved.matrix[2][2] = std::numeric_limits<double>::quiet_NaN();
     return {.from = {5, 1},
             .to = {5, 2},
             .entries = {scene::Create{ObjectId{7}, geometry},
                         scene::Update{ObjectId{8},
-                                      scene::Fields<scene::Transform>(scene::Transform::Field::Matrix).bits(),
+                                      scene::Fields<scene::Transform>(
+                                          {scene::Transform::Field::Matrix, scene::Transform::Field::Layers})
+                                          .bits(),
                                       moved},
                         scene::Create{ObjectId{9}, scene::Material{}},
                         scene::Create{ObjectId{10}, scene::Light{}},

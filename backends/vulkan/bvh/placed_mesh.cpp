@@ -67,7 +67,9 @@ shading::BvhInstance record_of(const PlacedMesh& placed, std::uint32_t number) {
             .nodes = placed.nodes,
             .triangles = placed.triangles,
             .instance = number,
-            .flags = placed.alpha_tested ? shading::BvhAlphaTested : 0u};
+            .flags = placed.alpha_tested ? shading::BvhAlphaTested : 0u,
+            .layers = placed.layers,
+            .unused = {}};
 }
 
 }  // namespace tessera::vulkan

@@ -6,6 +6,7 @@
 
 #include "backends/vulkan/bvh/box.h"
 #include "mediator/shading/bvh_layout.h"
+#include "mediator/shading/records.h"
 
 namespace tessera::vulkan {
 
@@ -16,6 +17,7 @@ struct PlacedMesh {
     Box box;                                 // of the mesh, in its own space (WideTree::box)
     std::uint32_t nodes = 0, triangles = 0;  // where the mesh's rows begin in the pool, in items
     bool alpha_tested = false;
+    std::uint32_t layers = shading::AllLayers;
 };
 
 // Around the mesh as rays see it. Empty for an instance that is left out and never hit: its mesh is empty,

@@ -49,7 +49,7 @@ struct RasterBound {
     glm::vec3 low{0.0f};
     std::uint32_t vertices = 0;  // to draw; 0: it is left out, by rays too
     glm::vec3 high{0.0f};
-    std::uint32_t unused = 0;
+    std::uint32_t layers = shading::AllLayers;  // only views that see one of them are shown it
 };
 
 static_assert(sizeof(shading::RasterCell) == 32 && offsetof(shading::RasterCell, shift) == 8);
@@ -59,6 +59,6 @@ static_assert(sizeof(CullJob) == 104 && offsetof(CullJob, seen) == 24 && offseto
 static_assert(offsetof(CullJob, x) == 72 && offsetof(CullJob, count) == 88 && offsetof(CullJob, stage) == 96);
 static_assert(sizeof(PyramidJob) == 24 && offsetof(PyramidJob, width) == 16);
 static_assert(sizeof(RasterBound) == 32 && offsetof(RasterBound, vertices) == 12);
-static_assert(offsetof(RasterBound, high) == 16);
+static_assert(offsetof(RasterBound, high) == 16 && offsetof(RasterBound, layers) == 28);
 
 }  // namespace tessera::vulkan

@@ -14,7 +14,7 @@ struct Bound {
     vec3 low;
     uint vertices;
     vec3 high;
-    uint unused;
+    uint layers;
 };
 struct Draw {
     uint vertices, instances, first_vertex, first_instance;
@@ -117,7 +117,7 @@ bool is_hidden(IN(Footprint) footprint) {
 }
 
 bool is_drawn(IN(Bound) bound, uint index) {
-    if (bound.vertices == 0u) return false;
+    if (bound.vertices == 0u || (bound.layers & job.view.items[0].layers) == 0u) return false;
     if (job.stage == DrawAll) return true;
     if (job.stage == DrawSeen && job.seen.items[index] == 0u) return false;
     // A pixel around the area: corners are rounded to parts of it.

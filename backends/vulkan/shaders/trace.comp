@@ -42,15 +42,19 @@ uint alpha_question() {
     return (Features & FeatureAlpha) != 0u ? BvhAlpha : 0u;
 }
 
+uint seen_layers(IN(Context) context) {
+    return (Features & FeatureLayers) != 0u ? context.view.layers : AllLayers;
+}
+
 bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, OUT(Hit) hit) {
     hit = find_hit(BvhItems(context.pool), context.top, ray.origin, ray.direction, NearestHit, infinity(),
-                    BvhClosest | alpha_question(), context, seed);
+                    BvhClosest | alpha_question(), seen_layers(context), context, seed);
     return hit.instance != NoInstance;
 }
 
 bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed) {
     return find_hit(BvhItems(context.pool), context.top, origin, segment, NearestHit, far,
-                     BvhAny | alpha_question(), context, seed)
+                     BvhAny | alpha_question(), seen_layers(context), context, seed)
                .instance != NoInstance;
 }
 

@@ -263,7 +263,7 @@ def _kind(plural: str, object_type: type[Object], is_placed: bool, **codecs: Cod
 # In the order of ObjectKind.
 KINDS: tuple[Kind, ...] = (
     _kind("root", Root, False, children=_IDS, background=_REF, render_origin=_DOUBLE3),
-    _kind("transforms", Transform, True, matrix=_MATRIX, children=_IDS, hint=_HINT),
+    _kind("transforms", Transform, True, matrix=_MATRIX, children=_IDS, hint=_HINT, layers=_UINT),
     _kind("geometries", Geometry, True, material=_REF, hint=_HINT, indices=_blob("I"), positions=_blob("f"),
           normals=_blob("f"), tangents=_blob("f"), tex_coords=_blob("f"), colors=_blob("f")),
     _kind("materials", Material, False, base_color=_FLOAT4, base_color_texture=_SLOT, metallic=_FLOAT,

@@ -52,6 +52,7 @@ class Transform(Object):
     matrix: Matrix = IDENTITY  # parent from local
     children: tuple[int, ...] = ()
     hint: str = "unflagged"
+    layers: int = 0  # bit i: what hangs below is in layer i; 0 = as the parent says
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from .people import Committed, HistoryEntry, People, Status, Writer, history_of,
 from .proto import control_pb2, scene_pb2
 from .scene import Scene
 from .transaction import Transaction
-from .view import CameraLike, View, plain_view
+from .view import ALL_LAYERS, CameraLike, View, plain_view
 
 Message = Any
 _LOG = logging.getLogger("tessera")
@@ -280,16 +280,19 @@ class Session:
 
     def open_view(self, at: CameraLike, *, size: tuple[int, int] = (1280, 720), spp: int = 64, picture: str = "png",
                   film: bool = False, name: str = "", filter: str = "", renderer: str = "path", bounces: int = 8,
-                  seed: int = 0, channels: Sequence[str] = ("radiance",)) -> View:
+                  seed: int = 0, channels: Sequence[str] = ("radiance",), layers: int = ALL_LAYERS) -> View:
         """A view from a camera of the scene (the object or its path) or a Pose (`look_at`). `picture`: "png", "jpeg", "exr",
-        "planes" (filtered float32) or "none"; `film`: the statistics of `channels`, too."""
-        view = plain_view(size, channels=channels, renderer=renderer, bounces=bounces, seed=seed, filter=filter)
+        "planes" (filtered float32) or "none"; `film`: the statistics of `channels`, too. `layers`: a mask, bit i is
+        layer i; objects in none of them are not there."""
+        view = plain_view(size, channels=channels, renderer=renderer, bounces=bounces, seed=seed, filter=filter,
+                          layers=layers)
         self.aim(view, at)
         return self._open(view, spp, picture, film, name, share=False)
 
     def watch(self, name: str, *, picture: str = "png", film: bool = False) -> View:
         """The view of somebody else that has this name (see `people`), whatever its camera."""
-        view = plain_view((1, 1), channels=("radiance",), renderer="path", bounces=8, seed=0, filter="")
+        view = plain_view((1, 1), channels=("radiance",), renderer="path", bounces=8, seed=0, filter="",
+                          layers=ALL_LAYERS)
         self.aim(view, camera.look_at((0, 0, 1), (0, 0, 0)))
         return self._open(view, 1, picture, film, name, share=True)
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 Message = Any
 CameraLike = camera.Pose | Camera | str
+ALL_LAYERS = 0xFFFFFFFF
 RENDERERS = ("path", "whitted", "raster")
 STALL_SECONDS = 5.0  # without a further piece of a frame: the rest was lost
 
@@ -196,12 +197,14 @@ def set_size(view: Message, size: tuple[int, int]) -> None:
 
 
 def plain_view(size: tuple[int, int], *, channels: Sequence[str], renderer: str, bounces: int, seed: int,
-               filter: str) -> Message:
+               filter: str, layers: int) -> Message:
     """A View message without a camera."""
+    if not 0 <= layers <= ALL_LAYERS:
+        raise InvalidInput("the layers are no mask of 32 bits: bit i is layer i")
     if renderer not in RENDERERS:
         raise InvalidInput(f"there is no renderer '{renderer}': choose of {', '.join(RENDERERS)}")
     view = work_pb2.View(revision=1, seed=seed, max_bounces=bounces, filter_radius=0.5,
                          channels=channel_bits(list(channels)), renderer=RENDERERS.index(renderer),
-                         filter=filter.encode())
+                         filter=filter.encode(), hidden_layers=ALL_LAYERS & ~layers)
     set_size(view, size)
     return view

@@ -68,6 +68,7 @@ std::optional<Candidate> mesh_light(SceneTables& tables, const shading::Scene& s
     made.light.inverse_root_area = inverse;
     made.light.kind = shading::LightMesh;
     made.light.instance = index;
+    made.light.layers = instance.layers;
     made.light.area_sums = add_sums(tables, areas);
     made.power = flux * pi * (material.double_sided != 0 ? 2.0 : 1.0);
     return made;
@@ -120,6 +121,7 @@ void add_placed_lights(SceneTables& tables, const scene::Scene& scene, const Low
         Candidate made = placed_light(source, radius);
         made.light.position = glm::vec3(glm::dvec3(placed.world_from_light[3]) - tables.render_origin);
         made.light.direction = glm::vec3(shines / length);
+        made.light.layers = placed.layers;
         candidates.push_back(made);
         tables.scene.features |= shading::FeaturePlacedLights;
     }
@@ -154,6 +156,7 @@ void add_lights(SceneTables& tables, const scene::Scene& scene, const Lowered& l
         tables.scene.environment_light = static_cast<std::int32_t>(candidates.size());
         Candidate sky{.power = 4.0 * pi * pi * radius * radius * sky_luminance};
         sky.light.kind = shading::LightEnvironment;
+        sky.light.layers = shading::AllLayers;
         candidates.push_back(sky);
     }
     assign_probabilities(tables, candidates);

@@ -150,7 +150,8 @@ void add_instances(SceneTables& tables, const Lowered& lowered, const MeshCatalo
             .mesh = static_cast<std::uint32_t>(tables.meshes.size() - 1),
             .material = material == materials.end() ? DefaultMaterial : material->second,
             .object = static_cast<std::uint32_t>(source.geometry.value),
-            .light = -1};
+            .light = -1,
+            .layers = source.layers};
         if (mesh.placeholder) instance.material = PlaceholderMaterial;
         // Relative to the origin in double, then rounded once.
         const glm::dmat3 linear(source.world_from_object);

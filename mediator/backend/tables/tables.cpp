@@ -1,5 +1,6 @@
 #include "mediator/backend/tables/tables.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -21,6 +22,19 @@ std::array<float, 256> make_srgb_values() {
 template <class Array>
 void set_address(Array& array, const scene::BlobPtr& blob, const BlobAddress& address_of) {
     if (blob) array.items = reinterpret_cast<decltype(array.items)>(address_of(blob));
+}
+
+// Masks come in long runs.
+std::vector<std::uint32_t> masks_of(const Lowered& lowered) {
+    std::vector<std::uint32_t> masks;
+    const auto add = [&](std::uint32_t mask) {
+        if (masks.empty() || masks.back() != mask) masks.push_back(mask);
+    };
+    for (const Instance& instance : lowered.instances) add(instance.layers);
+    for (const PlacedLight& light : lowered.lights) add(light.layers);
+    std::ranges::sort(masks);
+    masks.erase(std::ranges::unique(masks).begin(), masks.end());
+    return masks;
 }
 
 }  // namespace
@@ -59,6 +73,12 @@ shading::Scene on_host(const SceneTables& tables) {
     return scene;
 }
 
+std::uint32_t features_for(const SceneTables& tables, std::uint32_t layers) {
+    const bool sees_all =
+        std::ranges::all_of(tables.layers, [&](std::uint32_t mask) { return (mask & layers) != 0; });
+    return sees_all ? tables.scene.features : tables.scene.features | shading::FeatureLayers;
+}
+
 SceneTables make_tables(const scene::Scene& scene, const Lowered& lowered, const MeshCatalog& meshes,
                         const scene::BlobStore& blobs) {
     SceneTables tables;
@@ -68,6 +88,7 @@ SceneTables make_tables(const scene::Scene& scene, const Lowered& lowered, const
     const Indices textures = add_textures(tables, scene, blobs);
     const Indices materials = add_materials(tables, scene, textures);
     add_instances(tables, lowered, meshes, materials);
+    tables.layers = masks_of(lowered);
     const double sky_luminance = add_environment(tables, scene, textures);
     add_lights(tables, scene, lowered, meshes, sky_luminance);
     return tables;

@@ -22,6 +22,7 @@ struct SceneTables {
     std::vector<float> sums;  // cumulative; each ends at 1
     shading::Scene scene{};   // all of it but the addresses of the tables
     glm::dvec3 render_origin{0.0};
+    std::vector<std::uint32_t> layers;  // each mask of instances and lights once
 
     // What the records' addresses point into: of each texture, of the environment's map and of each mesh.
     std::vector<scene::BlobPtr> texels;
@@ -39,6 +40,9 @@ SceneTables make_tables(const scene::Scene& scene, const Lowered& lowered, const
 
 // The scene on the host: addresses of the tables' own memory, valid while they are neither changed nor moved.
 shading::Scene on_host(const SceneTables& tables);
+
+// The scene's features for a view of these layers.
+std::uint32_t features_for(const SceneTables& tables, std::uint32_t layers);
 
 // 256 linear values, for Scene::srgb.
 std::span<const float> srgb_values();

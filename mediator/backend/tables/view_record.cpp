@@ -79,7 +79,9 @@ shading::View make_view(const view::View& view, const glm::dvec3& render_origin)
             .channels = view.channels.bits(),
             .keeps = kept(view),
             .transparent_background = view.transparent_background ? 1u : 0u,
-            .strategy = shading::StrategyBoth};
+            .strategy = shading::StrategyBoth,
+            .layers = view.layers,
+            .unused = 0};
 }
 
 }  // namespace tessera::backend
