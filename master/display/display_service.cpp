@@ -231,6 +231,14 @@ std::vector<GroupView> DisplayService::views() {
                                     static_cast<std::int32_t>(output.view_height)};
                 view.view.max_bounces = display.max_bounces;
                 view.view.filter = display.filter;
+                if (!display.layers.empty()) {
+                    view.view.renderer = display.layers[layer].renderer;
+                    view.view.layers = display.layers[layer].layers;
+                }
+                if (layer_count(display) > 1) {
+                    view.view.transparent_background = true;
+                    view.view.channels.insert(frame::Channel::Depth);
+                }
                 view.view.channels = {frame::Channel::Color};
                 if (display.stereo_difference && eye != view::Eye::Mono)
                     view.view.channels.insert(frame::Channel::Depth);

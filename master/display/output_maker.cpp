@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "mediator/picture/color.h"
+#include "master/compose/layers.h"
 #include "mediator/picture/srgb_bytes.h"
 #include "mediator/picture/stereo_difference.h"
 
@@ -93,6 +93,12 @@ bool is_plain(const view::View& view) {
            !view.channels.contains(Channel::Alpha);
 }
 
+Light light_of(const filter::Planes& picture) {
+    Light light{picture.width(), picture.height()};
+    for (std::uint32_t c = 0; c < 3; ++c) light.planes[c] = picture.plane(c).data();
+    return light;
+}
+
 Light light_of(const frame::FilmTile& film, const view::View& view, Reconstructor& reconstructor) {
     Light light{static_cast<std::uint32_t>(film.rect.width), static_cast<std::uint32_t>(film.rect.height)};
     if (is_plain(view)) {
@@ -101,10 +107,64 @@ Light light_of(const frame::FilmTile& film, const view::View& view, Reconstructo
         light.counts = film.counts.data();
         return light;
     }
-    const filter::Planes& picture = reconstructor.filtered(film, view);
-    for (std::uint32_t c = 0; c < 3; ++c) light.planes[c] = picture.plane(c).data();
-    return light;
+    return light_of(reconstructor.filtered(film, view));
 }
+
+// What a light is copied to when more than one is needed at a time: r, g, b and, when there is one, alpha.
+struct Copied {
+    std::vector<std::vector<float>> planes;
+    explicit Copied(const filter::Planes& picture) {
+        for (std::uint32_t c = 0; c < picture.components(); ++c) {
+            const auto plane = picture.plane(c);
+            planes.emplace_back(plane.begin(), plane.end());
+        }
+    }
+};
+
+std::span<const float> depth_of(const frame::FilmTile& film) {
+    return film.plane(film.channels.first_plane(Channel::Depth));
+}
+
+// Layers over each other; each was rendered without what the others show, before a transparent background.
+void lay_over(std::span<const view::View> views, std::span<const frame::FilmTile> films,
+              Reconstructor& reconstructor, filter::Planes& out) {
+    std::vector<Copied> copies;
+    std::vector<Layer> layers;
+    for (std::size_t i = 0; i < views.size(); ++i)
+        copies.emplace_back(reconstructor.filtered(films[i], views[i]));
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const auto& planes = copies[i].planes;
+        layers.push_back(
+            {.color = {planes[0], planes[1], planes[2]}, .alpha = planes.at(3), .depth = depth_of(films[i])});
+    }
+    compose(layers, static_cast<std::uint32_t>(films.front().rect.width),
+            static_cast<std::uint32_t>(films.front().rect.height), out, reconstructor.arena());
+}
+
+// One eye's picture as stereo_difference reads it: means, and the nearest depth of all layers.
+struct Measured {
+    std::array<std::vector<float>, 3> color;
+    std::vector<float> depth;
+    view::CameraPose camera;
+    std::uint32_t width, height;
+
+    Measured(const Light& light, const OutputOrder::EyePicture& eye, std::span<const frame::FilmTile> films)
+        : camera(eye.layers.front().camera), width(light.width), height(light.height) {
+        const std::size_t pixels = std::size_t{width} * height;
+        for (std::size_t c = 0; c < 3; ++c) {
+            color[c].assign(light.planes[c], light.planes[c] + pixels);
+            for (std::size_t i = 0; i < pixels && light.counts != nullptr; ++i)
+                color[c][i] /= static_cast<float>(std::max(1u, light.counts[i]));
+        }
+        const auto first = depth_of(films.front());
+        depth.assign(first.begin(), first.end());
+        for (const frame::FilmTile& film : films.subspan(1)) {
+            const auto other = depth_of(film);
+            for (std::size_t i = 0; i < pixels; ++i) depth[i] = std::min(depth[i], other[i]);
+        }
+    }
+    picture::EyeView view() const { return {width, height, color[0], color[1], color[2], depth, camera}; }
+};
 
 }  // namespace
 
@@ -112,19 +172,30 @@ MadeOutput make_output(OutputOrder order, const std::vector<frame::FilmTile>& fi
                        Reconstructor& reconstructor) {
     MadeOutput made{.order = std::move(order), .eyes = {}};
     made.samples_least = ~std::uint64_t{0};
+    for (const frame::FilmTile& film : films) {
+        made.samples_least = std::min<std::uint64_t>(
+            made.samples_least, *std::min_element(film.counts.begin(), film.counts.end()));
+    }
     try {
         const Tone tone(made.order.look);
-        auto film = films.begin();
+        std::span<const frame::FilmTile> rest(films);
+        std::vector<Measured> measured;
+        filter::Planes composed;
         for (const OutputOrder::EyePicture& eye : made.order.eyes) {
-            for (std::size_t layer = 0; layer < eye.layers.size(); ++layer) {
-                const auto& counts = film[static_cast<std::ptrdiff_t>(layer)].counts;
-                made.samples_least = std::min<std::uint64_t>(made.samples_least,
-                                                             *std::min_element(counts.begin(), counts.end()));
+            const auto own = rest.first(eye.layers.size());
+            rest = rest.subspan(eye.layers.size());
+            Light light;
+            if (own.size() == 1) {
+                light = light_of(own.front(), eye.layers.front(), reconstructor);
+            } else {
+                lay_over(eye.layers, own, reconstructor, composed);
+                light = light_of(composed);
             }
-            const Light light = light_of(*film, eye.layers.front(), reconstructor);
             made.eyes.push_back(encoded(light, tone, made.order.encoding, reconstructor.arena()));
-            film += static_cast<std::ptrdiff_t>(eye.layers.size());
+            if (made.order.stereo_difference) measured.emplace_back(light, eye, own);
         }
+        if (measured.size() == 2)
+            made.stereo_difference = picture::stereo_difference(measured[0].view(), measured[1].view()).mean;
     } catch (const std::exception& error) {
         made.error = std::string("the picture of an output failed: ") + error.what();
         made.eyes.clear();

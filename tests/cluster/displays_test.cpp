@@ -320,6 +320,66 @@ TEST_F(Displays, ThePatternIsSwitchedOnForAll) {
     until([&] { return showers["left"].opened.back().pattern && showers["right"].opened.back().pattern; });
 }
 
+// A filter with a large radius, an eye that looks into light and one that looks into the dark.
+TEST_F(Displays, FiltersNeverBleedAcrossEyesAndOutputs) {
+    cluster.add_node("null");
+    wall.filter = "bilateral";
+    wall.outputs[0].stereo = display::Stereo::SideBySide;
+    ann->open_display(wall);
+    Shower& both = show("left");
+    until([&] { return all_show(4); });
+    const client::OutputFrame together = both.frames.back();
+    // Each eye alone, as an output of its own: the same bytes.
+    for (const auto& [stereo, eye] :
+         {std::pair(display::Stereo::Left, 0), std::pair(display::Stereo::Right, 1)}) {
+        wall.outputs[0].stereo = stereo;
+        const std::size_t before = both.frames.size();
+        ann->open_display(wall);
+        until([&] {
+            return both.frames.size() > before && all_show(4) && both.frames.back().pictures.size() == 1;
+        });
+        EXPECT_TRUE(both.frames.back().pictures[0].bytes == together.pictures[std::size_t(eye)].bytes)
+            << "eye " << eye;
+    }
+}
+
+TEST_F(Displays, TheDifferenceOfTheEyesIsReported) {
+    cluster.add_node("embree");
+    wall.outputs[0].stereo = display::Stereo::TopBottom;
+    wall.outputs.pop_back();
+    wall.stereo_difference = true;
+    ann->open_display(wall);
+    show("left");
+    until([&] { return all_show(4); });
+    const double difference = status().display.outputs[0].stereo_difference;
+    EXPECT_GE(difference, 0.0);
+    EXPECT_LT(difference, 1.0);
+}
+
+// Path tracing with a layer of another renderer over it; both can be switched off while it runs.
+TEST_F(Displays, LayersAreSwitchedAtRunTime) {
+    cluster.add_node("embree");
+    Transform gui;
+    gui.layers = 2;
+    ASSERT_TRUE(
+        ann->submit({Update{first, Fields<Transform>(Transform::Field::Layers).bits(), gui}}).accepted);
+    wall.outputs.pop_back();
+    wall.layers = {{"model", view::Renderer::PathTracing, 1, true},
+                   {"gui", view::Renderer::Whitted, 2, true}};
+    ann->open_display(wall);
+    Shower& left = show("left");
+    until([&] { return all_show(4); });
+    const std::vector<std::byte> with_gui = left.frames.back().pictures[0].bytes;
+    const auto switched = [&](std::uint32_t shown) {
+        const std::size_t before = left.frames.size();
+        ann->adjust_display({.shown_layers = shown});
+        until([&] { return left.frames.size() > before && all_show(4); });
+        return left.frames.back().pictures[0].bytes;
+    };
+    EXPECT_TRUE(switched(1) != with_gui) << "the model alone";
+    EXPECT_TRUE(switched(3) == with_gui) << "back again, to the bit";
+}
+
 // One back-end, so one scene, for both eyes and all outputs.
 TEST_F(Displays, OneSceneCopyForAllEyes) {
     std::atomic<int> made = 0;
