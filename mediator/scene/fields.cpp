@@ -79,7 +79,7 @@ std::string_view field_name(ObjectKind kind, unsigned field) {
         case ObjectKind::Root:
             return name_in<Root>(field, {"name", "children", "background", "render_origin"});
         case ObjectKind::Transform:
-            return name_in<Transform>(field, {"name", "matrix", "children", "hint"});
+            return name_in<Transform>(field, {"name", "matrix", "children", "hint", "layers"});
         case ObjectKind::Geometry:
             return name_in<Geometry>(field, {"name", "material", "hint", "indices", "positions", "normals",
                                              "tangents", "tex_coords", "colors"});
