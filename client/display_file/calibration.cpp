@@ -29,14 +29,27 @@ LoadedGrid three_components(const std::string& path, const Section& section, con
     return grid;
 }
 
-// One point for each node.
-template <class PointOf>
-display::PointGrid pointed(const LoadedGrid& grid, const PointOf& point_of) {
-    display::PointGrid points{
-        .columns = grid.columns, .rows = grid.rows, .nodes = display::Grid::Nodes::Centres, .points = {}};
-    points.points.reserve(std::size_t{grid.columns} * grid.rows);
-    for (std::size_t i = 0; i < grid.values.size(); i += grid.components)
-        points.points.push_back(point_of(&grid.values[i]));
+display::PointGrid on_nodes(const LoadedGrid& grid) {
+    return {.columns = grid.columns, .rows = grid.rows, .nodes = display::Grid::Nodes::Centres, .points = {}};
+}
+
+// x, y, z as it is.
+display::PointGrid pointed(const LoadedGrid& grid) {
+    display::PointGrid points = on_nodes(grid);
+    for (std::size_t i = 0; i + 2 < grid.values.size(); i += grid.components)
+        points.points.emplace_back(grid.values[i], grid.values[i + 1], grid.values[i + 2]);
+    return points;
+}
+
+// Where u, v are; what are no numbers are nowhere.
+display::PointGrid pointed_places(const LoadedGrid& grid, const display::PointAt& point_at) {
+    display::PointGrid points = on_nodes(grid);
+    for (std::size_t i = 0; i + 1 < grid.values.size(); i += grid.components) {
+        const float u = grid.values[i], v = grid.values[i + 1];
+        points.points.push_back(std::isnan(u) || std::isnan(v)
+                                    ? glm::dvec3(std::numeric_limits<double>::quiet_NaN())
+                                    : point_at(u, v));
+    }
     return points;
 }
 
@@ -53,8 +66,7 @@ display::Grid stored(const LoadedGrid& loaded, scene::BlobStore& blobs) {
 
 display::PointGrid read_points(Section& section, const ReadContext& context) {
     const std::string path = path_of(section.text("points").value_or(""), context);
-    return pointed(three_components(path, section, "points"),
-                   [](const float* at) { return glm::dvec3(at[0], at[1], at[2]); });
+    return pointed(three_components(path, section, "points"));
 }
 
 display::PointGrid read_warp(Section& section, ReadContext& context, const display::Screen& screen,
@@ -69,11 +81,7 @@ display::PointGrid read_warp(Section& section, ReadContext& context, const displ
         const bool is_even = std::ranges::all_of(mesh.weights.values, [](float w) { return w == 1.0f; });
         if (!is_even) output.blend.weights = stored(mesh.weights, context.blobs);
     }
-    return pointed(places, [&](const float* at) {
-        if (std::isnan(at[0]) || std::isnan(at[1]))
-            return glm::dvec3(std::numeric_limits<double>::quiet_NaN());
-        return display::point(screen, at[0], at[1]);
-    });
+    return pointed_places(places, [&](double u, double v) { return display::point(screen, u, v); });
 }
 
 bool read_light_files(Section& section, ReadContext& context, display::Output& output) {

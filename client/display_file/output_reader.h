@@ -33,9 +33,6 @@ struct ReadOutput {
 // Takes the key `name`, after which errors call the section: `what` 'NAME'.
 std::string read_name(Section& section, const char* what);
 
-// The picture lies flat on the part of the wall, pixel by pixel.
-void lay_flat(const display::Wall& wall, const display::Part& part, ReadOutput& read);
-
 // [[output]]
 ReadOutput read_output(Section section, ReadContext& context);
 
