@@ -1,5 +1,6 @@
 #include "client/display_file/output_keys.h"
 #include "client/display_file/output_reader.h"
+#include "client/display_file/placement.h"
 #include "client/display_file/screens.h"
 #include "mediator/display/wall_grid.h"
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "mediator/base/error.h"
+#include "mediator/display/grid_places.h"
 
 namespace tessera::display {
 
@@ -107,6 +108,13 @@ std::vector<std::uint32_t> spread(std::uint32_t count, std::uint32_t most) {
     return indices;
 }
 
+// Of a node, or of the picture's edge when it is the outermost.
+double place_on_edge(std::uint32_t index, std::uint32_t count, Grid::Nodes nodes) {
+    if (index == 0) return 0.0;
+    if (index + 1 == count) return 1.0;
+    return nodes == Grid::Nodes::Edges ? double(index) / (count - 1) : (index + 0.5) / count;
+}
+
 void refuse_grazing(const PointGrid& grid, const dvec3& head, const dvec3& normal) {
     double least = 1.0;
     for (const dvec3& point : grid.points) {
@@ -142,24 +150,36 @@ PointGrid sample(const PointAt& point_at, std::uint32_t width, std::uint32_t hei
 
 std::vector<dvec3> hull(const PointGrid& grid) {
     std::vector<dvec3> points;
+    // Nodes on the centres of pixels are carried on to the picture's edges.
     const auto take = [&](std::uint32_t column, std::uint32_t row) {
-        const dvec3& point = grid.at(column, row);
-        if (is_finite(point)) points.push_back(point);
+        const dvec3 point = grid.columns > 1 && grid.rows > 1
+                                ? point_at(grid, place_on_edge(column, grid.columns, grid.nodes),
+                                           place_on_edge(row, grid.rows, grid.nodes))
+                                : grid.at(column, row);
+        if (is_finite(point) || is_finite(grid.at(column, row)))
+            points.push_back(is_finite(point) ? point : grid.at(column, row));
     };
-    for (const std::uint32_t column : spread(grid.columns, BorderNodes)) {
-        take(column, 0);
-        if (grid.rows > 1) take(column, grid.rows - 1);
-    }
+    // The first and the last node of a line that are there: the rest may be masked.
+    const auto take_ends = [&](std::uint32_t count, const auto& is_there, const auto& take_one) {
+        std::uint32_t first = 0, last = count;
+        while (first < last && !is_there(first)) ++first;
+        while (last > first && !is_there(last - 1)) --last;
+        if (first == last) return;
+        take_one(first);
+        take_one(last - 1);
+    };
     for (const std::uint32_t row : spread(grid.rows, BorderNodes)) {
-        if (row == 0 || row + 1 == grid.rows) continue;
-        take(0, row);
-        if (grid.columns > 1) take(grid.columns - 1, row);
+        take_ends(
+            grid.columns, [&](std::uint32_t column) { return is_finite(grid.at(column, row)); },
+            [&](std::uint32_t column) { take(column, row); });
+    }
+    for (const std::uint32_t column : spread(grid.columns, BorderNodes)) {
+        take_ends(
+            grid.rows, [&](std::uint32_t row) { return is_finite(grid.at(column, row)); },
+            [&](std::uint32_t row) { take(column, row); });
     }
     for (const std::uint32_t row : spread(grid.rows, InnerNodes)) {
-        if (row == 0 || row + 1 == grid.rows) continue;
-        for (const std::uint32_t column : spread(grid.columns, InnerNodes)) {
-            if (column != 0 && column + 1 != grid.columns) take(column, row);
-        }
+        for (const std::uint32_t column : spread(grid.columns, InnerNodes)) take(column, row);
     }
     return points;
 }

@@ -34,8 +34,8 @@ PointGrid sample(const PointAt& point_at, std::uint32_t width, std::uint32_t hei
 // sees one of them at more than 80 degrees from the normal: the output must be split.
 ViewPlane view_plane(const PointGrid& grid, const glm::dvec3& head);
 
-// Of the points that are there: the border, and some from within. At most 768, so a border of one radian on
-// 4096 pixels is missed by less than half a pixel.
+// Of the points that are there, up to the picture's edges: their border, and some from within. At most 772,
+// so a border of one radian on 4096 pixels is missed by less than half a pixel.
 std::vector<glm::dvec3> hull(const PointGrid& grid);
 
 // How large the view must be, for this head, so that half of the device's pixels are no finer than it.

@@ -124,6 +124,38 @@ TEST(PointGrid, TheViewIsAsFineAsTheDevice) {
     EXPECT_EQ(size.width, size.height);
 }
 
+TEST(PointGrid, AFewNodesOnCentresReachToThePicturesEdges) {
+    const PointGrid grid{.columns = 2,
+                         .rows = 2,
+                         .nodes = Grid::Nodes::Centres,
+                         .points = {{-1, 1, -2}, {1, 1, -2}, {-1, -1, -2}, {1, -1, -2}}};
+    const view::CameraPose camera = frustum(view_plane(grid, glm::dvec3(0)), {}, view::Eye::Mono, 0.064, 0.0);
+    EXPECT_NEAR(camera.left, -1.0, 1e-12);
+    EXPECT_NEAR(camera.right, 1.0, 1e-12);
+    EXPECT_NEAR(camera.top, 1.0, 1e-12);
+}
+
+TEST(PointGrid, WhatIsLeftOfAMaskedPictureLiesWithinTheView) {
+    // A circle, as a fisheye lens throws it.
+    PointGrid grid{.columns = 300, .rows = 200, .nodes = Grid::Nodes::Centres, .points = {}};
+    for (std::uint32_t row = 0; row < grid.rows; ++row) {
+        for (std::uint32_t column = 0; column < grid.columns; ++column) {
+            const double u = (column + 0.5) / grid.columns - 0.5, v = (row + 0.5) / grid.rows - 0.5;
+            const bool is_lit = std::hypot(1.5 * u, v) < 0.47;
+            grid.points.push_back(is_lit ? glm::dvec3(4 * u, -3 * v, -2.0 + u * u)
+                                         : glm::dvec3(std::numeric_limits<double>::quiet_NaN()));
+        }
+    }
+    const view::CameraPose camera = frustum(view_plane(grid, glm::dvec3(0)), {}, view::Eye::Mono, 0.064, 0.0);
+    for (const glm::dvec3& point : grid.points) {
+        if (std::isnan(point.x)) continue;
+        const glm::dvec2 place = seen_at(camera, point);
+        // A tenth of a pixel of the border may be missed.
+        ASSERT_TRUE(place.x > -3e-4 && place.x < 1 + 3e-4 && place.y > -5e-4 && place.y < 1 + 5e-4)
+            << place.x << " " << place.y;
+    }
+}
+
 TEST(PointGrid, WhatOneFlatViewCannotShowIsRefused) {
     const auto around = [](double u, double v) {
         const double angle = (u - 0.5) * 170.0 * Degree;
