@@ -161,27 +161,23 @@ void OutputPipeline::take(tbb::task_arena& arena, const EyePicture& picture, Eye
 // The picture as the pixels of row y of the device see it.
 void OutputPipeline::fetch(Eye& eye, std::size_t y, Space& space, PlanarRow out) const {
     const std::size_t width = output_.width, height = output_.height;
-    const auto picture_width = static_cast<float>(eye.picture.width),
-               picture_height = static_cast<float>(eye.picture.height);
     if (eye.warp) {
         const Warp::Row row = eye.warp->row(y, space.points);
-        for (std::size_t x = 0; x < width; ++x) {
-            space.x[x] = row.u[x] * picture_width - 0.5f;
-            space.y[x] = row.v[x] * picture_height - 0.5f;
-        }
-    } else {
-        if (output_.turn == Turn::None && eye.picture.width == width && eye.picture.height == height)
-            return copy_row(eye.picture, y, out);
-        const bool is_on_side = swaps_edges(output_.turn);
-        const float scale_x = picture_width / static_cast<float>(is_on_side ? height : width),
-                    scale_y = picture_height / static_cast<float>(is_on_side ? width : height);
-        for (std::size_t x = 0; x < width; ++x) {
-            const Place at = upright_place(output_.turn, {x, y}, width, height);
-            space.x[x] = (static_cast<float>(at.x) + 0.5f) * scale_x - 0.5f;
-            space.y[x] = (static_cast<float>(at.y) + 0.5f) * scale_y - 0.5f;
-        }
+        return sample_row(eye.picture, row.u, row.v, width, out);
     }
-    sample_row(eye.picture, space.x.data(), space.y.data(), width, out);
+    if (output_.turn == Turn::None && eye.picture.width == width && eye.picture.height == height)
+        return copy_row(eye.picture, y, out);
+    const bool is_on_side = swaps_edges(output_.turn);
+    const float scale_x =
+                    static_cast<float>(eye.picture.width) / static_cast<float>(is_on_side ? height : width),
+                scale_y =
+                    static_cast<float>(eye.picture.height) / static_cast<float>(is_on_side ? width : height);
+    for (std::size_t x = 0; x < width; ++x) {
+        const Place at = upright_place(output_.turn, {x, y}, width, height);
+        space.x[x] = (static_cast<float>(at.x) + 0.5f) * scale_x - 0.5f;
+        space.y[x] = (static_cast<float>(at.y) + 0.5f) * scale_y - 0.5f;
+    }
+    sample_row_at(eye.picture, space.x.data(), space.y.data(), width, out);
 }
 
 void OutputPipeline::shade(Eye& eye, std::size_t y, Space& space, PlanarRow out) const {

@@ -12,9 +12,13 @@ struct HalfPicture {
     std::uint32_t width = 0, height = 0;
 };
 
-// The picture at `count` places, bilinear; x and y in its pixels, the first pixel's centre is (0, 0); beyond
-// the outermost centres the edge is repeated; not a number: black. x, y and the row are padded.
-void sample_row(const HalfPicture& picture, const float* x, const float* y, std::size_t count, PlanarRow out);
+// The picture at `count` places, bilinear: u and v in [0, 1] from its top left; within half a pixel of the
+// border the edge is repeated; not a number: black. u, v and the row are padded.
+void sample_row(const HalfPicture& picture, const float* u, const float* v, std::size_t count, PlanarRow out);
+
+// The same for places in pixels of the picture; the first pixel's centre is (0, 0).
+void sample_row_at(const HalfPicture& picture, const float* x, const float* y, std::size_t count,
+                   PlanarRow out);
 
 // Row y of the picture as it is; the row's padding is left alone.
 void copy_row(const HalfPicture& picture, std::size_t y, PlanarRow out);

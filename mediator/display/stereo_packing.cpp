@@ -1,5 +1,7 @@
 #include "mediator/display/stereo_packing.h"
 
+#include <immintrin.h>
+
 namespace tessera::display {
 
 namespace {
@@ -39,12 +41,20 @@ const EyeMix& eye_mix(Stereo stereo) {
 }
 
 void mix_eyes(const EyeMix& mix, std::size_t count, PlanarRow left, PlanarRow right) {
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::array l{left.planes[0][i], left.planes[1][i], left.planes[2][i]};
-        const std::array r{right.planes[0][i], right.planes[1][i], right.planes[2][i]};
-        for (std::size_t c = 0; c < 3; ++c)
-            right.planes[c][i] = mix.left[c][0] * l[0] + mix.left[c][1] * l[1] + mix.left[c][2] * l[2] +
-                                 mix.right[c][0] * r[0] + mix.right[c][1] * r[1] + mix.right[c][2] * r[2];
+    for (std::size_t i = 0; i < count; i += PackSize) {
+        __m256 eyes[2][3], mixed[3];
+        for (std::size_t c = 0; c < 3; ++c) {
+            eyes[0][c] = _mm256_loadu_ps(left.planes[c] + i);
+            eyes[1][c] = _mm256_loadu_ps(right.planes[c] + i);
+        }
+        for (std::size_t c = 0; c < 3; ++c) {
+            mixed[c] = _mm256_setzero_ps();
+            for (std::size_t from = 0; from < 3; ++from) {
+                mixed[c] = _mm256_fmadd_ps(_mm256_set1_ps(mix.left[c][from]), eyes[0][from], mixed[c]);
+                mixed[c] = _mm256_fmadd_ps(_mm256_set1_ps(mix.right[c][from]), eyes[1][from], mixed[c]);
+            }
+        }
+        for (std::size_t c = 0; c < 3; ++c) _mm256_storeu_ps(right.planes[c] + i, mixed[c]);
     }
 }
 

@@ -12,11 +12,6 @@ namespace {
 
 constexpr float Nowhere = std::numeric_limits<float>::quiet_NaN();
 
-float inside(double place, double margin) {
-    return place >= -margin && place <= 1.0 + margin ? static_cast<float>(std::clamp(place, 0.0, 1.0))
-                                                     : Nowhere;
-}
-
 }  // namespace
 
 Warp::Warp(const DeviceGrid& points, const Output& output)
@@ -52,12 +47,18 @@ void Warp::make_row(std::size_t y, std::span<float> space) {
     const glm::dvec3 along_u = (right + camera_.left * back) / (camera_.right - camera_.left);
     const glm::dvec3 along_v = -(up + camera_.top * back) / (camera_.top - camera_.bottom);
     float *const u = u_.data() + y * stride_, *const v = v_.data() + y * stride_;
+    const float *const px = at, *const py = at + width_, *const pz = at + 2 * width_;
     for (std::size_t x = 0; x < width_; ++x) {
-        const glm::dvec3 way = glm::dvec3(at[x], at[width_ + x], at[2 * width_ + x]) - eye;
-        const double depth = -glm::dot(back, way);
-        const double scale = depth > 0.0 ? 1.0 / depth : std::numeric_limits<double>::quiet_NaN();
-        u[x] = inside(glm::dot(along_u, way) * scale, margin_u_);
-        v[x] = inside(glm::dot(along_v, way) * scale, margin_v_);
+        const double dx = px[x] - eye.x, dy = py[x] - eye.y, dz = pz[x] - eye.z;
+        const double depth = -(back.x * dx + back.y * dy + back.z * dz);
+        const double at_u = (along_u.x * dx + along_u.y * dy + along_u.z * dz) / depth;
+        const double at_v = (along_v.x * dx + along_v.y * dy + along_v.z * dz) / depth;
+        const double in_u = std::min(std::max(at_u, 0.0), 1.0), in_v = std::min(std::max(at_v, 0.0), 1.0);
+        // What is not a number is not there.
+        const bool is_there =
+            depth > 0.0 && std::abs(at_u - in_u) <= margin_u_ && std::abs(at_v - in_v) <= margin_v_;
+        u[x] = is_there ? static_cast<float>(in_u) : Nowhere;
+        v[x] = is_there ? static_cast<float>(in_v) : Nowhere;
     }
 }
 
