@@ -60,7 +60,8 @@ JitteredEmbree::JitteredEmbree(const tools::bench::BenchScene& scene)
 
 frame::FilmTile JitteredEmbree::film(const view::View& view, const Rect& tile, std::uint64_t sample) const {
     frame::FilmTile film(tile, {sample, 0}, view.channels);
-    const shading::Scene scene = backend::on_host(world_.tables());
+    shading::Scene scene = backend::on_host(world_.tables());
+    scene.features = backend::features_for(world_.tables(), view.layers);
     const shading::View record = backend::make_view(view, world_.tables().render_origin);
     const JitteredContext context{{{}, scene, record, world_.scene()}};
     std::size_t pixel = 0;

@@ -102,26 +102,21 @@ TEST(Parity, SampleBySample) {
     EXPECT_LE(all.vulkan, 3 * all.control);
 }
 
-// Every third transform, with what shines below it, is in a layer that the view does not see.
+// Every third transform is in a layer that the view does not see: one of the two lights, and a ball.
 TEST(Parity, WhereLayersAreHidden) {
-    Counts all;
-    for (const char* name : {"studio-1", "room-1"}) {
-        tools::bench::BenchScene scene = bench_scene(name);
-        std::vector<scene::Entry> entries;
-        std::size_t transforms = 0;
-        for (const auto& [id, object] : scene.content.objects()) {
-            if (!std::holds_alternative<scene::Transform>(*object) || transforms++ % 3 != 2) continue;
-            entries.push_back(
-                scene::Update{id, scene::Fields<scene::Transform>(scene::Transform::Field::Layers).bits(),
-                              scene::Transform{.layers = 2}});
-        }
-        ASSERT_GE(entries.size(), 1u);
-        ASSERT_TRUE(scene.content.apply_entries(entries));
-        const Counts counts = measure(name, scene, 1);
-        all.vulkan += counts.vulkan;
-        all.control += counts.control;
+    tools::bench::BenchScene scene = bench_scene("studio-1");
+    std::vector<scene::Entry> entries;
+    std::size_t transforms = 0;
+    for (const auto& [id, object] : scene.content.objects()) {
+        if (!std::holds_alternative<scene::Transform>(*object) || transforms++ % 3 != 2) continue;
+        entries.push_back(
+            scene::Update{id, scene::Fields<scene::Transform>(scene::Transform::Field::Layers).bits(),
+                          scene::Transform{.layers = 2}});
     }
-    EXPECT_LE(all.vulkan, 3 * std::max<std::uint64_t>(all.control, 5));
+    ASSERT_TRUE(scene.content.apply_entries(entries));
+    const Counts counts = measure("studio-1 with layers", scene, 1);
+    EXPECT_GE(counts.control, 1u) << "the control says little";
+    EXPECT_LE(counts.vulkan, 3 * counts.control);
 }
 
 }  // namespace
