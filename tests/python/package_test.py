@@ -31,8 +31,8 @@ CREATE, UPDATE, REMOVE = scene_pb2.Entry.CREATE, scene_pb2.Entry.UPDATE, scene_p
 # A value of each field that is not its default.
 OTHER = {
     "name": "other", "children": (2, 3), "background": 4, "render_origin": (1.0, 2.0, 3.0), "hint": "animated",
-    "matrix": tessera.translation(1, 2, 3), "material": 5, "indices": [(0, 1, 2)], "positions": [0.5] * 9,
-    "normals": array("f", [1, 0, 0] * 3), "tangents": [0.0] * 12, "tex_coords": b"12345678", "colors": [1.0] * 12,
+    "layers": 0x80000005, "matrix": tessera.translation(1, 2, 3), "material": 5, "indices": [(0, 1, 2)],
+    "positions": [0.5] * 9, "normals": array("f", [1, 0, 0] * 3), "tangents": [0.0] * 12, "tex_coords": b"12345678", "colors": [1.0] * 12,
     "base_color": (0.5, 0.25, 0.0, 1.0), "base_color_texture": tessera.TextureSlot(7, (1.0, 0.5), (2.0, 2.0), 0.5),
     "metallic": 0.5, "roughness": 0.25, "metallic_roughness_texture": 7, "normal_texture": 7, "normal_scale": 2.0,
     "emission": (1.0, 2.0, 3.0), "emission_texture": 7, "alpha_mode": "blend", "alpha_cutoff": 0.25,
