@@ -24,8 +24,9 @@ constexpr float Nothing = std::numeric_limits<float>::quiet_NaN();
 
 class Reader {
   public:
-    Reader(const ZipArchive& archive, std::span<const std::byte> text, const std::string& name)
-        : archive_(archive), xml_(text, name), name_(name) {}
+    // Without an archive: of the text alone.
+    Reader(const ZipArchive* archive, std::span<const std::byte> text, const std::string& name)
+        : archive_(archive), xml_(text, name) {}
 
     Mpcdi read() {
         mpcdi_.profile = profile();
@@ -133,7 +134,9 @@ class Reader {
     std::optional<std::vector<std::byte>> file(pugi::xml_node of) const {
         const std::string path = xml_.text_in(of, "path");
         if (path.empty()) return std::nullopt;
-        const auto bytes = archive_.read(path);
+        if (archive_ == nullptr)
+            xml_.refuse(of, "names '" + path + "', but stands alone: take the archive that has both");
+        const auto bytes = archive_->read(path);
         if (!bytes) xml_.refuse(of, bytes.error().what());
         return *bytes;
     }
@@ -211,9 +214,8 @@ class Reader {
             xml_.refuse(at, name + "needs a <frustum> and a <coordinateFrame>: the profile is sl");
     }
 
-    const ZipArchive& archive_;
+    const ZipArchive* archive_;
     MpcdiXml xml_;
-    std::string name_;
     Mpcdi mpcdi_;
     std::vector<pugi::xml_node> places_;  // of the regions in the text
     std::set<std::string> ids_;
@@ -221,18 +223,22 @@ class Reader {
 
 }  // namespace
 
-Expected<Mpcdi> parse_mpcdi(std::span<const std::byte> archive, const std::string& name) {
-    const auto opened = ZipArchive::open(archive, name);
-    if (!opened) return tl::unexpected(opened.error());
-    const auto text = opened->read("mpcdi.xml");
+Expected<Mpcdi> parse_mpcdi(std::span<const std::byte> bytes, const std::string& name) {
+    const auto read = [&](const ZipArchive* archive, std::span<const std::byte> text) -> Expected<Mpcdi> {
+        if (text.size() > MostText)
+            return failure(ErrorCode::InvalidInput, name + ": mpcdi.xml has more than 16 MiB");
+        try {
+            return Reader(archive, text, name).read();
+        } catch (const Error& error) {
+            return tl::unexpected(error);
+        }
+    };
+    if (!bytes.empty() && bytes[0] == std::byte{'<'}) return read(nullptr, bytes);
+    const auto archive = ZipArchive::open(bytes, name);
+    if (!archive) return tl::unexpected(archive.error());
+    const auto text = archive->read("mpcdi.xml");
     if (!text) return tl::unexpected(text.error());
-    if (text->size() > MostText)
-        return failure(ErrorCode::InvalidInput, name + ": mpcdi.xml has more than 16 MiB");
-    try {
-        return Reader(*opened, *text, name).read();
-    } catch (const Error& error) {
-        return tl::unexpected(error);
-    }
+    return read(&*archive, *text);
 }
 
 Expected<Mpcdi> load_mpcdi(const std::string& path) {

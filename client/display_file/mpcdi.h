@@ -56,8 +56,9 @@ struct Mpcdi {
     std::vector<std::string> notices;  // what it holds and nobody uses, for people
 };
 
+// Of an archive, or of an mpcdi.xml that names no files and stands alone (some tools write projectors so).
 // Errors begin with `name`, in the text with its line ("wall.mpcdi: mpcdi.xml:12: ..."), and say the remedy.
-Expected<Mpcdi> parse_mpcdi(std::span<const std::byte> archive, const std::string& name);
+Expected<Mpcdi> parse_mpcdi(std::span<const std::byte> bytes, const std::string& name);
 Expected<Mpcdi> load_mpcdi(const std::string& path);
 
 }  // namespace tessera::display_file

@@ -102,6 +102,18 @@ TEST(Mpcdi, ReadsRegionsFrustaAndFrames) {
     expect_near(found.frame->forward, {0, 1, 0});
 }
 
+TEST(Mpcdi, TextAloneIsReadWhenItNamesNoFiles) {
+    const auto read = [](const std::string& text) {
+        return parse_mpcdi(std::as_bytes(std::span(text)), "a.mpcdi.xml");
+    };
+    const auto alone = read(xml("sl", region("p", std::string(Frustum) + Frame), ""));
+    ASSERT_TRUE(alone) << alone.error().what();
+    EXPECT_EQ(alone->regions[0].id, "p");
+    const auto with_files = read(xml("a3", region("p"), files("p", Warp)));
+    ASSERT_FALSE(with_files);
+    EXPECT_NE(std::string(with_files.error().what()).find("'w.pfm', but stands alone"), std::string::npos);
+}
+
 TEST(Mpcdi, WeightsLoseTheirGammaAndLengthsTheirUnit) {
     const std::string points = pfm(2, 1, {100, 50, -200, 0, 0, 0});
     const std::string sets =
