@@ -26,6 +26,16 @@ bool is_shown(const display::Display& display, std::size_t layer) {
     return display.layers.empty() || display.layers[layer].shown;
 }
 
+// Of a choice of layers to show, bit i: layer i.
+std::string layer_problem(const display::Display& display, std::uint32_t shown) {
+    if (shown >> display.layers.size() == 0) return {};
+    if (display.layers.empty()) return "the display has no layers to choose from: its file names none";
+    std::string text = "the display has no such layer; it has:";
+    for (std::size_t i = 0; i < display.layers.size(); ++i)
+        text += (i == 0 ? " " : ", ") + std::to_string(i) + " '" + display.layers[i].name + "'";
+    return text;
+}
+
 std::string first_problem(const display::Display& display) {
     if (const auto found = display::problems(display); !found.empty())
         return found.front() +
@@ -103,6 +113,8 @@ std::string DisplayService::adjust(const wire::AdjustDisplay& request) {
     if (request.zero_parallax) adjusted.zero_parallax = *request.zero_parallax;
     if (request.exposure) adjusted.exposure = *request.exposure;
     if (request.shown_layers) {
+        if (std::string problem = layer_problem(adjusted, *request.shown_layers); !problem.empty())
+            return problem;
         for (std::size_t i = 0; i < adjusted.layers.size(); ++i)
             adjusted.layers[i].shown = ((*request.shown_layers >> i) & 1u) != 0;
     }

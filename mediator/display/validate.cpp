@@ -1,5 +1,6 @@
 #include "mediator/display/validate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -88,6 +89,8 @@ std::vector<std::string> problems(const Display& display) {
     if (display.outputs.empty()) found.emplace_back("the display has no outputs: add one");
     if (display.outputs.size() > MaxOutputs) found.emplace_back("the display has more than 64 outputs");
     if (display.layers.size() > MaxLayers) found.emplace_back("the display has more than 4 layers");
+    if (!display.layers.empty() && std::ranges::none_of(display.layers, &Layer::shown))
+        found.emplace_back("no layer of the display is shown: show one of them");
     if (!is_within(display.units_per_metre, 1e-9, 1e9))
         found.emplace_back("units_per_metre is not within 1e-9 and 1e9");
     if (!is_within(display.eye_separation, 0.0, 10.0))

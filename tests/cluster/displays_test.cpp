@@ -295,6 +295,12 @@ TEST_F(Displays, WhatCannotBeShownIsRefusedWithTheReason) {
     refused([&] { ann->open_display(bad); }, "does not have blob");
     ann->open_display(wall);
     refused([&] { ann->adjust_display({.eye_separation = -1.0}); }, "eye separation");
+    refused([&] { ann->adjust_display({.shown_layers = 1}); }, "no layers to choose from");
+    wall.layers = {{.name = "solid"}, {.name = "menu"}};
+    ann->open_display(wall);
+    refused([&] { ann->adjust_display({.shown_layers = 4}); }, "it has: 0 'solid', 1 'menu'");
+    refused([&] { ann->adjust_display({.shown_layers = 0}); }, "no layer of the display is shown");
+    ann->adjust_display({.shown_layers = 2});
     Shower& middle = show("middle");
     until([&] { return !middle.problem.empty(); });
     EXPECT_NE(middle.problem.find("no output 'middle'; it has: left, right"), std::string::npos);

@@ -26,6 +26,10 @@ spp = 4
 rate = 240
 [head]
 eye_separation = 0.064
+[[layer]]
+name = "solid"
+[[layer]]
+name = "menu"
 [[output]]
 name = "left-half"
 size = [64, 48]
@@ -90,7 +94,8 @@ struct DisplayProcess : testing::Test {
     void until(const Done& done) {
         const auto deadline = std::chrono::steady_clock::now() + Patience;
         while (!done()) {
-            ASSERT_LT(std::chrono::steady_clock::now(), deadline) << "it did not happen";
+            ASSERT_LT(std::chrono::steady_clock::now(), deadline)
+                << "it did not happen: " << cluster.master().err();
             auto event = shower->next_output_event(std::chrono::steady_clock::now() + 10ms, {});
             if (!event) continue;
             if (const auto* opened = std::get_if<wire::OutputOpened>(&*event)) pattern = opened->pattern;
@@ -102,7 +107,7 @@ struct DisplayProcess : testing::Test {
     }
     // A cluster that shows the wall's output.
     void show() {
-        load_scene();
+        ASSERT_NO_FATAL_FAILURE(load_scene());
         ASSERT_EQ(display({"open", file}).code, 0);
         shower = member("shower");
         shower->join_output("left-half");
@@ -167,7 +172,7 @@ TEST_F(DisplayProcess, IsOpenedAdjustedAndClosed) {
                                " --output left-half\n");
     expect_says(early.err, "nothing is shown yet");
     auto node = cluster.start_node("n1", {"--backend", "null"});
-    show();
+    ASSERT_NO_FATAL_FAILURE(show());
     expect_says(cluster.status()["display"].dump(), "left-half");
     EXPECT_TRUE(is_seen_from({}, 0.064));
     ASSERT_EQ(display({"adjust", "--eye-separation", "0.25"}).code, 0);
@@ -180,6 +185,10 @@ TEST_F(DisplayProcess, IsOpenedAdjustedAndClosed) {
     const Result refused = display({"adjust", "--eye-separation", "-1"});
     EXPECT_EQ(refused.code, 77);
     expect_says(refused.err, "the eye separation is not within 0 and 10 m");
+    const Result layers = display({"adjust", "--layers", "0,3"});
+    EXPECT_EQ(layers.code, 77);
+    expect_says(layers.err, "it has: 0 'solid', 1 'menu'");
+    EXPECT_EQ(display({"adjust", "--layers", "1"}).code, 0);
     EXPECT_EQ(display({"close"}).code, 0);
     EXPECT_TRUE(cluster.status()["display"].is_null());
     EXPECT_EQ(display({"close"}).code, 77);
@@ -187,7 +196,7 @@ TEST_F(DisplayProcess, IsOpenedAdjustedAndClosed) {
 
 TEST_F(DisplayProcess, FollowsATrackedHead) {
     auto node = cluster.start_node("n1", {"--backend", "null"});
-    show();
+    ASSERT_NO_FATAL_FAILURE(show());
     ChildProcess track(cluster.folder().path(), "track", "tessera",
                        with_cluster({"display", "track", "--udp", "0"}));
     const std::string before = "port ";
@@ -216,7 +225,7 @@ TEST_F(DisplayProcess, FollowsATrackedHead) {
 
 TEST_F(DisplayProcess, FollowsAHeadFromPython) {
     auto node = cluster.start_node("n1", {"--backend", "null"});
-    show();
+    ASSERT_NO_FATAL_FAILURE(show());
     ChildProcess walk(cluster.folder().path(), "walk", "/usr/bin/env",
                       {std::string("PYTHONPATH=") + TESSERA_BIN + "/../python", "PYTHONDONTWRITEBYTECODE=1",
                        TESSERA_PYTHON, "-c", Walk, cluster.endpoint(), cluster.keys()});

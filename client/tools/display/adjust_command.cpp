@@ -21,20 +21,16 @@ struct AdjustOptions {
     std::optional<std::string> layers;
 };
 
-// "0,2", or "none".
+// "0,2"
 Expected<std::uint32_t> parse_layers(const std::string& text) {
     std::uint32_t layers = 0;
-    if (text == "none") return layers;
     for (const std::string& word : split_list(text)) {
         if (word.size() != 1 || word[0] < '0' || word[0] >= char('0' + display::MaxLayers))
             return failure(ErrorCode::InvalidInput,
-                           "--layers: '" + word +
-                               "' is no layer: give their numbers from 0, as 0,2, or "
-                               "none");
+                           "--layers: '" + word + "' is no layer: give numbers from 0 to 3, as 0,2");
         layers |= 1u << (word[0] - '0');
     }
-    if (layers == 0)
-        return failure(ErrorCode::InvalidInput, "--layers: give numbers from 0, as 0,2, or none");
+    if (layers == 0) return failure(ErrorCode::InvalidInput, "--layers: give numbers from 0 to 3, as 0,2");
     return layers;
 }
 
@@ -73,11 +69,9 @@ Command adjust_display_command(cli::CommandLine& display) {
                 options->zero_parallax);
     line.option("--exposure", "stops", options->exposure);
     line.choice("--pattern", "show the test pattern instead of the scene", options->pattern, {"on", "off"});
-    line.option(
-        "--layers",
-        "the layers that are shown: their numbers, from 0 as the display's file names them, as 0,2; or "
-        "none",
-        options->layers);
+    line.option("--layers",
+                "the layers that are shown, as 0,2: numbers, counted from 0 as the display's file names them",
+                options->layers);
     line.examples(
         {"tessera display adjust --eye-separation 0.06 --zero-parallax 2.5 --master "
          "tcp://render-1:7420 --keys ~/.tessera",
