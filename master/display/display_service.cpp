@@ -92,7 +92,6 @@ std::string DisplayService::open(const scene::BlobPtr& description, std::vector<
         const auto shower = showers.find(open_->display.outputs[i].name);
         if (shower == showers.end() || sessions_.find(shower->second.session) == nullptr) continue;
         open_->showers[i] = shower->second;
-        open_->lock.joined(i);
         tell(i, 0);
     }
     tick(now);
@@ -167,7 +166,7 @@ std::string DisplayService::join(const SessionRecord& session, const wire::JoinO
     if (!shower)
         events_({wire::Severity::Info, "output '" + request.name + "' is shown on " + session.hello.host});
     shower = Shower{session.id, session.hello.host};
-    open_->lock.joined(index);
+    if (session.bulk) open_->lock.joined(index);
     tell(index, request.request);
     send_waiting(now);
     return {};
@@ -299,7 +298,17 @@ void DisplayService::made(MadeOutput&& output, TimePoint now) {
     send_waiting(now);
 }
 
+// Pictures need a process's bulk link, which may be known later than what it asked for.
+void DisplayService::admit() {
+    for (std::size_t i = 0; i < open_->showers.size(); ++i) {
+        if (!open_->showers[i] || open_->lock.outputs()[i].state != OutputState::Absent) continue;
+        const SessionRecord* session = sessions_.find(open_->showers[i]->session);
+        if (session != nullptr && session->bulk) open_->lock.joined(i);
+    }
+}
+
 void DisplayService::send_waiting(TimePoint now) {
+    admit();
     if (!open_->lock.free()) return;
     const bool is_new = open_->waiting.has_value();
     if (!is_new && !(open_->latest && open_->lock.anybody_joins())) return;

@@ -75,6 +75,7 @@ class DisplayService {
     std::vector<GroupView> views();
     void take(const GroupStage& stage, TimePoint now);
     void made(MadeOutput&& made, TimePoint now);
+    void admit();
     void send_waiting(TimePoint now);
     void send(std::size_t output);  // the latest frame
     void present(const std::optional<FrameLock::Present>& present, TimePoint now);

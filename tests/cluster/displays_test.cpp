@@ -317,6 +317,49 @@ TEST_F(Displays, WhatCannotBeShownIsRefusedWithTheReason) {
     EXPECT_EQ(status().display.name, "");
 }
 
+// Nothing is assumed about the order between its links.
+TEST_F(Displays, AnOutputWhoseBulkLinkIsLateIsSentItsFrames) {
+    cluster.add_node("null");
+    ann->open_display(wall);
+    const auto peer = cluster.channel(net::Role::Viewer);
+    const auto say = [&](const wire::ControlMessage& message) {
+        (void)peer->send(net::Link::Control, net::ServerPeer, wire::encode(message));
+    };
+    std::uint64_t token = 0;
+    bool is_opened = false, has_picture = false;
+    const auto listen_until = [&](const auto& done, Duration limit) {
+        const auto deadline = std::chrono::steady_clock::now() + limit;
+        while (!done() && std::chrono::steady_clock::now() < deadline) {
+            for (auto& [name, shower] : showers) shower.step();
+            say(wire::Heartbeat{.sent_at = 1});
+            const auto received = peer->receive(std::chrono::steady_clock::now() + 5ms);
+            const auto* message = std::get_if<net::Message>(&received);
+            if (message == nullptr) continue;
+            if (message->link == net::Link::Bulk) {
+                const auto bulk = wire::decode_bulk(message->bytes);
+                has_picture = has_picture || (bulk && std::holds_alternative<wire::OutputPicture>(*bulk));
+                continue;
+            }
+            const auto control = wire::decode_control(message->bytes);
+            if (!control) continue;
+            if (const auto* welcome = std::get_if<wire::Welcome>(&*control)) token = welcome->token;
+            is_opened = is_opened || std::holds_alternative<wire::OutputOpened>(*control);
+        }
+        return done();
+    };
+    say(wire::Hello{.name = "late"});
+    ASSERT_TRUE(listen_until([&] { return token != 0; }, 30s));
+    say(wire::JoinScene{.title = "test", .name = "late"});
+    say(wire::JoinOutput{.request = 1, .name = "left"});
+    ASSERT_TRUE(listen_until([&] { return is_opened; }, 30s));
+    Shower& right = show("right");  // so there are frames
+    ASSERT_TRUE(listen_until([&] { return shows(right, 4); }, 30s));
+    EXPECT_EQ(status().display.outputs[0].late, 0u) << "nobody waited for it";
+    (void)peer->send(net::Link::Bulk, net::ServerPeer,
+                     wire::encode(wire::BulkMessage(wire::BulkHello{token})));
+    EXPECT_TRUE(listen_until([&] { return has_picture; }, 30s));
+}
+
 TEST_F(Displays, ThePatternIsSwitchedOnForAll) {
     ann->open_display(wall);
     show("left");
