@@ -38,6 +38,7 @@ std::vector<std::size_t> FrameLock::begin(std::uint64_t frame, Whom whom, TimePo
         if (output.state != OutputState::Joining && !is_locked) continue;
         output.state = OutputState::Locked;
         output.in_hand = frame;
+        output.sent_at = now;
         receivers.push_back(i);
     }
     waiting_ = {receivers.begin(), receivers.end()};
@@ -53,7 +54,11 @@ std::optional<FrameLock::Present> FrameLock::ready(std::size_t i, std::uint64_t 
     Output& output = outputs_[i];
     if (output.in_hand == 0 || frame < output.in_hand) return std::nullopt;
     output.in_hand = 0;
-    if (output.state == OutputState::Late) output.state = OutputState::Joining;
+    if (output.state == OutputState::Late) {
+        output.state = OutputState::Joining;
+        const Duration took = std::min(now - output.sent_at, settings_.most_patience / 2);
+        expected_ = std::max(expected_.value_or(took), took);
+    }
     if (frame != frame_ || waiting_.erase(i) == 0) return std::nullopt;
     ready_.insert(i);
     pause_ = std::max(pause_, now - last_sign_);
@@ -75,7 +80,8 @@ std::optional<FrameLock::Present> FrameLock::present_if_all_ready(TimePoint now)
     if (frame_ == 0 || !waiting_.empty()) return std::nullopt;
     Present present{.frame = frame_, .at = {}, .outputs = {ready_.begin(), ready_.end()}};
     frame_ = 0;
-    expected_ = pause_;
+    constexpr int Forgets = 16;  // after so many frames two thirds of what was expected are forgotten
+    expected_ = std::max(pause_, expected_.value_or(Duration::zero()) * (Forgets - 1) / Forgets);
     if (present.outputs.empty()) return std::nullopt;
     Duration lead = settings_.least_lead;
     for (const std::size_t i : present.outputs) {

@@ -13,9 +13,11 @@ namespace tessera::master {
 
 struct LockSettings {
     // An output is late when nobody became ready for so long, and for twice as long as the longest pause
-    // between two of the frame before (large pictures take their time).
+    // between two in frames before (large pictures and busy machines take their time).
     Duration patience = std::chrono::milliseconds(100);
     Duration first_patience = std::chrono::seconds(5);  // nothing is known of the first frame yet
+    // What a late output is given the next time, at most, however long it took.
+    Duration most_patience = std::chrono::seconds(2);
     // Between the order to present and its time, at least: it must have arrived by then.
     Duration least_lead = std::chrono::milliseconds(2), most_lead = std::chrono::milliseconds(50);
 };
@@ -34,6 +36,7 @@ class FrameLock {
     struct Output {
         wire::OutputState state = wire::OutputState::Absent;
         std::uint64_t in_hand = 0;  // frame that was sent and not answered; 0 = free
+        TimePoint sent_at{};        // when
         Duration bound{0};          // of what is known of its clock
         std::uint64_t frames = 0, late = 0;
     };
@@ -81,7 +84,7 @@ class FrameLock {
     bool is_new_ = false;               // nobody shows it yet
     TimePoint last_sign_{};             // of the frame: begun, or somebody was ready
     Duration pause_{0};                 // the longest between two signs
-    std::optional<Duration> expected_;  // of the frame before
+    std::optional<Duration> expected_;  // of frames before; an old one counts less and less
     std::set<std::size_t> waiting_, ready_;
     TimePoint last_at_{};
     std::vector<TimePoint> presented_;  // the latest

@@ -87,6 +87,39 @@ TEST_F(Locked, LargePicturesTakeTheirTime) {
     EXPECT_TRUE(lock.tick(now + 800ms));
 }
 
+// Whoever needs longer than the patience is not dropped for ever.
+TEST_F(Locked, AnOutputThatIsAlwaysSlowIsWaitedForInTheEnd) {
+    std::uint64_t dropped = 0;
+    for (int i = 0; i < 20; ++i) {
+        (void)begin();
+        const std::uint64_t sent = frame;
+        (void)lock.ready(0, sent, now);
+        (void)lock.ready(2, sent, now);
+        now += 150ms;  // what output 1 needs
+        if (lock.tick(now)) {
+            ++dropped;
+        }
+        (void)lock.ready(1, sent, now);
+        EXPECT_TRUE(lock.free());
+    }
+    EXPECT_EQ(dropped, 1u);
+    EXPECT_EQ(lock.outputs()[1].state, OutputState::Locked);
+}
+
+TEST_F(Locked, AnOutputThatWasStoppedForLongDoesNotMakeTheOthersWaitAsLong) {
+    (void)begin();
+    const std::uint64_t sent = frame;
+    (void)lock.ready(0, sent, now);
+    (void)lock.ready(2, sent, now);
+    ASSERT_TRUE(lock.tick(now + 100ms));
+    now += 60s;
+    (void)lock.ready(1, sent, now);
+    (void)begin();
+    (void)lock.ready(0, frame, now);
+    (void)lock.ready(2, frame, now);
+    EXPECT_TRUE(lock.tick(now + 2s));
+}
+
 TEST_F(Locked, WhoLeavesIsNotWaitedFor) {
     (void)begin();
     (void)lock.ready(0, frame, now);
