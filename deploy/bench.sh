@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 deploy/setup.sh release
-for bench in film embree filter; do
+for bench in film embree filter display; do
     echo "== $bench"
     "build/release/bin/tessera_${bench}_bench" "$@"
 done
@@ -12,4 +12,6 @@ echo "== back-ends"
 build/release/bin/tessera bench backends --scenes room-1,balls:1000000 --repeat 3
 echo "== live"
 build/release/bin/tessera bench live
+echo "== displays"
+build/release/bin/tessera bench displays
 PYTHONPATH=build/release/python /usr/bin/python3 deploy/bench_join.py build/release/bin

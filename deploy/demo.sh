@@ -3,12 +3,18 @@
 # loopback, CURVE keys made for this run) render a glTF scene by tiles and cooperative samples into out/demo.exr and out/demo.png.
 # Arguments go to the render, as in: deploy/demo.sh --spp 16
 # With --live: a tour of live editing instead (deploy/tour.sh); --live --once ends after it.
+# With --wall: a stereo wall of six projectors instead, without one being there (deploy/wall.sh).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 deploy/setup.sh release
 if [ "${1:-}" = --live ]; then
     shift
     exec deploy/tour.sh "$@"
+fi
+
+if [ "${1:-}" = --wall ]; then
+    shift
+    exec deploy/wall.sh "$@"
 fi
 
 bin=build/release/bin

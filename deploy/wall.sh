@@ -55,12 +55,12 @@ echo "demo: ${#outputs[@]} output processes, in step"
 for ((waited = 0; ; ++waited)); do
     "$bin/tessera" status "${here[@]}" --json >"$folder/status.json" || fail "the master does not answer"
     least=$(jq '[.display.outputs[] | if .state == "locked" then .samples else 0 end] | min' "$folder/status.json")
-    ((least >= 64)) && break
+    ((least >= 16)) && break
     ((waited < 1200)) || fail "the wall is not complete"
     sleep 0.25
 done
 sleep 0.5 # the last frame is on its way
-"$bin/tessera" display audience deploy/wall.toml --pictures "$wall" -o "$wall/audience.png" >"$folder/audience.log" ||
+"$bin/tessera" display audience deploy/wall.toml --pictures "$wall" --black 0.002 -o "$wall/audience.png" >"$folder/audience.log" ||
     fail "no picture of what the audience sees"
 
 "$bin/tessera" status "${here[@]}" | sed -n "/^display/,/^node/p" | sed '/^node/d'
