@@ -244,6 +244,26 @@ class LiveMaster(unittest.TestCase):
         self.addCleanup(self.close_scene)
         self.assertEqual(self.middle(self.glowing_wall().wait(samples=8)), (1.0, 0.0, 0.0))  # the node is back, too
 
+    def test_a_display_is_adjusted_and_its_head_moved(self):
+        with self.assertRaisesRegex(tessera.Refused, "no display is open"):
+            self.session.adjust_display(exposure=1.0)
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "wall.toml"
+            file.write_text("[[output]]\nname = 'desk'\nsize = [64, 48]\n")
+            self.cluster.run("tessera", "display", "open", file, "--master", self.cluster.endpoint, "--keys",
+                             self.cluster.keys)
+        for x in range(100):
+            self.session.move_head((0.01 * x, 0, 0), (1, 0, 0, 0))
+        self.session.adjust_display(eye_separation=0.06, zero_parallax=2.0, exposure=1.0, pattern=True)
+        for change, reason in ((dict(eye_separation=-1), "eye separation"), (dict(exposure=100), "exposure"),
+                               (dict(shown_layers=[0]), "no layers to choose from")):
+            with self.assertRaisesRegex(tessera.Refused, reason):
+                self.session.adjust_display(**change)
+        with self.cluster.connect(user="viewer", name="guest") as guest:
+            guest.join()
+            with self.assertRaisesRegex(tessera.Refused, "role"):
+                guest.adjust_display(pattern=False)
+
     def test_the_example_of_the_readme(self):
         readme = pathlib.Path(__file__).resolve().parents[2] / "README.md"
         with tempfile.TemporaryDirectory() as folder:
