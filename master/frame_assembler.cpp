@@ -48,13 +48,16 @@ frame::BlockForest FrameAssembler::all_blocks(std::uint32_t tile) const {
 }
 
 frame::FilmTile FrameAssembler::merged_tile(std::uint32_t tile) const {
-    const frame::BlockForest all = all_blocks(tile);
-    if (!all.blocks().empty()) return all.merged();
+    if (earlier_.empty()) {
+        if (!forests_[tile].blocks().empty()) return forests_[tile].merged();
+    } else if (const frame::BlockForest all = all_blocks(tile); !all.blocks().empty()) {
+        return all.merged();
+    }
     return frame::FilmTile(tiles_[tile], {}, earlier_.empty() ? channels_ : earlier_channels_);
 }
 
-template <class MergedTile>
-frame::FilmTile FrameAssembler::pasted(frame::ChannelSet channels, const MergedTile& merged) const {
+template <class PasteTile>
+frame::FilmTile FrameAssembler::pasted(frame::ChannelSet channels, const PasteTile& paste_tile) const {
     Rect bounds = tiles_.front();
     for (const Rect& tile : tiles_) {
         const std::int32_t right = std::max(bounds.right(), tile.right());
@@ -65,20 +68,24 @@ frame::FilmTile FrameAssembler::pasted(frame::ChannelSet channels, const MergedT
         bounds.height = bottom - bounds.y;
     }
     frame::FilmTile film(bounds, {}, channels);
-    for (std::uint32_t tile = 0; tile < tile_count(); ++tile) frame::paste(film, merged(tile));
+    for (std::uint32_t tile = 0; tile < tile_count(); ++tile) paste_tile(tile, film);
     return film;
 }
 
 frame::FilmTile FrameAssembler::whole() const {
     return pasted(earlier_.empty() ? channels_ : earlier_channels_,
-                  [&](std::uint32_t tile) { return merged_tile(tile); });
+                  [&](std::uint32_t tile, frame::FilmTile& film) {
+                      // The usual case, without a copy on the way.
+                      const bool is_one_block = earlier_.empty() && forests_[tile].blocks().size() == 1;
+                      is_one_block ? frame::paste(film, forests_[tile].blocks().begin()->second)
+                                   : frame::paste(film, merged_tile(tile));
+                  });
 }
 
 std::optional<frame::FilmTile> FrameAssembler::later() const {
     if (earlier_.empty()) return std::nullopt;
-    return pasted(channels_, [&](std::uint32_t tile) {
-        return forests_[tile].blocks().empty() ? frame::FilmTile(tiles_[tile], {}, channels_)
-                                               : forests_[tile].merged();
+    return pasted(channels_, [&](std::uint32_t tile, frame::FilmTile& film) {
+        if (!forests_[tile].blocks().empty()) frame::paste(film, forests_[tile].merged());
     });
 }
 

@@ -36,8 +36,8 @@ class FrameAssembler {
 
   private:
     frame::BlockForest all_blocks(std::uint32_t tile) const;
-    template <class MergedTile>
-    frame::FilmTile pasted(frame::ChannelSet channels, const MergedTile& merged) const;
+    template <class PasteTile>
+    frame::FilmTile pasted(frame::ChannelSet channels, const PasteTile& paste_tile) const;
 
     std::vector<Rect> tiles_;
     frame::ChannelSet channels_;

@@ -50,8 +50,8 @@ Gradient gradient(const view::View& view, const backend::Lowered& lowered, std::
     const float v = static_cast<float>(y) / static_cast<float>(view.height);
     const float noise = static_cast<float>(random.uniform());
     const auto& instances = lowered.instances;
-    const std::size_t cell =
-        static_cast<std::size_t>(x / 16 + y / 16 * 7) % (instances.size() + 1);  // the last one is a miss
+    const std::uint32_t cell = static_cast<std::uint32_t>(x / 16 + y / 16 * 7) %
+                               static_cast<std::uint32_t>(instances.size() + 1);  // the last one is a miss
     const bool hit = cell < instances.size() && (instances[cell].layers & view.layers) != 0;
     const float depth = hit ? 1.0f + u + v + noise : std::numeric_limits<float>::infinity();
     return {.direct = {u * noise, v * noise, 0.5f * noise},

@@ -22,6 +22,13 @@ void fill_empty(FilmTile& tile, const ChannelInfo& info) {
     }
 }
 
+// What is not 0 in a tile without samples.
+void fill_empty(FilmTile& tile) {
+    for (const ChannelInfo& info : channel_table()) {
+        if (tile.channels.contains(info.channel)) fill_empty(tile, info);
+    }
+}
+
 // Copies the rows of a tile's plane to their place in the window's plane.
 template <class T>
 void place(std::span<const T> from, const Rect& tile, std::span<T> to, const Rect& window) {
@@ -43,7 +50,7 @@ FilmTile::FilmTile(Rect tile_rect, SampleBlock sample_block, ChannelSet channel_
       channels(channel_set),
       counts(tile_rect.pixel_count(), 0),
       planes(channel_set.plane_count() * tile_rect.pixel_count()) {
-    reset(sample_block);
+    fill_empty(*this);
 }
 
 void FilmTile::reset(SampleBlock sample_block) {
@@ -51,9 +58,7 @@ void FilmTile::reset(SampleBlock sample_block) {
     nonfinite_samples = 0;
     std::fill(counts.begin(), counts.end(), 0u);
     std::fill(planes.begin(), planes.end(), 0.0f);
-    for (const ChannelInfo& info : channel_table()) {
-        if (channels.contains(info.channel)) fill_empty(*this, info);
-    }
+    fill_empty(*this);
 }
 
 void paste(FilmTile& film, const FilmTile& tile) {
