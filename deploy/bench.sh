@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 deploy/setup.sh release
-for bench in film embree filter display; do
+for bench in film embree filter compose display; do
     echo "== $bench"
     "build/release/bin/tessera_${bench}_bench" "$@"
 done
