@@ -19,8 +19,14 @@ bool is_finite(const view::CameraPose& camera) {
 Expected<std::optional<OutputFrame>> OutputCollector::add(wire::OutputPicture&& piece) {
     if (!is_finite(piece.camera))
         return failure(ErrorCode::InvalidInput, "the master sent a picture without a camera");
-    if (!frame_ || frame_->number != piece.frame) {
-        if (piece.offset != 0) return std::nullopt;  // its beginning was lost
+    // After a break of the connection a frame may come again from its beginning.
+    const bool again = frame_ && piece.offset == 0 &&
+                       std::any_of(frame_->pictures.begin(), frame_->pictures.end(),
+                                   [&](const auto& picture) { return picture.eye == piece.eye; });
+    if (!frame_ || frame_->number != piece.frame || again) {
+        frame_.reset();
+        const bool is_first = piece.offset == 0 && (piece.eyes == 1 || piece.eye == view::Eye::Left);
+        if (!is_first) return std::nullopt;  // its beginning was lost
         frame_ = OutputFrame{piece.frame, piece.version, piece.samples, {}};
         missing_ = 0;
     }

@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -41,9 +42,31 @@ client_display::MakePresenter presenter(const Options& options) {
             return client_display::make_shared_memory(options.shm, output);
         };
     if (options.headless) return [](const display::Output&) { return std::make_unique<Nowhere>(); };
-    const auto mode =
-        options.window ? client_display::WindowMode::Framed : client_display::WindowMode::FullScreen;
-    return [mode](const display::Output& output) { return client_display::make_window(mode, output); };
+    return client_display::make_windows(options.window ? client_display::WindowMode::Framed
+                                                       : client_display::WindowMode::FullScreen);
+}
+
+// Waits for a master that is not there yet; null when stopped before.
+std::unique_ptr<client::LiveSession> connected(const Options& options,
+                                               std::shared_ptr<scene::BlobStore> blobs, const Clock& clock,
+                                               const std::function<void(const std::string&)>& tell,
+                                               std::stop_token stop) {
+    client::SessionSettings settings{.name = "output " + options.output,
+                                     .host = tools::host_name(),
+                                     .software = "tessera-display " + cli::version(),
+                                     .pid = static_cast<std::uint64_t>(::getpid()),
+                                     .connect_limit = std::chrono::seconds(3),  // a stop waits so long
+                                     .lost_limit = std::chrono::hours(24 * 365),
+                                     .mirrors_scene = false};
+    for (bool told = false; !stop.stop_requested(); told = true) {
+        try {
+            return client::connect_live(options.address, blobs, clock, settings);
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::Unavailable) throw;
+            if (!told) tell(std::string(error.what()) + " Waiting");
+        }
+    }
+    return nullptr;
 }
 
 int show(const Options& options) {
@@ -53,20 +76,14 @@ int show(const Options& options) {
     client_display::FrameLog log;
     if (!options.log.empty()) log = client_display::FrameLog(options.log);
     const auto tell = [&](const std::string& text) { std::cerr << "tessera-display: " << text << std::endl; };
-    const auto session = client::connect_live(options.address, blobs, clock,
-                                              {.name = "output " + options.output,
-                                               .host = tools::host_name(),
-                                               .software = "tessera-display " + cli::version(),
-                                               .pid = static_cast<std::uint64_t>(::getpid()),
-                                               .connect_limit = std::chrono::hours(24),
-                                               .lost_limit = std::chrono::hours(24 * 365),
-                                               .mirrors_scene = false});
+    const client_display::MakePresenter make_presenter = presenter(options);
+    const auto session = connected(options, blobs, clock, tell, interrupts.token());
+    if (!session) return tools::ExitInterrupted;
     const auto joined = session->join(
         "", client::WhenBusy::Queue, [&](std::uint32_t) { tell("a batch has the cluster: waiting"); },
         interrupts.token());
     if (std::holds_alternative<client::Stopped>(joined)) return tools::ExitInterrupted;
-    client_display::OutputPlayer player(*session, *blobs, clock, options.output, presenter(options), log,
-                                        tell);
+    client_display::OutputPlayer player(*session, *blobs, clock, options.output, make_presenter, log, tell);
     player.run(options.frames, interrupts.token());
     return 0;
 }

@@ -68,6 +68,16 @@ void OutputPlayer::take(const client::OutputUnavailable& unavailable) {
 }
 
 void OutputPlayer::take(const wire::OutputOpened& opened) {
+    try {
+        open(opened);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::NotFound) throw;
+        return take(client::OutputUnavailable{"the display was closed"});  // while it was asked for
+    }
+    session_.output_ready(0);  // pictures may come
+}
+
+void OutputPlayer::open(const wire::OutputOpened& opened) {
     told_.clear();
     if (!pipeline_ || opened.description != description_ || output_.name != name_) {
         auto display = wire::decode_display(session_.fetch(opened.description)->bytes());
@@ -105,6 +115,7 @@ void OutputPlayer::take(const wire::OutputOpened& opened) {
         const std::uint64_t number = frame.number;
         take(std::move(frame));
         presenter_->present(number);
+        prepared_.reset();
     }
 }
 

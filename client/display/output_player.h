@@ -40,6 +40,7 @@ class OutputPlayer {
     void take(client::OutputFrame&& frame);
     void take(const wire::PresentFrame& order);
     void take(const client::OutputUnavailable& unavailable);
+    void open(const wire::OutputOpened& opened);
     void show_pattern();
     void make(std::span<const display::EyePicture> pictures);
 

@@ -14,13 +14,16 @@ namespace tessera::client_display {
 
 namespace {
 
+// While one is written, two remain whole: the one that is shown, and the one before for who still reads it.
+constexpr std::size_t Buffers = std::tuple_size_v<decltype(SharedHeader::frames)>;
+
 class SharedMemory final : public Presenter {
   public:
     SharedMemory(const std::string& name, const display::Output& output)
         : name_(name),
           picture_bytes_(std::size_t{3} * output.width * output.height),
           picture_count_(output.stereo == display::Stereo::Separate ? 2 : 1),
-          byte_size_(sizeof(SharedHeader) + 2 * picture_count_ * picture_bytes_) {
+          byte_size_(sizeof(SharedHeader) + Buffers * picture_count_ * picture_bytes_) {
         ::shm_unlink(name.c_str());  // of a process that was killed
         const int file = ::shm_open(name.c_str(), O_RDWR | O_CREAT | O_EXCL, 0600);
         if (file < 0) fail("cannot be made");
@@ -45,12 +48,12 @@ class SharedMemory final : public Presenter {
     SharedMemory& operator=(const SharedMemory&) = delete;
 
     void prepare(DevicePictures pictures) override {
-        std::uint8_t* const buffer = pictures_ + (next() % 2) * picture_count_ * picture_bytes_;
+        std::uint8_t* const buffer = pictures_ + (next() % Buffers) * picture_count_ * picture_bytes_;
         for (std::size_t i = 0; i < picture_count_; ++i)
             std::memcpy(buffer + i * picture_bytes_, pictures[i].data(), picture_bytes_);
     }
     void present(std::uint64_t frame) override {
-        header_->frame = frame;
+        header_->frames[next() % Buffers] = frame;
         header_->sequence.store(next(), std::memory_order_release);
     }
 

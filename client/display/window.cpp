@@ -19,6 +19,13 @@ struct Video {
     Video() {
         SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
         if (SDL_Init(SDL_INIT_VIDEO) != 0) fail("no window can be opened");
+        // What SDL falls back to where there is no display: nobody would see it.
+        const std::string driver = SDL_GetCurrentVideoDriver();
+        if (driver == "offscreen" || driver == "dummy") {
+            SDL_Quit();
+            SDL_SetError("there is only SDL's driver '%s'", driver.c_str());
+            fail("no window can be opened");
+        }
     }
     ~Video() { SDL_Quit(); }
     Video(const Video&) = delete;
@@ -27,7 +34,8 @@ struct Video {
 
 class Window final : public Presenter {
   public:
-    Window(WindowMode mode, const display::Output& output) : width_(static_cast<int>(output.width)) {
+    Window(std::shared_ptr<Video> video, WindowMode mode, const display::Output& output)
+        : width_(static_cast<int>(output.width)), video_(std::move(video)) {
         const int height = static_cast<int>(output.height);
         const Uint32 flags = mode == WindowMode::FullScreen ? SDL_WINDOW_FULLSCREEN_DESKTOP : 0;
         window_.reset(SDL_CreateWindow(("Tessera: " + output.name).c_str(), output.x, output.y, width_,
@@ -37,21 +45,29 @@ class Window final : public Presenter {
         if (!renderer_) renderer_.reset(SDL_CreateRenderer(window_.get(), -1, SDL_RENDERER_SOFTWARE));
         if (!renderer_) fail("nothing can be drawn in the window");
         SDL_RenderSetLogicalSize(renderer_.get(), width_, height);
-        texture_.reset(SDL_CreateTexture(renderer_.get(), SDL_PIXELFORMAT_RGB24, SDL_TEXTUREACCESS_STREAMING,
-                                         width_, height));
-        if (!texture_) fail("the picture is too large for the window's device");
+        for (Texture* texture : {&shown_, &next_}) {
+            texture->reset(SDL_CreateTexture(renderer_.get(), SDL_PIXELFORMAT_RGB24,
+                                             SDL_TEXTUREACCESS_STREAMING, width_, height));
+            if (!*texture) fail("the picture is too large for the window's device");
+        }
         if (mode == WindowMode::FullScreen) SDL_ShowCursor(SDL_DISABLE);
         show();
     }
 
     void prepare(DevicePictures pictures) override {
-        SDL_UpdateTexture(texture_.get(), nullptr, pictures.front().data(), 3 * width_);
+        SDL_UpdateTexture(next_.get(), nullptr, pictures.front().data(), 3 * width_);
     }
-    void present(std::uint64_t) override { show(); }
+    void present(std::uint64_t) override {
+        std::swap(shown_, next_);
+        has_picture_ = true;
+        show();
+    }
 
     bool attend() override {
         for (SDL_Event event; SDL_PollEvent(&event) != 0;) {
             if (event.type == SDL_QUIT) return false;
+            // Another window lay over it: what was there is lost, and no frame may be due for long.
+            if (event.type == SDL_WINDOWEVENT && event.window.event == SDL_WINDOWEVENT_EXPOSED) show();
             if (event.type == SDL_KEYDOWN &&
                 (event.key.keysym.sym == SDLK_ESCAPE || event.key.keysym.sym == SDLK_q))
                 return false;
@@ -63,7 +79,7 @@ class Window final : public Presenter {
   private:
     void show() {
         SDL_RenderClear(renderer_.get());
-        SDL_RenderCopy(renderer_.get(), texture_.get(), nullptr, nullptr);
+        if (has_picture_) SDL_RenderCopy(renderer_.get(), shown_.get(), nullptr, nullptr);
         SDL_RenderPresent(renderer_.get());
     }
     template <auto End>
@@ -74,21 +90,26 @@ class Window final : public Presenter {
         }
     };
 
+    using Texture = std::unique_ptr<SDL_Texture, Ends<SDL_DestroyTexture>>;
+
     int width_;
-    Video video_;  // last to end
+    bool has_picture_ = false;
+    std::shared_ptr<Video> video_;  // last to end
     std::unique_ptr<SDL_Window, Ends<SDL_DestroyWindow>> window_;
     std::unique_ptr<SDL_Renderer, Ends<SDL_DestroyRenderer>> renderer_;
-    std::unique_ptr<SDL_Texture, Ends<SDL_DestroyTexture>> texture_;
+    Texture shown_, next_;
 };
 
 }  // namespace
 
-std::unique_ptr<Presenter> make_window(WindowMode mode, const display::Output& output) {
-    if (output.stereo == display::Stereo::Separate)
-        throw Error(
-            ErrorCode::InvalidInput,
-            "output '" + output.name + "' has two pictures: a window shows one; use --headless --png");
-    return std::make_unique<Window>(mode, output);
+MakePresenter make_windows(WindowMode mode) {
+    return [mode, video = std::make_shared<Video>()](const display::Output& output) {
+        if (output.stereo == display::Stereo::Separate)
+            throw Error(
+                ErrorCode::InvalidInput,
+                "output '" + output.name + "' has two pictures: a window shows one; use --headless --png");
+        return std::make_unique<Window>(video, mode, output);
+    };
 }
 
 }  // namespace tessera::client_display

@@ -72,7 +72,7 @@ std::string DisplayService::open(const scene::BlobPtr& description, std::vector<
             if (open_->showers[i]) showers[open_->display.outputs[i].name] = *open_->showers[i];
         }
     }
-    close();
+    if (open_) forget();
     open_.emplace(Open{.display = std::move(*decoded),
                        .description = scene::reference(*description),
                        .content = std::move(content),
@@ -89,17 +89,26 @@ std::string DisplayService::open(const scene::BlobPtr& description, std::vector<
                         .take = [this](const GroupStage& stage, TimePoint when) { take(stage, when); }},
                        open_->display.spp, open_->display.coarsest, authority_.version());
     for (std::size_t i = 0; i < count; ++i) {
-        const auto shower = showers.find(open_->display.outputs[i].name);
-        if (shower == showers.end() || sessions_.find(shower->second.session) == nullptr) continue;
-        open_->showers[i] = shower->second;
+        const auto shower = showers.extract(open_->display.outputs[i].name);
+        if (shower.empty()) continue;
+        open_->showers[i] = shower.mapped();
         tell(i, 0);
     }
+    for (const auto& [name, shower] : showers)
+        dismiss(shower, "the display that is open now has no output '" + name + "'");
     tick(now);
     return {};
 }
 
 void DisplayService::close() {
     if (!open_) return;
+    for (const auto& shower : open_->showers) {
+        if (shower) dismiss(*shower, "the display was closed");
+    }
+    forget();
+}
+
+void DisplayService::forget() {
     events_({wire::Severity::Info, "display '" + open_->display.name + "' is closed"});
     runner_.close_group();
     open_.reset();
@@ -165,16 +174,22 @@ std::string DisplayService::join(const SessionRecord& session, const wire::JoinO
                ": stop that one first";
     if (!shower)
         events_({wire::Severity::Info, "output '" + request.name + "' is shown on " + session.hello.host});
-    shower = Shower{session.id, session.hello.host};
-    if (session.bulk) open_->lock.joined(index);
+    shower = Shower{session.id, session.hello.host, request.request};
     tell(index, request.request);
-    send_waiting(now);
+    present(open_->lock.left(index, now), now);  // what it had in hand is lost
     return {};
 }
 
+void DisplayService::dismiss(const Shower& shower, const std::string& reason) {
+    if (const SessionRecord* session = sessions_.find(shower.session))
+        outbox_.control(session->control, wire::RequestDone{shower.request, false, reason});
+}
+
 void DisplayService::tell(std::size_t output, std::uint64_t request) {
-    const SessionRecord* session = sessions_.find(open_->showers[output]->session);
+    Shower& shower = *open_->showers[output];
+    const SessionRecord* session = sessions_.find(shower.session);
     if (session == nullptr) return;
+    ++shower.unanswered;
     outbox_.control(session->control, wire::OutputOpened{.request = request,
                                                          .description = open_->description,
                                                          .index = static_cast<std::uint32_t>(output),
@@ -298,11 +313,14 @@ void DisplayService::made(MadeOutput&& output, TimePoint now) {
     send_waiting(now);
 }
 
-// Pictures need a process's bulk link, which may be known later than what it asked for.
+// Pictures need a process's bulk link, which may be known later than what it asked for, and go another way
+// than what it is told of the display.
 void DisplayService::admit() {
     for (std::size_t i = 0; i < open_->showers.size(); ++i) {
-        if (!open_->showers[i] || open_->lock.outputs()[i].state != OutputState::Absent) continue;
-        const SessionRecord* session = sessions_.find(open_->showers[i]->session);
+        const auto& shower = open_->showers[i];
+        if (!shower || shower->unanswered > 0 || open_->lock.outputs()[i].state != OutputState::Absent)
+            continue;
+        const SessionRecord* session = sessions_.find(shower->session);
         if (session != nullptr && session->bulk) open_->lock.joined(i);
     }
 }
@@ -361,6 +379,11 @@ void DisplayService::send(std::size_t index) {
 void DisplayService::ready(SessionId session, const wire::OutputReady& ready, TimePoint now) {
     const auto output = output_of(session);
     if (!output) return;
+    if (ready.frame == 0) {
+        std::size_t& unanswered = open_->showers[*output]->unanswered;
+        if (unanswered > 0) --unanswered;
+        return send_waiting(now);
+    }
     present(open_->lock.ready(*output, ready.frame, now), now);
 }
 
@@ -406,9 +429,10 @@ wire::DisplayStatus DisplayService::status(TimePoint now) const {
                                .outputs = {}};
     for (std::size_t i = 0; i < open_->showers.size(); ++i) {
         const FrameLock::Output& output = open_->lock.outputs()[i];
+        const bool is_coming = open_->showers[i] && output.state == OutputState::Absent;
         status.outputs.push_back({.name = open_->display.outputs[i].name,
                                   .host = open_->showers[i] ? open_->showers[i]->host : "",
-                                  .state = output.state,
+                                  .state = is_coming ? OutputState::Joining : output.state,
                                   .frames = output.frames,
                                   .late = output.late,
                                   .stereo_difference = open_->stereo_differences[i],

@@ -40,14 +40,18 @@ class DisplayService {
     bool scene_changed();
     glm::dvec3 head_in_world() const;
 
-    void tick(TimePoint now);
+    void tick(TimePoint now);  // after every message
     TimePoint next_event() const;
     wire::DisplayStatus status(TimePoint now) const;
 
   private:
+    // A process that shows an output. Pictures and orders go different ways, so it gets pictures only when it
+    // has answered everything that it was told of the display.
     struct Shower {
         SessionId session;
         std::string host;
+        std::uint64_t request = 0;   // its latest
+        std::size_t unanswered = 0;  // OutputOpened without its OutputReady, of frame 0
     };
     // A frame whose pictures are being made, or wait for the lock.
     struct Frame {
@@ -75,13 +79,15 @@ class DisplayService {
     std::vector<GroupView> views();
     void take(const GroupStage& stage, TimePoint now);
     void made(MadeOutput&& made, TimePoint now);
-    void admit();
+    void admit();  // who is able to take part and does not yet
     void send_waiting(TimePoint now);
     void send(std::size_t output);  // the latest frame
     void present(const std::optional<FrameLock::Present>& present, TimePoint now);
     bool find_camera();
     std::optional<std::size_t> output_of(SessionId session) const;
     void tell(std::size_t output, std::uint64_t request);
+    void forget();
+    void dismiss(const Shower& shower, const std::string& reason);  // it asks again
 
     SceneAuthority& authority_;
     SessionTable& sessions_;

@@ -36,7 +36,7 @@ struct Shower {
     std::vector<wire::PresentFrame> orders;
     std::vector<wire::OutputOpened> opened;
     std::string problem;
-    bool answers = true;
+    bool answers = true, opens = true;
 
     void step() {
         while (auto event = session->next_output_event(std::chrono::steady_clock::now(), {})) {
@@ -46,6 +46,7 @@ struct Shower {
             } else if (const auto* order = std::get_if<wire::PresentFrame>(&*event)) {
                 orders.push_back(*order);
             } else if (const auto* open = std::get_if<wire::OutputOpened>(&*event)) {
+                if (opens) session->output_ready(0);
                 opened.push_back(*open);
             } else {
                 problem = std::get<client::OutputUnavailable>(*event).reason;
@@ -254,6 +255,45 @@ TEST_F(Displays, WhoComesLaterIsShownWhatTheOthersShow) {
     until([&] { return left.orders.size() > before && all_show(4); });
 }
 
+TEST_F(Displays, NoPicturesComeBeforeTheDisplayIsTakenIn) {
+    cluster.add_node("null");
+    ann->open_display(wall);
+    Shower& left = show("left");
+    Shower& right = show("right");
+    right.opens = false;
+    until([&] { return shows(left, 4) && !right.opened.empty(); });
+    move_camera(1.0);
+    const std::size_t before = left.orders.size();
+    until([&] { return left.orders.size() > before && shows(left, 4); });
+    EXPECT_TRUE(right.frames.empty());
+    EXPECT_EQ(status().display.outputs[1].state, wire::OutputState::Joining);
+    EXPECT_EQ(status().display.outputs[1].late, 0u) << "nobody waits for it";
+    wall.name = "another";
+    ann->open_display(wall);
+    until([&] { return right.opened.size() == 2; });
+    right.session->output_ready(0);  // of the first
+    until([&] { return shows(left, 4); });
+    EXPECT_TRUE(right.frames.empty());
+    right.session->output_ready(0);
+    until([&] { return all_show(4); });
+}
+
+TEST_F(Displays, OutputsHearThatTheirDisplayIsClosed) {
+    cluster.add_node("null");
+    ann->open_display(wall);
+    Shower& left = show("left");
+    Shower& right = show("right");
+    until([&] { return all_show(4); });
+    wall.outputs.pop_back();
+    ann->open_display(wall);
+    until([&] { return !right.problem.empty(); });
+    EXPECT_NE(right.problem.find("no output 'right'"), std::string::npos) << right.problem;
+    EXPECT_TRUE(left.problem.empty()) << left.problem;
+    ann->close_display();
+    until([&] { return !left.problem.empty(); });
+    EXPECT_NE(left.problem.find("closed"), std::string::npos) << left.problem;
+}
+
 TEST_F(Displays, HeadsMoveAndTheLatestPlaceCounts) {
     cluster.add_node("null");
     ann->open_display(wall);
@@ -343,7 +383,9 @@ TEST_F(Displays, AnOutputWhoseBulkLinkIsLateIsSentItsFrames) {
             const auto control = wire::decode_control(message->bytes);
             if (!control) continue;
             if (const auto* welcome = std::get_if<wire::Welcome>(&*control)) token = welcome->token;
-            is_opened = is_opened || std::holds_alternative<wire::OutputOpened>(*control);
+            if (!std::holds_alternative<wire::OutputOpened>(*control)) continue;
+            is_opened = true;
+            say(wire::OutputReady{});
         }
         return done();
     };
