@@ -1,0 +1,90 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "client/live_session.h"
+#include "mediator/display/display.h"
+#include "tests/process/real_cluster.h"
+
+namespace tessera::test {
+
+// A line of an output's log, see client/display/frame_log.h.
+struct ShownFrame {
+    std::uint64_t frame = 0, epoch = 0, version = 0;
+    double shown = 0.0;         // seconds
+    std::uint64_t samples = 0;  // of a pixel
+};
+
+// An output of 64 x 48 pixels that fills this part of a wall two metres in front of the head.
+display::Output part_of_wall(const std::string& name, double left, double right);
+
+// A program in another environment: variables as NAME=VALUE, or "-u" and NAME of one that it is not to have.
+ChildProcess start_with(const std::vector<std::string>& variables, const TemporaryFolder& folder,
+                        const std::string& label, const std::string& program,
+                        const std::vector<std::string>& arguments);
+
+// A master, null nodes, a live scene of one camera on a place that can be moved, and somebody who edits it.
+class DisplayCluster {
+  public:
+    explicit DisplayCluster(int nodes, RealCluster::Session kept = RealCluster::Session::None);
+
+    client::LiveSession& editor() { return *editor_; }
+    RealCluster& cluster() { return cluster_; }
+    const TemporaryFolder& folder() const { return cluster_.folder(); }
+
+    // What every tessera-display of this cluster is told.
+    std::vector<std::string> arguments(const std::string& output, std::vector<std::string> more) const;
+    // Headless, with a log that further processes of this output go on with.
+    ChildProcess show(const std::string& output, std::vector<std::string> more = {});
+    std::vector<ShownFrame> log(const std::string& output) const;
+    // As `tessera status` has it: locked, late, absent, joining; "" = no such output.
+    std::string state(const std::string& output);
+    bool wait_for_state(const std::string& output, const std::string& state);
+    bool wait_until_locked(const std::vector<std::string>& outputs);
+    // Until the latest lines of their logs are of one frame.
+    bool wait_until_the_same_is_shown(const std::vector<std::string>& outputs) const;
+    // The output's picture with all samples of the display, which stands still: shown for a moment by a
+    // process that keeps a PNG of it.
+    std::vector<std::uint8_t> finished_png(const display::Output& output, std::uint64_t samples);
+
+  private:
+    friend class MovingScene;
+    std::unique_ptr<client::LiveSession> member(const std::string& name);
+
+    RealCluster cluster_;
+    SteadyClock clock_;
+    std::shared_ptr<scene::BlobStore> blobs_ = std::make_shared<scene::BlobStore>();
+    std::unique_ptr<client::LiveSession> editor_;
+    ObjectId place_;
+    std::vector<ChildProcess> nodes_;
+    int next_label_ = 0;
+};
+
+// While it lives, the head moves all the time and the scene's camera now and then: new frames are always due,
+// of new versions. The editor is not used meanwhile.
+class MovingScene {
+  public:
+    explicit MovingScene(DisplayCluster& cluster);
+
+  private:
+    std::jthread thread_;
+};
+
+// Red, green and blue bytes; empty, and the test fails, when the file is not a whole PNG of that size.
+std::vector<std::uint8_t> png_bytes(const std::string& path, std::uint32_t width, std::uint32_t height);
+
+template <class Done>
+bool happens(const Done& done, std::chrono::seconds limit = std::chrono::seconds(30)) {
+    const auto deadline = std::chrono::steady_clock::now() + limit;
+    while (!done()) {
+        if (std::chrono::steady_clock::now() > deadline) return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return true;
+}
+
+}  // namespace tessera::test
