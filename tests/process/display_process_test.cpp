@@ -87,7 +87,10 @@ struct DisplayProcess : testing::Test {
                 << "it did not happen: " << cluster.master().err();
             auto event = shower->next_output_event(std::chrono::steady_clock::now() + 10ms, {});
             if (!event) continue;
-            if (const auto* opened = std::get_if<wire::OutputOpened>(&*event)) pattern = opened->pattern;
+            if (const auto* opened = std::get_if<wire::OutputOpened>(&*event)) {
+                pattern = opened->pattern;
+                shower->output_ready(0);
+            }
             if (auto* frame = std::get_if<client::OutputFrame>(&*event)) {
                 shower->output_ready(frame->number);
                 frames.push_back(std::move(*frame));
