@@ -24,6 +24,7 @@ class EmbreeCaster final : public RayCaster {
         if (auto applied = world_.apply(snapshot); !applied) throw applied.error();
         if (auto committed = world_.commit(); !committed) throw committed.error();
         scene_ = backend::on_host(world_.tables());
+        view_.layers = shading::AllLayers;
     }
 
     void take(std::span<const shading::AskedRay> rays, Question question) override {

@@ -39,7 +39,8 @@ struct JoinOutput {
     std::uint64_t request = 0;
     std::string name;
 };
-// Again, with request 0, when the display has changed.
+// Again, with request 0, when the display has changed. Pictures come when it is answered: OutputReady of
+// frame 0.
 struct OutputOpened {
     std::uint64_t request = 0;
     scene::BlobRef description;
@@ -47,6 +48,7 @@ struct OutputOpened {
     bool pattern = false;
 };
 // All pictures of a frame are there, ready to be shown; pictures that were never of use for it are forgotten.
+// Frame 0: the description was taken in.
 struct OutputReady {
     std::uint64_t frame = 0;
 };
