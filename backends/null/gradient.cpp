@@ -45,17 +45,16 @@ std::uint64_t view_key(std::uint64_t content, const view::View& view) {
 
 Gradient gradient(const view::View& view, const backend::Lowered& lowered, std::uint64_t key, std::int32_t x,
                   std::int32_t y, std::uint64_t sample) {
-    CounterRandom random(key, mixed((std::uint64_t(std::uint32_t(y)) << 32) | std::uint32_t(x), sample));
+    const Colors light = colors(view, key, x, y, sample);
     const float u = static_cast<float>(x) / static_cast<float>(view.width);
     const float v = static_cast<float>(y) / static_cast<float>(view.height);
-    const float noise = static_cast<float>(random.uniform());
     const auto& instances = lowered.instances;
     const std::uint32_t cell = static_cast<std::uint32_t>(x / 16 + y / 16 * 7) %
                                static_cast<std::uint32_t>(instances.size() + 1);  // the last one is a miss
     const bool hit = cell < instances.size() && (instances[cell].layers & view.layers) != 0;
-    const float depth = hit ? 1.0f + u + v + noise : std::numeric_limits<float>::infinity();
-    return {.direct = {u * noise, v * noise, 0.5f * noise},
-            .indirect = {0.1f * static_cast<float>(random.uniform()), 0.05f, 0.025f * noise},
+    const float depth = hit ? 1.0f + u + v + light.noise : std::numeric_limits<float>::infinity();
+    return {.direct = light.direct,
+            .indirect = light.indirect,
             .albedo = {hit ? u : 0.0f, hit ? v : 0.0f, hit ? 0.5f : 0.0f},
             .normal = {0.0f, 0.0f, hit ? 1.0f : 0.0f},
             .depth = depth,

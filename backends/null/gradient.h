@@ -5,10 +5,17 @@
 #include <vector>
 
 #include "mediator/backend/shadow_scene.h"
+#include "mediator/base/random.h"
 #include "mediator/frame/channels.h"
 #include "mediator/view/view.h"
 
 namespace tessera::null_backend {
+
+// The light of one sample of one pixel.
+struct Colors {
+    std::array<float, 3> direct, indirect;
+    float noise;
+};
 
 // One sample of one pixel, as a path tracer would find it.
 struct Gradient {
@@ -21,7 +28,18 @@ struct Gradient {
 std::uint64_t content_key(const backend::ShadowScene& shadow);
 std::uint64_t view_key(std::uint64_t content, const view::View& view);
 
-// A pure function of its arguments. `key` is the view's.
+// Pure functions of their arguments. `key` is the view's. Colors are those of the gradient.
+inline Colors colors(const view::View& view, std::uint64_t key, std::int32_t x, std::int32_t y,
+                     std::uint64_t sample) {
+    const std::uint64_t place = (std::uint64_t(std::uint32_t(y)) << 32) | std::uint32_t(x);
+    CounterRandom random(key, mix(place ^ mix(sample + 0x9e3779b97f4a7c15ull)));
+    const float u = static_cast<float>(x) / static_cast<float>(view.width);
+    const float v = static_cast<float>(y) / static_cast<float>(view.height);
+    const float noise = static_cast<float>(random.uniform());
+    return {.direct = {u * noise, v * noise, 0.5f * noise},
+            .indirect = {0.1f * static_cast<float>(random.uniform()), 0.05f, 0.025f * noise},
+            .noise = noise};
+}
 Gradient gradient(const view::View& view, const backend::Lowered& lowered, std::uint64_t key, std::int32_t x,
                   std::int32_t y, std::uint64_t sample);
 

@@ -1,5 +1,7 @@
 #include "backends/null/null_backend.h"
 
+#include <algorithm>
+#include <array>
 #include <condition_variable>
 #include <mutex>
 #include <shared_mutex>
@@ -103,6 +105,8 @@ class NullBackend final : public Backend {
 
     bool fill(frame::FilmTile& tile, const view::View& view, std::uint64_t key,
               const std::stop_token& stop) const {
+        if (tile.channels == frame::ChannelSet{frame::Channel::Color})
+            return fill_color(tile, view, key, stop);
         std::vector<float> values;
         std::size_t pixel = 0;
         for (std::int32_t y = tile.rect.y; y < tile.rect.bottom(); ++y) {
@@ -112,6 +116,22 @@ class NullBackend final : public Backend {
                 append_values(sample, tile.block.first, tile.channels, values);
                 frame::put_sample(tile, pixel, values);
                 values.clear();
+            }
+        }
+        return true;
+    }
+
+    // The same for the picture alone, which walls are fed with: nothing on the way that it does not need.
+    bool fill_color(frame::FilmTile& tile, const view::View& view, std::uint64_t key,
+                    const std::stop_token& stop) const {
+        std::fill(tile.counts.begin(), tile.counts.end(), 1u);
+        const std::array planes{tile.plane(0), tile.plane(1), tile.plane(2)};
+        std::size_t pixel = 0;
+        for (std::int32_t y = tile.rect.y; y < tile.rect.bottom(); ++y) {
+            if (stop.stop_requested()) return false;
+            for (std::int32_t x = tile.rect.x; x < tile.rect.right(); ++x, ++pixel) {
+                const Colors light = colors(view, key, x, y, tile.block.first);
+                for (std::size_t c = 0; c < 3; ++c) planes[c][pixel] = light.direct[c] + light.indirect[c];
             }
         }
         return true;
