@@ -7,6 +7,7 @@
 #include "client/cli/cli.h"
 #include "master/config.h"
 #include "master/render_master.h"
+#include "mediator/base/freed_memory.h"
 #include "mediator/net/zmq_channel.h"
 
 namespace {
@@ -59,6 +60,7 @@ int serve(const master::MasterOptions& options, const sigset_t& signals) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    keep_freed_memory();
     // Before any thread starts, so that none of them is interrupted: one thread waits for signals.
     sigset_t signals;
     sigemptyset(&signals);

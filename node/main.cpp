@@ -6,6 +6,7 @@
 
 #include "client/cli/cli.h"
 #include "mediator/backend/catalog.h"
+#include "mediator/base/freed_memory.h"
 #include "mediator/net/zmq_channel.h"
 #include "node/config.h"
 #include "node/render_node.h"
@@ -90,6 +91,7 @@ int serve(const node::NodeOptions& options, const sigset_t& signals) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    tessera::keep_freed_memory();
     // Before any thread starts, so that none of them is interrupted: one thread waits for signals.
     sigset_t signals;
     sigemptyset(&signals);

@@ -13,6 +13,7 @@
 #include "client/tools/command.h"
 #include "client/tools/interrupts.h"
 #include "client/tools/this_machine.h"
+#include "mediator/base/freed_memory.h"
 
 namespace {
 
@@ -91,6 +92,7 @@ int show(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    keep_freed_memory();
     Options options;
     cli::CommandLine line(
         "tessera-display",

@@ -18,14 +18,6 @@ namespace {
 
 constexpr std::size_t PictureChunk = std::size_t{1} << 20;
 
-std::size_t layer_count(const display::Display& display) {
-    return std::max<std::size_t>(1, display.layers.size());
-}
-
-bool is_shown(const display::Display& display, std::size_t layer) {
-    return display.layers.empty() || display.layers[layer].shown;
-}
-
 // Of a choice of layers to show, bit i: layer i.
 std::string layer_problem(const display::Display& display, std::uint32_t shown) {
     if (shown >> display.layers.size() == 0) return {};
@@ -85,7 +77,7 @@ std::string DisplayService::open(const scene::BlobPtr& description, std::vector<
                                        (count == 1 ? " output" : " outputs")});
     (void)find_camera();
     runner_.open_group({.views = [this] { return views(); },
-                        .can_take = [this] { return !open_->making && !open_->waiting; },
+                        .can_take = [this] { return can_take(); },
                         .take = [this](const GroupStage& stage, TimePoint when) { take(stage, when); }},
                        open_->display.spp, open_->display.coarsest, authority_.version());
     for (std::size_t i = 0; i < count; ++i) {
@@ -232,84 +224,16 @@ glm::dvec3 DisplayService::head_in_world() const {
     return open_->world_from_display * glm::dvec4(head, 1.0);
 }
 
-std::vector<GroupView> DisplayService::views() {
-    const display::Display& display = open_->display;
-    std::vector<GroupView> wanted;
-    open_->poses.clear();
-    if (!view::choose_camera(authority_.scene(), display.camera)) return wanted;
-    for (const display::Output& output : display.outputs) {
-        for (const view::Eye eye : display::eyes(output.stereo)) {
-            const view::CameraPose pose = display::frustum(output.plane, display.head, eye,
-                                                           display.eye_separation, display.zero_parallax);
-            const view::CameraPose seen_from = display::screen_pose(
-                output.plane, display.head, eye, display.eye_separation, display.zero_parallax);
-            for (std::size_t layer = 0; layer < layer_count(display); ++layer) {
-                if (!is_shown(display, layer)) continue;
-                GroupView view{.name = "display/" + output.name, .view = {}, .priority = output.priority};
-                if (eye != view::Eye::Mono) view.name += eye == view::Eye::Left ? "/left" : "/right";
-                if (!display.layers.empty()) view.name += "/" + display.layers[layer].name;
-                view.view.camera =
-                    display::in_world(pose, open_->world_from_display, display.units_per_metre);
-                view.view.eye = eye;
-                view.view.width = output.view_width;
-                view.view.height = output.view_height;
-                view.view.window = {0, 0, static_cast<std::int32_t>(output.view_width),
-                                    static_cast<std::int32_t>(output.view_height)};
-                view.view.max_bounces = display.max_bounces;
-                view.view.filter = display.filter;
-                if (!display.layers.empty()) {
-                    view.view.renderer = display.layers[layer].renderer;
-                    view.view.layers = display.layers[layer].layers;
-                }
-                if (layer_count(display) > 1) {
-                    view.view.transparent_background = true;
-                    view.view.channels.insert(frame::Channel::Depth);
-                }
-                view.view.channels = {frame::Channel::Color};
-                if (display.stereo_difference && eye != view::Eye::Mono)
-                    view.view.channels.insert(frame::Channel::Depth);
-                complete(view.view);
-                wanted.push_back(std::move(view));
-                open_->poses.push_back(seen_from);
-            }
-        }
-    }
-    return wanted;
-}
-
-void DisplayService::take(const GroupStage& stage, TimePoint) {
-    const display::Display& display = open_->display;
-    Frame& frame = open_->making.emplace(Frame{.number = next_frame_++, .version = stage.version});
-    frame.missing = display.outputs.size();
-    frame.outputs.resize(display.outputs.size());
-    std::size_t view = 0;
-    for (std::size_t i = 0; i < display.outputs.size(); ++i) {
-        const display::Output& output = display.outputs[i];
-        OutputOrder order{.frame = frame.number, .output = i, .eyes = {}};
-        order.encoding =
-            display::takes_linear_light(output) ? wire::PictureEncoding::Half : wire::PictureEncoding::Bytes;
-        order.look = {display.exposure, display.white};
-        order.stereo_difference = display.stereo_difference && stage.scale == 1;
-        for (std::size_t eye = 0; eye < display::eyes(output.stereo).size(); ++eye) {
-            OutputOrder::EyePicture picture{.layers = {}, .in_display = open_->poses.at(view)};
-            for (std::size_t layer = 0; layer < layer_count(display); ++layer) {
-                if (is_shown(display, layer)) picture.layers.push_back(stage.views.at(view++));
-            }
-            order.eyes.push_back(std::move(picture));
-        }
-        runner_.make_output(std::move(order));
-    }
-}
-
 void DisplayService::made(MadeOutput&& output, TimePoint now) {
-    if (!open_ || !open_->making || open_->making->number != output.order.frame) return;
-    Frame& frame = *open_->making;
+    // Of the frame that was ordered first, or of a display before.
+    if (!open_ || open_->making.empty() || open_->making.front().number != output.order.frame) return;
+    Frame& frame = open_->making.front();
     if (!output.error.empty() && !std::exchange(frame.failed, true))
         events_({wire::Severity::Warning, "a frame of the display is left out: " + output.error});
     frame.outputs.at(output.order.output) = std::move(output);
     if (--frame.missing > 0) return;
-    Frame complete = *std::exchange(open_->making, std::nullopt);
-    if (!complete.failed) open_->waiting = std::move(complete);
+    if (!frame.failed) open_->waiting = std::move(frame);
+    open_->making.pop_front();
     send_waiting(now);
 }
 

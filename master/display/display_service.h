@@ -68,15 +68,17 @@ class DisplayService {
         bool pattern = false;
         glm::dmat4 world_from_display{1.0};
         FrameLock lock;
-        std::vector<std::optional<Shower>> showers;    // by output
-        std::vector<double> stereo_differences;        // by output; 0 = unknown
-        std::vector<std::uint64_t> samples;            // by output, in the latest frame
-        std::vector<view::CameraPose> poses;           // of the views, in display space
-        std::optional<Frame> making, waiting, latest;  // latest: for outputs that come later
-        Version version;                               // of the latest frame
+        std::vector<std::optional<Shower>> showers;  // by output
+        std::vector<double> stereo_differences;      // by output; 0 = unknown
+        std::vector<std::uint64_t> samples;          // by output, in the latest frame
+        std::vector<view::CameraPose> poses;         // of the views, in display space
+        std::deque<Frame> making;                    // oldest first
+        std::optional<Frame> waiting, latest;        // latest: for outputs that come later
+        Version version;                             // of the latest frame
     };
 
     std::vector<GroupView> views();
+    bool can_take() const;
     void take(const GroupStage& stage, TimePoint now);
     void made(MadeOutput&& made, TimePoint now);
     void admit();  // who is able to take part and does not yet
