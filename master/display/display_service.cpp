@@ -131,7 +131,7 @@ std::string DisplayService::adjust(const wire::AdjustDisplay& request) {
 }
 
 void DisplayService::move_head(const display::Head& head) {
-    if (!open_ || open_->display.head == head) return;
+    if (!open_ || open_->display.head == head || !display::is_somewhere(head)) return;
     // Out of sight of a screen its picture would be behind the eye: the last place where all could be seen
     // stays.
     const display::Display& display = open_->display;

@@ -133,6 +133,9 @@ struct Display {
 // it shows.
 bool takes_linear_light(const Output& output);
 
+// Whether a head is where one can be: finite, within 1000 km of the display's origin.
+bool is_somewhere(const Head& head);
+
 // Beyond these a display is refused.
 inline constexpr std::size_t MaxOutputs = 64, MaxLayers = 4, MaxHull = 4096, MaxCurve = 4096;
 inline constexpr std::uint32_t MaxEdge = 16384;

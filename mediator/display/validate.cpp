@@ -93,6 +93,7 @@ std::vector<std::string> problems(const Display& display) {
         found.emplace_back("no layer of the display is shown: show one of them");
     if (!is_within(display.units_per_metre, 1e-9, 1e9))
         found.emplace_back("units_per_metre is not within 1e-9 and 1e9");
+    if (!is_somewhere(display.head)) found.emplace_back("the head is more than 1000 km away: check its unit");
     if (!is_within(display.eye_separation, 0.0, 10.0))
         found.emplace_back("the eye separation is not within 0 and 10 m");
     if (!is_within(display.zero_parallax, 0.0, 1e6))

@@ -300,7 +300,8 @@ TEST_F(Displays, HeadsMoveAndTheLatestPlaceCounts) {
     Shower& left = show("left");
     until([&] { return all_show(4); });
     for (int i = 0; i <= 200; ++i) ann->move_head({.position = {0.005 * i, 0, 0}});
-    ann->move_head({.position = {0, 0, -3}});  // behind the wall: nothing could be seen
+    ann->move_head({.position = {0, 0, -3}});     // behind the wall: nothing could be seen
+    ann->move_head({.position = {0, 0, 1e300}});  // nowhere
     until([&] {
         return shows(left, 4) && left.frames.back().pictures[0].camera.world_from_camera[3][0] == 1.0;
     });
@@ -327,6 +328,9 @@ TEST_F(Displays, WhatCannotBeShownIsRefusedWithTheReason) {
     bad = wall;
     bad.head.position = {0, 0, -2};
     refused([&] { ann->open_display(bad); }, "in front of the screen");
+    bad = wall;
+    bad.head.position = {0, 0, 1e7};
+    refused([&] { ann->open_display(bad); }, "1000 km");
     bad = wall;
     bad.filter = "nonesuch";
     refused([&] { ann->open_display(bad); }, "nonesuch");
