@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <map>
 #include <set>
 
@@ -176,6 +177,26 @@ TEST_F(Displays, CoarsePicturesComeFirst) {
     EXPECT_EQ(showers["left"].frames.front().pictures.at(0).bytes.size(),
               std::size_t{3} * showers["left"].frames.front().pictures[0].width *
                   showers["left"].frames.front().pictures[0].height);
+}
+
+TEST_F(Displays, PicturesGetFinerInStep) {
+    cluster.add_node("null", {}, 1us);
+    wall.spp = 32;
+    ann->open_display(wall);
+    show("left");
+    show("right");
+    until([&] { return all_show(32); });
+    std::map<std::uint64_t, std::uint64_t> left;
+    std::set<std::uint64_t> seen;
+    for (const client::OutputFrame& frame : showers["left"].frames) left[frame.number] = frame.samples;
+    for (const client::OutputFrame& frame : showers["right"].frames) {
+        if (left.contains(frame.number)) {
+            EXPECT_EQ(left[frame.number], frame.samples) << "frame " << frame.number;
+        }
+        EXPECT_TRUE(std::has_single_bit(frame.samples));
+        seen.insert(frame.samples);
+    }
+    EXPECT_GE(seen.size(), 3u) << "not only the last stage";
 }
 
 TEST_F(Displays, BothEyesHaveTheSameSamplesAndCamerasASeparationApart) {
