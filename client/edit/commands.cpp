@@ -144,9 +144,9 @@ std::vector<Command> make_commands() {
         {"load",
          "load FILE [in PARENT]",
          "bring in a scene file",
-         "glTF (.gltf, .glb), .obj, .ply, .stl or .tessera: its objects come under a new transform with the "
-         "file's "
-         "name, in the root or in PARENT. Its background is taken when the scene has none.",
+         "glTF (.gltf, .glb), .obj, .ply, .stl, .x3d or .tessera: its objects come under a new transform "
+         "with "
+         "the file's name, in the root or in PARENT. Its background is taken when the scene has none.",
          1,
          1,
          {File},

@@ -90,7 +90,7 @@ class Completer {
             case Argument::Assignments:
                 return assignments();
             case Argument::File:
-                return files({".gltf", ".glb", ".obj", ".ply", ".stl", ".tessera"});
+                return files({".gltf", ".glb", ".obj", ".ply", ".stl", ".tessera", ".x3d"});
             case Argument::SaveFile:
                 return files({".glb", ".tessera"});
             case Argument::Topic:

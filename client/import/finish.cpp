@@ -40,7 +40,7 @@ void add_framing_camera(SceneBuilder& builder, const Bounds& bounds) {
     builder.notice("no camera: one that frames everything was added");
 }
 
-void finish(SceneBuilder& builder) {
+void finish(SceneBuilder& builder, scene::Background of_file) {
     Survey found = survey(builder);
     ImportedScene& result = builder.result();
     const ImportOptions& options = builder.options();
@@ -51,9 +51,9 @@ void finish(SceneBuilder& builder) {
     const bool may_add = options.missing == Missing::Add;
     if (result.cameras.empty() && may_add) add_framing_camera(builder, found.bounds);
 
-    scene::Background background;
-    background.name = "background";
-    background.color = options.background.value_or(glm::vec3(0.0f));
+    scene::Background background = std::move(of_file);
+    if (background.name.empty()) background.name = "background";
+    background.color = options.background.value_or(background.color);
     if (!options.environment.empty()) {
         background.environment = add_environment(options.environment, builder);
         background.strength = options.environment_strength;

@@ -6,13 +6,9 @@
 
 #include "client/import/gltf_document.h"
 #include "client/import/scene_builder.h"
+#include "client/import/texture_use.h"
 
 namespace tessera::import {
-
-enum class TextureUse {
-    Color,  // sRGB; a magenta checker stands for a bad one
-    Data    // linear; a bad one is left out, the factor alone stays
-};
 
 // Makes Texture objects on demand: one per image, sampler and colour space. Each image is decoded once, so an
 // image used both ways is two objects over one blob.

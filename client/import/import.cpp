@@ -10,6 +10,7 @@
 #include "client/import/gltf_import.h"
 #include "client/import/ply_import.h"
 #include "client/import/tessera_import.h"
+#include "client/import/x3d_import.h"
 #include "mediator/scene/fields.h"
 
 namespace tessera::import {
@@ -44,12 +45,17 @@ void read_into(const std::filesystem::path& file, SceneBuilder& builder) {
         import_gltf(file, builder);
     } else if (extension == ".ply") {
         import_ply(file, builder);
+    } else if (extension == ".x3d") {
+        return finish(builder, import_x3d(file, builder));
     } else if (is_assimp_extension(extension)) {
         import_with_assimp(file, builder);
+    } else if (extension == ".x3dz" || extension == ".x3db" || extension == ".x3dv" || extension == ".wrl") {
+        throw Error(ErrorCode::InvalidInput, "of X3D only the XML encoding is read: convert it to .x3d");
     } else {
         throw Error(
             ErrorCode::InvalidInput,
-            "its name ends in none of .gltf, .glb, .obj, .ply, .stl and .tessera: convert it to glTF 2.0");
+            "its name ends in none of .gltf, .glb, .obj, .ply, .stl, .x3d and .tessera: convert it to "
+            "glTF 2.0");
     }
     finish(builder);
 }

@@ -29,12 +29,14 @@ class Walk {
     explicit Walk(SceneBuilder& builder) : builder_(builder) {}
 
     Survey run() {
-        for (const ObjectId child : builder_.result().root.children)
-            stack_.push_back({child, glm::dmat4(1.0)});
+        enter(builder_.result().root.children, glm::dmat4(1.0));
         while (!stack_.empty()) {
             const Place place = stack_.back();
             stack_.pop_back();
             visit(place);
+        }
+        for (const ObjectId transform : flat_) {
+            if (!visible_.contains(transform)) remove_geometries(transform);
         }
         std::sort(cameras_.begin(), cameras_.end(),
                   [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -49,26 +51,45 @@ class Walk {
         glm::dmat4 parent{1.0};
     };
 
+    // In the order of the list: the last in goes out first.
+    void enter(const std::vector<ObjectId>& children, const glm::dmat4& parent) {
+        for (auto child = children.rbegin(); child != children.rend(); ++child) {
+            if (std::holds_alternative<scene::Transform>(object(*child))) stack_.push_back({*child, parent});
+        }
+    }
+
     void visit(const Place& place) {
-        auto& transform = builder_.get<scene::Transform>(place.transform);
+        if (++places_ > MaxInstances) {
+            throw Error(ErrorCode::InvalidInput, "its transforms stand in more than " +
+                                                     std::to_string(MaxInstances) +
+                                                     " places: split the scene");
+        }
+        const auto& transform = builder_.get<scene::Transform>(place.transform);
         const glm::dmat4 world = place.parent * transform.matrix;
         const bool visible = has_volume(world);
-        const auto& objects = builder_.result().objects;
-        const std::uint64_t first = builder_.options().first_id.value;
-        const auto invisible_geometry = [&](ObjectId id) {
-            return !visible && std::holds_alternative<scene::Geometry>(objects[id.value - first].object);
+        (visible ? visible_ : flat_).insert(place.transform);
+        for (const ObjectId child : transform.children) {
+            const scene::Object& below = object(child);
+            if (std::holds_alternative<scene::Geometry>(below) && visible) place_geometry(child, world);
+            if (std::holds_alternative<scene::Light>(below)) ++builder_.result().counts.lights;
+            if (const auto* camera = std::get_if<scene::Camera>(&below)) place_camera(child, *camera, world);
+        }
+        enter(transform.children, world);
+    }
+
+    void remove_geometries(ObjectId id) {
+        auto& transform = builder_.get<scene::Transform>(id);
+        const auto is_geometry = [&](ObjectId child) {
+            return std::holds_alternative<scene::Geometry>(object(child));
         };
-        if (std::erase_if(transform.children, invisible_geometry) > 0) {
+        if (std::erase_if(transform.children, is_geometry) > 0) {
             builder_.notice("node '" + transform.name +
                             "': its mesh is not drawn, since the node's transform leaves it no volume");
         }
-        for (const ObjectId child : transform.children) {
-            const scene::Object& object = objects[child.value - first].object;
-            if (std::holds_alternative<scene::Transform>(object)) stack_.push_back({child, world});
-            if (std::holds_alternative<scene::Geometry>(object)) place_geometry(child, world);
-            if (std::holds_alternative<scene::Light>(object)) ++builder_.result().counts.lights;
-            if (const auto* camera = std::get_if<scene::Camera>(&object)) place_camera(child, *camera, world);
-        }
+    }
+
+    const scene::Object& object(ObjectId id) const {
+        return builder_.result().objects[id.value - builder_.options().first_id.value].object;
     }
 
     void place_geometry(ObjectId id, const glm::dmat4& world) {
@@ -81,6 +102,7 @@ class Walk {
     }
 
     void place_camera(ObjectId id, const scene::Camera& camera, glm::dmat4 world) {
+        if (!placed_cameras_.insert(id).second) return;
         if (make_rigid(world)) {
             cameras_.emplace_back(id,
                                   CameraInfo{camera.name, world, camera.vertical_fov, camera.aspect_ratio});
@@ -93,7 +115,9 @@ class Walk {
     Survey survey_;
     std::vector<Place> stack_;
     std::vector<std::pair<ObjectId, CameraInfo>> cameras_;
-    std::set<ObjectId> emissive_;
+    std::set<ObjectId> emissive_, placed_cameras_;
+    std::set<ObjectId> visible_, flat_;  // transforms by how they stand in some place
+    std::uint64_t places_ = 0;
 };
 
 }  // namespace

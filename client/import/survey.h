@@ -13,8 +13,9 @@ struct Survey {
 };
 
 // Fills the counts of instances, lights and emissive geometries. Takes geometries out of transforms that
-// leave them without volume or are not finite (nothing could be seen or inverted), with a notice. Throws when
-// there are too many instances. The graph below the root must be a tree of transforms.
+// leave them without volume or are not finite wherever they stand (nothing could be seen or inverted), with a
+// notice. Of a camera that stands in several places the first counts. Throws when there are too many
+// instances or too many places of transforms. The graph below the root must have no cycles.
 Survey survey(SceneBuilder& builder);
 
 // The rigid part of a transform: where it looks (-z) and what is up (y). False when it has none.

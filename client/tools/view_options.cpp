@@ -22,7 +22,10 @@ tl::unexpected<Error> wrong(const std::string& option, const Error& error) {
 }  // namespace
 
 void ViewOptions::add_to(cli::CommandLine& command) {
-    command.positional("SCENE", "scene file: .gltf, .glb, .obj, .ply, .stl, .tessera", scene);
+    command.positional(
+        "SCENE",
+        "scene file: .gltf, .glb, .obj, .ply, .stl, .tessera, .x3d (its lights fall off by the square)",
+        scene);
     command.option("--size", "picture size in pixels", size);
     command.option("--camera", "camera of the scene: its name, or its number from 0", camera);
     command.option("--hide", "leave out this part, by its name in the file; may be given several times",

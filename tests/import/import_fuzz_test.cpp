@@ -153,12 +153,23 @@ TEST(ImportFuzz, FlippedBitsOfOtherFormats) {
         "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
         "0\nendloop\nendfacet\n"
         "endsolid a\n";
+    const std::string x3d =
+        "<X3D version='3.3'><Scene><Transform DEF='T' rotation='0 1 0 2'><Shape "
+        "DEF='S'><Appearance><Material "
+        "diffuseColor='1 0 0'/><ImageTexture url='\"t.png\"'/><TextureTransform scale='2 2'/></Appearance>"
+        "<IndexedFaceSet convex='false' creaseAngle='1' coordIndex='0 1 2 3 -1 0 1 3' colorIndex='0 1' "
+        "colorPerVertex='false'><Coordinate point='0 0 0,1 0 0,1 1 0,0 1 0'/><Color color='1 0 0 0 1 0'/>"
+        "<TextureCoordinate point='0 0 1 0 1 1 0 1'/></IndexedFaceSet></Shape></Transform><Group><Transform "
+        "USE='T'/><Shape USE='S'/></Group><SpotLight direction='0 1 0'/><Viewpoint position='0 0 3'/>"
+        "<Background skyColor='1 1 1 0 0 0' skyAngle='1.5' groundColor='.1 .1 .1'/></Scene></X3D>";
     const TestFolder folder;
+    folder.write("t.png", png(2, 2, {200, 100, 50, 255}));
     CounterRandom random(7);
     int read = 0;
     for (int round = 0; round < 200; ++round) {
-        for (const auto& [name, whole] : {std::pair("a.obj", obj), std::pair("a.ply", ply),
-                                          std::pair("b.ply", binary_ply), std::pair("a.stl", stl)}) {
+        for (const auto& [name, whole] :
+             {std::pair("a.obj", obj), std::pair("a.ply", ply), std::pair("b.ply", binary_ply),
+              std::pair("a.stl", stl), std::pair("a.x3d", x3d)}) {
             std::string damaged = whole;
             for (std::uint64_t flips = 1 + random.below(3); flips > 0; --flips) {
                 char& byte = damaged[random.below(damaged.size())];

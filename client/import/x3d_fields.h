@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <pugixml.hpp>
+#include <string>
+#include <vector>
+
+#include "client/import/x3d_problems.h"
+
+namespace tessera::import {
+
+struct X3dRange {
+    double lowest = -1e18, highest = 1e18;
+};
+inline constexpr X3dRange UpToOne{0.0, 1.0};
+inline constexpr X3dRange NotNegative{0.0, 1e12};
+inline constexpr X3dRange Positive{1e-18, 1e18};
+
+// Fields of one node. Numbers are separated by white space and commas, finite, and nothing else may stand
+// there. A field of one value that is wrong or out of range is a problem of the file, and its default is
+// used; one of many values throws Error{InvalidInput} without naming the node.
+class X3dFields {
+  public:
+    X3dFields(pugi::xml_node node, X3dProblems& problems) : node_(node), problems_(problems) {}
+
+    bool has(const char* field) const { return static_cast<bool>(node_.attribute(field)); }
+    bool flag(const char* field, bool otherwise) const;
+    std::string word(const char* field, const char* otherwise) const;
+    double number(const char* field, double otherwise, X3dRange range = {}) const;
+    template <class Vector>
+    Vector vector(const char* field, const Vector& otherwise, X3dRange range = {}) const {
+        Vector result = otherwise;
+        const std::vector<double> found = some(field, Vector::length(), Vector::length(), range);
+        for (std::size_t i = 0; i < found.size(); ++i)
+            result[static_cast<glm::length_t>(i)] = static_cast<typename Vector::value_type>(found[i]);
+        return result;
+    }
+    // `fewest` to `most` numbers; none where the field is not there or wrong.
+    std::vector<double> some(const char* field, int fewest, int most, X3dRange range) const;
+
+    std::vector<std::int32_t> whole_numbers(const char* field) const;
+    std::vector<float> numbers(const char* field) const;
+    template <class Vector>
+    std::vector<Vector> vectors(const char* field) const {
+        const std::vector<float> all = numbers(field);
+        constexpr auto Size = static_cast<std::size_t>(Vector::length());
+        if (all.size() % Size != 0) refuse_count(field, all.size(), Size);
+        std::vector<Vector> result(all.size() / Size);
+        for (std::size_t i = 0; i < all.size(); ++i)
+            result[i / Size][static_cast<glm::length_t>(i % Size)] = all[i];
+        return result;
+    }
+    std::vector<std::string> strings(const char* field) const;  // quoted each, or one without quotes
+
+    // A problem of this node: "<Box> size ...".
+    void problem(const std::string& what) const;
+
+  private:
+    [[noreturn]] void refuse_count(const char* field, std::size_t count, std::size_t size) const;
+
+    pugi::xml_node node_;
+    X3dProblems& problems_;
+};
+
+}  // namespace tessera::import

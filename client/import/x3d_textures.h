@@ -1,0 +1,52 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <tuple>
+
+#include "client/import/local_files.h"
+#include "client/import/scene_builder.h"
+#include "client/import/texture_use.h"
+#include "client/import/x3d_document.h"
+
+namespace tessera::import {
+
+// Makes Texture objects of ImageTexture nodes: one per node and colour space. Of the addresses that a node
+// names the first that is a picture in the scene's folder is used; nothing is fetched. Each file is decoded
+// once.
+class X3dTextures {
+  public:
+    X3dTextures(X3dDocument& document, LocalFolder folder, SceneBuilder& builder)
+        : document_(document), folder_(std::move(folder)), builder_(builder) {}
+
+    ObjectId texture(pugi::xml_node image, TextureUse use);  // 0 for bad data
+
+    // Of the picture; all false of a bad one.
+    struct Traits {
+        bool is_grey = false;      // in all texels
+        bool has_opacity = false;  // some texel is not opaque
+    };
+    Traits traits(pugi::xml_node image);
+
+  private:
+    struct Picture {
+        std::uint32_t width = 0, height = 0;
+        scene::BlobRef texels;
+        Traits traits;
+    };
+    struct Found {
+        std::string name;
+        std::optional<Picture> picture;
+    };
+    const Found& found(pugi::xml_node image);  // without a picture after a problem
+    std::optional<Picture> decoded(const std::string& name, std::string& cause);
+
+    X3dDocument& document_;
+    LocalFolder folder_;
+    SceneBuilder& builder_;
+    std::map<std::string, std::optional<Picture>> pictures_;
+    std::map<const void*, Found> found_;
+    std::map<std::pair<const void*, TextureUse>, ObjectId> made_;
+};
+
+}  // namespace tessera::import
