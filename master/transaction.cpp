@@ -22,13 +22,13 @@ void own(std::shared_ptr<T>& shared) {
 }
 
 template <class Visit>
-void for_each_bit(std::uint32_t mask, const Visit& visit) {
+void for_each_bit(scene::FieldMask mask, const Visit& visit) {
     for (std::uint32_t field = 0; mask != 0; ++field, mask >>= 1) {
         if (mask & 1u) visit(field);
     }
 }
 
-std::uint32_t children_mask(const scene::ObjectChange& change) {
+scene::FieldMask children_mask(const scene::ObjectChange& change) {
     return change.is_update() ? change.mask & scene::children_field(kind(*change.after)) : 0;
 }
 
@@ -148,7 +148,7 @@ void record_undo(Transaction& undo, const std::vector<scene::ObjectChange>& chan
         }
         for (const auto& [field, writer] : fields) {
             if (change.object.is_update()) {
-                change.object.mask |= 1u << field;
+                change.object.mask |= scene::field_bit(field);
                 change.writers_before[field] = writers.of(id, field);
             }
             writers.set(id, field, writer);

@@ -62,8 +62,9 @@ std::string shown(const std::string& text, std::size_t limit) {
 }
 
 std::string object_path(ObjectId id, const scene::Object& object) {
-    static constexpr std::array Groups{"root",   "transforms", "geometries",  "materials",  "textures",
-                                       "lights", "cameras",    "backgrounds", "attachments"};
+    static constexpr std::array Groups{"root",        "transforms",      "geometries", "materials",
+                                       "textures",    "lights",          "cameras",    "backgrounds",
+                                       "attachments", "surface_shaders", "media"};
     static_assert(Groups.size() == std::variant_size_v<scene::Object>);
     if (id == scene::RootId) return "root";
     const std::string group = Groups[object.index()];

@@ -84,7 +84,7 @@ class Planner {
         scene::Update update{id, 0, scene::only(*change.object.before, change.object.mask)};
         const std::uint32_t children = scene::children_field(kind(*now));
         for (std::uint32_t field = 0; change.object.mask >> field != 0; ++field) {
-            const std::uint32_t bit = 1u << field;
+            const scene::FieldMask bit = scene::field_bit(field);
             if ((change.object.mask & bit) == 0) continue;
             const WriterPtr writer = writers_.of(id, field);
             if (still_ours(change, field, writer)) {

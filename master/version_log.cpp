@@ -7,7 +7,7 @@ namespace tessera::master {
 namespace {
 
 // What leads from one state of an object to another. Null = not there.
-void add_entries(ObjectId id, std::optional<scene::ObjectKind> was, std::uint32_t mask,
+void add_entries(ObjectId id, std::optional<scene::ObjectKind> was, scene::FieldMask mask,
                  const scene::Object* now, std::vector<scene::Entry>& entries) {
     if (was && now && *was == kind(*now)) {
         if (mask != 0) entries.push_back(scene::Update{id, mask, scene::only(*now, mask)});
@@ -37,7 +37,7 @@ scene::ChangeList VersionLog::publish(const scene::Scene& head) {
     for (const auto& [id, before] : before_) {
         const scene::Object* now = head.find(id);
         const auto was = kind_of(before.get());
-        std::uint32_t mask = ~0u;
+        scene::FieldMask mask = ~scene::FieldMask{0};
         if (now && was == kind(*now)) mask = differing_fields(*before, *now);
         if (mask == 0 || (!was && !now)) continue;
         add_entries(id, was, mask, now, list.entries);

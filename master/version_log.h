@@ -43,7 +43,7 @@ class VersionLog {
 
     struct Touched {
         ObjectId id;
-        std::uint32_t mask = 0;
+        scene::FieldMask mask = 0;
         std::optional<scene::ObjectKind> was;  // before the version; none: was not there
     };
     Version version_;

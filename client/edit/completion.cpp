@@ -73,7 +73,7 @@ class Completer {
         switch (kind) {
             case Argument::Path:
                 offer("root ");
-                return paths(ObjectKind::Transform, ObjectKind::Attachment, " ");
+                return paths(ObjectKind::Transform, ObjectKind::Medium, " ");
             case Argument::Transform:
                 return paths(ObjectKind::Transform, ObjectKind::Transform, " ");
             case Argument::Field:
@@ -86,7 +86,7 @@ class Completer {
                 return;
             case Argument::KindOrPath:
                 for (const std::string& word : kind_words()) offer(word + " ");
-                return paths(ObjectKind::Transform, ObjectKind::Attachment, " ");
+                return paths(ObjectKind::Transform, ObjectKind::Medium, " ");
             case Argument::Assignments:
                 return assignments();
             case Argument::File:
@@ -131,7 +131,7 @@ class Completer {
             field_words(scene::kind(*scene_.find(id)), path, " ");
         }
         offer("root.");
-        paths(ObjectKind::Transform, ObjectKind::Attachment, ".");
+        paths(ObjectKind::Transform, ObjectKind::Medium, ".");
     }
 
     void field_words(ObjectKind kind, const std::string& before, const std::string& end) {
@@ -162,7 +162,7 @@ class Completer {
 
     void value_of(const ValueForm& form, const std::string& before, const std::string& end) {
         for (const std::string& word : form.words) offer(before + word + (word.ends_with('=') ? "" : end));
-        if (form.takes_paths) paths(ObjectKind::Transform, ObjectKind::Attachment, end, before);
+        if (form.takes_paths) paths(ObjectKind::Transform, ObjectKind::Medium, end, before);
     }
 
     void assignments() {

@@ -18,10 +18,10 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 }  // namespace
 
 const std::vector<std::string>& kind_words() {
-    static const std::vector<std::string> Words{"root",      "transforms",  "geometries",
-                                                "materials", "textures",    "lights",
-                                                "cameras",   "backgrounds", "attachments"};
-    static_assert(KindCount == 9);
+    static const std::vector<std::string> Words{"root",        "transforms",      "geometries", "materials",
+                                                "textures",    "lights",          "cameras",    "backgrounds",
+                                                "attachments", "surface_shaders", "media"};
+    static_assert(KindCount == 11);
     return Words;
 }
 

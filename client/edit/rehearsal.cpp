@@ -79,7 +79,7 @@ std::uint32_t Rehearsal::uncommitted_fields(ObjectId id) const {
     const scene::Object* now = scene_.find(id);
     if (actions_ == Actions::Late || place == touched_.end() || now == nullptr) return 0;
     const auto& before = place->second.before;
-    return before ? scene::differing_fields(*before, *now) : ~0u;
+    return before ? scene::differing_fields(*before, *now) : ~scene::FieldMask{0};
 }
 
 void Rehearsal::begin() {
@@ -95,7 +95,7 @@ std::vector<scene::Entry> Rehearsal::entries() const {
             if (touched.before) entries.emplace_back(scene::Remove{id});
         } else if (!touched.before) {
             entries.emplace_back(scene::Create{id, *now});
-        } else if (const std::uint32_t mask = scene::differing_fields(*touched.before, *now); mask != 0) {
+        } else if (const scene::FieldMask mask = scene::differing_fields(*touched.before, *now); mask != 0) {
             entries.emplace_back(scene::Update{id, mask, *now});
         }
     }

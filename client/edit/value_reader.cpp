@@ -35,7 +35,32 @@ const std::vector<std::string>& enumerators<scene::TextureFilter>() {
 }
 template <>
 const std::vector<std::string>& enumerators<scene::LightKind>() {
-    static const std::vector<std::string> Names{"point", "spot", "directional"};
+    static const std::vector<std::string> Names{"point", "spot", "directional", "sphere", "quad"};
+    return Names;
+}
+template <>
+const std::vector<std::string>& enumerators<scene::Projection>() {
+    static const std::vector<std::string> Names{"perspective", "orthographic"};
+    return Names;
+}
+template <>
+const std::vector<std::string>& enumerators<scene::Aperture>() {
+    static const std::vector<std::string> Names{"uniform", "gaussian"};
+    return Names;
+}
+template <>
+const std::vector<std::string>& enumerators<scene::VisibleBackground>() {
+    static const std::vector<std::string> Names{"environment", "color"};
+    return Names;
+}
+template <>
+const std::vector<std::string>& enumerators<scene::NormalFormat>() {
+    static const std::vector<std::string> Names{"unorm", "snorm"};
+    return Names;
+}
+template <>
+const std::vector<std::string>& enumerators<scene::NormalSpace>() {
+    static const std::vector<std::string> Names{"tangent", "object"};
     return Names;
 }
 
@@ -129,11 +154,28 @@ void ValueReader::read(double& value) {
     value = read_number(next());
 }
 
-void ValueReader::read(std::uint32_t& value) {
+template <class I>
+void ValueReader::whole_number(I& value) {
     const Word& word = next();
     const std::string& text = word.text();
     const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
     if (text.empty() || parsed.ec != std::errc() || parsed.ptr != text.data() + text.size()) wrong(word);
+}
+
+void ValueReader::read(std::uint32_t& value) {
+    whole_number(value);
+}
+
+void ValueReader::read(std::int32_t& value) {
+    whole_number(value);
+}
+
+void ValueReader::read(glm::vec2& value) {
+    if (left() == 1) {
+        value = glm::vec2(number());
+    } else {
+        numbers(value, 2);
+    }
 }
 
 void ValueReader::read(glm::vec3& value) {
@@ -195,6 +237,8 @@ void ValueReader::read(scene::TextureSlot& value) {
             numbers(result.scale, 2);
         } else if (key.is("rotation")) {
             result.rotation = number();
+        } else if (key.is("set")) {
+            read(result.set);
         } else {
             wrong(word);
         }

@@ -25,6 +25,8 @@ class ValueReader {
     void read(float& value);
     void read(double& value);
     void read(std::uint32_t& value);
+    void read(std::int32_t& value);
+    void read(glm::vec2& value);
     void read(glm::vec3& value);
     void read(glm::vec4& value);
     void read(glm::dvec3& value);
@@ -44,6 +46,8 @@ class ValueReader {
     std::size_t left() const { return pieces_.size() - at_; }
     std::size_t choice(const std::vector<std::string>& names);
     float number();
+    template <class I>
+    void whole_number(I& value);
     template <class V>
     void numbers(V& value, glm::length_t count);
     [[noreturn]] void wrong(const Word& word) const;

@@ -27,10 +27,12 @@ ValueForm form_of() {
         return {"a text, in quotes when it has blanks", {}};
     } else if constexpr (std::is_same_v<V, bool>) {
         return {"true or false", {"true", "false"}};
-    } else if constexpr (std::is_same_v<V, std::uint32_t>) {
+    } else if constexpr (std::is_same_v<V, std::uint32_t> || std::is_same_v<V, std::int32_t>) {
         return {"a whole number", {}};
     } else if constexpr (std::is_arithmetic_v<V>) {
         return {"a number", {}};
+    } else if constexpr (std::is_same_v<V, glm::vec2>) {
+        return {"2 numbers, or 1 for both", {}};
     } else if constexpr (std::is_same_v<V, glm::vec3>) {
         return {"3 numbers, or 1 for all", {}};
     } else if constexpr (std::is_same_v<V, glm::vec4>) {
@@ -44,8 +46,8 @@ ValueForm form_of() {
     } else if constexpr (std::is_same_v<V, std::vector<ObjectId>>) {
         return {"paths, or none", {"none"}, true};
     } else if constexpr (std::is_same_v<V, scene::TextureSlot>) {
-        return {"a texture's path or none, then offset=U,V scale=U,V rotation=RADIANS as needed",
-                {"none", "offset=", "scale=", "rotation="},
+        return {"a texture's path or none, then offset=U,V scale=U,V rotation=RADIANS set=0|1 as needed",
+                {"none", "offset=", "scale=", "rotation=", "set="},
                 true};
     } else if constexpr (std::is_same_v<V, scene::BlobRef>) {
         return {"bytes, which cannot be typed: they come with 'load'", {}, false, false};
@@ -89,7 +91,8 @@ std::string text_of(const V& value, const WritePath& write_path) {
         return text.empty() ? "none" : text;
     } else if constexpr (std::is_same_v<V, scene::TextureSlot>) {
         return write_path(value.texture) + " offset=" + components(value.offset, ",") +
-               " scale=" + components(value.scale, ",") + " rotation=" + shortest(value.rotation);
+               " scale=" + components(value.scale, ",") + " rotation=" + shortest(value.rotation) +
+               " set=" + shortest(value.set);
     } else if constexpr (std::is_same_v<V, scene::BlobRef>) {
         return value.empty() ? "no bytes" : std::to_string(value.byte_size) + " bytes";
     } else if constexpr (std::is_enum_v<V>) {

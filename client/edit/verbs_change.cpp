@@ -55,7 +55,7 @@ void set_field(Rehearsal& rehearsal, const Arguments& arguments, std::size_t end
     const unsigned field = read_field(scene::kind(object), target.part(dot + 1));
     read_value(object, field, behind(arguments, 1), end,
                [&](const Word& path) { return rehearsal.read(path); });
-    rehearsal.apply({scene::Update{id, 1u << field, std::move(object)}});
+    rehearsal.apply({scene::Update{id, scene::field_bit(field), std::move(object)}});
 }
 
 void move_transform(Rehearsal& rehearsal, const Arguments& arguments, std::size_t end) {

@@ -51,7 +51,7 @@ std::vector<ObjectId>& children_of(scene::Object& object) {
 }
 
 scene::Entry children_update(ObjectId id, scene::Object object) {
-    const std::uint32_t mask = scene::children_field(scene::kind(object));
+    const scene::FieldMask mask = scene::children_field(scene::kind(object));
     return scene::Update{id, mask, std::move(object)};
 }
 
@@ -170,7 +170,7 @@ void remove_object(Rehearsal& rehearsal, const Arguments& given, std::size_t end
         scene::for_each_reference(changed, [&](ObjectId& to) {
             if (removed.contains(to)) to = {};
         });
-        const std::uint32_t mask = scene::differing_fields(*object, changed);
+        const scene::FieldMask mask = scene::differing_fields(*object, changed);
         entries.emplace_back(scene::Update{user, mask, std::move(changed)});
     }
     for (const ObjectId gone : removed) entries.emplace_back(scene::Remove{gone});

@@ -20,11 +20,11 @@ std::vector<typename Set::value_type> listed(const Set& set) {
 }
 
 template <class T>
-bool names_only(std::uint32_t mask) {
+bool names_only(scene::FieldMask mask) {
     return Fields<T>::from_bits(mask) == Fields<T>(T::Field::Name);
 }
 
-bool is_name_only(const Object& object, std::uint32_t mask) {
+bool is_name_only(const Object& object, scene::FieldMask mask) {
     return std::visit([&]<class T>(const T&) { return names_only<T>(mask); }, object);
 }
 
@@ -263,6 +263,8 @@ void ShadowScene::touch_created(Touched& touched, ObjectId id, const Object& obj
             touched.structure = true;
             break;
         case scene::ObjectKind::Material:
+        case scene::ObjectKind::SurfaceShader:
+        case scene::ObjectKind::Medium:
             touched.materials.push_back(id);
             break;
         case scene::ObjectKind::Texture:
@@ -290,7 +292,7 @@ void ShadowScene::touch_removed(Touched& touched, ObjectId id, const Object& obj
 }
 
 void ShadowScene::touch_updated(Touched& touched, const scene::Update& update) const {
-    const std::uint32_t mask = update.mask;
+    const scene::FieldMask mask = update.mask;
     if (scene::kind(update.fields) == scene::ObjectKind::Attachment) {
         touched.ignored_kinds.insert(scene::name(scene::ObjectKind::Attachment));
         return;

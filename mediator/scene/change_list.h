@@ -17,7 +17,7 @@ struct Create {
 // Only the fields in the mask mean anything (see Fields<T>); the object's alternative is the kind.
 struct Update {
     ObjectId id;
-    std::uint32_t mask = 0;
+    FieldMask mask = 0;
     Object fields;
 };
 struct Remove {

@@ -54,6 +54,7 @@ inline void feed(Blake2b& hash, const TextureSlot& value) {
     feed(hash, value.offset);
     feed(hash, value.scale);
     feed(hash, value.rotation);
+    feed(hash, value.set);
 }
 
 }  // namespace tessera::scene

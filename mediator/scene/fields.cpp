@@ -33,7 +33,7 @@ bool same_bits(const glm::dmat4& a, const glm::dmat4& b) {
 }
 bool same_bits(const TextureSlot& a, const TextureSlot& b) {
     return a.texture == b.texture && same_bits(a.offset, b.offset) && same_bits(a.scale, b.scale) &&
-           same_bits(a.rotation, b.rotation);
+           same_bits(a.rotation, b.rotation) && a.set == b.set;
 }
 
 template <class T>
@@ -44,11 +44,11 @@ std::string_view name_in(
 
 }  // namespace
 
-std::uint32_t all_fields(const Object& object) {
+FieldMask all_fields(const Object& object) {
     return std::visit([]<class T>(const T&) { return Fields<T>::all().bits(); }, object);
 }
 
-void assign(Object& to, const Object& from, std::uint32_t mask) {
+void assign(Object& to, const Object& from, FieldMask mask) {
     assert(to.index() == from.index());
     std::visit(
         [&]<class T>(T& target) {
@@ -60,14 +60,14 @@ void assign(Object& to, const Object& from, std::uint32_t mask) {
         to);
 }
 
-std::uint32_t differing_fields(const Object& a, const Object& b) {
+FieldMask differing_fields(const Object& a, const Object& b) {
     assert(a.index() == b.index());
-    std::uint32_t mask = 0;
+    FieldMask mask = 0;
     std::visit(
         [&]<class T>(const T& left) {
             const T& right = std::get<T>(b);
             for_each_field<T>([&](unsigned bit, auto member) {
-                if (!same_bits(left.*member, right.*member)) mask |= 1u << bit;
+                if (!same_bits(left.*member, right.*member)) mask |= field_bit(bit);
             });
         },
         a);
@@ -82,25 +82,103 @@ std::string_view field_name(ObjectKind kind, unsigned field) {
             return name_in<Transform>(field, {"name", "matrix", "children", "hint", "layers"});
         case ObjectKind::Geometry:
             return name_in<Geometry>(field, {"name", "material", "hint", "indices", "positions", "normals",
-                                             "tangents", "tex_coords", "colors"});
+                                             "tangents", "tex_coords", "colors", "tex_coords_1", "medium"});
         case ObjectKind::Material:
-            return name_in<Material>(
-                field, {"name", "base_color", "base_color_texture", "metallic", "roughness",
-                        "metallic_roughness_texture", "normal_texture", "normal_scale", "emission",
-                        "emission_texture", "alpha_mode", "alpha_cutoff", "double_sided", "unlit",
-                        "index_of_refraction", "transmission"});
+            return name_in<Material>(field, {"name",
+                                             "base_color",
+                                             "base_color_texture",
+                                             "metallic",
+                                             "roughness",
+                                             "metallic_roughness_texture",
+                                             "normal_texture",
+                                             "normal_scale",
+                                             "emission",
+                                             "emission_texture",
+                                             "alpha_mode",
+                                             "alpha_cutoff",
+                                             "double_sided",
+                                             "unlit",
+                                             "index_of_refraction",
+                                             "transmission",
+                                             "transmission_texture",
+                                             "thickness",
+                                             "attenuation_color",
+                                             "attenuation_distance",
+                                             "specular",
+                                             "specular_texture",
+                                             "specular_color",
+                                             "specular_color_texture",
+                                             "clearcoat",
+                                             "clearcoat_texture",
+                                             "clearcoat_roughness",
+                                             "clearcoat_roughness_texture",
+                                             "clearcoat_normal_texture",
+                                             "clearcoat_normal_scale",
+                                             "sheen_color",
+                                             "sheen_color_texture",
+                                             "sheen_roughness",
+                                             "sheen_roughness_texture",
+                                             "anisotropy",
+                                             "anisotropy_rotation",
+                                             "anisotropy_texture",
+                                             "iridescence",
+                                             "iridescence_texture",
+                                             "iridescence_index_of_refraction",
+                                             "iridescence_thickness_minimum",
+                                             "iridescence_thickness_maximum",
+                                             "iridescence_thickness_texture",
+                                             "shadow_catcher"});
         case ObjectKind::Texture:
             return name_in<Texture>(
                 field, {"name", "width", "height", "format", "wrap_s", "wrap_t", "filter", "texels"});
         case ObjectKind::Light:
-            return name_in<Light>(field,
-                                  {"name", "kind", "intensity", "inner_cone_angle", "outer_cone_angle"});
+            return name_in<Light>(field, {"name", "kind", "intensity", "inner_cone_angle", "outer_cone_angle",
+                                          "radius", "size", "angle"});
         case ObjectKind::Camera:
-            return name_in<Camera>(field, {"name", "vertical_fov", "aspect_ratio"});
+            return name_in<Camera>(
+                field, {"name", "vertical_fov", "aspect_ratio", "projection", "orthographic_height",
+                        "lens_radius", "focus_distance", "aperture"});
         case ObjectKind::Background:
-            return name_in<Background>(field, {"name", "color", "environment", "strength", "rotation"});
+            return name_in<Background>(
+                field, {"name", "color", "environment", "strength", "rotation", "visible", "visible_color"});
         case ObjectKind::Attachment:
             return name_in<Attachment>(field, {"name", "key", "value"});
+        case ObjectKind::SurfaceShader:
+            return name_in<SurfaceShader>(field, {"name",
+                                                  "emission",
+                                                  "emission_texture",
+                                                  "ambient",
+                                                  "ambient_texture",
+                                                  "diffuse",
+                                                  "diffuse_texture",
+                                                  "specular",
+                                                  "specular_texture",
+                                                  "shininess",
+                                                  "shininess_texture",
+                                                  "alpha",
+                                                  "alpha_texture",
+                                                  "invert_alpha_texture",
+                                                  "normal_texture",
+                                                  "normal_format",
+                                                  "normal_space",
+                                                  "normal_scale",
+                                                  "normal_bias",
+                                                  "height_texture",
+                                                  "height_scale",
+                                                  "reflection",
+                                                  "reflection_texture",
+                                                  "transmission",
+                                                  "transmission_texture",
+                                                  "relative_index_of_refraction",
+                                                  "fresnel_blend",
+                                                  "tangent_tex_coords",
+                                                  "binormal_tex_coords",
+                                                  "environment",
+                                                  "environment_texture"});
+        case ObjectKind::Medium:
+            return name_in<Medium>(
+                field, {"name", "emission", "emission_texture", "absorption", "absorption_texture",
+                        "scattering", "scattering_texture", "anisotropy", "priority"});
     }
     return {};
 }

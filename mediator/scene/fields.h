@@ -15,24 +15,26 @@ template <class T>
 class Fields {
   public:
     constexpr Fields() = default;
-    constexpr Fields(typename T::Field field) : bits_(1u << static_cast<unsigned>(field)) {}
+    constexpr Fields(typename T::Field field) : bits_(field_bit(static_cast<unsigned>(field))) {}
     constexpr Fields(std::initializer_list<typename T::Field> fields) {
-        for (const auto field : fields) bits_ |= 1u << static_cast<unsigned>(field);
+        for (const auto field : fields) bits_ |= field_bit(static_cast<unsigned>(field));
     }
-    static constexpr Fields from_bits(std::uint32_t bits) { return Fields(bits & all().bits_, 0); }
-    static constexpr Fields all() { return Fields((1u << std::tuple_size_v<decltype(T::fields())>)-1u, 0); }
-    constexpr std::uint32_t bits() const { return bits_; }
+    static constexpr Fields from_bits(FieldMask bits) { return Fields(bits & all().bits_, 0); }
+    static constexpr Fields all() {
+        return Fields(field_bit(std::tuple_size_v<decltype(T::fields())>) - 1, 0);
+    }
+    constexpr FieldMask bits() const { return bits_; }
     constexpr bool empty() const { return bits_ == 0; }
     constexpr bool contains(typename T::Field field) const {
-        return (bits_ >> static_cast<unsigned>(field)) & 1u;
+        return (bits_ >> static_cast<unsigned>(field)) & 1;
     }
     constexpr bool intersects(Fields other) const { return (bits_ & other.bits_) != 0; }
     constexpr Fields operator|(Fields other) const { return Fields(bits_ | other.bits_, 0); }
     friend constexpr bool operator==(Fields, Fields) = default;
 
   private:
-    constexpr Fields(std::uint32_t bits, int) : bits_(bits) {}
-    std::uint32_t bits_ = 0;
+    constexpr Fields(FieldMask bits, int) : bits_(bits) {}
+    FieldMask bits_ = 0;
 };
 
 // Calls visit(bit index, pointer to member) for every field of T in the order of T::Field.
@@ -45,9 +47,9 @@ constexpr void for_each_field(Visitor&& visit) {
 }
 
 // The untyped forms, for lists that hold all kinds. `from` must be of `to`'s kind (asserted).
-std::uint32_t all_fields(const Object& object);
-void assign(Object& to, const Object& from, std::uint32_t mask);
-std::uint32_t differing_fields(const Object& a, const Object& b);
+FieldMask all_fields(const Object& object);
+void assign(Object& to, const Object& from, FieldMask mask);
+FieldMask differing_fields(const Object& a, const Object& b);
 std::string_view field_name(ObjectKind kind, unsigned field);  // snake_case, as users type it
 
 }  // namespace tessera::scene

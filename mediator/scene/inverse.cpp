@@ -47,7 +47,7 @@ std::vector<Entry> inverse(std::span<const ObjectChange> changes) {
     return entries;
 }
 
-Object only(const Object& object, std::uint32_t mask) {
+Object only(const Object& object, FieldMask mask) {
     Object result = std::visit([]<class T>(const T&) { return Object(T{}); }, object);
     assign(result, object, mask);
     return result;

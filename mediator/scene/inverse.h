@@ -11,7 +11,7 @@ namespace tessera::scene {
 // What entries did to one object. The states are those of the scenes, not copies. Null = not there.
 struct ObjectChange {
     ObjectId id;
-    std::uint32_t mask = 0;  // fields that changed; all, unless both states are there and of one kind
+    FieldMask mask = 0;  // fields that changed; all, unless both states are there and of one kind
     std::shared_ptr<const Object> before, after;
 
     bool is_update() const { return before && after && before->index() == after->index(); }
@@ -26,6 +26,6 @@ Expected<std::vector<ObjectChange>> apply_and_observe(Scene& scene, const std::v
 std::vector<Entry> inverse(std::span<const ObjectChange> changes);
 
 // An object of the same kind with these fields, the others as they are by default.
-Object only(const Object& object, std::uint32_t mask);
+Object only(const Object& object, FieldMask mask);
 
 }  // namespace tessera::scene

@@ -5,8 +5,9 @@
 namespace tessera::scene {
 
 const char* name(ObjectKind kind) {
-    static constexpr std::array Names{"root",  "transform", "geometry",   "material",  "texture",
-                                      "light", "camera",    "background", "attachment"};
+    static constexpr std::array Names{"root",       "transform",      "geometry", "material",
+                                      "texture",    "light",          "camera",   "background",
+                                      "attachment", "surface_shader", "medium"};
     static_assert(Names.size() == std::variant_size_v<Object>);
     return Names[static_cast<std::size_t>(kind)];
 }

@@ -4,7 +4,6 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
 #include <string>
 #include <tuple>
 #include <variant>
@@ -12,11 +11,20 @@
 
 #include "mediator/base/ids.h"
 #include "mediator/scene/blob.h"
+#include "mediator/scene/materials.h"
 
 // The minimal set of scene objects (Schwenk 5.3.2.1). Plain values; `fields()` lists the members in the order
 // of `Field`, and everything that treats fields alike (masks, comparison, hashing) is derived from it.
 // Metres, radians, linear Rec. 709; world right-handed, y up.
 namespace tessera::scene {
+
+// Fields of an object of any kind: bit i is the i-th.
+using FieldMask = std::uint64_t;
+
+// The mask of one field.
+constexpr FieldMask field_bit(unsigned field) {
+    return FieldMask{1} << field;
+}
 
 // How often a geometry is going to move (Schwenk 5.4.1): static is built for tracing, animated for updating,
 // unflagged starts as static and changes over at its first move.
@@ -49,78 +57,26 @@ struct Geometry {
         Normals,
         Tangents,
         TexCoords,
-        Colors
+        Colors,
+        TexCoords1,
+        Medium
     };
     std::string name;
-    ObjectId material;  // 0 = the default grey
+    ObjectId material;  // a Material or a SurfaceShader; 0 = the default grey
     MotionHint hint = MotionHint::Unflagged;
-    BlobRef indices;     // uint32 x 3 per triangle
-    BlobRef positions;   // float x 3 per vertex
-    BlobRef normals;     // float x 3 per vertex
-    BlobRef tangents;    // float x 4 per vertex, w = handedness
-    BlobRef tex_coords;  // float x 2 per vertex, v down as in glTF
-    BlobRef colors;      // float x 4 per vertex, linear
+    BlobRef indices;       // uint32 x 3 per triangle
+    BlobRef positions;     // float x 3 per vertex
+    BlobRef normals;       // float x 3 per vertex
+    BlobRef tangents;      // float x 4 per vertex, w = handedness
+    BlobRef tex_coords;    // float x 2 per vertex, v down as in glTF
+    BlobRef colors;        // float x 4 per vertex, linear
+    BlobRef tex_coords_1;  // as tex_coords
+    ObjectId medium;       // what its body is filled with; 0 = nothing
     static constexpr auto fields() {
         return std::tuple(&Geometry::name, &Geometry::material, &Geometry::hint, &Geometry::indices,
                           &Geometry::positions, &Geometry::normals, &Geometry::tangents,
-                          &Geometry::tex_coords, &Geometry::colors);
-    }
-};
-
-// A texture as a material uses it: uv' = translate(offset) rotate(rotation) scale(scale) uv
-// (KHR_texture_transform).
-struct TextureSlot {
-    ObjectId texture;  // 0 = none: the factor alone
-    glm::vec2 offset{0.0f}, scale{1.0f};
-    float rotation = 0.0f;
-    friend bool operator==(const TextureSlot&, const TextureSlot&) = default;
-};
-
-enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
-
-// glTF 2.0 metallic-roughness: every value is factor x texture.
-struct Material {
-    enum class Field : std::uint8_t {
-        Name,
-        BaseColor,
-        BaseColorTexture,
-        Metallic,
-        Roughness,
-        MetallicRoughnessTexture,
-        NormalTexture,
-        NormalScale,
-        Emission,
-        EmissionTexture,
-        AlphaMode,
-        AlphaCutoff,
-        DoubleSided,
-        Unlit,
-        IndexOfRefraction,
-        Transmission
-    };
-    std::string name;
-    glm::vec4 base_color{0.8f, 0.8f, 0.8f, 1.0f};
-    TextureSlot base_color_texture;  // sRGB
-    float metallic = 0.0f;
-    float roughness = 1.0f;                  // perceptual; alpha = roughness^2
-    TextureSlot metallic_roughness_texture;  // g = roughness, b = metallic
-    TextureSlot normal_texture;              // tangent space, rgb = (n + 1) / 2
-    float normal_scale = 1.0f;
-    glm::vec3 emission{0.0f};      // radiance, strength included
-    TextureSlot emission_texture;  // sRGB
-    AlphaMode alpha_mode = AlphaMode::Opaque;
-    float alpha_cutoff = 0.5f;
-    bool double_sided = false;
-    bool unlit = false;
-    float index_of_refraction = 1.5f;
-    float transmission = 0.0f;
-    static constexpr auto fields() {
-        return std::tuple(&Material::name, &Material::base_color, &Material::base_color_texture,
-                          &Material::metallic, &Material::roughness, &Material::metallic_roughness_texture,
-                          &Material::normal_texture, &Material::normal_scale, &Material::emission,
-                          &Material::emission_texture, &Material::alpha_mode, &Material::alpha_cutoff,
-                          &Material::double_sided, &Material::unlit, &Material::index_of_refraction,
-                          &Material::transmission);
+                          &Geometry::tex_coords, &Geometry::colors, &Geometry::tex_coords_1,
+                          &Geometry::medium);
     }
 };
 
@@ -143,47 +99,85 @@ struct Texture {
     }
 };
 
-enum class LightKind : std::uint8_t { Point, Spot, Directional };
+enum class LightKind : std::uint8_t { Point, Spot, Directional, Sphere, Quad };
 
-// KHR_lights_punctual, in the frame of its parent transform: shines along -z. Lights with an extent are
-// emissive geometry. Intensity: W/sr (point, spot), W/m2 (directional).
+// KHR_lights_punctual, in the frame of its parent transform: shines along -z; only its place and direction
+// count, not its scale. Intensity: W/sr as seen from afar (point, spot, sphere, quad), W/m2 (directional).
+// Spheres and quads can be seen and do not block light; emissive geometry is a light, too.
 struct Light {
-    enum class Field : std::uint8_t { Name, Kind, Intensity, InnerConeAngle, OuterConeAngle };
+    enum class Field : std::uint8_t {
+        Name,
+        Kind,
+        Intensity,
+        InnerConeAngle,
+        OuterConeAngle,
+        Radius,
+        Size,
+        Angle
+    };
     std::string name;
     LightKind kind = LightKind::Point;
     glm::vec3 intensity{1.0f};
     float inner_cone_angle = 0.0f;             // half angles
     float outer_cone_angle = 0.785398163397f;  // pi / 4
+    float radius = 0.1f;                       // of a sphere, m
+    glm::vec2 size{1.0f};                      // of a quad along x and y, m; it shines on one side
+    float angle = 0.0f;                        // of a directional light: half of what it spans in the sky
     static constexpr auto fields() {
         return std::tuple(&Light::name, &Light::kind, &Light::intensity, &Light::inner_cone_angle,
-                          &Light::outer_cone_angle);
+                          &Light::outer_cone_angle, &Light::radius, &Light::size, &Light::angle);
     }
 };
 
-// Pinhole, in the frame of its parent transform: looks along -z, y up. A view takes its values; it is no
-// node's business.
+enum class Projection : std::uint8_t { Perspective, Orthographic };
+enum class Aperture : std::uint8_t { Uniform, Gaussian };  // how the light is spread over the lens
+
+// In the frame of its parent transform: looks along -z, y up. A view takes its values; it is no node's
+// business.
 struct Camera {
-    enum class Field : std::uint8_t { Name, VerticalFov, AspectRatio };
+    enum class Field : std::uint8_t {
+        Name,
+        VerticalFov,
+        AspectRatio,
+        Projection,
+        OrthographicHeight,
+        LensRadius,
+        FocusDistance,
+        Aperture
+    };
     std::string name;
     double vertical_fov = 0.7;
     double aspect_ratio = 0.0;  // width / height; 0 = the picture's
+    scene::Projection projection = scene::Projection::Perspective;
+    double orthographic_height = 2.0;                     // of what is seen, m
+    double lens_radius = 0.0;                             // m; 0 = a pinhole
+    double focus_distance = 1.0;                          // of the plane that is sharp, along the axis, m
+    scene::Aperture aperture = scene::Aperture::Uniform;  // Gaussian: sigma = half the lens' radius
     static constexpr auto fields() {
-        return std::tuple(&Camera::name, &Camera::vertical_fov, &Camera::aspect_ratio);
+        return std::tuple(&Camera::name, &Camera::vertical_fov, &Camera::aspect_ratio, &Camera::projection,
+                          &Camera::orthographic_height, &Camera::lens_radius, &Camera::focus_distance,
+                          &Camera::aperture);
     }
 };
+
+// What camera rays see that hit nothing; all others see the environment.
+enum class VisibleBackground : std::uint8_t { Environment, Color };
 
 // Light from infinitely far: color + strength x environment. Latitude-longitude map, row 0 is +y, column
 // centre of the map is -z at rotation 0 (u grows to +x), turned about y.
 struct Background {
-    enum class Field : std::uint8_t { Name, Color, Environment, Strength, Rotation };
+    enum class Field : std::uint8_t { Name, Color, Environment, Strength, Rotation, Visible, VisibleColor };
     std::string name;
     glm::vec3 color{0.0f};
     ObjectId environment;  // a Texture with RgbFloat texels, 0 = none
     float strength = 1.0f;
     float rotation = 0.0f;
+    VisibleBackground visible = VisibleBackground::Environment;
+    glm::vec4 visible_color{0.0f};  // with alpha, 0 = transparent
     static constexpr auto fields() {
         return std::tuple(&Background::name, &Background::color, &Background::environment,
-                          &Background::strength, &Background::rotation);
+                          &Background::strength, &Background::rotation, &Background::visible,
+                          &Background::visible_color);
     }
 };
 
@@ -212,8 +206,8 @@ struct Root {
 inline constexpr ObjectId RootId{1};
 inline constexpr std::uint32_t RootLayers = 1;  // layer 0
 
-using Object =
-    std::variant<Root, Transform, Geometry, Material, Texture, Light, Camera, Background, Attachment>;
+using Object = std::variant<Root, Transform, Geometry, Material, Texture, Light, Camera, Background,
+                            Attachment, SurfaceShader, Medium>;
 enum class ObjectKind : std::uint8_t {
     Root,
     Transform,
@@ -223,7 +217,9 @@ enum class ObjectKind : std::uint8_t {
     Light,
     Camera,
     Background,
-    Attachment
+    Attachment,
+    SurfaceShader,
+    Medium
 };
 inline ObjectKind kind(const Object& object) {
     return static_cast<ObjectKind>(object.index());

@@ -26,7 +26,7 @@ const std::vector<ObjectId>& children(const Object& object) {
     return None;
 }
 
-std::uint32_t children_field(ObjectKind kind) {
+FieldMask children_field(ObjectKind kind) {
     if (kind == ObjectKind::Root) return Fields<Root>(Root::Field::Children).bits();
     if (kind == ObjectKind::Transform) return Fields<Transform>(Transform::Field::Children).bits();
     return 0;
@@ -44,35 +44,40 @@ std::vector<Reference> references(const Object& object) {
     if (const auto* root = std::get_if<Root>(&object)) {
         add(root->background, bit(ObjectKind::Background), "background");
     } else if (const auto* geometry = std::get_if<Geometry>(&object)) {
-        add(geometry->material, bit(ObjectKind::Material), "material");
-    } else if (const auto* material = std::get_if<Material>(&object)) {
-        add(material->base_color_texture.texture, bit(ObjectKind::Texture), "base_color_texture");
-        add(material->metallic_roughness_texture.texture, bit(ObjectKind::Texture),
-            "metallic_roughness_texture");
-        add(material->normal_texture.texture, bit(ObjectKind::Texture), "normal_texture");
-        add(material->emission_texture.texture, bit(ObjectKind::Texture), "emission_texture");
+        add(geometry->material, bit(ObjectKind::Material) | bit(ObjectKind::SurfaceShader), "material");
+        add(geometry->medium, bit(ObjectKind::Medium), "medium");
     } else if (const auto* background = std::get_if<Background>(&object)) {
         add(background->environment, bit(ObjectKind::Texture), "environment");
     }
+    std::visit(
+        [&]<class T>(const T& value) {
+            for_each_field<T>([&](unsigned field, auto member) {
+                if constexpr (std::is_same_v<std::decay_t<decltype(value.*member)>, TextureSlot>) {
+                    add((value.*member).texture, bit(ObjectKind::Texture),
+                        field_name(kind(object), field).data());
+                }
+            });
+        },
+        object);
     return found;
 }
 
-std::uint32_t reference_fields(ObjectKind kind) {
-    switch (kind) {
-        case ObjectKind::Root:
-            return Fields<Root>{Root::Field::Children, Root::Field::Background}.bits();
-        case ObjectKind::Geometry:
-            return Fields<Geometry>(Geometry::Field::Material).bits();
-        case ObjectKind::Material:
-            return Fields<Material>{Material::Field::BaseColorTexture,
-                                    Material::Field::MetallicRoughnessTexture, Material::Field::NormalTexture,
-                                    Material::Field::EmissionTexture}
-                .bits();
-        case ObjectKind::Background:
-            return Fields<Background>(Background::Field::Environment).bits();
-        default:
-            return children_field(kind);
-    }
+FieldMask reference_fields(ObjectKind kind) {
+    FieldMask mask = 0;
+    const auto add = [&]<class T>(const T& value) {
+        for_each_field<T>([&](unsigned field, auto member) {
+            using V = std::decay_t<decltype(value.*member)>;
+            if constexpr (std::is_same_v<V, ObjectId> || std::is_same_v<V, std::vector<ObjectId>> ||
+                          std::is_same_v<V, TextureSlot>) {
+                mask |= field_bit(field);
+            }
+        });
+    };
+    const auto look = [&]<std::size_t... I>(std::index_sequence<I...>) {
+        ((static_cast<std::size_t>(kind) == I ? add(std::variant_alternative_t<I, Object>()) : void()), ...);
+    };
+    look(std::make_index_sequence<std::variant_size_v<Object>>{});
+    return mask;
 }
 
 ReferenceChange reference_change(const Object* before, const Object* after) {

@@ -21,11 +21,11 @@ struct Reference {
 };
 std::vector<Reference> references(const Object& object);
 // The fields that hold them, as a mask.
-std::uint32_t reference_fields(ObjectKind kind);
+FieldMask reference_fields(ObjectKind kind);
 
 // The list of a root or a transform, else an empty one; its field as a mask, 0 where there is none.
 const std::vector<ObjectId>& children(const Object& object);
-std::uint32_t children_field(ObjectKind kind);
+FieldMask children_field(ObjectKind kind);
 
 // References of `after` that `before` does not have, and the other way round; null is an object without any.
 struct ReferenceChange {

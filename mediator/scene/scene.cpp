@@ -146,7 +146,7 @@ ChangeList difference(const Scene& a, const Scene& b) {
         const Object* before = a.find(id);
         if (before == nullptr || before->index() != object->index()) {
             changes.entries.push_back(Create{id, *object});
-        } else if (const std::uint32_t mask = differing_fields(*before, *object); mask != 0) {
+        } else if (const FieldMask mask = differing_fields(*before, *object); mask != 0) {
             changes.entries.push_back(Update{id, mask, *object});
         }
     }

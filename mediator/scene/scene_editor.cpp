@@ -32,7 +32,7 @@ void SceneEditor::remove(ObjectId id) {
     pending_[id] = {};
 }
 
-void SceneEditor::write(ObjectId id, std::uint32_t mask, const Object& fields) {
+void SceneEditor::write(ObjectId id, FieldMask mask, const Object& fields) {
     const Object* present = find(id);
     if (present == nullptr) throw refused(id, "is not there: create it first");
     if (present->index() != fields.index()) {
@@ -70,7 +70,7 @@ std::vector<Entry> SceneEditor::take() {
             // The same id comes back as another kind: the one case that needs two entries.
             entries.push_back(Remove{id});
             entries.push_back(Create{id, std::move(pending.object)});
-        } else if (const std::uint32_t mask = differing_fields(*base, pending.object); mask != 0) {
+        } else if (const FieldMask mask = differing_fields(*base, pending.object); mask != 0) {
             entries.push_back(Update{id, mask, std::move(pending.object)});
         }
     }

@@ -21,7 +21,7 @@ class SceneEditor {
     void update(ObjectId id, Fields<T> mask, const T& fields) {
         write(id, mask.bits(), Object(fields));
     }
-    void write(ObjectId id, std::uint32_t mask,
+    void write(ObjectId id, FieldMask mask,
                const Object& fields);  // throws Error when absent or another kind
     void apply(const Entry& entry);
 
@@ -32,7 +32,8 @@ class SceneEditor {
     std::vector<Entry> take();
 
   private:
-    // The state an object has after the edit; none: it goes. What changed is found by comparing with the base.
+    // The state an object has after the edit; none: it goes. What changed is found by comparing with the
+    // base.
     struct Pending {
         bool has_object = false;
         Object object;

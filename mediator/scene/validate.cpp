@@ -12,7 +12,7 @@ namespace tessera::scene {
 namespace {
 
 constexpr std::uint64_t IdLimit = std::uint64_t{1} << 32;
-constexpr std::uint32_t Any = ~0u;
+constexpr FieldMask Any = ~FieldMask{0};
 // Up to so many parents that got children are looked at from below, one by one; more from above, together.
 constexpr std::size_t FewParents = 16;
 
@@ -159,7 +159,7 @@ std::vector<Problem> validate_entries(const Scene& scene, const std::vector<Entr
         check_alone(target, *object, problems);
         check_references(scene, target, *object, problems);
         const auto* update = std::get_if<Update>(&entry);
-        const std::uint32_t mask = update ? update->mask : Any;
+        const FieldMask mask = update ? update->mask : Any;
         const bool children_touched =
             !children_of(object).empty() &&
             (!update || Fields<Transform>::from_bits(mask).contains(Transform::Field::Children) ||

@@ -1,8 +1,11 @@
 #include "mediator/scene/validate_object.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "mediator/scene/fields.h"
 
 namespace tessera::scene {
 
@@ -12,6 +15,7 @@ constexpr std::size_t MaxName = 4096;
 constexpr std::uint64_t MaxElements = std::uint64_t{1} << 31;
 constexpr double MaxCoordinate = 1e15;  // beyond, double transforms lose the centimetre
 constexpr double Pi = std::numbers::pi;
+constexpr double Largest = std::numeric_limits<float>::max();
 
 class Check {
   public:
@@ -36,6 +40,11 @@ class Check {
             if (value[i] >= 0 && std::isfinite(value[i])) continue;
             return that(false, what + " is negative or not finite");
         }
+    }
+    // Shares of light.
+    template <class V>
+    void unit(const V& value, const std::string& what) {
+        for (glm::length_t i = 0; i < value.length(); ++i) range(value[i], 0.0, 1.0, what);
     }
     void range(double value, double low, double high, const std::string& what) {
         that(value >= low && value <= high,
@@ -88,12 +97,22 @@ void check(const Geometry& geometry, Check& check) {
     per_vertex(geometry.tangents, 16, "tangents");
     per_vertex(geometry.tex_coords, 8, "texture coordinates");
     per_vertex(geometry.colors, 16, "vertex colours");
+    per_vertex(geometry.tex_coords_1, 8, "second texture coordinates");
+}
+
+// A field's name as people say it.
+std::string in_words(std::string_view name) {
+    std::string text(name);
+    std::replace(text.begin(), text.end(), '_', ' ');
+    return text;
 }
 
 void check(const TextureSlot& slot, const std::string& what, Check& check) {
     check.finite(slot.offset, what + "'s offset");
     check.finite(slot.scale, what + "'s scale");
     check.finite(slot.rotation, what + "'s rotation");
+    check.that(slot.set <= 1,
+               what + " uses texture coordinates " + std::to_string(slot.set) + ": there are sets 0 and 1");
 }
 
 void check(const Material& material, Check& check) {
@@ -103,15 +122,57 @@ void check(const Material& material, Check& check) {
     check.finite(material.normal_scale, "the normal scale");
     check.not_negative(material.emission, "the emission");
     check.known(material.alpha_mode, AlphaMode::Blend, "the alpha mode");
-    check.range(material.alpha_cutoff, 0.0, std::numeric_limits<float>::max(), "the alpha cutoff");
+    check.range(material.alpha_cutoff, 0.0, Largest, "the alpha cutoff");
     check.that(material.index_of_refraction == 0.0f ||
                    (material.index_of_refraction >= 1.0f && material.index_of_refraction <= 100.0f),
                "the index of refraction is neither 0 nor between 1 and 100");
     check.range(material.transmission, 0.0, 1.0, "transmission");
-    scene::check(material.base_color_texture, "the base colour texture", check);
-    scene::check(material.metallic_roughness_texture, "the metallic-roughness texture", check);
-    scene::check(material.normal_texture, "the normal texture", check);
-    scene::check(material.emission_texture, "the emission texture", check);
+    check.range(material.thickness, 0.0, Largest, "the thickness");
+    check.unit(material.attenuation_color, "the attenuation colour");
+    check.range(material.attenuation_distance, 0.0, Largest, "the attenuation distance");
+    check.range(material.specular, 0.0, 1.0, "specular");
+    check.not_negative(material.specular_color, "the specular colour");
+    check.range(material.clearcoat, 0.0, 1.0, "clearcoat");
+    check.range(material.clearcoat_roughness, 0.0, 1.0, "the clearcoat roughness");
+    check.finite(material.clearcoat_normal_scale, "the clearcoat normal scale");
+    check.unit(material.sheen_color, "the sheen colour");
+    check.range(material.sheen_roughness, 0.0, 1.0, "the sheen roughness");
+    check.range(material.anisotropy, 0.0, 1.0, "anisotropy");
+    check.finite(material.anisotropy_rotation, "the anisotropy rotation");
+    check.range(material.iridescence, 0.0, 1.0, "iridescence");
+    check.range(material.iridescence_index_of_refraction, 1.0, 100.0, "the iridescence index of refraction");
+    check.range(material.iridescence_thickness_minimum, 0.0, Largest, "the least iridescence thickness");
+    check.range(material.iridescence_thickness_maximum, 0.0, Largest, "the greatest iridescence thickness");
+}
+
+void check(const SurfaceShader& shader, Check& check) {
+    check.not_negative(shader.emission, "the emission");
+    check.unit(shader.ambient, "ambient");
+    check.unit(shader.diffuse, "diffuse");
+    check.unit(shader.specular, "specular");
+    for (glm::length_t i = 0; i < 2; ++i) check.range(shader.shininess[i], 0.0, 1e6, "shininess");
+    check.range(shader.alpha, 0.0, 1.0, "alpha");
+    check.known(shader.normal_format, NormalFormat::Snorm, "the normal format");
+    check.known(shader.normal_space, NormalSpace::Object, "the normal space");
+    check.finite(shader.normal_scale, "the normal scale");
+    check.finite(shader.normal_bias, "the normal bias");
+    check.finite(shader.height_scale, "the height scale");
+    check.unit(shader.reflection, "reflection");
+    check.unit(shader.transmission, "transmission");
+    for (glm::length_t i = 0; i < 3; ++i) {
+        check.range(shader.relative_index_of_refraction[i], 0.01, 100.0, "the relative index of refraction");
+    }
+    check.range(shader.fresnel_blend, 0.0, 1.0, "the Fresnel blend");
+    check.range(shader.tangent_tex_coords, -1, 1, "the tangents' texture coordinates");
+    check.range(shader.binormal_tex_coords, -1, 1, "the binormals' texture coordinates");
+    check.not_negative(shader.environment, "the environment");
+}
+
+void check(const Medium& medium, Check& check) {
+    check.not_negative(medium.emission, "the emission");
+    check.not_negative(medium.absorption, "the absorption");
+    check.not_negative(medium.scattering, "the scattering");
+    check.range(medium.anisotropy, -1.0, 1.0, "the anisotropy");
 }
 
 void check(const Texture& texture, Check& check) {
@@ -130,12 +191,15 @@ void check(const Texture& texture, Check& check) {
 }
 
 void check(const Light& light, Check& check) {
-    check.known(light.kind, LightKind::Directional, "the kind of light");
+    check.known(light.kind, LightKind::Quad, "the kind of light");
     check.not_negative(light.intensity, "the intensity");
     check.range(light.inner_cone_angle, 0.0, Pi / 2 + 1e-6, "the inner cone angle");
     check.range(light.outer_cone_angle, 0.0, Pi / 2 + 1e-6, "the outer cone angle");
     check.that(light.kind != LightKind::Spot || light.inner_cone_angle <= light.outer_cone_angle,
                "the inner cone is wider than the outer");
+    check.range(light.radius, 0.0, Largest, "the radius");
+    for (glm::length_t i = 0; i < 2; ++i) check.range(light.size[i], 0.0, Largest, "the size");
+    check.range(light.angle, 0.0, Pi / 2, "the angle");
 }
 
 void check(const Camera& camera, Check& check) {
@@ -143,12 +207,25 @@ void check(const Camera& camera, Check& check) {
                "the field of view is not between 0 and pi");
     check.that(camera.aspect_ratio >= 0.0 && std::isfinite(camera.aspect_ratio),
                "the aspect ratio is negative");
+    check.known(camera.projection, Projection::Orthographic, "the projection");
+    check.known(camera.aperture, Aperture::Gaussian, "the aperture");
+    const auto length = [&](double metres, const std::string& what) {
+        check.that(metres >= 0.0 && metres < MaxCoordinate, what + " is not between 0 and 1e15 m");
+    };
+    length(camera.orthographic_height, "the orthographic height");
+    length(camera.lens_radius, "the lens radius");
+    length(camera.focus_distance, "the focus distance");
+    check.that(camera.orthographic_height > 0.0, "the orthographic height is 0");
+    check.that(camera.focus_distance > 0.0, "the focus distance is 0");
 }
 
 void check(const Background& background, Check& check) {
     check.not_negative(background.color, "the colour");
-    check.range(background.strength, 0.0, std::numeric_limits<float>::max(), "the strength");
+    check.range(background.strength, 0.0, Largest, "the strength");
     check.finite(background.rotation, "the rotation");
+    check.known(background.visible, VisibleBackground::Color, "what is visible of it");
+    check.not_negative(background.visible_color, "the visible colour");
+    check.range(background.visible_color.w, 0.0, 1.0, "the visible alpha");
 }
 
 void check(const Attachment& attachment, Check& check) {
@@ -168,7 +245,16 @@ std::string describe(ObjectId id, const Object& object) {
 std::vector<std::string> problems_of(ObjectId id, const Object& object) {
     Check checks(id, object);
     checks.that(name(object).size() <= MaxName, "its name is longer than 4096 bytes");
-    std::visit([&](const auto& value) { check(value, checks); }, object);
+    std::visit(
+        [&]<class T>(const T& value) {
+            check(value, checks);
+            for_each_field<T>([&](unsigned field, auto member) {
+                if constexpr (std::is_same_v<std::decay_t<decltype(value.*member)>, TextureSlot>) {
+                    check(value.*member, "the " + in_words(field_name(kind(object), field)), checks);
+                }
+            });
+        },
+        object);
     return checks.take();
 }
 

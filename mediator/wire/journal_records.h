@@ -63,7 +63,7 @@ struct RecordedObjectWriters {
 };
 struct RecordedChange {
     ObjectId object;
-    std::uint32_t mask = 0;
+    scene::FieldMask mask = 0;
     std::optional<scene::Object> before,
         after;  // only the fields of the mask and the name, where both are there
     std::vector<RecordedFieldWriter> writers_before, writers_after;

@@ -15,6 +15,7 @@
 #include "mediator/base/clock.h"
 #include "mediator/base/error.h"
 #include "mediator/base/ids.h"
+#include "mediator/scene/objects.h"
 #include "mediator/view/view.h"
 
 // Private to wire/*.cpp. Every message is described once, by a template map(io, structure, message) that runs
@@ -71,7 +72,7 @@ class Writer {
   public:
     template <class T>
     using Ref = const T&;
-    explicit Writer(std::uint32_t mask = ~0u) : mask_(mask) {}
+    explicit Writer(scene::FieldMask mask = ~scene::FieldMask{0}) : mask_(mask) {}
 
     template <class Field>
     bool has(Field field) const {
@@ -113,14 +114,14 @@ class Writer {
     }
 
   private:
-    std::uint32_t mask_;
+    scene::FieldMask mask_;
 };
 
 class Reader {
   public:
     template <class T>
     using Ref = T&;
-    explicit Reader(std::uint32_t mask = ~0u) : mask_(mask) {}
+    explicit Reader(scene::FieldMask mask = ~scene::FieldMask{0}) : mask_(mask) {}
 
     template <class Field>
     bool has(Field field) const {
@@ -175,7 +176,7 @@ class Reader {
     }
 
   private:
-    std::uint32_t mask_;
+    scene::FieldMask mask_;
 };
 
 }  // namespace tessera::wire

@@ -34,15 +34,19 @@ void with_message(proto::Object& object, ObjectKind kind, const Visit& visit) {
             return visit(scene::Background{}, *object.mutable_background());
         case ObjectKind::Attachment:
             return visit(scene::Attachment{}, *object.mutable_attachment());
+        case ObjectKind::SurfaceShader:
+            return visit(scene::SurfaceShader{}, *object.mutable_surface_shader());
+        case ObjectKind::Medium:
+            return visit(scene::Medium{}, *object.mutable_medium());
     }
 }
 
-void write(const scene::Object& object, std::uint32_t mask, proto::Object& to) {
+void write(const scene::Object& object, scene::FieldMask mask, proto::Object& to) {
     with_message(to, kind(object),
                  [&]<class S>(const S&, auto& message) { map(Writer(mask), std::get<S>(object), message); });
 }
 
-scene::Object read(proto::Object& from, std::uint32_t mask) {
+scene::Object read(proto::Object& from, scene::FieldMask mask) {
     if (from.kind_case() == proto::Object::KIND_NOT_SET) malformed("an entry lacks its object");
     scene::Object object;
     with_message(from, static_cast<ObjectKind>(from.kind_case() - 1), [&]<class S>(S fields, auto& message) {
@@ -58,7 +62,7 @@ void write(const scene::Entry& entry, proto::Entry& to) {
     to.set_id(scene::id(entry).value);
     if (const auto* create = std::get_if<scene::Create>(&entry)) {
         to.set_action(proto::Entry::CREATE);
-        write(create->object, ~0u, *to.mutable_object());
+        write(create->object, ~scene::FieldMask{0}, *to.mutable_object());
     } else if (const auto* update = std::get_if<scene::Update>(&entry)) {
         to.set_action(proto::Entry::UPDATE);
         to.set_mask(update->mask);
@@ -72,7 +76,7 @@ scene::Entry read(proto::Entry& from) {
     const ObjectId id{from.id()};
     switch (from.action()) {
         case proto::Entry::CREATE:
-            return scene::Create{id, read(*from.mutable_object(), ~0u)};
+            return scene::Create{id, read(*from.mutable_object(), ~scene::FieldMask{0})};
         case proto::Entry::UPDATE: {
             scene::Update update{id, from.mask(), read(*from.mutable_object(), from.mask())};
             if ((update.mask & ~scene::all_fields(update.fields)) != 0)

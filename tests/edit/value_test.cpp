@@ -21,10 +21,11 @@ std::map<std::string, FieldCase> cases() {
     const FieldCase hint{"animated", "animated", "fast"};
     const FieldCase children{"transforms/wheel lights/bulb", "transforms/wheel lights/bulb",
                              "transforms/weel"};
-    const FieldCase slot{"textures/data offset=1,-2 rotation=0.5",
-                         "textures/data offset=1,-2 scale=1,1 rotation=0.5", "textures/data offset=1"};
+    const FieldCase slot{"textures/data offset=1,-2 rotation=0.5 set=1",
+                         "textures/data offset=1,-2 scale=1,1 rotation=0.5 set=1", "textures/data offset=1"};
     const FieldCase number{"0.25", "0.25", "0.25x"}, whole{"7", "7", "-7"}, truth{"yes", "true", "maybe"};
     const FieldCase color{"0.5,0.25 1e-3", "0.5 0.25 0.001", "0.5 0.25"};
+    const FieldCase pair{"0.5,0.25", "0.5 0.25", "0.5 0.25 1"}, signed_whole{"-7", "-7", "7.5"};
     const FieldCase wrap{"clamp", "clamp", "Clamp"};
     const FieldCase blob{"", "", "12"};
     std::map<std::string, FieldCase> all{
@@ -71,14 +72,91 @@ std::map<std::string, FieldCase> cases() {
         {"background.rotation", {"-1.5", "-1.5", "1e39"}},
         {"attachment.key", {"k", "k", "k k"}},
         {"attachment.value", {"\"a\\n,b\"", "\"a\\n,b\"", "a b"}},
+        {"material.transmission_texture", slot},
+        {"material.thickness", number},
+        {"material.attenuation_color", color},
+        {"material.attenuation_distance", number},
+        {"material.specular", number},
+        {"material.specular_texture", slot},
+        {"material.specular_color", color},
+        {"material.specular_color_texture", slot},
+        {"material.clearcoat", number},
+        {"material.clearcoat_texture", slot},
+        {"material.clearcoat_roughness", number},
+        {"material.clearcoat_roughness_texture", slot},
+        {"material.clearcoat_normal_texture", slot},
+        {"material.clearcoat_normal_scale", number},
+        {"material.sheen_color", color},
+        {"material.sheen_color_texture", slot},
+        {"material.sheen_roughness", number},
+        {"material.sheen_roughness_texture", slot},
+        {"material.anisotropy", number},
+        {"material.anisotropy_rotation", number},
+        {"material.anisotropy_texture", slot},
+        {"material.iridescence", number},
+        {"material.iridescence_texture", slot},
+        {"material.iridescence_index_of_refraction", number},
+        {"material.iridescence_thickness_minimum", number},
+        {"material.iridescence_thickness_maximum", number},
+        {"material.iridescence_thickness_texture", slot},
+        {"material.shadow_catcher", truth},
+        {"surface_shader.emission", color},
+        {"surface_shader.emission_texture", slot},
+        {"surface_shader.ambient", color},
+        {"surface_shader.ambient_texture", slot},
+        {"surface_shader.diffuse", color},
+        {"surface_shader.diffuse_texture", slot},
+        {"surface_shader.specular", color},
+        {"surface_shader.specular_texture", slot},
+        {"surface_shader.shininess", pair},
+        {"surface_shader.shininess_texture", slot},
+        {"surface_shader.alpha", number},
+        {"surface_shader.alpha_texture", slot},
+        {"surface_shader.invert_alpha_texture", truth},
+        {"surface_shader.normal_texture", slot},
+        {"surface_shader.normal_format", {"snorm", "snorm", "float"}},
+        {"surface_shader.normal_space", {"object", "object", "world"}},
+        {"surface_shader.normal_scale", color},
+        {"surface_shader.normal_bias", color},
+        {"surface_shader.height_texture", slot},
+        {"surface_shader.height_scale", number},
+        {"surface_shader.reflection", color},
+        {"surface_shader.reflection_texture", slot},
+        {"surface_shader.transmission", color},
+        {"surface_shader.transmission_texture", slot},
+        {"surface_shader.relative_index_of_refraction", color},
+        {"surface_shader.fresnel_blend", number},
+        {"surface_shader.tangent_tex_coords", signed_whole},
+        {"surface_shader.binormal_tex_coords", signed_whole},
+        {"surface_shader.environment", color},
+        {"surface_shader.environment_texture", slot},
+        {"medium.emission", color},
+        {"medium.emission_texture", slot},
+        {"medium.absorption", color},
+        {"medium.absorption_texture", slot},
+        {"medium.scattering", color},
+        {"medium.scattering_texture", slot},
+        {"medium.anisotropy", number},
+        {"medium.priority", signed_whole},
+        {"geometry.medium", {"none", "none", "fog"}},
+        {"light.radius", number},
+        {"light.size", pair},
+        {"light.angle", number},
+        {"camera.projection", {"orthographic", "orthographic", "flat"}},
+        {"camera.orthographic_height", number},
+        {"camera.lens_radius", number},
+        {"camera.focus_distance", number},
+        {"camera.aperture", {"gaussian", "gaussian", "hexagon"}},
+        {"background.visible", {"color", "color", "white"}},
+        {"background.visible_color", {"0.8 0.1 0.1 0.5", "0.8 0.1 0.1 0.5", "0.8 0.1"}},
     };
     for (const char* kind : {"root", "transform", "geometry", "material", "texture", "light", "camera",
-                             "background", "attachment"}) {
+                             "background", "attachment", "surface_shader", "medium"}) {
         all[std::string(kind) + ".name"] = name;
     }
     for (const char* array :
          {"geometry.indices", "geometry.positions", "geometry.normals", "geometry.tangents",
-          "geometry.tex_coords", "geometry.colors", "texture.texels"}) {
+          "geometry.tex_coords", "geometry.tex_coords_1", "geometry.colors", "texture.texels"}) {
         all[array] = blob;
     }
     return all;
@@ -111,8 +189,9 @@ TEST(Values, EveryFieldOfEveryKindIsReadAndShown) {
                 << "a wrong value changed it";
             if (one.typed.empty()) continue;
             read_value(object, field, split(one.typed), 1, read);
-            const std::uint32_t changed = scene::differing_fields(object, default_object(kind));
-            EXPECT_EQ(changed | (one.typed == "none" ? 1u << field : 0u), 1u << field);
+            const scene::FieldMask changed = scene::differing_fields(object, default_object(kind));
+            EXPECT_EQ(changed | (one.typed == "none" ? scene::field_bit(field) : scene::FieldMask{0}),
+                      scene::field_bit(field));
             EXPECT_EQ(value_text(object, field, write), one.shown);
 
             scene::Object again = default_object(kind);

@@ -40,7 +40,7 @@ TEST(PictureEffect, OfEveryFieldOfEveryKind) {
         for (unsigned field = 0; (all_fields(object) >> field) != 0; ++field) {
             const std::string name =
                 std::string(scene::name(kind(object))) + "." + std::string(field_name(kind(object), field));
-            EXPECT_EQ(changes_pictures(list_of(Update{ObjectId{id}, 1u << field, object}), scene),
+            EXPECT_EQ(changes_pictures(list_of(Update{ObjectId{id}, field_bit(field), object}), scene),
                       !silent.contains(name))
                 << name;
         }

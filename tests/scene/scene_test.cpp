@@ -70,12 +70,12 @@ void expect_every_field_counts() {
             value[0] += 1.0f;
         }
         const Object other{changed};
-        EXPECT_EQ(differing_fields(original, other), 1u << bit);
+        EXPECT_EQ(differing_fields(original, other), field_bit(bit));
         EXPECT_NE(object_hash(ObjectId{5}, original), object_hash(ObjectId{5}, other))
             << name(kind(original)) << "." << field_name(kind(original), bit);
         EXPECT_FALSE(field_name(kind(original), bit).empty());
         Object assigned = original;
-        assign(assigned, other, 1u << bit);
+        assign(assigned, other, field_bit(bit));
         EXPECT_EQ(differing_fields(assigned, other), 0u);
     });
     EXPECT_NE(object_hash(ObjectId{5}, original), object_hash(ObjectId{6}, original));
@@ -91,6 +91,8 @@ TEST(ObjectHash, SeesEveryFieldOfEveryKind) {
     expect_every_field_counts<Camera>();
     expect_every_field_counts<Background>();
     expect_every_field_counts<Attachment>();
+    expect_every_field_counts<SurfaceShader>();
+    expect_every_field_counts<Medium>();
 }
 
 TEST(Difference, LeadsFromOneSceneToAnother) {

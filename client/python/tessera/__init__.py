@@ -21,8 +21,8 @@ from .errors import Error, InvalidInput, Malformed, Refused, Unavailable
 from .film import Film, floats
 from .frame import Frame
 from .link import LinkSettings as _LinkSettings
-from .objects import (ROOT_ID, Attachment, Background, Blob, Camera, Geometry, Light, Material, Object, Root, Texture,
-                      TextureSlot, Transform)
+from .objects import (ROOT_ID, Attachment, Background, Blob, Camera, Geometry, Light, Material, Medium, Object, Root,
+                      SurfaceShader, Texture, TextureSlot, Transform)
 from .people import Committed, Hit, People, Person, Status, Writer
 from .scene import Scene
 from .session import Session
@@ -32,7 +32,7 @@ from .view import View
 __all__ = [
     "connect", "look_at", "multiply", "translation", "floats", "Session", "Scene", "Transaction", "View", "Frame",
     "Film", "Pose", "Object", "Root", "Transform", "Geometry", "Material", "Texture", "TextureSlot", "Light", "Camera",
-    "Background", "Attachment", "Blob", "ROOT_ID", "Committed", "Hit", "People", "Person", "Status", "Writer", "Error",
+    "Background", "Attachment", "SurfaceShader", "Medium", "Blob", "ROOT_ID", "Committed", "Hit", "People", "Person", "Status", "Writer", "Error",
     "InvalidInput", "Malformed", "Refused", "Unavailable",
 ]
 

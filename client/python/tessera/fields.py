@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import re
 import struct
 from array import array
 from dataclasses import dataclass, fields
@@ -11,8 +12,8 @@ from typing import Any, Callable, Iterable, Mapping, Sequence
 
 from .blobs import BlobSource
 from .errors import InvalidInput, Malformed
-from .objects import (Attachment, Background, Blob, Camera, Geometry, Light, Material, Object, Root, Texture,
-                      TextureSlot, Transform)
+from .objects import (Attachment, Background, Blob, Camera, Geometry, Light, Material, Medium, Object, Root,
+                      SurfaceShader, Texture, TextureSlot, Transform)
 from .proto import scene_pb2
 
 Message = Any  # of protobuf, which has no type hints in Debian
@@ -71,6 +72,12 @@ def _plain(convert: Callable[[Any], Any]) -> Codec:
 def _boolean(value: Any) -> bool:
     if not isinstance(value, bool):
         raise InvalidInput("expected True or False")
+    return value
+
+
+def _signed(value: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or not -(1 << 31) <= value < 1 << 31:
+        raise InvalidInput("expected a whole number")
     return value
 
 
@@ -198,11 +205,13 @@ def _write_slot(message: Message, field: str, value: Any, blobs: BlobSource) -> 
     _FLOAT2.write(target, "offset", slot.offset, blobs)
     _FLOAT2.write(target, "scale", slot.scale, blobs)
     _FLOAT.write(target, "rotation", slot.rotation, blobs)
+    _UINT.write(target, "set", slot.set, blobs)
 
 
 def _read_slot(message: Message, field: str) -> TextureSlot:
     slot = getattr(message, field)
-    return TextureSlot(slot.texture, _FLOAT2.read(slot, "offset"), _FLOAT2.read(slot, "scale"), slot.rotation)
+    return TextureSlot(slot.texture, _FLOAT2.read(slot, "offset"), _FLOAT2.read(slot, "scale"), slot.rotation,
+                       slot.set)
 
 
 _TEXT = Codec(_write_text, _read_text)
@@ -211,6 +220,7 @@ _FLOAT3, _FLOAT4 = _vector(3, _float32), _vector(4, _float32)
 _DOUBLE3, _MATRIX = _vector(3, _number), _vector(16, _number)
 _IDS = Codec(_write_ids, lambda message, field: tuple(getattr(message, field)))
 _SLOT = Codec(_write_slot, _read_slot)
+_INT = _plain(_signed)
 _HINT = _choice("unflagged", "static", "animated")
 _WRAP = _choice("repeat", "mirror", "clamp")
 
@@ -255,7 +265,8 @@ class Kind:
 
 
 def _kind(plural: str, object_type: type[Object], is_placed: bool, **codecs: Codec) -> Kind:
-    kind = Kind(object_type.__name__.lower(), plural, object_type, {"name": _TEXT, **codecs}, is_placed)
+    words = re.findall("[A-Z][a-z]*", object_type.__name__)
+    kind = Kind("_".join(words).lower(), plural, object_type, {"name": _TEXT, **codecs}, is_placed)
     assert [f.name for f in fields(object_type)] == ["id", *kind.codecs]
     return kind
 
@@ -265,18 +276,40 @@ KINDS: tuple[Kind, ...] = (
     _kind("root", Root, False, children=_IDS, background=_REF, render_origin=_DOUBLE3),
     _kind("transforms", Transform, True, matrix=_MATRIX, children=_IDS, hint=_HINT, layers=_UINT),
     _kind("geometries", Geometry, True, material=_REF, hint=_HINT, indices=_blob("I"), positions=_blob("f"),
-          normals=_blob("f"), tangents=_blob("f"), tex_coords=_blob("f"), colors=_blob("f")),
+          normals=_blob("f"), tangents=_blob("f"), tex_coords=_blob("f"), colors=_blob("f"),
+          tex_coords_1=_blob("f"), medium=_REF),
     _kind("materials", Material, False, base_color=_FLOAT4, base_color_texture=_SLOT, metallic=_FLOAT,
           roughness=_FLOAT, metallic_roughness_texture=_SLOT, normal_texture=_SLOT, normal_scale=_FLOAT,
           emission=_FLOAT3, emission_texture=_SLOT, alpha_mode=_choice("opaque", "mask", "blend"),
-          alpha_cutoff=_FLOAT, double_sided=_BOOL, unlit=_BOOL, index_of_refraction=_FLOAT, transmission=_FLOAT),
+          alpha_cutoff=_FLOAT, double_sided=_BOOL, unlit=_BOOL, index_of_refraction=_FLOAT, transmission=_FLOAT,
+          transmission_texture=_SLOT, thickness=_FLOAT, attenuation_color=_FLOAT3, attenuation_distance=_FLOAT,
+          specular=_FLOAT, specular_texture=_SLOT, specular_color=_FLOAT3, specular_color_texture=_SLOT,
+          clearcoat=_FLOAT, clearcoat_texture=_SLOT, clearcoat_roughness=_FLOAT, clearcoat_roughness_texture=_SLOT,
+          clearcoat_normal_texture=_SLOT, clearcoat_normal_scale=_FLOAT, sheen_color=_FLOAT3,
+          sheen_color_texture=_SLOT, sheen_roughness=_FLOAT, sheen_roughness_texture=_SLOT, anisotropy=_FLOAT,
+          anisotropy_rotation=_FLOAT, anisotropy_texture=_SLOT, iridescence=_FLOAT, iridescence_texture=_SLOT,
+          iridescence_index_of_refraction=_FLOAT, iridescence_thickness_minimum=_FLOAT,
+          iridescence_thickness_maximum=_FLOAT, iridescence_thickness_texture=_SLOT, shadow_catcher=_BOOL),
     _kind("textures", Texture, False, width=_UINT, height=_UINT, format=_choice("rgba8", "rgba8_srgb", "rgb_float"),
           wrap_s=_WRAP, wrap_t=_WRAP, filter=_choice("linear", "nearest"), texels=_blob("B")),
-    _kind("lights", Light, True, kind=_choice("point", "spot", "directional"), intensity=_FLOAT3,
-          inner_cone_angle=_FLOAT, outer_cone_angle=_FLOAT),
-    _kind("cameras", Camera, True, vertical_fov=_DOUBLE, aspect_ratio=_DOUBLE),
-    _kind("backgrounds", Background, False, color=_FLOAT3, environment=_REF, strength=_FLOAT, rotation=_FLOAT),
+    _kind("lights", Light, True, kind=_choice("point", "spot", "directional", "sphere", "quad"), intensity=_FLOAT3,
+          inner_cone_angle=_FLOAT, outer_cone_angle=_FLOAT, radius=_FLOAT, size=_FLOAT2, angle=_FLOAT),
+    _kind("cameras", Camera, True, vertical_fov=_DOUBLE, aspect_ratio=_DOUBLE,
+          projection=_choice("perspective", "orthographic"), orthographic_height=_DOUBLE, lens_radius=_DOUBLE,
+          focus_distance=_DOUBLE, aperture=_choice("uniform", "gaussian")),
+    _kind("backgrounds", Background, False, color=_FLOAT3, environment=_REF, strength=_FLOAT, rotation=_FLOAT,
+          visible=_choice("environment", "color"), visible_color=_FLOAT4),
     _kind("attachments", Attachment, True, key=_TEXT, value=_TEXT),
+    _kind("surface_shaders", SurfaceShader, False, emission=_FLOAT3, emission_texture=_SLOT, ambient=_FLOAT3,
+          ambient_texture=_SLOT, diffuse=_FLOAT3, diffuse_texture=_SLOT, specular=_FLOAT3, specular_texture=_SLOT,
+          shininess=_FLOAT2, shininess_texture=_SLOT, alpha=_FLOAT, alpha_texture=_SLOT, invert_alpha_texture=_BOOL,
+          normal_texture=_SLOT, normal_format=_choice("unorm", "snorm"), normal_space=_choice("tangent", "object"),
+          normal_scale=_FLOAT3, normal_bias=_FLOAT3, height_texture=_SLOT, height_scale=_FLOAT, reflection=_FLOAT3,
+          reflection_texture=_SLOT, transmission=_FLOAT3, transmission_texture=_SLOT,
+          relative_index_of_refraction=_FLOAT3, fresnel_blend=_FLOAT, tangent_tex_coords=_INT,
+          binormal_tex_coords=_INT, environment=_FLOAT3, environment_texture=_SLOT),
+    _kind("media", Medium, False, emission=_FLOAT3, emission_texture=_SLOT, absorption=_FLOAT3,
+          absorption_texture=_SLOT, scattering=_FLOAT3, scattering_texture=_SLOT, anisotropy=_FLOAT, priority=_INT),
 )
 KIND_OF_TYPE: Mapping[type[Object], Kind] = {kind.type: kind for kind in KINDS}
 

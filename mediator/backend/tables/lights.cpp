@@ -80,6 +80,8 @@ Candidate placed_light(const scene::Light& source, double radius) {
     const double brightness = luminance(source.intensity);
     switch (source.kind) {
         case scene::LightKind::Point:
+        case scene::LightKind::Sphere:
+        case scene::LightKind::Quad:
             made.light.kind = shading::LightPoint;
             made.power = 4.0 * pi * brightness;
             break;
