@@ -32,8 +32,8 @@ class Configurator {
     Expected<void> paint(const std::string& part, const std::string& material) {
         ObjectId chosen;
         for (const auto& [id, object] : by_id_) {
-            const auto* candidate = std::get_if<scene::Material>(object);
-            if (candidate != nullptr && candidate->name == material && chosen.value == 0) chosen = id;
+            const std::string* candidate = name_of_material(*object);
+            if (candidate != nullptr && *candidate == material && chosen.value == 0) chosen = id;
         }
         if (chosen.value == 0) {
             return failure(ErrorCode::InvalidInput,
@@ -53,6 +53,12 @@ class Configurator {
         if (const auto* transform = std::get_if<scene::Transform>(&object)) return &transform->name;
         if (const auto* geometry = std::get_if<scene::Geometry>(&object)) return &geometry->name;
         if (const auto* light = std::get_if<scene::Light>(&object)) return &light->name;
+        return nullptr;
+    }
+
+    static const std::string* name_of_material(const scene::Object& object) {
+        if (const auto* material = std::get_if<scene::Material>(&object)) return &material->name;
+        if (const auto* shader = std::get_if<scene::SurfaceShader>(&object)) return &shader->name;
         return nullptr;
     }
 
@@ -100,7 +106,7 @@ class Configurator {
     std::string materials_there() const {
         std::set<std::string> names;
         for (const auto& [id, object] : by_id_) {
-            if (const auto* material = std::get_if<scene::Material>(object)) names.insert(material->name);
+            if (const std::string* name = name_of_material(*object)) names.insert(*name);
         }
         return list(names, "the materials are");
     }

@@ -10,7 +10,8 @@ namespace {
 
 // This library names kinds itself: the words are for users, not for the wire.
 constexpr std::array<const char*, std::variant_size_v<scene::Object>> KindNames{
-    "root", "node", "mesh", "material", "texture", "light", "camera", "background", "attachment"};
+    "root",   "node",       "mesh",       "material",       "texture", "light",
+    "camera", "background", "attachment", "surface shader", "medium"};
 
 MeshData unit_box() {
     MeshData box;

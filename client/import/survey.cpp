@@ -19,11 +19,6 @@ bool has_volume(const glm::dmat4& matrix) {
     return !far && lengths > 1e-36 && volume > 1e-12 * lengths;
 }
 
-bool emits(SceneBuilder& builder, ObjectId geometry) {
-    const ObjectId material = builder.get<scene::Geometry>(geometry).material;
-    return material && builder.get<scene::Material>(material).emission != glm::vec3(0.0f);
-}
-
 class Walk {
   public:
     explicit Walk(SceneBuilder& builder) : builder_(builder) {}
@@ -98,7 +93,9 @@ class Walk {
                         "it places more than " + std::to_string(MaxInstances) + " meshes: split the scene");
         }
         survey_.bounds.add(builder_.bounds(id), world);
-        if (emits(builder_, id)) emissive_.insert(id);
+        const auto& geometry = builder_.get<scene::Geometry>(id);
+        const auto shines = [&](ObjectId made_of) { return made_of && emits(object(made_of)); };
+        if (shines(geometry.material) || shines(geometry.medium)) emissive_.insert(id);
     }
 
     void place_camera(ObjectId id, const scene::Camera& camera, glm::dmat4 world) {
@@ -121,6 +118,15 @@ class Walk {
 };
 
 }  // namespace
+
+bool emits(const scene::Object& made_of) {
+    return std::visit(
+        [](const auto& value) {
+            if constexpr (requires { value.emission; }) return value.emission != glm::vec3(0.0f);
+            return false;
+        },
+        made_of);
+}
 
 bool make_rigid(glm::dmat4& matrix) {
     const glm::dvec3 up(matrix[1]), back(matrix[2]), place(matrix[3]);

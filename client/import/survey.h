@@ -18,6 +18,9 @@ struct Survey {
 // instances or too many places of transforms. The graph below the root must have no cycles.
 Survey survey(SceneBuilder& builder);
 
+// Of a material, surface shader or medium; other objects do not.
+bool emits(const scene::Object& made_of);
+
 // The rigid part of a transform: where it looks (-z) and what is up (y). False when it has none.
 bool make_rigid(glm::dmat4& matrix);
 

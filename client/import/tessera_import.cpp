@@ -14,7 +14,7 @@
 namespace tessera::import {
 namespace {
 
-// Places a scene that may share transforms; a builder's own walk knows only trees.
+// Places a scene that is whole already; a builder's own walk is of what the builder made.
 class Places {
   public:
     Places(const scene::Scene& scene, ImportedScene& result) : scene_(scene), result_(result) {
@@ -101,8 +101,11 @@ void count(const scene::Scene& scene, ImportCounts& counts) {
         if (geometry == nullptr) continue;
         ++counts.geometries;
         counts.triangles += geometry->indices.byte_size / 12;
-        const auto* material = scene.find_as<scene::Material>(geometry->material);
-        if (material != nullptr && material->emission != glm::vec3(0.0f)) ++counts.emissive_geometries;
+        const auto shines = [&](ObjectId made_of) {
+            const scene::Object* found = scene.find(made_of);
+            return found != nullptr && emits(*found);
+        };
+        if (shines(geometry->material) || shines(geometry->medium)) ++counts.emissive_geometries;
     }
 }
 

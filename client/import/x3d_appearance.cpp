@@ -1,28 +1,26 @@
 #include "client/import/x3d_appearance.h"
 
-#include <cstring>
+#include <string_view>
 
 #include "client/import/x3d_fields.h"
 #include "client/import/x3d_placement.h"
+#include "client/import/x3d_shaders.h"
+#include "mediator/scene/fields.h"
 
 namespace tessera::import {
-namespace {
 
-// The nodes of an Appearance that are read; the others are counted.
-struct Parts {
-    pugi::xml_node material, texture, texture_transform;
-};
-
-Parts parts_of(X3dDocument& document, pugi::xml_node appearance) {
+X3dAppearances::Parts X3dAppearances::parts_of(pugi::xml_node appearance) {
     Parts parts;
-    for (const X3dDocument::Child& child : document.children(appearance)) {
+    for (const X3dDocument::Child& child : document_.children(appearance)) {
         const std::string_view kind = child.node.name();
-        pugi::xml_node* part = kind == "Material"           ? &parts.material
-                               : kind == "ImageTexture"     ? &parts.texture
-                               : kind == "TextureTransform" ? &parts.texture_transform
-                                                            : nullptr;
+        pugi::xml_node* part = kind == "CommonSurfaceShader"  ? &parts.shader
+                               : kind == "CommonVolumeShader" ? &parts.volume
+                               : kind == "Material"           ? &parts.material
+                               : kind == "ImageTexture"       ? &parts.texture
+                               : kind == "TextureTransform"   ? &parts.texture_transform
+                                                              : nullptr;
         if (part == nullptr || *part) {
-            document.problems().skipped(child.node.name(), child.node.offset_debug());
+            document_.problems().skipped(child.node.name(), child.node.offset_debug());
         } else {
             *part = child.node;
         }
@@ -30,46 +28,81 @@ Parts parts_of(X3dDocument& document, pugi::xml_node appearance) {
     return parts;
 }
 
-}  // namespace
-
-X3dSurface X3dAppearances::surface(pugi::xml_node appearance, X3dSides sides) {
-    const auto [place, is_new] = made_.try_emplace({appearance.internal_object(), sides});
-    if (is_new) place->second = make(appearance, sides);
+X3dSurface X3dAppearances::surface(pugi::xml_node appearance, VertexColors colors) {
+    const auto [place, is_new] = made_.try_emplace({appearance.internal_object(), colors});
+    if (is_new) place->second = make(appearance, colors);
     return place->second;
 }
 
-X3dSurface X3dAppearances::make(pugi::xml_node appearance, X3dSides sides) {
-    const Parts parts = parts_of(document_, appearance);
+X3dSurface X3dAppearances::make(pugi::xml_node appearance, VertexColors colors) {
+    const Parts parts = parts_of(appearance);
     X3dSurface surface;
+    if (parts.shader) {
+        add_shader(parts.shader, surface);
+    } else if (parts.material) {
+        add_material(parts, colors, surface);
+    } else {
+        add_unlit(x3d_name(appearance), parts.texture, surface);
+    }
+    if (parts.volume) surface.medium = medium(parts.volume);
     if (parts.texture_transform) {
         surface.texture_transform =
             texture_transform(X3dFields(parts.texture_transform, document_.problems()));
     }
-    scene::Material material;
-    material.name = x3d_name(parts.material ? parts.material : appearance);
-    material.double_sided = !sides.solid;
-    glm::vec3 color(1.0f);
-    float alpha = 1.0f;
-    const X3dTextures::Traits traits =
-        parts.texture ? textures_.traits(parts.texture) : X3dTextures::Traits{};
-    if (parts.material) {
-        const X3dFields fields(parts.material, document_.problems());
-        color = fields.vector("diffuseColor", glm::vec3(0.8f), UpToOne);
-        alpha = 1.0f - static_cast<float>(fields.number("transparency", 0.0, UpToOne));
-        material.emission = fields.vector("emissiveColor", glm::vec3(0.0f), UpToOne);
-        const bool replaced = parts.texture && !traits.is_grey && document_.version() < 4.0;
-        if (sides.has_colors || replaced) color = glm::vec3(1.0f);
-    } else {
-        material.unlit = true;
+    return surface;
+}
+
+void X3dAppearances::add_shader(pugi::xml_node node, X3dSurface& surface) {
+    const auto [place, is_new] = shaders_.try_emplace(node.internal_object());
+    if (is_new) {
+        scene::SurfaceShader shader = read_surface_shader(document_, node, textures_);
+        X3dSurface& made = place->second;
+        // Tangents are made of texture coordinates, also where only a highlight that is longer than wide
+        // asks.
+        made.wants_tangents = shader.normal_texture.texture || shader.height_texture.texture ||
+                              shader.shininess.x != shader.shininess.y;
+        made.is_textured = made.wants_tangents;
+        scene::for_each_field<scene::SurfaceShader>([&](unsigned, auto member) {
+            if constexpr (std::is_same_v<decltype(member), scene::TextureSlot scene::SurfaceShader::*>)
+                made.is_textured |= static_cast<bool>((shader.*member).texture);
+        });
+        made.material = builder_.add(std::move(shader));
     }
-    material.base_color = glm::vec4(color, alpha);
+    surface = place->second;
+}
+
+void X3dAppearances::add_material(const Parts& parts, VertexColors colors, X3dSurface& surface) {
+    scene::SurfaceShader shader = read_material(document_, parts.material);
+    if (colors == VertexColors::Given) shader.diffuse = glm::vec3(1.0f);
     if (parts.texture) {
-        material.base_color_texture.texture = textures_.texture(parts.texture, TextureUse::Color);
+        const X3dTextures::Traits traits = textures_.traits(parts.texture);
+        // X3D 3 (17.2.2.5): a coloured picture takes the place of the diffuse colour; X3D 4 multiplies.
+        if (!traits.is_grey && document_.version() < 4.0) shader.diffuse = glm::vec3(1.0f);
+        shader.diffuse_texture.texture = textures_.texture(parts.texture, TextureUse::Color);
+        if (traits.has_opacity) shader.alpha_texture = shader.diffuse_texture;
         surface.is_textured = true;
     }
-    if (alpha < 1.0f || traits.has_opacity) material.alpha_mode = scene::AlphaMode::Blend;
+    surface.material = builder_.add(std::move(shader));
+}
+
+void X3dAppearances::add_unlit(std::string name, pugi::xml_node texture, X3dSurface& surface) {
+    scene::Material material;
+    material.name = std::move(name);
+    material.base_color = glm::vec4(1.0f);
+    material.unlit = true;
+    material.double_sided = true;
+    if (texture) {
+        material.base_color_texture.texture = textures_.texture(texture, TextureUse::Color);
+        if (textures_.traits(texture).has_opacity) material.alpha_mode = scene::AlphaMode::Blend;
+        surface.is_textured = true;
+    }
     surface.material = builder_.add(std::move(material));
-    return surface;
+}
+
+ObjectId X3dAppearances::medium(pugi::xml_node node) {
+    ObjectId& made = media_[node.internal_object()];
+    if (!made) made = builder_.add(read_medium(document_, node, textures_));
+    return made;
 }
 
 }  // namespace tessera::import

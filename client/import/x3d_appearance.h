@@ -2,7 +2,7 @@
 
 #include <glm/mat3x3.hpp>
 #include <map>
-#include <tuple>
+#include <string>
 
 #include "client/import/scene_builder.h"
 #include "client/import/x3d_document.h"
@@ -10,16 +10,12 @@
 
 namespace tessera::import {
 
-// What the geometry that is drawn with an Appearance says about it.
-struct X3dSides {
-    bool solid = true;        // only its front is there
-    bool has_colors = false;  // for each vertex; they take the place of a Material's diffuse colour
-    friend auto operator<=>(const X3dSides&, const X3dSides&) = default;
-};
+// Whether a geometry has colours of its own; they take the place of a Material's diffuse colour.
+enum class VertexColors { None, Given };
 
 // An Appearance as geometries use it.
 struct X3dSurface {
-    ObjectId material;
+    ObjectId material, medium;
     bool is_textured = false;  // needs texture coordinates
     bool wants_tangents = false;
     glm::dmat3 texture_transform{1.0};  // of (s, t, 1)
@@ -30,16 +26,27 @@ class X3dAppearances {
     X3dAppearances(X3dDocument& document, X3dTextures& textures, SceneBuilder& builder)
         : document_(document), textures_(textures), builder_(builder) {}
 
-    // Without an Appearance, or with one without a Material: white or the picture, unlit.
-    X3dSurface surface(pugi::xml_node appearance, X3dSides sides);
+    // A CommonSurfaceShader takes the place of Material and ImageTexture, which then are for others. Without
+    // any of these, or with a picture alone: white or the picture, unlit.
+    X3dSurface surface(pugi::xml_node appearance, VertexColors colors);
 
   private:
-    X3dSurface make(pugi::xml_node appearance, X3dSides sides);
+    struct Parts {  // null nodes for what is not there
+        pugi::xml_node shader, volume, material, texture, texture_transform;
+    };
+    Parts parts_of(pugi::xml_node appearance);
+    X3dSurface make(pugi::xml_node appearance, VertexColors colors);
+    void add_shader(pugi::xml_node node, X3dSurface& surface);
+    void add_material(const Parts& parts, VertexColors colors, X3dSurface& surface);
+    void add_unlit(std::string name, pugi::xml_node texture, X3dSurface& surface);
+    ObjectId medium(pugi::xml_node node);
 
     X3dDocument& document_;
     X3dTextures& textures_;
     SceneBuilder& builder_;
-    std::map<std::pair<const void*, X3dSides>, X3dSurface> made_;
+    std::map<std::pair<const void*, VertexColors>, X3dSurface> made_;
+    std::map<const void*, X3dSurface> shaders_;
+    std::map<const void*, ObjectId> media_;
 };
 
 }  // namespace tessera::import

@@ -1,5 +1,6 @@
 #include "client/import/x3d_fields.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -83,9 +84,11 @@ std::string X3dFields::word(const char* field, const char* otherwise) const {
     return std::string(text);
 }
 
-std::vector<double> X3dFields::some(const char* field, int fewest, int most, X3dRange range) const {
+std::vector<double> X3dFields::some(const char* field, std::initializer_list<int> counts,
+                                    X3dRange range) const {
     if (!has(field)) return {};
     const std::string_view text = node_.attribute(field).value();
+    const int most = std::max(counts);
     std::vector<double> found;
     std::string cause;
     try {
@@ -98,7 +101,7 @@ std::vector<double> X3dFields::some(const char* field, int fewest, int most, X3d
         cause = error.what();
     }
     const int count = static_cast<int>(found.size());
-    if (cause.empty() && (count < fewest || count > most)) {
+    if (cause.empty() && std::find(counts.begin(), counts.end(), count) == counts.end()) {
         cause = "no " + std::to_string(most) + (most == 1 ? " number" : " numbers");
     }
     if (cause.empty()) return found;
@@ -107,8 +110,15 @@ std::vector<double> X3dFields::some(const char* field, int fewest, int most, X3d
 }
 
 double X3dFields::number(const char* field, double otherwise, X3dRange range) const {
-    const std::vector<double> found = some(field, 1, 1, range);
+    const std::vector<double> found = some(field, {1}, range);
     return found.empty() ? otherwise : found.front();
+}
+
+std::int32_t X3dFields::whole_number(const char* field, std::int32_t otherwise, X3dRange range) const {
+    const double found = number(field, otherwise, range);
+    if (found == std::floor(found)) return static_cast<std::int32_t>(found);
+    problem(std::string(field) + " is no whole number: its default is used, correct it");
+    return otherwise;
 }
 
 std::vector<std::int32_t> X3dFields::whole_numbers(const char* field) const {

@@ -4,6 +4,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <initializer_list>
 #include <pugixml.hpp>
 #include <string>
 #include <vector>
@@ -30,16 +31,25 @@ class X3dFields {
     bool flag(const char* field, bool otherwise) const;
     std::string word(const char* field, const char* otherwise) const;
     double number(const char* field, double otherwise, X3dRange range = {}) const;
+    std::int32_t whole_number(const char* field, std::int32_t otherwise, X3dRange range) const;
     template <class Vector>
     Vector vector(const char* field, const Vector& otherwise, X3dRange range = {}) const {
         Vector result = otherwise;
-        const std::vector<double> found = some(field, Vector::length(), Vector::length(), range);
+        const std::vector<double> found = some(field, {Vector::length()}, range);
         for (std::size_t i = 0; i < found.size(); ++i)
             result[static_cast<glm::length_t>(i)] = static_cast<typename Vector::value_type>(found[i]);
         return result;
     }
-    // `fewest` to `most` numbers; none where the field is not there or wrong.
-    std::vector<double> some(const char* field, int fewest, int most, X3dRange range) const;
+    // One number for all of its components, or one for each.
+    template <class Vector>
+    Vector number_or_vector(const char* field, const Vector& otherwise, X3dRange range) const {
+        const std::vector<double> found = some(field, {1, Vector::length()}, range);
+        Vector result = otherwise;
+        for (glm::length_t i = 0; i < Vector::length() && !found.empty(); ++i)
+            result[i] = static_cast<typename Vector::value_type>(
+                found[found.size() == 1 ? 0 : static_cast<std::size_t>(i)]);
+        return result;
+    }
 
     std::vector<std::int32_t> whole_numbers(const char* field) const;
     std::vector<float> numbers(const char* field) const;
@@ -59,6 +69,8 @@ class X3dFields {
     void problem(const std::string& what) const;
 
   private:
+    // As many numbers as one of `counts` says; none where the field is not there or wrong.
+    std::vector<double> some(const char* field, std::initializer_list<int> counts, X3dRange range) const;
     [[noreturn]] void refuse_count(const char* field, std::size_t count, std::size_t size) const;
 
     pugi::xml_node node_;

@@ -77,8 +77,8 @@ ObjectId X3dShapes::make(pugi::xml_node shape, pugi::xml_node geometry, pugi::xm
     try {
         MeshData mesh = read_mesh(document_, geometry);
         for (const std::string& repair : check_and_repair(mesh)) fields.problem(repair);
-        const X3dSurface surface = appearances_.surface(
-            appearance, {.solid = fields.flag("solid", true), .has_colors = !mesh.colors.empty()});
+        const X3dSurface surface =
+            appearances_.surface(appearance, mesh.colors.empty() ? VertexColors::None : VertexColors::Given);
         if (!surface.is_textured) {
             mesh.tex_coords.clear();
         } else if (mesh.tex_coords.empty()) {
@@ -90,7 +90,10 @@ ObjectId X3dShapes::make(pugi::xml_node shape, pugi::xml_node geometry, pugi::xm
             generate_tangents(mesh);
         }
         const std::string name = x3d_name(shape);
-        return builder_.add_geometry(name.empty() ? x3d_name(geometry) : name, surface.material, mesh);
+        const ObjectId made =
+            builder_.add_geometry(name.empty() ? x3d_name(geometry) : name, surface.material, mesh);
+        builder_.get<scene::Geometry>(made).medium = surface.medium;
+        return made;
     } catch (const Error& error) {
         if (error.code() != ErrorCode::InvalidInput) throw;
         fields.problem("is bad (" + std::string(error.what()) + "): a magenta box stands for it, correct it");

@@ -47,6 +47,7 @@ bool survives(const TestFolder& folder, const std::string& name, const std::stri
     const auto scene = import_scene(folder.write(name, bytes));
     if (scene) {
         expect_sound(*scene);
+        expect_valid(*scene);
     } else {
         EXPECT_STRNE(scene.error().what(), "");
         EXPECT_NE(scene.error().code(), ErrorCode::Internal);
@@ -161,7 +162,12 @@ TEST(ImportFuzz, FlippedBitsOfOtherFormats) {
         "colorPerVertex='false'><Coordinate point='0 0 0,1 0 0,1 1 0,0 1 0'/><Color color='1 0 0 0 1 0'/>"
         "<TextureCoordinate point='0 0 1 0 1 1 0 1'/></IndexedFaceSet></Shape></Transform><Group><Transform "
         "USE='T'/><Shape USE='S'/></Group><SpotLight direction='0 1 0'/><Viewpoint position='0 0 3'/>"
-        "<Background skyColor='1 1 1 0 0 0' skyAngle='1.5' groundColor='.1 .1 .1'/></Scene></X3D>";
+        "<Shape><Appearance><CommonSurfaceShader shininessFactor='1 2' relativeIndexOfRefraction='1.5' "
+        "normalSpace="
+        "'OBJECT'><ImageTexture containerField='normalTexture' "
+        "url='t.png'/></CommonSurfaceShader><CommonVolumeShader "
+        "scatteringFactor='1 2 3'/></Appearance><Cone height='3'/></Shape><Background skyColor='1 1 1 0 0 0' "
+        "skyAngle='1.5' groundColor='.1 .1 .1'/></Scene></X3D>";
     const TestFolder folder;
     folder.write("t.png", png(2, 2, {200, 100, 50, 255}));
     CounterRandom random(7);

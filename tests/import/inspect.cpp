@@ -4,6 +4,9 @@
 #include <map>
 #include <set>
 
+#include "mediator/scene/fields.h"
+#include "mediator/scene/validate.h"
+
 namespace tessera::import {
 namespace {
 
@@ -61,7 +64,8 @@ class Soundness {
         for (int i = 0; i < 16; ++i) EXPECT_TRUE(std::isfinite(transform.matrix[i / 4][i % 4]));
     }
     void object(const scene::Geometry& geometry) {
-        reference(geometry.material, {scene::ObjectKind::Material});
+        reference(geometry.material, {scene::ObjectKind::Material, scene::ObjectKind::SurfaceShader});
+        reference(geometry.medium, {scene::ObjectKind::Medium});
         const auto indices = values<std::uint32_t>(scene_, geometry.indices);
         const std::uint64_t vertices = geometry.positions.byte_size / 12;
         ASSERT_FALSE(indices.empty());
@@ -79,14 +83,20 @@ class Soundness {
         }
     }
     void object(const scene::Material& material) {
-        for (const auto* slot : {&material.base_color_texture, &material.metallic_roughness_texture,
-                                 &material.normal_texture, &material.emission_texture}) {
-            reference(slot->texture, {scene::ObjectKind::Texture});
-        }
+        textures_of(material);
         EXPECT_TRUE(material.metallic >= 0.0f && material.metallic <= 1.0f);
         EXPECT_TRUE(material.roughness >= 0.0f && material.roughness <= 1.0f);
         for (int i = 0; i < 3; ++i)
             EXPECT_TRUE(material.emission[i] >= 0.0f && std::isfinite(material.emission[i]));
+    }
+    void object(const scene::SurfaceShader& shader) { textures_of(shader); }
+    void object(const scene::Medium& medium) { textures_of(medium); }
+    template <class T>
+    void textures_of(const T& made_of) {
+        scene::for_each_field<T>([&](unsigned, auto member) {
+            if constexpr (std::is_same_v<decltype(member), scene::TextureSlot T::*>)
+                reference((made_of.*member).texture, {scene::ObjectKind::Texture});
+        });
     }
     void object(const scene::Texture& texture) {
         const std::uint64_t bytes = texture.format == scene::TexelFormat::RgbFloat ? 12 : 4;
@@ -111,6 +121,19 @@ class Soundness {
 
 void expect_sound(const ImportedScene& scene, const ImportOptions& options) {
     Soundness(scene, options).check();
+}
+
+void expect_valid(const ImportedScene& imported) {
+    scene::Scene scene;
+    ASSERT_TRUE(scene.apply_entries(entries(imported, RootEntry::Create)));
+    scene::BlobStore blobs;
+    for (const scene::BlobPtr& blob : imported.blobs) blobs.insert(blob);
+    for (const scene::Problem& problem : scene::validate(scene)) ADD_FAILURE() << problem.message;
+    for (const auto& [id, object] : scene.objects()) {
+        for (const scene::Problem& problem : scene::validate_blobs(id, *object, blobs)) {
+            ADD_FAILURE() << problem.message;
+        }
+    }
 }
 
 }  // namespace tessera::import

@@ -74,4 +74,7 @@ inline testing::AssertionResult has_notice(const ImportedScene& scene, const std
 // said, references to objects that exist, geometry in range.
 void expect_sound(const ImportedScene& scene, const ImportOptions& options = {});
 
+// What a master and its nodes ask of a scene: they would take it.
+void expect_valid(const ImportedScene& imported);
+
 }  // namespace tessera::import

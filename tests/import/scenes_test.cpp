@@ -2,7 +2,6 @@
 #include <fstream>
 
 #include "mediator/base/random.h"
-#include "mediator/scene/validate.h"
 #include "tests/import/inspect.h"
 #include "tests/import/scene_file.h"
 
@@ -11,19 +10,6 @@ namespace tessera::import {
 namespace {
 
 const std::filesystem::path Scenes = TESSERA_SCENES;
-
-void expect_valid(const ImportedScene& imported) {
-    scene::Scene scene;
-    ASSERT_TRUE(scene.apply_entries(entries(imported, RootEntry::Create)));
-    scene::BlobStore blobs;
-    for (const scene::BlobPtr& blob : imported.blobs) blobs.insert(blob);
-    for (const scene::Problem& problem : scene::validate(scene)) ADD_FAILURE() << problem.message;
-    for (const auto& [id, object] : scene.objects()) {
-        for (const scene::Problem& problem : scene::validate_blobs(id, *object, blobs)) {
-            ADD_FAILURE() << problem.message;
-        }
-    }
-}
 
 TEST(Scenes, TheRoom) {
     const ImportedScene scene = loaded(Scenes / "room-1.glb");

@@ -68,6 +68,15 @@ TEST(TestModels, EveryPrimitiveMode) {
     }
 }
 
+TEST(TestModels, X3dFilesThatAskForMoreThanIsRead) {
+    const ImportedScene globe = sound("X3D/HelloX3dTrademark.x3d");
+    EXPECT_EQ(globe.counts.instances, 1u);
+    EXPECT_EQ(globe.cameras.size(), 1u);
+    EXPECT_TRUE(has_notice(globe, "<ImageTexture> cannot be used"));
+    EXPECT_TRUE(has_notice(globe, "<ROUTE> skipped: not read, or not in such a place (line 45 and 1 more)"));
+    expect_refused("X3D/ComputerKeyboard.x3d", "no shape that is read (skipped: 3 <Extrusion>");
+}
+
 TEST(TestModels, CamerasAndTextureTransforms) {
     const ImportedScene cameras = sound("glTF2/cameras/Cameras.gltf");
     EXPECT_EQ(cameras.cameras.size(), 1u);

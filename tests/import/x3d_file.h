@@ -17,6 +17,7 @@ inline ImportedScene read_x3d(const std::string& scene, const ImportOptions& opt
     const TestFolder folder;
     ImportedScene read = loaded(folder.write("a.x3d", x3d(scene)), options);
     expect_sound(read, options);
+    expect_valid(read);
     return read;
 }
 
