@@ -1,11 +1,20 @@
 #include "mediator/view/placed_cameras.h"
 
+#include <algorithm>
 #include <glm/geometric.hpp>
-#include <set>
+#include <glm/vector_relational.hpp>
+#include <unordered_map>
+
+#include "mediator/scene/fields.h"
 
 namespace tessera::view {
 
 namespace {
+
+using namespace scene;
+
+// As far as a transform may reach.
+constexpr double MaxCoordinate = 1e15;
 
 // Gram-Schmidt on the viewing direction first, so that what is looked at stays in the middle.
 glm::dmat4 rigid(const glm::dmat4& matrix) {
@@ -19,39 +28,71 @@ glm::dmat4 rigid(const glm::dmat4& matrix) {
     return result;
 }
 
-struct Walk {
-    const scene::Scene& scene;
-    std::vector<PlacedCamera> found;
-    std::set<ObjectId> seen;
+// Products of valid matrices may still be flat or overflow.
+Expected<glm::dmat4> checked(const glm::dmat4& world_from_camera, const std::string& name) {
+    for (glm::length_t column = 0; column < 4; ++column) {
+        // What is no number is not less, either.
+        const glm::dvec3 size = glm::abs(glm::dvec3(world_from_camera[column]));
+        if (!glm::all(glm::lessThan(size, glm::dvec3(MaxCoordinate))))
+            return failure(ErrorCode::InvalidInput,
+                           "camera '" + name +
+                               "' looks nowhere: the transforms above it are flat or too large; mend them");
+    }
+    return world_from_camera;
+}
 
-    void visit(ObjectId id, const glm::dmat4& world) {
-        const scene::Object* object = scene.find(id);
-        if (object == nullptr) return;
-        if (const auto* transform = std::get_if<scene::Transform>(object)) {
-            for (const ObjectId child : transform->children) visit(child, world * transform->matrix);
-        } else if (const auto* camera = std::get_if<scene::Camera>(object);
-                   camera && seen.insert(id).second) {
-            found.push_back({id, camera->name, rigid(world), camera->vertical_fov, camera->aspect_ratio});
+class Walk {
+  public:
+    explicit Walk(const Scene& scene) {
+        if (const auto* root = scene.find_as<Root>(RootId)) open_.push_back({RootId, &root->children});
+        while (!open_.empty()) {
+            Step& step = open_.back();
+            if (step.next == step.children->size()) {
+                open_.pop_back();
+            } else {
+                const ObjectId child = (*step.children)[step.next++];
+                if (const Object* object = scene.find(child)) visit(child, *object, step);
+            }
         }
     }
+
+    // Transforms above, from the root down.
+    std::vector<ObjectId> path(ObjectId id) const {
+        std::vector<ObjectId> path;
+        while ((id = above_.at(id)) != RootId) path.push_back(id);
+        std::reverse(path.begin(), path.end());
+        return path;
+    }
+
+    std::vector<PlacedCamera> cameras;
+
+  private:
+    struct Step {
+        ObjectId id;
+        const std::vector<ObjectId>* children;
+        glm::dmat4 world{1.0};
+        std::size_t next = 0;
+    };
+
+    void visit(ObjectId id, const Object& object, const Step& parent) {
+        const auto* transform = std::get_if<Transform>(&object);
+        const auto* camera = std::get_if<Camera>(&object);
+        if (transform == nullptr && camera == nullptr) return;
+        // Whatever hangs below was found the first time.
+        if (!above_.emplace(id, parent.id).second) return;
+        if (transform != nullptr) {
+            open_.push_back({id, &transform->children, parent.world * transform->matrix});
+        } else {
+            cameras.push_back(
+                {id, camera->name, rigid(parent.world), camera->vertical_fov, camera->aspect_ratio});
+        }
+    }
+
+    std::vector<Step> open_;
+    std::unordered_map<ObjectId, ObjectId> above_;  // of each transform and camera: where it is placed first
 };
 
-}  // namespace
-
-std::vector<PlacedCamera> placed_cameras(const scene::Scene& scene) {
-    Walk walk{scene, {}, {}};
-    if (const auto* root = scene.find_as<scene::Root>(scene::RootId)) {
-        for (const ObjectId child : root->children) walk.visit(child, glm::dmat4(1.0));
-    }
-    return std::move(walk.found);
-}
-
-CameraPose pose(const PlacedCamera& camera, std::uint32_t width, std::uint32_t height) {
-    return perspective(camera.world_from_camera, camera.vertical_fov, double(width) / double(height));
-}
-
-Expected<PlacedCamera> choose_camera(const scene::Scene& scene, const std::string& choice) {
-    const std::vector<PlacedCamera> cameras = placed_cameras(scene);
+Expected<PlacedCamera> chosen(const std::vector<PlacedCamera>& cameras, const std::string& choice) {
     if (cameras.empty()) return failure(ErrorCode::NotFound, "the scene has no camera: load or create one");
     if (choice.empty()) return cameras.front();
     std::string list;
@@ -60,6 +101,81 @@ Expected<PlacedCamera> choose_camera(const scene::Scene& scene, const std::strin
         list += (list.empty() ? "" : ", ") + std::to_string(i) + " '" + cameras[i].name + "'";
     }
     return failure(ErrorCode::NotFound, "the scene has no camera '" + choice + "'; it has: " + list);
+}
+
+enum class Concern { None, Matrix, Graph };
+
+Concern concern(const Entry& entry) {
+    if (const auto* create = std::get_if<Create>(&entry)) {
+        const bool can_place = std::holds_alternative<Root>(create->object) ||
+                               std::holds_alternative<Transform>(create->object) ||
+                               std::holds_alternative<Camera>(create->object);
+        return can_place ? Concern::Graph : Concern::None;
+    }
+    const auto* update = std::get_if<Update>(&entry);
+    if (update == nullptr) return Concern::Graph;
+    if (std::holds_alternative<Root>(update->fields)) {
+        const auto fields = Fields<Root>::from_bits(update->mask);
+        return fields.contains(Root::Field::Children) ? Concern::Graph : Concern::None;
+    }
+    if (std::holds_alternative<Transform>(update->fields)) {
+        const auto fields = Fields<Transform>::from_bits(update->mask);
+        if (fields.contains(Transform::Field::Children)) return Concern::Graph;
+        return fields.contains(Transform::Field::Matrix) ? Concern::Matrix : Concern::None;
+    }
+    if (std::holds_alternative<Camera>(update->fields)) {
+        const auto fields = Fields<Camera>::from_bits(update->mask);
+        return fields.contains(Camera::Field::Name) ? Concern::Graph : Concern::None;
+    }
+    return Concern::None;
+}
+
+}  // namespace
+
+std::vector<PlacedCamera> placed_cameras(const Scene& scene) {
+    return std::move(Walk(scene).cameras);
+}
+
+CameraPose pose(const PlacedCamera& camera, std::uint32_t width, std::uint32_t height) {
+    return perspective(camera.world_from_camera, camera.vertical_fov, double(width) / double(height));
+}
+
+Expected<PlacedCamera> choose_camera(const Scene& scene, const std::string& choice) {
+    auto camera = chosen(placed_cameras(scene), choice);
+    if (!camera) return camera;
+    if (const auto world = checked(camera->world_from_camera, camera->name); !world)
+        return tl::unexpected(world.error());
+    return camera;
+}
+
+FollowedCamera::FollowedCamera(const Scene& scene, std::string choice)
+    : choice_(std::move(choice)), world_from_camera_(choose(scene)) {}
+
+Expected<glm::dmat4> FollowedCamera::choose(const Scene& scene) {
+    const Walk walk(scene);
+    const auto camera = chosen(walk.cameras, choice_);
+    path_.reset();
+    if (!camera) return tl::unexpected(camera.error());
+    name_ = camera->name;
+    path_ = walk.path(camera->id);
+    return checked(camera->world_from_camera, name_);
+}
+
+bool FollowedCamera::follow(const ChangeList& changes, const Scene& scene) {
+    auto most = changes.is_snapshot() ? Concern::Graph : Concern::None;
+    for (const Entry& entry : changes.entries) most = std::max(most, concern(entry));
+    Expected<glm::dmat4> now = world_from_camera_;
+    if (most == Concern::Graph) {
+        now = choose(scene);
+    } else if (most == Concern::Matrix && path_) {
+        glm::dmat4 world(1.0);
+        for (const ObjectId id : *path_) world = world * scene.find_as<Transform>(id)->matrix;
+        now = checked(rigid(world), name_);
+    }
+    const bool is_same = now.has_value() == world_from_camera_.has_value() &&
+                         (!now.has_value() || *now == *world_from_camera_);
+    world_from_camera_ = std::move(now);
+    return !is_same;
 }
 
 }  // namespace tessera::view

@@ -1,0 +1,163 @@
+#include "mediator/view/placed_cameras.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "mediator/scene/fields.h"
+
+namespace tessera::view {
+namespace {
+
+using namespace scene;
+
+glm::dmat4 moved(double x) {
+    return glm::translate(glm::dmat4(1.0), glm::dvec3(x, 0, 0));
+}
+
+Transform at(double x, std::vector<ObjectId> children) {
+    Transform transform{.children = std::move(children)};
+    transform.matrix = moved(x);
+    return transform;
+}
+
+Update matrix_of(ObjectId id, const glm::dmat4& matrix) {
+    Transform transform;
+    transform.matrix = matrix;
+    return {id, Fields<Transform>(Transform::Field::Matrix).bits(), transform};
+}
+
+Update children_of(ObjectId id, std::vector<ObjectId> children) {
+    return {id, Fields<Transform>(Transform::Field::Children).bits(),
+            Transform{.children = std::move(children)}};
+}
+
+Scene scene_of(std::vector<Entry> entries, std::vector<ObjectId> top) {
+    Scene scene;
+    entries.emplace_back(Create{RootId, Root{.children = std::move(top)}});
+    EXPECT_TRUE(scene.apply_entries(entries));
+    return scene;
+}
+
+constexpr ObjectId A{10}, B{11}, C{12}, Front{20}, Side{21}, Loose{22};
+
+// Root: A (Front, B (Side)), and C without a camera.
+Scene two_cameras() {
+    return scene_of({Create{A, at(1, {Front, B})}, Create{B, at(2, {Side})}, Create{C, at(4, {})},
+                     Create{Front, Camera{.name = "front"}}, Create{Side, Camera{.name = "side"}},
+                     Create{Loose, Camera{.name = "loose"}}},
+                    {A, C});
+}
+
+TEST(PlacedCameras, AreListedDepthFirstWhereTheyStandFirst) {
+    Scene scene = two_cameras();
+    ASSERT_TRUE(scene.apply_entries({children_of(C, {Front, B, Side})}));
+    const auto cameras = placed_cameras(scene);
+    ASSERT_EQ(cameras.size(), 2u);
+    EXPECT_EQ(cameras[0].name, "front");
+    EXPECT_EQ(cameras[0].world_from_camera, moved(1));
+    EXPECT_EQ(cameras[1].name, "side");
+    EXPECT_EQ(cameras[1].world_from_camera, moved(3));
+}
+
+TEST(PlacedCameras, OnesThatLookNowhereAreRefused) {
+    Scene scene = two_cameras();
+    ASSERT_TRUE(scene.apply_entries({matrix_of(B, glm::scale(glm::dmat4(1.0), {1, 1, 0}))}));
+    EXPECT_TRUE(choose_camera(scene, ""));
+    ASSERT_FALSE(choose_camera(scene, "side"));
+    EXPECT_NE(std::string(choose_camera(scene, "side").error().what()).find("'side' looks nowhere"),
+              std::string::npos);
+    glm::dmat4 far = glm::scale(glm::dmat4(1.0), glm::dvec3(1e200));
+    ASSERT_TRUE(scene.apply_entries({matrix_of(A, far), matrix_of(B, moved(1e10))}));
+    EXPECT_FALSE(choose_camera(scene, "side"));
+}
+
+// A recursion would end the process.
+TEST(PlacedCameras, StandBelowChainsHoweverDeep) {
+    constexpr std::uint64_t Depth = 200'000, First = 1000;
+    std::vector<Entry> chain{Create{Front, Camera{.name = "deep"}}};
+    for (std::uint64_t i = 0; i < Depth; ++i)
+        chain.emplace_back(
+            Create{ObjectId{First + i}, at(1, {i + 1 < Depth ? ObjectId{First + i + 1} : Front})});
+    const Scene scene = scene_of(std::move(chain), {ObjectId{First}});
+    const auto camera = choose_camera(scene, "");
+    ASSERT_TRUE(camera);
+    EXPECT_EQ(camera->world_from_camera, moved(Depth));
+}
+
+// 2^64 placements: one by one they would never end.
+TEST(PlacedCameras, StandInAGraphThatDoublesAtEveryLevel) {
+    constexpr std::uint64_t Levels = 64, First = 1000;
+    std::vector<Entry> levels{Create{Front, Camera{.name = "many"}}};
+    for (std::uint64_t i = 0; i < Levels; ++i) {
+        const ObjectId below = i + 1 < Levels ? ObjectId{First + i + 1} : Front;
+        levels.emplace_back(Create{ObjectId{First + i}, at(1, {below, below})});
+    }
+    const auto cameras = placed_cameras(scene_of(std::move(levels), {ObjectId{First}}));
+    ASSERT_EQ(cameras.size(), 1u);
+    EXPECT_EQ(cameras[0].world_from_camera, moved(Levels));
+}
+
+struct Followed : testing::Test {
+    Scene scene = two_cameras();
+    FollowedCamera camera{scene, "side"};
+
+    bool follow(std::vector<Entry> entries) {
+        EXPECT_TRUE(scene.apply_entries(entries));
+        const bool changed = camera.follow({.from = {1, 1}, .to = {1, 2}, .entries = entries}, scene);
+        const auto expected = choose_camera(scene, "side");
+        EXPECT_EQ(camera.world_from_camera().has_value(), expected.has_value());
+        if (expected && camera.world_from_camera()) {
+            EXPECT_EQ(*camera.world_from_camera(), expected->world_from_camera);
+        }
+        return changed;
+    }
+};
+
+TEST_F(Followed, MovesWithTheTransformsAboveIt) {
+    EXPECT_EQ(*camera.world_from_camera(), moved(3));
+    EXPECT_TRUE(follow({matrix_of(A, moved(5))}));
+    EXPECT_TRUE(follow({matrix_of(B, glm::scale(moved(-1), glm::dvec3(3)))}));
+    EXPECT_FALSE(follow({matrix_of(C, moved(9))})) << "it is not above";
+    EXPECT_FALSE(follow({matrix_of(A, moved(5))})) << "where it is";
+}
+
+TEST_F(Followed, GoesWithTheGraph) {
+    EXPECT_TRUE(follow({children_of(A, {Front}), children_of(C, {B})}));
+    EXPECT_TRUE(follow({matrix_of(C, moved(8))}));
+    EXPECT_FALSE(follow({matrix_of(A, moved(8))})) << "it was taken from there";
+    EXPECT_FALSE(follow({Create{ObjectId{30}, at(1, {Side})}})) << "placed nowhere itself";
+    EXPECT_FALSE(follow({children_of(A, {Front, Loose})})) << "another camera";
+    EXPECT_TRUE(follow({Update{RootId, Fields<Root>(Root::Field::Children).bits(), Root{.children = {A}}}}));
+    EXPECT_FALSE(camera.world_from_camera()) << "gone";
+    EXPECT_TRUE(follow({children_of(A, {Front, Side})}));
+    EXPECT_TRUE(
+        follow({children_of(A, {Front}), children_of(B, {}), children_of(ObjectId{30}, {}), Remove{Side}}));
+}
+
+TEST_F(Followed, NamesDecide) {
+    const auto renamed = [](ObjectId id, const std::string& name) {
+        return Update{id, Fields<Camera>(Camera::Field::Name).bits(), Camera{.name = name}};
+    };
+    EXPECT_TRUE(follow({renamed(Side, "back")}));
+    EXPECT_FALSE(camera.world_from_camera());
+    EXPECT_TRUE(follow({renamed(Front, "side")}));
+    EXPECT_EQ(*camera.world_from_camera(), moved(1));
+}
+
+TEST_F(Followed, AnObjectOfAnotherKindMayTakeThePlace) {
+    EXPECT_TRUE(follow({Remove{B}, Create{B, Attachment{}}}));
+    EXPECT_FALSE(camera.world_from_camera());
+    EXPECT_TRUE(follow({Remove{B}, Create{B, Camera{.name = "side"}}}));
+    EXPECT_EQ(*camera.world_from_camera(), moved(1));
+}
+
+TEST_F(Followed, LooksNowhereForAWhile) {
+    EXPECT_TRUE(follow({matrix_of(A, glm::scale(glm::dmat4(1.0), glm::dvec3(0)))}));
+    EXPECT_FALSE(camera.world_from_camera());
+    EXPECT_FALSE(follow({matrix_of(A, glm::scale(glm::dmat4(1.0), glm::dvec3(0, 1, 0)))}));
+    EXPECT_TRUE(follow({matrix_of(A, moved(5))}));
+}
+
+}  // namespace
+}  // namespace tessera::view
