@@ -1,9 +1,12 @@
 #include "master/live/picture_effect.h"
 
 #include <algorithm>
+#include <set>
 #include <variant>
+#include <vector>
 
 #include "mediator/scene/fields.h"
+#include "mediator/scene/referrers.h"
 
 namespace tessera::master {
 
@@ -11,22 +14,45 @@ namespace {
 
 using namespace scene;
 
-// Something that light meets or comes from, at or below `id`. Ends at the first one, so a part of the picture
-// costs little; validated scenes have no cycles.
-bool holds_content(const Scene& scene, ObjectId id) {
-    const Object* object = scene.find(id);
-    if (object == nullptr) return true;  // gone: not known, so it counts
-    if (const auto* transform = std::get_if<Transform>(object)) {
-        return std::any_of(transform->children.begin(), transform->children.end(),
-                           [&](ObjectId child) { return holds_content(scene, child); });
+// Looks for something that light meets or comes from, at or below an object. Ends at the first one, so a part
+// of the picture costs little; what holds none is walked once, however deep and shared it is.
+class ContentSearch {
+  public:
+    explicit ContentSearch(const Scene& scene) : scene_(scene) {}
+
+    bool finds_any(ObjectId start) {
+        struct Step {
+            const std::vector<ObjectId>* below;
+            std::size_t next = 0;
+        };
+        const std::vector<ObjectId> top{start};
+        std::vector<Step> open{{&top}};
+        while (!open.empty()) {
+            Step& step = open.back();
+            if (step.next == step.below->size()) {
+                open.pop_back();
+                continue;
+            }
+            const ObjectId id = (*step.below)[step.next++];
+            const Object* object = scene_.find(id);
+            if (object == nullptr) return true;  // gone: not known, so it counts
+            if (std::holds_alternative<Geometry>(*object) || std::holds_alternative<Light>(*object))
+                return true;
+            const std::vector<ObjectId>& below = children(*object);
+            if (!below.empty() && walked_.insert(id).second) open.push_back({&below});
+        }
+        return false;
     }
-    return std::holds_alternative<Geometry>(*object) || std::holds_alternative<Light>(*object);
-}
+
+  private:
+    const Scene& scene_;
+    std::set<ObjectId> walked_;  // without a find
+};
 
 // Whether an update of these fields matters, one answer a kind.
 struct Matters {
     const Update& update;
-    const Scene& after;
+    ContentSearch& content;
 
     template <class T>
     bool any(Fields<T> fields) const {
@@ -42,7 +68,7 @@ struct Matters {
     bool operator()(const Transform&) const {
         if (any<Transform>(Transform::Field::Children)) return true;
         return any<Transform>({Transform::Field::Matrix, Transform::Field::Layers}) &&
-               holds_content(after, update.id);
+               content.finds_any(update.id);
     }
     bool operator()(const Geometry&) const {
         return any_but<Geometry>({Geometry::Field::Name, Geometry::Field::Hint});
@@ -59,9 +85,10 @@ struct Matters {
 
 bool changes_pictures(const ChangeList& changes, const Scene& after) {
     if (changes.is_snapshot()) return true;
+    ContentSearch content(after);
     return std::any_of(changes.entries.begin(), changes.entries.end(), [&](const Entry& entry) {
         const auto* update = std::get_if<Update>(&entry);
-        return update != nullptr && std::visit(Matters{*update, after}, update->fields);
+        return update != nullptr && std::visit(Matters{*update, content}, update->fields);
     });
 }
 

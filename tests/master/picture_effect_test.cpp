@@ -53,6 +53,31 @@ TEST(PictureEffect, APlaceThatHoldsButACameraMovesNothing) {
     EXPECT_FALSE(changes_pictures(list_of(move), scene));
 }
 
+// One by one, 2^64 placements would never end; with recursion, a long chain would end the process.
+TEST(PictureEffect, OfPlacesThatAreDeepOrDoubleAtEveryLevel) {
+    const auto chain = [](std::uint64_t depth, std::size_t copies) {
+        std::vector<Entry> entries{Create{RootId, Root{.children = {ObjectId{1000}}}}};
+        for (std::uint64_t id = 1000; id < 1000 + depth; ++id)
+            entries.emplace_back(
+                Create{ObjectId{id}, Transform{.children = std::vector(copies, ObjectId{id + 1})}});
+        entries.emplace_back(Create{ObjectId{1000 + depth}, Transform{}});
+        Scene scene;
+        EXPECT_TRUE(scene.apply_entries(entries));
+        return scene;
+    };
+    const auto at = [](std::uint64_t id) {
+        return list_of(Update{ObjectId{id}, Fields<Transform>(Transform::Field::Matrix).bits(), Transform{}});
+    };
+    Scene deep = chain(200'000, 1);
+    EXPECT_FALSE(changes_pictures(at(1000), deep));
+    ASSERT_TRUE(
+        deep.apply_entries({Create{ObjectId{10}, Light{}},
+                            Update{ObjectId{201'000}, Fields<Transform>(Transform::Field::Children).bits(),
+                                   Transform{.children = {ObjectId{10}}}}}));
+    EXPECT_TRUE(changes_pictures(at(1000), deep));
+    EXPECT_FALSE(changes_pictures(at(1000), chain(64, 2)));
+}
+
 TEST(PictureEffect, WhatComesAndGoesShowsInWhoRefersToIt) {
     const Scene scene = some_scene();
     EXPECT_FALSE(changes_pictures(list_of(Create{ObjectId{30}, Material{}}), scene));
