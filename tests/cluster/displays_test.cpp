@@ -1,121 +1,17 @@
 // Displays: all outputs show the same frame of the same version, whoever stops, comes or goes.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <bit>
 #include <map>
 #include <set>
 
-#include "mediator/backend/catalog.h"
 #include "mediator/display/frustum.h"
-#include "mediator/scene/fields.h"
 #include "mediator/wire/envelope.h"
-#include "tests/cluster/cluster_scene.h"
-#include "tests/cluster/loopback_cluster.h"
+#include "tests/cluster/display_fixture.h"
 
 namespace tessera::test {
 namespace {
 
-using namespace scene;
 using namespace std::chrono_literals;
-
-display::Output half_of_wall(const std::string& name, double left, double right) {
-    display::Output output{.name = name, .width = 64, .height = 48};
-    output.view_width = 64;
-    output.view_height = 48;
-    output.plane = {{left, -1, -2},
-                    {1, 0, 0},
-                    {0, 1, 0},
-                    {{left, -1, -2}, {right, -1, -2}, {left, 1, -2}, {right, 1, -2}}};
-    return output;
-}
-
-// One output process: answers like tessera-display.
-struct Shower {
-    std::unique_ptr<client::LiveSession> session;
-    std::vector<client::OutputFrame> frames;
-    std::vector<wire::PresentFrame> orders;
-    std::vector<wire::OutputOpened> opened;
-    std::string problem;
-    bool answers = true, opens = true;
-
-    void step() {
-        while (auto event = session->next_output_event(std::chrono::steady_clock::now(), {})) {
-            if (auto* frame = std::get_if<client::OutputFrame>(&*event)) {
-                if (answers) session->output_ready(frame->number);
-                frames.push_back(std::move(*frame));
-            } else if (const auto* order = std::get_if<wire::PresentFrame>(&*event)) {
-                orders.push_back(*order);
-            } else if (const auto* open = std::get_if<wire::OutputOpened>(&*event)) {
-                if (opens) session->output_ready(0);
-                opened.push_back(*open);
-            } else {
-                problem = std::get<client::OutputUnavailable>(*event).reason;
-            }
-        }
-    }
-};
-
-struct Displays : testing::Test {
-    LoopbackCluster cluster;
-    std::shared_ptr<BlobStore> blobs = std::make_shared<BlobStore>();
-    std::unique_ptr<client::LiveSession> ann = cluster.member("ann", blobs);
-    ObjectId first = ann->new_id();
-    display::Display wall{.name = "wall"};
-    std::map<std::string, Shower> showers;
-
-    void SetUp() override {
-        for (int i = 0; i < 8; ++i) ann->new_id();
-        ASSERT_TRUE(ann->submit(scene_entries(first, *blobs)).accepted);
-        ASSERT_TRUE(ann->submit({Create{camera_id(), Camera{.name = "main"}},
-                                 Create{place_id(), Transform{.name = "place", .children = {camera_id()}}},
-                                 Update{RootId, Fields<Root>(Root::Field::Children).bits(),
-                                        Root{.children = {first, place_id()}}}})
-                        .accepted);
-        wall.outputs = {half_of_wall("left", -2, 0), half_of_wall("right", 0, 2)};
-        wall.spp = 4;
-        wall.rate = 1000;
-    }
-    ObjectId camera_id() const { return ObjectId{first.value + 6}; }
-    ObjectId place_id() const { return ObjectId{first.value + 7}; }
-
-    Shower& show(const std::string& output) {
-        Shower& shower = showers[output];
-        shower.session = cluster.member(output, std::make_shared<BlobStore>(), net::Role::Viewer);
-        shower.session->join_output(output);
-        return shower;
-    }
-    template <class Done>
-    void until(const Done& done) {
-        const auto deadline = std::chrono::steady_clock::now() + 60s;
-        while (!done()) {
-            for (auto& [name, shower] : showers) shower.step();
-            if (std::chrono::steady_clock::now() > deadline) {
-                FAIL() << "it did not happen";
-            }
-            std::this_thread::sleep_for(1ms);
-        }
-    }
-    static bool shows(const Shower& shower, std::uint64_t samples) {
-        return !shower.orders.empty() && !shower.frames.empty() && shower.frames.back().samples >= samples &&
-               shower.orders.back().frame == shower.frames.back().number;
-    }
-    bool all_show(std::uint64_t samples) const {
-        return std::all_of(showers.begin(), showers.end(),
-                           [&](const auto& entry) { return shows(entry.second, samples); });
-    }
-    client::ClusterStatus status() {
-        const auto session = cluster.session(std::make_shared<BlobStore>());
-        return session->status();
-    }
-    void move_camera(double x) {
-        Transform moved;
-        moved.matrix[3][0] = x;
-        ASSERT_TRUE(
-            ann->submit({Update{place_id(), Fields<Transform>(Transform::Field::Matrix).bits(), moved}})
-                .accepted);
-    }
-};
 
 TEST_F(Displays, AllOutputsAreToldToShowTheSameFramesOfTheSameVersion) {
     cluster.add_node("null");
@@ -197,27 +93,6 @@ TEST_F(Displays, PicturesGetFinerInStep) {
         seen.insert(frame.samples);
     }
     EXPECT_GE(seen.size(), 3u) << "not only the last stage";
-}
-
-TEST_F(Displays, BothEyesHaveTheSameSamplesAndCamerasASeparationApart) {
-    cluster.add_node("null");
-    wall.outputs[0].stereo = display::Stereo::SideBySide;
-    wall.outputs.pop_back();
-    ann->open_display(wall);
-    Shower& left = show("left");
-    until([&] { return all_show(4); });
-    const auto& pictures = left.frames.back().pictures;
-    ASSERT_EQ(pictures.size(), 2u);
-    EXPECT_EQ(pictures[0].eye, view::Eye::Left);
-    EXPECT_EQ(pictures[1].eye, view::Eye::Right);
-    const auto apart = pictures[1].camera.world_from_camera[3] - pictures[0].camera.world_from_camera[3];
-    EXPECT_NEAR(apart.x, wall.eye_separation, 1e-12);
-    ann->adjust_display({.eye_separation = 0.5});
-    const std::size_t before = left.frames.size();
-    until([&] {
-        return left.frames.size() > before && all_show(4) &&
-               left.frames.back().pictures[1].camera.world_from_camera[3][0] > 0.2;
-    });
 }
 
 TEST_F(Displays, AnOutputWithPriorityHasMoreSamples) {
@@ -371,7 +246,7 @@ TEST_F(Displays, WhatCannotBeShownIsRefusedWithTheReason) {
     EXPECT_NE(middle.problem.find("no output 'middle'; it has: left, right"), std::string::npos);
     show("left");
     until([&] { return !showers["left"].opened.empty(); });
-    const auto twin = cluster.member("twin", std::make_shared<BlobStore>(), net::Role::Viewer);
+    const auto twin = cluster.member("twin", std::make_shared<scene::BlobStore>(), net::Role::Viewer);
     twin->join_output("left");
     const auto event = twin->next_output_event(std::chrono::steady_clock::now() + 30s, {});
     ASSERT_TRUE(event && std::holds_alternative<client::OutputUnavailable>(*event));
@@ -434,82 +309,6 @@ TEST_F(Displays, ThePatternIsSwitchedOnForAll) {
     until([&] { return !showers["left"].opened.empty() && !showers["right"].opened.empty(); });
     ann->adjust_display({.pattern = true});
     until([&] { return showers["left"].opened.back().pattern && showers["right"].opened.back().pattern; });
-}
-
-// A filter with a large radius, an eye that looks into light and one that looks into the dark.
-TEST_F(Displays, FiltersNeverBleedAcrossEyesAndOutputs) {
-    cluster.add_node("null");
-    wall.filter = "bilateral";
-    wall.outputs[0].stereo = display::Stereo::SideBySide;
-    ann->open_display(wall);
-    Shower& both = show("left");
-    until([&] { return all_show(4); });
-    const client::OutputFrame together = both.frames.back();
-    // Each eye alone, as an output of its own: the same bytes.
-    for (const auto& [stereo, eye] :
-         {std::pair(display::Stereo::Left, 0), std::pair(display::Stereo::Right, 1)}) {
-        wall.outputs[0].stereo = stereo;
-        const std::size_t before = both.frames.size();
-        ann->open_display(wall);
-        until([&] {
-            return both.frames.size() > before && all_show(4) && both.frames.back().pictures.size() == 1;
-        });
-        EXPECT_TRUE(both.frames.back().pictures[0].bytes == together.pictures[std::size_t(eye)].bytes)
-            << "eye " << eye;
-    }
-}
-
-TEST_F(Displays, TheDifferenceOfTheEyesIsReported) {
-    cluster.add_node("embree");
-    wall.outputs[0].stereo = display::Stereo::TopBottom;
-    wall.outputs.pop_back();
-    wall.stereo_difference = true;
-    ann->open_display(wall);
-    show("left");
-    until([&] { return all_show(4); });
-    const double difference = status().display.outputs[0].stereo_difference;
-    EXPECT_GE(difference, 0.0);
-    EXPECT_LT(difference, 1.0);
-}
-
-// Path tracing with a layer of another renderer over it; both can be switched off while it runs.
-TEST_F(Displays, LayersAreSwitchedAtRunTime) {
-    cluster.add_node("embree");
-    Transform gui;
-    gui.layers = 2;
-    ASSERT_TRUE(
-        ann->submit({Update{first, Fields<Transform>(Transform::Field::Layers).bits(), gui}}).accepted);
-    wall.outputs.pop_back();
-    wall.layers = {{"model", view::Renderer::PathTracing, 1, true},
-                   {"gui", view::Renderer::Whitted, 2, true}};
-    ann->open_display(wall);
-    Shower& left = show("left");
-    until([&] { return all_show(4); });
-    const std::vector<std::byte> with_gui = left.frames.back().pictures[0].bytes;
-    const auto switched = [&](std::uint32_t shown) {
-        const std::size_t before = left.frames.size();
-        ann->adjust_display({.shown_layers = shown});
-        until([&] { return left.frames.size() > before && all_show(4); });
-        return left.frames.back().pictures[0].bytes;
-    };
-    EXPECT_TRUE(switched(1) != with_gui) << "the model alone";
-    EXPECT_TRUE(switched(3) == with_gui) << "back again, to the bit";
-}
-
-// One back-end, so one scene, for both eyes and all outputs.
-TEST_F(Displays, OneSceneCopyForAllEyes) {
-    std::atomic<int> made = 0;
-    cluster.add_node([&](const backend::BackendSettings& settings) {
-        ++made;
-        return backend::find_backend("embree").make(settings);
-    });
-    for (display::Output& output : wall.outputs) output.stereo = display::Stereo::TopBottom;
-    ann->open_display(wall);
-    show("left");
-    show("right");
-    until([&] { return all_show(4); });
-    EXPECT_EQ(made, 1);
-    EXPECT_EQ(showers["left"].frames.back().pictures.size(), 2u);
 }
 
 }  // namespace

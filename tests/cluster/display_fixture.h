@@ -1,0 +1,67 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "mediator/display/display.h"
+#include "tests/cluster/loopback_cluster.h"
+
+namespace tessera::test {
+
+// 64x48 pixels on a wall two metres in front of the camera, from `left` to `right` and one metre up and down.
+display::Output part_of_wall(const std::string& name, double left, double right);
+
+// One output process: answers like tessera-display.
+struct Shower {
+    std::unique_ptr<client::LiveSession> session;
+    std::vector<client::OutputFrame> frames;
+    std::vector<wire::PresentFrame> orders;
+    std::vector<wire::OutputOpened> opened;
+    std::string problem;
+    bool answers = true, opens = true;
+
+    void step();  // takes all that has come
+};
+
+// A live scene with a camera below a transform, and a display of two outputs, "left" and "right", not open
+// yet.
+struct Displays : testing::Test {
+    LoopbackCluster cluster;
+    std::shared_ptr<scene::BlobStore> blobs = std::make_shared<scene::BlobStore>();
+    std::unique_ptr<client::LiveSession> ann = cluster.member("ann", blobs);
+    ObjectId first = ann->new_id();
+    display::Display wall{.name = "wall"};
+    std::map<std::string, Shower> showers;
+
+    void SetUp() override;
+    ObjectId camera_id() const { return ObjectId{first.value + 6}; }
+    ObjectId place_id() const { return ObjectId{first.value + 7}; }
+
+    Shower& show(const std::string& output);
+    template <class Done>
+    void until(const Done& done) {
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+        while (!done()) {
+            for (auto& [name, shower] : showers) shower.step();
+            if (std::chrono::steady_clock::now() > deadline) {
+                FAIL() << "it did not happen";
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    }
+    // The latest frame that came is the one that is to be seen, and has so many samples.
+    static bool shows(const Shower& shower, std::uint64_t samples);
+    bool all_show(std::uint64_t samples) const;
+    client::ClusterStatus status();
+    void submit(const std::vector<scene::Entry>& entries);
+    void move_camera(double x);
+};
+
+}  // namespace tessera::test
