@@ -7,7 +7,6 @@
 #include "mediator/display/frustum.h"
 #include "mediator/display/validate.h"
 #include "mediator/filter/choice.h"
-#include "mediator/view/placed_cameras.h"
 #include "mediator/wire/display_codec.h"
 
 namespace tessera::master {
@@ -65,9 +64,11 @@ std::string DisplayService::open(const scene::BlobPtr& description, std::vector<
         }
     }
     if (open_) forget();
+    view::FollowedCamera camera(authority_.scene(), decoded->camera);
     open_.emplace(Open{.display = std::move(*decoded),
                        .description = scene::reference(*description),
                        .content = std::move(content),
+                       .camera = std::move(camera),
                        .lock = FrameLock({}, count, interval),
                        .showers = std::vector<std::optional<Shower>>(count),
                        .stereo_differences = std::vector<double>(count),
@@ -75,7 +76,7 @@ std::string DisplayService::open(const scene::BlobPtr& description, std::vector<
     open_->content.push_back(description);
     events_({wire::Severity::Info, "display '" + open_->display.name + "' is open: " + std::to_string(count) +
                                        (count == 1 ? " output" : " outputs")});
-    (void)find_camera();
+    tell_of_camera();
     runner_.open_group({.views = [this] { return views(); },
                         .can_take = [this] { return can_take(); },
                         .take = [this](const GroupStage& stage, TimePoint when) { take(stage, when); }},
@@ -205,23 +206,23 @@ void DisplayService::left(SessionId session, TimePoint now) {
     }
 }
 
-bool DisplayService::find_camera() {
-    const auto camera = view::choose_camera(authority_.scene(), open_->display.camera);
-    if (!camera) return false;
-    const bool moved = open_->world_from_display != camera->world_from_camera;
-    open_->world_from_display = camera->world_from_camera;
-    return moved;
+void DisplayService::tell_of_camera() {
+    if (const auto& carrier = open_->camera.world_from_camera(); !carrier)
+        events_({wire::Severity::Warning,
+                 "display '" + open_->display.name + "' waits: " + carrier.error().what()});
 }
 
-bool DisplayService::scene_changed() {
-    if (!open_ || !find_camera()) return false;
+bool DisplayService::scene_changed(const scene::ChangeList& changes) {
+    if (!open_ || !open_->camera.follow(changes, authority_.scene())) return false;
+    tell_of_camera();
     runner_.group_changed();
-    return true;
+    return open_->camera.world_from_camera().has_value();
 }
 
-glm::dvec3 DisplayService::head_in_world() const {
+std::optional<glm::dvec3> DisplayService::head_in_world() const {
+    if (!open_ || !open_->camera.world_from_camera()) return std::nullopt;
     const glm::dvec3 head = open_->display.units_per_metre * open_->display.head.position;
-    return open_->world_from_display * glm::dvec4(head, 1.0);
+    return *open_->camera.world_from_camera() * glm::dvec4(head, 1.0);
 }
 
 void DisplayService::made(MadeOutput&& output, TimePoint now) {

@@ -13,6 +13,7 @@
 #include "master/scene_authority.h"
 #include "master/session_table.h"
 #include "mediator/display/display.h"
+#include "mediator/view/placed_cameras.h"
 
 namespace tessera::master {
 
@@ -36,9 +37,10 @@ class DisplayService {
     std::string join(const SessionRecord& session, const wire::JoinOutput& request, TimePoint now);
     void ready(SessionId session, const wire::OutputReady& ready, TimePoint now);
     void left(SessionId session, TimePoint now);
-    // A version is published. True: the camera that carries the display is somewhere else.
-    bool scene_changed();
-    glm::dvec3 head_in_world() const;
+    // A version is published. True: the camera that carries the display is somewhere else, or there again.
+    bool scene_changed(const scene::ChangeList& changes);
+    // Nothing without a display, or a camera that carries it.
+    std::optional<glm::dvec3> head_in_world() const;
 
     void tick(TimePoint now);  // after every message
     TimePoint next_event() const;
@@ -61,17 +63,22 @@ class DisplayService {
         std::vector<MadeOutput> outputs;  // by index
         bool failed = false;
     };
+    // One eye of an output, as its views were asked for; they follow each other in the group.
+    struct PlannedEye {
+        view::CameraPose in_display;
+        std::size_t layers = 0;  // a view each
+    };
     struct Open {
         display::Display display;  // adjusted, with the head as it is now
         scene::BlobRef description;
         std::vector<scene::BlobPtr> content;
         bool pattern = false;
-        glm::dmat4 world_from_display{1.0};
+        view::FollowedCamera camera;  // carries the display, in the version that is published
         FrameLock lock;
         std::vector<std::optional<Shower>> showers;  // by output
         std::vector<double> stereo_differences;      // by output; 0 = unknown
         std::vector<std::uint64_t> samples;          // by output, in the latest frame
-        std::vector<view::CameraPose> poses;         // of the views, in display space
+        std::vector<std::vector<PlannedEye>> plan;   // by output: what the group renders
         std::deque<Frame> making;                    // oldest first
         std::optional<Frame> waiting, latest;        // latest: for outputs that come later
         Version version;                             // of the latest frame
@@ -85,7 +92,7 @@ class DisplayService {
     void send_waiting(TimePoint now);
     void send(std::size_t output);  // the latest frame
     void present(const std::optional<FrameLock::Present>& present, TimePoint now);
-    bool find_camera();
+    void tell_of_camera();
     std::optional<std::size_t> output_of(SessionId session) const;
     void tell(std::size_t output, std::uint64_t request);
     void forget();

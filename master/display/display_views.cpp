@@ -2,7 +2,6 @@
 #include "master/display/display_service.h"
 #include "master/job.h"
 #include "mediator/display/frustum.h"
-#include "mediator/view/placed_cameras.h"
 
 namespace tessera::master {
 
@@ -20,22 +19,25 @@ bool is_shown(const display::Display& display, std::size_t layer) {
 
 std::vector<GroupView> DisplayService::views() {
     const display::Display& display = open_->display;
+    const auto& carrier = open_->camera.world_from_camera();
     std::vector<GroupView> wanted;
-    open_->poses.clear();
-    if (!view::choose_camera(authority_.scene(), display.camera)) return wanted;
-    for (const display::Output& output : display.outputs) {
-        for (const view::Eye eye : display::eyes(output.stereo)) {
+    open_->plan.assign(display.outputs.size(), {});
+    if (!carrier) return wanted;
+    for (std::size_t i = 0; i < display.outputs.size(); ++i) {
+        const display::Output& output = display.outputs[i];
+        const auto eyes = display::eyes(output.stereo);
+        for (const view::Eye eye : eyes) {
             const view::CameraPose pose = display::frustum(output.plane, display.head, eye,
                                                            display.eye_separation, display.zero_parallax);
-            const view::CameraPose seen_from = display::screen_pose(
-                output.plane, display.head, eye, display.eye_separation, display.zero_parallax);
+            PlannedEye& planned = open_->plan[i].emplace_back();
+            planned.in_display = display::screen_pose(output.plane, display.head, eye, display.eye_separation,
+                                                      display.zero_parallax);
             for (std::size_t layer = 0; layer < layer_count(display); ++layer) {
                 if (!is_shown(display, layer)) continue;
                 GroupView view{.name = "display/" + output.name, .view = {}, .priority = output.priority};
                 if (eye != view::Eye::Mono) view.name += eye == view::Eye::Left ? "/left" : "/right";
                 if (!display.layers.empty()) view.name += "/" + display.layers[layer].name;
-                view.view.camera =
-                    display::in_world(pose, open_->world_from_display, display.units_per_metre);
+                view.view.camera = display::in_world(pose, *carrier, display.units_per_metre);
                 view.view.eye = eye;
                 view.view.width = output.view_width;
                 view.view.height = output.view_height;
@@ -43,20 +45,17 @@ std::vector<GroupView> DisplayService::views() {
                                     static_cast<std::int32_t>(output.view_height)};
                 view.view.max_bounces = display.max_bounces;
                 view.view.filter = display.filter;
+                view.view.channels = {frame::Channel::Color};
                 if (!display.layers.empty()) {
                     view.view.renderer = display.layers[layer].renderer;
                     view.view.layers = display.layers[layer].layers;
                 }
-                if (layer_count(display) > 1) {
-                    view.view.transparent_background = true;
-                    view.view.channels.insert(frame::Channel::Depth);
-                }
-                view.view.channels = {frame::Channel::Color};
-                if (display.stereo_difference && eye != view::Eye::Mono)
+                view.view.transparent_background = layer_count(display) > 1;
+                if (layer_count(display) > 1 || (display.stereo_difference && eyes.size() == 2))
                     view.view.channels.insert(frame::Channel::Depth);
                 complete(view.view);
                 wanted.push_back(std::move(view));
-                open_->poses.push_back(seen_from);
+                ++planned.layers;
             }
         }
     }
@@ -69,25 +68,24 @@ bool DisplayService::can_take() const {
     return open_->making.size() + (open_->waiting ? 1 : 0) < 2;
 }
 
+// By the plan that the stage's views were asked for: the display may have been adjusted since.
 void DisplayService::take(const GroupStage& stage, TimePoint) {
     const display::Display& display = open_->display;
     Frame& frame = open_->making.emplace_back(Frame{.number = next_frame_++, .version = stage.version});
     frame.missing = display.outputs.size();
     frame.outputs.resize(display.outputs.size());
-    std::size_t view = 0;
+    auto view = stage.views.begin();
     for (std::size_t i = 0; i < display.outputs.size(); ++i) {
-        const display::Output& output = display.outputs[i];
+        const std::vector<PlannedEye>& eyes = open_->plan.at(i);
         OutputOrder order{.frame = frame.number, .output = i, .eyes = {}};
-        order.encoding =
-            display::takes_linear_light(output) ? wire::PictureEncoding::Half : wire::PictureEncoding::Bytes;
+        order.encoding = display::takes_linear_light(display.outputs[i]) ? wire::PictureEncoding::Half
+                                                                         : wire::PictureEncoding::Bytes;
         order.look = {display.exposure, display.white};
-        order.stereo_difference = display.stereo_difference && stage.scale == 1;
-        for (std::size_t eye = 0; eye < display::eyes(output.stereo).size(); ++eye) {
-            OutputOrder::EyePicture picture{.layers = {}, .in_display = open_->poses.at(view)};
-            for (std::size_t layer = 0; layer < layer_count(display); ++layer) {
-                if (is_shown(display, layer)) picture.layers.push_back(stage.views.at(view++));
-            }
-            order.eyes.push_back(std::move(picture));
+        order.stereo_difference = display.stereo_difference && eyes.size() == 2 && stage.scale == 1;
+        for (const PlannedEye& eye : eyes) {
+            const auto end = view + static_cast<std::ptrdiff_t>(eye.layers);
+            order.eyes.push_back({.layers = {view, end}, .in_display = eye.in_display});
+            view = end;
         }
         runner_.make_output(std::move(order));
     }

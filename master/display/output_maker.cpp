@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "master/compose/layers.h"
+#include "mediator/base/error.h"
 #include "mediator/picture/srgb_bytes.h"
 #include "mediator/picture/stereo_difference.h"
 
@@ -122,6 +123,8 @@ struct Copied {
 };
 
 std::span<const float> depth_of(const frame::FilmTile& film) {
+    if (!film.channels.contains(Channel::Depth))
+        throw Error(ErrorCode::InvalidInput, "its film has no depth: render the channel with the colours");
     return film.plane(film.channels.first_plane(Channel::Depth));
 }
 

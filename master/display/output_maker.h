@@ -30,7 +30,7 @@ struct OutputOrder {
     std::vector<EyePicture> eyes;
     wire::PictureEncoding encoding = wire::PictureEncoding::Bytes;  // or Half
     Look look;
-    bool stereo_difference = false;
+    bool stereo_difference = false;  // of two eyes whose films have depth
 };
 struct MadeOutput {
     OutputOrder order;
@@ -44,8 +44,8 @@ struct MadeOutput {
     std::string error;
 };
 
-// Films in the order of the eyes and their layers. Each view is filtered for itself: nothing of one eye or
-// output reaches another.
+// Films in the order of the eyes and their layers; those of several layers have depth. Each view is filtered
+// for itself: nothing of one eye or output reaches another. What fails is told in `error`.
 MadeOutput make_output(OutputOrder order, const std::vector<frame::FilmTile>& films,
                        Reconstructor& reconstructor);
 

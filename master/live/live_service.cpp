@@ -273,7 +273,9 @@ void LiveService::follow_display(TimePoint now) {
     const auto& views = runner_.views();
     if (!std::all_of(views.begin(), views.end(), [](const auto& entry) { return entry.second.in_group; }))
         return;
-    if (auto moved = authority_.follow_camera(display_.head_in_world())) publish(*moved, now);
+    const auto head = display_.head_in_world();
+    if (!head) return;
+    if (auto moved = authority_.follow_camera(*head)) publish(*moved, now);
 }
 
 void LiveService::publish(const scene::ChangeList& changes, TimePoint now) {
@@ -285,7 +287,7 @@ void LiveService::publish(const scene::ChangeList& changes, TimePoint now) {
     publish_(changes, now);
     counts_.change_bytes += outbox_.bytes.control - before;
     traces_.published(changes.to, now);
-    if (display_.scene_changed()) follow_display(now);
+    if (display_.scene_changed(changes)) follow_display(now);
     if (runner_.views().empty()) {
         traces_.nobody_looks();
     } else if (!restarts) {

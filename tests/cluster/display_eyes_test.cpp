@@ -1,4 +1,6 @@
 // Displays: the eyes and the layers of an output.
+#include <array>
+
 #include "mediator/backend/catalog.h"
 #include "mediator/scene/fields.h"
 #include "tests/cluster/display_fixture.h"
@@ -7,6 +9,7 @@ namespace tessera::test {
 namespace {
 
 using namespace scene;
+using namespace std::chrono_literals;
 
 TEST_F(Displays, BothEyesHaveTheSameSamplesAndCamerasASeparationApart) {
     cluster.add_node("null");
@@ -86,6 +89,80 @@ TEST_F(Displays, LayersAreSwitchedAtRunTime) {
     };
     EXPECT_TRUE(switched(1) != with_gui) << "the model alone";
     EXPECT_TRUE(switched(3) == with_gui) << "back again, to the bit";
+}
+
+// Light of one colour over the part of the picture from `left` to `right` of it, -1 to 1, at a distance.
+std::vector<Entry> shining_quad(client::LiveSession& editor, BlobStore& blobs, const glm::vec3& light,
+                                float left, float right, float distance, ObjectId& quad) {
+    const std::array<glm::vec3, 4> corners{
+        glm::vec3(left * distance, -distance, -distance), glm::vec3(right * distance, -distance, -distance),
+        glm::vec3(right * distance, distance, -distance), glm::vec3(left * distance, distance, -distance)};
+    constexpr std::array<std::uint32_t, 6> Triangles{0, 1, 2, 0, 2, 3};
+    const ObjectId material = editor.new_id();
+    quad = editor.new_id();
+    return {Create{material, Material{.base_color = {0, 0, 0, 1}, .emission = light}},
+            Create{quad, Geometry{.material = material,
+                                  .indices = reference(*blobs.insert(std::as_bytes(std::span(Triangles)))),
+                                  .positions = reference(*blobs.insert(std::as_bytes(std::span(corners))))}}};
+}
+
+// The later layer has something in front of the first and something behind.
+TEST_F(Displays, TheNearerLayerIsSeenWhicheverItIs) {
+    cluster.add_node("embree");
+    const ObjectId model = ann->new_id(), gui = ann->new_id();
+    ObjectId red, green, blue;
+    for (const auto& entries : {shining_quad(*ann, *blobs, {1, 0, 0}, -2, 2, 3, red),
+                                shining_quad(*ann, *blobs, {0, 1, 0}, -2, 0, 1, green),
+                                shining_quad(*ann, *blobs, {0, 0, 1}, 0, 2, 5, blue)})
+        submit(entries);
+    submit({Create{model, Transform{.children = {red}, .layers = 1}},
+            Create{gui, Transform{.children = {green, blue}, .layers = 2}},
+            Update{RootId, Fields<Root>(Root::Field::Children).bits(),
+                   Root{.children = {place_id(), model, gui}}}});
+    wall.outputs = {part_of_wall("left", -1, 1)};
+    wall.layers = {{"model", view::Renderer::PathTracing, 1, true},
+                   {"gui", view::Renderer::PathTracing, 2, true}};
+    ann->open_display(wall);
+    Shower& left = show("left");
+    until([&] { return all_show(4); });
+    const auto pixel = [&](std::size_t x) {
+        std::array<int, 3> rgb{};
+        for (std::size_t c = 0; c < 3; ++c)
+            rgb[c] = std::to_integer<int>(left.frames.back().pictures[0].bytes.at(3 * (24 * 64 + x) + c));
+        return rgb;
+    };
+    EXPECT_EQ(pixel(16), (std::array{0, 255, 0})) << "the menu is in front";
+    EXPECT_EQ(pixel(48), (std::array{255, 0, 0})) << "the menu is behind";
+}
+
+// A stage is of the layers that were shown when it began, whatever is asked for while it goes on.
+TEST_F(Displays, LayersMaySwitchFasterThanPicturesCome) {
+    cluster.add_node("null", {}, 20us);
+    wall.layers = {{"model", view::Renderer::PathTracing, 1, true},
+                   {"gui", view::Renderer::PathTracing, 2, false}};
+    wall.outputs[0].stereo = display::Stereo::SideBySide;
+    ann->open_display(wall);
+    show("left");
+    show("right");
+    for (const std::uint32_t shown : {3u, 1u, 3u, 2u, 3u, 1u, 2u, 3u, 1u, 3u}) {
+        for (const std::uint32_t again : {shown, 3u, 1u, shown}) ann->adjust_display({.shown_layers = again});
+        const std::size_t before = showers["left"].frames.size();
+        until([&] { return showers["left"].frames.size() > before; });
+    }
+    until([&] { return all_show(4); });
+    EXPECT_EQ(status().display.outputs.at(0).state, wire::OutputState::Locked);
+}
+
+TEST_F(Displays, TheDifferenceOfOneEyeIsNotAskedFor) {
+    cluster.add_node("embree");
+    wall.outputs[1].stereo = display::Stereo::Left;
+    wall.stereo_difference = true;
+    ann->open_display(wall);
+    show("left");
+    show("right");
+    until([&] { return all_show(4); });
+    for (const std::string& event : cluster.events())
+        EXPECT_EQ(event.find("left out"), std::string::npos) << event;
 }
 
 // One back-end, so one scene, for both eyes and all outputs.
