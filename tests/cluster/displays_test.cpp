@@ -5,6 +5,7 @@
 #include <set>
 
 #include "mediator/display/frustum.h"
+#include "mediator/scene/fields.h"
 #include "mediator/wire/envelope.h"
 #include "tests/cluster/display_fixture.h"
 
@@ -205,6 +206,34 @@ TEST_F(Displays, HeadsMoveAndTheLatestPlaceCounts) {
     const view::CameraPose expected =
         display::frustum(wall.outputs[0].plane, {.position = {1, 0, 0}}, view::Eye::Mono, 0, 0);
     EXPECT_EQ(left.frames.back().pictures[0].camera, expected);
+}
+
+// By its name alone, and at the origin: no picture of the scene is another for that.
+TEST_F(Displays, TheCameraMayComeLaterAndGoAgain) {
+    cluster.add_node("null");
+    const auto rename_camera = [&](const std::string& name) {
+        submit({scene::Update{camera_id(), scene::Fields<scene::Camera>(scene::Camera::Field::Name).bits(),
+                              scene::Camera{.name = name}}});
+    };
+    const auto is_told = [&] {
+        const auto events = cluster.events();
+        return std::any_of(events.begin(), events.end(), [](const std::string& event) {
+            return event.find("display 'wall' waits: the scene has no camera 'stage'") != std::string::npos;
+        });
+    };
+    wall.camera = "stage";
+    ann->open_display(wall);
+    Shower& left = show("left");
+    until([&] { return !left.opened.empty() && is_told(); });
+    EXPECT_EQ(status().live.views, 0u);
+    EXPECT_TRUE(left.frames.empty());
+    rename_camera("stage");
+    until([&] { return all_show(4); });
+    rename_camera("main");
+    until([&] { return status().live.views == 0; });
+    const std::size_t before = left.frames.size();
+    rename_camera("stage");
+    until([&] { return left.frames.size() > before && all_show(4); });
 }
 
 TEST_F(Displays, WhatCannotBeShownIsRefusedWithTheReason) {
