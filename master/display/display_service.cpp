@@ -120,6 +120,13 @@ std::string DisplayService::adjust(const wire::AdjustDisplay& request) {
             adjusted.layers[i].shown = ((*request.shown_layers >> i) & 1u) != 0;
     }
     if (std::string problem = first_problem(adjusted); !problem.empty()) return problem;
+    display::Display alike = open_->display;
+    alike.exposure = adjusted.exposure;
+    if (alike != adjusted) {
+        runner_.group_changed();
+    } else if (open_->display.exposure != adjusted.exposure) {
+        runner_.take_group_again();  // other pictures of the same light
+    }
     open_->display = std::move(adjusted);
     if (request.pattern && open_->pattern != *request.pattern) {
         open_->pattern = *request.pattern;
@@ -127,7 +134,6 @@ std::string DisplayService::adjust(const wire::AdjustDisplay& request) {
             if (open_->showers[i]) tell(i, 0);
         }
     }
-    runner_.group_changed();
     return {};
 }
 

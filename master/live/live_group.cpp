@@ -27,6 +27,10 @@ void LiveRunner::group_changed() {
     if (group_) group_->restart_wanted = true;
 }
 
+void LiveRunner::take_group_again() {
+    if (group_) group_->retake_wanted = true;
+}
+
 void LiveRunner::make_output(OutputOrder order) {
     merger_.make_output(std::move(order));
 }
@@ -66,6 +70,7 @@ void LiveRunner::restart_group() {
     ViewGroup& group = *group_;
     const std::vector<GroupView> wanted = group.owner.views();
     group.restart_wanted = false;
+    group.retake_wanted = false;
     group.first_is_taken = false;
     group.complete = false;
     group.samples = 0;
@@ -120,8 +125,25 @@ void LiveRunner::begin_group_pass(LiveView& live) {
     if (pass.scale == 1) pass.scheduler->hold_at(std::max<std::uint64_t>(group_->samples, 1) * live.priority);
 }
 
+// Where films are not whole, their stage is going to be taken anyway.
+void LiveRunner::retake_group(TimePoint now) {
+    ViewGroup& group = *group_;
+    const bool is_whole = std::all_of(group.views.begin(), group.views.end(), [this](ViewId view) {
+        const LiveView& live = views_.at(view);
+        return !live.passes.empty() && live.pass().scheduler &&
+               live.pass().scheduler->tiles_without_samples() == 0;
+    });
+    if (group.first_is_taken && is_whole) {
+        if (!group.owner.can_take()) return;
+        group.owner.take(stage_of_group(), now);
+    }
+    group.retake_wanted = false;
+}
+
 void LiveRunner::advance_group(TimePoint now) {
-    if (!group_ || group_->views.empty() || group_->complete) return;
+    if (!group_ || group_->views.empty()) return;
+    if (group_->retake_wanted) retake_group(now);
+    if (group_->complete) return;
     ViewGroup& group = *group_;
     const bool is_done = std::all_of(group.views.begin(), group.views.end(), [this](ViewId view) {
         const LiveView& live = views_.at(view);
@@ -156,11 +178,19 @@ void LiveRunner::advance_group(TimePoint now) {
     }
 }
 
+GroupStage LiveRunner::stage_of_group() const {
+    GroupStage stage{.version = group_->version, .views = {}};
+    for (const ViewId view : group_->views) {
+        const LiveView& live = views_.at(view);
+        stage.version = live.version;
+        stage.scale = live.pass().scale;
+        stage.views.push_back(live.pass().view);
+    }
+    return stage;
+}
+
 void LiveRunner::show_group(bool is_last, TimePoint now) {
     ViewGroup& group = *group_;
-    GroupStage stage{
-        .version = group.version, .views = {}, .samples = std::max<std::uint64_t>(group.samples, 1)};
-    stage.complete = is_last;
     for (const ViewId view : group.views) {
         LiveView& live = views_.at(view);
         const Shown shown{.pass = live.current,
@@ -169,10 +199,8 @@ void LiveRunner::show_group(bool is_last, TimePoint now) {
                           .complete = is_last};
         if (live.shown == shown) return;  // this stage was taken, and the next one had to wait
         live.shown = shown;
-        stage.version = live.version;
-        stage.scale = live.pass().scale;
-        stage.views.push_back(live.pass().view);
     }
+    const GroupStage stage = stage_of_group();
     const bool is_first = !std::exchange(group.first_is_taken, true);
     if (is_first && on_first_picture) on_first_picture(stage.version, now);
     group.owner.take(stage, now);

@@ -60,6 +60,8 @@ class LiveRunner {
     void open_group(GroupOwner owner, std::uint64_t spp, std::uint32_t coarsest, Version version);
     void close_group();
     void group_changed();  // its pictures start anew
+    // The films that there are are taken once more, as soon as that can be.
+    void take_group_again();
     // From GroupOwner::take. What becomes of it goes to on_output, in the order of the orders.
     void make_output(OutputOrder order);
     std::function<void(MadeOutput&& made, TimePoint now)> on_output;
@@ -119,6 +121,8 @@ class LiveRunner {
     void restart_group();
     void begin_group_pass(LiveView& live);
     void advance_group(TimePoint now);
+    void retake_group(TimePoint now);
+    GroupStage stage_of_group() const;
     void show_group(bool is_last, TimePoint now);
     void fail(LiveView& live, const std::string& problem);
     void tell_of_waiting(LiveView& live, TimePoint now);

@@ -19,13 +19,11 @@ struct GroupView {
 };
 
 // A moment at which all views of a group show the same: scene, revision, part of the size, samples per pixel
-// (times the priority).
+// (times the priority). Films that are taken again may have more samples by then, each pixel its own number.
 struct GroupStage {
     Version version;
     std::vector<view::View> views;  // as they are rendered at this stage; their films are there
     std::uint32_t scale = 1;        // 8, 4, 2: a coarse picture of this part of the size
-    std::uint64_t samples = 1;      // of a pixel of priority 1
-    bool complete = false;
 };
 
 // Whose views they are. All is called from the master's loop.
@@ -48,6 +46,7 @@ struct ViewGroup {
     std::vector<ViewId> views;
     std::uint64_t samples = 0;  // the stage under way, when it is one of the whole size
     bool restart_wanted = true;
+    bool retake_wanted = false;
     bool first_is_taken = false;
     bool complete = false;
 };

@@ -208,6 +208,30 @@ TEST_F(Displays, HeadsMoveAndTheLatestPlaceCounts) {
     EXPECT_EQ(left.frames.back().pictures[0].camera, expected);
 }
 
+// All samples are kept, also while more come.
+TEST_F(Displays, ExposureMakesOtherPicturesOfTheSameLight) {
+    cluster.add_node("embree");
+    wall.spp = 64;
+    ann->open_display(wall);
+    Shower& left = show("left");
+    show("right");
+    until([&] { return shows(left, 2); });
+    const auto exposed = [&](double stops, std::uint64_t samples) {
+        const std::size_t before = left.frames.size();
+        const std::uint64_t had = left.frames.back().samples;
+        ann->adjust_display({.exposure = stops});
+        until([&] { return left.frames.size() > before && all_show(samples); });
+        for (std::size_t i = before; i < left.frames.size(); ++i) EXPECT_GE(left.frames[i].samples, had);
+    };
+    for (int i = 1; i < 8; ++i) exposed(-0.5 * i, 2);
+    exposed(-8.0, 64);
+    until([&] { return status().display.outputs.at(1).samples == 64; });
+    const auto dark = left.frames.back().pictures[0].bytes;
+    exposed(0.0, 64);
+    until([&] { return left.frames.back().pictures[0].bytes > dark && all_show(64); });
+    EXPECT_EQ(left.orders.back().frame, showers["right"].orders.back().frame);
+}
+
 // By its name alone, and at the origin: no picture of the scene is another for that.
 TEST_F(Displays, TheCameraMayComeLaterAndGoAgain) {
     cluster.add_node("null");
