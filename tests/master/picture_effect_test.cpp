@@ -31,17 +31,19 @@ ChangeList list_of(Entry entry) {
 
 TEST(PictureEffect, OfEveryFieldOfEveryKind) {
     const Scene scene = some_scene();
-    const std::set<std::string> silent{
-        "root.name",           "transform.name",  "transform.hint",  "geometry.name",  "geometry.hint",
-        "material.name",       "texture.name",    "light.name",      "camera.name",    "camera.vertical_fov",
-        "camera.aspect_ratio", "background.name", "attachment.name", "attachment.key", "attachment.value"};
+    const std::set<std::string> silent{"root.name",       "transform.name", "transform.hint",
+                                       "geometry.name",   "geometry.hint",  "material.name",
+                                       "texture.name",    "light.name",     "background.name",
+                                       "attachment.name", "attachment.key", "attachment.value"};
     for (const std::uint64_t id : {1u, 10u, 11u, 12u, 13u, 14u, 15u, 16u, 17u}) {
         const Object& object = *scene.find(ObjectId{id});
         for (unsigned field = 0; (all_fields(object) >> field) != 0; ++field) {
             const std::string name =
                 std::string(scene::name(kind(object))) + "." + std::string(field_name(kind(object), field));
+            // A view takes a camera's values by itself.
+            const bool is_silent = silent.contains(name) || std::holds_alternative<Camera>(object);
             EXPECT_EQ(changes_pictures(list_of(Update{ObjectId{id}, field_bit(field), object}), scene),
-                      !silent.contains(name))
+                      !is_silent)
                 << name;
         }
     }
