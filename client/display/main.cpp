@@ -4,12 +4,15 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <thread>
+#include <utility>
 
 #include "client/cli/cli.h"
 #include "client/display/output_player.h"
 #include "client/display/picture_files.h"
 #include "client/display/shared_memory.h"
 #include "client/display/window.h"
+#include "client/session.h"
 #include "client/tools/command.h"
 #include "client/tools/interrupts.h"
 #include "client/tools/this_machine.h"
@@ -47,18 +50,22 @@ client_display::MakePresenter presenter(const Options& options) {
                                                        : client_display::WindowMode::FullScreen);
 }
 
+client::SessionSettings session_settings(const Options& options) {
+    return {.name = "output " + options.output,
+            .host = tools::host_name(),
+            .software = "tessera-display " + cli::version(),
+            .pid = static_cast<std::uint64_t>(::getpid()),
+            .connect_limit = std::chrono::seconds(3),  // a stop waits so long
+            .lost_limit = std::chrono::hours(24 * 365),
+            .mirrors_scene = false};
+}
+
 // Waits for a master that is not there yet; null when stopped before.
 std::unique_ptr<client::LiveSession> connected(const Options& options,
                                                std::shared_ptr<scene::BlobStore> blobs, const Clock& clock,
                                                const std::function<void(const std::string&)>& tell,
                                                std::stop_token stop) {
-    client::SessionSettings settings{.name = "output " + options.output,
-                                     .host = tools::host_name(),
-                                     .software = "tessera-display " + cli::version(),
-                                     .pid = static_cast<std::uint64_t>(::getpid()),
-                                     .connect_limit = std::chrono::seconds(3),  // a stop waits so long
-                                     .lost_limit = std::chrono::hours(24 * 365),
-                                     .mirrors_scene = false};
+    const client::SessionSettings settings = session_settings(options);
     for (bool told = false; !stop.stop_requested(); told = true) {
         try {
             return client::connect_live(options.address, blobs, clock, settings);
@@ -68,6 +75,23 @@ std::unique_ptr<client::LiveSession> connected(const Options& options,
         }
     }
     return nullptr;
+}
+
+// A scene that was closed is opened again by who has something to show, not by its outputs: they only look.
+// False when stopped before.
+bool await_scene(const Options& options, const std::shared_ptr<scene::BlobStore>& blobs, const Clock& clock,
+                 const std::function<void(const std::string&)>& tell, std::stop_token stop) {
+    for (bool told = false; !stop.stop_requested();) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+        try {
+            const auto session = client::connect(options.address, blobs, clock, session_settings(options));
+            if (!session->status().live.title.empty()) return true;
+            if (!std::exchange(told, true)) tell("the live scene was closed; waiting for the next one");
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::Unavailable) throw;
+        }
+    }
+    return false;
 }
 
 int show(const Options& options) {
@@ -80,13 +104,26 @@ int show(const Options& options) {
     const client_display::MakePresenter make_presenter = presenter(options);
     const auto session = connected(options, blobs, clock, tell, interrupts.token());
     if (!session) return tools::ExitInterrupted;
-    const auto joined = session->join(
-        "", client::WhenBusy::Queue, [&](std::uint32_t) { tell("a batch has the cluster: waiting"); },
-        interrupts.token());
-    if (std::holds_alternative<client::Stopped>(joined)) return tools::ExitInterrupted;
+    const auto join = [&] {
+        const auto joined = session->join(
+            "", client::WhenBusy::Queue, [&](std::uint32_t) { tell("a batch has the cluster: waiting"); },
+            interrupts.token());
+        return !std::holds_alternative<client::Stopped>(joined);
+    };
+    if (!join()) return tools::ExitInterrupted;
     client_display::OutputPlayer player(*session, *blobs, clock, options.output, make_presenter, log, tell);
-    player.run(options.frames, interrupts.token());
-    return 0;
+    for (bool is_member = true;;) {
+        try {
+            if (!is_member && !(await_scene(options, blobs, clock, tell, interrupts.token()) && join()))
+                return tools::ExitInterrupted;
+            player.run(options.frames, interrupts.token());
+            return 0;
+        } catch (const Error& error) {
+            // What the scene's end cut short is refused, one by one.
+            if (error.code() != ErrorCode::Refused || interrupts.token().stop_requested()) throw;
+            is_member = false;
+        }
+    }
 }
 
 }  // namespace

@@ -41,6 +41,10 @@ DisplayCluster::DisplayCluster(int nodes, RealCluster::Session kept)
     : cluster_({"--heartbeat", "1.5"}, kept) {
     for (int i = 0; i < nodes; ++i)
         nodes_.push_back(cluster_.start_node("node-" + std::to_string(i), {"--backend", "null"}));
+    begin_scene();
+}
+
+void DisplayCluster::begin_scene() {
     editor_ = member("ann");
     const ObjectId camera = editor_->new_id();
     place_ = editor_->new_id();

@@ -33,6 +33,7 @@ class DisplayCluster {
     explicit DisplayCluster(int nodes, RealCluster::Session kept = RealCluster::Session::None);
 
     client::LiveSession& editor() { return *editor_; }
+    void begin_scene();  // with an editor and a camera, again after it was closed
     RealCluster& cluster() { return cluster_; }
     const TemporaryFolder& folder() const { return cluster_.folder(); }
 

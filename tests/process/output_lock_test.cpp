@@ -153,6 +153,20 @@ TEST_F(OutputProcesses, OutputsWaitForAMasterThatDied) {
     EXPECT_TRUE(wall.wait_until_the_same_is_shown(Names));
 }
 
+TEST_F(OutputProcesses, ASceneThatIsClosedIsWaitedForAndNotBegunByOutputs) {
+    wall.editor().close_scene();
+    for (const std::string& name : Names) {
+        EXPECT_TRUE(happens([&] {
+            return outputs.at(name).err().find("the live scene was closed; waiting") != std::string::npos;
+        })) << outputs.at(name).err();
+    }
+    EXPECT_TRUE(wall.cluster().status().at("live").is_null());
+    wall.begin_scene();
+    wall.editor().open_display(wall_of_four());
+    EXPECT_TRUE(wall.wait_until_locked(Names));
+    EXPECT_TRUE(wall.wait_until_the_same_is_shown(Names));
+}
+
 TEST_F(OutputProcesses, ADisplayThatIsClosedAndOpenedAgainIsShownAgain) {
     wall.editor().close_display();
     EXPECT_TRUE(happens([&] { return outputs.at("a").err().find("closed") != std::string::npos; }))
