@@ -36,6 +36,8 @@ GpuScene::GpuScene(Device& device, TreeCache& cache, Trees trees)
       meshes_(device),
       instances_(device),
       lights_(device),
+      emitters_(device),
+      light_nodes_(device),
       sums_(device),
       srgb_(device),
       scene_(device),
@@ -64,6 +66,8 @@ BvhPool::Work GpuScene::update(const backend::MeshCatalog& meshes,
     meshes_.update(there.meshes);
     instances_.update(there.instances);
     lights_.update(there.lights);
+    emitters_.update(there.emitters);
+    light_nodes_.update(there.light_nodes);
     sums_.update(there.sums);
     srgb_.update(std::as_bytes(backend::srgb_values()));
     set_address(there.scene.textures, textures_);
@@ -71,6 +75,8 @@ BvhPool::Work GpuScene::update(const backend::MeshCatalog& meshes,
     set_address(there.scene.meshes, meshes_);
     set_address(there.scene.instances, instances_);
     set_address(there.scene.lights, lights_);
+    set_address(there.scene.emitters, emitters_);
+    set_address(there.scene.light_nodes, light_nodes_);
     set_address(there.scene.sums, sums_);
     set_address(there.scene.srgb, srgb_);
     scene_.update(std::as_bytes(std::span(&there.scene, 1)));

@@ -2,9 +2,11 @@
 #define TESSERA_MEDIATOR_SHADING_LIGHTS_H
 
 #include "mediator/shading/environment.h"
+#include "mediator/shading/light_tree.h"
 #include "mediator/shading/surfaces.h"
 
-// One light out of all, and a place on it.
+// One light out of all, and a place on it. First the tree or one of the lights that are infinitely far, by
+// power; in the tree one emitter.
 SHADING_BEGIN
 
 // A place where light comes from, seen from a surface.
@@ -32,7 +34,7 @@ inline float spot_falloff(IN(LightSource) light, vec3 to_light) {
     return t * t;
 }
 
-inline LightSample sample_point_light(IN(LightSource) light, IN(Surface) surface) {
+inline LightSample sample_point_light(IN(LightSource) light, IN(Surface) surface, float probability) {
     LightSample found = no_light();
     const vec3 offset = light.position - surface.position;
     const float distance2 = dot(offset, offset);
@@ -42,7 +44,7 @@ inline LightSample sample_point_light(IN(LightSource) light, IN(Surface) surface
     const float falloff = light.kind == LightSpot ? spot_falloff(light, found.direction) : 1.0f;
     found.radiance = light.intensity / distance2 * falloff;
     found.intensity = light.intensity * falloff;
-    found.pdf = light.probability;
+    found.pdf = probability;
     found.target = light.position;
     return found;
 }
@@ -57,19 +59,20 @@ inline LightSample sample_distant_light(IN(LightSource) light, vec3 direction, v
     return found;
 }
 
-// Density per solid angle of a mesh light's point at a distance, seen on its surface under a cosine. Their
-// ratio is squared, since the squares themselves leave the range of floats in tiny and huge scenes.
-inline float solid_angle_pdf(IN(LightSource) light, float distance, float cosine_there) {
-    const float ratio = distance * light.inverse_root_area;
-    return light.probability * (ratio * ratio) / greater_of(cosine_there, 1e-30f);
+// Density per solid angle of a point of an emitter that is chosen with a probability, at a distance and seen
+// on its surface under a cosine. The ratio is squared, since the squares themselves leave the range of floats
+// in tiny and huge scenes.
+inline float solid_angle_pdf(IN(Emitter) emitter, float probability, float distance, float cosine_there) {
+    const float ratio = distance * emitter.inverse_root_area;
+    return probability * (ratio * ratio) / greater_of(cosine_there, 1e-30f);
 }
 
-inline LightSample sample_mesh_light(IN(Scene) scene, IN(LightSource) light, IN(Instance) instance,
-                                     IN(Mesh) mesh, IN(Material) material, IN(Surface) surface, vec2 u) {
+inline LightSample sample_mesh_light(IN(Scene) scene, IN(Emitter) emitter, float probability,
+                                     IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
+                                     IN(Surface) surface, vec2 u) {
     LightSample found = no_light();
-    const Choice chosen = choose(scene.sums, light.area_sums, mesh.triangle_count, u.x);
-    const uvec3 corners = mesh.triangles.items[chosen.index];
-    const vec2 b = sample_triangle(vec2(chosen.rest, u.y));
+    const uvec3 corners = mesh.triangles.items[emitter.triangle];
+    const vec2 b = sample_triangle(u);
     const Triangle triangle = triangle_of(mesh, corners);
     const PointWithError point = point_on(instance, triangle, b);
     const vec3 offset = point.position - surface.position;
@@ -86,24 +89,30 @@ inline LightSample sample_mesh_light(IN(Scene) scene, IN(LightSource) light, IN(
         found.radiance *= material.alpha_mode == AlphaMask ? masked : clamp(alpha, 0.0f, 1.0f);
     }
     found.intensity = found.radiance;
-    found.pdf = solid_angle_pdf(light, way.distance, abs(facing));
+    found.pdf = solid_angle_pdf(emitter, probability, way.distance, abs(facing));
     // By its own error and that of the segment's rounding on the way there.
     const vec3 error = point.error + 2.0f * 5.9604644775390625e-8f * abs(offset);
     found.target = leave_surface(point.position, error, normal, -found.direction);
     return found;
 }
 
-inline LightSample sample_instance_light(IN(Scene) scene, IN(LightSource) light, IN(Instance) instance,
-                                         IN(Surface) surface, vec2 u) {
-    return sample_mesh_light(scene, light, instance, scene.meshes.items[instance.mesh],
+inline LightSample sample_instance_light(IN(Scene) scene, IN(Emitter) emitter, float probability,
+                                         IN(Instance) instance, IN(Surface) surface, vec2 u) {
+    return sample_mesh_light(scene, emitter, probability, instance, scene.meshes.items[instance.mesh],
                              scene.materials.items[instance.material], surface, u);
 }
 
-inline LightSample sample_source(IN(Scene) scene, IN(LightSource) light, IN(Surface) surface, vec2 u) {
+inline LightSample sample_emitter(IN(Scene) scene, IN(Emitter) emitter, IN(LightSource) light,
+                                  float probability, IN(Surface) surface, vec2 u) {
     if (light.kind == LightMesh) {
         if ((scene.features & FeatureMeshLights) == 0u) return no_light();
-        return sample_instance_light(scene, light, scene.instances.items[light.instance], surface, u);
+        return sample_instance_light(scene, emitter, probability, scene.instances.items[light.instance],
+                                     surface, u);
     }
+    return sample_point_light(light, surface, probability);
+}
+
+inline LightSample sample_distant(IN(Scene) scene, IN(LightSource) light, vec2 u) {
     if (light.kind == LightEnvironment) {
         const vec3 direction = sample_sky(scene, u);
         const Sky sky = sky_at(scene, direction);
@@ -111,32 +120,49 @@ inline LightSample sample_source(IN(Scene) scene, IN(LightSource) light, IN(Surf
         found.pdf *= sky.pdf;
         return found;
     }
-    if (light.kind == LightDirectional) {
-        LightSample found = sample_distant_light(light, -light.direction, light.intensity);
-        found.delta = true;
-        return found;
-    }
-    return sample_point_light(light, surface);
+    LightSample found = sample_distant_light(light, -light.direction, light.intensity);
+    found.delta = true;
+    return found;
+}
+
+inline bool is_seen(IN(Scene) scene, IN(LightSource) light, uint layers) {
+    return (scene.features & FeatureLayers) == 0u || (light.layers & layers) != 0u;
+}
+
+inline LightSample sample_tree(IN(Scene) scene, uint layers, IN(Surface) surface, vec2 choice, vec2 u) {
+    const ChosenEmitter chosen =
+        choose_emitter(scene, Receiver(surface.position, surface.geometric_normal), choice);
+    const Emitter emitter = scene.emitters.items[chosen.index];
+    const LightSource light = scene.lights.items[emitter.light];
+    if (!is_seen(scene, light, layers)) return no_light();
+    return sample_emitter(scene, emitter, light, scene.tree_probability * chosen.probability, surface, u);
 }
 
 // Of a light in none of the layers comes nothing: who chose it has lost the sample, so that the choice is the
 // same for all views. With a share p of the choice hidden, the light found has 1 / (1 - p) times the
 // variance.
-inline LightSample sample_light(IN(Scene) scene, uint layers, IN(Surface) surface, float choice, vec2 u) {
-    if (scene.light_count == 0u) return no_light();
-    const uint index = first_above(scene.sums, scene.light_sums, scene.light_count, choice);
-    if ((scene.features & FeatureLayers) != 0u && (scene.lights.items[index].layers & layers) == 0u) {
-        return no_light();
+inline LightSample sample_light(IN(Scene) scene, uint layers, IN(Surface) surface, vec2 choice, vec2 u) {
+    const uint distant_count = scene.light_count - scene.tree_light_count;
+    if (distant_count == 0u) {
+        if (scene.light_count == 0u) return no_light();
+        return sample_tree(scene, layers, surface, choice, u);
     }
-    return sample_source(scene, scene.lights.items[index], surface, u);
+    const Choice chosen = choose(scene.sums, scene.light_sums, distant_count + 1u, choice.x);
+    if (chosen.index == 0u) return sample_tree(scene, layers, surface, vec2(chosen.rest, choice.y), u);
+    const LightSource light = scene.lights.items[scene.tree_light_count + chosen.index - 1u];
+    if (!is_seen(scene, light, layers)) return no_light();
+    return sample_distant(scene, light, u);
 }
 
-// Density with which sample_light finds the point of a mesh light that was hit from `from`.
-inline float mesh_light_pdf(IN(Scene) scene, IN(Surface) hit, vec3 from) {
+// Density with which sample_light finds, for a receiver, the point of a mesh light that was hit.
+inline float mesh_light_pdf(IN(Scene) scene, IN(Surface) hit, IN(Receiver) receiver) {
     if ((scene.features & FeatureMeshLights) == 0u || hit.light < 0) return 0.0f;
-    const Measured way = measure(hit.position - from);
+    const Emitter emitter = scene.emitters.items[scene.lights.items[hit.light].first_emitter + hit.triangle];
+    if (emitter.node == NoLightNode) return 0.0f;
+    const Measured way = measure(hit.position - receiver.position);
     const float cosine_there = abs(dot(hit.geometric_normal, way.direction));
-    return solid_angle_pdf(scene.lights.items[hit.light], way.distance, cosine_there);
+    const float probability = scene.tree_probability * leaf_probability(scene, emitter.node, receiver);
+    return solid_angle_pdf(emitter, probability, way.distance, cosine_there);
 }
 
 // The same of a direction to the sky.

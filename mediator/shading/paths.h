@@ -36,7 +36,8 @@ struct Path {
     float probability;  // of this branch, where all branches are followed
     float bsdf_pdf;     // of the direction it travels; 0 = from the camera or a perfect specular
     vec3 last_position;
-    Way way;  // that light takes which is found next
+    vec3 last_normal;  // geometric, of the surface there
+    Way way;           // that light takes which is found next
     PathSample found;
     uint rays;
 };
@@ -51,7 +52,8 @@ inline PathSample nothing_found() {
 }
 
 inline Path start_path(IN(Sampler) numbers) {
-    return Path(numbers, 0u, vec3(1.0f), 1.0f, 0.0f, vec3(0.0f), direct_way(), nothing_found(), 0u);
+    return Path(numbers, 0u, vec3(1.0f), 1.0f, 0.0f, vec3(0.0f), vec3(0.0f), direct_way(), nothing_found(),
+                0u);
 }
 
 // Seeds of the two kinds of rays at a vertex, for surfaces with alpha.

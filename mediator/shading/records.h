@@ -93,17 +93,40 @@ inline constexpr uint LightPoint = 0u, LightSpot = 1u, LightDirectional = 2u, Li
 
 struct LightSource {
     uint kind;
-    float probability;  // of being chosen
+    float probability;  // of being chosen, if it is infinitely far: the others are in the light tree
     vec3 intensity;
     vec3 position;
     vec3 direction;  // in which it shines
     float cos_inner;
     float cos_outer;
-    uint instance;            // of a mesh light:
-    uint area_sums;           // index of its triangles' cumulative areas in the world, normalised to end at 1
-    float inverse_root_area;  // 1 / square root of its area in the world, which may leave the range of floats
-    uint layers;              // as of an instance
+    uint instance;       // of a mesh light
+    uint first_emitter;  // of a mesh light: that of its first triangle; else its own
+    uint layers;         // as of an instance
 };
+
+// What the light tree chooses: a triangle of a mesh light, or a light of its own.
+struct Emitter {
+    uint light;               // index
+    uint triangle;            // of the mesh
+    uint node;                // its leaf; NoLightNode where no light comes from it
+    float inverse_root_area;  // 1 / square root of its area in the world, which may leave the range of floats
+};
+inline constexpr uint NoLightNode = 0xffffffffu;
+
+// A node of the light tree: all of its emitters, in short (Conty Estevez and Kulla 2018). Node 0 is the root;
+// children stand together.
+struct LightNode {
+    vec3 middle;  // of a ball around them
+    float radius;
+    vec3 axis;         // of a cone around the directions that they face
+    float cos_spread;  // of its half angle; -1: all directions
+    float cos_reach;   // of the angle to which each shines around its own direction
+    float power;       // as a share of the tree's; more than 0
+    uint link;         // the first child, or the emitter of a leaf; and the bits below
+    uint parent;
+};
+inline constexpr uint LightLeaf = 0x80000000u, LightTwoSided = 0x40000000u, LightIndexBits = 0x0fffffffu;
+inline constexpr uint LightCountShift = 28u, MaxLightChildren = 4u;  // two bits: children - 1
 
 // Light from infinitely far: color + strength x map. A map of width 0 is none.
 struct Environment {
@@ -122,28 +145,36 @@ inline constexpr uint FeatureTextures = 1u, FeatureNormalMaps = 2u, FeatureAlpha
                       FeatureEnvironmentMap = 128u;
 // Of a scene and a view together: some of it is in none of the view's layers.
 inline constexpr uint FeatureLayers = 256u;
+// More than one emitter.
+inline constexpr uint FeatureLightTree = 0x10000u;
 
 ARRAY_OF(Texture, TextureArray, 8);
 ARRAY_OF(Material, MaterialArray, 4);
 ARRAY_OF(Mesh, MeshArray, 8);
 ARRAY_OF(Instance, InstanceArray, 4);
 ARRAY_OF(LightSource, LightSourceArray, 4);
+ARRAY_OF(Emitter, EmitterArray, 4);
+ARRAY_OF(LightNode, LightNodeArray, 4);
 
 struct Scene {
     TextureArray textures;
     MaterialArray materials;
     MeshArray meshes;
     InstanceArray instances;
-    LightSourceArray lights;
+    LightSourceArray lights;  // those in the tree, then those infinitely far
+    EmitterArray emitters;
+    LightNodeArray light_nodes;
     FloatArray sums;  // all cumulative sums: whoever has some knows the index of the first
     FloatArray srgb;  // linear value of each byte (IEC 61966-2-1)
     Environment environment;
     uint instance_count;
     uint light_count;
-    uint light_sums;        // index of the lights' cumulative probabilities
-    int environment_light;  // index of the light source that stands for the environment, or -1
+    uint tree_light_count;   // of them in the tree
+    uint light_sums;         // index of cumulative probabilities: of the tree, then of each distant light
+    float tree_probability;  // of being chosen
+    int environment_light;   // index of the light source that stands for the environment, or -1
     uint features;
-    uint unused;  // keeps the size a multiple of an address's
+    float tree_scale;  // a power of two that brings the light tree's size near to 1
 };
 
 // Values as in view/view.h.

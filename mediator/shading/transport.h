@@ -92,7 +92,8 @@ WITH_CONTEXT inline void add_emission(IN(Context) context, INOUT(Path) path, IN(
     if (!(largest(surface.emission) > 0.0f)) return;
     connect_light(path.found, context.view, path.probability * surface.emission);
     float other = 0.0f;
-    if (path.bsdf_pdf > 0.0f) other = mesh_light_pdf(context.scene, surface, path.last_position);
+    if (path.bsdf_pdf > 0.0f)
+        other = mesh_light_pdf(context.scene, surface, Receiver(path.last_position, path.last_normal));
     const float weight = weight_by_chance(context.view, path, other);
     add_light(path.found, context.view, path.throughput * surface.emission * weight, path.way);
     tell_emission(context, surface.emission, ray.direction);
@@ -102,7 +103,7 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
     if (context.scene.light_count == 0u) return;
     const vec2 choice = pair_at(path, PairLightChoice);
     const vec2 u = pair_at(path, PairLightPoint);
-    const LightSample light = sample_light(context.scene, context.view.layers, surface, choice.x, u);
+    const LightSample light = sample_light(context.scene, context.view.layers, surface, choice, u);
     if (!(light.pdf > 0.0f) || !(largest(light.radiance) > 0.0f)) return;
     if (context.view.strategy == StrategyBsdfOnly && !light.delta) return;
     if (!(dot(light.direction, surface.geometric_normal) > 0.0f)) return;
@@ -165,6 +166,7 @@ inline bool scatter(IN(View) view, INOUT(Path) path, IN(Surface) surface, vec3 w
     path.throughput *= bsdf.value / bsdf.pdf;
     path.bsdf_pdf = bsdf.pdf;
     path.last_position = surface.position;
+    path.last_normal = surface.geometric_normal;
     if (keeps(view, KeepsDiffuse) && path.way.scatterings == 0u) path.way.diffuse_share = diffuse_share(bsdf);
     path.way.scatterings += 1u;
     path.way.last_is_delta = false;

@@ -88,39 +88,97 @@ TEST(Tables, NormalsSurviveTinyHugeAndMirroredInstances) {
     }
 }
 
-TEST(Tables, LightsAreChosenByPowerAndATenthUniformly) {
+TEST(Tables, TheTreeAndDistantLightsAreChosenByPowerAndATenthUniformly) {
     Stage stage;
     const scene::Material glow{.emission = glm::vec3(2.0f)};
-    const SceneTables tables =
-        stage.make({Create{scene::RootId, scene::Root{.children = {Corner, Bulb, Panel}, .background = Sky}},
-                    Create{Corner, stage.corner(Glow, 2.0f)}, Create{Panel, stage.corner(Paint)},
-                    Create{Paint, scene::Material{}}, Create{Glow, glow},
-                    Create{Bulb, scene::Light{.intensity = glm::vec3(3.0f)}},
-                    Create{Sky, scene::Background{.color = glm::vec3(0.5f)}}});
-    ASSERT_EQ(tables.lights.size(), 3u);
-    const shading::LightSource &mesh = tables.lights[0], &bulb = tables.lights[1], &sky = tables.lights[2];
+    const SceneTables tables = stage.make(
+        {Create{scene::RootId, scene::Root{.children = {Corner, Bulb, Panel, Sun}, .background = Sky}},
+         Create{Corner, stage.corner(Glow, 2.0f)}, Create{Panel, stage.corner(Paint)},
+         Create{Paint, scene::Material{}}, Create{Glow, glow},
+         Create{Bulb, scene::Light{.intensity = glm::vec3(3.0f)}},
+         Create{Sun, scene::Light{.kind = scene::LightKind::Directional, .intensity = glm::vec3(0.2f)}},
+         Create{Sky, scene::Background{.color = glm::vec3(0.5f)}}});
+    ASSERT_EQ(tables.lights.size(), 4u);
+    EXPECT_EQ(tables.scene.tree_light_count, 2u);
+    const shading::LightSource &mesh = tables.lights[0], &bulb = tables.lights[1];
     EXPECT_EQ(mesh.kind, shading::LightMesh);
     EXPECT_EQ(bulb.kind, shading::LightPoint);
-    EXPECT_EQ(sky.kind, shading::LightEnvironment);
+    EXPECT_EQ(tables.lights[2].kind, shading::LightDirectional);
+    EXPECT_EQ(tables.lights[3].kind, shading::LightEnvironment);
     EXPECT_EQ(tables.instances[0].light, 0);
     EXPECT_EQ(tables.instances[1].light, -1);
-    EXPECT_EQ(tables.scene.environment_light, 2);
-    EXPECT_FLOAT_EQ(mesh.inverse_root_area, 1.0f / std::sqrt(8.0f));
-    EXPECT_FLOAT_EQ(tables.sums[mesh.area_sums], 0.25f);
-    EXPECT_FLOAT_EQ(tables.sums[mesh.area_sums + 1], 1.0f);
+    EXPECT_EQ(tables.scene.environment_light, 3);
     // The scene reaches from (0, 0) to (2, 6).
     const double radius2 = (4.0 + 36.0) / 4.0;
-    const std::array powers{8.0 * 2.0 * M_PI, 4.0 * M_PI * 3.0, 4.0 * M_PI * M_PI * radius2 * 0.5};
+    const std::array powers{8.0 * 2.0 * M_PI + 4.0 * M_PI * 3.0, M_PI * radius2 * 0.2,
+                            4.0 * M_PI * M_PI * radius2 * 0.5};
+    const std::array probabilities{tables.scene.tree_probability, tables.lights[2].probability,
+                                   tables.lights[3].probability};
     const double total = std::accumulate(powers.begin(), powers.end(), 0.0);
     double sum = 0.0;
     for (std::size_t i = 0; i < 3; ++i) {
         const double expected = 0.9 * powers[i] / total + 0.1 / 3.0;
-        EXPECT_NEAR(tables.lights[i].probability, expected, 1e-6) << i;
+        EXPECT_NEAR(probabilities[i], expected, 1e-6) << i;
         sum += expected;
         EXPECT_NEAR(tables.sums[tables.scene.light_sums + i], sum, 1e-6) << i;
     }
-    EXPECT_EQ(tables.scene.features,
-              shading::FeatureMeshLights | shading::FeaturePlacedLights | shading::FeatureEnvironment);
+    EXPECT_EQ(tables.scene.features, shading::FeatureMeshLights | shading::FeaturePlacedLights |
+                                         shading::FeatureEnvironment | shading::FeatureLightTree);
+}
+
+TEST(Tables, EachTriangleThatShinesIsAnEmitterOfItsPower) {
+    Stage stage;
+    const std::array<glm::vec3, 6> texels{{{4, 4, 4}, {4, 4, 4}, {4, 4, 4}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
+    scene::Geometry painted = stage.corner(Glow);
+    painted.indices = stage.blob(std::array{0u, 1u, 2u, 0u, 2u, 3u, 0u, 0u, 1u});
+    // The texture's bright half.
+    painted.tex_coords =
+        stage.blob(std::array<glm::vec2, 4>{{{0.0f, 0.1f}, {1.0f, 0.1f}, {0.5f, 0.1f}, {0.5f, 0.1f}}});
+    const SceneTables tables =
+        stage.make({Create{scene::RootId, scene::Root{.children = {Corner, Bulb}}}, Create{Corner, painted},
+                    Create{Bulb, scene::Light{.intensity = glm::vec3(1.0f)}},
+                    Create{Glow, scene::Material{.emission = glm::vec3(2.0f),
+                                                 .emission_texture = {.texture = Picture},
+                                                 .double_sided = true}},
+                    Create{Picture, scene::Texture{.width = 3,
+                                                   .height = 2,
+                                                   .format = scene::TexelFormat::RgbFloat,
+                                                   .wrap_t = scene::Wrap::Clamp,
+                                                   .texels = stage.blob(texels)}}});
+    ASSERT_EQ(tables.emitters.size(), 4u);
+    EXPECT_EQ(tables.lights[1].first_emitter, 3u);
+    EXPECT_FLOAT_EQ(tables.emitters[0].inverse_root_area, std::sqrt(2.0f));
+    EXPECT_FLOAT_EQ(tables.emitters[1].inverse_root_area, 1.0f / std::sqrt(1.5f));
+    EXPECT_EQ(tables.emitters[1].triangle, 1u);
+    EXPECT_EQ(tables.emitters[2].node, shading::NoLightNode) << "it has no area";
+    ASSERT_EQ(tables.light_nodes.size(), 4u) << "the root and three leaves";
+    const auto power = [&](std::size_t i) {
+        return double(tables.light_nodes.at(tables.emitters[i].node).power);
+    };
+    EXPECT_NEAR(power(0) / power(3), 0.5 * 8.0 * 2.0 * M_PI / (4.0 * M_PI), 1e-3);
+    EXPECT_NEAR(power(1) / power(3), 1.5 * 8.0 * 2.0 * M_PI / (4.0 * M_PI), 1e-3);
+    EXPECT_NEAR(power(0) + power(1) + power(3), 1.0, 1e-6);
+}
+
+// Places between its texels tell nothing of a texture's brightest one, but what it may shine on is not dark.
+TEST(Tables, ATriangleWhoseLightWasMissedIsStillTried) {
+    for (const float brightest : {0.0f, 100.0f}) {
+        Stage stage;
+        std::vector<glm::vec3> texels(64 * 64, glm::vec3(0.0f));
+        texels[3] = glm::vec3(brightest);
+        scene::Geometry painted = stage.corner(Glow);
+        painted.tex_coords =
+            stage.blob(std::array<glm::vec2, 4>{{{0.5f, 0.5f}, {0.6f, 0.5f}, {0.6f, 0.6f}, {0.5f, 0.6f}}});
+        scene::Texture map{.width = 64, .height = 64, .format = scene::TexelFormat::RgbFloat};
+        map.texels = scene::reference(*stage.blobs->insert(std::as_bytes(std::span(texels))));
+        const SceneTables tables =
+            stage.make({Create{scene::RootId, scene::Root{.children = {Corner}}}, Create{Corner, painted},
+                        Create{Glow, scene::Material{.emission = glm::vec3(1.0f),
+                                                     .emission_texture = {.texture = Picture}}},
+                        Create{Picture, map}});
+        EXPECT_EQ(tables.light_nodes.size(), brightest > 0.0f ? 3u : 0u);
+        EXPECT_EQ(tables.lights.size(), brightest > 0.0f ? 1u : 0u);
+    }
 }
 
 TEST(Tables, WhatIsInLayersIsMarkedAndSoIsAViewThatDoesNotSeeAll) {

@@ -19,6 +19,8 @@ struct Case {
     Texture map;
     TextureUse use;
     LightSource light;
+    Emitter emitter;
+    Receiver receiver;
     Instance lit;     // another instance, to stand for a light
     Surface surface;  // each side's own: bounds of what starts from it are wider
     vec3 wo;          // in its frame
@@ -34,6 +36,7 @@ inline Path path_in(IN(Inputs) x) {
     path.probability = x.transmission;
     path.bsdf_pdf = x.c % 3u == 0u ? 0.0f : x.pdf;
     path.last_position = x.wo;
+    path.last_normal = x.n;
     path.way = Way(x.c % 4u, x.c % 5u == 0u, x.light);
     path.found.low = x.light;
     path.found.high = x.color;
@@ -64,6 +67,8 @@ inline Case make_case(IN(World) world, IN(Inputs) x) {
     if (made.use.texture < 0) made.use.texture = 0;
     made.lit = made.context.scene.instances.items[x.instance ^ 1u];
     made.light = made.context.scene.lights.items[x.d % LightCount];
+    made.emitter = made.context.scene.emitters.items[x.d % TriangleEmitters];
+    made.receiver = Receiver(x.wo, x.c % 3u == 0u ? vec3(0.0f) : x.n);
     made.surface = make_surface(made.context.scene, made.hit, x.n);
     made.wo = to_local(made.surface, -x.n);
     made.path = path_in(x);
@@ -79,7 +84,8 @@ inline PointWithError clip_of(IN(Case) c, vec3 from_eye) {
     return PointWithError(vec3(clip.x, clip.y, clip.w), vec3(clip.z));
 }
 inline LightSample on_lit_mesh(IN(Case) c, vec2 u) {
-    return sample_mesh_light(c.context.scene, c.light, c.lit, c.context.scene.meshes.items[c.lit.mesh],
+    return sample_mesh_light(c.context.scene, c.emitter, 0.5f, c.lit,
+                             c.context.scene.meshes.items[c.lit.mesh],
                              c.context.scene.materials.items[c.lit.material], c.surface, u);
 }
 inline Surface with_scattering(IN(Case) c) {

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 
+#include "mediator/backend/tables/light_tree.h"
 #include "mediator/backend/tables/tables.h"
 #include "mediator/shading/sampling.h"
 #include "mediator/shading/scaling.h"
@@ -157,7 +158,9 @@ std::vector<Instance> make_instances(Generator& random) {
         instances.push_back({.mesh = i % 2u * 2u + (i < FirstHard ? 0u : 1u),
                              .material = i,
                              .object = 100u + i,
-                             .light = i == 2 ? 3 : -1,
+                             .light = i == 2   ? 0
+                                      : i == 6 ? 1
+                                               : -1,
                              .linear = linear,
                              .translation = size * vec3(1.0f, -2.0f, 3.0f),
                              .normals = normals,
@@ -166,9 +169,13 @@ std::vector<Instance> make_instances(Generator& random) {
     return instances;
 }
 
-std::vector<LightSource> make_lights(uint area_sums, Generator& random) {
-    constexpr uint Kinds[LightCount] = {LightPoint, LightSpot,        LightDirectional,
-                                        LightMesh,  LightEnvironment, LightMesh};
+constexpr uint Emitters = TriangleEmitters + 2u;
+static_assert(TriangleEmitters == 2u * Triangles);
+
+// Four in the tree, two distant.
+std::vector<LightSource> make_lights(Generator& random) {
+    constexpr uint Kinds[LightCount] = {LightMesh, LightMesh,        LightPoint,
+                                        LightSpot, LightDirectional, LightEnvironment};
     std::vector<LightSource> lights;
     for (uint i = 0; i < LightCount; ++i) {
         lights.push_back({.kind = Kinds[i],
@@ -178,11 +185,40 @@ std::vector<LightSource> make_lights(uint area_sums, Generator& random) {
                           .direction = random.anywhere(),
                           .cos_inner = 0.6f,
                           .cos_outer = -0.3f,
-                          .instance = i == 5u ? 6u : 2u,
-                          .area_sums = area_sums,
-                          .inverse_root_area = 0.6f});
+                          .instance = i == 1u ? 6u : 2u,
+                          .first_emitter = i < 2u ? i * Triangles : 2u * Triangles + i - 2u});
     }
     return lights;
+}
+
+std::vector<Emitter> make_emitters() {
+    std::vector<Emitter> emitters;
+    for (uint i = 0; i < Emitters; ++i) {
+        const bool is_triangle = i < 2u * Triangles;
+        emitters.push_back({.light = is_triangle ? i / Triangles : 2u + i - 2u * Triangles,
+                            .triangle = is_triangle ? i % Triangles : 0u,
+                            .node = NoLightNode,
+                            .inverse_root_area = 0.6f});
+    }
+    return emitters;
+}
+
+// Of any kind, as if the emitters were anywhere. The last but one shines on nobody.
+std::vector<LightNode> make_nodes(std::vector<Emitter>& emitters, Generator& random) {
+    std::vector<backend::LightLeaf> leaves;
+    for (uint i = 0; i < Emitters; ++i) {
+        const vec3 low = 2.0f * random.anywhere();
+        if (i + 2u == Emitters) continue;
+        leaves.push_back({.low = low,
+                          .high = low + random.color() * (i % 4u == 0u ? 0.0f : 1.0f),
+                          .axis = random.anywhere(),
+                          .spread = i % 3u == 0u ? double(Pi) : double(random.between(0.0f, 1.0f)),
+                          .reach = double(random.between(0.3f, 1.6f)),
+                          .power = double(random.between(0.1f, 10.0f)),
+                          .emitter = i,
+                          .two_sided = i % 2u == 0u});
+    }
+    return backend::make_light_tree(leaves, emitters);
 }
 
 std::vector<View> make_views(Generator& random) {
@@ -219,10 +255,14 @@ PackedWorld make_world(std::uint64_t address) {
     Generator random(false);
     const std::vector<Texture> textures = make_textures(packer, random);
     std::vector<float> sums;
-    Scene scene{.instance_count = Instances, .light_count = LightCount, .features = 0xffu};
-    add_sums(sums, Triangles, random);
+    Scene scene{.instance_count = Instances,
+                .light_count = LightCount,
+                .tree_light_count = TreeLightCount,
+                .tree_probability = 0.4f,
+                .features = 0xffu | FeatureLightTree,
+                .tree_scale = 0.25f};
     scene.light_sums = uint(sums.size());
-    add_sums(sums, LightCount, random);
+    add_sums(sums, LightCount - TreeLightCount + 1u, random);
     scene.environment = {.map = textures[2],
                          .color = vec3(0.1f, 0.2f, 0.3f),
                          .strength = 0.8f,
@@ -235,7 +275,7 @@ PackedWorld make_world(std::uint64_t address) {
     add_sums(sums, height, random);
     scene.environment.column_sums = uint(sums.size());
     for (uint row = 0; row < height; ++row) add_sums(sums, width, random);
-    scene.environment_light = 4;
+    scene.environment_light = 5;
 
     scene.textures = packer.add<TextureArray>(textures);
     scene.materials = packer.add<MaterialArray>(make_materials(random));
@@ -243,12 +283,16 @@ PackedWorld make_world(std::uint64_t address) {
     for (uint i = 0; i < 4; ++i) meshes.push_back(make_mesh(i, packer, random));
     scene.meshes = packer.add<MeshArray>(meshes);
     scene.instances = packer.add<InstanceArray>(make_instances(random));
-    scene.lights = packer.add<LightSourceArray>(make_lights(0u, random));
+    scene.lights = packer.add<LightSourceArray>(make_lights(random));
+    std::vector<Emitter> emitters = make_emitters();
+    scene.light_nodes = packer.add<LightNodeArray>(make_nodes(emitters, random));
+    scene.emitters = packer.add<EmitterArray>(emitters);
     scene.sums = packer.add<FloatArray>(sums);
     const std::span<const float> srgb = backend::srgb_values();
     scene.srgb = packer.add<FloatArray>(std::vector<float>(srgb.begin(), srgb.end()));
     Scene dark = scene;
     dark.light_count = 0;
+    dark.tree_light_count = 0;
     dark.features = 0;
     dark.environment_light = -1;
 

@@ -46,6 +46,15 @@ inline void put(INOUT(Outputs) y, IN(Surface) surface) {
     put(y, surface.light);
     put(y, surface.scatters);
 }
+inline void put(INOUT(Outputs) y, IN(ChildShares) shares) {
+    put(y, shares.first);
+    put(y, shares.count);
+    for (uint i = 0u; i < shares.count; ++i) put(y, shares.items[i]);
+}
+inline void put(INOUT(Outputs) y, IN(ChosenEmitter) chosen) {
+    put(y, chosen.index);
+    put(y, chosen.probability);
+}
 inline void put(INOUT(Outputs) y, IN(LightSample) light) {
     put(y, light.intensity);
     put_next(y, light.radiance);
@@ -79,6 +88,7 @@ inline void put(INOUT(Outputs) y, IN(Path) path) {
     put(y, path.probability);
     put(y, path.bsdf_pdf);
     put(y, path.last_position);
+    put(y, path.last_normal);
     put(y, path.way);
     put(y, path.found);
     put(y, path.rays);

@@ -58,7 +58,22 @@ class SceneModel {
         if (!colors.empty()) geometry.colors = blob(colors);
         hang(create(geometry), glm::dmat4(1.0));
     }
-    // The same with a texture, `repeats` times along the edges, and tangents along the first one.
+    // Each by its corners, counter-clockwise as seen from the front.
+    void triangles(ObjectId material, const std::vector<std::array<glm::vec3, 3>>& triangles) {
+        if (triangles.empty()) return;
+        std::vector<glm::vec3> positions;
+        std::vector<std::uint32_t> indices;
+        for (const std::array<glm::vec3, 3>& corners : triangles) {
+            for (const glm::vec3& corner : corners) {
+                indices.push_back(static_cast<std::uint32_t>(positions.size()));
+                positions.push_back(corner);
+            }
+        }
+        const scene::Geometry geometry{
+            .material = material, .indices = blob(indices), .positions = blob(positions)};
+        hang(create(geometry), glm::dmat4(1.0));
+    }
+    // A quad with a texture, `repeats` times along the edges, and tangents along the first one.
     void textured_quad(ObjectId material, const std::array<glm::vec3, 4>& corners, float repeats) {
         const std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 3};
         const std::vector<glm::vec2> tex_coords{{0, 0}, {repeats, 0}, {repeats, repeats}, {0, repeats}};

@@ -30,6 +30,8 @@ DeviceScene::DeviceScene(Device& device, backend::SceneTables tables) {
     put(record_.meshes, tables.meshes);
     put(record_.instances, tables.instances);
     put(record_.lights, tables.lights);
+    put(record_.emitters, tables.emitters);
+    put(record_.light_nodes, tables.light_nodes);
     put(record_.sums, tables.sums);
     const auto srgb = backend::srgb_values();
     put(record_.srgb, std::vector<float>(srgb.begin(), srgb.end()));

@@ -3,6 +3,7 @@
 #include <map>
 #include <vector>
 
+#include "mediator/backend/tables/light_tree.h"
 #include "mediator/backend/tables/tables.h"
 
 // Steps of make_tables, in this order. Each reads what the former have put into the tables.
@@ -18,7 +19,16 @@ void add_instances(SceneTables& tables, const Lowered& lowered, const MeshCatalo
 // Radiance over the sphere in the mean, as luminance; 0: there is no sky.
 double add_environment(SceneTables& tables, const scene::Scene& scene, const Indices& textures);
 
+// Emitters in the order of their lights, and leaves of those that shine.
+struct EmitterList {
+    std::vector<shading::Emitter> emitters;
+    std::vector<LightLeaf> leaves;
+};
+
 // Instances that emit get their light's index.
+void add_mesh_lights(SceneTables& tables, EmitterList& list);
+
+// All lights, those of meshes included.
 void add_lights(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
                 const MeshCatalog& meshes, double sky_luminance);
 

@@ -68,6 +68,8 @@ shading::Scene on_host(const SceneTables& tables) {
     scene.meshes.items = tables.meshes.data();
     scene.instances.items = tables.instances.data();
     scene.lights.items = tables.lights.data();
+    scene.emitters.items = tables.emitters.data();
+    scene.light_nodes.items = tables.light_nodes.data();
     scene.sums.items = tables.sums.data();
     scene.srgb.items = srgb_values().data();
     return scene;

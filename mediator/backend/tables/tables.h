@@ -17,10 +17,13 @@ struct SceneTables {
     std::vector<shading::Material> materials;  // 0 = the default grey, 1 = the placeholder's
     std::vector<shading::Mesh> meshes;         // of the geometries that are placed
     std::vector<shading::Instance> instances;  // as in Lowered::instances
-    std::vector<shading::LightSource>
-        lights;               // mesh lights by instance, placed lights by (id, path), the sky
-    std::vector<float> sums;  // cumulative; each ends at 1
-    shading::Scene scene{};   // all of it but the addresses of the tables
+    // In the tree: mesh lights by instance, placed lights by (id, path); distant: placed lights likewise, the
+    // sky.
+    std::vector<shading::LightSource> lights;
+    std::vector<shading::Emitter> emitters;       // by light
+    std::vector<shading::LightNode> light_nodes;  // of the emitters that shine
+    std::vector<float> sums;                      // cumulative; each ends at 1
+    shading::Scene scene{};                       // all of it but the addresses of the tables
     glm::dvec3 render_origin{0.0};
     std::vector<std::uint32_t> layers;  // each mask of instances and lights once
 
@@ -33,8 +36,8 @@ struct SceneTables {
     std::vector<Arrays> arrays;
 };
 
-// One light out of all is chosen in proportion to its power, a tenth uniformly, so that a wrong estimate
-// costs noise, never light. Addresses are the host's.
+// The light tree or one of the distant lights is chosen in proportion to its power, a tenth uniformly, so
+// that a wrong estimate costs noise, never light. Addresses are the host's.
 SceneTables make_tables(const scene::Scene& scene, const Lowered& lowered, const MeshCatalog& meshes,
                         const scene::BlobStore& blobs);
 

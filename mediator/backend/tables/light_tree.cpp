@@ -1,0 +1,254 @@
+#include "mediator/backend/tables/light_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+namespace tessera::backend {
+
+namespace {
+
+using std::numbers::pi;
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+
+struct Bounds {
+    glm::dvec3 low{Infinity}, high{-Infinity};
+
+    void add(const glm::dvec3& l, const glm::dvec3& h) {
+        low = glm::min(low, l);
+        high = glm::max(high, h);
+    }
+    double extent2() const {
+        const glm::dvec3 size = high - low;
+        return glm::dot(size, size);
+    }
+};
+
+// Emitters in short.
+struct Group {
+    Bounds bounds;
+    glm::dvec3 axis{0.0};
+    double spread = 0.0, reach = 0.0, power = 0.0;
+    bool two_sided = false;
+};
+
+// Turned about `axis`, of unit length and across v.
+glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& axis, double angle) {
+    return v * std::cos(angle) + glm::cross(axis, v) * std::sin(angle);
+}
+
+// The smallest cone around both.
+void join_cones(Group& a, const Group& b) {
+    glm::dvec3 other = b.axis;
+    double cosine = glm::dot(a.axis, other);
+    if (cosine < 0.0 && (a.two_sided || b.two_sided)) {
+        if (b.two_sided) {
+            other = -other;
+        } else {
+            a.axis = -a.axis;
+        }
+        cosine = -cosine;
+    }
+    const double between = std::acos(std::clamp(cosine, -1.0, 1.0));
+    if (std::max(a.spread, b.spread) >= pi || a.spread >= std::min(between + b.spread, pi)) {
+        a.spread = std::max(a.spread, b.spread);
+        return;
+    }
+    if (b.spread >= std::min(between + a.spread, pi)) {
+        a.axis = other;
+        a.spread = b.spread;
+        return;
+    }
+    const double spread = 0.5 * (a.spread + between + b.spread);
+    const glm::dvec3 across = glm::cross(a.axis, other);
+    const double length = glm::length(across);
+    if (spread >= pi || !(length > 0.0)) {
+        a.spread = pi;
+        return;
+    }
+    a.axis = glm::normalize(turned(a.axis, across / length, spread - a.spread));
+    a.spread = spread;
+}
+
+Group joined(Group a, const Group& b) {
+    join_cones(a, b);
+    a.bounds.add(b.bounds.low, b.bounds.high);
+    a.reach = std::max(a.reach, b.reach);
+    a.power += b.power;
+    a.two_sided = a.two_sided || b.two_sided;
+    return a;
+}
+
+// Leaves that fall into one part of the axis along which a group is cut.
+struct Bin {
+    Bounds bounds;
+    double power = 0.0;
+    glm::dvec3 facing{0.0};  // sum of power times axis
+    std::uint32_t count = 0;
+
+    void add(const Bin& other) {
+        bounds.add(other.bounds.low, other.bounds.high);
+        power += other.power;
+        facing += other.facing;
+        count += other.count;
+    }
+    // Power x size^2 x range of directions (Conty Estevez and Kulla 2018, eq. 2). The range is that of their
+    // measure at its ends, 1 for one direction and 4 for all, and between them follows the axes' mean length.
+    double cost() const {
+        if (!(power > 0.0)) return 0.0;
+        return bounds.extent2() * (4.0 * power - 3.0 * glm::length(facing));
+    }
+};
+
+class Builder {
+  public:
+    Builder(std::span<const LightLeaf> leaves, std::span<shading::Emitter> emitters)
+        : leaves_(leaves), emitters_(emitters), order_(leaves.size()) {
+        std::iota(order_.begin(), order_.end(), 0u);
+        for (const LightLeaf& leaf : leaves) total_ += leaf.power;
+        nodes_.reserve(2 * leaves.size());
+    }
+
+    std::vector<shading::LightNode> build() {
+        nodes_.emplace_back();
+        fill(0, 0, static_cast<std::uint32_t>(order_.size()), 0);
+        return std::move(nodes_);
+    }
+
+  private:
+    static constexpr std::uint32_t Bins = 16;
+
+    // Node `at` for the leaves [begin, end) of the order.
+    Group fill(std::uint32_t at, std::uint32_t begin, std::uint32_t end, std::uint32_t depth) {
+        if (end - begin == 1) {
+            const LightLeaf& leaf = leaves_[order_[begin]];
+            emitters_[leaf.emitter].node = at;
+            const Group group{{leaf.low, leaf.high}, leaf.axis, leaf.spread, leaf.reach, leaf.power,
+                              leaf.two_sided};
+            write(at, group, leaf.emitter | shading::LightLeaf);
+            return group;
+        }
+        // Cut in two, and each part once more.
+        std::array<std::uint32_t, shading::MaxLightChildren + 1> ends{begin};
+        std::uint32_t count = 0;
+        const std::uint32_t middle = cut(begin, end, depth);
+        const auto add = [&](std::uint32_t from, std::uint32_t to) {
+            if (to - from > 1) ends[++count] = cut(from, to, depth + 1);
+            ends[++count] = to;
+        };
+        add(begin, middle);
+        add(middle, end);
+        const auto first = static_cast<std::uint32_t>(nodes_.size());
+        nodes_.resize(nodes_.size() + count);
+        Group group;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const Group child = fill(first + i, ends[i], ends[i + 1], depth + 2);
+            nodes_[first + i].parent = at;
+            group = i == 0 ? child : joined(group, child);
+        }
+        write(at, group, first | (count - 1) << shading::LightCountShift);
+        return group;
+    }
+
+    void write(std::uint32_t at, const Group& group, std::uint32_t link) {
+        shading::LightNode& node = nodes_[at];
+        const glm::dvec3 middle = 0.5 * (group.bounds.low + group.bounds.high);
+        node.middle = glm::vec3(middle);
+        // Rounded outwards, so that the ball holds all.
+        const double radius =
+            0.5 * std::sqrt(group.bounds.extent2()) + glm::length(middle - glm::dvec3(node.middle));
+        node.radius = radius > 0.0 ? std::nextafter(static_cast<float>(radius), INFINITY) : 0.0f;
+        node.axis = glm::vec3(group.axis);
+        node.cos_spread = group.spread < pi ? static_cast<float>(std::cos(group.spread)) : -1.0f;
+        node.cos_reach = static_cast<float>(std::cos(group.reach));
+        // A share that no float holds would be 0.
+        node.power = std::max(static_cast<float>(group.power / total_), LeastPower);
+        node.link = link | (group.two_sided ? shading::LightTwoSided : 0u);
+    }
+
+    glm::dvec3 place_of(std::uint32_t leaf) const { return 0.5 * (leaves_[leaf].low + leaves_[leaf].high); }
+
+    // Orders the leaves so that those of the first child come first, and returns where the second's begin.
+    // Where cuts by cost lead too deep, in halves.
+    std::uint32_t cut(std::uint32_t begin, std::uint32_t end, std::uint32_t depth) {
+        Bounds places;
+        for (std::uint32_t i = begin; i < end; ++i) places.add(place_of(order_[i]), place_of(order_[i]));
+        const glm::dvec3 size = places.high - places.low;
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+        const std::uint32_t half = begin + (end - begin) / 2;
+        const double scale = Bins / size[axis];
+        if (!std::isfinite(scale)) return half;  // all in one place
+        if (depth < MaxDepthByCost) {
+            const auto bin_of = [&](std::uint32_t leaf) {
+                const double place = (place_of(leaf)[axis] - places.low[axis]) * scale;
+                return std::min(static_cast<std::uint32_t>(place), Bins - 1);
+            };
+            const std::uint32_t last = best_bin(begin, end, bin_of);
+            const auto from = order_.begin() + begin;
+            const auto middle = std::stable_partition(
+                from, order_.begin() + end, [&](std::uint32_t leaf) { return bin_of(leaf) <= last; });
+            return begin + static_cast<std::uint32_t>(middle - from);
+        }
+        const auto before = [&](std::uint32_t a, std::uint32_t b) {
+            const double pa = place_of(a)[axis], pb = place_of(b)[axis];
+            return pa != pb ? pa < pb : a < b;
+        };
+        std::nth_element(order_.begin() + begin, order_.begin() + half, order_.begin() + end, before);
+        return half;
+    }
+
+    // The last bin of the first child. The first bin and the last are not empty.
+    template <class BinOf>
+    std::uint32_t best_bin(std::uint32_t begin, std::uint32_t end, const BinOf& bin_of) const {
+        std::array<Bin, Bins> bins;
+        for (std::uint32_t i = begin; i < end; ++i) {
+            const LightLeaf& leaf = leaves_[order_[i]];
+            const double facing = leaf.spread < pi && !leaf.two_sided ? leaf.power : 0.0;
+            bins[bin_of(order_[i])].add({{leaf.low, leaf.high}, leaf.power, facing * leaf.axis, 1});
+        }
+        std::array<double, Bins> after{};  // cost of all bins from here on
+        Bin sum;
+        for (std::uint32_t i = Bins; i-- > 1;) {
+            sum.add(bins[i]);
+            after[i] = sum.cost();
+        }
+        sum = Bin();
+        double least = Infinity;
+        std::uint32_t best = 0;
+        for (std::uint32_t i = 0; i + 1 < Bins; ++i) {
+            sum.add(bins[i]);
+            if (bins[i].count == 0) continue;  // the same cut as the one before
+            const double cost = sum.cost() + after[i + 1];
+            if (cost < least) {
+                least = cost;
+                best = i;
+            }
+        }
+        return best;
+    }
+
+    // In cuts: by cost to this depth, then in halves, at most 32 more.
+    static constexpr std::uint32_t MaxDepthByCost = 48;
+    static constexpr float LeastPower = 1e-24f;
+
+    std::span<const LightLeaf> leaves_;
+    std::span<shading::Emitter> emitters_;
+    std::vector<std::uint32_t> order_;
+    std::vector<shading::LightNode> nodes_;
+    double total_ = 0.0;
+};
+
+}  // namespace
+
+std::vector<shading::LightNode> make_light_tree(std::span<const LightLeaf> leaves,
+                                                std::span<shading::Emitter> emitters) {
+    if (leaves.empty()) return {};
+    return Builder(leaves, emitters).build();
+}
+
+}  // namespace tessera::backend

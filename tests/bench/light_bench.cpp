@@ -1,0 +1,165 @@
+// Many lights: what the light tree gains over uniform choice, and what it costs.
+//   tessera_light_bench
+// 10,000 glowing triangles of 0.1 m over a ground of 100 m, of all orientations, one-sided, with powers over
+// two orders of magnitude. Uniform choice is the same tree with equal expectations, so its time is not its
+// own: it is given the time of a scene in which one of the triangles glows and the others are black.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+
+#include "mediator/backend/tables/light_tree.h"
+#include "mediator/base/random.h"
+#include "tests/statistics/model.h"
+
+namespace tessera::embree {
+namespace {
+
+constexpr std::uint32_t Emitters = 10000, Size = 64, Spp = 64, ReferenceSpp = 1024, Rounds = 5;
+
+// Of this thread on a processor: others may be at work, too.
+double cpu_seconds() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+// The first `glowing` glow; the very first lies above what is seen and shines down.
+void add_lamps(Model& model, std::uint32_t glowing) {
+    CounterRandom random(1);
+    const auto number = [&] { return static_cast<float>(2.0 * random.uniform() - 1.0); };
+    model.floor(model.material(chalk(glm::vec3(0.7f))), 50.0f, 0.0f);
+    std::vector<std::array<glm::vec3, 3>> bright, dark;
+    for (std::uint32_t i = 0; i < Emitters; ++i) {
+        const glm::vec3 place(50.0f * number(), 50.0f * number(), 2.0f + number());
+        const float size = 0.05f * std::pow(10.0f, number());
+        std::array<glm::vec3, 3> corners;
+        for (glm::vec3& corner : corners) corner = place + size * glm::vec3(number(), number(), number());
+        if (i == 0) corners = {{{0.0f, 1.0f, 2.0f}, {0.0f, 1.1f, 2.0f}, {0.1f, 1.0f, 2.0f}}};
+        (i < glowing ? bright : dark).push_back(corners);
+    }
+    scene::Material glow = lamp(1000.0f);
+    glow.double_sided = false;
+    model.triangles(model.material(glow), bright);
+    model.triangles(model.material(chalk(glm::vec3(0.0f))), dark);
+}
+
+// Of the ground alone, from below all lamps: small ones that are seen would be noise of their own.
+view::View ground() {
+    const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), 0.8, {1.0, 0.0, 0.0});
+    view::View view = small_view({0.0, 0.0, 0.9}, 0.9, Size, turn);
+    view.max_bounces = 0;
+    return view;
+}
+
+// All emitters alike from everywhere.
+backend::SceneTables uniform(backend::SceneTables tables) {
+    std::vector<shading::LightNode>& nodes = tables.light_nodes;
+    for (shading::LightNode& node : nodes) {
+        node.power = (node.link & shading::LightLeaf) != 0 ? 1.0f : 0.0f;
+        node.radius = 1e6f;
+    }
+    for (std::size_t i = nodes.size(); i-- > 1;) nodes[nodes[i].parent].power += nodes[i].power;
+    return tables;
+}
+
+std::vector<double> picture(const World& world, const backend::SceneTables& tables, view::View view,
+                            std::uint64_t spp, std::uint64_t seed) {
+    view.seed = seed;
+    const PathTracer tracer(tables, world.scene(), view);
+    std::vector<double> pixels(Size * Size);
+    std::uint64_t rays = 0;
+    for (std::uint64_t sample = 0; sample < spp; ++sample) {
+        for (std::uint32_t i = 0; i < Size * Size; ++i) {
+            pixels[i] += red(tracer.trace(i % Size, i / Size, sample, rays)) / static_cast<double>(spp);
+        }
+    }
+    return pixels;
+}
+
+double relmse(const std::vector<double>& found, const std::vector<double>& truth) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const double d = found[i] - truth[i];
+        sum += d * d / (truth[i] * truth[i] + 1e-4);
+    }
+    return sum / static_cast<double>(found.size());
+}
+
+double sum_of(const std::vector<double>& pixels) {
+    double sum = 0.0;
+    for (const double pixel : pixels) sum += pixel;
+    return sum;
+}
+
+// Nanoseconds per sample.
+double time_of(const World& world, const backend::SceneTables& tables, const view::View& view) {
+    const double start = cpu_seconds();
+    picture(world, tables, view, 16, 5);
+    return (cpu_seconds() - start) / (16.0 * Size * Size) * 1e9;
+}
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+}
+
+void run() {
+    Model many, one;
+    add_lamps(many, Emitters);
+    add_lamps(one, 1);
+    const World& world = many.build();
+    const World& single = one.build();
+    const view::View view = ground();
+    const backend::SceneTables even = uniform(world.tables());
+    std::vector<double> times, single_times;
+    for (std::uint32_t i = 0; i < Rounds; ++i) {
+        times.push_back(time_of(world, world.tables(), view));
+        single_times.push_back(time_of(single, single.tables(), view));
+    }
+    const double time = median(times), single_time = median(single_times);
+    std::printf("time per sample: %.0f ns with %u emitters, %.0f ns with one: %.2f x\n", time, Emitters,
+                single_time, time / single_time);
+    const std::vector<double> truth = picture(world, world.tables(), view, ReferenceSpp, 99);
+    const std::vector<double> tree = picture(world, world.tables(), view, Spp, 1);
+    const std::vector<double> plain = picture(world, even, view, Spp, 1);
+    const double tree_error = relmse(tree, truth), plain_error = relmse(plain, truth);
+    std::printf("relMSE at %u samples: tree %.4g, uniform %.4g; at equal time %.4f x\n", Spp, tree_error,
+                plain_error, tree_error / plain_error * time / single_time);
+    std::printf("mean light, tree / reference %.4f, uniform / reference %.4f\n", sum_of(tree) / sum_of(truth),
+                sum_of(plain) / sum_of(truth));
+}
+
+// How long trees take to be made.
+void run_builds() {
+    for (const std::uint32_t count : {10000u, 1000000u}) {
+        CounterRandom random(2);
+        std::vector<backend::LightLeaf> leaves;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const glm::dvec3 place(random.uniform(), random.uniform(), random.uniform());
+            leaves.push_back({.low = place,
+                              .high = place + glm::dvec3(1e-3),
+                              .axis = glm::normalize(place - glm::dvec3(0.5)),
+                              .reach = 1.57,
+                              .power = 1.0,
+                              .emitter = i});
+        }
+        std::vector<shading::Emitter> emitters(count);
+        std::vector<double> times;
+        for (std::uint32_t i = 0; i < 5; ++i) {
+            const double start = cpu_seconds();
+            backend::make_light_tree(leaves, emitters);
+            times.push_back((cpu_seconds() - start));
+        }
+        std::printf("tree of %u: %.1f ms\n", count, 1e3 * median(times));
+    }
+}
+
+}  // namespace
+}  // namespace tessera::embree
+
+int main() {
+    tessera::embree::run_builds();
+    tessera::embree::run();
+}
