@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <stdexcept>
+#include <string>
 
 #include "mediator/backend/tables/light_tree.h"
 #include "mediator/backend/tables/tables.h"
@@ -218,7 +220,10 @@ std::vector<LightNode> make_nodes(std::vector<Emitter>& emitters, Generator& ran
                           .emitter = i,
                           .two_sided = i % 2u == 0u});
     }
-    return backend::make_light_tree(leaves, emitters);
+    std::vector<LightNode> nodes = backend::make_light_tree(leaves, emitters);
+    if (nodes.size() != LightNodes)
+        throw std::logic_error("there are " + std::to_string(nodes.size()) + " nodes");
+    return nodes;
 }
 
 std::vector<View> make_views(Generator& random) {

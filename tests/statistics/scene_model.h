@@ -59,7 +59,8 @@ class SceneModel {
         hang(create(geometry), glm::dmat4(1.0));
     }
     // Each by its corners, counter-clockwise as seen from the front.
-    void triangles(ObjectId material, const std::vector<std::array<glm::vec3, 3>>& triangles) {
+    void triangles(ObjectId material, const std::vector<std::array<glm::vec3, 3>>& triangles,
+                   std::uint32_t layers = scene::RootLayers) {
         if (triangles.empty()) return;
         std::vector<glm::vec3> positions;
         std::vector<std::uint32_t> indices;
@@ -71,7 +72,7 @@ class SceneModel {
         }
         const scene::Geometry geometry{
             .material = material, .indices = blob(indices), .positions = blob(positions)};
-        hang(create(geometry), glm::dmat4(1.0));
+        hang(create(geometry), glm::dmat4(1.0), layers);
     }
     // A quad with a texture, `repeats` times along the edges, and tangents along the first one.
     void textured_quad(ObjectId material, const std::array<glm::vec3, 4>& corners, float repeats) {
@@ -107,6 +108,10 @@ class SceneModel {
     }
     void light(const scene::Light& source, const glm::dmat4& place) { hang(create(source), place); }
 
+    // Where what is put in from now on has its origin, and how large it is.
+    void placed_at(const glm::dvec3& origin) { frame_ = glm::translate(glm::dmat4(1.0), origin); }
+    void scaled_by(double size) { frame_ = glm::scale(glm::dmat4(1.0), glm::dvec3(size)); }
+
     // Once.
     scene::Scene finished() {
         entries_.push_back(scene::Create{scene::RootId, root_});
@@ -128,12 +133,14 @@ class SceneModel {
         entries_.push_back(scene::Create{id, object});
         return id;
     }
-    void hang(ObjectId child, const glm::dmat4& place) {
-        root_.children.push_back(create(scene::Transform{.matrix = place, .children = {child}}));
+    void hang(ObjectId child, const glm::dmat4& place, std::uint32_t layers = scene::RootLayers) {
+        root_.children.push_back(
+            create(scene::Transform{.matrix = frame_ * place, .children = {child}, .layers = layers}));
     }
 
     std::shared_ptr<scene::BlobStore> blobs_ = std::make_shared<scene::BlobStore>();
     scene::Root root_;
+    glm::dmat4 frame_{1.0};
     std::vector<scene::Entry> entries_;
     std::uint64_t next_ = 2;
 };

@@ -1,0 +1,103 @@
+// Lights at the ends of sizes, powers and places, against closed forms in double.
+#include <gtest/gtest.h>
+
+#include "tests/statistics/panels.h"
+
+namespace tessera::embree {
+namespace {
+
+// At height h above the origin, facing it, of edge length s.
+Panel above(float h, float s, double radiance) {
+    return {{{{-0.5f * s, -0.5f * s, h}, {-0.5f * s, 0.5f * s, h}, {0.5f * s, -0.5f * s, h}}}, radiance};
+}
+
+TEST(LightNumerics, EmittersOfAMicrometre) {
+    std::vector<Panel> panels;
+    for (int i = 0; i < 64; ++i) {
+        Panel panel = above(2.0f, 1e-6f, 1e12);
+        for (glm::vec3& corner : panel.corners) {
+            corner.x += 1e-5f * static_cast<float>(i % 8) - 3.5e-5f;
+            corner.y += 1e-5f * static_cast<float>(i / 8) - 3.5e-5f;
+        }
+        panels.push_back(panel);
+    }
+    Model model;
+    add_ground(model);
+    add_panels(model, panels, Sides::One);
+    const World& world = model.build();
+    for (const Strategy strategy : {Strategy::Both, Strategy::LightsOnly}) {
+        expect_light(seen_by(world, at_origin(0.3), strategy, 16), reflected(panels));
+    }
+}
+
+// A floodlight of 100 m and a spark of 1e-6 m beside the ground; either may be the brighter one.
+TEST(LightNumerics, AHugeAndATinyEmitter) {
+    for (const double tiny : {1e6, 1e10, 1e14}) {
+        const Panel flood{{{{-50.0f, -50.0f, 40.0f}, {-50.0f, 50.0f, 40.0f}, {50.0f, -50.0f, 40.0f}}}, 1.0};
+        const Panel spark = above(0.5f, 1e-6f, tiny);
+        Model model;
+        add_ground(model);
+        add_panels(model, {flood, spark}, Sides::One);
+        const World& world = model.build();
+        // Between eye and spark nothing stands: the eye looks from beside.
+        expect_light(seen_by(world, at_origin(0.3), Strategy::Both, 1024), reflected({flood, spark}));
+    }
+}
+
+TEST(LightNumerics, FarFromTheRenderOrigin) {
+    const std::vector<Panel> panels = dome(6, 3.0, 6);
+    const glm::dvec3 origin(4.0e6, -2.5e6, 1.0e6);
+    Model model(origin);
+    // Everything there, in one transform for each: vertices stay small.
+    const scene::Material ground = chalk(glm::vec3(GroundAlbedo));
+    model.placed_at(origin);
+    model.floor(model.material(ground), 1.0f, 0.0f);
+    add_panels(model, panels, Sides::One);
+    const World& world = model.build();
+    view::View view = small_view(origin + glm::dvec3(0.0, 0.0, 0.3), 1e-3);
+    view.max_bounces = 0;
+    expect_light(seen_by(world, view, Strategy::Both, 1024), reflected(panels));
+}
+
+TEST(LightNumerics, WorldsOfAnySize) {
+    for (const double size : {1e-12, 1e-6, 1e6, 1e12}) {
+        const std::vector<Panel> panels = dome(6, 3.0, 7);
+        Model model;
+        model.scaled_by(size);
+        add_ground(model);
+        add_panels(model, panels, Sides::One);
+        const World& world = model.build();
+        SCOPED_TRACE(size);
+        for (const Strategy strategy : {Strategy::Both, Strategy::LightsOnly}) {
+            expect_light(seen_by(world, at_origin(0.3 * size), strategy, 1024), reflected(panels));
+        }
+    }
+}
+
+// Triangles without area or light among others, and light that shows the ground its back alone.
+TEST(LightNumerics, DegenerateDarkAndTurnedAway) {
+    std::vector<Panel> panels = dome(6, 3.0, 8);
+    const double expected = reflected(panels);
+    for (std::size_t i = 0; i < 10; ++i) {
+        Panel line = panels[i], dark = panels[i + 10];
+        line.corners[2] = line.corners[1];
+        dark.radiance = 0.0;
+        for (glm::vec3& corner : dark.corners) corner *= 1.5f;
+        panels.push_back(line);
+        panels.push_back(dark);
+    }
+    Model model;
+    add_ground(model);
+    add_panels(model, panels, Sides::One);
+    expect_light(seen_by(model.build(), at_origin(0.3), Strategy::Both, 1024), expected);
+
+    Panel back = above(2.0f, 0.5f, 7.0);
+    std::swap(back.corners[0], back.corners[1]);
+    Model behind;
+    add_ground(behind);
+    add_panels(behind, {back, back}, Sides::One);
+    EXPECT_EQ(seen_by(behind.build(), at_origin(0.3), Strategy::Both, 16).value, 0.0);
+}
+
+}  // namespace
+}  // namespace tessera::embree
