@@ -23,6 +23,7 @@ class Configurator {
             std::erase_if(children, [&](ObjectId child) { return parts.contains(child); });
         };
         remove(scene_.root.children);
+        for (auto& [id, unseen] : scene_.without_volume) remove(unseen);
         for (auto& [id, object] : by_id_) {
             if (auto* transform = std::get_if<scene::Transform>(object)) remove(transform->children);
         }

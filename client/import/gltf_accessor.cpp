@@ -56,6 +56,8 @@ std::size_t component_count(int type) {
             return 3;
         case TINYGLTF_TYPE_VEC4:
             return 4;
+        case TINYGLTF_TYPE_MAT4:
+            return 16;
         default:
             return 0;
     }
@@ -222,6 +224,9 @@ std::vector<std::uint32_t> GltfAccessors::indices(int index) const {
     return values;
 }
 
+std::vector<float> GltfAccessors::scalars(int accessor) const {
+    return decode(*this, model_, accessor, 1);
+}
 std::vector<glm::vec2> GltfAccessors::vec2(int accessor) const {
     return vectors<glm::vec2>(decode(*this, model_, accessor, 2));
 }
@@ -236,6 +241,30 @@ std::vector<glm::vec4> GltfAccessors::color(int accessor) const {
     std::vector<glm::vec4> colors;
     for (const glm::vec3& color : vec3(accessor)) colors.emplace_back(color, 1.0f);
     return colors;
+}
+
+std::vector<glm::u16vec4> GltfAccessors::joints(int index) const {
+    const tinygltf::Accessor& accessor = find(model_, index);
+    const int type = accessor.componentType;
+    if (accessor.normalized ||
+        (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT)) {
+        reject(index, "is used for joints, but holds no unsigned 8 or 16 bit integers");
+    }
+    std::vector<glm::u16vec4> joints;
+    for (const glm::vec4& four : vec4(index)) joints.emplace_back(four);  // floats hold 16 bits exactly
+    return joints;
+}
+
+std::vector<glm::dmat4> GltfAccessors::matrices(int index) const {
+    if (find(model_, index).componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
+        reject(index, "is used for matrices, but holds no floats");
+    const std::vector<float> values = decode(*this, model_, index, 16);
+    std::vector<glm::dmat4> matrices(values.size() / 16, glm::dmat4(1.0));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const auto column = static_cast<int>(i % 16 / 4), row = static_cast<int>(i % 4);
+        if (row < 3) matrices[i / 16][column][row] = double(values[i]);
+    }
+    return matrices;
 }
 
 }  // namespace tessera::import

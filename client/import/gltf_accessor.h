@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/gtc/type_precision.hpp>
+#include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -22,10 +24,13 @@ class GltfAccessors {
 
     std::uint64_t count(int accessor) const;
     std::vector<std::uint32_t> indices(int accessor) const;  // unsigned 8, 16 or 32 bit scalars
+    std::vector<float> scalars(int accessor) const;
     std::vector<glm::vec2> vec2(int accessor) const;
     std::vector<glm::vec3> vec3(int accessor) const;
     std::vector<glm::vec4> vec4(int accessor) const;
-    std::vector<glm::vec4> color(int accessor) const;  // three or four components; alpha 1 where absent
+    std::vector<glm::vec4> color(int accessor) const;      // three or four components; alpha 1 where absent
+    std::vector<glm::u16vec4> joints(int accessor) const;  // unsigned 8 or 16 bit, four
+    std::vector<glm::dmat4> matrices(int accessor) const;  // float; affine, whatever their last row says
 
     std::span<const unsigned char> view(int buffer_view) const;
 

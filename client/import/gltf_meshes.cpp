@@ -2,6 +2,7 @@
 
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "client/import/gltf_draco.h"
@@ -34,8 +35,25 @@ bool draws_points_or_lines(int mode) {
 
 const std::vector<ObjectId>& GltfMeshes::geometries(int index) {
     const auto [place, is_new] = made_.try_emplace(index);
-    std::vector<ObjectId>& geometries = place->second;
-    if (!is_new) return geometries;
+    if (is_new) {
+        const bool exists = index >= 0 && static_cast<std::size_t>(index) < model_.meshes.size();
+        MeshPose own;  // by the mesh's own weights, which are mostly none
+        if (exists) own.weights = model_.meshes[static_cast<std::size_t>(index)].weights;
+        const bool bends =
+            std::any_of(own.weights.begin(), own.weights.end(), [](double w) { return w != 0.0; });
+        place->second = make_all(index, bends ? &own : nullptr, nullptr);
+    }
+    return place->second;
+}
+
+std::vector<ObjectId> GltfMeshes::bent_geometries(int index, const MeshPose& pose,
+                                                  std::vector<BendingGeometry>& bending) {
+    return make_all(index, &pose, &bending);
+}
+
+std::vector<ObjectId> GltfMeshes::make_all(int index, const MeshPose* pose,
+                                           std::vector<BendingGeometry>* bending) {
+    std::vector<ObjectId> geometries;
     if (index < 0 || static_cast<std::size_t>(index) >= model_.meshes.size()) {
         builder_.notice("mesh " + std::to_string(index) + " is missing: a magenta box stands for it");
         geometries.push_back(builder_.placeholder_geometry());
@@ -53,13 +71,10 @@ const std::vector<ObjectId>& GltfMeshes::geometries(int index) {
         }
         const std::string part = i == 0 ? name : name + " part " + std::to_string(i);
         try {
-            geometries.push_back(make(primitive, name, part));
+            geometries.push_back(make(primitive, name, part, pose, bending));
         } catch (const Error& error) {
             if (error.code() != ErrorCode::InvalidInput) throw;
             if (bad++ == 0) first_cause = "primitive " + std::to_string(i) + ": " + error.what();
-        }
-        if (!primitive.targets.empty()) {
-            builder_.notice("mesh '" + name + "': its morph targets are ignored, the base shape is drawn");
         }
     }
     if (bad > 0) {
@@ -110,17 +125,39 @@ GltfMeshes::Source GltfMeshes::read(const tinygltf::Primitive& primitive, const 
 }
 
 ObjectId GltfMeshes::make(const tinygltf::Primitive& primitive, const std::string& mesh_name,
-                          const std::string& name) {
+                          const std::string& name, const MeshPose* pose,
+                          std::vector<BendingGeometry>* bending) {
     Source source = read(primitive, mesh_name);
     MeshData& mesh = source.mesh;
+    BendingMesh bends;
+    if (pose != nullptr) {
+        bends = read_bending(primitive, mesh.positions.size(),
+                             pose->joints.empty() ? Joints::Ignored : Joints::Used, accessors_, builder_);
+        if (bends.joint_count > pose->joints.size()) {
+            throw Error(ErrorCode::InvalidInput,
+                        "a vertex follows joint " + std::to_string(bends.joint_count - 1) +
+                            " of a skin that has " + std::to_string(pose->joints.size()));
+        }
+        mesh.origins.resize(mesh.positions.size());
+        std::iota(mesh.origins.begin(), mesh.origins.end(), 0u);
+    }
     for (const std::string& repair : check_and_repair(mesh))
         builder_.notice("mesh '" + name + "': " + repair);
     if (mesh.normals.empty()) mesh.tangents.clear();  // glTF 3.7.2.1: given tangents belong to given normals
     if (source.material.wants_tangents && mesh.tangents.empty() && !mesh.tex_coords.empty()) {
-        if (mesh.normals.empty()) make_flat(mesh);
+        bends.is_flat = mesh.normals.empty();
+        if (bends.is_flat) make_flat(mesh);
         generate_tangents(mesh);
     }
-    return builder_.add_geometry(name, source.material.id, mesh);
+    if (pose == nullptr) return builder_.add_geometry(name, source.material.id, mesh);
+    follow(bends, mesh.origins);
+    mesh.origins.clear();
+    bends.rest = std::move(mesh);
+    const ObjectId id =
+        builder_.add_geometry(name, source.material.id, bend(bends, pose->weights, pose->joints));
+    if (bending != nullptr)
+        bending->push_back({id, name, std::make_shared<const BendingMesh>(std::move(bends))});
+    return id;
 }
 
 }  // namespace tessera::import

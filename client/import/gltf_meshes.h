@@ -1,16 +1,27 @@
 #pragma once
 
 #include <map>
+#include <memory>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "client/import/gltf_accessor.h"
+#include "client/import/gltf_bending.h"
 #include "client/import/gltf_materials.h"
+#include "client/import/playback.h"
 
 namespace tinygltf {
 struct Primitive;
 }
 
 namespace tessera::import {
+
+// How a node bends its mesh.
+struct MeshPose {
+    std::span<const double> weights;       // of the morph targets
+    std::span<const glm::dmat4> joints{};  // empty = no skin
+};
 
 // Makes Geometry objects on demand: one per primitive of a mesh, each mesh once, so that nodes that share a
 // mesh share its geometry.
@@ -22,14 +33,19 @@ class GltfMeshes {
     // Empty when the mesh has only points and lines. A bad mesh is the placeholder, once, and one notice.
     const std::vector<ObjectId>& geometries(int mesh);
 
+    // For one node alone, bent.
+    std::vector<ObjectId> bent_geometries(int mesh, const MeshPose& pose,
+                                          std::vector<BendingGeometry>& bending);
+
   private:
     struct Source {
         MeshData mesh;
         GltfMaterial material;
     };
     Source read(const tinygltf::Primitive& primitive, const std::string& mesh_name);
-    ObjectId make(const tinygltf::Primitive& primitive, const std::string& mesh_name,
-                  const std::string& name);
+    std::vector<ObjectId> make_all(int mesh, const MeshPose* pose, std::vector<BendingGeometry>* bending);
+    ObjectId make(const tinygltf::Primitive& primitive, const std::string& mesh_name, const std::string& name,
+                  const MeshPose* pose, std::vector<BendingGeometry>* bending);
 
     const tinygltf::Model& model_;
     SceneBuilder& builder_;

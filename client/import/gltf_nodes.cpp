@@ -19,6 +19,10 @@ std::string display_name(const tinygltf::Model& model, int node) {
     return name.empty() ? "node " + std::to_string(node) : name;
 }
 
+bool has_only_a_mesh(const tinygltf::Node& node) {
+    return node.camera == -1 && !node.extensions.contains(Lights);
+}
+
 template <class T>
 void append(std::vector<T>& to, const std::vector<T>& values) {
     to.insert(to.end(), values.begin(), values.end());
@@ -87,46 +91,85 @@ GltfNodes::Tree GltfNodes::reach() {
 
 std::vector<ObjectId> GltfNodes::build() {
     const Tree tree = reach();
+    GltfMotion motion(model_, builder_, tree.children);
+    for (const auto& [node, unused] : tree.children) motion.set_layers(node, layers_of(node));
     std::map<int, ObjectId> ids;
-    for (const auto& [node, unused] : tree.children) {
-        scene::Transform transform;
-        transform.name = display_name(model_, node);
-        const auto matrix = node_matrix(model_.nodes[static_cast<std::size_t>(node)]);
-        if (matrix) {
-            transform.matrix = *matrix;
+    std::map<int, std::vector<ObjectId>> posed;  // by the anchor that they hang from
+    for (const auto& [index, below] : tree.children) {
+        const std::optional<int> anchor = motion.anchor(index);
+        if (anchor && below.empty() && has_only_a_mesh(model_.nodes[static_cast<std::size_t>(index)])) {
+            // The skin ignores the node's transform, and nothing else needs it.
+            ids[index] = add_holder(index, display_name(model_, index), motion);
+            posed[*anchor].push_back(ids[index]);
         } else {
-            builder_.notice("node '" + transform.name + "': " + matrix.error().what() +
-                            "; it is drawn unmoved");
+            ids[index] = add_transform(index, motion);
         }
-        const auto layers = node_layers(model_.nodes[static_cast<std::size_t>(node)]);
-        if (layers) {
-            transform.layers = *layers;
-        } else {
-            builder_.notice("node '" + transform.name + "': " + layers.error().what() +
-                            "; it is in its parent's layers");
-        }
-        ids[node] = builder_.add(std::move(transform));
     }
     for (const auto& [index, below] : tree.children) {
         const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(index)];
         const std::string name = display_name(model_, index);
         std::vector<ObjectId> children;
-        for (const int child : below) children.push_back(ids.at(child));
-        if (node.mesh != -1) add_mesh(node, name, children);
+        for (const int child : below) {
+            if (motion.has_transform(child)) children.push_back(ids.at(child));
+        }
+        if (node.mesh != -1) {
+            const auto geometries =
+                motion.bends(index) ? motion.bent_geometries(index, meshes_) : meshes_.geometries(node.mesh);
+            const std::optional<int> anchor = motion.anchor(index);
+            if (!anchor) {
+                add_mesh(node, name, geometries, children);
+            } else {
+                count_instances(geometries.size());
+                ObjectId holder = ids.at(index);
+                if (motion.has_transform(index)) {
+                    holder = add_holder(index, name + " posed", motion);
+                    posed[*anchor].push_back(holder);
+                }
+                builder_.get<scene::Transform>(holder).children = geometries;
+            }
+        }
         add_light(node, name, children);
         if (node.camera != -1) add_camera(node, name, children);
-        builder_.get<scene::Transform>(ids.at(index)).children = std::move(children);
+        if (motion.has_transform(index)) builder_.get<scene::Transform>(ids.at(index)).children = children;
     }
     std::vector<ObjectId> roots;
-    for (const int root : tree.roots) roots.push_back(ids.at(root));
+    for (const int root : tree.roots) {
+        if (motion.has_transform(root)) roots.push_back(ids.at(root));
+    }
+    for (const auto& [anchor, holders] : posed) {
+        append(anchor < 0 ? roots : builder_.get<scene::Transform>(ids.at(anchor)).children, holders);
+    }
+    motion.keep();
     return roots;
 }
 
+ObjectId GltfNodes::add_transform(int index, GltfMotion& motion) {
+    scene::Transform transform;
+    transform.name = display_name(model_, index);
+    transform.matrix = motion.local(index);
+    transform.layers = motion.own_layers(index);
+    const ObjectId id = builder_.add(std::move(transform));
+    motion.set_transform(index, id);
+    return id;
+}
+
+ObjectId GltfNodes::add_holder(int index, const std::string& name, const GltfMotion& motion) {
+    scene::Transform holder;
+    holder.name = name;
+    if (motion.layers(index) != motion.layers(*motion.anchor(index))) holder.layers = motion.layers(index);
+    return builder_.add(std::move(holder));
+}
+
+std::uint32_t GltfNodes::layers_of(int node) {
+    const auto layers = node_layers(model_.nodes[static_cast<std::size_t>(node)]);
+    if (layers) return *layers;
+    builder_.notice("node '" + display_name(model_, node) + "': " + layers.error().what() +
+                    "; it is in its parent's layers");
+    return 0;
+}
+
 void GltfNodes::add_mesh(const tinygltf::Node& node, const std::string& name,
-                         std::vector<ObjectId>& children) {
-    const std::vector<ObjectId> geometries = meshes_.geometries(node.mesh);
-    if (node.skin != -1)
-        builder_.notice("node '" + name + "': its skin is ignored, the unposed mesh is drawn");
+                         const std::vector<ObjectId>& geometries, std::vector<ObjectId>& children) {
     std::vector<glm::dmat4> matrices;
     if (node.extensions.contains(Instancing)) {
         try {
@@ -136,11 +179,7 @@ void GltfNodes::add_mesh(const tinygltf::Node& node, const std::string& name,
                             "); one is drawn");
         }
     }
-    instances_ += geometries.size() * std::max<std::uint64_t>(matrices.size(), 1);
-    if (instances_ > MaxInstances) {
-        throw Error(ErrorCode::InvalidInput,
-                    "it places more than " + std::to_string(MaxInstances) + " meshes: split the scene");
-    }
+    count_instances(geometries.size() * std::max<std::uint64_t>(matrices.size(), 1));
     if (matrices.empty()) {
         append(children, geometries);
         return;
@@ -151,6 +190,14 @@ void GltfNodes::add_mesh(const tinygltf::Node& node, const std::string& name,
         instance.matrix = matrices[i];
         instance.children = geometries;
         children.push_back(builder_.add(std::move(instance)));
+    }
+}
+
+void GltfNodes::count_instances(std::uint64_t more) {
+    instances_ += more;
+    if (instances_ > MaxInstances) {
+        throw Error(ErrorCode::InvalidInput,
+                    "it places more than " + std::to_string(MaxInstances) + " meshes: split the scene");
     }
 }
 

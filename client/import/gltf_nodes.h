@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "client/import/gltf_meshes.h"
+#include "client/import/gltf_motion.h"
 
 namespace tinygltf {
 class Node;
@@ -13,7 +13,8 @@ class Node;
 namespace tessera::import {
 
 // Makes the graph: a Transform per node of the default scene, in file order, with its geometries, light and
-// camera. Cycles, second parents and too deep nesting are cut, each with a notice.
+// camera. What a skin poses hangs from the skin's anchor instead of its node. Cycles, second parents and too
+// deep nesting are cut, each with a notice.
 class GltfNodes {
   public:
     GltfNodes(const tinygltf::Model& model, SceneBuilder& builder)
@@ -28,9 +29,15 @@ class GltfNodes {
     };
     Tree reach();
     std::vector<int> scene_roots();
-    void add_mesh(const tinygltf::Node& node, const std::string& name, std::vector<ObjectId>& children);
+    std::uint32_t layers_of(int node);
+    ObjectId add_transform(int node, GltfMotion& motion);
+    // For what a skin poses: unmoved in the anchor's frame, in the node's layers.
+    ObjectId add_holder(int node, const std::string& name, const GltfMotion& motion);
+    void add_mesh(const tinygltf::Node& node, const std::string& name,
+                  const std::vector<ObjectId>& geometries, std::vector<ObjectId>& children);
     void add_light(const tinygltf::Node& node, const std::string& name, std::vector<ObjectId>& children);
     void add_camera(const tinygltf::Node& node, const std::string& name, std::vector<ObjectId>& children);
+    void count_instances(std::uint64_t more);
     std::vector<glm::dmat4> instance_matrices(const tinygltf::Node& node);
 
     const tinygltf::Model& model_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <exception>
 #include <new>
 
@@ -29,6 +30,8 @@ void check_options(const ImportOptions& options) {
         throw Error(ErrorCode::InvalidInput,
                     "the range of object ids is empty, above 2^32 or holds the root's");
     }
+    if (options.at && !(std::abs(*options.at) <= 1e9))
+        throw Error(ErrorCode::InvalidInput, "the time must be a number of seconds up to 1e9");
     const glm::vec3 color = options.background.value_or(glm::vec3(0.0f));
     for (const float value : {color.x, color.y, color.z, options.environment_strength}) {
         if (!(value >= 0.0f && value <= 1e12f)) {
@@ -38,9 +41,21 @@ void check_options(const ImportOptions& options) {
     }
 }
 
+void check_animations(SceneBuilder& builder) {
+    const ImportOptions& options = builder.options();
+    if (!builder.result().animations.empty()) return;
+    if (!options.animation.empty())
+        throw Error(ErrorCode::InvalidInput,
+                    "it has no animation '" + options.animation + "', nor any other");
+    if (options.at) builder.notice("there is no animation: it looks the same at any time");
+}
+
 void read_into(const std::filesystem::path& file, SceneBuilder& builder) {
     const std::string extension = lower_case_extension(file);
-    if (extension == ".tessera") return import_tessera(file, builder);
+    if (extension == ".tessera") {
+        import_tessera(file, builder);
+        return check_animations(builder);
+    }
     if (extension == ".gltf" || extension == ".glb") {
         import_gltf(file, builder);
     } else if (extension == ".ply") {
@@ -57,6 +72,7 @@ void read_into(const std::filesystem::path& file, SceneBuilder& builder) {
             "its name ends in none of .gltf, .glb, .obj, .ply, .stl, .x3d and .tessera: convert it to "
             "glTF 2.0");
     }
+    check_animations(builder);
     finish(builder);
 }
 

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,9 +17,14 @@
 
 namespace tessera::import {
 
+struct Playback;
+
 // A camera where the file has none, and a soft sky where nothing shines: added for who wants to see the
 // scene, left to who brings it into another.
 enum class Missing { Add, Leave };
+
+// Whether the scene is to be brought to other times with move_to.
+enum class Motion { Still, Sequence };
 
 struct ImportOptions {
     ObjectId first_id{2};                 // objects get consecutive ids from here
@@ -26,6 +33,9 @@ struct ImportOptions {
     std::filesystem::path environment;    // latitude-longitude .exr or .hdr; empty = none
     float environment_strength = 1.0f;
     Missing missing = Missing::Add;
+    std::optional<double> at;  // seconds into the animations; none = at rest, as without them
+    std::string animation;     // only this one, by its name, else its number; "" = all together
+    Motion motion = Motion::Still;
 };
 
 // A place to look from; the Camera object is in the scene, too.
@@ -34,6 +44,11 @@ struct CameraInfo {
     glm::dmat4 world_from_camera{1.0};  // rigid; looks along -z, y up
     double vertical_fov = 0.7;          // radians
     double aspect = 0.0;                // width / height; 0 = the picture's
+};
+
+struct AnimationInfo {
+    std::string name;
+    double seconds = 0.0;  // time of its last key
 };
 
 struct ImportCounts {
@@ -56,6 +71,11 @@ struct ImportedScene {
     std::vector<CameraInfo> cameras;     // the file's own in file order, else the one that was added
     std::vector<std::string> notices;    // what was added, replaced or ignored; lower-case phrases, each once
     ImportCounts counts;
+    std::vector<AnimationInfo> animations;  // of the file, played or not
+    // Geometries that are not among the children of a transform while it leaves them no volume.
+    std::map<ObjectId, std::vector<ObjectId>> without_volume;
+    std::optional<double> seconds;             // the time it shows; none = at rest
+    std::shared_ptr<const Playback> playback;  // for move_to; none = nothing moves
 };
 
 // glTF 2.0 (.gltf, .glb), PLY, X3D (.x3d), through assimp .obj and .stl, or .tessera, which is taken as it
@@ -72,5 +92,17 @@ Expected<ImportedScene> import_scene(const std::filesystem::path& file, const Im
 // one.
 enum class RootEntry { Create, Update };
 std::vector<scene::Entry> entries(const ImportedScene& scene, RootEntry root);
+
+// What leads a scene from one time to another: updates of what moved, and the blobs that are new.
+struct TimeStep {
+    std::vector<scene::Entry> entries;
+    std::vector<scene::BlobPtr> blobs;
+};
+
+// Brings the scene, its blobs and its cameras to a time; the scene then is what import_scene makes of the
+// same file at that time, but for its notices and counts. Only for a scene that was imported as a Sequence;
+// one in which nothing moves stays as it is. InvalidInput names what cannot be posed; the scene is then as
+// before.
+Expected<TimeStep> move_to(ImportedScene& scene, double seconds);
 
 }  // namespace tessera::import

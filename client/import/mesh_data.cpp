@@ -145,6 +145,7 @@ void make_flat(MeshData& mesh) {
     spread(mesh.positions, flat.positions);
     spread(mesh.tex_coords, flat.tex_coords);
     spread(mesh.colors, flat.colors);
+    spread(mesh.origins, flat.origins);
     flat.normals.resize(mesh.indices.size());
     flat.indices.resize(mesh.indices.size());
     for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
@@ -172,6 +173,7 @@ void generate_tangents(MeshData& mesh) {
             mesh.normals.push_back(glm::vec3(mesh.normals[vertex]));
             mesh.tex_coords.push_back(glm::vec2(mesh.tex_coords[vertex]));
             if (!mesh.colors.empty()) mesh.colors.push_back(glm::vec4(mesh.colors[vertex]));
+            if (!mesh.origins.empty()) mesh.origins.push_back(std::uint32_t(mesh.origins[vertex]));
             frames.push_back({glm::dvec3(0.0), handedness});
         }
         return mirrored[vertex];

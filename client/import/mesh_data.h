@@ -27,6 +27,8 @@ struct MeshData {
     std::vector<glm::vec4> tangents, colors;
     std::vector<glm::vec2> tex_coords;
     std::vector<std::uint32_t> indices;  // three per triangle
+    std::vector<std::uint32_t>
+        origins;  // optional: a number that goes with each vertex, however they are split
 };
 
 // Triangles of a strip or a fan in glTF's winding; fewer than three vertices give none.

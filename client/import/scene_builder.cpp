@@ -63,16 +63,20 @@ ObjectId SceneBuilder::add(scene::Object object) {
 
 scene::BlobRef SceneBuilder::blob(std::span<const std::byte> bytes) {
     if (bytes.empty()) return {};
-    decoded_bytes_ += bytes.size();
+    spend(bytes.size());
+    auto made = std::make_shared<const scene::Blob>(bytes);
+    const auto [position, is_new] = blobs_.emplace(made->hash(), scene::reference(*made));
+    if (is_new) result_.blobs.push_back(std::move(made));
+    return position->second;
+}
+
+void SceneBuilder::spend(std::uint64_t bytes) {
+    decoded_bytes_ += bytes;
     if (decoded_bytes_ > MaxDecodedBytes) {
         throw Error(ErrorCode::OutOfMemory, "its arrays and textures decode to more than " +
                                                 std::to_string(MaxDecodedBytes >> 30) +
                                                 " GiB: split the scene");
     }
-    auto made = std::make_shared<const scene::Blob>(bytes);
-    const auto [position, is_new] = blobs_.emplace(made->hash(), scene::reference(*made));
-    if (is_new) result_.blobs.push_back(std::move(made));
-    return position->second;
 }
 
 ObjectId SceneBuilder::add_geometry(std::string name, ObjectId material, const MeshData& mesh) {

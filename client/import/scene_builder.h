@@ -35,6 +35,9 @@ class SceneBuilder {
     }
     scene::BlobRef blob(std::span<const std::byte> bytes);  // empty gives an empty reference
 
+    // Counts what is decoded without becoming a blob.
+    void spend(std::uint64_t bytes);
+
     // Counts and adds a mesh that passed check_and_repair.
     ObjectId add_geometry(std::string name, ObjectId material, const MeshData& mesh);
 

@@ -11,14 +11,6 @@
 namespace tessera::import {
 namespace {
 
-bool has_volume(const glm::dmat4& matrix) {
-    const glm::dmat3 linear(matrix);
-    const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
-    const double volume = std::abs(glm::determinant(linear));
-    const bool far = !(glm::length(glm::dvec3(matrix[3])) < 1e18) || !(lengths < 1e36);
-    return !far && lengths > 1e-36 && volume > 1e-12 * lengths;
-}
-
 class Walk {
   public:
     explicit Walk(SceneBuilder& builder) : builder_(builder) {}
@@ -74,10 +66,14 @@ class Walk {
 
     void remove_geometries(ObjectId id) {
         auto& transform = builder_.get<scene::Transform>(id);
-        const auto is_geometry = [&](ObjectId child) {
-            return std::holds_alternative<scene::Geometry>(object(child));
+        const auto stays = [&](ObjectId child) {
+            return !std::holds_alternative<scene::Geometry>(object(child));
         };
-        if (std::erase_if(transform.children, is_geometry) > 0) {
+        const auto unseen =
+            std::stable_partition(transform.children.begin(), transform.children.end(), stays);
+        if (unseen != transform.children.end()) {
+            builder_.result().without_volume[id] = {unseen, transform.children.end()};
+            transform.children.erase(unseen, transform.children.end());
             builder_.notice("node '" + transform.name +
                             "': its mesh is not drawn, since the node's transform leaves it no volume");
         }
@@ -126,6 +122,14 @@ bool emits(const scene::Object& made_of) {
             return false;
         },
         made_of);
+}
+
+bool has_volume(const glm::dmat4& matrix) {
+    const glm::dmat3 linear(matrix);
+    const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+    const double volume = std::abs(glm::determinant(linear));
+    const bool far = !(glm::length(glm::dvec3(matrix[3])) < 1e18) || !(lengths < 1e36);
+    return !far && lengths > 1e-36 && volume > 1e-12 * lengths;
 }
 
 bool make_rigid(glm::dmat4& matrix) {

@@ -1,11 +1,13 @@
 #include "client/tools/render.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 
 #include "client/session.h"
 #include "client/tools/cluster_options.h"
+#include "client/tools/frame_names.h"
 #include "client/tools/interrupts.h"
 #include "client/tools/pictures.h"
 #include "client/tools/progress_line.h"
@@ -44,17 +46,21 @@ class Render {
     int run() {
         if (const auto code = import(UsualFirstId)) return *code;
         if (stopped()) return interrupted("nothing was rendered");
+        if (plan_.sequence && !scene_.playback)
+            return complain(Name, ExitBadInput, "--frames: the scene has no animation that can be played");
         connect();
         if (const auto code = bring_in_scene()) return *code;
-        render();
-        return finish();
+        if (plan_.sequence) return render_sequence();
+        render(plan_.view.view.seed);
+        return finish(plan_.outputs);
     }
 
   private:
     bool stopped() const { return interrupts_.token().stop_requested(); }
 
+    int fail(int code, const std::string& message) const { return complain(Name, code, where_ + message); }
     int interrupted(const std::string& what) const {
-        return complain(Name, ExitInterrupted, "interrupted; " + what);
+        return fail(ExitInterrupted, "interrupted; " + (frame_ ? "the frames before it are there" : what));
     }
 
     std::optional<int> import(ObjectId first_id) {
@@ -81,6 +87,54 @@ class Render {
                                                      clock_, settings);
     }
 
+    int render_sequence() {
+        const FrameRange frames = plan_.sequence->frames;
+        try {
+            for (std::uint32_t frame = frames.first; frame <= frames.last; ++frame) {
+                frame_ = frame;
+                where_ = "frame " + std::to_string(frame) + ": ";
+                if (stopped()) return interrupted("");
+                if (const auto code = render_frame(frame)) return *code;
+            }
+        } catch (const Error& error) {
+            throw Error(error.code(), where_ + error.what());
+        }
+        return 0;
+    }
+
+    // The code that ends the sequence, if one does.
+    std::optional<int> render_frame(std::uint32_t frame) {
+        started_ = clock_.now();
+        std::vector<std::string> outputs;
+        for (const std::string& pattern : plan_.outputs) outputs.push_back(*frame_name(pattern, frame));
+        const bool is_there = std::all_of(outputs.begin(), outputs.end(), [](const std::string& output) {
+            return std::filesystem::exists(output);
+        });
+        if (is_there && plan_.sequence->skip_existing) {
+            log_.info(where_ + "skipped, its pictures are there");
+            return std::nullopt;
+        }
+        auto step = move_to(scene_, plan_.sequence->seconds(frame));
+        if (!step) return fail(ExitBadInput, step.error().what());
+        for (const scene::BlobPtr& blob : step->blobs) blobs_->insert(blob);
+        if (!step->entries.empty()) {
+            if (const auto code = submit(std::move(step->entries))) return code;
+        }
+        blobs_->erase_unused();  // those of earlier frames; the scene holds the others
+        camera_ = *choose_camera(scene_.cameras, plan_.view.camera);
+        render(plan_.view.view.seed + frame);
+        const int code = finish(outputs);
+        return code == 0 ? std::nullopt : std::optional(code);
+    }
+
+    std::optional<int> submit(std::vector<scene::Entry> entries) {
+        const auto submitted = session_->submit(std::move(entries), interrupts_.token());
+        if (!submitted) return interrupted("nothing was rendered");
+        for (const std::string& problem : submitted->problems) log_.error(where_ + problem);
+        if (!submitted->accepted) return fail(ExitBadInput, "the master does not take the scene");
+        return std::nullopt;
+    }
+
     std::optional<int> bring_in_scene() {
         const std::string title = std::filesystem::path(plan_.view.scene).filename().string();
         const auto outcome = session_->open_scene(
@@ -98,39 +152,39 @@ class Render {
             if (const auto code = import(opened.first_id)) return code;
         }
         for (const std::string& notice : scene_.notices) log_.info(notice);
-        const auto submitted =
-            session_->submit(entries(scene_, import::RootEntry::Update), interrupts_.token());
-        if (!submitted) return interrupted("nothing was rendered");
-        for (const std::string& problem : submitted->problems) log_.error(problem);
-        if (!submitted->accepted) return complain(Name, ExitBadInput, "the master does not take the scene");
-        return std::nullopt;
+        return submit(entries(scene_, import::RootEntry::Update));
     }
 
-    void render() {
+    void render(std::uint64_t seed) {
         plan_.job.view = view_from(plan_.view, camera_);
+        plan_.job.view.seed = seed;
         ProgressLine line;
         result_ = session_->render(
-            plan_.job, [&](const client::Progress& progress) { line.show(describe(progress, plan_.job)); },
+            plan_.job,
+            [&](const client::Progress& progress) { line.show(where_ + describe(progress, plan_.job)); },
             interrupts_.token());
     }
 
-    // The pictures of what there is, unless there is nothing; then the reason decides.
-    int finish() {
+    // The pictures of what there is, unless there is nothing; then the reason decides. Those of a sequence
+    // are whole or not there.
+    int finish(const std::vector<std::string>& outputs) {
         using client::Outcome;
         const bool is_failed = result_.outcome == Outcome::Failed;
-        if (is_failed) return complain(Name, ExitInternal, "the frame failed: " + result_.message);
+        if (is_failed) return fail(ExitInternal, "the frame failed: " + result_.message);
+        if (frame_ && result_.outcome == Outcome::Stopped) return interrupted("");
+        if (frame_ && result_.outcome == Outcome::NoNodes) return fail(cli::ExitUnavailable, result_.message);
         if ((!result_.film && !result_.picture) || result_.samples == 0) {
             if (result_.outcome == Outcome::Stopped) return interrupted("nothing was rendered yet");
-            return complain(Name, cli::ExitUnavailable,
-                            result_.message.empty() ? "no sample was finished in the time given: give it more"
-                                                    : result_.message);
+            return fail(cli::ExitUnavailable, result_.message.empty()
+                                                  ? "no sample was finished in the time given: give it more"
+                                                  : result_.message);
         }
         const std::string hash = result_.film ? to_hex(frame::film_hash(*result_.film)) : std::string();
-        write_pictures(plan_.outputs, plan_.job, result_,
+        write_pictures(outputs, plan_.job, result_,
                        {std::filesystem::path(plan_.view.scene).filename().string(), camera_.name, hash},
                        plan_.statistics);
-        const RenderReport report{plan_.job, result_, seconds(clock_.now() - started_), hash};
-        std::cout << (json_ ? as_json(report) : as_text(report, plan_.outputs)) << std::endl;
+        const RenderReport report{plan_.job, result_, seconds(clock_.now() - started_), hash, frame_};
+        std::cout << (json_ ? as_json(report) : as_text(report, outputs)) << std::endl;
         if (result_.outcome == Outcome::Stopped) return interrupted("what was merged so far is written");
         if (result_.outcome == Outcome::NoNodes) return complain(Name, cli::ExitUnavailable, result_.message);
         return 0;
@@ -148,6 +202,8 @@ class Render {
     std::optional<EmbeddedCluster> embedded_;
     std::unique_ptr<client::Session> session_;  // says goodbye before the embedded cluster stops
     client::JobResult result_;
+    std::optional<std::uint32_t> frame_;  // of a sequence, the one that is rendered
+    std::string where_;                   // names it
 };
 
 int run(const RenderOptions& options) {

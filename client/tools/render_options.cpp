@@ -4,6 +4,7 @@
 #include <cctype>
 #include <filesystem>
 
+#include "client/tools/frame_names.h"
 #include "client/tools/pictures.h"
 #include "master/filter/catalog.h"
 #include "mediator/backend/catalog.h"
@@ -78,6 +79,31 @@ Expected<void> set_amount(const RenderOptions& options, client::JobRequest& job)
     return {};
 }
 
+Expected<void> set_sequence(const RenderOptions& options, RenderPlan& plan) {
+    if (!options.frames) {
+        if (options.fps || options.skip_existing)
+            return wrong("--fps and --skip-existing are for sequences; say which with --frames A:B");
+        if (options.view.animation && !options.view.at)
+            return wrong("--animation: say when with --at SECONDS, or --frames A:B");
+        return {};
+    }
+    if (options.view.at) return wrong("--at and --frames exclude each other");
+    const auto frames = parse_frames(*options.frames);
+    if (!frames) return wrong(std::string("--frames: ") + frames.error().what());
+    Sequence sequence{.frames = *frames, .skip_existing = options.skip_existing};
+    sequence.fps = options.fps.value_or(sequence.fps);
+    if (!(sequence.fps > 0.0 && sequence.fps <= 1e6)) return wrong("--fps: above 0, up to 1e6");
+    for (const std::string& output : options.outputs) {
+        if (frame_name(output, 0)) continue;
+        return wrong("-o: '" + output +
+                     "' has no place for the number of a frame; write it like out.%04d.exr");
+    }
+    plan.sequence = sequence;
+    plan.view.import.motion = import::Motion::Sequence;
+    plan.view.import.at = sequence.seconds(frames->first);
+    return {};
+}
+
 // What goes to an EXR is asked for only when there is one.
 bool any_exr(const std::vector<std::string>& outputs) {
     return std::any_of(outputs.begin(), outputs.end(), [](const std::string& output) {
@@ -128,6 +154,10 @@ void RenderOptions::add_to(cli::CommandLine& command) {
     command.option("--time",
                    "render for so long instead, as 800ms or 10s; with --filter, filter and encoding included",
                    time);
+    command.option("--frames", "render frames A:B of the animation, each to its own -o out.%04d.exr", frames);
+    command.option(
+        "--fps", "frames per second (24): frame K shows K / fps seconds, with the noise of --seed S+K", fps);
+    command.flag("--skip-existing", "leave out frames whose pictures are there", skip_existing);
     command.option("--filter", "reconstruction, NAME[:key=value,...]; tessera filters lists them", filter);
     command.flag("--save-statistics", "keep all channels in the EXR, for tessera filter", save_statistics);
     command.choice("--policy", "how frames are cut into work", policy, {"tiled", "cooperative", "mixed"});
@@ -153,6 +183,8 @@ void RenderOptions::add_to(cli::CommandLine& command) {
     command.examples({"tessera render room.glb -o room.exr -o room.png --spp 256",
                       "tessera render room.glb -o room.exr --spp 8 --filter fdf",
                       "tessera render still.glb --env studio.exr -o still.png --time 800ms --filter fdf",
+                      "tessera render robot.glb --at 1.5 --animation walk -o robot.exr",
+                      "tessera render robot.glb --frames 0:47 --fps 24 -o robot.%04d.exr",
                       "tessera render room.glb -o room.exr --nodes 2 --policy cooperative --json",
                       "tessera render room.glb -o room.exr --master tcp://render-1:7420 --keys ~/.tessera"});
 }
@@ -160,8 +192,11 @@ void RenderOptions::add_to(cli::CommandLine& command) {
 Expected<RenderPlan> understand(const RenderOptions& options) {
     auto view = understand(options.view);
     if (!view) return tl::unexpected(view.error());
-    RenderPlan plan{.view = *view, .outputs = options.outputs};
+    RenderPlan plan;
+    plan.view = *view;
+    plan.outputs = options.outputs;
     if (auto fine = check_outputs(options.outputs); !fine) return tl::unexpected(fine.error());
+    if (auto fine = set_sequence(options, plan); !fine) return tl::unexpected(fine.error());
     auto embedded = embedded_settings(options);
     if (!embedded) return tl::unexpected(embedded.error());
     plan.embedded = *embedded;

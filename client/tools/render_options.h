@@ -18,21 +18,32 @@ struct RenderOptions {
     ViewOptions view;
     std::vector<std::string> outputs;
     std::optional<std::uint64_t> spp, nodes, threads;
-    std::optional<std::string> time, backend, device, cache, master, keys, wait_nodes;
+    std::optional<std::string> time, backend, device, cache, master, keys, wait_nodes, frames;
+    std::optional<double> fps;
     std::string user = "editor";
     std::string policy = "mixed";
     std::string filter;
-    bool reproducible = false, no_wait = false, json = false, save_statistics = false;
+    bool reproducible = false, no_wait = false, json = false, save_statistics = false, skip_existing = false;
     cli::LogSettings log{.program = "tessera"};
 
     void add_to(cli::CommandLine& command);
 };
 
+// Frames of an animation: frame i shows the scene at i / fps seconds.
+struct Sequence {
+    FrameRange frames;
+    double fps = 24.0;
+    bool skip_existing = false;
+
+    double seconds(std::uint32_t frame) const { return static_cast<double>(frame) / fps; }
+};
+
 // The same, understood.
 struct RenderPlan {
     ViewPlan view;
-    client::JobRequest job;  // view with channels, without camera
-    std::vector<std::string> outputs;
+    client::JobRequest job;            // view with channels, without camera
+    std::vector<std::string> outputs;  // of a sequence: patterns for frame_name
+    std::optional<Sequence> sequence;
     std::optional<client::Address> address;  // none: embedded
     EmbeddedSettings embedded;
     client::WhenBusy when_busy = client::WhenBusy::Queue;

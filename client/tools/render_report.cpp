@@ -69,7 +69,7 @@ double samples_per_pixel(const client::JobRequest& request, const client::JobRes
 std::string as_json(const RenderReport& report) {
     const client::JobResult& result = report.result;
     const client::UnitCounts& units = result.units;
-    const Json object{
+    Json object{
         {"width", report.request.view.window.width},
         {"height", report.request.view.window.height},
         {"spp", spp_value(report.request, result)},
@@ -100,7 +100,9 @@ std::string as_json(const RenderReport& report) {
           {"film", result.wire_bytes.film}}},
         {"picture", picture_value(result)},
     };
-    return object.dump(2);
+    if (!report.frame) return object.dump(2);
+    object["frame"] = *report.frame;
+    return object.dump();
 }
 
 std::string as_text(const RenderReport& report, const std::vector<std::string>& outputs) {
@@ -112,6 +114,12 @@ std::string as_text(const RenderReport& report, const std::vector<std::string>& 
         std::snprintf(buffer, sizeof buffer, format, values...);
         text += std::string(text.empty() ? "" : "\n") + buffer;
     };
+    if (report.frame) {
+        line("frame %u: %.2f s in all, %.2f s rendering, %.4g samples per pixel", *report.frame,
+             report.seconds_total, result.seconds_render, samples_per_pixel(report.request, result));
+        for (const std::string& output : outputs) text += ", wrote " + output;
+        return text;
+    }
     line("%dx%d pixels, %.4g samples per pixel", window.width, window.height,
          samples_per_pixel(report.request, result));
     line("%.2f s in all, %.2f s rendering: %.2f Mrays/s, %.3f Msamples/s", report.seconds_total,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,11 +13,12 @@ struct RenderReport {
     const client::JobResult& result;  // with film
     double seconds_total = 0;
     std::string film_hash;
+    std::optional<std::uint32_t> frame;  // of a sequence
 };
 
 double samples_per_pixel(const client::JobRequest& request, const client::JobResult& result);
 
-// The one object of --json, and the few lines for a person.
+// The one object of --json, of a frame on one line, and the few lines for a person, of a frame but one.
 std::string as_json(const RenderReport& report);
 std::string as_text(const RenderReport& report, const std::vector<std::string>& outputs);
 

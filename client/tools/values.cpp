@@ -106,6 +106,15 @@ Expected<glm::vec3> parse_color(std::string_view text) {
     return color;
 }
 
+Expected<FrameRange> parse_frames(std::string_view text) {
+    constexpr std::uint32_t Last = 9'999'999;
+    const auto parts = split(text, ':');
+    const auto first = number<std::uint32_t>(parts[0]), last = number<std::uint32_t>(parts.back());
+    if (parts.size() > 2 || !first || !last || *first > *last || *last > Last)
+        return wrong(text, "is no range of frames; write the first and the last, like 0:47");
+    return FrameRange{*first, *last};
+}
+
 Expected<Duration> parse_duration(std::string_view text) {
     const std::string hint = "is no time; write it with its unit, like 800ms, 2.5s or 3m";
     const std::size_t unit_at = text.find_first_not_of("0123456789.");

@@ -23,6 +23,9 @@ struct NodeWait {
     std::uint32_t nodes = 1;
     Duration limit = std::chrono::seconds(60);
 };
+struct FrameRange {
+    std::uint32_t first = 0, last = 0;  // both are rendered
+};
 
 std::vector<std::string> split_list(std::string_view text);  // "a,b": what is not empty between commas
 
@@ -32,7 +35,8 @@ Expected<glm::vec3> parse_color(std::string_view text);     // "R,G,B", finite a
 Expected<Duration> parse_duration(std::string_view text);   // "800ms", "2.5s", "3m", "1h", above zero
 Expected<NodeWait> parse_node_wait(std::string_view text);  // "N" or "N:seconds"
 Expected<std::uint32_t> parse_layers(
-    std::string_view text);  // "0,2", each of 0 to 31: a mask, bit i is layer i
+    std::string_view text);                                // "0,2", each of 0 to 31: a mask, bit i is layer i
+Expected<FrameRange> parse_frames(std::string_view text);  // "A:B" with A <= B, or "A" for one; up to 9999999
 Expected<PixelPlace> parse_pixel(std::string_view text, Size picture);  // "X,Y" inside the picture
 
 }  // namespace tessera::tools

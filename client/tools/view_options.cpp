@@ -28,6 +28,9 @@ void ViewOptions::add_to(cli::CommandLine& command) {
         scene);
     command.option("--size", "picture size in pixels", size);
     command.option("--camera", "camera of the scene: its name, or its number from 0", camera);
+    command.option("--at", "seconds into the scene's animations (the pose at rest)", at);
+    command.option("--animation", "play only this one: its name, or its number from 0 (all together)",
+                   animation);
     command.option("--hide", "leave out this part, by its name in the file; may be given several times",
                    hidden);
     command.option("--material", "PART=MATERIAL, both by name; may be given several times", materials);
@@ -51,7 +54,9 @@ void ViewOptions::add_to(cli::CommandLine& command) {
 }
 
 Expected<ViewPlan> understand(const ViewOptions& options) {
-    ViewPlan plan{.scene = options.scene, .camera = options.camera};
+    ViewPlan plan;
+    plan.scene = options.scene;
+    plan.camera = options.camera;
     const auto size = parse_size(options.size);
     if (!size) return wrong("--size", size.error());
     plan.size = *size;
@@ -77,6 +82,10 @@ Expected<ViewPlan> understand(const ViewOptions& options) {
         }
         plan.configuration.materials.emplace_back(text.substr(0, equals), text.substr(equals + 1));
     }
+    if (options.at && !(std::abs(*options.at) <= 1e9))
+        return failure(ErrorCode::InvalidInput, "--at: must be a number of seconds up to 1e9");
+    plan.import.at = options.at;
+    plan.import.animation = options.animation.value_or("");
     if (options.environment) plan.import.environment = *options.environment;
     if (!std::isfinite(options.environment_strength) || options.environment_strength < 0.0) {
         return failure(ErrorCode::InvalidInput, "--env-strength: must be a finite number from 0");

@@ -17,7 +17,8 @@ namespace tessera::tools {
 struct ViewOptions {
     std::string scene;
     std::string size = "1280x720";
-    std::optional<std::string> camera, background, environment, crop, layers;
+    std::optional<std::string> camera, background, environment, crop, layers, animation;
+    std::optional<double> at;
     std::vector<std::string> hidden, materials;
     double environment_strength = 1.0;
     std::uint32_t bounces = 8;

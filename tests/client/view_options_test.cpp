@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
+#include "client/tools/frame_names.h"
 #include "client/tools/progress_line.h"
+#include "client/tools/render_options.h"
 
 namespace tessera::tools {
 namespace {
@@ -56,6 +60,74 @@ TEST(ViewOptions, AFailureNamesTheOption) {
     options = {.scene = "a.glb"};
     options.crop = "0,0,99999,1";
     EXPECT_NE(std::string(understand(options).error().what()).find("--crop"), std::string::npos);
+}
+
+RenderOptions sequence_options() {
+    RenderOptions options;
+    options.view.scene = "a.glb";
+    options.outputs = {"out.%04d.png"};
+    options.frames = "12:47";
+    return options;
+}
+
+std::string complaint(const RenderOptions& options) {
+    const auto plan = understand(options);
+    return plan ? "none" : plan.error().what();
+}
+
+TEST(Sequences, StartAtTheFirstFramesTime) {
+    RenderOptions options = sequence_options();
+    auto plan = understand(options);
+    ASSERT_TRUE(plan) << plan.error().what();
+    EXPECT_EQ(plan->sequence->frames.first, 12u);
+    EXPECT_EQ(plan->sequence->frames.last, 47u);
+    EXPECT_EQ(plan->view.import.at, 0.5) << "24 frames per second";
+    EXPECT_EQ(plan->view.import.motion, import::Motion::Sequence);
+    options.fps = 48.0;
+    EXPECT_EQ(understand(options)->view.import.at, 0.25);
+    options.frames.reset();
+    options.fps.reset();
+    EXPECT_FALSE(understand(options)->sequence);
+}
+
+TEST(Sequences, OptionsThatDoNotFitAreRefused) {
+    const auto contains = [](const std::string& text, const char* part) {
+        return text.find(part) != std::string::npos ? testing::AssertionSuccess()
+                                                    : testing::AssertionFailure() << text;
+    };
+    RenderOptions options = sequence_options();
+    options.outputs = {"out.%04d.png", "out.exr"};
+    EXPECT_TRUE(contains(complaint(options), "'out.exr' has no place for the number of a frame"));
+    for (const char* frames : {"3:2", "a:b", "1:2:3", "", "-1:2", "0:10000000"}) {
+        options = sequence_options();
+        options.frames = frames;
+        EXPECT_TRUE(contains(complaint(options), "--frames")) << frames;
+    }
+    options = sequence_options();
+    options.view.at = 1.0;
+    EXPECT_TRUE(contains(complaint(options), "--at and --frames exclude"));
+    options = sequence_options();
+    options.fps = 0.0;
+    EXPECT_TRUE(contains(complaint(options), "--fps"));
+    options = sequence_options();
+    options.frames.reset();
+    options.skip_existing = true;
+    EXPECT_TRUE(contains(complaint(options), "--frames A:B"));
+    options.skip_existing = false;
+    options.view.animation = "walk";
+    EXPECT_TRUE(contains(complaint(options), "--animation"));
+    options.view.at = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(contains(complaint(options), "--at"));
+}
+
+TEST(Sequences, NamesOfFrames) {
+    EXPECT_EQ(frame_name("out.%04d.exr", 12), "out.0012.exr");
+    EXPECT_EQ(frame_name("out.%04d.exr", 123456), "out.123456.exr");
+    EXPECT_EQ(frame_name("%d/a.png", 7), "7/a.png");
+    for (const char* wrong :
+         {"out.exr", "%", "out.%04", "out.%4d.exr", "out.%00d.exr", "a%db%d", "%s", "%04d%%"}) {
+        EXPECT_FALSE(frame_name(wrong, 1)) << wrong;
+    }
 }
 
 TEST(ProgressText, TellsShareSamplesRaysAndTimeLeft) {
