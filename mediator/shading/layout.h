@@ -62,7 +62,7 @@ static_assert(offsetof(Instance, normals) == 64);
 static_assert(offsetof(Instance, alpha_tested) == 100);
 static_assert(offsetof(Instance, layers) == 104);
 
-static_assert(sizeof(LightSource) == 64);
+static_assert(sizeof(LightSource) == 104);
 static_assert(offsetof(LightSource, kind) == 0);
 static_assert(offsetof(LightSource, probability) == 4);
 static_assert(offsetof(LightSource, intensity) == 8);
@@ -70,9 +70,14 @@ static_assert(offsetof(LightSource, position) == 20);
 static_assert(offsetof(LightSource, direction) == 32);
 static_assert(offsetof(LightSource, cos_inner) == 44);
 static_assert(offsetof(LightSource, cos_outer) == 48);
-static_assert(offsetof(LightSource, instance) == 52);
-static_assert(offsetof(LightSource, first_emitter) == 56);
-static_assert(offsetof(LightSource, layers) == 60);
+static_assert(offsetof(LightSource, radius) == 52);
+static_assert(offsetof(LightSource, cap) == 56);
+static_assert(offsetof(LightSource, edge_u) == 60);
+static_assert(offsetof(LightSource, edge_v) == 72);
+static_assert(offsetof(LightSource, half_size) == 84);
+static_assert(offsetof(LightSource, instance) == 92);
+static_assert(offsetof(LightSource, first_emitter) == 96);
+static_assert(offsetof(LightSource, layers) == 100);
 
 static_assert(sizeof(Emitter) == 16);
 static_assert(offsetof(Emitter, light) == 0);

@@ -3,6 +3,7 @@
 
 #include "mediator/shading/environment.h"
 #include "mediator/shading/light_tree.h"
+#include "mediator/shading/shaped_lights.h"
 #include "mediator/shading/surfaces.h"
 
 // One light out of all, and a place on it. First the tree or one of the lights that are infinitely far, by
@@ -59,12 +60,32 @@ inline LightSample sample_distant_light(IN(LightSource) light, vec3 direction, v
     return found;
 }
 
-// Density per solid angle of a point of an emitter that is chosen with a probability, at a distance and seen
-// on its surface under a cosine. The ratio is squared, since the squares themselves leave the range of floats
-// in tiny and huge scenes.
-inline float solid_angle_pdf(IN(Emitter) emitter, float probability, float distance, float cosine_there) {
-    const float ratio = distance * emitter.inverse_root_area;
-    return probability * (ratio * ratio) / greater_of(cosine_there, 1e-30f);
+// A shadow ray ends where the sphere begins, and from inside where it ends.
+inline LightSample sample_sphere_light(IN(LightSource) light, IN(Surface) surface, float probability,
+                                       vec2 u) {
+    LightSample found = no_light();
+    const SphereView seen = view_sphere(light, surface.position);
+    found.direction = sample_cap(seen.axis, seen.cap, u);
+    found.radiance = light.intensity;
+    found.intensity = light.intensity;
+    found.pdf = probability * cap_pdf(seen.cap);
+    found.target = surface.position + sphere_distance(light, seen, found.direction) * found.direction;
+    return found;
+}
+
+inline LightSample sample_quad_light(IN(Emitter) emitter, IN(LightSource) light, IN(Surface) surface,
+                                     float probability, vec2 u) {
+    LightSample found = no_light();
+    const vec2 place = (2.0f * u - 1.0f) * light.half_size;
+    found.target = light.position + place.x * light.edge_u + place.y * light.edge_v;
+    const Measured way = measure(found.target - surface.position);
+    const float facing = -dot(light.direction, way.direction);
+    if (!(facing > 0.0f)) return no_light();
+    found.direction = way.direction;
+    found.radiance = light.intensity;
+    found.intensity = light.intensity;
+    found.pdf = probability * area_pdf(emitter.inverse_root_area, way.distance, facing);
+    return found;
 }
 
 inline LightSample sample_mesh_light(IN(Scene) scene, IN(Emitter) emitter, float probability,
@@ -89,7 +110,7 @@ inline LightSample sample_mesh_light(IN(Scene) scene, IN(Emitter) emitter, float
         found.radiance *= material.alpha_mode == AlphaMask ? masked : clamp(alpha, 0.0f, 1.0f);
     }
     found.intensity = found.radiance;
-    found.pdf = solid_angle_pdf(emitter, probability, way.distance, abs(facing));
+    found.pdf = probability * area_pdf(emitter.inverse_root_area, way.distance, abs(facing));
     // By its own error and that of the segment's rounding on the way there.
     const vec3 error = point.error + 2.0f * 5.9604644775390625e-8f * abs(offset);
     found.target = leave_surface(point.position, error, normal, -found.direction);
@@ -109,6 +130,10 @@ inline LightSample sample_emitter(IN(Scene) scene, IN(Emitter) emitter, IN(Light
         return sample_instance_light(scene, emitter, probability, scene.instances.items[light.instance],
                                      surface, u);
     }
+    if ((scene.features & FeatureShapedLights) != 0u) {
+        if (light.kind == LightSphere) return sample_sphere_light(light, surface, probability, u);
+        if (light.kind == LightQuad) return sample_quad_light(emitter, light, surface, probability, u);
+    }
     return sample_point_light(light, surface, probability);
 }
 
@@ -121,7 +146,10 @@ inline LightSample sample_distant(IN(Scene) scene, IN(LightSource) light, vec2 u
         return found;
     }
     LightSample found = sample_distant_light(light, -light.direction, light.intensity);
-    found.delta = true;
+    found.delta = !((scene.features & FeatureSuns) != 0u && light.cap > 0.0f);
+    if (found.delta) return found;
+    found.direction = sample_cap(found.direction, light.cap, u);
+    found.pdf *= cap_pdf(light.cap);
     return found;
 }
 
@@ -162,7 +190,7 @@ inline float mesh_light_pdf(IN(Scene) scene, IN(Surface) hit, IN(Receiver) recei
     const Measured way = measure(hit.position - receiver.position);
     const float cosine_there = abs(dot(hit.geometric_normal, way.direction));
     const float probability = scene.tree_probability * leaf_probability(scene, emitter.node, receiver);
-    return solid_angle_pdf(emitter, probability, way.distance, cosine_there);
+    return probability * area_pdf(emitter.inverse_root_area, way.distance, cosine_there);
 }
 
 // The same of a direction to the sky.

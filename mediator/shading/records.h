@@ -89,16 +89,21 @@ struct Instance {
 };
 
 inline constexpr uint LightPoint = 0u, LightSpot = 1u, LightDirectional = 2u, LightMesh = 3u,
-                      LightEnvironment = 4u;
+                      LightEnvironment = 4u, LightSphere = 5u, LightQuad = 6u;
 
 struct LightSource {
     uint kind;
     float probability;  // of being chosen, if it is infinitely far: the others are in the light tree
-    vec3 intensity;
+    vec3 intensity;     // of what has a size (sphere, quad, sun): its radiance
     vec3 position;
     vec3 direction;  // in which it shines
     float cos_inner;
     float cos_outer;
+    float radius;  // of a sphere
+    float cap;  // of a sun: 1 - the cosine of half the angle that it spans; 0 = no sun but a point in the sky
+    vec3 edge_u;  // of a quad: directions of its edges, of unit length
+    vec3 edge_v;
+    vec2 half_size;      // along them
     uint instance;       // of a mesh light
     uint first_emitter;  // of a mesh light: that of its first triangle; else its own
     uint layers;         // as of an instance
@@ -125,7 +130,8 @@ struct LightNode {
     uint link;         // the first child, or the emitter of a leaf; and the bits below
     uint parent;
 };
-inline constexpr uint LightLeaf = 0x80000000u, LightTwoSided = 0x40000000u, LightIndexBits = 0x0fffffffu;
+inline constexpr uint LightLeaf = 0x80000000u, LightTwoSided = 0x40000000u, LightIndexBits = 0x07ffffffu;
+inline constexpr uint LightShaped = 0x08000000u;                     // there are spheres or quads below
 inline constexpr uint LightCountShift = 28u, MaxLightChildren = 4u;  // two bits: children - 1
 
 // Light from infinitely far: color + strength x map. A map of width 0 is none.
@@ -145,8 +151,8 @@ inline constexpr uint FeatureTextures = 1u, FeatureNormalMaps = 2u, FeatureAlpha
                       FeatureEnvironmentMap = 128u;
 // Of a scene and a view together: some of it is in none of the view's layers.
 inline constexpr uint FeatureLayers = 256u;
-// More than one emitter.
-inline constexpr uint FeatureLightTree = 0x10000u;
+// More than one emitter; spheres and quads; suns.
+inline constexpr uint FeatureLightTree = 0x10000u, FeatureShapedLights = 0x20000u, FeatureSuns = 0x40000u;
 
 ARRAY_OF(Texture, TextureArray, 8);
 ARRAY_OF(Material, MaterialArray, 4);

@@ -2,6 +2,7 @@
 #define TESSERA_MEDIATOR_SHADING_TRACE_H
 
 #include "mediator/shading/camera.h"
+#include "mediator/shading/seen_lights.h"
 #include "mediator/shading/speculars.h"
 
 // One sample, a pure function of (scene, view, pixel, index).
@@ -102,6 +103,7 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
         } else {
             is_hit = trace_closest(context, ray, closest_seed(path), hit);
         }
+        if (lit) add_shapes(context, path, ray, is_hit ? hit.distance : infinity());
         if (is_hit) {
             const Surface surface = make_surface(context.scene, hit, ray.direction);
             tell_hit(context, surface, path.throughput);
@@ -117,7 +119,10 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
         } else {
             tell_miss(context);
             const bool hidden = first && context.view.transparent_background != 0u;
-            if (lit && !hidden) add_sky(context, path, ray);
+            if (lit && !hidden) {
+                add_sky(context, path, ray);
+                add_suns(context, path, ray);
+            }
         }
         if (!goes_on) {
             if (open.count == 0u) return path;

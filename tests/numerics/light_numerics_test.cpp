@@ -99,5 +99,71 @@ TEST(LightNumerics, DegenerateDarkAndTurnedAway) {
     EXPECT_EQ(seen_by(behind.build(), at_origin(0.3), Strategy::Both, 16).value, 0.0);
 }
 
+// A sphere is a point from outside, however small, large, near or far.
+TEST(LightNumerics, SpheresOfAnySizeAtAnyDistance) {
+    for (const double distance : {1e-9, 1.0, 1e9}) {
+        for (const double share : {1e-12, 1e-6, 1e-3, 0.5, 0.999, 0.999999}) {
+            Model model;
+            add_ground(model, static_cast<float>(distance));
+            const double radius = share * distance;
+            model.light({.kind = scene::LightKind::Sphere,
+                         .intensity = glm::vec3(static_cast<float>(distance * distance)),
+                         .radius = static_cast<float>(radius)},
+                        glm::translate(glm::dmat4(1.0), {0.0, 0.0, distance}));
+            const World& world = model.build();
+            SCOPED_TRACE(testing::Message() << distance << " " << share);
+            for (const Strategy strategy : {Strategy::Both, Strategy::LightsOnly}) {
+                // An eye inside of it sees its light, too.
+                const double in_front = share > 0.7 ? 1.0 / (M_PI * share * share) : 0.0;
+                expect_light(seen_by(world, at_origin(0.3 * distance), strategy, 256),
+                             GroundAlbedo / M_PI + in_front);
+            }
+        }
+    }
+}
+
+// 0.25 degrees across, radiance 1e9, in a sky of 0.01: as a directional light and as a texel of a map.
+TEST(LightNumerics, AFierceSunInADimSky) {
+    const double half_angle = 0.125 / 180.0 * M_PI;
+    const double irradiance = 1e9 * M_PI * std::pow(std::sin(half_angle), 2.0);
+    Model model;
+    add_ground(model);
+    model.sky(glm::vec3(0.01f));
+    model.light({.kind = scene::LightKind::Directional,
+                 .intensity = glm::vec3(static_cast<float>(irradiance)),
+                 .angle = static_cast<float>(half_angle)},
+                glm::dmat4(1.0));
+    expect_light(seen_by(model.build(), at_origin(0.3), Strategy::Both, 64),
+                 GroundAlbedo * (0.01 + irradiance / M_PI));
+}
+
+TEST(LightNumerics, AFierceSunInAMap) {
+    constexpr std::uint32_t Width = 1440, Height = 720;  // a quarter of a degree each
+    constexpr std::uint32_t Column = 400, Row = 250;
+    std::vector<glm::vec3> texels(std::size_t{Width} * Height, glm::vec3(0.01f));
+    texels[std::size_t{Row} * Width + Column] = glm::vec3(1e9f);
+    // The map's +y is up there; here up is +z: the ground stands upright.
+    Model model;
+    model.quad(model.material(chalk(glm::vec3(GroundAlbedo))),
+               {{{-1.0f, 0.0f, 1.0f}, {1.0f, 0.0f, 1.0f}, {1.0f, 0.0f, -1.0f}, {-1.0f, 0.0f, -1.0f}}});
+    scene::Texture map{.width = Width, .height = Height, .format = scene::TexelFormat::RgbFloat};
+    const scene::TextureSlot slot = model.texture(map, texels);
+    model.sky(scene::Background{.environment = slot.texture});
+    const World& world = model.build();
+    // Bilinear filtering spreads the texel as a tent over two texels each way.
+    double sun = 0.0;
+    constexpr int Steps = 2000;
+    for (int i = 0; i < Steps; ++i) {
+        const double v = 2.0 * (i + 0.5) / Steps - 1.0;
+        const double theta = M_PI * (Row + 0.5 + v) / Height;
+        sun += (1.0 - std::fabs(v)) * std::sin(theta) * std::cos(theta) * 2.0 / Steps;
+    }
+    sun *= (1e9 - 0.01) * (M_PI / Height) * (2.0 * M_PI / Width);
+    view::View view =
+        small_view({0.0, 0.3, 0.0}, 1e-3, 16, glm::rotate(glm::dmat4(1.0), -M_PI / 2, {1.0, 0.0, 0.0}));
+    view.max_bounces = 0;
+    expect_light(seen_by(world, view, Strategy::Both, 1024), GroundAlbedo * (0.01 + sun / M_PI));
+}
+
 }  // namespace
 }  // namespace tessera::embree

@@ -88,6 +88,12 @@ inline LightSample on_lit_mesh(IN(Case) c, vec2 u) {
                              c.context.scene.meshes.items[c.lit.mesh],
                              c.context.scene.materials.items[c.lit.material], c.surface, u);
 }
+// Where its shadow ray ends as seen from the surface, which may be far from all lights.
+inline LightSample on_sphere(IN(Case) c, vec2 u) {
+    LightSample found = sample_sphere_light(c.light, c.surface, 0.5f, u);
+    found.target -= c.surface.position;
+    return found;
+}
 inline Surface with_scattering(IN(Case) c) {
     Surface surface = c.surface;
     const bool front = dot(c.surface.geometric_normal, c.ray.direction) < 0.0f;
@@ -113,6 +119,21 @@ inline Path with_sky(IN(Case) c) {
 inline Path with_emission(IN(Case) c) {
     Path path = c.path;
     add_emission(c.context, path, c.ray, c.surface);
+    return path;
+}
+inline Path with_shapes(IN(Case) c, float far) {
+    Path path = c.path;
+    add_shapes(c.context, path, c.ray, far);
+    return path;
+}
+inline Path with_shape(IN(Case) c, float far) {
+    Path path = c.path;
+    add_shape(c.context, path, c.ray, far, c.emitter, c.light);
+    return path;
+}
+inline Path with_suns(IN(Case) c) {
+    Path path = c.path;
+    add_suns(c.context, path, c.ray);
     return path;
 }
 inline Path with_lights(IN(Case) c) {

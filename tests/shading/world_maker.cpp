@@ -171,22 +171,28 @@ std::vector<Instance> make_instances(Generator& random) {
     return instances;
 }
 
-constexpr uint Emitters = TriangleEmitters + 2u;
+constexpr uint Emitters = TriangleEmitters + 4u;
 static_assert(TriangleEmitters == 2u * Triangles);
 
-// Four in the tree, two distant.
+// Those in the tree, then two distant ones.
 std::vector<LightSource> make_lights(Generator& random) {
-    constexpr uint Kinds[LightCount] = {LightMesh, LightMesh,        LightPoint,
-                                        LightSpot, LightDirectional, LightEnvironment};
+    constexpr uint Kinds[LightCount] = {LightMesh,   LightMesh, LightPoint,       LightSpot,
+                                        LightSphere, LightQuad, LightDirectional, LightEnvironment};
     std::vector<LightSource> lights;
     for (uint i = 0; i < LightCount; ++i) {
+        const mat3 frame = frame_around(random.anywhere());
         lights.push_back({.kind = Kinds[i],
                           .probability = 1.0f / float(LightCount),
                           .intensity = vec3(3.0f, 2.0f, 1.0f) * random.between(0.5f, 2.0f),
                           .position = 3.0f * random.anywhere(),
-                          .direction = random.anywhere(),
+                          .direction = frame[2],
                           .cos_inner = 0.6f,
                           .cos_outer = -0.3f,
+                          .radius = random.between(0.3f, 3.0f),
+                          .cap = random.between(0.01f, 0.5f),
+                          .edge_u = frame[0],
+                          .edge_v = frame[1],
+                          .half_size = vec2(random.between(0.3f, 3.0f), 1.0f),
                           .instance = i == 1u ? 6u : 2u,
                           .first_emitter = i < 2u ? i * Triangles : 2u * Triangles + i - 2u});
     }
@@ -205,12 +211,12 @@ std::vector<Emitter> make_emitters() {
     return emitters;
 }
 
-// Of any kind, as if the emitters were anywhere. The last but one shines on nobody.
+// Of any kind, as if the emitters were anywhere. The point light shines on nobody.
 std::vector<LightNode> make_nodes(std::vector<Emitter>& emitters, Generator& random) {
     std::vector<backend::LightLeaf> leaves;
     for (uint i = 0; i < Emitters; ++i) {
         const vec3 low = 2.0f * random.anywhere();
-        if (i + 2u == Emitters) continue;
+        if (i == TriangleEmitters) continue;
         leaves.push_back({.low = low,
                           .high = low + random.color() * (i % 4u == 0u ? 0.0f : 1.0f),
                           .axis = random.anywhere(),
@@ -218,6 +224,7 @@ std::vector<LightNode> make_nodes(std::vector<Emitter>& emitters, Generator& ran
                           .reach = double(random.between(0.3f, 1.6f)),
                           .power = double(random.between(0.1f, 10.0f)),
                           .emitter = i,
+                          .shaped = i >= TriangleEmitters,
                           .two_sided = i % 2u == 0u});
     }
     std::vector<LightNode> nodes = backend::make_light_tree(leaves, emitters);
@@ -264,7 +271,7 @@ PackedWorld make_world(std::uint64_t address) {
                 .light_count = LightCount,
                 .tree_light_count = TreeLightCount,
                 .tree_probability = 0.4f,
-                .features = 0xffu | FeatureLightTree,
+                .features = 0xffu | FeatureLightTree | FeatureShapedLights | FeatureSuns,
                 .tree_scale = 0.25f};
     scene.light_sums = uint(sums.size());
     add_sums(sums, LightCount - TreeLightCount + 1u, random);
@@ -280,7 +287,7 @@ PackedWorld make_world(std::uint64_t address) {
     add_sums(sums, height, random);
     scene.environment.column_sums = uint(sums.size());
     for (uint row = 0; row < height; ++row) add_sums(sums, width, random);
-    scene.environment_light = 5;
+    scene.environment_light = 7;
 
     scene.textures = packer.add<TextureArray>(textures);
     scene.materials = packer.add<MaterialArray>(make_materials(random));

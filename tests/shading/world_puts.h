@@ -51,6 +51,17 @@ inline void put(INOUT(Outputs) y, IN(ChildShares) shares) {
     put(y, shares.count);
     for (uint i = 0u; i < shares.count; ++i) put(y, shares.items[i]);
 }
+inline void put(INOUT(Outputs) y, IN(SphereView) seen) {
+    put(y, seen.axis);
+    put(y, seen.distance);
+    put(y, seen.is_inside);
+    put(y, seen.cap);
+}
+inline void put(INOUT(Outputs) y, IN(ShapeHit) hit) {
+    put(y, hit.is_hit);
+    put(y, vec3(hit.distance, 1.0f, 0.0f));  // of places of about that size
+    put(y, hit.pdf);
+}
 inline void put(INOUT(Outputs) y, IN(ChosenEmitter) chosen) {
     put(y, chosen.index);
     put(y, chosen.probability);

@@ -34,7 +34,7 @@ struct Group {
     Bounds bounds;
     glm::dvec3 axis{0.0};
     double spread = 0.0, reach = 0.0, power = 0.0;
-    bool two_sided = false;
+    bool two_sided = false, shaped = false;
 };
 
 // Turned about `axis`, of unit length and across v.
@@ -81,6 +81,7 @@ Group joined(Group a, const Group& b) {
     a.reach = std::max(a.reach, b.reach);
     a.power += b.power;
     a.two_sided = a.two_sided || b.two_sided;
+    a.shaped = a.shaped || b.shaped;
     return a;
 }
 
@@ -128,8 +129,8 @@ class Builder {
         if (end - begin == 1) {
             const LightLeaf& leaf = leaves_[order_[begin]];
             emitters_[leaf.emitter].node = at;
-            const Group group{{leaf.low, leaf.high}, leaf.axis, leaf.spread, leaf.reach, leaf.power,
-                              leaf.two_sided};
+            const Group group{{leaf.low, leaf.high}, leaf.axis,  leaf.spread, leaf.reach, leaf.power,
+                              leaf.two_sided,        leaf.shaped};
             write(at, group, leaf.emitter | shading::LightLeaf);
             return group;
         }
@@ -168,7 +169,8 @@ class Builder {
         node.cos_reach = static_cast<float>(std::cos(group.reach));
         // A share that no float holds would be 0.
         node.power = std::max(static_cast<float>(group.power / total_), LeastPower);
-        node.link = link | (group.two_sided ? shading::LightTwoSided : 0u);
+        node.link = link | (group.two_sided ? shading::LightTwoSided : 0u) |
+                    (group.shaped ? shading::LightShaped : 0u);
     }
 
     glm::dvec3 place_of(std::uint32_t leaf) const { return 0.5 * (leaves_[leaf].low + leaves_[leaf].high); }

@@ -16,6 +16,7 @@ struct LightLeaf {
     double reach = 0.0;         // angle to which it shines around each of them
     double power = 0.0;         // finite, more than 0
     std::uint32_t emitter = 0;  // index
+    bool shaped = false;        // a sphere or a quad: rays look for it
     bool two_sided = false;     // shines along -axis, too
 };
 

@@ -48,9 +48,63 @@ struct DistantLights {
     }
 };
 
-// A point light or a spot becomes an emitter.
+// What is brighter than floats go is a point.
+bool is_bright(const glm::vec3& radiance) {
+    return std::isfinite(radiance.x) && std::isfinite(radiance.y) && std::isfinite(radiance.z);
+}
+
+void make_spot(shading::LightSource& light, LightLeaf& leaf, const scene::Light& source) {
+    light.kind = shading::LightSpot;
+    light.cos_inner = std::cos(source.inner_cone_angle);
+    light.cos_outer = std::cos(source.outer_cone_angle);
+    leaf.axis = glm::dvec3(light.direction);
+    leaf.spread = 0.0;
+    leaf.reach = source.outer_cone_angle;
+    leaf.power *= std::max(0.5 * (1.0 - light.cos_outer), 1e-6);  // a cone too narrow for floats
+}
+
+void make_sphere(shading::LightSource& light, LightLeaf& leaf, const scene::Light& source) {
+    const double radius = source.radius;
+    const glm::vec3 radiance(glm::dvec3(source.intensity) / (pi * radius * radius));
+    if (!is_bright(radiance)) return;
+    light.kind = shading::LightSphere;
+    light.intensity = radiance;
+    light.radius = source.radius;
+    leaf.low -= radius;
+    leaf.high += radius;
+    leaf.shaped = true;
+}
+
+// 1 / the root of its area; 0: it has none, and does not shine.
+float make_quad(shading::LightSource& light, LightLeaf& leaf, const scene::Light& source,
+                const glm::dvec3& up) {
+    const glm::dvec2 half = 0.5 * glm::dvec2(source.size);
+    const double area = 4.0 * half.x * half.y;
+    const glm::vec3 radiance(glm::dvec3(source.intensity) / area);
+    const auto inverse = static_cast<float>(1.0 / std::sqrt(area));
+    if (!is_bright(radiance) || !std::isfinite(inverse)) return 0.0f;
+    light.kind = shading::LightQuad;
+    light.intensity = radiance;
+    light.half_size = glm::vec2(half);
+    const glm::dvec3 front = light.direction;
+    glm::dvec3 across = glm::cross(front, up);
+    if (!(glm::length(across) > 0.0)) across = shading::frame_around(light.direction)[0];  // flattened
+    across = glm::normalize(across);
+    light.edge_u = glm::vec3(across);
+    light.edge_v = glm::vec3(glm::normalize(glm::cross(front, across)));
+    const glm::dvec3 reach = half.x * glm::abs(across) + half.y * glm::abs(glm::dvec3(light.edge_v));
+    leaf.low -= reach;
+    leaf.high += reach;
+    leaf.axis = front;
+    leaf.spread = 0.0;
+    leaf.power *= 0.25;
+    leaf.shaped = true;
+    return inverse;
+}
+
+// A light that is somewhere becomes an emitter.
 void add_local_light(SceneTables& tables, EmitterList& list, const scene::Light& source,
-                     shading::LightSource light) {
+                     shading::LightSource light, const glm::dvec3& up) {
     LightLeaf leaf{.low = glm::dvec3(light.position),
                    .high = glm::dvec3(light.position),
                    .spread = pi,
@@ -58,27 +112,38 @@ void add_local_light(SceneTables& tables, EmitterList& list, const scene::Light&
                    .power = 4.0 * pi * luminance(light.intensity),
                    .emitter = static_cast<std::uint32_t>(list.emitters.size())};
     light.kind = shading::LightPoint;
-    if (source.kind == scene::LightKind::Spot) {
-        light.kind = shading::LightSpot;
-        light.cos_inner = std::cos(source.inner_cone_angle);
-        light.cos_outer = std::cos(source.outer_cone_angle);
-        leaf.axis = glm::dvec3(light.direction);
-        leaf.spread = 0.0;
-        leaf.reach = source.outer_cone_angle;
-        leaf.power *= std::max(0.5 * (1.0 - light.cos_outer), 1e-6);  // a cone too narrow for floats
+    float inverse_root_area = 0.0f;
+    if (source.kind == scene::LightKind::Spot) make_spot(light, leaf, source);
+    if (source.kind == scene::LightKind::Sphere) make_sphere(light, leaf, source);
+    if (source.kind == scene::LightKind::Quad) {
+        inverse_root_area = make_quad(light, leaf, source, up);
+        if (inverse_root_area == 0.0f) return;
     }
+    if (leaf.shaped) tables.scene.features |= shading::FeatureShapedLights;
     light.first_emitter = leaf.emitter;
     list.emitters.push_back(
-        {static_cast<std::uint32_t>(tables.lights.size()), 0, shading::NoLightNode, 0.0f});
+        {static_cast<std::uint32_t>(tables.lights.size()), 0, shading::NoLightNode, inverse_root_area});
     tables.lights.push_back(light);
     list.leaves.push_back(leaf);
+}
+
+// A sun has the radiance that makes its irradiance, E / (pi sin^2). Directions are known to about 1e-7: what
+// spans less than 1e-5 is a point.
+void make_sun(SceneTables& tables, shading::LightSource& light, double angle) {
+    const double sine = std::sin(angle);
+    const glm::vec3 radiance(glm::dvec3(light.intensity) / (pi * sine * sine));
+    if (!(angle >= 1e-5) || !is_bright(radiance)) return;
+    light.intensity = radiance;
+    light.cap = static_cast<float>(2.0 * std::sin(0.5 * angle) * std::sin(0.5 * angle));
+    tables.scene.features |= shading::FeatureSuns;
 }
 
 void add_placed_lights(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered, double radius,
                        EmitterList& list, DistantLights& distant) {
     for (const PlacedLight& placed : lowered.lights) {
         const auto& source = *scene.find_as<scene::Light>(placed.light);
-        const glm::dvec3 shines = glm::dmat3(placed.world_from_light) * glm::dvec3(0.0, 0.0, -1.0);
+        const glm::dmat3 turn(placed.world_from_light);
+        const glm::dvec3 shines = -turn[2];
         const double length = glm::length(shines);
         if (!(length > 0.0)) continue;  // flattened: it has no direction
         const double brightness = luminance(source.intensity);
@@ -89,9 +154,10 @@ void add_placed_lights(SceneTables& tables, const scene::Scene& scene, const Low
         tables.scene.features |= shading::FeaturePlacedLights;
         if (source.kind == scene::LightKind::Directional) {
             light.kind = shading::LightDirectional;
+            make_sun(tables, light, source.angle);
             distant.add(light, pi * radius * radius * brightness);
         } else {
-            add_local_light(tables, list, source, light);
+            add_local_light(tables, list, source, light, turn[1]);
         }
     }
 }
