@@ -52,6 +52,25 @@ void lights_and_textures(SceneModel& model) {
                 pointing_down({0, 0, 0}));
 }
 
+// Balls among spheres, quads and 300 bulbs of light, under two suns.
+void lights_with_sizes(SceneModel& model) {
+    model.quad(model.material(test::chalk(glm::vec3(0.7f))), Ground);
+    model.sphere(model.material({.roughness = 0.2f}), {-1.2, 1.0, 0.0}, 1.0, Normals::Flat, 8);
+    model.sphere(model.material(test::mirror(glm::vec3(0.9f))), {1.2, 0.8, 0.0}, 0.8, Normals::Smooth, 8);
+    for (int i = 0; i < 300; ++i) {
+        const glm::dvec3 place(std::sin(i * 1.7) * 3.0, 1.5 + std::sin(i * 0.3), std::cos(i * 2.3) * 3.0);
+        const scene::LightKind kind = i % 10 == 0   ? scene::LightKind::Sphere
+                                      : i % 10 == 5 ? scene::LightKind::Quad
+                                                    : scene::LightKind::Point;
+        model.light({.kind = kind, .intensity = glm::vec3(0.05f), .radius = 0.2f, .size = {0.3f, 0.5f}},
+                    pointing_down(place));
+    }
+    for (const float angle : {0.0f, 0.2f}) {
+        model.light({.kind = scene::LightKind::Directional, .intensity = glm::vec3(0.4f), .angle = angle},
+                    pointing_down({0, 0, 0}));
+    }
+}
+
 // Glass, a mirror and a surface with mapped normals under a sky with a map.
 void speculars_and_sky(SceneModel& model) {
     scene::Material waves{.base_color = {0.5f, 0.6f, 0.7f, 1.0f}, .metallic = 0.3f, .roughness = 0.3f};
@@ -168,6 +187,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, TransportOnDevice,
                                               view::PathClass::Indirect, view::PixelFilterKind::Box},
                                          Case{"lights_whitted", lights_and_textures, view::Renderer::Whitted,
                                               view::PathClass::Diffuse, view::PixelFilterKind::Box},
+                                         Case{"sizes", lights_with_sizes, view::Renderer::PathTracing,
+                                              view::PathClass::Indirect, view::PixelFilterKind::Box},
                                          Case{"speculars", speculars_and_sky, view::Renderer::PathTracing,
                                               view::PathClass::Caustics, view::PixelFilterKind::Gaussian},
                                          Case{"speculars_whitted", speculars_and_sky, view::Renderer::Whitted,
