@@ -19,6 +19,7 @@ struct PathSample {
     vec3 range;         // head light and ambient (Schwenk 2A.3); where asked for
     float depth;        // of the first hit, along the view axis; infinite: nothing hit
     uint object;        // id of the first hit
+    float alpha;        // 1 where the camera sees something, else the background's
 };
 
 // All that decides for which channels the light of a path counts.
@@ -48,7 +49,7 @@ inline Way direct_way() {
 
 inline PathSample nothing_found() {
     return PathSample(vec3(0.0f), vec3(0.0f), vec3(0.0f), 0.0f, vec3(0.0f), vec3(0.0f), vec3(0.0f),
-                      infinity(), 0u);
+                      infinity(), 0u, 0.0f);
 }
 
 inline Path start_path(IN(Sampler) numbers) {
@@ -120,10 +121,6 @@ inline vec3 irradiance_of(IN(PathSample) found) {
 inline float shading_feature_of(IN(PathSample) found, uint rule) {
     if (rule == RuleConnections) return found.connections;
     return grey(irradiance_of(found)) + greater_of(grey(radiance_of(found) - found.diffuse), 0.0f);
-}
-
-inline float alpha_of(IN(PathSample) found) {
-    return found.depth == infinity() ? 0.0f : 1.0f;
 }
 
 SHADING_END

@@ -143,6 +143,9 @@ struct Environment {
     uint row_sums;     // index of the rows' cumulative weights
     uint column_sums;  // index of the cumulative weights of the texels of each row
     uint emits;
+    vec4 visible_color;  // with alpha: what camera rays see that hit nothing, if it is
+    uint shows_color;    // and not the light
+    uint unused;         // keeps the size a multiple of an address's
 };
 
 // What occurs in a scene; what does not can be left out of a kernel.

@@ -42,7 +42,7 @@ inline void put_sample_values(INOUT(Sink) sink, IN(View) view, IN(PathSample) fo
     put_number(sink, view, ChannelDepth, found.depth);
     put_number(sink, view, ChannelObjectIndex, found.depth);
     put_number(sink, view, ChannelObjectIndex, float_from_bits(found.object));
-    put_number(sink, view, ChannelAlpha, alpha_of(found));
+    put_number(sink, view, ChannelAlpha, found.alpha);
     put_vector(sink, view, ChannelRange, found.range);
     put_number(sink, view, ChannelShadingFeature, shading_feature_of(found, view.feature_rule));
     put_vector(sink, view, ChannelIrradiance, irradiance_of(found));

@@ -75,6 +75,20 @@ WITH_CONTEXT inline bool leave_vertex(IN(Context) context, INOUT(Path) path, INO
     return true;
 }
 
+// A ray that hits nothing. What the camera sees itself may be another background than what lights the scene
+// (Lardinoije 3), or none.
+WITH_CONTEXT inline void leave_scene(IN(Context) context, INOUT(Path) path, IN(Ray) ray, bool is_first) {
+    const vec4 shown = context.scene.environment.visible_color;
+    if (is_first && context.view.transparent_background != 0u) return;
+    if (is_first && context.scene.environment.shows_color != 0u) {
+        path.found.alpha = shown.w;
+        add_light(path.found, context.view, vec3(shown) * shown.w, path.way);
+        return;
+    }
+    add_sky(context, path, ray);
+    add_suns(context, path, ray);
+}
+
 // What the camera sees, where that is known before the sample is traced; its instance may be NoInstance.
 struct FirstHit {
     bool is_known;
@@ -110,6 +124,7 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
             if (first) {
                 path.found.depth = depth_along(context.view, ray, hit.distance);
                 path.found.object = surface.object;
+                path.found.alpha = 1.0f;
             }
             if (stage == StageBranch || (first && wants_range)) {
                 if (wants_range) path.found.range += range_at(branch, surface);
@@ -118,11 +133,7 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
             if (lit) goes_on = leave_vertex(context, path, ray, stage, surface);
         } else {
             tell_miss(context);
-            const bool hidden = first && context.view.transparent_background != 0u;
-            if (lit && !hidden) {
-                add_sky(context, path, ray);
-                add_suns(context, path, ray);
-            }
+            if (lit) leave_scene(context, path, ray, first);
         }
         if (!goes_on) {
             if (open.count == 0u) return path;

@@ -47,6 +47,7 @@ inline Path path_in(IN(Inputs) x) {
     path.found.range = x.color;
     path.found.depth = x.c % 5u == 0u ? infinity() : x.pdf;
     path.found.object = x.d;
+    path.found.alpha = x.metallic;
     path.rays = x.c;
     return path;
 }
@@ -129,6 +130,11 @@ inline Path with_shapes(IN(Case) c, float far) {
 inline Path with_shape(IN(Case) c, float far) {
     Path path = c.path;
     add_shape(c.context, path, c.ray, far, c.emitter, c.light);
+    return path;
+}
+inline Path out_of_scene(IN(Case) c, bool is_first) {
+    Path path = c.path;
+    leave_scene(c.context, path, c.ray, is_first);
     return path;
 }
 inline Path with_suns(IN(Case) c) {

@@ -306,6 +306,8 @@ PackedWorld make_world(std::uint64_t address) {
     dark.light_count = 0;
     dark.tree_light_count = 0;
     dark.features = 0;
+    dark.environment.visible_color = vec4(0.4f, 0.3f, 0.2f, 0.7f);
+    dark.environment.shows_color = 1u;
     dark.environment_light = -1;
 
     World world{};

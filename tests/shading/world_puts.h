@@ -91,6 +91,7 @@ inline void put(INOUT(Outputs) y, IN(PathSample) found) {
     put(y, found.range);
     put(y, found.depth);
     put(y, found.object);
+    put(y, found.alpha);
 }
 inline void put(INOUT(Outputs) y, IN(Path) path) {
     put(y, path.numbers);

@@ -191,7 +191,7 @@ TEST(TransparentBackground, ShowsNothingWhereTheCameraSeesNothing) {
     std::size_t i = 0, misses = 0;
     for_samples(world, view, 2, [&](const PathSample& sample) {
         const bool miss = std::isinf(samples[i].depth);
-        EXPECT_EQ(alpha_of(sample), miss ? 0.0f : 1.0f);
+        EXPECT_EQ(sample.alpha, miss ? 0.0f : 1.0f);
         EXPECT_EQ(radiance_of(sample), miss ? glm::vec3(0.0f) : radiance_of(samples[i]));
         if (miss) {
             EXPECT_EQ(radiance_of(samples[i]), glm::vec3(0.1f, 0.2f, 0.3f));
@@ -201,6 +201,41 @@ TEST(TransparentBackground, ShowsNothingWhereTheCameraSeesNothing) {
     });
     EXPECT_GT(misses, 50u);
     EXPECT_GT(i - misses, 50u);
+}
+
+// The camera sees a colour where it sees nothing, and its alpha; mirrors show the light that there is.
+TEST(VisibleBackground, IsSeenByCameraRaysAlone) {
+    for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted}) {
+        for (const float alpha : {0.0f, 0.5f, 1.0f}) {
+            Corner corner(mirror(glm::vec3(0.9f))), other(mirror(glm::vec3(0.9f)));
+            const glm::vec4 color(0.8f, 0.4f, 0.2f, alpha);
+            corner.sky(scene::Background{.color = {0.1f, 0.2f, 0.3f},
+                                         .visible = scene::VisibleBackground::Color,
+                                         .visible_color = color});
+            World& world = corner.build();
+            View view = Corner::eye();
+            view.renderer = renderer;
+            std::vector<PathSample> samples;
+            for_samples(other.build(), view, 2, [&](const PathSample& s) { samples.push_back(s); });
+            std::size_t i = 0, misses = 0;
+            for_samples(world, view, 2, [&](const PathSample& sample) {
+                const bool miss = std::isinf(sample.depth);
+                EXPECT_EQ(sample.alpha, miss ? alpha : 1.0f);
+                EXPECT_EQ(radiance_of(sample), miss ? glm::vec3(color) * alpha : radiance_of(samples[i]));
+                misses += miss ? 1 : 0;
+                ++i;
+            });
+            EXPECT_GT(misses, 50u);
+            EXPECT_GT(i - misses, 50u);
+            View transparent = view;
+            transparent.transparent_background = true;
+            for_samples(world, transparent, 1, [&](const PathSample& sample) {
+                if (!std::isinf(sample.depth)) return;
+                EXPECT_EQ(sample.alpha, 0.0f);
+                EXPECT_EQ(radiance_of(sample), glm::vec3(0.0f));
+            });
+        }
+    }
 }
 
 std::vector<std::vector<float>> planes_of(const World& world, View view, Channel channel) {

@@ -83,6 +83,8 @@ double add_environment(SceneTables& tables, const scene::Scene& scene, const Ind
     sky.color = background->color;
     sky.strength = background->strength;
     sky.rotation = background->rotation;
+    sky.visible_color = background->visible_color;
+    sky.shows_color = background->visible == scene::VisibleBackground::Color ? 1u : 0u;
     double mean = shading::luminance(sky.color);
     const auto map = textures.find(background->environment);
     if (map != textures.end() && sky.strength > 0.0f) {
