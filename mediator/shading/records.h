@@ -75,12 +75,13 @@ struct Mesh {
 };
 
 inline constexpr uint AllLayers = 0xffffffffu;
+inline constexpr int ShadowCatcher = -2;
 
 struct Instance {
     uint mesh;      // index
     uint material;  // index
     uint object;    // id of the geometry
-    int light;      // index, if it emits and can be hit; else -1
+    int light;      // index, if it emits and can be hit; else -1, or ShadowCatcher
     mat3 linear;    // world from object
     vec3 translation;
     mat3 normals;       // cofactors of `linear` times a power of two: they turn normals, to their own side
@@ -156,6 +157,7 @@ inline constexpr uint FeatureTextures = 1u, FeatureNormalMaps = 2u, FeatureAlpha
 inline constexpr uint FeatureLayers = 256u;
 // More than one emitter; spheres and quads; suns.
 inline constexpr uint FeatureLightTree = 0x10000u, FeatureShapedLights = 0x20000u, FeatureSuns = 0x40000u;
+inline constexpr uint FeatureShadowCatcher = 0x80000u;
 
 ARRAY_OF(Texture, TextureArray, 8);
 ARRAY_OF(Material, MaterialArray, 4);

@@ -2,7 +2,7 @@
 #define TESSERA_MEDIATOR_SHADING_TRACE_H
 
 #include "mediator/shading/camera.h"
-#include "mediator/shading/seen_lights.h"
+#include "mediator/shading/shadow_catcher.h"
 #include "mediator/shading/speculars.h"
 
 // One sample, a pure function of (scene, view, pixel, index).
@@ -75,20 +75,6 @@ WITH_CONTEXT inline bool leave_vertex(IN(Context) context, INOUT(Path) path, INO
     return true;
 }
 
-// A ray that hits nothing. What the camera sees itself may be another background than what lights the scene
-// (Lardinoije 3), or none.
-WITH_CONTEXT inline void leave_scene(IN(Context) context, INOUT(Path) path, IN(Ray) ray, bool is_first) {
-    const vec4 shown = context.scene.environment.visible_color;
-    if (is_first && context.view.transparent_background != 0u) return;
-    if (is_first && context.scene.environment.shows_color != 0u) {
-        path.found.alpha = shown.w;
-        add_light(path.found, context.view, vec3(shown) * shown.w, path.way);
-        return;
-    }
-    add_sky(context, path, ray);
-    add_suns(context, path, ray);
-}
-
 // What the camera sees, where that is known before the sample is traced; its instance may be NoInstance.
 struct FirstHit {
     bool is_known;
@@ -99,6 +85,8 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
     const bool whitted = has_specular_trees(context) && context.view.renderer != RendererPathTracing;
     const bool wants_range = has_specular_trees(context) && keeps(context.view, KeepsRange);
     tell_camera(context, ray);
+    const Ray camera = ray;
+    bool is_caught = false;  // by a shadow catcher, and has met nothing since
     Branch branch = root_branch(ray);
     BranchStack open;
     open.count = 0u;
@@ -117,7 +105,7 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
         } else {
             is_hit = trace_closest(context, ray, closest_seed(path), hit);
         }
-        if (lit) add_shapes(context, path, ray, is_hit ? hit.distance : infinity());
+        if (lit && !is_caught) add_shapes(context, path, ray, is_hit ? hit.distance : infinity());
         if (is_hit) {
             const Surface surface = make_surface(context.scene, hit, ray.direction);
             tell_hit(context, surface, path.throughput);
@@ -126,14 +114,31 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                 path.found.object = surface.object;
                 path.found.alpha = 1.0f;
             }
-            if (stage == StageBranch || (first && wants_range)) {
-                if (wants_range) path.found.range += range_at(branch, surface);
-                push_children(open, branch, surface);
+            const bool catches_path = catches(context.scene, surface);
+            if (catches_path && is_caught) {
+                show_background(context, path, camera);
+            } else if (catches_path && first) {
+                is_caught = true;
+                goes_on = true;
+                ray = caught(path, surface);
+                if (stage == StageBranch) stage = StageGather;
+            } else if (catches_path) {
+                goes_on = pass_catcher(context, path, ray, surface);
+            } else {
+                is_caught = false;
+                if (stage == StageBranch || (first && wants_range)) {
+                    if (wants_range) path.found.range += range_at(branch, surface);
+                    push_children(open, branch, surface);
+                }
+                if (lit) goes_on = leave_vertex(context, path, ray, stage, surface);
             }
-            if (lit) goes_on = leave_vertex(context, path, ray, stage, surface);
         } else {
             tell_miss(context);
-            if (lit) leave_scene(context, path, ray, first);
+            if (is_caught) {
+                show_background(context, path, camera);
+            } else if (lit) {
+                leave_scene(context, path, ray, first);
+            }
         }
         if (!goes_on) {
             if (open.count == 0u) return path;

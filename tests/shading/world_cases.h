@@ -156,8 +156,23 @@ struct Step {
     bool goes_on;
 };
 
+inline Path without_catch(IN(Case) c) {
+    Path path = c.path;
+    show_background(c.context, path, c.ray);
+    return path;
+}
 inline Step first_step(IN(Case) c) {
     return Step(c.path, rough_lobe(c.path), c.ray, false);
+}
+inline Step caught_step(IN(Case) c) {
+    Step step = first_step(c);
+    step.ray = caught(step.path, c.surface);
+    return step;
+}
+inline Step passed_catcher(IN(Case) c) {
+    Step step = first_step(c);
+    step.goes_on = pass_catcher(c.context, step.path, step.ray, c.surface);
+    return step;
 }
 inline Step chosen_lobe(IN(Case) c) {
     Step step = first_step(c);

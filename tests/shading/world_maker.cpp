@@ -267,12 +267,13 @@ PackedWorld make_world(std::uint64_t address) {
     Generator random(false);
     const std::vector<Texture> textures = make_textures(packer, random);
     std::vector<float> sums;
-    Scene scene{.instance_count = Instances,
-                .light_count = LightCount,
-                .tree_light_count = TreeLightCount,
-                .tree_probability = 0.4f,
-                .features = 0xffu | FeatureLightTree | FeatureShapedLights | FeatureSuns,
-                .tree_scale = 0.25f};
+    Scene scene{
+        .instance_count = Instances,
+        .light_count = LightCount,
+        .tree_light_count = TreeLightCount,
+        .tree_probability = 0.4f,
+        .features = 0xffu | FeatureLightTree | FeatureShapedLights | FeatureSuns | FeatureShadowCatcher,
+        .tree_scale = 0.25f};
     scene.light_sums = uint(sums.size());
     add_sums(sums, LightCount - TreeLightCount + 1u, random);
     scene.environment = {.map = textures[2],

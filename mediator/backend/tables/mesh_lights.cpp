@@ -115,7 +115,8 @@ void add_mesh_lights(SceneTables& tables, EmitterList& list) {
     for (std::uint32_t i = 0; i < tables.instances.size(); ++i) {
         shading::Instance& instance = tables.instances[i];
         const shading::Material& material = tables.materials[instance.material];
-        if (!shading::emits(material) || material.unlit != 0) continue;
+        if (!shading::emits(material) || material.unlit != 0 || instance.light == shading::ShadowCatcher)
+            continue;
         const Glow glow{scene, material, tables.meshes[instance.mesh], brightest(scene, material)};
         const std::size_t emitters = list.emitters.size(), leaves = list.leaves.size();
         const auto index = static_cast<std::uint32_t>(tables.lights.size());

@@ -16,6 +16,10 @@ Indices add_materials(SceneTables& tables, const scene::Scene& scene, const Indi
 void add_instances(SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes,
                    const Indices& materials);
 
+// Instances of a material that catches shadows: they stop rays where their mask says so, and do not shine.
+void mark_shadow_catchers(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
+                          const MeshCatalog& meshes);
+
 // Radiance over the sphere in the mean, as luminance; 0: there is no sky.
 double add_environment(SceneTables& tables, const scene::Scene& scene, const Indices& textures);
 

@@ -90,6 +90,7 @@ SceneTables make_tables(const scene::Scene& scene, const Lowered& lowered, const
     const Indices textures = add_textures(tables, scene, blobs);
     const Indices materials = add_materials(tables, scene, textures);
     add_instances(tables, lowered, meshes, materials);
+    mark_shadow_catchers(tables, scene, lowered, meshes);
     tables.layers = masks_of(lowered);
     const double sky_luminance = add_environment(tables, scene, textures);
     add_lights(tables, scene, lowered, meshes, sky_luminance);

@@ -1,0 +1,112 @@
+// LT28: surfaces that show nothing but the shadows on them.
+#include <gtest/gtest.h>
+
+#include "tests/statistics/panels.h"
+
+namespace tessera::embree {
+namespace {
+
+const glm::vec3 SkyColor{0.1f, 0.2f, 0.3f};
+const glm::vec4 Shown{0.8f, 0.4f, 0.2f, 0.5f};
+
+scene::Material catcher(float mask) {
+    scene::Material material = chalk(glm::vec3(0.9f));
+    material.base_color.w = mask;
+    material.shadow_catcher = true;
+    return material;
+}
+
+scene::Background background(scene::VisibleBackground visible) {
+    return {.color = SkyColor, .visible = visible, .visible_color = Shown};
+}
+
+// A catcher of 2 m under a sky, seen from above.
+struct Ground : Model {
+    explicit Ground(float mask, scene::VisibleBackground visible = scene::VisibleBackground::Color) {
+        floor(material(catcher(mask)), 1.0f, 0.0f);
+        sky(background(visible));
+    }
+};
+
+view::View picture(view::Renderer renderer) {
+    view::View view = small_view({0.0, 0.0, 3.0}, 1.0);
+    view.renderer = renderer;
+    return view;
+}
+
+TEST(ShadowCatcher, IsTheBackgroundWhereNothingIs) {
+    for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted}) {
+        for (const float mask : {0.0f, 0.5f, 1.0f}) {
+            Ground colored(mask), lit(mask, scene::VisibleBackground::Environment);
+            for_samples(colored.build(), picture(renderer), 4, [](const PathSample& sample) {
+                ASSERT_EQ(radiance_of(sample), glm::vec3(Shown) * Shown.w);
+                ASSERT_EQ(sample.alpha, Shown.w);
+                ASSERT_TRUE(std::isinf(sample.depth));
+            });
+            for_samples(lit.build(), picture(renderer), 4,
+                        [](const PathSample& sample) { ASSERT_EQ(radiance_of(sample), SkyColor); });
+        }
+    }
+}
+
+// A black panel above the origin takes its share of all directions, within the mask.
+TEST(ShadowCatcher, IsDarkerWhereThingsHideTheSky) {
+    Panel panel{{{{-0.4f, -0.3f, 0.5f}, {-0.3f, 0.5f, 0.5f}, {0.5f, -0.2f, 0.5f}}}};
+    const double hidden = irradiance_of(panel) / M_PI;
+    ASSERT_GT(hidden, 0.1);
+    for (const float mask : {0.0f, 0.3f, 1.0f}) {
+        Ground ground(mask);
+        ground.triangles(ground.material(chalk(glm::vec3(0.0f))), {panel.corners});
+        const World& world = ground.build();
+        view::View view = small_view({0.0, 0.0, 0.3}, 1e-3);
+        const Mean light = mean_of(world, view, 256, red);
+        const double plain = double(Shown.x) * double(Shown.w), share = double(mask) * hidden;
+        EXPECT_NEAR(light.value, plain * (1.0 - share), 4.0 * light.standard_error + 1e-6);
+        const Mean alpha = mean_of(world, view, 256, [](const PathSample& s) { return double(s.alpha); });
+        EXPECT_NEAR(alpha.value, double(Shown.w) * (1.0 - share) + share, 4.0 * alpha.standard_error + 1e-6);
+        EXPECT_EQ(light.standard_error > 1e-5, mask > 0.0f);
+    }
+}
+
+TEST(ShadowCatcher, ShowsTheColourOfWhatHidesTheSky) {
+    Panel panel{{{{-0.4f, -0.3f, 0.5f}, {-0.3f, 0.5f, 0.5f}, {0.5f, -0.2f, 0.5f}}}, 4.0};
+    Ground ground(1.0f);
+    ground.triangles(ground.material(lamp(4.0f)), {panel.corners});
+    const World& world = ground.build();
+    const double hidden = irradiance_of(panel) / (M_PI * panel.radiance);
+    const Mean light = mean_of(world, small_view({0.0, 0.0, 0.3}, 1e-3), 256, red);
+    EXPECT_NEAR(light.value, double(Shown.x) * double(Shown.w) * (1.0 - hidden) + 4.0 * hidden,
+                4.0 * light.standard_error);
+}
+
+TEST(ShadowCatcher, IsNotThereInMirrors) {
+    for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted}) {
+        Ground ground(1.0f);
+        ground.floor(ground.material(mirror(glm::vec3(1.0f))), -1.0f, 1.0f);
+        view::View view =
+            small_view({0.0, 0.0, 0.5}, 0.5, 16, glm::rotate(glm::dmat4(1.0), M_PI, {1.0, 0.0, 0.0}));
+        view.renderer = renderer;
+        for_samples(ground.build(), view, 2,
+                    [](const PathSample& sample) { ASSERT_EQ(radiance_of(sample), SkyColor); });
+    }
+}
+
+// The underside of a thing sees the ground in the background's colour; light of the sky from below does not
+// pass.
+TEST(ShadowCatcher, ShinesOnThingsAsTheBackground) {
+    for (const float mask : {0.0f, 1.0f}) {
+        Model model;
+        model.floor(model.material(catcher(mask)), 1000.0f, 0.0f);
+        model.floor(model.material(chalk(glm::vec3(0.5f))), -1.0f, 1.0f);
+        model.sky(background(scene::VisibleBackground::Color));
+        view::View view =
+            small_view({0.0, 0.0, 0.5}, 1e-3, 16, glm::rotate(glm::dmat4(1.0), M_PI, {1.0, 0.0, 0.0}));
+        view.max_bounces = 0;
+        const Mean light = mean_of(model.build(), view, 1024, red);
+        const double below = mask > 0.0f ? double(Shown.x) : double(SkyColor.x);
+        EXPECT_NEAR(light.value / (0.5 * below), 1.0, 4.0 * light.standard_error / (0.5 * below) + 1e-4);
+    }
+}
+
+}  // namespace
+}  // namespace tessera::embree
