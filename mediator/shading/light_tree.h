@@ -62,11 +62,13 @@ inline ChildShares child_shares(IN(Scene) scene, uint link, IN(Receiver) receive
     ChildShares shares;
     shares.first = link & LightIndexBits;
     shares.count = ((link >> LightCountShift) & 3u) + 1u;
+    const bool by_power = (link & LightByPower) != 0u;
     float sum = 0.0f;
     KEEP_LOOP
     for (uint i = 0u; i < shares.count; ++i) {
         shares.items[i] =
-            expected_light(scene.light_nodes.items[shares.first + i], receiver, scene.tree_scale);
+            by_power ? scene.light_nodes.items[shares.first + i].power
+                     : expected_light(scene.light_nodes.items[shares.first + i], receiver, scene.tree_scale);
         sum += shares.items[i];
     }
     const float least = 1e-6f * sum;

@@ -157,13 +157,18 @@ inline bool is_seen(IN(Scene) scene, IN(LightSource) light, uint layers) {
     return (scene.features & FeatureLayers) == 0u || (light.layers & layers) != 0u;
 }
 
+inline LightSample sample_chosen(IN(Scene) scene, uint layers, IN(Surface) surface, IN(Emitter) emitter,
+                                 IN(LightSource) light, float probability, vec2 u) {
+    if (!is_seen(scene, light, layers)) return no_light();
+    return sample_emitter(scene, emitter, light, scene.tree_probability * probability, surface, u);
+}
+
 inline LightSample sample_tree(IN(Scene) scene, uint layers, IN(Surface) surface, vec2 choice, vec2 u) {
     const ChosenEmitter chosen =
         choose_emitter(scene, Receiver(surface.position, surface.geometric_normal), choice);
     const Emitter emitter = scene.emitters.items[chosen.index];
-    const LightSource light = scene.lights.items[emitter.light];
-    if (!is_seen(scene, light, layers)) return no_light();
-    return sample_emitter(scene, emitter, light, scene.tree_probability * chosen.probability, surface, u);
+    return sample_chosen(scene, layers, surface, emitter, scene.lights.items[emitter.light],
+                         chosen.probability, u);
 }
 
 // Of a light in none of the layers comes nothing: who chose it has lost the sample, so that the choice is the
@@ -177,9 +182,9 @@ inline LightSample sample_light(IN(Scene) scene, uint layers, IN(Surface) surfac
     }
     const Choice chosen = choose(scene.sums, scene.light_sums, distant_count + 1u, choice.x);
     if (chosen.index == 0u) return sample_tree(scene, layers, surface, vec2(chosen.rest, choice.y), u);
-    const LightSource light = scene.lights.items[scene.tree_light_count + chosen.index - 1u];
-    if (!is_seen(scene, light, layers)) return no_light();
-    return sample_distant(scene, light, u);
+    const uint index = scene.tree_light_count + chosen.index - 1u;
+    if (!is_seen(scene, scene.lights.items[index], layers)) return no_light();
+    return sample_distant(scene, scene.lights.items[index], u);
 }
 
 // Density with which sample_light finds, for a receiver, the point of a mesh light that was hit.

@@ -131,8 +131,10 @@ struct LightNode {
     uint link;         // the first child, or the emitter of a leaf; and the bits below
     uint parent;
 };
-inline constexpr uint LightLeaf = 0x80000000u, LightTwoSided = 0x40000000u, LightIndexBits = 0x07ffffffu;
-inline constexpr uint LightShaped = 0x08000000u;                     // there are spheres or quads below
+inline constexpr uint LightLeaf = 0x80000000u, LightTwoSided = 0x40000000u, LightIndexBits = 0x03ffffffu;
+inline constexpr uint LightShaped = 0x08000000u;  // there are spheres or quads below
+inline constexpr uint LightByPower =
+    0x04000000u;  // children are triangles of one flat lamp: power tells enough
 inline constexpr uint LightCountShift = 28u, MaxLightChildren = 4u;  // two bits: children - 1
 
 // Light from infinitely far: color + strength x map. A map of width 0 is none.

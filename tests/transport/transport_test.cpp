@@ -71,6 +71,19 @@ void lights_with_sizes(SceneModel& model) {
     }
 }
 
+// A ball and a mirror on what catches their shadows, before a background that is not the sky.
+void caught_shadows(SceneModel& model) {
+    scene::Material ground = test::chalk(glm::vec3(0.7f));
+    ground.base_color.w = 0.7f;
+    ground.shadow_catcher = true;
+    model.quad(model.material(ground), Ground);
+    model.sphere(model.material({.roughness = 0.2f}), {-1.2, 1.0, 0.0}, 1.0, Normals::Flat, 8);
+    model.sphere(model.material(test::mirror(glm::vec3(0.9f))), {1.2, 0.8, 0.0}, 0.8, Normals::Smooth, 8);
+    model.sky({.color = {0.3f, 0.4f, 0.6f},
+               .visible = scene::VisibleBackground::Color,
+               .visible_color = {0.9f, 0.8f, 0.7f, 0.5f}});
+}
+
 // Glass, a mirror and a surface with mapped normals under a sky with a map.
 void speculars_and_sky(SceneModel& model) {
     scene::Material waves{.base_color = {0.5f, 0.6f, 0.7f, 1.0f}, .metallic = 0.3f, .roughness = 0.3f};
@@ -188,6 +201,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, TransportOnDevice,
                                          Case{"lights_whitted", lights_and_textures, view::Renderer::Whitted,
                                               view::PathClass::Diffuse, view::PixelFilterKind::Box},
                                          Case{"sizes", lights_with_sizes, view::Renderer::PathTracing,
+                                              view::PathClass::Indirect, view::PixelFilterKind::Box},
+                                         Case{"catcher", caught_shadows, view::Renderer::PathTracing,
                                               view::PathClass::Indirect, view::PixelFilterKind::Box},
                                          Case{"speculars", speculars_and_sky, view::Renderer::PathTracing,
                                               view::PathClass::Caustics, view::PixelFilterKind::Gaussian},

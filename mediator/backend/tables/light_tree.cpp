@@ -152,8 +152,23 @@ class Builder {
             nodes_[first + i].parent = at;
             group = i == 0 ? child : joined(group, child);
         }
-        write(at, group, first | (count - 1) << shading::LightCountShift);
+        const bool is_flat = count == end - begin && is_flat_lamp(begin, end, group);
+        write(at, group,
+              first | (count - 1) << shading::LightCountShift | (is_flat ? shading::LightByPower : 0u));
         return group;
+    }
+
+    // Whether the leaves are triangles of one light and in one plane, as a lamp of two mostly is.
+    bool is_flat_lamp(std::uint32_t begin, std::uint32_t end, const Group& group) const {
+        const LightLeaf& first = leaves_[order_[begin]];
+        const double thickness = 1e-4 * std::sqrt(group.bounds.extent2());
+        return std::all_of(order_.begin() + begin, order_.begin() + end, [&](std::uint32_t i) {
+            const LightLeaf& leaf = leaves_[i];
+            const double off = glm::dot(first.axis, place_of(i) - place_of(order_[begin]));
+            return emitters_[leaf.emitter].light == emitters_[first.emitter].light && leaf.spread == 0.0 &&
+                   !leaf.shaped && leaf.two_sided == first.two_sided &&
+                   glm::dot(leaf.axis, first.axis) > 1.0 - 1e-6 && std::fabs(off) <= thickness;
+        });
     }
 
     void write(std::uint32_t at, const Group& group, std::uint32_t link) {
