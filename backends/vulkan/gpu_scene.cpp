@@ -33,6 +33,7 @@ GpuScene::GpuScene(Device& device, TreeCache& cache, Trees trees)
       bvh_(device, cache),
       textures_(device),
       materials_(device),
+      extras_(device),
       meshes_(device),
       instances_(device),
       lights_(device),
@@ -40,6 +41,7 @@ GpuScene::GpuScene(Device& device, TreeCache& cache, Trees trees)
       light_nodes_(device),
       sums_(device),
       srgb_(device),
+      energy_(device),
       scene_(device),
       bounds_(device) {
     if (trees == Trees::Plain) plain_.emplace(device);
@@ -63,6 +65,7 @@ BvhPool::Work GpuScene::update(const backend::MeshCatalog& meshes,
     }
     textures_.update(there.textures);
     materials_.update(there.materials);
+    extras_.update(there.extras);
     meshes_.update(there.meshes);
     instances_.update(there.instances);
     lights_.update(there.lights);
@@ -70,8 +73,10 @@ BvhPool::Work GpuScene::update(const backend::MeshCatalog& meshes,
     light_nodes_.update(there.light_nodes);
     sums_.update(there.sums);
     srgb_.update(std::as_bytes(backend::srgb_values()));
+    energy_.update(std::as_bytes(backend::energy_values()));
     set_address(there.scene.textures, textures_);
     set_address(there.scene.materials, materials_);
+    set_address(there.scene.extras, extras_);
     set_address(there.scene.meshes, meshes_);
     set_address(there.scene.instances, instances_);
     set_address(there.scene.lights, lights_);
@@ -79,6 +84,7 @@ BvhPool::Work GpuScene::update(const backend::MeshCatalog& meshes,
     set_address(there.scene.light_nodes, light_nodes_);
     set_address(there.scene.sums, sums_);
     set_address(there.scene.srgb, srgb_);
+    set_address(there.scene.energy, energy_);
     scene_.update(std::as_bytes(std::span(&there.scene, 1)));
     if (!plain_) bounds_.update(bounds_of(bvh_.boxes(), tables));
     features_ = there.scene.features;

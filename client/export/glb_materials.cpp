@@ -84,20 +84,7 @@ tinygltf::Material GlbMaterials::make(const scene::Material& material) {
     made.alphaMode = alpha_mode(material.alpha_mode);
     made.alphaCutoff = material.alpha_cutoff;
     made.doubleSided = material.double_sided;
-    if (material.unlit) {
-        made.extensions["KHR_materials_unlit"] = Value(Object{});
-        uses("KHR_materials_unlit");
-    }
-    if (material.index_of_refraction != 1.5f) {
-        made.extensions["KHR_materials_ior"] =
-            Value(Object{{"ior", Value(double{material.index_of_refraction})}});
-        uses("KHR_materials_ior");
-    }
-    if (material.transmission > 0.0f) {
-        made.extensions["KHR_materials_transmission"] =
-            Value(Object{{"transmissionFactor", Value(double{material.transmission})}});
-        uses("KHR_materials_transmission");
-    }
+    add_extensions(made, material);
     return made;
 }
 
@@ -106,11 +93,103 @@ void GlbMaterials::fill(Info& info, const scene::TextureSlot& slot) {
     const auto index = texture(slot.texture);
     if (!index) return;
     info.index = *index;
-    if (slot == scene::TextureSlot{.texture = slot.texture}) return;
-    info.extensions["KHR_texture_transform"] = Value(Object{{"offset", pair_of(slot.offset)},
-                                                            {"scale", pair_of(slot.scale)},
-                                                            {"rotation", Value(double{slot.rotation})}});
+    info.texCoord = static_cast<int>(slot.set);
+    if (const auto transform = transform_of(slot)) info.extensions["KHR_texture_transform"] = *transform;
+}
+
+std::optional<Value> GlbMaterials::transform_of(const scene::TextureSlot& slot) {
+    if (slot == scene::TextureSlot{.texture = slot.texture, .set = slot.set}) return std::nullopt;
     uses("KHR_texture_transform");
+    return Value(Object{{"offset", pair_of(slot.offset)},
+                        {"scale", pair_of(slot.scale)},
+                        {"rotation", Value(double{slot.rotation})}});
+}
+
+// An extension on its way into a file: only what is not its default.
+class GlbMaterials::Extension {
+  public:
+    Extension(GlbMaterials& owner, const char* name) : owner_(owner), name_(name) {}
+
+    void number(const char* member, float value, float otherwise) {
+        if (value != otherwise) members_[member] = Value(double{value});
+    }
+    void color(const char* member, const glm::vec3& value, float otherwise) {
+        if (value == glm::vec3(otherwise)) return;
+        members_[member] =
+            Value(Value::Array{Value(double{value.x}), Value(double{value.y}), Value(double{value.z})});
+    }
+    void texture(const char* member, const scene::TextureSlot& slot, float scale = 1.0f) {
+        const auto index = owner_.texture(slot.texture);
+        if (!index) return;
+        Object info{{"index", Value(*index)}};
+        if (slot.set != 0) info["texCoord"] = Value(static_cast<int>(slot.set));
+        if (scale != 1.0f) info["scale"] = Value(double{scale});
+        if (const auto transform = owner_.transform_of(slot)) {
+            info["extensions"] = Value(Object{{"KHR_texture_transform", *transform}});
+        }
+        members_[member] = Value(std::move(info));
+    }
+    void write(tinygltf::Material& to) {
+        if (members_.empty()) return;
+        to.extensions[name_] = Value(std::move(members_));
+        owner_.uses(name_);
+    }
+
+  private:
+    GlbMaterials& owner_;
+    const char* name_;
+    Object members_;
+};
+
+void GlbMaterials::add_extensions(tinygltf::Material& made, const scene::Material& m) {
+    if (m.unlit) {
+        made.extensions["KHR_materials_unlit"] = Value(Object{});
+        uses("KHR_materials_unlit");
+    }
+    Extension index(*this, "KHR_materials_ior");
+    index.number("ior", m.index_of_refraction, 1.5f);
+    index.write(made);
+    Extension transmission(*this, "KHR_materials_transmission");
+    transmission.number("transmissionFactor", m.transmission, 0.0f);
+    transmission.texture("transmissionTexture", m.transmission_texture);
+    transmission.write(made);
+    Extension volume(*this, "KHR_materials_volume");
+    volume.number("thicknessFactor", m.thickness, 0.0f);
+    volume.number("attenuationDistance", m.attenuation_distance, 0.0f);
+    volume.color("attenuationColor", m.attenuation_color, 1.0f);
+    volume.write(made);
+    Extension specular(*this, "KHR_materials_specular");
+    specular.number("specularFactor", m.specular, 1.0f);
+    specular.texture("specularTexture", m.specular_texture);
+    specular.color("specularColorFactor", m.specular_color, 1.0f);
+    specular.texture("specularColorTexture", m.specular_color_texture);
+    specular.write(made);
+    Extension coat(*this, "KHR_materials_clearcoat");
+    coat.number("clearcoatFactor", m.clearcoat, 0.0f);
+    coat.texture("clearcoatTexture", m.clearcoat_texture);
+    coat.number("clearcoatRoughnessFactor", m.clearcoat_roughness, 0.0f);
+    coat.texture("clearcoatRoughnessTexture", m.clearcoat_roughness_texture);
+    coat.texture("clearcoatNormalTexture", m.clearcoat_normal_texture, m.clearcoat_normal_scale);
+    coat.write(made);
+    Extension sheen(*this, "KHR_materials_sheen");
+    sheen.color("sheenColorFactor", m.sheen_color, 0.0f);
+    sheen.texture("sheenColorTexture", m.sheen_color_texture);
+    sheen.number("sheenRoughnessFactor", m.sheen_roughness, 0.0f);
+    sheen.texture("sheenRoughnessTexture", m.sheen_roughness_texture);
+    sheen.write(made);
+    Extension anisotropy(*this, "KHR_materials_anisotropy");
+    anisotropy.number("anisotropyStrength", m.anisotropy, 0.0f);
+    anisotropy.number("anisotropyRotation", m.anisotropy_rotation, 0.0f);
+    anisotropy.texture("anisotropyTexture", m.anisotropy_texture);
+    anisotropy.write(made);
+    Extension iridescence(*this, "KHR_materials_iridescence");
+    iridescence.number("iridescenceFactor", m.iridescence, 0.0f);
+    iridescence.texture("iridescenceTexture", m.iridescence_texture);
+    iridescence.number("iridescenceIor", m.iridescence_index_of_refraction, 1.3f);
+    iridescence.number("iridescenceThicknessMinimum", m.iridescence_thickness_minimum, 100.0f);
+    iridescence.number("iridescenceThicknessMaximum", m.iridescence_thickness_maximum, 400.0f);
+    iridescence.texture("iridescenceThicknessTexture", m.iridescence_thickness_texture);
+    iridescence.write(made);
 }
 
 std::optional<int> GlbMaterials::texture(ObjectId id) {

@@ -11,7 +11,8 @@
 
 namespace tinygltf {
 struct Material;
-}
+class Value;
+}  // namespace tinygltf
 
 namespace tessera::exporting {
 
@@ -26,6 +27,9 @@ class GlbMaterials {
 
   private:
     tinygltf::Material make(const scene::Material& material);
+    class Extension;
+    void add_extensions(tinygltf::Material& made, const scene::Material& material);
+    std::optional<tinygltf::Value> transform_of(const scene::TextureSlot& slot);  // none: as it is
     template <class Info>
     void fill(Info& info, const scene::TextureSlot& slot);
     std::optional<int> texture(ObjectId id);  // none for what glTF has no form for; that is told

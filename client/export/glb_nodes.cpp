@@ -140,6 +140,7 @@ int GlbNodes::mesh(const std::vector<ObjectId>& geometries) {
         add("NORMAL", geometry.normals, Other, 3);
         if (!geometry.normals.empty()) add("TANGENT", geometry.tangents, Other, 4);
         add("TEXCOORD_0", geometry.tex_coords, Other, 2);
+        add("TEXCOORD_1", geometry.tex_coords_1, Other, 2);
         add("COLOR_0", geometry.colors, Other, 4);
         mesh.primitives.push_back(std::move(primitive));
     }

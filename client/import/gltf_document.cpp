@@ -12,12 +12,12 @@
 namespace tessera::import {
 namespace {
 
-constexpr std::array<std::string_view, 9> KnownExtensions{
-    "EXT_mesh_gpu_instancing", "KHR_draco_mesh_compression",
-    "KHR_lights_punctual",     "KHR_materials_emissive_strength",
-    "KHR_materials_ior",       "KHR_materials_transmission",
-    "KHR_materials_unlit",     "KHR_mesh_quantization",
-    "KHR_texture_transform"};
+constexpr std::array<std::string_view, 15> KnownExtensions{
+    "EXT_mesh_gpu_instancing",    "KHR_draco_mesh_compression", "KHR_lights_punctual",
+    "KHR_materials_anisotropy",   "KHR_materials_clearcoat",    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_sheen",        "KHR_materials_specular",
+    "KHR_materials_transmission", "KHR_materials_unlit",        "KHR_materials_volume",
+    "KHR_mesh_quantization",      "KHR_texture_transform",      "KHR_materials_iridescence"};
 
 bool is_known(std::string_view extension) {
     return std::find(KnownExtensions.begin(), KnownExtensions.end(), extension) != KnownExtensions.end();

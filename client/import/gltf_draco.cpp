@@ -39,8 +39,7 @@ std::vector<Vector> values_of(const draco::Mesh& mesh, const std::map<std::strin
 
 }  // namespace
 
-MeshData decode_draco(std::span<const unsigned char> bytes, const std::map<std::string, int>& attribute_ids,
-                      const std::string& tex_coord) {
+MeshData decode_draco(std::span<const unsigned char> bytes, const std::map<std::string, int>& attribute_ids) {
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     draco::Decoder decoder;
@@ -59,7 +58,8 @@ MeshData decode_draco(std::span<const unsigned char> bytes, const std::map<std::
     result.positions = values_of<glm::vec3>(*mesh, attribute_ids, "POSITION");
     result.normals = values_of<glm::vec3>(*mesh, attribute_ids, "NORMAL");
     result.tangents = values_of<glm::vec4>(*mesh, attribute_ids, "TANGENT");
-    result.tex_coords = values_of<glm::vec2>(*mesh, attribute_ids, tex_coord);
+    result.tex_coords = values_of<glm::vec2>(*mesh, attribute_ids, "TEXCOORD_0");
+    result.tex_coords_1 = values_of<glm::vec2>(*mesh, attribute_ids, "TEXCOORD_1");
     result.colors = values_of<glm::vec4>(*mesh, attribute_ids, "COLOR_0");
     return result;
 }

@@ -8,10 +8,9 @@
 
 namespace tessera::import {
 
-// KHR_draco_mesh_compression: triangles and the attributes POSITION, NORMAL, TANGENT, COLOR_0 and `tex_coord`
-// (such as "TEXCOORD_0") of a compressed mesh, by the unique ids that the extension gives. Throws
+// KHR_draco_mesh_compression: triangles and the attributes POSITION, NORMAL, TANGENT, COLOR_0, TEXCOORD_0 and
+// TEXCOORD_1 of a compressed mesh, by the unique ids that the extension gives. Throws
 // Error{InvalidInput}.
-MeshData decode_draco(std::span<const unsigned char> bytes, const std::map<std::string, int>& attribute_ids,
-                      const std::string& tex_coord);
+MeshData decode_draco(std::span<const unsigned char> bytes, const std::map<std::string, int>& attribute_ids);
 
 }  // namespace tessera::import

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mediator/scene/fields.h"
+
 namespace tessera::import {
 namespace {
 
@@ -37,11 +39,31 @@ class Slots {
 
     template <class Info>
     scene::TextureSlot slot(const Info& info, TextureUse use) {
+        return slot(info.index, info.texCoord, extension(info.extensions, "KHR_texture_transform"), use);
+    }
+
+    // The texture that a member of an extension names.
+    scene::TextureSlot slot(const tinygltf::Value& owner, const char* member, TextureUse use) {
+        if (!owner.Has(member)) return {};
+        const tinygltf::Value& info = owner.Get(member);
+        if (!info.IsObject() || !info.Has("index")) return {};
+        const tinygltf::Value* transform = nullptr;
+        if (info.Has("extensions") && info.Get("extensions").Has("KHR_texture_transform")) {
+            transform = &info.Get("extensions").Get("KHR_texture_transform");
+        }
+        const int set = info.Has("texCoord") ? index_member(info, "texCoord") : 0;
+        return slot(index_member(info, "index"), set, transform, use);
+    }
+
+    // Coordinates of a third set and further do not travel: the second set stands in.
+    bool misses_set() const { return misses_set_; }
+
+  private:
+    scene::TextureSlot slot(int index, int set, const tinygltf::Value* transform, TextureUse use) {
         scene::TextureSlot slot;
-        if (info.index < 0) return slot;
-        slot.texture = textures_.texture(info.index, use);
-        int set = info.texCoord;
-        if (const tinygltf::Value* transform = extension(info.extensions, "KHR_texture_transform")) {
+        if (index < 0) return slot;
+        slot.texture = textures_.texture(index, use);
+        if (transform != nullptr && transform->IsObject()) {
             const std::vector<double> offset = number_array(*transform, "offset");
             const std::vector<double> scale = number_array(*transform, "scale");
             for (int i = 0; i < 2; ++i) {
@@ -53,19 +75,98 @@ class Slots {
             if (transform->Has("texCoord")) set = index_member(*transform, "texCoord");
         }
         if (!slot.texture) return slot;
-        if (set_ < 0) set_ = std::max(set, 0);
-        mixed_ |= set != set_;
+        misses_set_ |= set > 1;
+        slot.set = static_cast<std::uint32_t>(std::clamp(set, 0, 1));
         return slot;
     }
 
-    int set() const { return std::max(set_, 0); }
-    bool mixed() const { return mixed_; }
-
-  private:
     GltfTextures& textures_;
     Ranges& ranges_;
-    int set_ = -1;  // of the first texture
-    bool mixed_ = false;
+    bool misses_set_ = false;
+};
+
+// The KHR_materials_* extensions of one material.
+class Extensions {
+  public:
+    Extensions(const tinygltf::Material& source, Slots& slots, Ranges& ranges)
+        : source_(source.extensions), slots_(slots), ranges_(ranges) {}
+
+    void read(scene::Material& material) {
+        if (open("KHR_materials_unlit")) material.unlit = true;
+        if (open("KHR_materials_ior")) number("ior", material.index_of_refraction, 1.0, 100.0);
+        if (open("KHR_materials_transmission")) {
+            number("transmissionFactor", material.transmission, 0.0, 1.0);
+            texture("transmissionTexture", material.transmission_texture);
+        }
+        if (open("KHR_materials_volume")) {
+            number("thicknessFactor", material.thickness, 0.0, Large);
+            number("attenuationDistance", material.attenuation_distance, 0.0, Brightest);
+            color("attenuationColor", material.attenuation_color, 1.0);
+        }
+        if (open("KHR_materials_specular")) {
+            number("specularFactor", material.specular, 0.0, 1.0);
+            texture("specularTexture", material.specular_texture);
+            color("specularColorFactor", material.specular_color, Brightest);
+            texture("specularColorTexture", material.specular_color_texture, TextureUse::Color);
+        }
+        if (open("KHR_materials_clearcoat")) read_coat(material);
+        if (open("KHR_materials_sheen")) {
+            color("sheenColorFactor", material.sheen_color, 1.0);
+            texture("sheenColorTexture", material.sheen_color_texture, TextureUse::Color);
+            number("sheenRoughnessFactor", material.sheen_roughness, 0.0, 1.0);
+            texture("sheenRoughnessTexture", material.sheen_roughness_texture);
+        }
+        if (open("KHR_materials_anisotropy")) {
+            number("anisotropyStrength", material.anisotropy, 0.0, 1.0);
+            number("anisotropyRotation", material.anisotropy_rotation, -Large, Large);
+            texture("anisotropyTexture", material.anisotropy_texture);
+        }
+        if (open("KHR_materials_iridescence")) {
+            number("iridescenceFactor", material.iridescence, 0.0, 1.0);
+            texture("iridescenceTexture", material.iridescence_texture);
+            number("iridescenceIor", material.iridescence_index_of_refraction, 1.0, 100.0);
+            number("iridescenceThicknessMinimum", material.iridescence_thickness_minimum, 0.0, Large);
+            number("iridescenceThicknessMaximum", material.iridescence_thickness_maximum, 0.0, Large);
+            texture("iridescenceThicknessTexture", material.iridescence_thickness_texture);
+        }
+    }
+
+  private:
+    bool open(const char* name) {
+        here_ = extension(source_, name);
+        return here_ != nullptr && here_->IsObject();
+    }
+    void number(const char* member, float& value, double lowest, double highest) {
+        value = ranges_.number(number_member(*here_, member, double{value}), lowest, highest, double{value});
+    }
+    void color(const char* member, glm::vec3& value, double highest) {
+        const std::vector<double> given = number_array(*here_, member);
+        if (given.size() != 3) return;
+        for (int i = 0; i < 3; ++i) {
+            value[i] = ranges_.number(given[static_cast<std::size_t>(i)], 0.0, highest, double{value[i]});
+        }
+    }
+    void texture(const char* member, scene::TextureSlot& slot, TextureUse use = TextureUse::Data) {
+        slot = slots_.slot(*here_, member, use);
+    }
+    void read_coat(scene::Material& material) {
+        number("clearcoatFactor", material.clearcoat, 0.0, 1.0);
+        texture("clearcoatTexture", material.clearcoat_texture);
+        number("clearcoatRoughnessFactor", material.clearcoat_roughness, 0.0, 1.0);
+        texture("clearcoatRoughnessTexture", material.clearcoat_roughness_texture);
+        texture("clearcoatNormalTexture", material.clearcoat_normal_texture);
+        if (!here_->Has("clearcoatNormalTexture")) return;
+        const tinygltf::Value& map = here_->Get("clearcoatNormalTexture");
+        if (map.IsObject()) {
+            material.clearcoat_normal_scale =
+                ranges_.number(number_member(map, "scale", 1.0), -1e3, 1e3, 1.0);
+        }
+    }
+
+    const tinygltf::ExtensionMap& source_;
+    Slots& slots_;
+    Ranges& ranges_;
+    const tinygltf::Value* here_ = nullptr;
 };
 
 }  // namespace
@@ -83,6 +184,20 @@ GltfMaterial GltfMaterials::material(int index) {
     made_[index] = made;
     return made;
 }
+
+namespace {
+
+bool uses_second_set(const scene::Material& material) {
+    bool uses = false;
+    scene::for_each_field<scene::Material>([&](unsigned, auto member) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(material.*member)>, scene::TextureSlot>) {
+            uses |= (material.*member).texture && (material.*member).set == 1;
+        }
+    });
+    return uses;
+}
+
+}  // namespace
 
 GltfMaterial GltfMaterials::make(const tinygltf::Material& source, const std::string& fallback_name) {
     const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
@@ -118,28 +233,29 @@ GltfMaterial GltfMaterials::make(const tinygltf::Material& source, const std::st
     if (source.alphaMode == "BLEND") material.alpha_mode = scene::AlphaMode::Blend;
     material.alpha_cutoff = ranges.number(source.alphaCutoff, 0.0, 1e3, 0.5);
     material.double_sided = source.doubleSided;
-    material.unlit = extension(source.extensions, "KHR_materials_unlit") != nullptr;
-    if (const auto* found = extension(source.extensions, "KHR_materials_ior")) {
-        material.index_of_refraction = ranges.number(number_member(*found, "ior", 1.5), 1.0, 100.0, 1.5);
-    }
-    if (const auto* found = extension(source.extensions, "KHR_materials_transmission")) {
-        material.transmission =
-            ranges.number(number_member(*found, "transmissionFactor", 0.0), 0.0, 1.0, 0.0);
-        if (found->Has("transmissionTexture")) {
+    Extensions(source, slots, ranges).read(material);
+    if (material.transmission > 0.0f && extension(source.extensions, "KHR_materials_volume") == nullptr) {
+        if (builder_.options().glass == Glass::Solid) {
+            material.thickness = 1.0f;
+        } else {
             builder_.notice("material '" + material.name +
-                            "': its transmission texture is ignored, the factor stays");
+                            "' lets light through without KHR_materials_volume: its walls are thin, as glTF "
+                            "has it; --solid-glass makes a body of it that refracts");
         }
     }
-    if (slots.mixed()) {
-        builder_.notice("material '" + material.name +
-                        "': its textures use several sets of coordinates; all are drawn with set " +
-                        std::to_string(slots.set()));
+    if (slots.misses_set()) {
+        builder_.notice(
+            "material '" + material.name +
+            "': its textures use more than two sets of coordinates; the second stands for others");
     }
     if (ranges.changed())
         builder_.notice("material '" + material.name + "': numbers out of range are clamped");
     GltfMaterial made;
-    made.tex_coord_set = slots.set();
-    made.wants_tangents = static_cast<bool>(material.normal_texture.texture);
+    made.wants_tangents = material.normal_texture.texture || material.clearcoat_normal_texture.texture ||
+                          material.anisotropy > 0.0f;
+    made.tangent_set =
+        material.normal_texture.texture ? material.normal_texture.set : material.clearcoat_normal_texture.set;
+    made.wants_second_set = uses_second_set(material);
     made.id = builder_.add(std::move(material));
     return made;
 }

@@ -12,8 +12,9 @@ namespace tessera::import {
 
 struct GltfMaterial {
     ObjectId id;
-    int tex_coord_set = 0;        // which TEXCOORD_n its textures read
-    bool wants_tangents = false;  // it has a normal texture
+    bool wants_second_set = false;  // some texture reads TEXCOORD_1
+    bool wants_tangents = false;    // it has a normal texture, or its roughness a direction
+    std::uint32_t tangent_set = 0;  // of texture coordinates, along which tangents lead
 };
 
 // Makes Material objects on demand, each once; -1 is glTF's default material.

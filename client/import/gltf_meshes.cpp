@@ -94,24 +94,23 @@ GltfMeshes::Source GltfMeshes::read(const tinygltf::Primitive& primitive, const 
 
     Source source;
     source.material = materials_.material(primitive.material);
-    std::string tex_coord = "TEXCOORD_" + std::to_string(source.material.tex_coord_set);
-    if (!attributes.contains(tex_coord)) {
-        if (source.material.tex_coord_set > 0) {
-            builder_.notice("mesh '" + mesh_name + "': it lacks the texture coordinates " + tex_coord);
-        }
-        tex_coord = "TEXCOORD_0";
+    if (source.material.wants_second_set && !attributes.contains("TEXCOORD_1")) {
+        builder_.notice("mesh '" + mesh_name + "': it lacks the texture coordinates TEXCOORD_1");
+        source.material.wants_second_set = false;
     }
     MeshData& mesh = source.mesh;
     if (const auto draco = primitive.extensions.find(Draco); draco != primitive.extensions.end()) {
         mesh = decode_draco(accessors_.view(index_member(draco->second, "bufferView")),
-                            draco_attributes(draco->second), tex_coord);
+                            draco_attributes(draco->second));
+        if (!source.material.wants_second_set) mesh.tex_coords_1.clear();
         return source;
     }
     mesh.positions = accessors_.vec3(attributes.at("POSITION"));
     if (attributes.contains("NORMAL")) mesh.normals = accessors_.vec3(attributes.at("NORMAL"));
     if (attributes.contains("TANGENT")) mesh.tangents = accessors_.vec4(attributes.at("TANGENT"));
     if (attributes.contains("COLOR_0")) mesh.colors = accessors_.color(attributes.at("COLOR_0"));
-    if (attributes.contains(tex_coord)) mesh.tex_coords = accessors_.vec2(attributes.at(tex_coord));
+    if (attributes.contains("TEXCOORD_0")) mesh.tex_coords = accessors_.vec2(attributes.at("TEXCOORD_0"));
+    if (source.material.wants_second_set) mesh.tex_coords_1 = accessors_.vec2(attributes.at("TEXCOORD_1"));
 
     if (const auto indices = attributes.find(IndicesAttribute); indices != attributes.end()) {
         mesh.indices = accessors_.indices(indices->second);
@@ -144,10 +143,11 @@ ObjectId GltfMeshes::make(const tinygltf::Primitive& primitive, const std::strin
     for (const std::string& repair : check_and_repair(mesh))
         builder_.notice("mesh '" + name + "': " + repair);
     if (mesh.normals.empty()) mesh.tangents.clear();  // glTF 3.7.2.1: given tangents belong to given normals
-    if (source.material.wants_tangents && mesh.tangents.empty() && !mesh.tex_coords.empty()) {
+    const auto& along = source.material.tangent_set == 0 ? mesh.tex_coords : mesh.tex_coords_1;
+    if (source.material.wants_tangents && mesh.tangents.empty() && !along.empty()) {
         bends.is_flat = mesh.normals.empty();
         if (bends.is_flat) make_flat(mesh);
-        generate_tangents(mesh);
+        generate_tangents(mesh, source.material.tangent_set);
     }
     if (pose == nullptr) return builder_.add_geometry(name, source.material.id, mesh);
     follow(bends, mesh.origins);

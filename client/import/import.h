@@ -25,6 +25,9 @@ enum class Missing { Add, Leave };
 
 // Whether the scene is to be brought to other times with move_to.
 enum class Motion { Still, Sequence };
+// What glTF's glass without KHR_materials_volume is: thin walls, as the extension has it, or a body that
+// refracts, as the programs show it that most such files come from.
+enum class Glass { Thin, Solid };
 
 struct ImportOptions {
     ObjectId first_id{2};                 // objects get consecutive ids from here
@@ -36,6 +39,7 @@ struct ImportOptions {
     std::optional<double> at;  // seconds into the animations; none = at rest, as without them
     std::string animation;     // only this one, by its name, else its number; "" = all together
     Motion motion = Motion::Still;
+    Glass glass = Glass::Thin;
 };
 
 // A place to look from; the Camera object is in the scene, too.

@@ -117,6 +117,7 @@ std::vector<std::string> check_and_repair(MeshData& mesh) {
     repair_normals(mesh, repairs);
     drop_if_unusable(mesh.tangents, vertices, "tangents", repairs);
     drop_if_unusable(mesh.tex_coords, vertices, "texture coordinates", repairs);
+    drop_if_unusable(mesh.tex_coords_1, vertices, "second texture coordinates", repairs);
     drop_if_unusable(mesh.colors, vertices, "vertex colours", repairs);
     return repairs;
 }
@@ -144,6 +145,7 @@ void make_flat(MeshData& mesh) {
     };
     spread(mesh.positions, flat.positions);
     spread(mesh.tex_coords, flat.tex_coords);
+    spread(mesh.tex_coords_1, flat.tex_coords_1);
     spread(mesh.colors, flat.colors);
     spread(mesh.origins, flat.origins);
     flat.normals.resize(mesh.indices.size());
@@ -155,7 +157,8 @@ void make_flat(MeshData& mesh) {
     mesh = std::move(flat);
 }
 
-void generate_tangents(MeshData& mesh) {
+void generate_tangents(MeshData& mesh, std::uint32_t set) {
+    const std::vector<glm::vec2>& coords = set == 0 ? mesh.tex_coords : mesh.tex_coords_1;
     constexpr std::uint32_t None = 0xffffffffu;
     struct Frame {
         glm::dvec3 along_u{0.0};
@@ -171,7 +174,9 @@ void generate_tangents(MeshData& mesh) {
             mirrored[vertex] = static_cast<std::uint32_t>(mesh.positions.size());
             mesh.positions.push_back(glm::vec3(mesh.positions[vertex]));
             mesh.normals.push_back(glm::vec3(mesh.normals[vertex]));
-            mesh.tex_coords.push_back(glm::vec2(mesh.tex_coords[vertex]));
+            for (auto* each : {&mesh.tex_coords, &mesh.tex_coords_1}) {
+                if (!each->empty()) each->push_back(glm::vec2((*each)[vertex]));
+            }
             if (!mesh.colors.empty()) mesh.colors.push_back(glm::vec4(mesh.colors[vertex]));
             if (!mesh.origins.empty()) mesh.origins.push_back(std::uint32_t(mesh.origins[vertex]));
             frames.push_back({glm::dvec3(0.0), handedness});
@@ -182,8 +187,7 @@ void generate_tangents(MeshData& mesh) {
         std::uint32_t* corner = &mesh.indices[i];
         const glm::dvec3 p0(mesh.positions[corner[0]]), p1(mesh.positions[corner[1]]),
             p2(mesh.positions[corner[2]]);
-        const glm::dvec2 t0(mesh.tex_coords[corner[0]]), t1(mesh.tex_coords[corner[1]]),
-            t2(mesh.tex_coords[corner[2]]);
+        const glm::dvec2 t0(coords[corner[0]]), t1(coords[corner[1]]), t2(coords[corner[2]]);
         const glm::dvec2 d1 = t1 - t0, d2 = t2 - t0;
         const double area = d1.x * d2.y - d2.x * d1.y;
         if (area == 0.0 || !std::isfinite(area)) continue;

@@ -25,7 +25,7 @@ struct Bounds {
 struct MeshData {
     std::vector<glm::vec3> positions, normals;
     std::vector<glm::vec4> tangents, colors;
-    std::vector<glm::vec2> tex_coords;
+    std::vector<glm::vec2> tex_coords, tex_coords_1;
     std::vector<std::uint32_t> indices;  // three per triangle
     std::vector<std::uint32_t>
         origins;  // optional: a number that goes with each vertex, however they are split
@@ -46,8 +46,9 @@ Bounds bounds_of(const MeshData& mesh);
 // Three vertices of its own per triangle, with the triangle's normal: glTF's look of a mesh without normals.
 void make_flat(MeshData& mesh);
 
-// Tangents along u from texture coordinates and normals, both present. Vertices shared by triangles of either
-// handedness (mirrored texture) are split. Where the texture has no direction any tangent is chosen.
-void generate_tangents(MeshData& mesh);
+// Tangents along u from one set of texture coordinates and normals, both present. Vertices shared by
+// triangles of either handedness (mirrored texture) are split. Where the texture has no direction any tangent
+// is chosen.
+void generate_tangents(MeshData& mesh, std::uint32_t set = 0);
 
 }  // namespace tessera::import

@@ -88,6 +88,7 @@ ObjectId SceneBuilder::add_geometry(std::string name, ObjectId material, const M
     geometry.normals = blob(mesh.normals);
     geometry.tangents = blob(mesh.tangents);
     geometry.tex_coords = blob(mesh.tex_coords);
+    geometry.tex_coords_1 = blob(mesh.tex_coords_1);
     geometry.colors = blob(mesh.colors);
     result_.counts.triangles += mesh.indices.size() / 3;
     result_.counts.degenerate_triangles += count_degenerate(mesh);

@@ -37,6 +37,8 @@ void ViewOptions::add_to(cli::CommandLine& command) {
     command.option("--background", "uniform light from all around: linear R,G,B", background);
     command.option("--env", "environment map, latitude-longitude .exr or .hdr", environment);
     command.option("--env-strength", "factor on the environment map", environment_strength);
+    command.flag("--solid-glass", "glass of glTF files refracts although they tell of no volume",
+                 solid_glass);
     command.option("--bounces", "how often light is scattered on; 0 = direct light only", bounces);
     command.option("--crop", "render only the part X,Y,W,H of the picture", crop);
     command.choice("--pixel-filter", "how a sample counts for the pixels around it", pixel_filter,
@@ -91,6 +93,7 @@ Expected<ViewPlan> understand(const ViewOptions& options) {
         return failure(ErrorCode::InvalidInput, "--env-strength: must be a finite number from 0");
     }
     plan.import.environment_strength = static_cast<float>(options.environment_strength);
+    if (options.solid_glass) plan.import.glass = import::Glass::Solid;
     plan.view.seed = options.seed;
     plan.view.max_bounces = options.bounces;
     for (const view::Renderer renderer :

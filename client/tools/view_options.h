@@ -21,6 +21,7 @@ struct ViewOptions {
     std::optional<double> at;
     std::vector<std::string> hidden, materials;
     double environment_strength = 1.0;
+    bool solid_glass = false;
     std::uint32_t bounces = 8;
     std::string pixel_filter = "box";
     std::uint64_t seed = 0;

@@ -1,23 +1,46 @@
 #include "mediator/backend/edit_report.h"
 
-#include "mediator/shading/bsdf.h"
-
 namespace tessera::backend {
 
-// Rough transmission is drawn as smooth.
+namespace {
+
+// What of a material is not drawn, or nothing.
+std::string left_out(const scene::Object& object) {
+    if (const auto* shader = std::get_if<scene::SurfaceShader>(&object)) {
+        const glm::vec3 none(0.0f);
+        if (shader->specular != none || shader->reflection != none || shader->transmission != none) {
+            return "its glossy and perfect reflection and its transmission are not drawn, its diffuse part "
+                   "is";
+        }
+        if (shader->normal_texture.texture || shader->height_texture.texture ||
+            shader->alpha_texture.texture) {
+            return "its normal, height and alpha textures are not drawn";
+        }
+    }
+    if (const auto* material = std::get_if<scene::Material>(&object)) {
+        if (material->iridescence > 0.0f) return "its iridescence is not drawn";
+        if (material->transmission > 0.0f && material->attenuation_distance > 0.0f &&
+            material->thickness > 0.0f) {
+            return "its body does not dim light, only its surface does";
+        }
+    }
+    if (std::holds_alternative<scene::Medium>(object)) return "media are not drawn";
+    return {};
+}
+
+}  // namespace
+
 std::vector<std::string> MaterialProblems::update(const scene::Scene& scene, const SceneDelta& delta) {
     std::vector<std::string> problems;
     if (delta.everything) told_.clear();
     for (const ObjectId id : delta.materials) {
-        const auto* material = scene.find_as<scene::Material>(id);
-        const bool rough = material != nullptr && material->transmission > 0.0f &&
-                           material->metallic < 1.0f &&
-                           material->roughness * material->roughness > shading::MinAlpha;
-        if (!rough) {
+        const scene::Object* object = scene.find(id);
+        const std::string what = object != nullptr ? left_out(*object) : std::string();
+        if (what.empty()) {
             told_.erase(id);
         } else if (told_.insert(id).second) {
-            problems.push_back("material " + std::to_string(id.value) + " '" + material->name +
-                               "': its rough transmission is drawn as smooth");
+            problems.push_back(std::string(scene::name(scene::kind(*object))) + " " +
+                               std::to_string(id.value) + " '" + scene::name(*object) + "': " + what);
         }
     }
     return problems;

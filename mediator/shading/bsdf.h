@@ -1,24 +1,59 @@
 #ifndef TESSERA_MEDIATOR_SHADING_BSDF_H
 #define TESSERA_MEDIATOR_SHADING_BSDF_H
 
-#include "mediator/shading/sampling.h"
+#include "mediator/shading/energy.h"
+#include "mediator/shading/rough_glass.h"
+#include "mediator/shading/sheen.h"
 
-// The surface model: glTF metallic-roughness as a diffuse lobe under a microfacet lobe. All directions are in
-// the shading frame (z = normal) and point away from the surface.
-//   specular  GGX, height-correlated Smith, Schlick's Fresnel with F0 = mix(((n-1)/(n+1))^2, base colour,
-//   metallic) diffuse   (1 - metallic) base colour / pi (1 - F(cos i)) (1 - F(cos o)), F of the dielectric
-//   part: light that the
-//             coat reflects on its way in or out does not reach the base (as in Ashikhmin and Shirley 2000,
-//             without their rescaling). Reciprocal; the sum never reflects more than comes in.
-// Multiple scattering between facets is not modelled: rough metals are a little dark.
+// The surface model: a set of lobes that both models of materials lower to. All directions are in the shading
+// frame (z = normal) and point away from the surface. From the outside in:
+//   sheen     fibres (sheen.h) over all the rest
+//   coat      GGX with Schlick's Fresnel, F0 = 0.04, about a normal of its own
+//   specular  GGX, height-correlated Smith, Schlick's Fresnel: metal and dielectric in one lobe; what facets
+//             send to each other comes out as a broad lobe of its own (Kulla and Conty 2017)
+//   diffuse   base colour / pi x (1 - S(i)) (1 - S(o)) / (1 - mean S), S(w) = what the dielectric interface
+//             reflects of light from w (Kelemen and Szirmay-Kalos 2001): white reflects all that comes in
+//   glass     rough boundary of two dielectrics, or of a thin wall; single scattering only
+// A layer passes the lesser of what it lets through on the way in and on the way out. Every lobe is
+// reciprocal; the sum never reflects more than comes in.
 // Perfect mirrors and smooth glass have no density and are in specular.h; a material is a mixture of both
 // kinds.
 SHADING_BEGIN
 
-// What a surface consists of: shares that sum to 1. This file knows metal (rough) and dielectric (opaque,
-// coated).
+// Lobes that few surfaces have: bits of records.h's features.
+inline constexpr uint ExtraLobes = FeatureCoat | FeatureSheen | FeatureRoughGlass;
+
+inline constexpr float CoatF0 = 0.04f;
+
+// What a material is at a point: its factors times its textures.
+struct Look {
+    vec3 base_color;
+    float metallic;
+    vec2 alpha;  // roughness along x and y, perceptual roughness squared
+    float transmission;
+    float index_of_refraction;
+    float eta;  // far side / this side; 0: without bound
+    float specular;
+    vec3 specular_color;
+    uint lobes;  // of ExtraLobes, which may be there
+    uint thin;   // walls: light goes straight on
+    float coat;
+    float coat_roughness;
+    vec3 coat_normal;
+    vec3 sheen_color;
+    float sheen_roughness;
+};
+
+inline Look plain_look(vec3 base_color, float metallic, float roughness, float transmission,
+                       float index_of_refraction, float eta) {
+    return Look(base_color, metallic, vec2(roughness * roughness), transmission, index_of_refraction, eta,
+                1.0f, vec3(1.0f), 0u, 0u, 0.0f, 0.0f, vec3(0.0f, 0.0f, 1.0f), vec3(0.0f), 0.0f);
+}
+
+// What a surface consists of: shares that sum to 1. This file knows metal (rough), dielectric (opaque,
+// coated) and glass (rough).
 struct Mixture {
-    float metal, dielectric;
+    float metal, dielectric, rough_glass;
     float mirror, glass;
 };
 
@@ -27,143 +62,312 @@ inline float rough_share(IN(Mixture) mixture) {
     return 1.0f - mixture.mirror - mixture.glass;
 }
 
-struct Bsdf {
-    vec3 diffuse;   // albedo of the base
-    vec3 f0;        // specular reflectance at normal incidence
-    float coat_f0;  // of the dielectric part: what the diffuse lobe loses
-    float f90,
-        coat_f90;  // reflectance at grazing: all of its share, or 0 where there is no interface (index 1)
-    float alpha;   // roughness^2
-    float specular_share;  // probability of sampling the specular lobe
-    float reflectance;     // estimate of all that is reflected, as luminance
-};
-
-// A mirror within float accuracy: below, D overflows. Its energy is unchanged, only the lobe's width is.
-inline constexpr float MinAlpha = 1e-4f;
-
-inline float schlick_weight(float cosine) {
-    const float m = lesser_of(greater_of(1.0f - cosine, 0.0f), 1.0f);
-    const float m2 = m * m;
-    return m2 * m2 * m;
+inline bool is_smooth(float alpha) {
+    return alpha <= MinAlpha;
 }
 
-// 1 - schlick_weight, in a form that does not cancel at grazing angles.
-inline float schlick_rest(float cosine) {
-    const float c = lesser_of(greater_of(cosine, 0.0f), 1.0f);
-    const float m = 1.0f - c;
-    return c * (1.0f + m * (1.0f + m) * (1.0f + m * m));
-}
-
-inline Mixture make_mixture(float metallic, float roughness, float transmission) {
-    const float opaque = 1.0f - metallic;
-    Mixture mixture = Mixture(metallic, opaque, 0.0f, 0.0f);
-    if (transmission > 0.0f) {
-        mixture.glass = opaque * transmission;
-        mixture.dielectric = opaque * (1.0f - transmission);
+inline Mixture make_mixture(IN(Look) look) {
+    const float opaque = 1.0f - look.metallic;
+    Mixture mixture = Mixture(look.metallic, opaque, 0.0f, 0.0f, 0.0f);
+    const bool mirror = is_smooth(greater_of(look.alpha.x, look.alpha.y));
+    if (look.transmission > 0.0f) {
+        const float glass = opaque * look.transmission;
+        const bool clear = mirror || look.eta == 0.0f || !is_boundary(look.eta);
+        mixture.glass = clear ? glass : 0.0f;
+        mixture.rough_glass = clear ? 0.0f : glass;
+        mixture.dielectric = opaque * (1.0f - look.transmission);
     }
-    if (roughness * roughness <= MinAlpha) {
-        mixture.mirror = metallic;
+    if (mirror) {
+        mixture.mirror = look.metallic;
         mixture.metal = 0.0f;
     }
     return mixture;
 }
 
-inline Bsdf make_bsdf(vec3 base_color, IN(Mixture) mixture, float roughness, float index_of_refraction,
-                      float cos_out) {
-    Bsdf bsdf;
-    const float r =
-        index_of_refraction == 0.0f ? 1.0f : (index_of_refraction - 1.0f) / (index_of_refraction + 1.0f);
-    bsdf.coat_f0 = r * r;
-    bsdf.diffuse = base_color * mixture.dielectric;
-    bsdf.f0 = vec3(bsdf.coat_f0) * mixture.dielectric + base_color * mixture.metal;
-    bsdf.f90 = largest(bsdf.f0) > 0.0f ? rough_share(mixture) : 0.0f;
-    bsdf.coat_f90 = bsdf.coat_f0 > 0.0f ? 1.0f : 0.0f;
-    bsdf.alpha = greater_of(roughness * roughness, MinAlpha);
-    const float fresnel = schlick_weight(cos_out);
-    const float specular = luminance(bsdf.f0 + (bsdf.f90 - bsdf.f0) * fresnel);
-    const float diffuse = luminance(bsdf.diffuse) * (1.0f - bsdf.coat_f0) * (1.0f - bsdf.coat_f90 * fresnel);
-    const float sum = specular + diffuse;
+// Schlick's Fresnel of the dielectric interface (KHR_materials_specular).
+struct Interface {
+    vec3 f0;
+    float f90;
+};
+
+inline Interface interface_of(IN(Look) look) {
+    const float f0 = normal_reflectance(look.index_of_refraction);
+    const vec3 tinted =
+        vec3(lesser_of(f0 * look.specular_color.x, 1.0f), lesser_of(f0 * look.specular_color.y, 1.0f),
+             lesser_of(f0 * look.specular_color.z, 1.0f));
+    return Interface(tinted * look.specular, f0 > 0.0f ? look.specular : 0.0f);
+}
+
+struct Bsdf {
+    uint lobes;               // of ExtraLobes
+    vec3 diffuse;             // albedo of the base
+    vec3 f0;                  // specular reflectance at normal incidence
+    float f90;                // and at grazing: of all of its share
+    float base_f0, base_f90;  // of the interface above the diffuse lobe
+    vec2 alpha;
+    float roughness;    // by which the specular lobe's energy is looked up: of the smoother direction
+    vec3 late;          // specular light from facet to facet: value / ((1 - E(i)) (1 - E(o)) cos(i))
+    float base_late;    // share of what the interface loses at first that it reflects later
+    float late_out;     // 1 - E(o), E = what the specular lobe would reflect if facets reflected all
+    float base_out;     // (1 - S(o)) / (1 - mean S) / pi
+    float glass_share;  // of rough glass
+    RoughGlass glass;
+    float coat, coat_alpha, coat_roughness, coat_out;  // share; what the coat lets pass to wo
+    vec3 coat_normal;
+    vec3 sheen;
+    float sheen_alpha, sheen_roughness, sheen_out;
+    vec3 chances;       // of sampling diffuse, specular, coat; the rest is rough glass
+    float reflectance;  // estimate of all that is reflected and let through, as luminance
+};
+
+inline float glass_chance(IN(Bsdf) bsdf) {
+    return greater_of(1.0f - bsdf.chances.x - bsdf.chances.y - bsdf.chances.z, 0.0f);
+}
+
+// A smooth coat is in specular.h.
+inline bool has_rough_coat(IN(Bsdf) bsdf) {
+    return (bsdf.lobes & FeatureCoat) != 0u && !is_smooth(bsdf.coat_alpha);
+}
+
+// ---- layers ----
+
+// Of the dielectric interface: (1 - S).
+inline float passes_interface(IN(Bsdf) bsdf, vec2 energy) {
+    const float first = bsdf.base_f0 * energy.x + bsdf.base_f90 * energy.y;
+    return 1.0f - first - bsdf.base_late * (1.0f - energy.x - energy.y);
+}
+
+inline float passes_coat(FloatArray table, IN(Bsdf) bsdf, vec3 w) {
+    const vec2 energy = lobe_energy(table, abs(dot(w, bsdf.coat_normal)), bsdf.coat_roughness);
+    return 1.0f - bsdf.coat * (CoatF0 * energy.x + energy.y);
+}
+
+inline float passes_sheen(FloatArray table, IN(Bsdf) bsdf, float cosine) {
+    const float energy = sheen_energy(table, abs(cosine), bsdf.sheen_roughness);
+    return 1.0f - largest(bsdf.sheen) * lesser_of(energy, 1.0f);
+}
+
+// Of all layers above base and glass, for light between wo and wi.
+inline float passes_layers(FloatArray table, IN(Bsdf) bsdf, vec3 wi) {
+    float share = 1.0f;
+    if ((bsdf.lobes & FeatureCoat) != 0u) share = lesser_of(passes_coat(table, bsdf, wi), bsdf.coat_out);
+    if ((bsdf.lobes & FeatureSheen) != 0u) {
+        share *= lesser_of(passes_sheen(table, bsdf, wi.z), bsdf.sheen_out);
+    }
+    return share;
+}
+
+// ---- making ----
+
+// Where facets send less to each other than this share, in the mean over all directions, that light is left
+// out: it leaves along the surface, where no other lobe would look for it.
+inline constexpr float LeastLate = 1e-3f;
+
+inline void add_specular(INOUT(Bsdf) bsdf, FloatArray table, IN(Mixture) mixture, IN(Interface) face,
+                         vec3 base_color, float cos_out) {
+    bsdf.f0 = face.f0 * mixture.dielectric + base_color * mixture.metal;
+    bsdf.f90 = face.f90 * mixture.dielectric + mixture.metal;
+    bsdf.base_f0 = largest(face.f0);
+    bsdf.base_f90 = face.f90;
+    bsdf.late = vec3(0.0f);
+    bsdf.base_late = 0.0f;
+    bsdf.late_out = 0.0f;
+    bsdf.base_out = InversePi;
+    if (!(bsdf.f90 > 0.0f) && !(bsdf.base_f90 > 0.0f)) return;
+    const vec2 energy = lobe_energy(table, cos_out, bsdf.roughness);
+    const vec2 mean = mean_lobe_energy(table, bsdf.roughness);
+    const float e = mean.x + mean.y;
+    // The tables know of one roughness: with two, that light stays lost.
+    const bool has_late = bsdf.alpha.x == bsdf.alpha.y && 1.0f - e > LeastLate;
+    bsdf.late_out = has_late ? 1.0f - energy.x - energy.y : 0.0f;
+    bsdf.base_late = has_late ? late_share(mean_schlick(bsdf.base_f0, bsdf.base_f90), e) : 0.0f;
+    const float passes = passes_interface(bsdf, mean);
+    // Below, it is rounding: the interface reflects all.
+    bsdf.base_out = passes > 1e-6f ? InversePi * passes_interface(bsdf, energy) / passes : 0.0f;
+    if (!has_late) return;
+    const vec3 metal = base_color + (1.0f - base_color) * (1.0f / 21.0f);
+    const vec3 dielectric = face.f0 + (face.f90 - face.f0) * (1.0f / 21.0f);
+    const float scale = InversePi / (1.0f - e);
+    bsdf.late =
+        (vec3(late_share(metal.x, e), late_share(metal.y, e), late_share(metal.z, e)) * mixture.metal +
+         vec3(late_share(dielectric.x, e), late_share(dielectric.y, e), late_share(dielectric.z, e)) *
+             mixture.dielectric) *
+        scale;
+}
+
+inline void add_layers(INOUT(Bsdf) bsdf, FloatArray table, IN(Look) look, vec3 wo) {
+    bsdf.coat = look.coat;
+    bsdf.coat_roughness = look.coat_roughness;
+    bsdf.coat_alpha = greater_of(look.coat_roughness * look.coat_roughness, MinAlpha);
+    bsdf.coat_normal = look.coat_normal;
+    bsdf.coat_out = 1.0f;
+    bsdf.sheen = look.sheen_color;
+    bsdf.sheen_roughness = look.sheen_roughness;
+    bsdf.sheen_alpha = sheen_alpha_of(look.sheen_roughness);
+    bsdf.sheen_out = 1.0f;
+    if ((bsdf.lobes & FeatureCoat) != 0u) bsdf.coat_out = passes_coat(table, bsdf, wo);
+    if ((bsdf.lobes & FeatureSheen) != 0u) bsdf.sheen_out = passes_sheen(table, bsdf, wo.z);
+}
+
+// 1 - E in the mean.
+inline float late_mean(FloatArray table, IN(Bsdf) bsdf) {
+    const vec2 mean = mean_lobe_energy(table, bsdf.roughness);
+    return 1.0f - mean.x - mean.y;
+}
+
+// In proportion to what the lobes reflect of light to wo, so far as that can be told; never 0 or 1 while
+// several are there, so that no light is out of reach.
+inline void choose_chances(INOUT(Bsdf) bsdf, FloatArray table, float cos_out) {
+    const float weight = schlick_weight(cos_out);
+    const float below = bsdf.coat_out * bsdf.sheen_out;
+    float specular = luminance(bsdf.f0 + (bsdf.f90 - bsdf.f0) * weight) * below;
+    float diffuse = luminance(bsdf.diffuse) * (1.0f - bsdf.base_f0) * (1.0f - bsdf.base_f90 * weight) * below;
+    // What facets send to each other, as sharp as the diffuse lobe.
+    const float mean_left = bsdf.late_out > 0.0f ? late_mean(table, bsdf) : 0.0f;
+    diffuse += luminance(bsdf.late) * (Pi * mean_left * bsdf.late_out * below);
+    float coat = 0.0f, glass = 0.0f;
+    if ((bsdf.lobes & FeatureSheen) != 0u) {
+        diffuse += luminance(bsdf.sheen) * sheen_energy(table, cos_out, bsdf.sheen_roughness);
+    }
+    if ((bsdf.lobes & FeatureCoat) != 0u && !is_smooth(bsdf.coat_alpha)) {
+        coat = (1.0f - bsdf.coat_out) * bsdf.sheen_out;
+    }
+    if ((bsdf.lobes & FeatureRoughGlass) != 0u) {
+        glass = bsdf.glass_share * below;
+    }
+    const float sum = diffuse + specular + coat + glass;
     bsdf.reflectance = sum;
-    // Never 0 or 1 while both lobes are there, so that no light is out of reach.
-    bsdf.specular_share = sum > 0.0f ? lesser_of(greater_of(specular / sum, 0.1f), 0.9f) : 0.5f;
-    if (!(largest(bsdf.diffuse) > 0.0f)) bsdf.specular_share = 1.0f;
-    if (!(bsdf.f90 > 0.0f)) bsdf.specular_share = 0.0f;
+    const float least = 0.1f * sum;
+    if (diffuse > 0.0f) diffuse = greater_of(diffuse, least);
+    if (specular > 0.0f) specular = greater_of(specular, least);
+    if (coat > 0.0f) coat = greater_of(coat, least);
+    if (glass > 0.0f) glass = greater_of(glass, least);
+    const float all = diffuse + specular + coat + glass;
+    bsdf.chances = all > 0.0f ? vec3(diffuse, specular, coat) / all : vec3(1.0f, 0.0f, 0.0f);
+}
+
+inline Bsdf make_bsdf(FloatArray table, IN(Look) look, IN(Mixture) mixture, vec3 wo) {
+    Bsdf bsdf;
+    bsdf.lobes = look.lobes;
+    const Interface face = interface_of(look);
+    bsdf.diffuse = look.base_color * mixture.dielectric;
+    bsdf.alpha = vec2(greater_of(look.alpha.x, MinAlpha), greater_of(look.alpha.y, MinAlpha));
+    bsdf.roughness = sqrt(lesser_of(bsdf.alpha.x, bsdf.alpha.y));
+    add_specular(bsdf, table, mixture, face, look.base_color, wo.z);
+    bsdf.glass_share = mixture.rough_glass;
+    bsdf.glass = RoughGlass(look.base_color, look.eta, face.f0, face.f90, bsdf.alpha, look.thin);
+    if (!(mixture.rough_glass > 0.0f)) bsdf.lobes &= ~FeatureRoughGlass;
+    add_layers(bsdf, table, look, wo);
+    choose_chances(bsdf, table, wo.z);
     return bsdf;
 }
 
-// D of the half vector. In a form that does not cancel: 1 - cos^2 comes from x and y.
-inline float ggx_distribution(vec3 h, float alpha) {
-    const float a2 = alpha * alpha;
-    const float slope = h.x * h.x + h.y * h.y + a2 * h.z * h.z;
-    return a2 * InversePi / (slope * slope);
-}
-
-inline float smith_lambda(vec3 w, float alpha) {
-    const float cos2 = w.z * w.z;
-    if (!(cos2 > 0.0f)) return 1e20f;
-    const float tan2 = (w.x * w.x + w.y * w.y) / cos2;
-    return 0.5f * (sqrt(1.0f + alpha * alpha * tan2) - 1.0f);
-}
-
-// Half vectors in proportion to what is visible from `wo` (Heitz 2018).
-inline vec3 sample_visible_normal(vec3 wo, float alpha, vec2 u) {
-    const vec3 stretched = unit_vector(vec3(alpha * wo.x, alpha * wo.y, wo.z));
-    const float length2 = stretched.x * stretched.x + stretched.y * stretched.y;
-    const vec3 t1 =
-        length2 > 0.0f ? vec3(-stretched.y, stretched.x, 0.0f) / sqrt(length2) : vec3(1.0f, 0.0f, 0.0f);
-    const vec3 t2 = cross(stretched, t1);
-    // The disk's point is pushed from the half that cannot be seen. In a form that does not cancel at the
-    // rim: half_chord^2 = 1 - p.x^2, above = half_chord - p.y, below = half_chord + p.y, height^2 = above *
-    // below.
-    const vec2 p = sample_disk(u);
-    const float s = 0.5f * (1.0f + stretched.z), rest = 0.25f * length2 / s;  // sum 1
-    const float height = height_over_disk(u);
-    const float half_chord = sqrt(height * height + p.y * p.y);
-    const float longer = half_chord + abs(p.y);
-    const float shorter = longer > 0.0f ? height * height / longer : 0.0f;
-    const float above = p.y > 0.0f ? shorter : longer, below = p.y > 0.0f ? longer : shorter;
-    const float y = half_chord - s * above;
-    const float z = sqrt(s * above * (2.0f * rest * half_chord + s * below));
-    const vec3 h = p.x * t1 + y * t2 + z * stretched;
-    return unit_vector(vec3(alpha * h.x, alpha * h.y, greater_of(1e-12f, h.z)));
-}
-
-// Share of the light that the coat does not reflect on its way in or out. Without an interface coat_f0 is 0.
-inline float passes_coat(IN(Bsdf) bsdf, float cosine) {
-    return bsdf.coat_f90 > 0.0f ? (1.0f - bsdf.coat_f0) * schlick_rest(cosine) : 1.0f;
-}
+// ---- light from wi to wo ----
 
 struct BsdfValue {
-    vec3 value;    // f cos(wi)
+    vec3 value;    // f |cos(wi)|
     float pdf;     // per solid angle, of sample_bsdf
     vec3 diffuse;  // the diffuse lobe's part of the value
 };
 
-inline BsdfValue evaluate_bsdf(IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
-    BsdfValue result = BsdfValue(vec3(0.0f), 0.0f, vec3(0.0f));
-    if (!(wi.z > 0.0f) || !(wo.z > 0.0f)) return result;
+inline void evaluate_base(INOUT(BsdfValue) result, FloatArray table, IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
     const vec3 sum = wi + wo;
     const float length2 = dot(sum, sum);
     if (length2 > 0.0f) {
         const vec3 h = sum / sqrt(length2);
-        const float distribution = ggx_distribution(h, bsdf.alpha);
-        const float lambda_out = smith_lambda(wo, bsdf.alpha), lambda_in = smith_lambda(wi, bsdf.alpha);
         const vec3 fresnel = bsdf.f0 + (bsdf.f90 - bsdf.f0) * schlick_weight(dot(wi, h));
-        result.value = fresnel * (distribution / (4.0f * wo.z * (1.0f + lambda_out + lambda_in)));
-        result.pdf = bsdf.specular_share * distribution / (4.0f * wo.z * (1.0f + lambda_out));
+        result.value = fresnel * facet_value(wo, wi, h, bsdf.alpha);
+        result.pdf = bsdf.chances.y * 0.25f * visible_normal_pdf(wo, h, bsdf.alpha);
     }
-    const float keeps_in = passes_coat(bsdf, wi.z), keeps_out = passes_coat(bsdf, wo.z);
-    result.diffuse = bsdf.diffuse * (keeps_in * keeps_out * wi.z * InversePi);
+    float passes = InversePi;
+    if (bsdf.base_f90 > 0.0f || bsdf.f90 > 0.0f) {
+        const vec2 energy = lobe_energy(table, wi.z, bsdf.roughness);
+        passes = bsdf.base_out * passes_interface(bsdf, energy);
+        result.value += bsdf.late * (bsdf.late_out * (1.0f - energy.x - energy.y) * wi.z);
+    }
+    result.diffuse = bsdf.diffuse * (passes * wi.z);
     result.value += result.diffuse;
-    result.pdf += (1.0f - bsdf.specular_share) * wi.z * InversePi;
+    result.pdf += bsdf.chances.x * wi.z * InversePi;
+}
+
+inline void add_coat(INOUT(BsdfValue) result, IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
+    const mat3 frame = frame_around(bsdf.coat_normal);
+    const vec3 o = wo * frame, i = wi * frame;
+    if (!(o.z > 0.0f) || !(i.z > 0.0f)) return;
+    const vec3 sum = i + o;
+    const float length2 = dot(sum, sum);
+    if (!(length2 > 0.0f)) return;
+    const vec3 h = sum / sqrt(length2);
+    const vec2 alpha = vec2(bsdf.coat_alpha);
+    const float fresnel = CoatF0 + (1.0f - CoatF0) * schlick_weight(dot(i, h));
+    result.value += vec3(bsdf.coat * fresnel * facet_value(o, i, h, alpha));
+    result.pdf += bsdf.chances.z * 0.25f * visible_normal_pdf(o, h, alpha);
+}
+
+inline void add_glass(INOUT(BsdfValue) result, IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
+    const GlassValue glass = evaluate_rough_glass(bsdf.glass, wo, wi);
+    result.value += glass.value * bsdf.glass_share;
+    result.pdf += glass_chance(bsdf) * glass.pdf;
+}
+
+// Where fibres seen along the surface would reflect more than comes in, they reflect all of it; by the lesser
+// of both directions' limits, so that it stays reciprocal.
+inline float capped_sheen(FloatArray table, IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
+    const float most = greater_of(sheen_energy(table, wo.z, bsdf.sheen_roughness),
+                                  sheen_energy(table, wi.z, bsdf.sheen_roughness));
+    return sheen_value(wo, wi, bsdf.sheen_alpha) / greater_of(most, 1.0f);
+}
+
+inline BsdfValue evaluate_bsdf(FloatArray table, IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
+    BsdfValue result = BsdfValue(vec3(0.0f), 0.0f, vec3(0.0f));
+    const bool glass = (bsdf.lobes & FeatureRoughGlass) != 0u;
+    if (!(wo.z > 0.0f) || wi.z == 0.0f || (wi.z < 0.0f && !glass)) return result;
+    if (wi.z > 0.0f) evaluate_base(result, table, bsdf, wo, wi);
+    if (glass) add_glass(result, bsdf, wo, wi);
+    if ((bsdf.lobes & (FeatureCoat | FeatureSheen)) == 0u) return result;
+    const float passes = passes_layers(table, bsdf, wi);
+    result.value *= passes;
+    result.diffuse *= passes;
+    if (!(wi.z > 0.0f)) return result;
+    if (has_rough_coat(bsdf)) {
+        BsdfValue coat = BsdfValue(vec3(0.0f), 0.0f, vec3(0.0f));
+        add_coat(coat, bsdf, wo, wi);
+        float under_sheen = 1.0f;
+        if ((bsdf.lobes & FeatureSheen) != 0u) {
+            under_sheen = lesser_of(passes_sheen(table, bsdf, wi.z), bsdf.sheen_out);
+        }
+        result.value += coat.value * under_sheen;
+        result.pdf += coat.pdf;
+    }
+    if ((bsdf.lobes & FeatureSheen) != 0u) {
+        result.value += bsdf.sheen * capped_sheen(table, bsdf, wo, wi);
+    }
     return result;
 }
 
-// A direction; may point below the surface, where the value is 0.
+// A direction, or none (0, 0, 0).
 inline vec3 sample_bsdf(IN(Bsdf) bsdf, vec3 wo, float choice, vec2 u) {
-    if (choice >= bsdf.specular_share) return sample_cosine_hemisphere(u);
-    const vec3 h = sample_visible_normal(wo, bsdf.alpha, u);
-    return 2.0f * dot(wo, h) * h - wo;
+    float first = bsdf.chances.y;
+    if (choice < first) {
+        const vec3 h = sample_visible_normal(wo, bsdf.alpha, u);
+        return on_side(2.0f * dot(wo, h) * h - wo, 1.0f);
+    }
+    first += bsdf.chances.x;
+    if (choice < first || (bsdf.lobes & (FeatureCoat | FeatureRoughGlass)) == 0u) {
+        return sample_cosine_hemisphere(u);
+    }
+    if (has_rough_coat(bsdf)) {
+        first += bsdf.chances.z;
+        if (choice < first || (bsdf.lobes & FeatureRoughGlass) == 0u) {
+            const mat3 frame = frame_around(bsdf.coat_normal);
+            const vec3 o = wo * frame;
+            if (!(o.z > 0.0f)) return vec3(0.0f);
+            const vec3 h = sample_visible_normal(o, vec2(bsdf.coat_alpha), u);
+            return on_side(frame * on_side(2.0f * dot(o, h) * h - o, 1.0f), 1.0f);
+        }
+    }
+    const float rest = (choice - first) / greater_of(1.0f - first, 1e-6f);
+    return sample_rough_glass(bsdf.glass, wo, rest, u);
 }
 
 SHADING_END

@@ -157,6 +157,12 @@ inline bool is_seen(IN(Scene) scene, IN(LightSource) light, uint layers) {
     return (scene.features & FeatureLayers) == 0u || (light.layers & layers) != 0u;
 }
 
+// Light is welcome from both sides where it goes through.
+inline Receiver receiver_at(IN(Surface) surface) {
+    const bool through = (surface.bsdf.lobes & FeatureRoughGlass) != 0u;
+    return Receiver(surface.position, through ? vec3(0.0f) : surface.geometric_normal);
+}
+
 inline LightSample sample_chosen(IN(Scene) scene, uint layers, IN(Surface) surface, IN(Emitter) emitter,
                                  IN(LightSource) light, float probability, vec2 u) {
     if (!is_seen(scene, light, layers)) return no_light();
@@ -164,8 +170,7 @@ inline LightSample sample_chosen(IN(Scene) scene, uint layers, IN(Surface) surfa
 }
 
 inline LightSample sample_tree(IN(Scene) scene, uint layers, IN(Surface) surface, vec2 choice, vec2 u) {
-    const ChosenEmitter chosen =
-        choose_emitter(scene, Receiver(surface.position, surface.geometric_normal), choice);
+    const ChosenEmitter chosen = choose_emitter(scene, receiver_at(surface), choice);
     const Emitter emitter = scene.emitters.items[chosen.index];
     return sample_chosen(scene, layers, surface, emitter, scene.lights.items[emitter.light],
                          chosen.probability, u);

@@ -12,16 +12,10 @@ inline bool emits(IN(Material) material) {
     return material.emission.x > 0.0f || material.emission.y > 0.0f || material.emission.z > 0.0f;
 }
 
-inline vec2 tex_coord_at(IN(Mesh) mesh, uvec3 corners, vec2 b) {
-    if ((mesh.arrays & MeshTexCoords) == 0u) return vec2(0.0f);
-    return mesh.tex_coords.items[corners.x] * (1.0f - b.x - b.y) + mesh.tex_coords.items[corners.y] * b.x +
-           mesh.tex_coords.items[corners.z] * b.y;
-}
-
 inline vec4 base_color_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uvec3 corners, vec2 b) {
     vec4 color = material.base_color;
     if (is_used(scene, material.base_color_texture)) {
-        color *= lookup_use(scene, material.base_color_texture, tex_coord_at(mesh, corners, b));
+        color *= texel_of(scene, material.base_color_texture, mesh, corners, b);
     }
     if ((mesh.arrays & MeshColors) != 0u) {
         color *= mesh.colors.items[corners.x] * (1.0f - b.x - b.y) + mesh.colors.items[corners.y] * b.x +
@@ -38,8 +32,7 @@ inline float alpha_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uve
 
 inline vec3 emission_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uvec3 corners, vec2 b) {
     if (!is_used(scene, material.emission_texture)) return material.emission;
-    return material.emission *
-           vec3(lookup_use(scene, material.emission_texture, tex_coord_at(mesh, corners, b)));
+    return material.emission * vec3(texel_of(scene, material.emission_texture, mesh, corners, b));
 }
 
 inline bool alpha_stops(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uint instance, uint triangle,

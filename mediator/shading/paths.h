@@ -37,7 +37,7 @@ struct Path {
     float probability;  // of this branch, where all branches are followed
     float bsdf_pdf;     // of the direction it travels; 0 = from the camera or a perfect specular
     vec3 last_position;
-    vec3 last_normal;  // geometric, of the surface there
+    vec3 last_normal;  // of the receiver there (light_tree.h)
     Way way;           // that light takes which is found next
     PathSample found;
     uint rays;

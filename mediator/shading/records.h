@@ -36,6 +36,7 @@ struct Texture {
 // A use of a texture, with its transform: u' = dot(row_u, uv) + offset.x, and v' likewise.
 struct TextureUse {
     int texture;  // index; -1 = none
+    uint set;     // of texture coordinates: 0 or 1
     vec2 row_u;
     vec2 row_v;
     vec2 offset;
@@ -58,10 +59,35 @@ struct Material {
     uint alpha_mode;
     uint double_sided;  // 1 or 0, as all that could be a bool
     uint unlit;
+    uint thin;   // walls instead of a body
+    int extras;  // index; -1 = none
+};
+
+// What few materials have.
+struct MaterialExtras {
+    vec3 specular_color;
+    float specular;
+    vec3 sheen_color;
+    float sheen_roughness;
+    float coat;
+    float coat_roughness;
+    float coat_normal_scale;
+    float anisotropy;
+    vec2 anisotropy_direction;  // cosine and sine of the angle to the tangent
+    TextureUse transmission_texture;
+    TextureUse specular_texture;
+    TextureUse specular_color_texture;
+    TextureUse coat_texture;
+    TextureUse coat_roughness_texture;
+    TextureUse coat_normal_texture;
+    TextureUse sheen_color_texture;
+    TextureUse sheen_roughness_texture;
+    TextureUse anisotropy_texture;
 };
 
 // Which of a mesh's arrays are there besides positions and triangles.
-inline constexpr uint MeshNormals = 1u, MeshTangents = 2u, MeshColors = 4u, MeshTexCoords = 8u;
+inline constexpr uint MeshNormals = 1u, MeshTangents = 2u, MeshColors = 4u, MeshTexCoords = 8u,
+                      MeshTexCoords1 = 16u;
 
 struct Mesh {
     Vec3Array positions;
@@ -70,6 +96,7 @@ struct Mesh {
     Vec4Array tangents;  // w = handedness
     Vec4Array colors;
     Vec2Array tex_coords;
+    Vec2Array tex_coords_1;
     uint arrays;
     uint triangle_count;
 };
@@ -155,6 +182,9 @@ struct Environment {
 inline constexpr uint FeatureTextures = 1u, FeatureNormalMaps = 2u, FeatureAlpha = 4u, FeatureSpecular = 8u,
                       FeaturePlacedLights = 16u, FeatureMeshLights = 32u, FeatureEnvironment = 64u,
                       FeatureEnvironmentMap = 128u;
+// Lobes that few materials have, and whether any material has extras.
+inline constexpr uint FeatureCoat = 4096u, FeatureSheen = 8192u, FeatureRoughGlass = 16384u,
+                      FeatureExtras = 32768u;
 // Of a scene and a view together: some of it is in none of the view's layers.
 inline constexpr uint FeatureLayers = 256u;
 // More than one emitter; spheres and quads; suns.
@@ -163,6 +193,7 @@ inline constexpr uint FeatureShadowCatcher = 0x80000u;
 
 ARRAY_OF(Texture, TextureArray, 8);
 ARRAY_OF(Material, MaterialArray, 4);
+ARRAY_OF(MaterialExtras, MaterialExtrasArray, 4);
 ARRAY_OF(Mesh, MeshArray, 8);
 ARRAY_OF(Instance, InstanceArray, 4);
 ARRAY_OF(LightSource, LightSourceArray, 4);
@@ -172,13 +203,15 @@ ARRAY_OF(LightNode, LightNodeArray, 4);
 struct Scene {
     TextureArray textures;
     MaterialArray materials;
+    MaterialExtrasArray extras;
     MeshArray meshes;
     InstanceArray instances;
     LightSourceArray lights;  // those in the tree, then those infinitely far
     EmitterArray emitters;
     LightNodeArray light_nodes;
-    FloatArray sums;  // all cumulative sums: whoever has some knows the index of the first
-    FloatArray srgb;  // linear value of each byte (IEC 61966-2-1)
+    FloatArray sums;    // all cumulative sums: whoever has some knows the index of the first
+    FloatArray srgb;    // linear value of each byte (IEC 61966-2-1)
+    FloatArray energy;  // what lobes reflect (energy.h)
     Environment environment;
     uint instance_count;
     uint light_count;

@@ -12,47 +12,30 @@
 // as it would be in air.
 SHADING_BEGIN
 
-// Squared cosine on the far side, by Snell's law; not positive at total reflection. `sine2` is 1 - cosine^2,
-// as its source can tell it best; eta as below, not 0. Towards the denser side (and none) in a form that does
-// not cancel at grazing angles.
-inline float refracted_cosine2(float cosine, float sine2, float eta) {
-    const float eta2 = eta * eta;
-    return eta >= 1.0f ? ((eta - 1.0f) * (eta + 1.0f) + cosine * cosine) / eta2 : 1.0f - sine2 / eta2;
-}
-
-// Share of unpolarised light that the smooth boundary of two dielectrics reflects. `cosine` is that of the
-// direction and the normal, in [0, 1]; eta = index of refraction on the far side / on this side; eta = 0
-// stands for an index without bound.
-inline float fresnel_dielectric(float cosine, float eta) {
-    if (eta == 1.0f) return 0.0f;
-    if (!(eta > 0.0f)) return 1.0f;
-    const float inside2 = refracted_cosine2(cosine, (1.0f - cosine) * (1.0f + cosine), eta);
-    if (!(inside2 > 0.0f)) return 1.0f;
-    const float inside = sqrt(inside2);
-    const float parallel = (eta * cosine - inside) / (eta * cosine + inside);
-    const float across = (cosine - eta * inside) / (cosine + eta * inside);
-    return 0.5f * (parallel * parallel + across * across);
-}
-
 struct Specular {
     vec3 reflection, refraction;  // shares of the light that goes this way
     vec3 reflected, refracted;    // directions, of unit length where the share is not 0
 };
 
-// For mixtures without mirror and glass both shares are 0. At total reflection nothing is refracted.
-inline Specular make_specular(vec3 base_color, IN(Mixture) mixture, float eta, vec3 wo) {
+// For mixtures without mirror and glass both shares are 0. At total reflection nothing is refracted; through
+// thin walls light goes straight on. `glass`: the boundary; its tint is the base colour.
+inline Specular make_specular(IN(Mixture) mixture, IN(RoughGlass) glass, vec3 wo) {
     Specular specular;
-    const float fresnel = fresnel_dielectric(wo.z, eta);
+    const vec3 fresnel = bent_fresnel(glass, wo.z);
     specular.reflected = vec3(-wo.x, -wo.y, wo.z);
-    specular.reflection = mixture.mirror * (base_color + (1.0f - base_color) * schlick_weight(wo.z)) +
-                          vec3(mixture.glass * fresnel);
-    specular.refraction = base_color * (mixture.glass * (1.0f - fresnel));
-    specular.refracted = vec3(0.0f);
-    if (!(fresnel < 1.0f)) return specular;
+    specular.reflection =
+        mixture.mirror * (glass.tint + (1.0f - glass.tint) * schlick_weight(wo.z)) + mixture.glass * fresnel;
+    specular.refraction = glass.tint * (1.0f - fresnel) * mixture.glass;
+    specular.refracted = -wo;
+    if (glass.thin != 0u || !(mixture.glass > 0.0f)) return specular;
+    if (!(largest(specular.refraction) > 0.0f)) {
+        specular.refracted = vec3(0.0f);
+        return specular;
+    }
     // 1 - cos^2 from x and y: it does not cancel near the normal.
     const float sine2 = wo.x * wo.x + wo.y * wo.y;
-    const float inside = sqrt(greater_of(0.0f, refracted_cosine2(wo.z, sine2, eta)));
-    specular.refracted = unit_vector(vec3(-wo.x / eta, -wo.y / eta, -inside));
+    const float inside = sqrt(greater_of(0.0f, refracted_cosine2(wo.z, sine2, glass.eta)));
+    specular.refracted = unit_vector(vec3(-wo.x / glass.eta, -wo.y / glass.eta, -inside));
     return specular;
 }
 

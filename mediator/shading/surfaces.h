@@ -1,7 +1,7 @@
 #ifndef TESSERA_MEDIATOR_SHADING_SURFACES_H
 #define TESSERA_MEDIATOR_SHADING_SURFACES_H
 
-#include "mediator/shading/materials.h"
+#include "mediator/shading/looks.h"
 #include "mediator/shading/points.h"
 #include "mediator/shading/specular.h"
 
@@ -16,7 +16,7 @@ struct Surface {
     vec3 albedo;
     vec3 emission;
     Bsdf bsdf;          // of what is no perfect specular
-    Specular specular;  // perfect mirror and smooth glass; directions in the world
+    Specular specular;  // perfect mirror, smooth coat and smooth glass; directions in the world
     float rough_share;  // of the material that is no perfect specular
     uint object;        // id
     uint triangle;
@@ -31,82 +31,140 @@ inline vec3 to_world(IN(Surface) surface, vec3 local) {
     return surface.frame * local;
 }
 
-inline vec3 mapped_normal(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
-                          uvec3 corners, vec2 b, vec3 normal) {
-    if ((scene.features & FeatureNormalMaps) == 0u || !is_used(scene, material.normal_texture)) return normal;
-    const uint needed = MeshTangents | MeshTexCoords;
-    if ((mesh.arrays & needed) != needed) return normal;
-    const vec4 tangent4 = mesh.tangents.items[corners.x] * (1.0f - b.x - b.y) +
-                          mesh.tangents.items[corners.y] * b.x + mesh.tangents.items[corners.z] * b.y;
-    vec3 tangent = instance.linear * vec3(tangent4);
-    tangent = direction_of(tangent - normal * dot(normal, tangent), vec3(0.0f));
-    if (tangent == vec3(0.0f)) return normal;
-    const vec3 bitangent = cross(normal, tangent) * (tangent4.w < 0.0f ? -1.0f : 1.0f);
-    const vec3 texel = vec3(lookup_use(scene, material.normal_texture, tex_coord_at(mesh, corners, b)));
+// The vertices' tangent, turned into the plane of the normal; w: 1 or -1, the side of the bitangent; 0: there
+// is no tangent.
+inline vec4 tangent_at(IN(Instance) instance, IN(Mesh) mesh, uvec3 corners, vec2 b, vec3 normal) {
+    if ((mesh.arrays & MeshTangents) == 0u) return vec4(0.0f);
+    const vec4 mean = mesh.tangents.items[corners.x] * (1.0f - b.x - b.y) +
+                      mesh.tangents.items[corners.y] * b.x + mesh.tangents.items[corners.z] * b.y;
+    const vec3 tangent = instance.linear * vec3(mean);
+    const vec3 across = direction_of(tangent - normal * dot(normal, tangent), vec3(0.0f));
+    if (across == vec3(0.0f)) return vec4(0.0f);
+    return vec4(across.x, across.y, across.z, mean.w < 0.0f ? -1.0f : 1.0f);
+}
+
+// What a normal map makes of the vertices' normal.
+inline vec3 mapped_normal(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(TextureUse) map,
+                          float scale, uvec3 corners, vec2 b, vec3 normal) {
+    if ((scene.features & FeatureNormalMaps) == 0u || !is_used(scene, map)) return normal;
+    const vec4 tangent4 = tangent_at(instance, mesh, corners, b, normal);
+    if (tangent4.w == 0.0f || (mesh.arrays & (MeshTexCoords | MeshTexCoords1)) == 0u) return normal;
+    const vec3 tangent = vec3(tangent4);
+    const vec3 bitangent = cross(normal, tangent) * tangent4.w;
+    const vec3 texel = vec3(texel_of(scene, map, mesh, corners, b));
     vec3 n = 2.0f * texel - 1.0f;
-    n.x *= material.normal_scale;
-    n.y *= material.normal_scale;
+    n.x *= scale;
+    n.y *= scale;
     return direction_of(tangent * n.x + bitangent * n.y + normal * n.z, normal);
 }
 
-// Of the side that `direction` comes to. A shading normal that faces away from the viewer describes no
-// surface that can be seen: the geometric one stands in.
+inline vec3 vertex_normal(IN(Instance) instance, IN(Mesh) mesh, uvec3 corners, vec2 b, vec3 face) {
+    if ((mesh.arrays & MeshNormals) == 0u) return face;
+    const vec3 mean = mesh.normals.items[corners.x] * (1.0f - b.x - b.y) +
+                      mesh.normals.items[corners.y] * b.x + mesh.normals.items[corners.z] * b.y;
+    return direction_of(instance.normals * mean, face);
+}
+
+// A normal of the front, on the side that `direction` comes to. One that faces away from the viewer describes
+// no surface that can be seen: the geometric one stands in.
+inline vec3 seen_normal(vec3 normal, vec3 face, vec3 direction) {
+    const bool front = dot(face, direction) < 0.0f;
+    const vec3 seen = front ? normal : -normal;
+    if (dot(seen, direction) < 0.0f) return seen;
+    return front ? face : -face;
+}
+
 inline vec3 shading_normal(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
                            uvec3 corners, vec2 b, vec3 face, vec3 direction) {
-    vec3 normal = face;
-    if ((mesh.arrays & MeshNormals) != 0u) {
-        const vec3 mean = mesh.normals.items[corners.x] * (1.0f - b.x - b.y) +
-                          mesh.normals.items[corners.y] * b.x + mesh.normals.items[corners.z] * b.y;
-        normal = direction_of(instance.normals * mean, face);
-    }
-    normal = mapped_normal(scene, instance, mesh, material, corners, b, normal);
-    const bool front = dot(face, direction) < 0.0f;
-    if (!front) normal = -normal;
-    if (dot(normal, direction) < 0.0f) return normal;
-    return front ? face : -face;
+    const vec3 normal = mapped_normal(scene, instance, mesh, material.normal_texture, material.normal_scale,
+                                      corners, b, vertex_normal(instance, mesh, corners, b, face));
+    return seen_normal(normal, face, direction);
+}
+
+// Around the normal; x along the direction of anisotropy, where there is one.
+inline mat3 shading_frame(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
+                          uvec3 corners, vec2 b, vec3 normal) {
+    if (!has_extras(scene, material)) return frame_around(normal);
+    const MaterialExtras extras = scene.extras.items[material.extras];
+    if (!(extras.anisotropy > 0.0f)) return frame_around(normal);
+    const vec4 tangent4 = tangent_at(instance, mesh, corners, b, normal);
+    if (tangent4.w == 0.0f) return frame_around(normal);
+    const vec3 turn = anisotropy_at(scene, extras, mesh, corners, b);
+    const vec3 tangent = vec3(tangent4);
+    const vec3 x = direction_of(tangent * turn.x + cross(normal, tangent) * (tangent4.w * turn.y), tangent);
+    return mat3(x, cross(normal, x), normal);
 }
 
 // Directions by the shading normal where they leave the surface on their own sides, else by the geometric
 // one: no light may get lost at the rim of a smooth body. Total reflection has to be that of both normals, or
 // light would run around inside of a smooth body for ever, which no light from outside can do.
-inline Specular specular_at(IN(Surface) surface, IN(Mixture) mixture, float eta, vec3 direction) {
+inline Specular specular_at(IN(Surface) surface, IN(Mixture) mixture, IN(RoughGlass) glass, vec3 direction) {
     mat3 frame = surface.frame;
-    Specular specular = make_specular(surface.albedo, mixture, eta, -direction * frame);
+    Specular specular = make_specular(mixture, glass, -direction * frame);
     const vec3 up = surface.geometric_normal * frame;
     bool consistent = dot(specular.reflected, up) > 0.0f;
     if (largest(specular.refraction) > 0.0f) {
         consistent = consistent && dot(specular.refracted, up) < 0.0f;
     } else if (mixture.glass > 0.0f) {
-        consistent = consistent && fresnel_dielectric(-dot(direction, surface.geometric_normal), eta) == 1.0f;
+        consistent =
+            consistent && fresnel_dielectric(-dot(direction, surface.geometric_normal), glass.eta) == 1.0f;
     }
     if (!consistent) {
         frame = frame_around(surface.geometric_normal);
-        specular = make_specular(surface.albedo, mixture, eta, -direction * frame);
+        specular = make_specular(mixture, glass, -direction * frame);
     }
     specular.reflected = unit_vector(frame * specular.reflected);
     specular.refracted = frame * specular.refracted;
     return specular;
 }
 
-inline void set_scattering(INOUT(Surface) surface, IN(Scene) scene, IN(Mesh) mesh, IN(Material) material,
-                           uvec3 corners, vec2 b, vec3 direction, bool front) {
-    float metallic = material.metallic;
-    float roughness = material.roughness;
-    if (is_used(scene, material.metallic_roughness_texture) && (mesh.arrays & MeshTexCoords) != 0u) {
-        const vec4 texel =
-            lookup_use(scene, material.metallic_roughness_texture, tex_coord_at(mesh, corners, b));
-        roughness *= texel.y;
-        metallic *= texel.z;
+// A smooth coat is one more perfect mirror: by its own normal, but where base or glass are perfect as well,
+// which share one direction with it.
+inline void add_smooth_coat(INOUT(Surface) surface, IN(Look) look, IN(Mixture) mixture, vec3 direction) {
+    vec3 normal = surface.frame * look.coat_normal;
+    const bool shared_way = mixture.mirror > 0.0f || mixture.glass > 0.0f;
+    vec3 reflected = direction - 2.0f * dot(direction, normal) * normal;
+    if (!shared_way && !(dot(reflected, surface.geometric_normal) > 0.0f)) {
+        normal = surface.geometric_normal;
+        reflected = direction - 2.0f * dot(direction, normal) * normal;
     }
-    const float cos_out = -dot(direction, surface.frame[2]);
-    const Mixture mixture = make_mixture(metallic, roughness, material.transmission);
-    surface.bsdf = make_bsdf(surface.albedo, mixture, roughness, material.index_of_refraction, cos_out);
-    if ((scene.features & FeatureSpecular) != 0u && surface.scatters &&
-        (mixture.mirror > 0.0f || mixture.glass > 0.0f)) {
-        surface.rough_share = rough_share(mixture);
-        // Bodies are solid: behind the front is glass, behind the back is air. Index 0 stands for infinity.
-        const float n = material.index_of_refraction;
-        surface.specular = specular_at(surface, mixture, front || n == 0.0f ? n : 1.0f / n, direction);
+    if (!shared_way) surface.specular.reflected = unit_vector(reflected);
+    const float fresnel = CoatF0 + (1.0f - CoatF0) * schlick_weight(abs(dot(direction, normal)));
+    surface.specular.reflection += vec3(look.coat * fresnel * surface.bsdf.sheen_out);
+}
+
+inline void set_specular(INOUT(Surface) surface, IN(Look) look, IN(Mixture) mixture, vec3 direction) {
+    const bool perfect = mixture.mirror > 0.0f || mixture.glass > 0.0f;
+    const bool smooth_coat = (look.lobes & FeatureCoat) != 0u && is_smooth(surface.bsdf.coat_alpha);
+    if (!perfect && !smooth_coat) return;
+    surface.rough_share = rough_share(mixture);
+    if (perfect) {
+        const float passes = surface.bsdf.coat_out * surface.bsdf.sheen_out;
+        surface.specular = specular_at(surface, mixture, surface.bsdf.glass, direction);
+        surface.specular.reflection *= passes;
+        surface.specular.refraction *= passes;
+    }
+    if (smooth_coat) {
+        add_smooth_coat(surface, look, mixture, direction);
+        surface.rough_share *= surface.bsdf.coat_out;
+    }
+}
+
+inline void set_scattering(INOUT(Surface) surface, IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
+                           IN(Material) material, uvec3 corners, vec2 b, vec3 face, vec3 direction) {
+    const bool front = dot(face, direction) < 0.0f;
+    Look look = look_at(scene, material, mesh, corners, b, surface.albedo, front);
+    if ((look.lobes & FeatureCoat) != 0u) {
+        const MaterialExtras extras = scene.extras.items[material.extras];
+        const vec3 mapped =
+            mapped_normal(scene, instance, mesh, extras.coat_normal_texture, extras.coat_normal_scale,
+                          corners, b, vertex_normal(instance, mesh, corners, b, face));
+        look.coat_normal = to_local(surface, seen_normal(mapped, face, direction));
+    }
+    const Mixture mixture = make_mixture(look);
+    surface.bsdf = make_bsdf(scene.energy, look, mixture, to_local(surface, -direction));
+    if ((scene.features & FeatureSpecular) != 0u && surface.scatters) {
+        set_specular(surface, look, mixture, direction);
     }
 }
 
@@ -126,7 +184,8 @@ inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     const bool front = dot(face, direction) < 0.0f;
     surface.geometric_normal = front ? face : -face;
     surface.frame =
-        frame_around(shading_normal(scene, instance, mesh, material, corners, b, face, direction));
+        shading_frame(scene, instance, mesh, material, corners, b,
+                      shading_normal(scene, instance, mesh, material, corners, b, face, direction));
 
     const vec3 color = vec3(base_color_at(scene, material, mesh, corners, b));
     surface.albedo = clamp(color, 0.0f, 1.0f);  // vertex colours may say more than 1: no surface does
@@ -139,7 +198,7 @@ inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     }
     surface.rough_share = 1.0f;
     surface.specular = Specular(vec3(0.0f), vec3(0.0f), vec3(0.0f), vec3(0.0f));
-    set_scattering(surface, scene, mesh, material, corners, b, direction, front);
+    set_scattering(surface, scene, instance, mesh, material, corners, b, face, direction);
     return surface;
 }
 

@@ -67,10 +67,23 @@ inline bool is_used(IN(Scene) scene, IN(TextureUse) use) {
     return (scene.features & FeatureTextures) != 0u && use.texture >= 0;
 }
 
+// Of the set that the texture is used with; the origin where the mesh does not have it.
+inline vec2 tex_coord_at(IN(Mesh) mesh, uint set, uvec3 corners, vec2 b) {
+    if ((mesh.arrays & (set == 0u ? MeshTexCoords : MeshTexCoords1)) == 0u) return vec2(0.0f);
+    Vec2Array coords = mesh.tex_coords;
+    if (set != 0u) coords = mesh.tex_coords_1;
+    return coords.items[corners.x] * (1.0f - b.x - b.y) + coords.items[corners.y] * b.x +
+           coords.items[corners.z] * b.y;
+}
+
 inline vec4 lookup_use(IN(Scene) scene, IN(TextureUse) use, vec2 uv) {
     const vec2 place = vec2(use.row_u.x * uv.x + use.row_u.y * uv.y + use.offset.x,
                             use.row_v.x * uv.x + use.row_v.y * uv.y + use.offset.y);
     return lookup(scene, scene.textures.items[use.texture], place);
+}
+
+inline vec4 texel_of(IN(Scene) scene, IN(TextureUse) use, IN(Mesh) mesh, uvec3 corners, vec2 b) {
+    return lookup_use(scene, use, tex_coord_at(mesh, use.set, corners, b));
 }
 
 SHADING_END

@@ -61,7 +61,7 @@ WITH_CONTEXT inline bool leave_vertex(IN(Context) context, INOUT(Path) path, INO
     if (lobe.kind == LobeRough) {
         const vec3 wo = to_local(surface, -ray.direction);
         add_lights(context, path, surface, wo);
-        if (!scatter(context.view, path, surface, wo, lobe, direction)) return false;
+        if (!scatter(context.scene.energy, context.view, path, surface, wo, lobe, direction)) return false;
     } else {
         direction = pass_on(context, path, surface, lobe);
     }

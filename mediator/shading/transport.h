@@ -59,6 +59,14 @@ struct Lobe {
     float roulette;
 };
 
+// Whether a direction leads to the same side of the surface by both normals: up, or down where light goes
+// through.
+inline bool leads_on(IN(Surface) surface, vec3 direction, vec3 wi) {
+    const float side = dot(direction, surface.geometric_normal);
+    if ((surface.bsdf.lobes & FeatureRoughGlass) != 0u && wi.z < 0.0f) return side < 0.0f;
+    return side > 0.0f;
+}
+
 inline Ray leaving(IN(Surface) surface, vec3 direction) {
     return Ray(leave_surface(surface.position, surface.error, surface.geometric_normal, direction),
                direction);
@@ -106,8 +114,9 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
     const LightSample light = sample_light(context.scene, context.view.layers, surface, choice, u);
     if (!(light.pdf > 0.0f) || !(largest(light.radiance) > 0.0f)) return;
     if (context.view.strategy == StrategyBsdfOnly && !light.delta) return;
-    if (!(dot(light.direction, surface.geometric_normal) > 0.0f)) return;
-    const BsdfValue bsdf = evaluate_bsdf(surface.bsdf, wo, to_local(surface, light.direction));
+    const vec3 wi = to_local(surface, light.direction);
+    if (!leads_on(surface, light.direction, wi)) return;
+    const BsdfValue bsdf = evaluate_bsdf(context.scene.energy, surface.bsdf, wo, wi);
     if (!(largest(bsdf.value) > 0.0f)) return;
     const bool alone = light.delta || context.view.strategy == StrategyLightsOnly;
     const float weight = alone ? 1.0f : power_heuristic(light.pdf, bsdf.pdf);
@@ -156,17 +165,19 @@ inline Lobe choose_lobe(INOUT(Path) path, IN(Surface) surface, IN(Lobe) rough) {
 }
 
 // `direction` becomes the next one; false ends the path. The vertex is for the caller to count.
-inline bool scatter(IN(View) view, INOUT(Path) path, IN(Surface) surface, vec3 wo, IN(Lobe) lobe,
-                    INOUT(vec3) direction) {
+inline bool scatter(FloatArray energy, IN(View) view, INOUT(Path) path, IN(Surface) surface, vec3 wo,
+                    IN(Lobe) lobe, INOUT(vec3) direction) {
     const vec2 u = pair_at(path, PairBsdfDirection);
     const vec3 wi = sample_bsdf(surface.bsdf, wo, lobe.choice, u);
-    const BsdfValue bsdf = evaluate_bsdf(surface.bsdf, wo, wi);
+    const BsdfValue bsdf = evaluate_bsdf(energy, surface.bsdf, wo, wi);
+    if (!(bsdf.pdf > 0.0f)) return false;
     direction = unit_vector(to_world(surface, wi));
-    if (!(bsdf.pdf > 0.0f) || !(dot(direction, surface.geometric_normal) > 0.0f)) return false;
+    if (!leads_on(surface, direction, wi)) return false;
     path.throughput *= bsdf.value / bsdf.pdf;
     path.bsdf_pdf = bsdf.pdf;
-    path.last_position = surface.position;
-    path.last_normal = surface.geometric_normal;
+    const Receiver receiver = receiver_at(surface);
+    path.last_position = receiver.position;
+    path.last_normal = receiver.normal;
     if (keeps(view, KeepsDiffuse) && path.way.scatterings == 0u) path.way.diffuse_share = diffuse_share(bsdf);
     path.way.scatterings += 1u;
     path.way.last_is_delta = false;

@@ -38,13 +38,14 @@ std::vector<Look> looks(const scene::Scene& scene, const scene::BlobStore& blobs
         Look look{instance.world_from_object, *scene.find_as<scene::Geometry>(instance.geometry), {}, {}, {}};
         if (const auto* material = scene.find_as<scene::Material>(look.geometry.material))
             look.material = *material;
-        for (scene::TextureSlot* slot :
-             {&look.material.base_color_texture, &look.material.metallic_roughness_texture,
-              &look.material.normal_texture, &look.material.emission_texture}) {
-            const auto* texture = scene.find_as<scene::Texture>(slot->texture);
-            look.textures.push_back(texture ? *texture : scene::Texture{});
-            slot->texture = {};
-        }
+        scene::for_each_field<scene::Material>([&](unsigned, auto member) {
+            auto& slot = look.material.*member;
+            if constexpr (std::is_same_v<std::decay_t<decltype(slot)>, scene::TextureSlot>) {
+                const auto* texture = scene.find_as<scene::Texture>(slot.texture);
+                look.textures.push_back(texture ? *texture : scene::Texture{});
+                slot.texture = {};
+            }
+        });
         look.geometry.material = {};
         if (const scene::BlobPtr blob = blobs.find(look.geometry.normals.hash)) {
             const auto normals = blob->as<glm::vec3>();

@@ -44,6 +44,7 @@ scene::Geometry square(Maker& maker, float size, ObjectId material) {
     square.normals = maker.blob(std::vector<glm::vec3>(4, {0, 0, 1}));
     square.tangents = maker.blob(std::vector<glm::vec4>(4, {1, 0, 0, -1}));
     square.tex_coords = maker.blob<glm::vec2>({{0, 1}, {1, 1}, {0, 0}, {1, 0}});
+    square.tex_coords_1 = maker.blob<glm::vec2>({{0, 2}, {2, 2}, {0, 0}, {2, 0}});
     square.colors =
         maker.blob<glm::vec4>({{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}, {0.2f, 0.3f, 0.4f, 0.5f}});
     return square;
@@ -67,6 +68,33 @@ scene::Material colorful(ObjectId picture, ObjectId data) {
     material.unlit = true;
     material.index_of_refraction = 1.33f;
     material.transmission = 0.6f;
+    material.transmission_texture = {.texture = data, .set = 1};
+    material.thickness = 0.25f;
+    material.attenuation_color = {0.5f, 0.75f, 1.0f};
+    material.attenuation_distance = 2.5f;
+    material.specular = 0.7f;
+    material.specular_texture = {.texture = data, .rotation = 0.3f};
+    material.specular_color = {1.5f, 0.5f, 0.25f};
+    material.specular_color_texture = {.texture = picture};
+    material.clearcoat = 0.9f;
+    material.clearcoat_texture = {.texture = data};
+    material.clearcoat_roughness = 0.2f;
+    material.clearcoat_roughness_texture = {.texture = data, .set = 1};
+    material.clearcoat_normal_texture = {.texture = data, .offset = {0.5f, 0.25f}};
+    material.clearcoat_normal_scale = 0.6f;
+    material.sheen_color = {0.3f, 0.2f, 0.1f};
+    material.sheen_color_texture = {.texture = picture};
+    material.sheen_roughness = 0.45f;
+    material.sheen_roughness_texture = {.texture = data};
+    material.anisotropy = 0.55f;
+    material.anisotropy_rotation = 1.2f;
+    material.anisotropy_texture = {.texture = data};
+    material.iridescence = 0.35f;
+    material.iridescence_texture = {.texture = data};
+    material.iridescence_index_of_refraction = 1.8f;
+    material.iridescence_thickness_minimum = 50.0f;
+    material.iridescence_thickness_maximum = 700.0f;
+    material.iridescence_thickness_texture = {.texture = data};
     return material;
 }
 
@@ -93,7 +121,7 @@ void make_rich(RichScene& to) {
     const ObjectId one = maker.add(square(maker, 1.0f, red));
     scene::Geometry other = square(maker, 2.5f, ObjectId{});
     other.name = "square part 1";
-    other.normals = other.tangents = other.tex_coords = other.colors = {};
+    other.normals = other.tangents = other.tex_coords = other.tex_coords_1 = other.colors = {};
     const ObjectId two = maker.add(other);
 
     const ObjectId point = maker.add(scene::Light{.name = "bulb", .intensity = {3.0f, 2.0f, 0.1f}});

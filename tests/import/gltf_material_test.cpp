@@ -9,7 +9,8 @@ using scene::Texture;
 using testing::ElementsAre;
 
 // One triangle with two sets of texture coordinates per material of the file.
-ImportedScene with_materials(SceneFile& file, const std::vector<std::string>& materials) {
+ImportedScene with_materials(SceneFile& file, const std::vector<std::string>& materials,
+                             const ImportOptions& options = {}) {
     const int at = file.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
     const int uv0 =
         file.accessor(file.view(std::vector<glm::vec2>{{0, 0}, {1, 0}, {0, 1}}), Component::Float, "VEC2", 3);
@@ -26,7 +27,7 @@ ImportedScene with_materials(SceneFile& file, const std::vector<std::string>& ma
     file.add("nodes", R"({"mesh":0})");
     file.add("scenes", R"({"nodes":[0]})");
     const TestFolder folder;
-    ImportedScene scene = loaded(folder.write("scene.glb", file.glb()));
+    ImportedScene scene = loaded(folder.write("scene.glb", file.glb()), options);
     expect_sound(scene);
     return scene;
 }
@@ -59,6 +60,83 @@ TEST(GltfMaterial, FactorsAndExtensionsAreRead) {
     EXPECT_EQ(plain.alpha_mode, scene::AlphaMode::Blend);
     EXPECT_FALSE(plain.double_sided);
     EXPECT_FALSE(plain.unlit);
+}
+
+TEST(GltfMaterial, EveryLobeOfTheExtensionsIsRead) {
+    SceneFile file;
+    file.image(png(1, 1, {1, 2, 3, 4}));
+    const ImportedScene scene = with_materials(file, {R"({"name":"all","extensions":{
+        "KHR_materials_transmission":{"transmissionFactor":0.5,"transmissionTexture":{"index":0}},
+        "KHR_materials_volume":{"thicknessFactor":0.25,"attenuationDistance":2,"attenuationColor":[0.5,0.25,1]},
+        "KHR_materials_specular":{"specularFactor":0.75,"specularColorFactor":[2,0.5,1],
+            "specularTexture":{"index":0},"specularColorTexture":{"index":0}},
+        "KHR_materials_clearcoat":{"clearcoatFactor":0.8,"clearcoatRoughnessFactor":0.1,
+            "clearcoatTexture":{"index":0},"clearcoatRoughnessTexture":{"index":0,"texCoord":1},
+            "clearcoatNormalTexture":{"index":0,"scale":0.5}},
+        "KHR_materials_sheen":{"sheenColorFactor":[0.1,0.2,0.3],"sheenRoughnessFactor":0.6,
+            "sheenColorTexture":{"index":0,"extensions":{"KHR_texture_transform":{"offset":[0.5,0.25]}}},
+            "sheenRoughnessTexture":{"index":0}},
+        "KHR_materials_anisotropy":{"anisotropyStrength":0.7,"anisotropyRotation":1.5,"anisotropyTexture":{"index":0}},
+        "KHR_materials_iridescence":{"iridescenceFactor":0.4,"iridescenceIor":1.7,"iridescenceThicknessMinimum":50,
+            "iridescenceThicknessMaximum":600,"iridescenceTexture":{"index":0},
+            "iridescenceThicknessTexture":{"index":0}}}})"});
+    const Material& all = named<Material>(scene, "all");
+    EXPECT_EQ(all.transmission, 0.5f);
+    EXPECT_EQ(all.thickness, 0.25f);
+    EXPECT_EQ(all.attenuation_distance, 2.0f);
+    EXPECT_EQ(all.attenuation_color, glm::vec3(0.5f, 0.25f, 1.0f));
+    EXPECT_EQ(all.specular, 0.75f);
+    EXPECT_EQ(all.specular_color, glm::vec3(2.0f, 0.5f, 1.0f));
+    EXPECT_EQ(all.clearcoat, 0.8f);
+    EXPECT_EQ(all.clearcoat_roughness, 0.1f);
+    EXPECT_EQ(all.clearcoat_normal_scale, 0.5f);
+    EXPECT_EQ(all.clearcoat_roughness_texture.set, 1u);
+    EXPECT_EQ(all.sheen_color, glm::vec3(0.1f, 0.2f, 0.3f));
+    EXPECT_EQ(all.sheen_roughness, 0.6f);
+    EXPECT_EQ(all.sheen_color_texture.offset, glm::vec2(0.5f, 0.25f));
+    EXPECT_EQ(all.anisotropy, 0.7f);
+    EXPECT_EQ(all.anisotropy_rotation, 1.5f);
+    EXPECT_EQ(all.iridescence, 0.4f);
+    EXPECT_EQ(all.iridescence_index_of_refraction, 1.7f);
+    EXPECT_EQ(all.iridescence_thickness_minimum, 50.0f);
+    EXPECT_EQ(all.iridescence_thickness_maximum, 600.0f);
+    for (const scene::TextureSlot* data :
+         {&all.transmission_texture, &all.specular_texture, &all.clearcoat_texture, &all.clearcoat_roughness_texture,
+          &all.clearcoat_normal_texture, &all.sheen_roughness_texture, &all.anisotropy_texture,
+          &all.iridescence_texture, &all.iridescence_thickness_texture}) {
+        EXPECT_EQ(object<Texture>(scene, data->texture).format, scene::TexelFormat::Rgba8);
+    }
+    for (const scene::TextureSlot* color : {&all.specular_color_texture, &all.sheen_color_texture}) {
+        EXPECT_EQ(object<Texture>(scene, color->texture).format, scene::TexelFormat::Rgba8Srgb);
+    }
+}
+
+TEST(GltfMaterial, WrongExtensionsAreLeftOutOrClamped) {
+    SceneFile file;
+    const ImportedScene scene = with_materials(file, {R"({"name":"odd","extensions":{
+        "KHR_materials_clearcoat":7,"KHR_materials_sheen":{"sheenColorFactor":[1,2],"sheenRoughnessFactor":-3,
+            "sheenColorTexture":"none"},
+        "KHR_materials_specular":{"specularTexture":{"index":99},"specularColorFactor":"red"}}})"});
+    const Material& odd = named<Material>(scene, "odd");
+    EXPECT_EQ(odd.clearcoat, 0.0f);
+    EXPECT_EQ(odd.sheen_color, glm::vec3(0.0f));
+    EXPECT_EQ(odd.sheen_roughness, 0.0f);
+    EXPECT_EQ(odd.specular_color, glm::vec3(1.0f));
+    EXPECT_TRUE(has_notice(scene, "material 'odd': numbers out of range"));
+}
+
+// glTF: without KHR_materials_volume walls are thin; who wants what most programs show says so.
+TEST(GltfMaterial, GlassWithoutAVolumeIsThinUnlessAskedFor) {
+    const std::string glass =
+        R"({"name":"pane","extensions":{"KHR_materials_transmission":{"transmissionFactor":1}}})";
+    SceneFile file;
+    const ImportedScene thin = with_materials(file, {glass});
+    EXPECT_EQ(named<Material>(thin, "pane").thickness, 0.0f);
+    EXPECT_TRUE(has_notice(thin, "--solid-glass"));
+    SceneFile again;
+    const ImportedScene solid = with_materials(again, {glass}, {.glass = Glass::Solid});
+    EXPECT_GT(named<Material>(solid, "pane").thickness, 0.0f);
+    EXPECT_FALSE(has_notice(solid, "--solid-glass"));
 }
 
 TEST(GltfMaterial, NumbersOutOfRangeAreClampedWithANotice) {
@@ -148,15 +226,26 @@ TEST(GltfTexture, TransformsAndCoordinateSetsAreKept) {
     EXPECT_EQ(slot.offset, glm::vec2(0.5f, 0.25f));
     EXPECT_EQ(slot.scale, glm::vec2(2, 3));
     EXPECT_EQ(slot.rotation, 1.5f);
-    EXPECT_EQ(values<glm::vec2>(scene, named<scene::Geometry>(scene, "it").tex_coords)[0], glm::vec2(5, 5));
+    EXPECT_EQ(slot.set, 1u);
+    const scene::Geometry& it = named<scene::Geometry>(scene, "it");
+    EXPECT_EQ(values<glm::vec2>(scene, it.tex_coords)[0], glm::vec2(0, 0));
+    EXPECT_EQ(values<glm::vec2>(scene, it.tex_coords_1)[0], glm::vec2(5, 5));
 }
 
-TEST(GltfTexture, SeveralCoordinateSetsInOneMaterialAreNoticed) {
+TEST(GltfTexture, ASecondSetThatNobodyReadsIsLeftOut) {
     SceneFile file;
     file.image(png(1, 1, {1, 2, 3, 4}));
-    const ImportedScene scene = with_materials(file, {R"({"name":"mixed","pbrMetallicRoughness":{
-        "baseColorTexture":{"index":0},"metallicRoughnessTexture":{"index":0,"texCoord":1}}})"});
-    EXPECT_TRUE(has_notice(scene, "material 'mixed': its textures use several sets"));
+    const ImportedScene scene =
+        with_materials(file, {R"({"name":"one","pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})"});
+    EXPECT_TRUE(named<scene::Geometry>(scene, "it").tex_coords_1.empty());
+}
+
+TEST(GltfTexture, AThirdCoordinateSetIsNoticed) {
+    SceneFile file;
+    file.image(png(1, 1, {1, 2, 3, 4}));
+    const ImportedScene scene = with_materials(file, {R"({"name":"many","pbrMetallicRoughness":{
+        "baseColorTexture":{"index":0},"metallicRoughnessTexture":{"index":0,"texCoord":2}}})"});
+    EXPECT_TRUE(has_notice(scene, "material 'many': its textures use more than two sets"));
 }
 
 // A material whose colour and normals come from the one image of the file.

@@ -76,6 +76,7 @@ class Soundness {
         blob(geometry.normals, vertices * 12);
         blob(geometry.tangents, vertices * 16);
         blob(geometry.tex_coords, vertices * 8);
+        blob(geometry.tex_coords_1, vertices * 8);
         blob(geometry.colors, vertices * 16);
         for (const auto* array :
              {&geometry.positions, &geometry.normals, &geometry.tangents, &geometry.tex_coords}) {

@@ -40,7 +40,7 @@ struct Inputs {
 };
 
 struct Outputs {
-    uint bits[64];
+    uint bits[64];  // as many as the masks have bits
     uint count;
     uvec2 starts;  // bit i: value i is the first of a vector
     uvec2 exact;   // bit i: no bit of value i may differ
@@ -112,18 +112,60 @@ inline void put(INOUT(Outputs) y, IN(Sampler) value) {
 inline void put(INOUT(Outputs) y, IN(Mixture) value) {
     put(y, value.metal);
     put(y, value.dielectric);
+    put(y, value.rough_glass);
     put(y, value.mirror);
     put(y, value.glass);
 }
+inline void put(INOUT(Outputs) y, IN(Interface) value) {
+    put(y, value.f0);
+    put(y, value.f90);
+}
+inline void put(INOUT(Outputs) y, IN(RoughGlass) value) {
+    put(y, value.tint);
+    put(y, value.eta);
+    put(y, value.f0);
+    put(y, value.f90);
+    put(y, value.alpha);
+    put(y, value.thin);
+}
+inline void put(INOUT(Outputs) y, IN(GlassValue) value) {
+    put(y, value.value);
+    put(y, value.pdf);
+}
 inline void put(INOUT(Outputs) y, IN(Bsdf) value) {
+    put(y, value.lobes);
     put(y, value.diffuse);
     put(y, value.f0);
-    put(y, value.coat_f0);
     put(y, value.f90);
-    put(y, value.coat_f90);
+    put(y, vec2(value.base_f0, value.base_f90));
     put(y, value.alpha);
-    put(y, value.specular_share);
+    put(y, value.roughness);
+    put(y, value.late);
+    put(y, vec3(value.base_late, value.late_out, value.base_out));  // differences from 1
+    put(y, value.glass_share);
+    put(y, value.coat);
+    put(y, vec2(value.coat_alpha, value.coat_roughness));
+    put(y, value.coat_normal);
+    put(y, vec3(value.coat_out, value.sheen_out, 1.0f));
+    put(y, value.sheen);
+    put(y, vec2(value.sheen_alpha, value.sheen_roughness));
+    put(y, value.chances);
     put(y, value.reflectance);
+}
+inline void put(INOUT(Outputs) y, IN(Look) value) {
+    put(y, value.base_color);
+    put(y, value.metallic);
+    put(y, value.alpha);
+    put(y, value.transmission);
+    put(y, vec2(value.index_of_refraction, value.eta));
+    put(y, value.specular);
+    put(y, value.specular_color);
+    put(y, value.lobes);
+    put(y, value.thin);
+    put(y, vec2(value.coat, value.coat_roughness));
+    put(y, value.coat_normal);
+    put(y, value.sheen_color);
+    put(y, value.sheen_roughness);
 }
 inline void put(INOUT(Outputs) y, IN(BsdfValue) value) {
     put(y, value.value);
@@ -137,11 +179,33 @@ inline void put(INOUT(Outputs) y, IN(Specular) value) {
     put(y, value.refracted);
 }
 
-inline Mixture mixture_of(IN(Inputs) x) {
-    return make_mixture(x.metallic, x.roughness, x.transmission);
+// A material with all lobes, and the boundary of glass; each half of the inputs with its own side.
+inline Look look_of(IN(Inputs) x) {
+    Look look = plain_look(x.color, x.metallic, x.roughness, x.transmission, x.index,
+                           x.c % 2u == 0u ? x.eta : x.index);
+    look.specular = 0.5f + 0.5f * x.metallic;
+    look.specular_color = 0.5f + x.light;
+    look.alpha = vec2(greater_of(look.alpha.x, x.u.x * 0.5f), look.alpha.y);
+    look.lobes = (x.a & ExtraLobes);
+    look.thin = x.d % 3u == 0u ? 1u : 0u;
+    look.coat = x.u.y;
+    look.coat_roughness = x.roughness;
+    look.coat_normal = unit_vector(vec3(0.2f * x.x, 0.1f, 1.0f));
+    look.sheen_color = x.light;
+    look.sheen_roughness = x.roughness;
+    return look;
 }
-inline Bsdf bsdf_of(IN(Inputs) x) {
-    return make_bsdf(x.color, mixture_of(x), x.roughness, x.index, x.wo.z);
+inline Mixture mixture_of(IN(Inputs) x) {
+    return make_mixture(look_of(x));
+}
+inline RoughGlass boundary_of(IN(Inputs) x) {
+    const Interface face = interface_of(look_of(x));
+    const float eta = greater_of(x.eta, 0.4f);
+    return RoughGlass(x.color, is_boundary(eta) ? eta : 1.5f, face.f0, face.f90, vec2(x.alpha, 0.5f),
+                      x.d % 2u);
+}
+inline Bsdf bsdf_of(FloatArray energy, IN(Inputs) x) {
+    return make_bsdf(energy, look_of(x), mixture_of(x), x.wo);
 }
 
 SHADING_END

@@ -14,6 +14,7 @@ struct Case {
     Instance instance;
     Mesh mesh;
     Material material;
+    MaterialExtras extras;
     uvec3 corners;
     Triangle triangle;
     Texture map;
@@ -60,6 +61,7 @@ inline Case make_case(IN(World) world, IN(Inputs) x) {
     made.instance = made.context.scene.instances.items[x.instance];
     made.mesh = made.context.scene.meshes.items[made.instance.mesh];
     made.material = made.context.scene.materials.items[made.instance.material];
+    made.extras = made.context.scene.extras.items[x.d % 4u];
     made.hit = Hit(x.instance, x.c % made.mesh.triangle_count, x.weights, x.pdf);
     made.corners = made.mesh.triangles.items[made.hit.triangle];
     made.triangle = triangle_of(made.mesh, made.corners);
@@ -97,9 +99,13 @@ inline LightSample on_sphere(IN(Case) c, vec2 u) {
 }
 inline Surface with_scattering(IN(Case) c) {
     Surface surface = c.surface;
-    const bool front = dot(c.surface.geometric_normal, c.ray.direction) < 0.0f;
-    set_scattering(surface, c.context.scene, c.mesh, c.material, c.corners, c.hit.barycentric,
-                   c.ray.direction, front);
+    set_scattering(surface, c.context.scene, c.instance, c.mesh, c.material, c.corners, c.hit.barycentric,
+                   c.surface.geometric_normal, c.ray.direction);
+    return surface;
+}
+inline Surface coated(IN(Case) c, IN(Inputs) x) {
+    Surface surface = c.surface;
+    add_smooth_coat(surface, look_of(x), mixture_of(x), x.n);
     return surface;
 }
 inline PathSample with_light(IN(Case) c, vec3 light) {
@@ -181,7 +187,8 @@ inline Step chosen_lobe(IN(Case) c) {
 }
 inline Step scattered(IN(Case) c) {
     Step step = first_step(c);
-    step.goes_on = scatter(c.context.view, step.path, c.surface, c.wo, step.lobe, step.ray.direction);
+    step.goes_on = scatter(c.context.scene.energy, c.context.view, step.path, c.surface, c.wo, step.lobe,
+                           step.ray.direction);
     return step;
 }
 inline Step passed_on(IN(Case) c, uint kind) {

@@ -75,6 +75,7 @@ std::vector<Texture> make_textures(Packer& packer, Generator& random) {
 TextureUse use_of(int texture, Generator& random) {
     const float angle = random.between(-Pi, Pi), scale = random.between(0.5f, 3.0f);
     return {.texture = texture,
+            .set = texture >= 0 ? uint(texture) % 2u : 0u,
             .row_u = {scale * std::cos(angle), scale * std::sin(angle)},
             .row_v = {-scale * std::sin(angle), scale * std::cos(angle)},
             .offset = {random.between(-1.0f, 1.0f), random.between(-1.0f, 1.0f)}};
@@ -95,7 +96,9 @@ std::vector<Material> make_materials(Generator& random) {
                           .normal_texture = use_of(i < 3 ? 3 : -1, random),
                           .emission_texture = use_of(i == 2 ? 2 : -1, random),
                           .alpha_mode = i % 3u,
-                          .double_sided = i % 2u};
+                          .double_sided = i % 2u,
+                          .thin = i % 4u == 1u ? 1u : 0u,
+                          .extras = i % 2u == 0u ? int(i / 2u) : -1};
         if (i == 2 || i == 6) material.emission = vec3(1.0f, 2.0f, 3.0f);
         materials.push_back(material);
     }
@@ -106,17 +109,45 @@ std::vector<Material> make_materials(Generator& random) {
     materials[6].base_color_texture.texture = materials[6].metallic_roughness_texture.texture =
         materials[6].normal_texture.texture = materials[6].emission_texture.texture = -1;
     materials[6].emission = vec3(0.5f);
+    materials[6].extras = -1;
     materials[7].index_of_refraction = 0.0f;
     materials[7].transmission = 1.0f;
     materials[7].metallic = 0.0f;
     return materials;
 }
 
+// Each with lobes of its own.
+std::vector<MaterialExtras> make_extras(Generator& random) {
+    std::vector<MaterialExtras> all;
+    for (uint i = 0; i < Instances / 2u; ++i) {
+        const auto use = [&](uint bit) { return use_of((i >> bit) % 2u == 1u ? int(1u + bit) : -1, random); };
+        all.push_back({.specular_color = 2.0f * random.color(),
+                       .specular = random.between(0.2f, 1.0f),
+                       .sheen_color = i != 1 ? random.color() : vec3(0.0f),
+                       .sheen_roughness = random.between(0.2f, 1.0f),
+                       .coat = i != 2 ? random.between(0.2f, 1.0f) : 0.0f,
+                       .coat_roughness = i == 3 ? 0.0f : random.between(0.3f, 1.0f),
+                       .coat_normal_scale = 0.5f,
+                       .anisotropy = i != 0 ? random.between(0.2f, 1.0f) : 0.0f,
+                       .anisotropy_direction = {0.8f, -0.6f},
+                       .transmission_texture = use(0),
+                       .specular_texture = use(1),
+                       .specular_color_texture = use(0),
+                       .coat_texture = use(1),
+                       .coat_roughness_texture = use(0),
+                       .coat_normal_texture = use(1),
+                       .sheen_color_texture = use(1),
+                       .sheen_roughness_texture = use(0),
+                       .anisotropy_texture = use(1)});
+    }
+    return all;
+}
+
 Mesh make_mesh(uint number, Packer& packer, Generator& random) {
     const bool hard = number % 2u == 1u;
     std::vector<vec3> positions, normals;
     std::vector<vec4> tangents, colors;
-    std::vector<vec2> tex_coords;
+    std::vector<vec2> tex_coords, tex_coords_1;
     for (uint i = 0; i < Vertices; ++i) {
         positions.emplace_back(random.between(-1.0f, 1.0f), random.between(-1.0f, 1.0f),
                                random.between(-1.0f, 1.0f));
@@ -124,6 +155,7 @@ Mesh make_mesh(uint number, Packer& packer, Generator& random) {
         tangents.emplace_back(random.anywhere(), random.either_sign(1.0f));
         colors.emplace_back(random.color(), random.between(0.2f, 1.0f));
         tex_coords.emplace_back(random.between(-1.0f, 2.0f), random.between(-1.0f, 2.0f));
+        tex_coords_1.emplace_back(random.between(-1.0f, 2.0f), random.between(-1.0f, 2.0f));
     }
     std::vector<uvec3> triangles;
     for (uint i = 0; i < Triangles; ++i) triangles.emplace_back(i, i + 1, i + 2);
@@ -139,7 +171,8 @@ Mesh make_mesh(uint number, Packer& packer, Generator& random) {
               .tangents = packer.add<Vec4Array>(tangents),
               .colors = packer.add<Vec4Array>(colors),
               .tex_coords = packer.add<Vec2Array>(tex_coords),
-              .arrays = MeshNormals | MeshTangents | MeshColors | MeshTexCoords,
+              .tex_coords_1 = packer.add<Vec2Array>(tex_coords_1),
+              .arrays = MeshNormals | MeshTangents | MeshColors | MeshTexCoords | MeshTexCoords1,
               .triangle_count = Triangles};
     if (number == 2u) mesh.arrays = MeshTexCoords;
     if (number == 3u) mesh.arrays = 0u;
@@ -272,7 +305,7 @@ PackedWorld make_world(std::uint64_t address) {
         .light_count = LightCount,
         .tree_light_count = TreeLightCount,
         .tree_probability = 0.4f,
-        .features = 0xffu | FeatureLightTree | FeatureShapedLights | FeatureSuns | FeatureShadowCatcher,
+        .features = 0xf0ffu | FeatureLightTree | FeatureShapedLights | FeatureSuns | FeatureShadowCatcher,
         .tree_scale = 0.25f};
     scene.light_sums = uint(sums.size());
     add_sums(sums, LightCount - TreeLightCount + 1u, random);
@@ -292,6 +325,7 @@ PackedWorld make_world(std::uint64_t address) {
 
     scene.textures = packer.add<TextureArray>(textures);
     scene.materials = packer.add<MaterialArray>(make_materials(random));
+    scene.extras = packer.add<MaterialExtrasArray>(make_extras(random));
     std::vector<Mesh> meshes;
     for (uint i = 0; i < 4; ++i) meshes.push_back(make_mesh(i, packer, random));
     scene.meshes = packer.add<MeshArray>(meshes);
@@ -303,6 +337,8 @@ PackedWorld make_world(std::uint64_t address) {
     scene.sums = packer.add<FloatArray>(sums);
     const std::span<const float> srgb = backend::srgb_values();
     scene.srgb = packer.add<FloatArray>(std::vector<float>(srgb.begin(), srgb.end()));
+    const std::span<const float> energy = backend::energy_values();
+    scene.energy = packer.add<FloatArray>(std::vector<float>(energy.begin(), energy.end()));
     Scene dark = scene;
     dark.light_count = 0;
     dark.tree_light_count = 0;

@@ -38,7 +38,15 @@ inline void put(INOUT(Outputs) y, IN(Surface) surface) {
     put(y, surface.frame);
     put(y, surface.albedo);
     put(y, surface.emission);
-    put(y, surface.bsdf);
+    put(y, surface.bsdf.lobes);
+    put(y, surface.bsdf.diffuse);
+    put(y, surface.bsdf.f0);
+    put(y, surface.bsdf.alpha);
+    put(y, surface.bsdf.late);
+    put(y, vec3(surface.bsdf.base_late, surface.bsdf.late_out, surface.bsdf.base_out));
+    put(y, vec3(surface.bsdf.coat_out, surface.bsdf.sheen_out, 1.0f));
+    put(y, surface.bsdf.chances);
+    put(y, surface.bsdf.reflectance);
     put(y, surface.specular);
     put(y, surface.rough_share);
     put(y, surface.object);

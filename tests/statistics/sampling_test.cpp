@@ -12,76 +12,13 @@
 #include "mediator/shading/bsdf.h"
 #include "mediator/shading/environment.h"
 #include "mediator/shading/sobol.h"
+#include "tests/statistics/chi_squared.h"
+#include "tests/statistics/lobes.h"
 
 namespace tessera::shading {
 namespace {
 
-constexpr double DoublePi = 3.14159265358979323846;
-
-// Largest plausible chi-squared with k degrees of freedom: 5 standard deviations of its cube root (Wilson and
-// Hilferty 1931), one in a million for each of some thirty tests.
-double critical(double k) {
-    const double c = 2.0 / (9.0 * k);
-    return k * std::pow(1.0 - c + 5.0 * std::sqrt(c), 3.0);
-}
-
-void expect_fit(const std::vector<double>& observed, const std::vector<double>& expected) {
-    double statistic = 0.0, pooled_observed = 0.0, pooled_expected = 0.0;
-    int cells = 0;
-    for (std::size_t i = 0; i < observed.size(); ++i) {
-        if (expected[i] < 5.0) {  // too few for the statistic: pooled
-            pooled_observed += observed[i];
-            pooled_expected += expected[i];
-            continue;
-        }
-        statistic += (observed[i] - expected[i]) * (observed[i] - expected[i]) / expected[i];
-        ++cells;
-    }
-    if (pooled_expected > 5.0) {
-        statistic +=
-            (pooled_observed - pooled_expected) * (pooled_observed - pooled_expected) / pooled_expected;
-        ++cells;
-    } else {
-        EXPECT_LT(pooled_observed, 40.0) << "samples where the density is nearly 0";
-    }
-    EXPECT_LT(statistic, critical(cells - 1)) << cells << " cells";
-}
-
-constexpr int Rows = 24, Columns = 24, Samples = 200'000;
-
-std::size_t cell(const glm::vec3& w) {
-    const double phi = std::atan2(double(w.y), double(w.x)) / (2.0 * DoublePi) + 0.5;
-    const int row = std::min(Rows - 1, static_cast<int>((double(w.z) + 1.0) / 2.0 * Rows));
-    const int column = std::min(Columns - 1, static_cast<int>(phi * Columns));
-    return static_cast<std::size_t>(row * Columns + column);
-}
-
-// Integrates the density over cells equal in cos theta and phi, by midpoints fine enough for the narrowest
-// lobe here.
-std::vector<double> integrate(const std::function<double(const glm::vec3&)>& pdf) {
-    constexpr int Fine = 40;
-    std::vector<double> cells(Rows * Columns);
-    for (int r = 0; r < Rows * Fine; ++r) {
-        const double z = -1.0 + 2.0 * (r + 0.5) / (Rows * Fine), s = std::sqrt(1.0 - z * z);
-        for (int c = 0; c < Columns * Fine; ++c) {
-            const double phi = 2.0 * DoublePi * ((c + 0.5) / (Columns * Fine) - 0.5);
-            const glm::vec3 w(s * std::cos(phi), s * std::sin(phi), z);
-            cells[static_cast<std::size_t>(r / Fine * Columns + c / Fine)] += pdf(w);
-        }
-    }
-    const double step = 4.0 * DoublePi / (double(Rows) * Columns * Fine * Fine);
-    for (double& value : cells) value *= step;
-    return cells;
-}
-
-void expect_directions(const std::function<glm::vec3(CounterRandom&)>& sample,
-                       const std::function<double(const glm::vec3&)>& pdf) {
-    CounterRandom random(5);
-    std::vector<double> observed(Rows * Columns), expected = integrate(pdf);
-    for (int i = 0; i < Samples; ++i) observed[cell(sample(random))] += 1.0;
-    for (double& value : expected) value *= Samples;
-    expect_fit(observed, expected);
-}
+using namespace test;
 
 glm::vec2 pair(CounterRandom& random) {
     return {static_cast<float>(random.uniform()) * 0.99999994f,
@@ -176,7 +113,9 @@ class SurfaceModel : public testing::TestWithParam<std::tuple<float, float, floa
     float roughness = std::get<0>(GetParam()), metallic = std::get<1>(GetParam()),
           cosine = std::get<2>(GetParam());
     glm::vec3 out{std::sqrt(1.0f - cosine * cosine), 0.0f, cosine};
-    Bsdf bsdf = make_bsdf(glm::vec3(1.0f), {metallic, 1.0f - metallic}, roughness, 1.5f, cosine);
+    shading::Look look = shading::plain_look(glm::vec3(1.0f), metallic, roughness, 0.0f, 1.5f, 1.5f);
+    shading::FloatArray table = test::energy_table();
+    Bsdf bsdf = make_bsdf(table, look, {metallic, 1.0f - metallic}, out);
 };
 
 // Lobes that are wide against the cells.
@@ -188,7 +127,7 @@ TEST_P(WideSurfaceModel, DrawsWhatItsDensitySays) {
     CounterRandom random(8);
     std::vector<double> observed(Rows * Columns + 1);
     std::vector<double> expected =
-        integrate([&](const glm::vec3& w) { return double(evaluate_bsdf(bsdf, out, w).pdf); });
+        integrate([&](const glm::vec3& w) { return double(evaluate_bsdf(table, bsdf, out, w).pdf); });
     double above = 0.0;
     for (double& value : expected) {
         above += value;
@@ -210,7 +149,7 @@ TEST_P(SurfaceModel, NeverReflectsMoreThanComesIn) {
     double sum = 0.0, squares = 0.0;
     for (int i = 0; i < Samples; ++i) {
         const glm::vec3 in = sample_bsdf(bsdf, out, static_cast<float>(random.uniform()), pair(random));
-        const BsdfValue value = evaluate_bsdf(bsdf, out, in);
+        const BsdfValue value = evaluate_bsdf(table, bsdf, out, in);
         const double weight = value.pdf > 0.0f ? double(value.value.x) / double(value.pdf) : 0.0;
         sum += weight;
         squares += weight * weight;
@@ -228,9 +167,9 @@ TEST_P(SurfaceModel, IsReciprocal) {
     for (int i = 0; i < 1000; ++i) {
         const glm::vec3 in = sample_cosine_hemisphere(pair(random));
         if (!(in.z > 1e-3f)) continue;
-        const Bsdf back = make_bsdf(glm::vec3(1.0f), {metallic, 1.0f - metallic}, roughness, 1.5f, in.z);
-        const double there = evaluate_bsdf(bsdf, out, in).value.x / in.z;
-        const double again = evaluate_bsdf(back, in, out).value.x / out.z;
+        const Bsdf back = make_bsdf(table, look, {metallic, 1.0f - metallic}, in);
+        const double there = evaluate_bsdf(table, bsdf, out, in).value.x / in.z;
+        const double again = evaluate_bsdf(table, back, in, out).value.x / out.z;
         EXPECT_NEAR(there, again, 1e-4 * std::max(there, again) + 1e-6);
     }
 }

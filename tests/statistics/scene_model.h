@@ -162,7 +162,8 @@ inline scene::Material glass(float index, const glm::vec3& color = glm::vec3(1.0
             .roughness = 0.0f,
             .double_sided = true,
             .index_of_refraction = index,
-            .transmission = 1.0f};
+            .transmission = 1.0f,
+            .thickness = 1.0f};
 }
 inline scene::Material mirror(const glm::vec3& color) {
     return {.base_color = glm::vec4(color, 1.0f), .metallic = 1.0f, .roughness = 0.0f};

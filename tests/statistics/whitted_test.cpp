@@ -145,6 +145,7 @@ TEST(Whitted, HasTheFeaturesOfPathTracing) {
         Model model;
         scene::Material ball = glass(1.5f, {0.9f, 0.9f, 0.5f});
         ball.transmission = transmission;
+        ball.thickness = 1.0f;
         model.floor(model.material(chalk({0.7f, 0.5f, 0.2f})), 10.0f, -2.0f);
         model.sphere(model.material(ball), {}, 1.0);
         model.sky(glm::vec3(1.0f));

@@ -168,6 +168,7 @@ class RasterLight : public RasterTest {
         mirror.metallic = 1.0f;
         mirror.roughness = 0.0f;
         glass.transmission = 1.0f;
+        glass.thickness = 1.0f;
         glass.roughness = 0.0f;
         lit.emission = glm::vec3(3.0f);
         lit.double_sided = true;

@@ -34,7 +34,8 @@ class Builder {
         return material({.base_color = glm::vec4(1.0f),
                          .roughness = 0.0f,
                          .index_of_refraction = 1.5f,
-                         .transmission = 1.0f});
+                         .transmission = 1.0f,
+                         .thickness = 1.0f});
     }
 
     void place(const std::string& name, const Mesh& mesh, ObjectId material) {

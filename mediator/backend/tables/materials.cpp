@@ -30,6 +30,7 @@ shading::TextureUse make_use(const scene::TextureSlot& slot, const Indices& text
     const float c = std::cos(slot.rotation), s = std::sin(slot.rotation);
     // KHR_texture_transform: uv' = offset + rotation x scale x uv, with v down.
     return {.texture = place == textures.end() ? -1 : static_cast<int>(place->second),
+            .set = slot.set,
             .row_u = {c * slot.scale.x, s * slot.scale.y},
             .row_v = {-s * slot.scale.x, c * slot.scale.y},
             .offset = slot.offset};
@@ -50,7 +51,48 @@ shading::Material make_material(const scene::Material& material, const Indices& 
             .emission_texture = make_use(material.emission_texture, textures),
             .alpha_mode = static_cast<std::uint32_t>(material.alpha_mode),
             .double_sided = material.double_sided ? 1u : 0u,
-            .unlit = material.unlit ? 1u : 0u};
+            .unlit = material.unlit ? 1u : 0u,
+            .thin = material.thickness > 0.0f ? 0u : 1u,
+            .extras = -1};
+}
+
+// Emission, the diffuse lobe and opacity: index 1 has no interface above them.
+scene::Material diffuse_part(const scene::SurfaceShader& shader) {
+    return {.base_color = glm::vec4(shader.diffuse, shader.alpha),
+            .base_color_texture = shader.diffuse_texture,
+            .emission = shader.emission,
+            .emission_texture = shader.emission_texture,
+            .alpha_mode = shader.alpha < 1.0f ? scene::AlphaMode::Blend : scene::AlphaMode::Opaque,
+            .double_sided = true,
+            .index_of_refraction = 1.0f};
+}
+
+shading::MaterialExtras make_extras(const scene::Material& m, const Indices& textures) {
+    return {.specular_color = m.specular_color,
+            .specular = m.specular,
+            .sheen_color = m.sheen_color,
+            .sheen_roughness = m.sheen_roughness,
+            .coat = m.clearcoat,
+            .coat_roughness = m.clearcoat_roughness,
+            .coat_normal_scale = m.clearcoat_normal_scale,
+            .anisotropy = m.anisotropy,
+            .anisotropy_direction = {std::cos(m.anisotropy_rotation), std::sin(m.anisotropy_rotation)},
+            .transmission_texture = make_use(m.transmission_texture, textures),
+            .specular_texture = make_use(m.specular_texture, textures),
+            .specular_color_texture = make_use(m.specular_color_texture, textures),
+            .coat_texture = make_use(m.clearcoat_texture, textures),
+            .coat_roughness_texture = make_use(m.clearcoat_roughness_texture, textures),
+            .coat_normal_texture = make_use(m.clearcoat_normal_texture, textures),
+            .sheen_color_texture = make_use(m.sheen_color_texture, textures),
+            .sheen_roughness_texture = make_use(m.sheen_roughness_texture, textures),
+            .anisotropy_texture = make_use(m.anisotropy_texture, textures)};
+}
+
+// Whether a material says what only extras can hold.
+bool has_extras(const scene::Material& m) {
+    return m.specular != 1.0f || m.specular_color != glm::vec3(1.0f) || m.specular_texture.texture ||
+           m.specular_color_texture.texture || m.clearcoat > 0.0f || m.sheen_color != glm::vec3(0.0f) ||
+           m.anisotropy > 0.0f || (m.transmission > 0.0f && m.transmission_texture.texture);
 }
 
 // Whether all texels are there; else validation has told of it.
@@ -63,8 +105,8 @@ bool is_whole(const scene::Texture& texture, const scene::BlobPtr& texels) {
 void add_mesh(SceneTables& tables, const Mesh& mesh) {
     const auto flag = [](const scene::BlobPtr& blob, std::uint32_t bit) { return blob ? bit : 0u; };
     const auto triangles = elements<glm::uvec3>(mesh.triangles);
-    tables.arrays.push_back(
-        {mesh.positions, mesh.triangles, mesh.normals, mesh.tangents, mesh.colors, mesh.tex_coords});
+    tables.arrays.push_back({mesh.positions, mesh.triangles, mesh.normals, mesh.tangents, mesh.colors,
+                             mesh.tex_coords, mesh.tex_coords_1});
     tables.meshes.push_back(
         {.positions = {elements<glm::vec3>(mesh.positions).data()},
          .triangles = {triangles.data()},
@@ -72,8 +114,10 @@ void add_mesh(SceneTables& tables, const Mesh& mesh) {
          .tangents = {elements<glm::vec4>(mesh.tangents).data()},
          .colors = {elements<glm::vec4>(mesh.colors).data()},
          .tex_coords = {elements<glm::vec2>(mesh.tex_coords).data()},
+         .tex_coords_1 = {elements<glm::vec2>(mesh.tex_coords_1).data()},
          .arrays = flag(mesh.normals, shading::MeshNormals) | flag(mesh.tangents, shading::MeshTangents) |
-                   flag(mesh.colors, shading::MeshColors) | flag(mesh.tex_coords, shading::MeshTexCoords),
+                   flag(mesh.colors, shading::MeshColors) | flag(mesh.tex_coords, shading::MeshTexCoords) |
+                   flag(mesh.tex_coords_1, shading::MeshTexCoords1),
          .triangle_count = static_cast<std::uint32_t>(triangles.size())});
 }
 
@@ -88,18 +132,43 @@ glm::mat3 scaled(const glm::dmat3& m) {
     return glm::mat3(m * std::exp2(-std::floor(std::log2(largest))));
 }
 
-std::uint32_t features_of(const shading::Material& material, const shading::Mesh& mesh) {
-    const bool mapped = material.normal_texture.texture >= 0 && (mesh.arrays & shading::MeshTangents) != 0;
-    const bool textured = material.base_color_texture.texture >= 0 ||
-                          material.metallic_roughness_texture.texture >= 0 ||
-                          material.emission_texture.texture >= 0 || mapped;
-    // A mirror is a metal without roughness, which a texture may take away.
-    const bool smooth = material.metallic_roughness_texture.texture >= 0 ||
-                        material.roughness * material.roughness <= shading::MinAlpha;
-    const bool specular = material.transmission > 0.0f || (material.metallic > 0.0f && smooth);
-    return (mapped ? shading::FeatureNormalMaps : 0u) | (textured ? shading::FeatureTextures : 0u) |
-           (specular ? shading::FeatureSpecular : 0u) |
-           (material.alpha_mode != shading::AlphaOpaque ? shading::FeatureAlpha : 0u);
+std::uint32_t features_of(const shading::Material& material, const shading::MaterialExtras* extras,
+                          const shading::Mesh& mesh) {
+    const auto flag = [](bool holds, std::uint32_t feature) { return holds ? feature : 0u; };
+    const auto used = [](const shading::TextureUse& use) { return use.texture >= 0; };
+    const bool has_tangents = (mesh.arrays & shading::MeshTangents) != 0;
+    bool mapped = used(material.normal_texture) && has_tangents;
+    bool textured = used(material.base_color_texture) || used(material.metallic_roughness_texture) ||
+                    used(material.emission_texture);
+    // A texture may take roughness away.
+    const bool smooth = used(material.metallic_roughness_texture) ||
+                        shading::is_smooth(material.roughness * material.roughness);
+    const bool rough = !shading::is_smooth(material.roughness * material.roughness);
+    const bool glass = material.transmission > 0.0f;
+    bool specular = (material.metallic > 0.0f || glass) && smooth;
+    // Between equal indices even rough glass is clear.
+    specular |= glass && (material.index_of_refraction == 0.0f ||
+                          !shading::is_boundary(material.index_of_refraction) ||
+                          !shading::is_boundary(1.0f / material.index_of_refraction));
+    std::uint32_t lobes = flag(glass && rough, shading::FeatureRoughGlass);
+    if (extras != nullptr) {
+        mapped |= used(extras->coat_normal_texture) && has_tangents;
+        for (const shading::TextureUse* use :
+             {&extras->transmission_texture, &extras->specular_texture, &extras->specular_color_texture,
+              &extras->coat_texture, &extras->coat_roughness_texture, &extras->sheen_color_texture,
+              &extras->sheen_roughness_texture, &extras->anisotropy_texture}) {
+            textured |= used(*use);
+        }
+        specular |=
+            extras->coat > 0.0f && (used(extras->coat_roughness_texture) ||
+                                    shading::is_smooth(extras->coat_roughness * extras->coat_roughness));
+        lobes |= shading::FeatureExtras | flag(extras->coat > 0.0f, shading::FeatureCoat) |
+                 flag(extras->sheen_color != glm::vec3(0.0f), shading::FeatureSheen) |
+                 flag(glass && extras->anisotropy > 0.0f, shading::FeatureRoughGlass);
+    }
+    return lobes | flag(mapped, shading::FeatureNormalMaps) |
+           flag(textured || mapped, shading::FeatureTextures) | flag(specular, shading::FeatureSpecular) |
+           flag(material.alpha_mode != shading::AlphaOpaque, shading::FeatureAlpha);
 }
 
 }  // namespace
@@ -130,10 +199,17 @@ Indices add_materials(SceneTables& tables, const scene::Scene& scene, const Indi
     tables.materials.push_back(make_material({}, none));
     tables.materials.push_back(make_material({.base_color = {1.0f, 0.0f, 1.0f, 1.0f}, .unlit = true}, none));
     for (const auto& [id, object] : scene.objects()) {
+        if (const auto* shader = std::get_if<scene::SurfaceShader>(object.get())) {
+            indices[id] = static_cast<std::uint32_t>(tables.materials.size());
+            tables.materials.push_back(make_material(diffuse_part(*shader), textures));
+        }
         const auto* material = std::get_if<scene::Material>(object.get());
         if (material == nullptr) continue;
         indices[id] = static_cast<std::uint32_t>(tables.materials.size());
         tables.materials.push_back(make_material(*material, textures));
+        if (!has_extras(*material)) continue;
+        tables.materials.back().extras = static_cast<int>(tables.extras.size());
+        tables.extras.push_back(make_extras(*material, textures));
     }
     return indices;
 }
@@ -163,7 +239,9 @@ void add_instances(SceneTables& tables, const Lowered& lowered, const MeshCatalo
         instance.normals = scaled(glm::determinant(linear) < 0.0 ? -cofactors : cofactors);
         const shading::Material& look = tables.materials[instance.material];
         instance.alpha_tested = look.alpha_mode != shading::AlphaOpaque ? 1u : 0u;
-        tables.scene.features |= features_of(look, tables.meshes.back());
+        tables.scene.features |= features_of(
+            look, look.extras >= 0 ? &tables.extras[static_cast<std::size_t>(look.extras)] : nullptr,
+            tables.meshes.back());
         tables.instances.push_back(instance);
     }
     tables.scene.instance_count = static_cast<std::uint32_t>(tables.instances.size());

@@ -68,7 +68,7 @@ struct Glow {
         const shading::TextureUse& use = material.emission_texture;
         const shading::Texture& map = scene.textures.items[use.texture];
         const auto texel = [&](glm::vec2 b) {
-            const glm::dvec2 uv = shading::tex_coord_at(mesh, corners, b);
+            const glm::dvec2 uv = shading::tex_coord_at(mesh, use.set, corners, b);
             return glm::dvec2(glm::dot(glm::dvec2(use.row_u), uv) * map.width,
                               glm::dot(glm::dvec2(use.row_v), uv) * map.height);
         };

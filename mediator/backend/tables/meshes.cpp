@@ -23,6 +23,7 @@ void resolve_blobs(Mesh& mesh, const scene::BlobStore& blobs) {
     mesh.tangents = find(mesh.source.tangents);
     mesh.colors = find(mesh.source.colors);
     mesh.tex_coords = find(mesh.source.tex_coords);
+    mesh.tex_coords_1 = find(mesh.source.tex_coords_1);
     mesh.triangles = find(mesh.source.indices);
 }
 

@@ -19,7 +19,7 @@ namespace tessera::backend {
 // be drawn has a placeholder's: a box of 1 m at the object's place.
 struct Mesh {
     scene::Geometry source;
-    scene::BlobPtr positions, normals, tangents, colors, tex_coords, triangles;
+    scene::BlobPtr positions, normals, tangents, colors, tex_coords, tex_coords_1, triangles;
     glm::vec3 low{std::numeric_limits<float>::infinity()};    // bounds of what can be hit;
     glm::vec3 high{-std::numeric_limits<float>::infinity()};  // low > high: nothing
     std::uint64_t degenerate_triangles = 0;

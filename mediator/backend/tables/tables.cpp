@@ -57,6 +57,7 @@ void set_addresses(SceneTables& tables, const BlobAddress& address_of) {
         set_address(mesh.tangents, blobs.tangents, address_of);
         set_address(mesh.colors, blobs.colors, address_of);
         set_address(mesh.tex_coords, blobs.tex_coords, address_of);
+        set_address(mesh.tex_coords_1, blobs.tex_coords_1, address_of);
     }
     set_address(tables.scene.environment.map.texels, tables.environment_texels, address_of);
 }
@@ -65,6 +66,7 @@ shading::Scene on_host(const SceneTables& tables) {
     shading::Scene scene = tables.scene;
     scene.textures.items = tables.textures.data();
     scene.materials.items = tables.materials.data();
+    scene.extras.items = tables.extras.data();
     scene.meshes.items = tables.meshes.data();
     scene.instances.items = tables.instances.data();
     scene.lights.items = tables.lights.data();
@@ -72,6 +74,7 @@ shading::Scene on_host(const SceneTables& tables) {
     scene.light_nodes.items = tables.light_nodes.data();
     scene.sums.items = tables.sums.data();
     scene.srgb.items = srgb_values().data();
+    scene.energy.items = energy_values().data();
     return scene;
 }
 

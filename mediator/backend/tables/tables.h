@@ -14,9 +14,10 @@ namespace tessera::backend {
 // in their blobs.
 struct SceneTables {
     std::vector<shading::Texture> textures;
-    std::vector<shading::Material> materials;  // 0 = the default grey, 1 = the placeholder's
-    std::vector<shading::Mesh> meshes;         // of the geometries that are placed
-    std::vector<shading::Instance> instances;  // as in Lowered::instances
+    std::vector<shading::Material> materials;     // 0 = the default grey, 1 = the placeholder's
+    std::vector<shading::MaterialExtras> extras;  // of those that have any
+    std::vector<shading::Mesh> meshes;            // of the geometries that are placed
+    std::vector<shading::Instance> instances;     // as in Lowered::instances
     // In the tree: mesh lights by instance, placed lights by (id, path); distant: placed lights likewise, the
     // sky.
     std::vector<shading::LightSource> lights;
@@ -31,7 +32,7 @@ struct SceneTables {
     std::vector<scene::BlobPtr> texels;
     scene::BlobPtr environment_texels;
     struct Arrays {
-        scene::BlobPtr positions, triangles, normals, tangents, colors, tex_coords;
+        scene::BlobPtr positions, triangles, normals, tangents, colors, tex_coords, tex_coords_1;
     };
     std::vector<Arrays> arrays;
 };
@@ -49,6 +50,9 @@ std::uint32_t features_for(const SceneTables& tables, std::uint32_t layers);
 
 // 256 linear values, for Scene::srgb.
 std::span<const float> srgb_values();
+
+// For Scene::energy: what lobes reflect of light from everywhere (shading/energy.h).
+std::span<const float> energy_values();
 
 // Where a blob lies for whoever reads the records, on a device for instance. Never asked for null.
 using BlobAddress = std::function<std::uint64_t(const scene::BlobPtr& blob)>;

@@ -1,0 +1,74 @@
+#ifndef TESSERA_MEDIATOR_SHADING_ENERGY_H
+#define TESSERA_MEDIATOR_SHADING_ENERGY_H
+
+#include "mediator/shading/fresnel.h"
+#include "mediator/shading/records.h"
+
+// What lobes reflect of light from everywhere, from tables over direction and roughness (made at build time,
+// backend/tables/energy_maker.cpp). A lobe with Schlick's Fresnel reflects f0 x + f90 y of a pair (x, y).
+SHADING_BEGIN
+
+// Steps of direction and of roughness, both 0 to 1. One after the other: GGX, of light without loss to
+// Fresnel, over `energy_direction`; GGX, the mean of Schlick's weight, over the root of the cosine; both
+// means over the hemisphere, for each roughness; sheen, over the root of the cosine.
+inline constexpr uint EnergySteps = 32u;
+inline constexpr uint SchlickEnergies = EnergySteps * EnergySteps;
+inline constexpr uint MeanEnergies = 2u * SchlickEnergies;
+inline constexpr uint SheenEnergies = MeanEnergies + 2u * EnergySteps;
+inline constexpr uint EnergyCount = SheenEnergies + EnergySteps * EnergySteps;
+
+// Where shadowing begins depends on the ratio of the cosine and alpha.
+inline float energy_direction(float root_of_cosine, float roughness) {
+    const float sum = root_of_cosine + roughness;
+    return sum > 0.0f ? root_of_cosine * (1.0f + roughness) / sum : 1.0f;
+}
+
+inline float energy_between(FloatArray table, uint start, float direction, float roughness) {
+    const float x = clamp(direction, 0.0f, 1.0f) * float(EnergySteps - 1u);
+    const float y = clamp(roughness, 0.0f, 1.0f) * float(EnergySteps - 1u);
+    const uint column = min(uint(x), EnergySteps - 2u), row = min(uint(y), EnergySteps - 2u);
+    const uint i = start + row * EnergySteps + column, j = i + EnergySteps;
+    const float across = x - float(column);
+    const float near = table.items[i] + (table.items[i + 1u] - table.items[i]) * across;
+    const float far = table.items[j] + (table.items[j + 1u] - table.items[j]) * across;
+    return near + (far - near) * (y - float(row));
+}
+
+// Of the GGX lobe, to first order of scattering between its facets.
+inline vec2 lobe_energy(FloatArray table, float cosine, float roughness) {
+    const float root = sqrt(clamp(cosine, 0.0f, 1.0f));
+    const float all = energy_between(table, 0u, energy_direction(root, roughness), roughness);
+    const float weight = energy_between(table, SchlickEnergies, root, roughness);
+    return vec2(all * (1.0f - weight), all * weight);
+}
+
+// Its mean over all directions, weighted by the cosine.
+inline vec2 mean_lobe_energy(FloatArray table, float roughness) {
+    const float y = clamp(roughness, 0.0f, 1.0f) * float(EnergySteps - 1u);
+    const uint row = min(uint(y), EnergySteps - 2u);
+    const uint i = MeanEnergies + 2u * row;
+    const vec2 near = vec2(table.items[i], table.items[i + 1u]);
+    const vec2 far = vec2(table.items[i + 2u], table.items[i + 3u]);
+    return near + (far - near) * (y - float(row));
+}
+
+// Of white sheen, which may be more than 1.
+inline float sheen_energy(FloatArray table, float cosine, float roughness) {
+    return energy_between(table, SheenEnergies, sqrt(clamp(cosine, 0.0f, 1.0f)), roughness);
+}
+
+// Mean of Schlick's Fresnel over the hemisphere, weighted by the cosine.
+inline float mean_schlick(float f0, float f90) {
+    return f0 + (f90 - f0) * (1.0f / 21.0f);
+}
+
+// Of the light that a facet sends to another, the share that comes out at last, when the mean reflectance of
+// facets is f and the mean share that leaves at the first go is e (Kulla and Conty 2017): f^2 e / (1 - f (1 -
+// e)).
+inline float late_share(float f, float e) {
+    return f * f * e / (1.0f - f * (1.0f - e));
+}
+
+SHADING_END
+
+#endif
