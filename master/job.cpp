@@ -24,6 +24,20 @@ bool finite(const view::CameraPose& camera) {
            std::isfinite(camera.top) && camera.left < camera.right && camera.bottom < camera.top;
 }
 
+std::string problem_of(const view::CameraPose& camera) {
+    constexpr double WidestLens = 1e6, NearestFocus = 1e-6, Farthest = 1e15;  // m; ratios stay within floats
+    if (!finite(camera)) return "the camera is not finite or has an empty frustum";
+    if (!(camera.lens_radius >= 0.0 && camera.lens_radius <= WidestLens))
+        return "the lens' radius is not between 0 and 1e6 m";
+    if (camera.lens_radius > 0.0 &&
+        !(camera.focus_distance >= NearestFocus && camera.focus_distance <= Farthest))
+        return "the focus distance is not between 1e-6 and 1e15 m";
+    const double edge = std::max({-camera.left, camera.right, -camera.bottom, camera.top});
+    if (camera.projection == scene::Projection::Orthographic && edge > Farthest)
+        return "an orthographic view is wider than 1e15 m";
+    return {};
+}
+
 }  // namespace
 
 std::string problem_of(const wire::StartJob& request) {
@@ -37,7 +51,7 @@ std::string problem_of(const wire::StartJob& request) {
         return "the crop window reaches outside the picture: choose one inside it";
     }
     if (view.window.pixel_count() > MaxPixels) return "the window has more than 2^28 pixels: crop it";
-    if (!finite(view.camera)) return "the camera is not finite or has an empty frustum";
+    if (std::string problem = problem_of(view.camera); !problem.empty()) return problem;
     if (view.channels.empty()) return "no channel is asked for: ask for color at least";
     if (!(view.pixel_filter.radius > 0.0f) || view.pixel_filter.radius > 16.0f) {
         return "the pixel filter's radius is not between 0 and 16 pixels";

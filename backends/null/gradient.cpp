@@ -40,6 +40,11 @@ std::uint64_t view_key(std::uint64_t content, const view::View& view) {
     for (const double edge : {view.camera.left, view.camera.right, view.camera.bottom, view.camera.top}) {
         key = mixed(key, edge);
     }
+    if (!view.camera.is_pinhole()) {
+        key = mixed(mixed(key, view.camera.lens_radius), view.camera.focus_distance);
+        key = mixed(key, (static_cast<std::uint64_t>(view.camera.projection) << 1) |
+                             static_cast<std::uint64_t>(view.camera.aperture));
+    }
     return mixed(key, (std::uint64_t{view.width} << 32) | view.height);
 }
 

@@ -52,7 +52,7 @@ class VulkanBackend final : public Backend {
         return on_device([&]() -> RenderResult {
             if (unit.version != world_.version()) return {};
             const shading::View record = make_view(view, world_.tables().render_origin);
-            const bool rasters = view.renderer == view::Renderer::Raster;
+            const bool rasters = record.renderer == shading::RendererRaster;
             const RasterTools tools{opened_->raster, opened_->targets, {}};
             const TileRenderer renderer{opened_->device,
                                         opened_->kernels,

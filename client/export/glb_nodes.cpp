@@ -170,10 +170,20 @@ int GlbNodes::camera(ObjectId id) {
     const auto& camera = *scene_.find_as<scene::Camera>(id);
     tinygltf::Camera made;
     made.name = utf8(camera.name);
-    made.type = "perspective";
-    made.perspective.yfov = camera.vertical_fov;
-    made.perspective.aspectRatio = camera.aspect_ratio;  // 0 is not written
-    made.perspective.znear = 0.01;                       // glTF asks for one; ours have none
+    // glTF asks for planes near and far, where ours have none.
+    if (camera.projection == scene::Projection::Orthographic) {
+        made.type = "orthographic";
+        made.orthographic.ymag = 0.5 * camera.orthographic_height;
+        made.orthographic.xmag =
+            made.orthographic.ymag * (camera.aspect_ratio > 0.0 ? camera.aspect_ratio : 1.0);
+        made.orthographic.znear = 0.0;
+        made.orthographic.zfar = 1e6;
+    } else {
+        made.type = "perspective";
+        made.perspective.yfov = camera.vertical_fov;
+        made.perspective.aspectRatio = camera.aspect_ratio;  // 0 is not written
+        made.perspective.znear = 0.01;
+    }
     model_.cameras.push_back(std::move(made));
     return place->second = static_cast<int>(model_.cameras.size()) - 1;
 }

@@ -31,11 +31,10 @@ void add_framing_camera(SceneBuilder& builder, const Bounds& bounds) {
     scene::Transform transform;
     transform.name = "framing camera";
     transform.matrix = framing_pose(bounds, camera.vertical_fov);
-    const double fov = camera.vertical_fov;
     const ObjectId id = builder.add(std::move(camera));
-    const std::string name = builder.get<scene::Camera>(id).name;
+    const auto& added = builder.get<scene::Camera>(id);
     transform.children = {id};
-    builder.result().cameras.push_back({name, transform.matrix, fov, 0.0});
+    builder.result().cameras.push_back({added.name, transform.matrix, added});
     builder.result().root.children.push_back(builder.add(std::move(transform)));
     builder.notice("no camera: one that frames everything was added");
 }

@@ -258,7 +258,7 @@ void GltfNodes::add_camera(const tinygltf::Node& node, const std::string& name,
         builder_.notice("node '" + name + "': its camera " + std::to_string(node.camera) + " is missing");
         return;
     }
-    auto camera = perspective_camera(model_.cameras[static_cast<std::size_t>(node.camera)]);
+    auto camera = camera_of(model_.cameras[static_cast<std::size_t>(node.camera)]);
     if (!camera) {
         builder_.notice("node '" + name + "': its camera is left out, " + camera.error().what());
         return;

@@ -110,13 +110,22 @@ Expected<scene::Light> punctual_light(const tinygltf::Light& source) {
     return light;
 }
 
-Expected<scene::Camera> perspective_camera(const tinygltf::Camera& source) {
-    if (source.type != "perspective") return invalid("only perspective cameras are supported");
+Expected<scene::Camera> camera_of(const tinygltf::Camera& source) {
+    scene::Camera camera;
+    camera.name = source.name;
+    if (source.type == "orthographic") {
+        const double width = source.orthographic.xmag, height = source.orthographic.ymag;
+        if (!(height > 0.0 && height < 1e12)) return invalid("its ymag is not above 0 and below 1e12");
+        if (!(width > 0.0 && width < 1e6 * height)) return invalid("its xmag is out of range");
+        camera.projection = scene::Projection::Orthographic;
+        camera.orthographic_height = 2.0 * height;
+        camera.aspect_ratio = width / height;
+        return camera;
+    }
+    if (source.type != "perspective") return invalid("its type is neither perspective nor orthographic");
     const double fov = source.perspective.yfov, aspect = source.perspective.aspectRatio;
     if (!(fov > 0.0 && fov < std::numbers::pi)) return invalid("its field of view is not between 0 and pi");
     if (!(aspect >= 0.0 && aspect < 1e6)) return invalid("its aspect ratio is out of range");
-    scene::Camera camera;
-    camera.name = source.name;
     camera.vertical_fov = fov;
     camera.aspect_ratio = aspect;
     return camera;

@@ -29,6 +29,6 @@ Expected<glm::dmat4> node_matrix(const tinygltf::Node& node);
 Expected<std::uint32_t> node_layers(const tinygltf::Node& node);
 
 Expected<scene::Light> punctual_light(const tinygltf::Light& light);
-Expected<scene::Camera> perspective_camera(const tinygltf::Camera& camera);
+Expected<scene::Camera> camera_of(const tinygltf::Camera& camera);
 
 }  // namespace tessera::import

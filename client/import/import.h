@@ -46,8 +46,7 @@ struct ImportOptions {
 struct CameraInfo {
     std::string name;                   // unique
     glm::dmat4 world_from_camera{1.0};  // rigid; looks along -z, y up
-    double vertical_fov = 0.7;          // radians
-    double aspect = 0.0;                // width / height; 0 = the picture's
+    scene::Camera camera;               // its values
 };
 
 struct AnimationInfo {

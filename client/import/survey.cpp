@@ -97,8 +97,7 @@ class Walk {
     void place_camera(ObjectId id, const scene::Camera& camera, glm::dmat4 world) {
         if (!placed_cameras_.insert(id).second) return;
         if (make_rigid(world)) {
-            cameras_.emplace_back(id,
-                                  CameraInfo{camera.name, world, camera.vertical_fov, camera.aspect_ratio});
+            cameras_.emplace_back(id, CameraInfo{camera.name, world, camera});
         } else {
             builder_.notice("camera '" + camera.name + "' is not used: its transform has no direction");
         }

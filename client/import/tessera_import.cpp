@@ -79,8 +79,7 @@ class Places {
         std::string name = base;
         for (int suffix = 2; !names_.insert(name).second; ++suffix)
             name = base + "." + std::to_string(suffix);
-        cameras_.emplace_back(place.object,
-                              CameraInfo{name, world, camera.vertical_fov, camera.aspect_ratio});
+        cameras_.emplace_back(place.object, CameraInfo{name, world, camera});
     }
 
     const scene::Scene& scene_;

@@ -11,6 +11,7 @@ namespace tessera::tools {
 namespace {
 
 constexpr const char* Camera = "tessera.camera.pose";
+constexpr const char* Optics = "tessera.camera.optics";  // where it is no pinhole: projection and lens
 constexpr const char* PathClassName = "tessera.pathClass";
 
 std::array<double, 20> numbers(const view::CameraPose& pose) {
@@ -41,7 +42,14 @@ std::map<std::string, std::string> view_attributes(const view::View& view) {
         std::snprintf(text.data(), text.size(), "%s%.17g", pose.empty() ? "" : " ", value);
         pose += text.data();
     }
-    return {{Camera, pose}, {PathClassName, name(view.path_class)}};
+    std::map<std::string, std::string> attributes{{Camera, pose}, {PathClassName, name(view.path_class)}};
+    if (!view.camera.is_pinhole()) {
+        std::array<char, 120> text{};
+        std::snprintf(text.data(), text.size(), "%d %.17g %.17g %d", int(view.camera.projection),
+                      view.camera.lens_radius, view.camera.focus_distance, int(view.camera.aperture));
+        attributes[Optics] = text.data();
+    }
+    return attributes;
 }
 
 Expected<view::View> view_from_attributes(const std::map<std::string, std::string>& attributes) {
@@ -64,6 +72,15 @@ Expected<view::View> view_from_attributes(const std::map<std::string, std::strin
     view.camera.right = values[17];
     view.camera.bottom = values[18];
     view.camera.top = values[19];
+    if (const auto optics = attributes.find(Optics); optics != attributes.end()) {
+        std::istringstream numbers_of(optics->second);
+        int projection = 0, aperture = 0;
+        numbers_of >> projection >> view.camera.lens_radius >> view.camera.focus_distance >> aperture;
+        if (!numbers_of || projection < 0 || projection > 1 || aperture < 0 || aperture > 1)
+            return wrong(Optics);
+        view.camera.projection = static_cast<scene::Projection>(projection);
+        view.camera.aperture = static_cast<scene::Aperture>(aperture);
+    }
     const auto& names = path_class_names();
     const auto path_class = attributes.find(PathClassName);
     const auto found = path_class == attributes.end()

@@ -19,6 +19,24 @@ tl::unexpected<Error> wrong(const std::string& option, const Error& error) {
     return failure(ErrorCode::InvalidInput, option + ": " + error.what());
 }
 
+Expected<void> set_optics(const ViewOptions& options, ViewPlan& plan) {
+    const auto within = [](const std::optional<double>& value, double low, double high) {
+        return !value || (*value >= low && *value <= high);
+    };
+    if (!within(options.orthographic, 1e-9, 1e12))
+        return failure(ErrorCode::InvalidInput, "--orthographic: must be a height of 1e-9 to 1e12 metres");
+    if (!within(options.lens_radius, 0.0, 1e6))
+        return failure(ErrorCode::InvalidInput, "--lens-radius: must be 0 to 1e6 metres");
+    if (!within(options.focus, 1e-6, 1e12))
+        return failure(ErrorCode::InvalidInput, "--focus: must be a distance of 1e-6 to 1e12 metres");
+    plan.orthographic_height = options.orthographic;
+    plan.lens_radius = options.lens_radius;
+    plan.focus_distance = options.focus;
+    if (options.aperture == "uniform") plan.aperture = scene::Aperture::Uniform;
+    if (options.aperture == "gaussian") plan.aperture = scene::Aperture::Gaussian;
+    return {};
+}
+
 }  // namespace
 
 void ViewOptions::add_to(cli::CommandLine& command) {
@@ -28,6 +46,12 @@ void ViewOptions::add_to(cli::CommandLine& command) {
         scene);
     command.option("--size", "picture size in pixels", size);
     command.option("--camera", "camera of the scene: its name, or its number from 0", camera);
+    command.option("--orthographic", "parallel rays: the picture is so many metres high", orthographic);
+    command.option("--lens-radius", "of a thin lens, in metres; 0 = a pinhole (the camera's own)",
+                   lens_radius);
+    command.option("--focus", "distance along the axis that is sharp, in metres (the camera's own)", focus);
+    command.choice("--aperture", "how light is spread over the lens (the camera's own)", aperture,
+                   {"uniform", "gaussian"});
     command.option("--at", "seconds into the scene's animations (the pose at rest)", at);
     command.option("--animation", "play only this one: its name, or its number from 0 (all together)",
                    animation);
@@ -66,6 +90,7 @@ Expected<ViewPlan> understand(const ViewOptions& options) {
     plan.view.height = size->height;
     plan.view.window = {0, 0, static_cast<std::int32_t>(size->width),
                         static_cast<std::int32_t>(size->height)};
+    if (auto fine = set_optics(options, plan); !fine) return tl::unexpected(fine.error());
     if (options.crop) {
         const auto crop = parse_crop(*options.crop, *size);
         if (!crop) return wrong("--crop", crop.error());
@@ -146,8 +171,16 @@ Expected<import::CameraInfo> choose_camera(const std::vector<import::CameraInfo>
 
 view::View view_from(const ViewPlan& plan, const import::CameraInfo& camera) {
     view::View view = plan.view;
-    view.camera = view::perspective(camera.world_from_camera, camera.vertical_fov,
-                                    double(plan.size.width) / double(plan.size.height));
+    scene::Camera values = camera.camera;
+    if (plan.orthographic_height) {
+        values.projection = scene::Projection::Orthographic;
+        values.orthographic_height = *plan.orthographic_height;
+    }
+    values.lens_radius = plan.lens_radius.value_or(values.lens_radius);
+    values.focus_distance = plan.focus_distance.value_or(values.focus_distance);
+    values.aperture = plan.aperture.value_or(values.aperture);
+    view.camera =
+        view::pose(values, camera.world_from_camera, double(plan.size.width) / double(plan.size.height));
     return view;
 }
 

@@ -18,7 +18,8 @@ struct ViewOptions {
     std::string scene;
     std::string size = "1280x720";
     std::optional<std::string> camera, background, environment, crop, layers, animation;
-    std::optional<double> at;
+    std::optional<double> at, lens_radius, focus, orthographic;
+    std::string aperture;
     std::vector<std::string> hidden, materials;
     double environment_strength = 1.0;
     bool solid_glass = false;
@@ -37,6 +38,8 @@ struct ViewPlan {
     import::ImportOptions import;
     import::Configuration configuration;
     std::optional<std::string> camera;
+    std::optional<double> lens_radius, focus_distance, orthographic_height;  // instead of the camera's
+    std::optional<scene::Aperture> aperture;
     Size size;
     view::View view;  // without camera and channels
 };
@@ -49,7 +52,7 @@ Expected<import::ImportedScene> import_scene(const ViewPlan& plan);
 Expected<import::CameraInfo> choose_camera(const std::vector<import::CameraInfo>& cameras,
                                            const std::optional<std::string>& choice);
 
-// plan.view with the camera.
+// plan.view with the camera, and what the plan says instead of its values.
 view::View view_from(const ViewPlan& plan, const import::CameraInfo& camera);
 
 }  // namespace tessera::tools

@@ -37,6 +37,7 @@ void LiveRunner::pick(SessionId session, const wire::Pick& request, Version vers
     view.id = ViewId{next_view_};
     next_view_ += MaxPasses;
     view.camera = camera;
+    view.camera.lens_radius = 0.0;
     view.camera.left = x - 0.5 * PickWidth * width;
     view.camera.right = x + 0.5 * PickWidth * width;
     view.camera.bottom = y - 0.5 * PickWidth * height;
@@ -46,9 +47,11 @@ void LiveRunner::pick(SessionId session, const wire::Pick& request, Version vers
     view.max_bounces = 0;
     view.layers = seen.layers;
     view.channels = PickChannels;
-    task.along_axis = std::sqrt(1.0 + x * x + y * y);
-    task.eye = glm::dvec3(camera.world_from_camera[3]);
-    task.direction = glm::normalize(glm::dvec3(camera.world_from_camera * glm::dvec4(x, y, -1.0, 0.0)));
+    const bool is_parallel = camera.projection == scene::Projection::Orthographic;
+    const glm::dvec3 at(x, y, 0.0), along = is_parallel ? glm::dvec3(0.0, 0.0, -1.0) : glm::dvec3(x, y, -1.0);
+    task.along_axis = glm::length(along);
+    task.eye = glm::dvec3(camera.world_from_camera * glm::dvec4(is_parallel ? at : glm::dvec3(0.0), 1.0));
+    task.direction = glm::normalize(glm::dmat3(camera.world_from_camera) * along);
     begin_pass(task.pass, version);
     picks_.push_back(std::move(task));
 }

@@ -23,14 +23,50 @@ inline float from_middle(uint pixel, uint count) {
     return 0.5f * float(int(2u * pixel + 1u) - int(count));
 }
 
-// Through a point of the pixel's neighbourhood that u chooses. The way from the middle to the pixel and the
-// way within the pixel are added last: in a picture of 65,536 pixels, a float that held the pixel's place
-// would have few bits left for the place in the pixel.
-inline Ray camera_ray(IN(View) view, uint x, uint y, vec2 u) {
+// A point of the pixel's neighbourhood that u chooses, in the picture's plane. The way from the middle to the
+// pixel and the way within the pixel are added last: in a picture of 65,536 pixels, a float that held the
+// pixel's place would have few bits left for the place in the pixel.
+inline vec2 picture_place(IN(View) view, uint x, uint y, vec2 u) {
     const vec2 offset = filter_offset(view, u);
-    const float px = view.middle.x + (from_middle(x, view.width) * view.step.x + offset.x * view.step.x);
-    const float py = view.middle.y + (from_middle(y, view.height) * view.step.y + offset.y * view.step.y);
-    return Ray(view.eye, unit_vector(view.forward + px * view.right + py * view.up));
+    return vec2(view.middle.x + (from_middle(x, view.width) * view.step.x + offset.x * view.step.x),
+                view.middle.y + (from_middle(y, view.height) * view.step.y + offset.y * view.step.y));
+}
+
+inline Ray pinhole_ray(IN(View) view, vec2 place) {
+    return Ray(view.eye, unit_vector(view.forward + place.x * view.right + place.y * view.up));
+}
+
+// Of a pinhole.
+inline Ray camera_ray(IN(View) view, uint x, uint y, vec2 u) {
+    return pinhole_ray(view, picture_place(view, x, y, u));
+}
+
+// A point of the unit disk, in proportion to the light that the aperture lets through there. Gaussian: sigma
+// = 1/2, cut at the rim, by inversion of its integral 1 - exp(-2 r^2), which is 1 - exp(-2) at the rim.
+inline vec2 aperture_point(IN(View) view, vec2 u) {
+    if ((view.camera & CameraGaussian) == 0u) return sample_disk(u);
+    const float radius = sqrt(-0.5f * logarithm(1.0f - 0.864664717f * u.x));
+    return radius * vec2(cosine(2.0f * Pi * u.y), sine(2.0f * Pi * u.y));
+}
+
+// Of any camera; `lens` chooses where on its lens, if it has one. All rays of a point of the picture meet in
+// one point of the plane of focus: from a point s of the lens, a pinhole's direction changes by s / focus.
+inline Ray camera_ray(IN(View) view, uint x, uint y, vec2 u, vec2 lens) {
+    const vec2 place = picture_place(view, x, y, u);
+    if (view.camera == CameraPinhole) return pinhole_ray(view, place);
+    vec2 start = vec2(0.0f);
+    vec2 tilt = vec2(0.0f);
+    if ((view.camera & CameraLens) != 0u) {
+        start = view.lens_radius * aperture_point(view, lens);
+        tilt = -(1.0f / view.focus_distance) * start;
+    }
+    if ((view.camera & CameraOrthographic) != 0u) {
+        start += place;
+    } else {
+        tilt += place;
+    }
+    return Ray(view.eye + (start.x * view.right + start.y * view.up),
+               unit_vector(view.forward + tilt.x * view.right + tilt.y * view.up));
 }
 
 // Along the view axis, of a point at `distance` along a ray.

@@ -153,7 +153,7 @@ static_assert(offsetof(Scene, environment_light) == 196);
 static_assert(offsetof(Scene, features) == 200);
 static_assert(offsetof(Scene, tree_scale) == 204);
 
-static_assert(sizeof(View) == 128);
+static_assert(sizeof(View) == 136);
 static_assert(offsetof(View, seed) == 0);
 static_assert(offsetof(View, eye) == 8);
 static_assert(offsetof(View, right) == 20);
@@ -174,6 +174,8 @@ static_assert(offsetof(View, keeps) == 108);
 static_assert(offsetof(View, transparent_background) == 112);
 static_assert(offsetof(View, strategy) == 116);
 static_assert(offsetof(View, layers) == 120);
-static_assert(offsetof(View, unused) == 124);
+static_assert(offsetof(View, camera) == 124);
+static_assert(offsetof(View, lens_radius) == 128);
+static_assert(offsetof(View, focus_distance) == 132);
 
 }  // namespace tessera::shading

@@ -67,6 +67,7 @@ inline uint shadow_seed(IN(Path) path) {
 
 // Pairs of random numbers: the first is the camera's, then each vertex has its own.
 inline constexpr uint CameraPair = 0u;
+inline constexpr uint LensPair = 0xffffffffu;  // no vertex comes so far
 inline constexpr uint PairBsdfDirection = 0u, PairLobeAndRoulette = 1u, PairLightChoice = 2u,
                       PairLightPoint = 3u, PairsPerVertex = 4u;
 inline vec2 pair_at(IN(Path) path, uint pair) {

@@ -231,6 +231,7 @@ inline constexpr uint ClassIndirect = 0u, ClassCaustics = 1u, ClassDiffuse = 2u,
 inline constexpr uint RuleDemodulated = 0u, RuleConnections = 1u;
 // How light is found; the estimates agree in expectation. Only tests choose other than both.
 inline constexpr uint StrategyBoth = 0u, StrategyLightsOnly = 1u, StrategyBsdfOnly = 2u;
+inline constexpr uint CameraPinhole = 0u, CameraOrthographic = 1u, CameraLens = 2u, CameraGaussian = 4u;
 // What a sample has to keep besides its light.
 inline constexpr uint KeepsDiffuse = 1u, KeepsConnections = 2u, KeepsRange = 4u;
 inline constexpr uint UnlimitedScatterings = 0xffffffffu;
@@ -241,7 +242,7 @@ struct View {
     vec3 right;
     vec3 up;
     vec3 forward;
-    vec2 middle;  // of the picture, at distance 1 in front of the eye
+    vec2 middle;  // of the picture, at distance 1 in front of the eye; orthographic: in metres
     vec2 step;    // from pixel to pixel there; y down the picture
     uint width;
     uint height;
@@ -256,7 +257,9 @@ struct View {
     uint transparent_background;
     uint strategy;
     uint layers;  // that it sees
-    uint unused;  // keeps the size a multiple of the seed's
+    uint camera;  // bits, CameraPinhole for the usual one
+    float lens_radius;
+    float focus_distance;
 };
 
 SHADING_END

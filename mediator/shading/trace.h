@@ -153,7 +153,9 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
 
 WITH_CONTEXT inline Path trace_sample(IN(Context) context, uint x, uint y, uint64_t index) {
     const Path path = start_path(make_sampler(x, y, context.view.seed, index));
-    const Ray ray = camera_ray(context.view, x, y, sample_pair(path.numbers, CameraPair));
+    const vec2 lens =
+        (context.view.camera & CameraLens) != 0u ? sample_pair(path.numbers, LensPair) : vec2(0.5f);
+    const Ray ray = camera_ray(context.view, x, y, sample_pair(path.numbers, CameraPair), lens);
     FirstHit unknown;
     unknown.is_known = false;
     return trace_from(context, path, ray, unknown);

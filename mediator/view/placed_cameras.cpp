@@ -83,8 +83,7 @@ class Walk {
         if (transform != nullptr) {
             open_.push_back({id, &transform->children, parent.world * transform->matrix});
         } else {
-            cameras.push_back(
-                {id, camera->name, rigid(parent.world), camera->vertical_fov, camera->aspect_ratio});
+            cameras.push_back({id, camera->name, rigid(parent.world), *camera});
         }
     }
 
@@ -137,7 +136,7 @@ std::vector<PlacedCamera> placed_cameras(const Scene& scene) {
 }
 
 CameraPose pose(const PlacedCamera& camera, std::uint32_t width, std::uint32_t height) {
-    return perspective(camera.world_from_camera, camera.vertical_fov, double(width) / double(height));
+    return pose(camera.values, camera.world_from_camera, double(width) / double(height));
 }
 
 Expected<PlacedCamera> choose_camera(const Scene& scene, const std::string& choice) {

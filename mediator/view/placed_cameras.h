@@ -17,7 +17,7 @@ struct PlacedCamera {
     std::string name;
     glm::dmat4 world_from_camera{1.0};  // rigid: scale and shear of its transforms are taken out; no numbers
                                         // where they leave it no direction
-    double vertical_fov = 0.7, aspect_ratio = 0.0;
+    scene::Camera values;
 };
 
 // In the order of the graph, depth first. A view takes their values, since nodes know no cameras. Each

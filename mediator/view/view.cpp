@@ -25,4 +25,19 @@ CameraPose perspective(const glm::dmat4& world_from_camera, double vertical_fov,
             .top = top};
 }
 
+CameraPose pose(const scene::Camera& camera, const glm::dmat4& world_from_camera, double aspect_ratio) {
+    CameraPose pose = perspective(world_from_camera, camera.vertical_fov, aspect_ratio);
+    if (camera.projection == scene::Projection::Orthographic) {
+        pose.top = 0.5 * camera.orthographic_height;
+        pose.right = pose.top * aspect_ratio;
+        pose.bottom = -pose.top;
+        pose.left = -pose.right;
+    }
+    pose.projection = camera.projection;
+    pose.lens_radius = camera.lens_radius;
+    pose.focus_distance = camera.focus_distance;
+    pose.aperture = camera.aperture;
+    return pose;
+}
+
 }  // namespace tessera::view

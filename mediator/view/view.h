@@ -10,18 +10,29 @@
 #include "mediator/base/ids.h"
 #include "mediator/base/rect.h"
 #include "mediator/frame/channels.h"
+#include "mediator/scene/objects.h"
 
 namespace tessera::view {
 
-// A pinhole with any frustum: edges of the picture at distance 1 in front of the eye, so off-axis is the
-// normal case.
+// Edges of the picture at distance 1 in front of the eye, so off-axis is the normal case; of an orthographic
+// one in metres. A thin lens is a disk around the eye, or around each orthographic ray's start, across the
+// axis; what lies in the plane at focus_distance along the axis is sharp.
 struct CameraPose {
     glm::dmat4 world_from_camera{1.0};  // rigid; camera looks along -z, y up
     double left = -1.0, right = 1.0, bottom = -1.0, top = 1.0;
+    scene::Projection projection = scene::Projection::Perspective;
+    double lens_radius = 0.0;  // m; 0 = a pinhole
+    double focus_distance = 1.0;
+    scene::Aperture aperture = scene::Aperture::Uniform;
+
+    bool is_pinhole() const { return projection == scene::Projection::Perspective && !(lens_radius > 0.0); }
     friend bool operator==(const CameraPose&, const CameraPose&) = default;
 };
 
 CameraPose perspective(const glm::dmat4& world_from_camera, double vertical_fov, double aspect_ratio);
+
+// As a Camera object sees, in a picture of this aspect ratio, whatever its own is.
+CameraPose pose(const scene::Camera& camera, const glm::dmat4& world_from_camera, double aspect_ratio);
 
 enum class Eye : std::uint8_t { Mono, Left, Right };
 enum class PixelFilterKind : std::uint8_t { Box, Gaussian, BlackmanHarris };
@@ -38,7 +49,8 @@ enum class Renderer : std::uint8_t {
     PathTracing,
     Whitted,  // direct light and perfect speculars, every branch of them followed (Whitted 1980)
     Raster,   // the same from first hits of a rasteriser, for navigation; all pixels of a sample share their
-              // place in the pixel
+              // place in the pixel. Orthographic views and views through a lens find theirs by rays, as
+              // Whitted
 };
 
 std::string_view renderer_name(Renderer renderer);  // as --renderer has it: "path", "whitted", "raster"

@@ -4,11 +4,22 @@
 #include "mediator/base/rect.h"
 #include "mediator/frame/sample_block.h"
 #include "mediator/scene/blob.h"
+#include "mediator/scene/objects.h"
 #include "mediator/wire/mapping.h"
 #include "proto/common.pb.h"
 
 // Private to wire/*.cpp: how the smallest structures map to their messages.
 namespace tessera::wire {
+
+// Of scenes and of views.
+template <>
+constexpr scene::Projection last_of() {
+    return scene::Projection::Orthographic;
+}
+template <>
+constexpr scene::Aperture last_of() {
+    return scene::Aperture::Gaussian;
+}
 
 template <class Io>
 void map(const Io& io, typename Io::template Ref<Version> s, proto::Version& p) {

@@ -32,14 +32,6 @@ constexpr scene::LightKind last_of() {
     return scene::LightKind::Quad;
 }
 template <>
-constexpr scene::Projection last_of() {
-    return scene::Projection::Orthographic;
-}
-template <>
-constexpr scene::Aperture last_of() {
-    return scene::Aperture::Gaussian;
-}
-template <>
 constexpr scene::VisibleBackground last_of() {
     return scene::VisibleBackground::Color;
 }

@@ -69,6 +69,10 @@ void map(const Io& io, typename Io::template Ref<view::View> s, proto::View& p) 
         s.camera.bottom = frustum.z;
         s.camera.top = frustum.w;
     }
+    io(s.camera.projection, p, &P::projection, &P::set_projection);
+    io(s.camera.lens_radius, p, &P::lens_radius, &P::set_lens_radius);
+    io(s.camera.focus_distance, p, &P::focus_distance, &P::set_focus_distance);
+    io(s.camera.aperture, p, &P::aperture, &P::set_aperture);
     io(s.eye, p, &P::eye, &P::set_eye);
     io(s.width, p, &P::width, &P::set_width);
     io(s.height, p, &P::height, &P::set_height);

@@ -43,7 +43,7 @@ struct Bed {
         if (auto committed = world.commit(); !committed) throw committed.error();
         const auto& camera = imported->cameras.at(0);
         view.width = view.height = Size;
-        view.camera = view::perspective(camera.world_from_camera, camera.vertical_fov, 1.0);
+        view.camera = view::perspective(camera.world_from_camera, camera.camera.vertical_fov, 1.0);
         view.channels = {frame::Channel::Radiance};
     }
 };

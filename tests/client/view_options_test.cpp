@@ -47,7 +47,7 @@ TEST(ViewOptions, BecomeAView) {
     EXPECT_EQ(plan->view.seed, 9u);
     EXPECT_EQ(plan->view.pixel_filter.kind, view::PixelFilterKind::Gaussian);
     EXPECT_EQ(plan->import.background, glm::vec3(0.25f, 0.5f, 1.0f));
-    const view::View view = view_from(*plan, {.name = "c", .vertical_fov = 1.0});
+    const view::View view = view_from(*plan, {.name = "c", .camera = {.vertical_fov = 1.0}});
     EXPECT_NEAR(view.camera.right / view.camera.top, 2.0, 1e-12);
 }
 

@@ -121,7 +121,7 @@ TEST_P(GlbOfFile, ComesBackTheSame) {
     for (std::size_t i = 0; i < again.cameras.size(); ++i) {
         EXPECT_EQ(again.cameras[i].name, imported.cameras[i].name);
         EXPECT_EQ(again.cameras[i].world_from_camera, imported.cameras[i].world_from_camera);
-        EXPECT_EQ(again.cameras[i].vertical_fov, imported.cameras[i].vertical_fov);
+        EXPECT_EQ(again.cameras[i].camera.vertical_fov, imported.cameras[i].camera.vertical_fov);
     }
     EXPECT_EQ(again.blobs.size(), imported.blobs.size());
 }
@@ -160,8 +160,8 @@ TEST(GlbExport, EverythingThatGltfKnowsComesBack) {
     EXPECT_EQ(sun.kind, scene::LightKind::Directional);
     EXPECT_EQ(sun.intensity, glm::vec3(0.0f));
     ASSERT_EQ(imported.cameras.size(), 1u);
-    EXPECT_EQ(imported.cameras[0].vertical_fov, 0.123456789);
-    EXPECT_EQ(imported.cameras[0].aspect, 1.5);
+    EXPECT_EQ(imported.cameras[0].camera.vertical_fov, 0.123456789);
+    EXPECT_EQ(imported.cameras[0].camera.aspect_ratio, 1.5);
 }
 
 TEST(GlbExport, WhatGltfLacksIsTold) {

@@ -206,26 +206,28 @@ TEST(GltfScene, EqualAndMissingNamesBecomeUniqueAndStable) {
     EXPECT_EQ(names(), names());
 }
 
-TEST(GltfScene, PerspectiveCamerasAreListedWithTheirRigidPose) {
+TEST(GltfScene, CamerasAreListedWithTheirRigidPose) {
     SceneFile file;
     add_mesh(file);
     file.add("cameras", R"({"type":"perspective","perspective":{"yfov":0.5,"aspectRatio":1.5,"znear":0.1}})");
     file.add("cameras",
-             R"({"type":"orthographic","orthographic":{"xmag":1,"ymag":1,"zfar":10,"znear":0.1}})");
+             R"({"type":"orthographic","orthographic":{"xmag":3,"ymag":2,"zfar":10,"znear":0.1}})");
     file.add("nodes", R"({"name":"parent","scale":[3,3,3],"translation":[0,1,0],"children":[1,2,3]})");
     file.add("nodes", R"({"name":"near","camera":0,"translation":[0,0,2]})");
     file.add("nodes", R"({"name":"flat","camera":1})");
     file.add("nodes", R"({"mesh":0})");
     file.add("scenes", R"({"nodes":[0]})");
     const ImportedScene scene = load(file);
-    ASSERT_EQ(scene.cameras.size(), 1u);
+    ASSERT_EQ(scene.cameras.size(), 2u);
     const CameraInfo& camera = scene.cameras[0];
     EXPECT_EQ(camera.name, "near");
-    EXPECT_EQ(camera.vertical_fov, 0.5);
-    EXPECT_EQ(camera.aspect, 1.5);
+    EXPECT_EQ(camera.camera.vertical_fov, 0.5);
+    EXPECT_EQ(camera.camera.aspect_ratio, 1.5);
     EXPECT_EQ(camera.world_from_camera[3], glm::dvec4(0, 1, 6, 1));
     EXPECT_NEAR(glm::determinant(camera.world_from_camera), 1.0, 1e-12);
-    EXPECT_TRUE(has_notice(scene, "only perspective cameras"));
+    EXPECT_EQ(scene.cameras[1].camera.projection, scene::Projection::Orthographic);
+    EXPECT_EQ(scene.cameras[1].camera.orthographic_height, 4.0) << "ymag is half of it";
+    EXPECT_EQ(scene.cameras[1].camera.aspect_ratio, 1.5);
     EXPECT_EQ(named<scene::Camera>(scene, "near").vertical_fov, 0.5);
 }
 
@@ -238,7 +240,7 @@ TEST(GltfScene, ASceneWithoutACameraIsFramed) {
     const ImportedScene scene = load(file);
     ASSERT_EQ(scene.cameras.size(), 1u);
     EXPECT_TRUE(has_notice(scene, "no camera"));
-    const double edge = std::tan(scene.cameras[0].vertical_fov / 2);
+    const double edge = std::tan(scene.cameras[0].camera.vertical_fov / 2);
     const glm::dmat4 camera_from_world = glm::inverse(scene.cameras[0].world_from_camera);
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec4 world(corner & 1 ? 110 : 94, corner & 2 ? 8 : -4, corner & 4 ? 14 : -2, 1);

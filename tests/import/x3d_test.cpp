@@ -138,7 +138,7 @@ TEST(X3d, LightsShineWhereTheySay) {
 TEST(X3d, Viewpoints) {
     const ImportedScene plain = read_x3d("<Shape><Box/></Shape><Viewpoint/>");
     ASSERT_EQ(plain.cameras.size(), 1u);
-    EXPECT_DOUBLE_EQ(plain.cameras[0].vertical_fov, Pi / 4);
+    EXPECT_DOUBLE_EQ(plain.cameras[0].camera.vertical_fov, Pi / 4);
     expect_near(moved(plain.cameras[0].world_from_camera, {0, 0, -1}), {0, 0, 9});
 
     const ImportedScene placed = read_x3d(
@@ -149,7 +149,7 @@ TEST(X3d, Viewpoints) {
     ASSERT_EQ(placed.cameras.size(), 2u);
     EXPECT_EQ(placed.cameras[0].name, "from afar");
     EXPECT_EQ(placed.cameras[1].name, "second");
-    EXPECT_DOUBLE_EQ(placed.cameras[0].vertical_fov, 0.5);
+    EXPECT_DOUBLE_EQ(placed.cameras[0].camera.vertical_fov, 0.5);
     expect_near(moved(placed.cameras[0].world_from_camera, {0, 0, 0}), {2, 0, 5});
     expect_near(moved(placed.cameras[0].world_from_camera, {0, 0, -1}), {1, 0, 5});
 }

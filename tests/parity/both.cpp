@@ -13,14 +13,15 @@ tools::bench::BenchScene bench_scene(const std::string& name) {
 view::View square_view(const tools::bench::BenchScene& scene, std::uint32_t size) {
     using frame::Channel;
     const auto edge = static_cast<std::int32_t>(size);
-    return {.id = ViewId{1},
-            .camera = view::perspective(scene.camera.world_from_camera, scene.camera.vertical_fov, 1.0),
-            .width = size,
-            .height = size,
-            .window = {0, 0, edge, edge},
-            .seed = 23,
-            .max_bounces = 8,
-            .channels = {Channel::Radiance, Channel::Albedo, Channel::Normal, Channel::Depth}};
+    return {
+        .id = ViewId{1},
+        .camera = view::perspective(scene.camera.world_from_camera, scene.camera.camera.vertical_fov, 1.0),
+        .width = size,
+        .height = size,
+        .window = {0, 0, edge, edge},
+        .seed = 23,
+        .max_bounces = 8,
+        .channels = {Channel::Radiance, Channel::Albedo, Channel::Normal, Channel::Depth}};
 }
 
 Renderer::Renderer(const std::string& backend, const tools::bench::BenchScene& scene) {

@@ -63,11 +63,8 @@ struct Counts {
     std::uint64_t vulkan = 0, control = 0;
 };
 
-Counts measure(const std::string& name, const tools::bench::BenchScene& scene,
-               std::uint32_t layers = view::AllLayers) {
+Counts measure(const std::string& name, const tools::bench::BenchScene& scene, const view::View& view) {
     SCOPED_TRACE(name);
-    view::View view = square_view(scene, Size);
-    view.layers = layers;
     const Renderer embree("embree", scene), vulkan("vulkan", scene);
     const JitteredEmbree jittered(scene);
     Counts counts;
@@ -94,11 +91,16 @@ Counts measure(const std::string& name, const tools::bench::BenchScene& scene,
     return counts;
 }
 
+Counts measure_scene(const std::string& name) {
+    const tools::bench::BenchScene scene = bench_scene(name);
+    return measure(name, scene, square_view(scene, Size));
+}
+
 // One test, since few samples differ: the ratio to the control is that of all scenes.
 TEST(Parity, SampleBySample) {
     Counts all;
     for (const char* name : {"cornell", "grids", "room-1", "studio-1"}) {
-        const Counts counts = measure(name, bench_scene(name));
+        const Counts counts = measure_scene(name);
         all.vulkan += counts.vulkan;
         all.control += counts.control;
     }
@@ -118,9 +120,32 @@ TEST(Parity, WhereLayersAreHidden) {
                           scene::Transform{.layers = 2}});
     }
     ASSERT_TRUE(scene.content.apply_entries(entries));
-    const Counts counts = measure("studio-1 with layers", scene, 1);
+    view::View view = square_view(scene, Size);
+    view.layers = 1;
+    const Counts counts = measure("studio-1 with layers", scene, view);
     EXPECT_GE(counts.control, 1u) << "the control says little";
     EXPECT_LE(counts.vulkan, 3 * counts.control);
+}
+
+TEST(Parity, ThroughALensAndWithParallelRays) {
+    const tools::bench::BenchScene scene = bench_scene("room-1");
+    Counts all;
+    for (const auto projection : {scene::Projection::Perspective, scene::Projection::Orthographic}) {
+        view::View view = square_view(scene, Size);
+        const bool parallel = projection == scene::Projection::Orthographic;
+        view.camera =
+            view::pose({.projection = projection,
+                        .orthographic_height = 4.0,
+                        .lens_radius = 0.05,
+                        .focus_distance = 3.0,
+                        .aperture = parallel ? scene::Aperture::Gaussian : scene::Aperture::Uniform},
+                       scene.camera.world_from_camera, 1.0);
+        const Counts counts = measure(parallel ? "room-1, parallel" : "room-1, lens", scene, view);
+        all.vulkan += counts.vulkan;
+        all.control += counts.control;
+    }
+    EXPECT_GE(all.control, 1u) << "the control says little";
+    EXPECT_LE(all.vulkan, 3 * all.control);
 }
 
 }  // namespace

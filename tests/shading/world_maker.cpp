@@ -288,7 +288,10 @@ std::vector<View> make_views(Generator& random) {
                          .channels = i == 0u ? 0xfffu : random.bits() & 0xfffu,
                          .keeps = random.bits() & (KeepsDiffuse | KeepsConnections | KeepsRange),
                          .transparent_background = i % 2u,
-                         .strategy = i % 6u == 4u ? StrategyLightsOnly : StrategyBoth});
+                         .strategy = i % 6u == 4u ? StrategyLightsOnly : StrategyBoth,
+                         .camera = i % 8u,
+                         .lens_radius = 0.1f,
+                         .focus_distance = 2.0f});
     }
     return views;
 }

@@ -21,6 +21,10 @@ view::View some_view() {
     view::View view{.id = ViewId{3}, .revision = 9, .seed = 77, .max_bounces = view::UnlimitedBounces};
     view.camera.left = -0.25;
     view.camera.world_from_camera[3][0] = 1e6;
+    view.camera.projection = scene::Projection::Orthographic;
+    view.camera.lens_radius = 0.125;
+    view.camera.focus_distance = 3.5;
+    view.camera.aperture = scene::Aperture::Gaussian;
     view.renderer = view::Renderer::Raster;
     view.path_class = view::PathClass::Caustics;
     view.feature_rule = view::FeatureRule::Connections;

@@ -154,7 +154,7 @@ class SceneRun {
         const import::CameraInfo& camera = scene_.scene.camera;
         return {
             .id = ViewId{1},
-            .camera = view::perspective(camera.world_from_camera, camera.vertical_fov,
+            .camera = view::perspective(camera.world_from_camera, camera.camera.vertical_fov,
                                         double(size.width) / double(size.height)),
             .width = size.width,
             .height = size.height,

@@ -57,7 +57,7 @@ RaySets ray_sets(const BenchScene& scene, std::shared_ptr<scene::BlobStore> blob
     const auto edge = static_cast<std::uint32_t>(std::ceil(std::sqrt(double(count)) / Tile)) * Tile;
     const HostScene host(scene, blobs);
     const view::View view{
-        .camera = view::perspective(scene.camera.world_from_camera, scene.camera.vertical_fov, 1.0),
+        .camera = view::perspective(scene.camera.world_from_camera, scene.camera.camera.vertical_fov, 1.0),
         .width = edge,
         .height = edge};
     RaySets sets{.primary = camera_rays(backend::make_view(view, host.render_origin()), edge)};

@@ -52,7 +52,7 @@ class Builder {
         scene.camera = {.name = "camera",
                         .world_from_camera = {glm::dvec4(x, 0.0), glm::dvec4(glm::cross(z, x), 0.0),
                                               glm::dvec4(z, 0.0), glm::dvec4(eye, 1.0)},
-                        .vertical_fov = vertical_fov};
+                        .camera = {.vertical_fov = vertical_fov}};
         root_.background = add(scene::Background{.name = "dark"});
         entries_.push_back(scene::Create{scene::RootId, root_});
         if (auto made = scene.content.apply_entries(entries_); !made) throw made.error();

@@ -34,7 +34,7 @@ Sampler::Sampler(const BenchScene& scene, tbb::task_arena& arena)
 view::View Sampler::view(std::uint32_t width, std::uint32_t height, frame::ChannelSet channels,
                          view::PathClass path_class, std::uint64_t seed) const {
     return {.id = ViewId{1},
-            .camera = view::perspective(camera_.world_from_camera, camera_.vertical_fov,
+            .camera = view::perspective(camera_.world_from_camera, camera_.camera.vertical_fov,
                                         double(width) / double(height)),
             .width = width,
             .height = height,

@@ -1,5 +1,6 @@
 #include "master/filter/svgf/reproject.h"
 
+#include <algorithm>
 #include <array>
 #include <glm/gtc/matrix_inverse.hpp>
 #include <glm/mat4x4.hpp>
@@ -36,6 +37,8 @@ bool find_motion(const Guides& now, const Guides& before, Motion& motion, RunCon
     }
     const view::CameraPose &a = now.camera, &b = before.camera;
     motion.identity = a == b;
+    const bool is_parallel =
+        a.projection == scene::Projection::Orthographic || b.projection == scene::Projection::Orthographic;
     // Rigid: the inverse is exact enough in double, and what is left is small, however far the origin is.
     const glm::dmat4 relative = glm::affineInverse(b.world_from_camera) * a.world_from_camera;
     const glm::mat3 turn(relative);
@@ -54,6 +57,12 @@ bool find_motion(const Guides& now, const Guides& before, Motion& motion, RunCon
                 to_y[x] = static_cast<float>(y);
                 to_inverse[x] = inverse[x];
             }
+            return;
+        }
+        if (is_parallel) {  // no point is where the formulas below look for it: the history starts anew
+            std::fill_n(to_x, width, Unseen);
+            std::fill_n(to_y, width, Unseen);
+            std::copy_n(inverse, width, to_inverse);
             return;
         }
         const auto py = static_cast<float>(a.top + (a.bottom - a.top) * (y + 0.5) / height);

@@ -1,4 +1,4 @@
-// Writes the table of mediator/shading/energy.h as C++ numbers: energy_maker FILE. In double, by a midpoint
+// Writes the table of mediator/shading/energy.h as a C++ source: energy_maker FILE. In double, by a midpoint
 // rule over the visible normals (GGX) or over the hemisphere (sheen); no random numbers, so that equal builds
 // have equal bits.
 #include <array>
@@ -130,6 +130,13 @@ double ggx_alpha(double roughness) {
 int main(int count, char** arguments) {
     std::FILE* file = count == 2 ? std::fopen(arguments[1], "w") : nullptr;
     if (file == nullptr) return 1;
+    std::fputs(
+        "#include \"mediator/backend/tables/tables.h\"\n"
+        "#include \"mediator/shading/energy.h\"\n"
+        "namespace tessera::backend {\n"
+        "std::span<const float> energy_values() {\n"
+        "static constexpr float Numbers[shading::EnergyCount] = {\n",
+        file);
     const auto put = [&](double value) { std::fprintf(file, "%.9g,\n", value); };
     for_each_entry([&](double place, double roughness) {
         const double root = root_of_cosine(place, roughness);
@@ -149,5 +156,6 @@ int main(int count, char** arguments) {
         const double r = std::max(roughness, double(tessera::shading::MinSheenRoughness));
         put(sheen_energy(root * root, r * r, 256));
     });
+    std::fputs("};\nreturn Numbers;\n}\n}  // namespace tessera::backend\n", file);
     return std::fclose(file) == 0 ? 0 : 1;
 }

@@ -52,6 +52,21 @@ std::uint32_t kept(const view::View& view) {
     return keeps;
 }
 
+std::uint32_t camera_bits(const view::CameraPose& camera) {
+    std::uint32_t bits = shading::CameraPinhole;
+    if (camera.projection == scene::Projection::Orthographic) bits |= shading::CameraOrthographic;
+    if (!(camera.lens_radius > 0.0)) return bits;
+    bits |= shading::CameraLens;
+    if (camera.aperture == scene::Aperture::Gaussian) bits |= shading::CameraGaussian;
+    return bits;
+}
+
+// A rasteriser draws what a pinhole sees.
+view::Renderer renderer_of(const view::View& view) {
+    const bool draws = view.renderer == view::Renderer::Raster;
+    return draws && !view.camera.is_pinhole() ? view::Renderer::Whitted : view.renderer;
+}
+
 }  // namespace
 
 shading::View make_view(const view::View& view, const glm::dvec3& render_origin) {
@@ -73,7 +88,7 @@ shading::View make_view(const view::View& view, const glm::dvec3& render_origin)
             // Light scattered up to max_bounces + 1 times is counted, so 0 is direct light (as in Cycles).
             .max_scatterings = view.max_bounces == view::UnlimitedBounces ? shading::UnlimitedScatterings
                                                                           : view.max_bounces + 1,
-            .renderer = static_cast<std::uint32_t>(view.renderer),
+            .renderer = static_cast<std::uint32_t>(renderer_of(view)),
             .path_class = static_cast<std::uint32_t>(view.path_class),
             .feature_rule = static_cast<std::uint32_t>(view.feature_rule),
             .channels = view.channels.bits(),
@@ -81,7 +96,9 @@ shading::View make_view(const view::View& view, const glm::dvec3& render_origin)
             .transparent_background = view.transparent_background ? 1u : 0u,
             .strategy = shading::StrategyBoth,
             .layers = view.layers,
-            .unused = 0};
+            .camera = camera_bits(camera),
+            .lens_radius = static_cast<float>(camera.lens_radius),
+            .focus_distance = static_cast<float>(camera.focus_distance)};
 }
 
 }  // namespace tessera::backend
