@@ -158,8 +158,10 @@ template <class I>
 void ValueReader::whole_number(I& value) {
     const Word& word = next();
     const std::string& text = word.text();
-    const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
+    I number{};
+    const auto parsed = std::from_chars(text.data(), text.data() + text.size(), number);
     if (text.empty() || parsed.ec != std::errc() || parsed.ptr != text.data() + text.size()) wrong(word);
+    value = number;
 }
 
 void ValueReader::read(std::uint32_t& value) {

@@ -159,8 +159,9 @@ std::vector<BlobRef> referenced_blobs(const Object& object) {
         if (!blob.empty()) blobs.push_back(blob);
     };
     if (const auto* geometry = std::get_if<Geometry>(&object)) {
-        for (const BlobRef* blob : {&geometry->indices, &geometry->positions, &geometry->normals,
-                                    &geometry->tangents, &geometry->tex_coords, &geometry->colors}) {
+        for (const BlobRef* blob :
+             {&geometry->indices, &geometry->positions, &geometry->normals, &geometry->tangents,
+              &geometry->tex_coords, &geometry->tex_coords_1, &geometry->colors}) {
             add(*blob);
         }
     } else if (const auto* texture = std::get_if<Texture>(&object)) {

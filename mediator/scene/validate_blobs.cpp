@@ -75,6 +75,7 @@ std::vector<Problem> validate_blobs(ObjectId id, const Object& object, const Blo
         check.finite(geometry->normals, 3, "normals");
         check.finite(geometry->tangents, 4, "tangents");
         check.finite(geometry->tex_coords, 2, "texture coordinates");
+        check.finite(geometry->tex_coords_1, 2, "second texture coordinates");
         check.finite(geometry->colors, 4, "vertex colours");
         check.indices(*geometry);
     } else if (const auto* texture = std::get_if<Texture>(&object)) {

@@ -54,12 +54,13 @@ TEST_F(CompletionTest, OfFieldsAndTheirValues) {
         at("set materials/\"my \\\"red\\\"\".d|"),
         ElementsAre("materials/\"my \\\"red\\\"\".diffuse ", "materials/\"my \\\"red\\\"\".double_sided "));
     EXPECT_THAT(at("set geometries/square.|"), testing::Not(Contains("geometries/square.positions ")));
-    EXPECT_THAT(at("set lights/sun.kind |"), ElementsAre("directional ", "point ", "spot "));
-    EXPECT_THAT(at("set lights/sun.kind s|"), ElementsAre("spot "));
+    EXPECT_THAT(at("set lights/sun.kind |"),
+                ElementsAre("directional ", "point ", "quad ", "sphere ", "spot "));
+    EXPECT_THAT(at("set lights/sun.kind sp|"), ElementsAre("sphere ", "spot "));
     EXPECT_THAT(at("set root.background b|"), ElementsAre("backgrounds/"));
     EXPECT_THAT(at("set root.background n|"), ElementsAre("none "));
     EXPECT_THAT(at("set materials/\"my \\\"red\\\"\".normal_texture textures/data s|"),
-                ElementsAre("scale="));
+                ElementsAre("scale=", "set="));
     EXPECT_THAT(at("set lights/none.kind |"), IsEmpty());
 }
 

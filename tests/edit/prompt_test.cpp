@@ -116,7 +116,7 @@ TEST_F(PromptTest, ControlCClearsTheLine) {
 }
 
 TEST_F(PromptTest, TabCompletes) {
-    EXPECT_THAT(lines({"sho\tlights/b\t\n", "set lights/sun.ki\tsp\t\n", "show lights/s\tu\t\n"}),
+    EXPECT_THAT(lines({"sho\tlights/b\t\n", "set lights/sun.ki\tspo\t\n", "show lights/s\tu\t\n"}),
                 testing::ElementsAre("show lights/bulb ", "set lights/sun.kind spot ", "show lights/sun "));
     EXPECT_THAT(shown_, testing::HasSubstr("lights/spot"));
 }

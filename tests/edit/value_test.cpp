@@ -25,7 +25,7 @@ std::map<std::string, FieldCase> cases() {
                          "textures/data offset=1,-2 scale=1,1 rotation=0.5 set=1", "textures/data offset=1"};
     const FieldCase number{"0.25", "0.25", "0.25x"}, whole{"7", "7", "-7"}, truth{"yes", "true", "maybe"};
     const FieldCase color{"0.5,0.25 1e-3", "0.5 0.25 0.001", "0.5 0.25"};
-    const FieldCase pair{"0.5,0.25", "0.5 0.25", "0.5 0.25 1"}, signed_whole{"-7", "-7", "7.5"};
+    const FieldCase pair{"0.5,0.25", "0.5 0.25", "0.5 x"}, signed_whole{"-7", "-7", "7.5"};
     const FieldCase wrap{"clamp", "clamp", "Clamp"};
     const FieldCase blob{"", "", "12"};
     std::map<std::string, FieldCase> all{
@@ -237,8 +237,10 @@ TEST(Values, ErrorsNameTheNearest) {
     EXPECT_THAT(target.error(), HasSubstr("test.txt:1:17: "));
     EXPECT_THAT(target.error(), HasSubstr("did you mean 'intensity'?"));
     EXPECT_FALSE(target.script("set lights/bulb.kind spott"));
-    EXPECT_THAT(target.error(),
-                HasSubstr("test.txt:1:22: 'spott' is none of point, spot or directional; did you mean"));
+    EXPECT_THAT(
+        target.error(),
+        HasSubstr(
+            "test.txt:1:22: 'spott' is none of point, spot, directional, sphere or quad; did you mean"));
     EXPECT_FALSE(target.script("set lights/bulb.intensity 1 2 x"));
     EXPECT_THAT(target.error(), HasSubstr("test.txt:1:31: 'x' is no number"));
     EXPECT_FALSE(target.script("set lights/bulb.intensity 1 2"));

@@ -27,6 +27,7 @@ DeviceScene::DeviceScene(Device& device, backend::SceneTables tables) {
     };
     put(record_.textures, tables.textures);
     put(record_.materials, tables.materials);
+    put(record_.extras, tables.extras);
     put(record_.meshes, tables.meshes);
     put(record_.instances, tables.instances);
     put(record_.lights, tables.lights);
@@ -35,6 +36,8 @@ DeviceScene::DeviceScene(Device& device, backend::SceneTables tables) {
     put(record_.sums, tables.sums);
     const auto srgb = backend::srgb_values();
     put(record_.srgb, std::vector<float>(srgb.begin(), srgb.end()));
+    const auto energy = backend::energy_values();
+    put(record_.energy, std::vector<float>(energy.begin(), energy.end()));
 }
 
 }  // namespace tessera::vulkan
