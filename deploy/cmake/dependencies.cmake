@@ -19,6 +19,8 @@ pkg_check_modules(libzip REQUIRED IMPORTED_TARGET libzip)  # its CMake files ask
 find_package(pugixml REQUIRED CONFIG)
 find_package(TinyGLTF REQUIRED CONFIG)
 find_package(draco REQUIRED CONFIG)
+# Debian's libdraco has a TinyGLTF of another layout in it, and exports it: the linker has to see the right one first.
+set_property(TARGET TinyGLTF::TinyGLTF APPEND PROPERTY INTERFACE_LINK_LIBRARIES draco::draco)
 find_package(assimp REQUIRED CONFIG)
 find_package(SDL2 REQUIRED CONFIG)
 if(TESSERA_BACKEND_EMBREE OR TESSERA_BACKEND_VULKAN)  # Vulkan: builds trees

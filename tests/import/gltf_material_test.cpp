@@ -101,9 +101,9 @@ TEST(GltfMaterial, EveryLobeOfTheExtensionsIsRead) {
     EXPECT_EQ(all.iridescence_thickness_minimum, 50.0f);
     EXPECT_EQ(all.iridescence_thickness_maximum, 600.0f);
     for (const scene::TextureSlot* data :
-         {&all.transmission_texture, &all.specular_texture, &all.clearcoat_texture, &all.clearcoat_roughness_texture,
-          &all.clearcoat_normal_texture, &all.sheen_roughness_texture, &all.anisotropy_texture,
-          &all.iridescence_texture, &all.iridescence_thickness_texture}) {
+         {&all.transmission_texture, &all.specular_texture, &all.clearcoat_texture,
+          &all.clearcoat_roughness_texture, &all.clearcoat_normal_texture, &all.sheen_roughness_texture,
+          &all.anisotropy_texture, &all.iridescence_texture, &all.iridescence_thickness_texture}) {
         EXPECT_EQ(object<Texture>(scene, data->texture).format, scene::TexelFormat::Rgba8);
     }
     for (const scene::TextureSlot* color : {&all.specular_color_texture, &all.sheen_color_texture}) {

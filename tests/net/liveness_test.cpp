@@ -32,10 +32,15 @@ TEST(Liveness, SilenceOfAllMissedIntervalsIsDeath) {
         bool dead;
     };
     const std::vector<Case> cases{
-        {{}, 2999ms, false},       {{}, 3s, true},        {{2s}, 4999ms, false},     {{2s}, 5s, true},
-        {{2s, 4900ms}, 7s, false}, {{2900ms}, 3s, false}, {{4s, 1s}, 6999ms, false},  // what was heard
-                                                                                      // earlier does not undo
-                                                                                      // what was heard later
+        {{}, 2999ms, false},
+        {{}, 3s, true},
+        {{2s}, 4999ms, false},
+        {{2s}, 5s, true},
+        {{2s, 4900ms}, 7s, false},
+        {{2900ms}, 3s, false},
+        {{4s, 1s}, 6999ms, false},  // what was heard
+                                    // earlier does not undo
+                                    // what was heard later
         {{4s, 1s}, 7s, true},
     };
     for (const Case& one : cases) {

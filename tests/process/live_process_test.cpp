@@ -6,10 +6,10 @@
 #include <thread>
 
 #include "client/import/import.h"
-#include "mediator/view/placed_cameras.h"
 #include "client/live_session.h"
 #include "mediator/base/hash.h"
 #include "mediator/scene/fields.h"
+#include "mediator/view/placed_cameras.h"
 #include "tests/process/real_cluster.h"
 
 namespace tessera::test {
