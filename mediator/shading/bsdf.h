@@ -163,8 +163,9 @@ inline float passes_layers(FloatArray table, IN(Bsdf) bsdf, vec3 wi) {
 // out: it leaves along the surface, where no other lobe would look for it.
 inline constexpr float LeastLate = 1e-3f;
 
-inline void add_specular(INOUT(Bsdf) bsdf, FloatArray table, IN(Mixture) mixture, IN(Interface) face,
-                         vec3 base_color, float cos_out) {
+// late_reflectance: what the lobe's late light adds to what is reflected to wo, as luminance.
+inline void add_specular(INOUT(Bsdf) bsdf, OUT(float) late_reflectance, FloatArray table, IN(Mixture) mixture,
+                         IN(Interface) face, vec3 base_color, float cos_out) {
     bsdf.f0 = face.f0 * mixture.dielectric + base_color * mixture.metal;
     bsdf.f90 = face.f90 * mixture.dielectric + mixture.metal;
     bsdf.base_f0 = largest(face.f0);
@@ -173,6 +174,7 @@ inline void add_specular(INOUT(Bsdf) bsdf, FloatArray table, IN(Mixture) mixture
     bsdf.base_late = 0.0f;
     bsdf.late_out = 0.0f;
     bsdf.base_out = InversePi;
+    late_reflectance = 0.0f;
     if (!(bsdf.f90 > 0.0f) && !(bsdf.base_f90 > 0.0f)) return;
     const vec2 energy = lobe_energy(table, cos_out, bsdf.roughness);
     const vec2 mean = mean_lobe_energy(table, bsdf.roughness);
@@ -185,14 +187,14 @@ inline void add_specular(INOUT(Bsdf) bsdf, FloatArray table, IN(Mixture) mixture
     // Below, it is rounding: the interface reflects all.
     bsdf.base_out = passes > 1e-6f ? InversePi * passes_interface(bsdf, energy) / passes : 0.0f;
     if (!has_late) return;
-    const vec3 metal = base_color + (1.0f - base_color) * (1.0f / 21.0f);
-    const vec3 dielectric = face.f0 + (face.f90 - face.f0) * (1.0f / 21.0f);
-    const float scale = InversePi / (1.0f - e);
-    bsdf.late =
-        (vec3(late_share(metal.x, e), late_share(metal.y, e), late_share(metal.z, e)) * mixture.metal +
-         vec3(late_share(dielectric.x, e), late_share(dielectric.y, e), late_share(dielectric.z, e)) *
-             mixture.dielectric) *
-        scale;
+    if (mixture.dielectric > 0.0f) {
+        bsdf.late += mixture.dielectric * late_shares(face.f0 + (face.f90 - face.f0) * (1.0f / 21.0f), e);
+    }
+    if (mixture.metal > 0.0f) {
+        bsdf.late += mixture.metal * late_shares(base_color + (1.0f - base_color) * (1.0f / 21.0f), e);
+    }
+    late_reflectance = luminance(bsdf.late) * bsdf.late_out;
+    bsdf.late *= InversePi / (1.0f - e);
 }
 
 inline void add_layers(INOUT(Bsdf) bsdf, FloatArray table, IN(Look) look, vec3 wo) {
@@ -209,22 +211,14 @@ inline void add_layers(INOUT(Bsdf) bsdf, FloatArray table, IN(Look) look, vec3 w
     if ((bsdf.lobes & FeatureSheen) != 0u) bsdf.sheen_out = passes_sheen(table, bsdf, wo.z);
 }
 
-// 1 - E in the mean.
-inline float late_mean(FloatArray table, IN(Bsdf) bsdf) {
-    const vec2 mean = mean_lobe_energy(table, bsdf.roughness);
-    return 1.0f - mean.x - mean.y;
-}
-
 // In proportion to what the lobes reflect of light to wo, so far as that can be told; never 0 or 1 while
 // several are there, so that no light is out of reach.
-inline void choose_chances(INOUT(Bsdf) bsdf, FloatArray table, float cos_out) {
+inline void choose_chances(INOUT(Bsdf) bsdf, FloatArray table, float late_reflectance, float cos_out) {
     const float weight = schlick_weight(cos_out);
     const float below = bsdf.coat_out * bsdf.sheen_out;
     float specular = luminance(bsdf.f0 + (bsdf.f90 - bsdf.f0) * weight) * below;
     float diffuse = luminance(bsdf.diffuse) * (1.0f - bsdf.base_f0) * (1.0f - bsdf.base_f90 * weight) * below;
-    // What facets send to each other, as sharp as the diffuse lobe.
-    const float mean_left = bsdf.late_out > 0.0f ? late_mean(table, bsdf) : 0.0f;
-    diffuse += luminance(bsdf.late) * (Pi * mean_left * bsdf.late_out * below);
+    diffuse += late_reflectance * below;  // as broad as the diffuse lobe, and found with it
     float coat = 0.0f, glass = 0.0f;
     if ((bsdf.lobes & FeatureSheen) != 0u) {
         diffuse += luminance(bsdf.sheen) * sheen_energy(table, cos_out, bsdf.sheen_roughness);
@@ -253,12 +247,13 @@ inline Bsdf make_bsdf(FloatArray table, IN(Look) look, IN(Mixture) mixture, vec3
     bsdf.diffuse = look.base_color * mixture.dielectric;
     bsdf.alpha = vec2(greater_of(look.alpha.x, MinAlpha), greater_of(look.alpha.y, MinAlpha));
     bsdf.roughness = sqrt(lesser_of(bsdf.alpha.x, bsdf.alpha.y));
-    add_specular(bsdf, table, mixture, face, look.base_color, wo.z);
+    float late_reflectance;
+    add_specular(bsdf, late_reflectance, table, mixture, face, look.base_color, wo.z);
     bsdf.glass_share = mixture.rough_glass;
     bsdf.glass = RoughGlass(look.base_color, look.eta, face.f0, face.f90, bsdf.alpha, look.thin);
     if (!(mixture.rough_glass > 0.0f)) bsdf.lobes &= ~FeatureRoughGlass;
     add_layers(bsdf, table, look, wo);
-    choose_chances(bsdf, table, wo.z);
+    choose_chances(bsdf, table, late_reflectance, wo.z);
     return bsdf;
 }
 
@@ -276,8 +271,9 @@ inline void evaluate_base(INOUT(BsdfValue) result, FloatArray table, IN(Bsdf) bs
     if (length2 > 0.0f) {
         const vec3 h = sum / sqrt(length2);
         const vec3 fresnel = bsdf.f0 + (bsdf.f90 - bsdf.f0) * schlick_weight(dot(wi, h));
-        result.value = fresnel * facet_value(wo, wi, h, bsdf.alpha);
-        result.pdf = bsdf.chances.y * 0.25f * visible_normal_pdf(wo, h, bsdf.alpha);
+        const Facets facets = facets_at(wo, wi, h, bsdf.alpha);
+        result.value = fresnel * facets.value;
+        result.pdf = bsdf.chances.y * facets.pdf;
     }
     float passes = InversePi;
     if (bsdf.base_f90 > 0.0f || bsdf.f90 > 0.0f) {
@@ -298,10 +294,10 @@ inline void add_coat(INOUT(BsdfValue) result, IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
     const float length2 = dot(sum, sum);
     if (!(length2 > 0.0f)) return;
     const vec3 h = sum / sqrt(length2);
-    const vec2 alpha = vec2(bsdf.coat_alpha);
+    const Facets facets = facets_at(o, i, h, vec2(bsdf.coat_alpha));
     const float fresnel = CoatF0 + (1.0f - CoatF0) * schlick_weight(dot(i, h));
-    result.value += vec3(bsdf.coat * fresnel * facet_value(o, i, h, alpha));
-    result.pdf += bsdf.chances.z * 0.25f * visible_normal_pdf(o, h, alpha);
+    result.value += vec3(bsdf.coat * fresnel * facets.value);
+    result.pdf += bsdf.chances.z * facets.pdf;
 }
 
 inline void add_glass(INOUT(BsdfValue) result, IN(Bsdf) bsdf, vec3 wo, vec3 wi) {

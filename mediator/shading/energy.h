@@ -69,6 +69,10 @@ inline float late_share(float f, float e) {
     return f * f * e / (1.0f - f * (1.0f - e));
 }
 
+inline vec3 late_shares(vec3 f, float e) {
+    return f * f * e / (1.0f - f * (1.0f - e));
+}
+
 SHADING_END
 
 #endif

@@ -48,9 +48,16 @@ inline vec3 sample_visible_normal(vec3 wo, vec2 alpha, vec2 u) {
     return unit_vector(vec3(alpha.x * h.x, alpha.y * h.y, greater_of(1e-12f, h.z)));
 }
 
-// The half vector's density over what is visible from `wo`, per solid angle of h, over dot(wo, h).
-inline float visible_normal_pdf(vec3 wo, vec3 h, vec2 alpha) {
-    return ggx_distribution(h, alpha) / (wo.z * (1.0f + smith_lambda(wo, alpha)));
+// Light that facets with the normal h reflect from wi to wo, both above the surface, without loss.
+struct Facets {
+    float value;  // times the cosine of wi
+    float pdf;    // of wi, per solid angle, with h by sample_visible_normal
+};
+
+inline Facets facets_at(vec3 wo, vec3 wi, vec3 h, vec2 alpha) {
+    const float density = ggx_distribution(h, alpha) / (4.0f * wo.z);
+    const float lambda_out = smith_lambda(wo, alpha);
+    return Facets(density / (1.0f + lambda_out + smith_lambda(wi, alpha)), density / (1.0f + lambda_out));
 }
 
 SHADING_END

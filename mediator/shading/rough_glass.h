@@ -49,12 +49,6 @@ struct GlassValue {
     float pdf;   // per solid angle
 };
 
-// Light that facets reflect to `up`, the mirror image of what goes through a thin wall or what is reflected.
-inline float facet_value(vec3 wo, vec3 up, vec3 h, vec2 alpha) {
-    return ggx_distribution(h, alpha) /
-           (4.0f * wo.z * (1.0f + smith_lambda(wo, alpha) + smith_lambda(up, alpha)));
-}
-
 inline GlassValue evaluate_refraction(IN(RoughGlass) glass, vec3 wo, vec3 wi) {
     const GlassValue none = GlassValue(vec3(0.0f), 0.0f);
     const vec3 sum = wo + glass.eta * wi;
@@ -67,11 +61,11 @@ inline GlassValue evaluate_refraction(IN(RoughGlass) glass, vec3 wo, vec3 wi) {
     const vec3 fresnel = bent_fresnel(glass, out_h);
     const float turn = out_h - glass.eta * in_h;
     const float jacobian = glass.eta * glass.eta * in_h / (turn * turn);
-    const float visible = visible_normal_pdf(wo, h, glass.alpha) * out_h * jacobian;
     const float lambda_out = smith_lambda(wo, glass.alpha);
-    const float passes = visible * (1.0f + lambda_out) / (1.0f + lambda_out + smith_lambda(wi, glass.alpha));
+    const float density = ggx_distribution(h, glass.alpha) * out_h * jacobian / wo.z;
+    const float passes = density / (1.0f + lambda_out + smith_lambda(wi, glass.alpha));
     return GlassValue(glass.tint * (1.0f - fresnel) * passes,
-                      visible * (1.0f - reflection_chance(glass, fresnel)));
+                      density / (1.0f + lambda_out) * (1.0f - reflection_chance(glass, fresnel)));
 }
 
 inline GlassValue evaluate_rough_glass(IN(RoughGlass) glass, vec3 wo, vec3 wi) {
@@ -84,10 +78,9 @@ inline GlassValue evaluate_rough_glass(IN(RoughGlass) glass, vec3 wo, vec3 wi) {
     const vec3 h = sum / sqrt(length2);
     const vec3 fresnel = bent_fresnel(glass, dot(up, h));
     const float chance = reflection_chance(glass, fresnel);
-    const float value = facet_value(wo, up, h, glass.alpha);
-    const float pdf = 0.25f * visible_normal_pdf(wo, h, glass.alpha);
-    if (reflects) return GlassValue(fresnel * value, pdf * chance);
-    return GlassValue(glass.tint * (1.0f - fresnel) * value, pdf * (1.0f - chance));
+    const Facets facets = facets_at(wo, up, h, glass.alpha);
+    if (reflects) return GlassValue(fresnel * facets.value, facets.pdf * chance);
+    return GlassValue(glass.tint * (1.0f - fresnel) * facets.value, facets.pdf * (1.0f - chance));
 }
 
 // The direction, or none (0, 0, 0) where it lies on the other side than its lobe: there it would pass for one

@@ -128,6 +128,10 @@ inline void put(INOUT(Outputs) y, IN(RoughGlass) value) {
     put(y, value.alpha);
     put(y, value.thin);
 }
+inline void put(INOUT(Outputs) y, IN(Facets) value) {
+    put(y, value.value);
+    put(y, value.pdf);
+}
 inline void put(INOUT(Outputs) y, IN(GlassValue) value) {
     put(y, value.value);
     put(y, value.pdf);
