@@ -207,6 +207,23 @@ void ValueReader::read(glm::dmat4& value) {
     value = result;
 }
 
+void ValueReader::read(std::vector<glm::dmat4>& value) {
+    std::vector<glm::dmat4> result;
+    if (left() == 1 && pieces_[at_].is("none")) {
+        ++at_;
+    } else {
+        do {
+            glm::dmat4& step = result.emplace_back(1.0);
+            if (left() > 0 && pieces_[at_].is("identity")) {
+                ++at_;
+                continue;
+            }
+            for (glm::length_t column = 0; column < 4; ++column) numbers(step[column], 4);
+        } while (left() > 0);
+    }
+    value = std::move(result);
+}
+
 void ValueReader::read(ObjectId& value) {
     const Word& word = next();
     value = word.is("none") ? ObjectId{} : read_path_(word);
@@ -248,9 +265,17 @@ void ValueReader::read(scene::TextureSlot& value) {
     value = result;
 }
 
-void ValueReader::read(scene::BlobRef&) {
+void ValueReader::no_bytes() const {
     throw ScriptError(whole_.empty() ? end_column_ : whole_[0].column(),
                       "arrays and texels cannot be typed: bring them in with 'load FILE'");
+}
+
+void ValueReader::read(scene::BlobRef&) {
+    no_bytes();
+}
+
+void ValueReader::read(std::vector<scene::BlobRef>&) {
+    no_bytes();
 }
 
 }  // namespace tessera::edit

@@ -31,10 +31,12 @@ class ValueReader {
     void read(glm::vec4& value);
     void read(glm::dvec3& value);
     void read(glm::dmat4& value);
+    void read(std::vector<glm::dmat4>& value);
     void read(ObjectId& value);
     void read(std::vector<ObjectId>& value);
     void read(scene::TextureSlot& value);
     void read(scene::BlobRef& value);
+    void read(std::vector<scene::BlobRef>& value);
     template <class E>
     requires std::is_enum_v<E>
     void read(E& value) { value = static_cast<E>(choice(enumerators<E>())); }
@@ -43,6 +45,7 @@ class ValueReader {
 
   private:
     const Word& next();
+    [[noreturn]] void no_bytes() const;
     std::size_t left() const { return pieces_.size() - at_; }
     std::size_t choice(const std::vector<std::string>& names);
     float number();

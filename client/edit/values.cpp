@@ -41,6 +41,8 @@ ValueForm form_of() {
         return {"3 numbers", {}};
     } else if constexpr (std::is_same_v<V, glm::dmat4>) {
         return {"identity, or 16 numbers column by column", {"identity"}};
+    } else if constexpr (std::is_same_v<V, std::vector<glm::dmat4>>) {
+        return {"none, or up to 15 matrices of 16 numbers column by column", {"none", "identity"}};
     } else if constexpr (std::is_same_v<V, ObjectId>) {
         return {"a path, or none", {"none"}, true};
     } else if constexpr (std::is_same_v<V, std::vector<ObjectId>>) {
@@ -49,7 +51,8 @@ ValueForm form_of() {
         return {"a texture's path or none, then offset=U,V scale=U,V rotation=RADIANS set=0|1 as needed",
                 {"none", "offset=", "scale=", "rotation=", "set="},
                 true};
-    } else if constexpr (std::is_same_v<V, scene::BlobRef>) {
+    } else if constexpr (std::is_same_v<V, scene::BlobRef> ||
+                         std::is_same_v<V, std::vector<scene::BlobRef>>) {
         return {"bytes, which cannot be typed: they come with 'load'", {}, false, false};
     } else {
         static_assert(std::is_enum_v<V>, "a new type of field needs a form, a reader and a text");
@@ -83,6 +86,10 @@ std::string text_of(const V& value, const WritePath& write_path) {
         if (value == glm::dmat4(1.0)) return "identity";
         return components(value[0]) + "  " + components(value[1]) + "  " + components(value[2]) + "  " +
                components(value[3]);
+    } else if constexpr (std::is_same_v<V, std::vector<glm::dmat4>>) {
+        std::string text;
+        for (const glm::dmat4& step : value) text += (text.empty() ? "" : "   ") + text_of(step, write_path);
+        return text.empty() ? "none" : text;
     } else if constexpr (std::is_same_v<V, ObjectId>) {
         return write_path(value);
     } else if constexpr (std::is_same_v<V, std::vector<ObjectId>>) {
@@ -95,6 +102,9 @@ std::string text_of(const V& value, const WritePath& write_path) {
                " set=" + shortest(value.set);
     } else if constexpr (std::is_same_v<V, scene::BlobRef>) {
         return value.empty() ? "no bytes" : std::to_string(value.byte_size) + " bytes";
+    } else if constexpr (std::is_same_v<V, std::vector<scene::BlobRef>>) {
+        if (value.empty()) return "no bytes";
+        return std::to_string(value.size()) + " steps of " + std::to_string(value[0].byte_size) + " bytes";
     } else if constexpr (std::is_enum_v<V>) {
         const auto& names = enumerators<V>();
         const auto index = static_cast<std::size_t>(value);

@@ -46,11 +46,19 @@ void tell_what_is_left_out(const scene::Scene& scene, std::set<std::string>& not
     if (background && (background->environment || background->color != glm::vec3(0.0f))) {
         notices.insert("the background is left out: glTF has none" + remedy);
     }
-    std::size_t attachments = 0;
+    std::size_t attachments = 0, moving = 0;
     for (const auto& [id, object] : scene.objects()) {
         attachments += std::holds_alternative<scene::Attachment>(*object) ? 1 : 0;
+        const auto* transform = std::get_if<scene::Transform>(object.get());
+        const auto* geometry = std::get_if<scene::Geometry>(object.get());
+        if (transform && !transform->motion.empty()) ++moving;
+        if (geometry && !geometry->motion_positions.empty()) ++moving;
     }
     if (attachments > 0) notices.insert("attachments are left out: " + std::to_string(attachments) + remedy);
+    if (moving > 0) {
+        notices.insert("motion while the shutter is open is left out, of objects: " + std::to_string(moving) +
+                       remedy);
+    }
 }
 
 void write(const scene::Scene& scene, const scene::BlobStore& blobs, const std::filesystem::path& file,

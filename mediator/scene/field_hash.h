@@ -49,6 +49,13 @@ inline void feed(Blake2b& hash, const BlobRef& value) {
     feed(hash, value.byte_size);
 }
 
+template <class T>
+requires(std::is_same_v<T, glm::dmat4> ||
+         std::is_same_v<T, BlobRef>) void feed(Blake2b& hash, const std::vector<T>& values) {
+    feed(hash, std::uint64_t{values.size()});
+    for (const T& value : values) feed(hash, value);
+}
+
 inline void feed(Blake2b& hash, const TextureSlot& value) {
     feed(hash, value.texture);
     feed(hash, value.offset);

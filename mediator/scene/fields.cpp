@@ -1,5 +1,6 @@
 #include "mediator/scene/fields.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstring>
@@ -34,6 +35,11 @@ bool same_bits(const glm::dmat4& a, const glm::dmat4& b) {
 bool same_bits(const TextureSlot& a, const TextureSlot& b) {
     return a.texture == b.texture && same_bits(a.offset, b.offset) && same_bits(a.scale, b.scale) &&
            same_bits(a.rotation, b.rotation) && a.set == b.set;
+}
+
+bool same_bits(const std::vector<glm::dmat4>& a, const std::vector<glm::dmat4>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const glm::dmat4& x, const glm::dmat4& y) { return same_bits(x, y); });
 }
 
 template <class T>
@@ -79,10 +85,11 @@ std::string_view field_name(ObjectKind kind, unsigned field) {
         case ObjectKind::Root:
             return name_in<Root>(field, {"name", "children", "background", "render_origin"});
         case ObjectKind::Transform:
-            return name_in<Transform>(field, {"name", "matrix", "children", "hint", "layers"});
+            return name_in<Transform>(field, {"name", "matrix", "children", "hint", "layers", "motion"});
         case ObjectKind::Geometry:
             return name_in<Geometry>(field, {"name", "material", "hint", "indices", "positions", "normals",
-                                             "tangents", "tex_coords", "colors", "tex_coords_1", "medium"});
+                                             "tangents", "tex_coords", "colors", "tex_coords_1", "medium",
+                                             "motion_positions", "motion_normals"});
         case ObjectKind::Material:
             return name_in<Material>(field, {"name",
                                              "base_color",
@@ -129,8 +136,8 @@ std::string_view field_name(ObjectKind kind, unsigned field) {
                                              "iridescence_thickness_texture",
                                              "shadow_catcher"});
         case ObjectKind::Texture:
-            return name_in<Texture>(
-                field, {"name", "width", "height", "format", "wrap_s", "wrap_t", "filter", "texels"});
+            return name_in<Texture>(field, {"name", "width", "height", "format", "wrap_s", "wrap_t", "filter",
+                                            "texels", "depth"});
         case ObjectKind::Light:
             return name_in<Light>(field, {"name", "kind", "intensity", "inner_cone_angle", "outer_cone_angle",
                                           "radius", "size", "angle"});

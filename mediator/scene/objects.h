@@ -30,19 +30,25 @@ constexpr FieldMask field_bit(unsigned field) {
 // unflagged starts as static and changes over at its first move.
 enum class MotionHint : std::uint8_t { Unflagged, Static, Animated };
 
+// Steps of motion that an object may have after its first.
+inline constexpr std::size_t MaxMotion = 15;
+
 // The graph's inner node. Children may be transforms, geometries, lights, cameras and attachments; shared
 // children are instances. No cycles. Layers (Schwenk F55) are for views to leave out: an object is in those
 // of the nearest transform above it that names some, else in RootLayers.
 struct Transform {
-    enum class Field : std::uint8_t { Name, Matrix, Children, Hint, Layers };
+    enum class Field : std::uint8_t { Name, Matrix, Children, Hint, Layers, Motion };
     std::string name;
     glm::dmat4 matrix{1.0};  // parent from local, affine
     std::vector<ObjectId> children;
     MotionHint hint = MotionHint::Unflagged;
     std::uint32_t layers = 0;  // bit i: what hangs below is in layer i; 0 = as the parent says
+    // While the shutter is open: matrices at even steps of time after `matrix`, the last when it closes;
+    // between them each element goes in a straight line. Empty: it stands still. At most MaxMotion.
+    std::vector<glm::dmat4> motion;
     static constexpr auto fields() {
         return std::tuple(&Transform::name, &Transform::matrix, &Transform::children, &Transform::hint,
-                          &Transform::layers);
+                          &Transform::layers, &Transform::motion);
     }
 };
 
@@ -59,7 +65,9 @@ struct Geometry {
         TexCoords,
         Colors,
         TexCoords1,
-        Medium
+        Medium,
+        MotionPositions,
+        MotionNormals
     };
     std::string name;
     ObjectId material;  // a Material or a SurfaceShader; 0 = the default grey
@@ -72,11 +80,14 @@ struct Geometry {
     BlobRef colors;        // float x 4 per vertex, linear
     BlobRef tex_coords_1;  // as tex_coords
     ObjectId medium;       // what its body is filled with; 0 = nothing
+    // As a transform's motion: where the vertices are at even steps of time after `positions`, and their
+    // normals (none, or as many: then those of the beginning stay).
+    std::vector<BlobRef> motion_positions, motion_normals;
     static constexpr auto fields() {
         return std::tuple(&Geometry::name, &Geometry::material, &Geometry::hint, &Geometry::indices,
                           &Geometry::positions, &Geometry::normals, &Geometry::tangents,
                           &Geometry::tex_coords, &Geometry::colors, &Geometry::tex_coords_1,
-                          &Geometry::medium);
+                          &Geometry::medium, &Geometry::motion_positions, &Geometry::motion_normals);
     }
 };
 
@@ -84,18 +95,21 @@ enum class TexelFormat : std::uint8_t { Rgba8, Rgba8Srgb, RgbFloat };
 enum class Wrap : std::uint8_t { Repeat, Mirror, Clamp };
 enum class TextureFilter : std::uint8_t { Linear, Nearest };
 
-// Decoded texels, rows from the top; decoding is the client's work, a node never parses image files.
+// Decoded texels, rows from the top, slices of a volume one after the other (only media read more than the
+// first); decoding is the client's work, a node never parses image files.
 struct Texture {
-    enum class Field : std::uint8_t { Name, Width, Height, Format, WrapS, WrapT, Filter, Texels };
+    enum class Field : std::uint8_t { Name, Width, Height, Format, WrapS, WrapT, Filter, Texels, Depth };
     std::string name;
     std::uint32_t width = 0, height = 0;
     TexelFormat format = TexelFormat::Rgba8;
     Wrap wrap_s = Wrap::Repeat, wrap_t = Wrap::Repeat;
     TextureFilter filter = TextureFilter::Linear;
     BlobRef texels;
+    std::uint32_t depth = 1;  // slices
     static constexpr auto fields() {
         return std::tuple(&Texture::name, &Texture::width, &Texture::height, &Texture::format,
-                          &Texture::wrap_s, &Texture::wrap_t, &Texture::filter, &Texture::texels);
+                          &Texture::wrap_s, &Texture::wrap_t, &Texture::filter, &Texture::texels,
+                          &Texture::depth);
     }
 };
 

@@ -164,6 +164,9 @@ std::vector<BlobRef> referenced_blobs(const Object& object) {
               &geometry->tex_coords, &geometry->tex_coords_1, &geometry->colors}) {
             add(*blob);
         }
+        for (const auto* steps : {&geometry->motion_positions, &geometry->motion_normals}) {
+            for (const BlobRef& blob : *steps) add(blob);
+        }
     } else if (const auto* texture = std::get_if<Texture>(&object)) {
         add(texture->texels);
     }

@@ -26,6 +26,11 @@ void check_reference(const Scene& scene, ObjectId id, const Object& object, cons
     } else if ((reference.kinds & bit(kind(*target))) == 0) {
         problems.push_back({id, describe(id, object) + " cannot have " + describe(reference.id, *target) +
                                     " as its " + reference.role});
+    } else if (const auto* texture = std::get_if<Texture>(target);
+               texture && texture->depth != 1 && !std::holds_alternative<Medium>(object)) {
+        problems.push_back({id, describe(id, object) + " has " + describe(reference.id, *target) + " of " +
+                                    std::to_string(texture->depth) + " slices as its " + reference.role +
+                                    ": only media can have volumes"});
     }
 }
 
@@ -33,6 +38,12 @@ void check_references(const Scene& scene, ObjectId id, const Object& object, std
     for (const Reference& reference : references(object)) {
         check_reference(scene, id, object, reference, problems);
     }
+}
+
+// Users of a texture that becomes a volume may be unable to read it.
+bool may_disturb_users(const Object& object, FieldMask mask) {
+    const auto* texture = std::get_if<Texture>(&object);
+    return texture && texture->depth != 1 && Fields<Texture>::from_bits(mask).contains(Texture::Field::Depth);
 }
 
 void still_referred(ObjectId id, const Object& object, ObjectId gone, std::vector<Problem>& problems) {
@@ -146,7 +157,7 @@ std::vector<Problem> validate(const Scene& scene) {
 std::vector<Problem> validate_entries(const Scene& scene, const std::vector<Entry>& entries) {
     std::vector<Problem> problems;
     std::vector<ObjectId> parents;
-    std::set<ObjectId> removed;
+    std::set<ObjectId> removed, volumes;
     if (scene.find(RootId) == nullptr)
         problems.push_back({RootId, "the scene has no root: create object 1 as root"});
     for (const Entry& entry : entries) {
@@ -160,6 +171,7 @@ std::vector<Problem> validate_entries(const Scene& scene, const std::vector<Entr
         check_references(scene, target, *object, problems);
         const auto* update = std::get_if<Update>(&entry);
         const FieldMask mask = update ? update->mask : Any;
+        if (may_disturb_users(*object, mask)) volumes.insert(target);
         const bool children_touched =
             !children_of(object).empty() &&
             (!update || Fields<Transform>::from_bits(mask).contains(Transform::Field::Children) ||
@@ -167,12 +179,13 @@ std::vector<Problem> validate_entries(const Scene& scene, const std::vector<Entr
         if (children_touched) parents.push_back(target);
     }
     check_cycles(scene, parents, problems);
-    // A removal breaks whoever still refers to what is gone; that takes a look at everybody.
-    if (removed.empty()) return problems;
+    // A removal breaks whoever still refers to what is gone, and a volume is not for all; that takes a look
+    // at everybody.
+    if (removed.empty() && volumes.empty()) return problems;
     for (const auto& [id, object] : scene.objects()) {
         for (const Reference& reference : references(*object)) {
-            if (!removed.contains(reference.id)) continue;
-            still_referred(id, *object, reference.id, problems);
+            if (removed.contains(reference.id)) still_referred(id, *object, reference.id, problems);
+            if (volumes.contains(reference.id)) check_reference(scene, id, *object, reference, problems);
         }
     }
     return problems;
@@ -185,7 +198,8 @@ std::vector<Problem> validate_changes(const Scene& scene, const ReferrerIndex& r
     if (scene.find(RootId) == nullptr)
         problems.push_back({RootId, "the scene has no root: create object 1 as root"});
     for (const ObjectChange& change : changes) {
-        if (!change.is_update() && change.before) {
+        const bool volume = change.after && may_disturb_users(*change.after, change.mask);
+        if (change.before && (!change.is_update() || volume)) {
             for (const ObjectId id : referrers.referrers(change.id)) {
                 const Object& object = *scene.find(id);
                 if (!change.after) {

@@ -77,6 +77,8 @@ std::vector<Problem> validate_blobs(ObjectId id, const Object& object, const Blo
         check.finite(geometry->tex_coords, 2, "texture coordinates");
         check.finite(geometry->tex_coords_1, 2, "second texture coordinates");
         check.finite(geometry->colors, 4, "vertex colours");
+        for (const BlobRef& step : geometry->motion_positions) check.finite(step, 3, "moving positions");
+        for (const BlobRef& step : geometry->motion_normals) check.finite(step, 3, "moving normals");
         check.indices(*geometry);
     } else if (const auto* texture = std::get_if<Texture>(&object)) {
         if (texture->format == TexelFormat::RgbFloat) {

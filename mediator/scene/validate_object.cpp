@@ -68,14 +68,27 @@ void check(const Root& root, Check& check) {
                "the render origin is farther away than 1e15 m");
 }
 
+void check(const glm::dmat4& m, const std::string& what, Check& check) {
+    for (glm::length_t column = 0; column < 4; ++column) check.finite(m[column], what);
+    check.that(m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == 0.0 && m[3][3] == 1.0,
+               what + " is not affine: its last row has to be 0 0 0 1");
+    check.that(glm::all(glm::lessThan(glm::abs(glm::dvec3(m[3])), glm::dvec3(MaxCoordinate))),
+               "the translation of " + what + " is longer than 1e15 m");
+}
+
+void check_steps(std::size_t count, const std::string& what, Check& check) {
+    check.that(count <= MaxMotion, what + " has " + std::to_string(count) + " steps: there may be " +
+                                       std::to_string(MaxMotion) + " after the first");
+}
+
 void check(const Transform& transform, Check& check) {
     check.known(transform.hint, MotionHint::Animated, "the motion hint");
-    const glm::dmat4& m = transform.matrix;
-    for (glm::length_t column = 0; column < 4; ++column) check.finite(m[column], "the matrix");
-    check.that(m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == 0.0 && m[3][3] == 1.0,
-               "the matrix is not affine: its last row has to be 0 0 0 1");
-    check.that(glm::all(glm::lessThan(glm::abs(glm::dvec3(m[3])), glm::dvec3(MaxCoordinate))),
-               "the translation is longer than 1e15 m");
+    scene::check(transform.matrix, "the matrix", check);
+    check_steps(transform.motion.size(), "the motion", check);
+    for (std::size_t i = 0; i < transform.motion.size(); ++i) {
+        scene::check(transform.motion[i], "the matrix of step " + std::to_string(i + 1) + " of the motion",
+                     check);
+    }
 }
 
 // Byte sizes that fit together; what is in the arrays is validate_blobs' matter.
@@ -98,6 +111,19 @@ void check(const Geometry& geometry, Check& check) {
     per_vertex(geometry.tex_coords, 8, "texture coordinates");
     per_vertex(geometry.colors, 16, "vertex colours");
     per_vertex(geometry.tex_coords_1, 8, "second texture coordinates");
+    check_steps(geometry.motion_positions.size(), "the motion of its positions", check);
+    for (const auto* steps : {&geometry.motion_positions, &geometry.motion_normals}) {
+        for (const BlobRef& step : *steps) {
+            check.that(!step.empty(), "a step of its motion is empty: each has an element for each vertex");
+            per_vertex(step, 12, "elements of a step of its motion");
+        }
+    }
+    check.that(
+        geometry.motion_normals.empty() ||
+            (geometry.motion_normals.size() == geometry.motion_positions.size() && !geometry.normals.empty()),
+        "its normals move in " + std::to_string(geometry.motion_normals.size()) +
+            " steps, its positions in " + std::to_string(geometry.motion_positions.size()) +
+            ": they need as many steps, and normals to begin with");
 }
 
 // A field's name as people say it.
@@ -184,10 +210,12 @@ void check(const Texture& texture, Check& check) {
     check.that(
         texture.width >= 1 && texture.height >= 1 && texture.width <= MaxEdge && texture.height <= MaxEdge,
         "its size is not between 1x1 and 65536x65536");
+    check.that(texture.depth >= 1 && texture.depth <= MaxEdge, "its depth is not between 1 and 65536");
     const std::uint64_t texel = texture.format == TexelFormat::RgbFloat ? 12 : 4;
-    check.that(texture.texels.byte_size == std::uint64_t{texture.width} * texture.height * texel,
-               "its texels are " + std::to_string(texture.texels.byte_size) +
-                   " bytes, not width x height x " + std::to_string(texel));
+    check.that(
+        texture.texels.byte_size == std::uint64_t{texture.width} * texture.height * texture.depth * texel,
+        "its texels are " + std::to_string(texture.texels.byte_size) +
+            " bytes, not width x height x depth x " + std::to_string(texel));
 }
 
 void check(const Light& light, Check& check) {

@@ -108,6 +108,10 @@ class Writer {
     void matrix(const glm::dmat4& value, google::protobuf::RepeatedField<double>* to) const {
         for (glm::length_t i = 0; i < 4; ++i) vector(value[i], to);
     }
+    void matrices(const std::vector<glm::dmat4>& values, google::protobuf::RepeatedField<double>* to,
+                  std::size_t) const {
+        for (const glm::dmat4& value : values) matrix(value, to);
+    }
     template <class A>
     void raw(const A& value, std::string* to) const {
         to->assign(reinterpret_cast<const char*>(value.data()), value.size());
@@ -167,6 +171,15 @@ class Reader {
     void matrix(glm::dmat4& value, google::protobuf::RepeatedField<double>* from) const {
         if (from->size() != 16) malformed("a matrix does not have 16 numbers");
         for (int i = 0; i < 16; ++i) value[i / 4][i % 4] = from->Get(i);
+    }
+    void matrices(std::vector<glm::dmat4>& values, google::protobuf::RepeatedField<double>* from,
+                  std::size_t limit) const {
+        if (from->size() % 16 != 0) malformed("matrices do not have 16 numbers each");
+        if (static_cast<std::size_t>(from->size()) > limit * 16) malformed("a list is too long");
+        values.resize(static_cast<std::size_t>(from->size()) / 16);
+        for (int i = 0; i < from->size(); ++i) {
+            values[static_cast<std::size_t>(i / 16)][i / 4 % 4][i % 4] = from->Get(i);
+        }
     }
     template <class A>
     void raw(A& value, std::string* from) const {

@@ -45,6 +45,8 @@ constexpr scene::NormalSpace last_of() {
 }
 
 inline constexpr std::size_t MaxChildren = 16'000'000;
+// What is decoded; the scene's validation takes far fewer and says so better.
+inline constexpr std::size_t MaxSteps = 256;
 
 template <class Io>
 void map(const Io& io, typename Io::template Ref<scene::TextureSlot> s, proto::TextureSlot& p) {
@@ -75,6 +77,7 @@ void map(const Io& io, typename Io::template Ref<scene::Transform> s, proto::Tra
     if (io.has(Children)) io.list(s.children, p.mutable_children(), MaxChildren);
     if (io.has(Hint)) io(s.hint, p, &P::hint, &P::set_hint);
     if (io.has(Layers)) io(s.layers, p, &P::layers, &P::set_layers);
+    if (io.has(Motion)) io.matrices(s.motion, p.mutable_motion(), MaxSteps);
 }
 
 template <class Io>
@@ -92,6 +95,8 @@ void map(const Io& io, typename Io::template Ref<scene::Geometry> s, proto::Geom
     if (io.has(Colors)) io.message(s.colors, p.mutable_colors());
     if (io.has(TexCoords1)) io.message(s.tex_coords_1, p.mutable_tex_coords_1());
     if (io.has(Medium)) io(s.medium, p, &P::medium, &P::set_medium);
+    if (io.has(MotionPositions)) io.messages(s.motion_positions, p.mutable_motion_positions(), MaxSteps);
+    if (io.has(MotionNormals)) io.messages(s.motion_normals, p.mutable_motion_normals(), MaxSteps);
 }
 
 template <class Io>
@@ -173,6 +178,7 @@ void map(const Io& io, typename Io::template Ref<scene::Texture> s, proto::Textu
     if (io.has(WrapT)) io(s.wrap_t, p, &P::wrap_t, &P::set_wrap_t);
     if (io.has(Filter)) io(s.filter, p, &P::filter, &P::set_filter);
     if (io.has(Texels)) io.message(s.texels, p.mutable_texels());
+    if (io.has(Depth)) io(s.depth, p, &P::depth, &P::set_depth);
 }
 
 template <class Io>

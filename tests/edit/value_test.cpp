@@ -37,6 +37,9 @@ std::map<std::string, FieldCase> cases() {
         {"transform.children", children},
         {"transform.hint", hint},
         {"transform.layers", whole},
+        {"transform.motion",
+         {"1 0 0 0  0 2 0 0  0 0 3 0  4 5 6 1 identity", "1 0 0 0  0 2 0 0  0 0 3 0  4 5 6 1   identity",
+          "identity 1 2 3"}},
         {"geometry.material", {"materials/\"my \\\"red\\\"\"", "materials/\"my \\\"red\\\"\"", "red"}},
         {"geometry.hint", hint},
         {"material.base_color", {"0.8 0.1 0.1 0.5", "0.8 0.1 0.1 0.5", "0.8 0.1"}},
@@ -56,6 +59,7 @@ std::map<std::string, FieldCase> cases() {
         {"material.transmission", number},
         {"texture.width", whole},
         {"texture.height", whole},
+        {"texture.depth", whole},
         {"texture.format", {"rgb_float", "rgb_float", "rgb"}},
         {"texture.wrap_s", wrap},
         {"texture.wrap_t", wrap},
@@ -156,7 +160,8 @@ std::map<std::string, FieldCase> cases() {
     }
     for (const char* array :
          {"geometry.indices", "geometry.positions", "geometry.normals", "geometry.tangents",
-          "geometry.tex_coords", "geometry.tex_coords_1", "geometry.colors", "texture.texels"}) {
+          "geometry.tex_coords", "geometry.tex_coords_1", "geometry.colors", "geometry.motion_positions",
+          "geometry.motion_normals", "texture.texels"}) {
         all[array] = blob;
     }
     return all;

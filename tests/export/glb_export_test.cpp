@@ -52,6 +52,7 @@ std::vector<Look> looks(const scene::Scene& scene, const scene::BlobStore& blobs
             look.normals.assign(normals.begin(), normals.end());
         }
         look.geometry.normals = {};
+        look.geometry.motion_positions = look.geometry.motion_normals = {};
         result.push_back(std::move(look));
     }
     std::sort(result.begin(), result.end(), [](const Look& a, const Look& b) {
@@ -171,6 +172,7 @@ TEST(GlbExport, WhatGltfLacksIsTold) {
     through_glb(rich.scene, rich.blobs, notices);
     EXPECT_THAT(notices, testing::Contains(testing::HasSubstr("background")));
     EXPECT_THAT(notices, testing::Contains(testing::HasSubstr("attachments are left out: 1")));
+    EXPECT_THAT(notices, testing::Contains(testing::HasSubstr("left out, of objects: 2")));
 }
 
 TEST(GlbExport, AMapOfFloatsInAMaterialIsLeftOutAndTold) {

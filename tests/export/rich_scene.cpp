@@ -118,7 +118,13 @@ void make_rich(RichScene& to) {
     const ObjectId picture_id = maker.add(picture), data_id = maker.add(data), sky_id = maker.add(sky);
 
     const ObjectId red = maker.add(colorful(picture_id, data_id));
-    const ObjectId one = maker.add(square(maker, 1.0f, red));
+    scene::Geometry bending = square(maker, 1.0f, red);
+    for (const float lift : {0.5f, 0.75f}) {
+        bending.motion_positions.push_back(
+            maker.blob<glm::vec3>({{0, 0, lift}, {1, 0, 0}, {0, 1, 0}, {1, 1, lift}}));
+        bending.motion_normals.push_back(maker.blob(std::vector<glm::vec3>(4, {lift, 0, 1})));
+    }
+    const ObjectId one = maker.add(bending);
     scene::Geometry other = square(maker, 2.5f, ObjectId{});
     other.name = "square part 1";
     other.normals = other.tangents = other.tex_coords = other.tex_coords_1 = other.colors = {};
@@ -140,6 +146,7 @@ void make_rich(RichScene& to) {
     wheel.matrix = glm::rotate(glm::translate(glm::dmat4(1.0), {0.1, 1.0 / 3.0, -2e5}), 0.3, {1.0, 2.0, 0.5});
     wheel.hint = scene::MotionHint::Animated;
     wheel.layers = 0x80000006;
+    wheel.motion = {glm::rotate(wheel.matrix, 0.1, {0.0, 0.0, 1.0}), glm::dmat4(1.0)};
     const ObjectId wheel_id = maker.add(wheel);
     scene::Transform left{.name = "left", .children = {wheel_id, point}};
     left.matrix = glm::scale(glm::dmat4(1.0), {1.0, -2.0, 3.0});

@@ -62,6 +62,9 @@ class Soundness {
     void object(const scene::Transform& transform) {
         children(transform.children);
         for (int i = 0; i < 16; ++i) EXPECT_TRUE(std::isfinite(transform.matrix[i / 4][i % 4]));
+        for (const glm::dmat4& step : transform.motion) {
+            for (int i = 0; i < 16; ++i) EXPECT_TRUE(std::isfinite(step[i / 4][i % 4]));
+        }
     }
     void object(const scene::Geometry& geometry) {
         reference(geometry.material, {scene::ObjectKind::Material, scene::ObjectKind::SurfaceShader});
@@ -78,6 +81,12 @@ class Soundness {
         blob(geometry.tex_coords, vertices * 8);
         blob(geometry.tex_coords_1, vertices * 8);
         blob(geometry.colors, vertices * 16);
+        for (const auto* steps : {&geometry.motion_positions, &geometry.motion_normals}) {
+            for (const scene::BlobRef& step : *steps) {
+                blob(step, vertices * 12);
+                for (const float value : values<float>(scene_, step)) ASSERT_TRUE(std::isfinite(value));
+            }
+        }
         for (const auto* array :
              {&geometry.positions, &geometry.normals, &geometry.tangents, &geometry.tex_coords}) {
             for (const float value : values<float>(scene_, *array)) ASSERT_TRUE(std::isfinite(value));
@@ -102,7 +111,7 @@ class Soundness {
     void object(const scene::Texture& texture) {
         const std::uint64_t bytes = texture.format == scene::TexelFormat::RgbFloat ? 12 : 4;
         EXPECT_GT(texture.width, 0u);
-        blob(texture.texels, std::uint64_t{texture.width} * texture.height * bytes);
+        blob(texture.texels, std::uint64_t{texture.width} * texture.height * texture.depth * bytes);
     }
     void object(const scene::Light&) {}
     void object(const scene::Camera& camera) { EXPECT_GT(camera.vertical_fov, 0.0); }

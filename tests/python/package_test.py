@@ -42,7 +42,8 @@ OTHER = {
     "kind": "spot", "intensity": (5.0, 4.0, 3.0), "inner_cone_angle": 0.25, "outer_cone_angle": 0.5,
     "vertical_fov": 1.25, "aspect_ratio": 1.5, "color": (0.5, 0.25, 0.0), "environment": 9, "strength": 2.0,
     "rotation": 0.5, "key": "k", "value": "v",
-    "tex_coords_1": b"12345678", "medium": 6, "radius": 0.5, "size": (2.0, 3.0), "angle": 0.25,
+    "motion": (tessera.translation(1, 2, 3), tessera.translation(4, 5, 6)), "motion_positions": [[0.5] * 9, [0.25] * 9],
+    "motion_normals": [b"123456789012"], "depth": 3, "tex_coords_1": b"12345678", "medium": 6, "radius": 0.5, "size": (2.0, 3.0), "angle": 0.25,
     "projection": "orthographic", "orthographic_height": 3.0, "lens_radius": 0.5, "focus_distance": 4.0,
     "aperture": "gaussian", "visible": "color", "visible_color": (0.5, 0.25, 0.0, 1.0),
     "transmission_texture": 7, "thickness": 0.25, "attenuation_color": (0.5, 0.25, 0.0), "attenuation_distance": 0.25,
@@ -98,7 +99,10 @@ class Fields(unittest.TestCase):
                     again = type(message).FromString(message.SerializeToString())
                     value = getattr(kind.read(9, again), name)
                     self.assertNotEqual(value, getattr(kind.type(9), name))
-                    if isinstance(value, tessera.Blob):
+                    if name.startswith("motion_"):
+                        self.assertEqual([heap.blobs[blob.hash] for blob in value],
+                                         [raw_array(step, "f") for step in other(kind, name)])
+                    elif isinstance(value, tessera.Blob):
                         self.assertEqual(digest(heap.blobs[value.hash]), value.hash)
                     elif isinstance(value, tessera.TextureSlot):
                         self.assertEqual(value.texture, 7)
@@ -112,7 +116,9 @@ class Fields(unittest.TestCase):
                  ("material", "base_color", 1, "list"), ("material", "double_sided", 1, "True or False"),
                  ("material", "alpha_mode", "glass", "one of opaque, mask, blend"), ("light", "kind", 0, "point"),
                  ("transform", "children", "lamp", "list"), ("transform", "children", ["lamp"], "an object, its id"),
-                 ("transform", "matrix", (1.0,) * 15, "16 numbers"), ("camera", "name", 5, "text"),
+                 ("transform", "matrix", (1.0,) * 15, "16 numbers"),
+                 ("transform", "motion", [(1.0,) * 15], "matrices of 16 numbers"),
+                 ("geometry", "motion_positions", [["a"]], "array"), ("camera", "name", 5, "text"),
                  ("geometry", "indices", [(0, -1, 2)], "whole numbers"), ("geometry", "positions", "abc", "array"),
                  ("geometry", "positions", [["a"]], "array"), ("texture", "width", -1, "whole number"),
                  ("material", "rougness", 1.0, "did you mean 'roughness'"), ("light", "xyz", 1, "it has name")]

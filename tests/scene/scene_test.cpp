@@ -52,6 +52,10 @@ void expect_every_field_counts() {
             value += "x";
         } else if constexpr (std::is_same_v<V, std::vector<ObjectId>>) {
             value.push_back(ObjectId{77});
+        } else if constexpr (std::is_same_v<V, std::vector<glm::dmat4>>) {
+            value.push_back(glm::dmat4(1.0));
+        } else if constexpr (std::is_same_v<V, std::vector<BlobRef>>) {
+            value.push_back({{}, 12});
         } else if constexpr (std::is_same_v<V, ObjectId>) {
             value.value += 1;
         } else if constexpr (std::is_same_v<V, BlobRef>) {

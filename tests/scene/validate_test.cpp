@@ -5,6 +5,10 @@
 #include <array>
 #include <limits>
 
+#include "mediator/scene/fields.h"
+#include "mediator/scene/inverse.h"
+#include "mediator/scene/referrers.h"
+
 namespace tessera::scene {
 namespace {
 
@@ -72,6 +76,62 @@ TEST(Validate, WantsReferencesThatExistAndFit) {
     EXPECT_FALSE(validate_entries(scene, {Remove{B}}).empty()) << "somebody still refers to it";
 }
 
+TEST(Validate, WantsMotionOfAFewFiniteSteps) {
+    Transform moving{.motion = std::vector<glm::dmat4>(MaxMotion, glm::dmat4(1.0))};
+    EXPECT_FALSE(is_refused(moving));
+    moving.motion[14][3][1] = NaN;
+    EXPECT_TRUE(is_refused(moving));
+    moving.motion[14] = glm::dmat4(1.0);
+    moving.motion[14][1][3] = 0.5;
+    EXPECT_TRUE(is_refused(moving)) << "perspective";
+    moving.motion.assign(MaxMotion + 1, glm::dmat4(1.0));
+    EXPECT_TRUE(is_refused(moving));
+
+    Geometry bending{.indices = {{}, 12}, .positions = {{}, 36}, .normals = {{}, 36}};
+    bending.motion_positions.assign(MaxMotion, BlobRef{{}, 36});
+    EXPECT_FALSE(is_refused(bending));
+    bending.motion_normals.assign(MaxMotion, BlobRef{{}, 36});
+    EXPECT_FALSE(is_refused(bending));
+    Geometry without = bending;
+    without.normals = {};
+    EXPECT_TRUE(is_refused(without)) << "no normals to begin with";
+    bending.motion_normals.pop_back();
+    EXPECT_TRUE(is_refused(bending)) << "fewer steps of normals than of positions";
+    bending.motion_normals.clear();
+    bending.motion_positions[3].byte_size = 24;
+    EXPECT_TRUE(is_refused(bending)) << "fewer vertices";
+    bending.motion_positions[3].byte_size = 0;
+    EXPECT_TRUE(is_refused(bending));
+    bending.motion_positions.assign(MaxMotion + 1, BlobRef{{}, 36});
+    EXPECT_TRUE(is_refused(bending));
+}
+
+TEST(Validate, LetsOnlyMediaHaveVolumes) {
+    const Texture volume{.width = 2, .height = 2, .texels = {{}, 48}, .depth = 3};
+    EXPECT_FALSE(is_refused(volume));
+    EXPECT_TRUE(is_refused(Texture{.width = 2, .height = 2, .texels = {{}, 16}, .depth = 3}));
+    EXPECT_TRUE(is_refused(Texture{.width = 2, .height = 2, .depth = 0}));
+    EXPECT_TRUE(
+        problems({Create{A, Medium{.scattering_texture = {.texture = B}}}, Create{B, volume}}).empty());
+    const Material material{.base_color_texture = {.texture = B}};
+    EXPECT_FALSE(problems({Create{A, material}, Create{B, volume}}).empty());
+
+    // A texture in use that becomes one.
+    Scene scene;
+    ReferrerIndex referrers;
+    Texture flat = volume;
+    flat.depth = 1;
+    flat.texels.byte_size = 16;
+    ASSERT_TRUE(scene.apply_entries({Create{RootId, Root{}}, Create{A, material}, Create{B, flat}}));
+    for (const auto& [id, object] : scene.objects()) referrers.replace(id, nullptr, object.get());
+    const std::vector<Entry> grown{
+        Update{B, (Fields<Texture>(Texture::Field::Depth) | Texture::Field::Texels).bits(), volume}};
+    const auto changes = apply_and_observe(scene, grown);
+    ASSERT_TRUE(changes);
+    EXPECT_FALSE(validate_entries(scene, grown).empty());
+    EXPECT_FALSE(validate_changes(scene, referrers, *changes).empty());
+}
+
 TEST(Validate, FindsCyclesHoweverDeep) {
     EXPECT_FALSE(problems({Create{A, Transform{.children = {A}}}}).empty());
     EXPECT_FALSE(problems({Create{A, Transform{.children = {B}}}, Create{B, Transform{.children = {C}}},
@@ -107,6 +167,9 @@ TEST(ValidateBlobs, LooksIntoTheArrays) {
     EXPECT_EQ(count({.indices = put(inside), .positions = put(good)}), 0u);
     EXPECT_EQ(count({.indices = put(outside), .positions = put(good)}), 1u);
     EXPECT_EQ(count({.indices = put(inside), .positions = put(broken)}), 1u);
+    EXPECT_EQ(
+        count({.indices = put(inside), .positions = put(good), .motion_positions = {put(good), put(broken)}}),
+        1u);
     EXPECT_EQ(count({.indices = {blake2b({}), 12}, .positions = put(good)}), 1u)
         << "a blob that is not there";
     BlobRef longer = put(good);

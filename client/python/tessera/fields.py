@@ -118,6 +118,21 @@ def _vector(length: int, convert: Callable[[Any], float]) -> Codec:
     return Codec(write, read)
 
 
+def _write_matrices(message: Message, field: str, value: Any, _: BlobSource) -> None:
+    matrices = [[_number(v) for v in _sequence(matrix)] for matrix in _sequence(value)]
+    if any(len(matrix) != 16 for matrix in matrices):
+        raise InvalidInput("expected matrices of 16 numbers")
+    message.ClearField(field)
+    getattr(message, field).extend(v for matrix in matrices for v in matrix)
+
+
+def _read_matrices(message: Message, field: str) -> tuple[tuple[float, ...], ...]:
+    values = tuple(getattr(message, field))
+    if len(values) % 16 != 0:
+        raise Malformed(f"'{field}' has {len(values)} numbers, which are no matrices of 16")
+    return tuple(values[i:i + 16] for i in range(0, len(values), 16))
+
+
 def _choice(*names: str) -> Codec:
     def write(message: Message, field: str, value: Any, _: BlobSource) -> None:
         if value not in names:
@@ -156,6 +171,16 @@ def _blob(code: str) -> Codec:
         target.SetInParent()
 
     return Codec(write, lambda message, field: blob_from(getattr(message, field)))
+
+
+def _blobs(code: str) -> Codec:
+    def write(message: Message, field: str, value: Any, blobs: BlobSource) -> None:
+        made = [v if isinstance(v, Blob) else blobs.add(raw_array(v, code)) for v in _sequence(value)]
+        message.ClearField(field)
+        for blob in made:
+            getattr(message, field).add(hash=blob.hash, byte_size=blob.byte_size)
+
+    return Codec(write, lambda message, field: tuple(map(blob_from, getattr(message, field))))
 
 
 def raw_array(value: Any, code: str) -> bytes:
@@ -274,10 +299,11 @@ def _kind(plural: str, object_type: type[Object], is_placed: bool, **codecs: Cod
 # In the order of ObjectKind.
 KINDS: tuple[Kind, ...] = (
     _kind("root", Root, False, children=_IDS, background=_REF, render_origin=_DOUBLE3),
-    _kind("transforms", Transform, True, matrix=_MATRIX, children=_IDS, hint=_HINT, layers=_UINT),
+    _kind("transforms", Transform, True, matrix=_MATRIX, children=_IDS, hint=_HINT, layers=_UINT,
+          motion=Codec(_write_matrices, _read_matrices)),
     _kind("geometries", Geometry, True, material=_REF, hint=_HINT, indices=_blob("I"), positions=_blob("f"),
           normals=_blob("f"), tangents=_blob("f"), tex_coords=_blob("f"), colors=_blob("f"),
-          tex_coords_1=_blob("f"), medium=_REF),
+          tex_coords_1=_blob("f"), medium=_REF, motion_positions=_blobs("f"), motion_normals=_blobs("f")),
     _kind("materials", Material, False, base_color=_FLOAT4, base_color_texture=_SLOT, metallic=_FLOAT,
           roughness=_FLOAT, metallic_roughness_texture=_SLOT, normal_texture=_SLOT, normal_scale=_FLOAT,
           emission=_FLOAT3, emission_texture=_SLOT, alpha_mode=_choice("opaque", "mask", "blend"),
@@ -291,7 +317,8 @@ KINDS: tuple[Kind, ...] = (
           iridescence_index_of_refraction=_FLOAT, iridescence_thickness_minimum=_FLOAT,
           iridescence_thickness_maximum=_FLOAT, iridescence_thickness_texture=_SLOT, shadow_catcher=_BOOL),
     _kind("textures", Texture, False, width=_UINT, height=_UINT, format=_choice("rgba8", "rgba8_srgb", "rgb_float"),
-          wrap_s=_WRAP, wrap_t=_WRAP, filter=_choice("linear", "nearest"), texels=_blob("B")),
+          wrap_s=_WRAP, wrap_t=_WRAP, filter=_choice("linear", "nearest"), texels=_blob("B"),
+          depth=_UINT),
     _kind("lights", Light, True, kind=_choice("point", "spot", "directional", "sphere", "quad"), intensity=_FLOAT3,
           inner_cone_angle=_FLOAT, outer_cone_angle=_FLOAT, radius=_FLOAT, size=_FLOAT2, angle=_FLOAT),
     _kind("cameras", Camera, True, vertical_fov=_DOUBLE, aspect_ratio=_DOUBLE,

@@ -54,6 +54,7 @@ class Transform(Object):
     children: tuple[int, ...] = ()
     hint: str = "unflagged"
     layers: int = 0  # bit i: what hangs below is in layer i; 0 = as the parent says
+    motion: tuple[Matrix, ...] = ()  # at even steps of time after matrix, until the shutter closes; at most 15
 
 
 @dataclass(frozen=True)
@@ -68,6 +69,8 @@ class Geometry(Object):
     colors: Blob = Blob()  # float32 x 4 per vertex
     tex_coords_1: Blob = Blob()  # as tex_coords
     medium: int = 0
+    motion_positions: tuple[Blob, ...] = ()  # at even steps of time after positions
+    motion_normals: tuple[Blob, ...] = ()  # none, or as many
 
 
 @dataclass(frozen=True)
@@ -125,7 +128,8 @@ class Texture(Object):
     wrap_s: str = "repeat"
     wrap_t: str = "repeat"
     filter: str = "linear"
-    texels: Blob = Blob()  # rows from the top
+    texels: Blob = Blob()  # rows from the top, slices one after the other
+    depth: int = 1  # slices; only media read more than the first
 
 
 @dataclass(frozen=True)
