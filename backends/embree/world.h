@@ -34,6 +34,7 @@ class World {
     backend::ShadowScene shadow_;
     Version version_;
     backend::MeshCatalog meshes_;
+    backend::TexturePyramids pyramids_;
     MeshScenes mesh_scenes_;
     backend::SceneTables tables_;
     SceneHandle top_;

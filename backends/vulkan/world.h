@@ -43,6 +43,7 @@ class World final {
     backend::ShadowScene shadow_;
     Version version_;
     backend::MeshCatalog meshes_;
+    backend::TexturePyramids pyramids_;
     backend::SceneTables tables_;
     bool ahead_ = false;  // meshes and tables are those of a version that is not committed
     TreeCache cache_;

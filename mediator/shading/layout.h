@@ -9,14 +9,17 @@ namespace tessera::shading {
 
 static_assert(sizeof(FloatArray) == 8 && alignof(FloatArray) == 8);
 
-static_assert(sizeof(Texture) == 32);
+static_assert(sizeof(Texture) == 48);
 static_assert(offsetof(Texture, texels) == 0);
-static_assert(offsetof(Texture, width) == 8);
-static_assert(offsetof(Texture, height) == 12);
-static_assert(offsetof(Texture, format) == 16);
-static_assert(offsetof(Texture, wrap_s) == 20);
-static_assert(offsetof(Texture, wrap_t) == 24);
-static_assert(offsetof(Texture, texture_filter) == 28);
+static_assert(offsetof(Texture, levels) == 8);
+static_assert(offsetof(Texture, width) == 16);
+static_assert(offsetof(Texture, height) == 20);
+static_assert(offsetof(Texture, format) == 24);
+static_assert(offsetof(Texture, wrap_s) == 28);
+static_assert(offsetof(Texture, wrap_t) == 32);
+static_assert(offsetof(Texture, texture_filter) == 36);
+static_assert(offsetof(Texture, level_count) == 40);
+static_assert(offsetof(Texture, unused) == 44);
 
 static_assert(sizeof(TextureUse) == 32);
 static_assert(offsetof(TextureUse, texture) == 0);
@@ -119,19 +122,19 @@ static_assert(offsetof(LightNode, power) == 36);
 static_assert(offsetof(LightNode, link) == 40);
 static_assert(offsetof(LightNode, parent) == 44);
 
-static_assert(sizeof(Environment) == 88);
+static_assert(sizeof(Environment) == 104);
 static_assert(offsetof(Environment, map) == 0);
-static_assert(offsetof(Environment, color) == 32);
-static_assert(offsetof(Environment, strength) == 44);
-static_assert(offsetof(Environment, rotation) == 48);
-static_assert(offsetof(Environment, row_sums) == 52);
-static_assert(offsetof(Environment, column_sums) == 56);
-static_assert(offsetof(Environment, emits) == 60);
-static_assert(offsetof(Environment, visible_color) == 64);
-static_assert(offsetof(Environment, shows_color) == 80);
-static_assert(offsetof(Environment, unused) == 84);
+static_assert(offsetof(Environment, color) == 48);
+static_assert(offsetof(Environment, strength) == 60);
+static_assert(offsetof(Environment, rotation) == 64);
+static_assert(offsetof(Environment, row_sums) == 68);
+static_assert(offsetof(Environment, column_sums) == 72);
+static_assert(offsetof(Environment, emits) == 76);
+static_assert(offsetof(Environment, visible_color) == 80);
+static_assert(offsetof(Environment, shows_color) == 96);
+static_assert(offsetof(Environment, unused) == 100);
 
-static_assert(sizeof(Scene) == 208);
+static_assert(sizeof(Scene) == 224);
 static_assert(offsetof(Scene, textures) == 0);
 static_assert(offsetof(Scene, materials) == 8);
 static_assert(offsetof(Scene, extras) == 16);
@@ -144,14 +147,14 @@ static_assert(offsetof(Scene, sums) == 64);
 static_assert(offsetof(Scene, srgb) == 72);
 static_assert(offsetof(Scene, energy) == 80);
 static_assert(offsetof(Scene, environment) == 88);
-static_assert(offsetof(Scene, instance_count) == 176);
-static_assert(offsetof(Scene, light_count) == 180);
-static_assert(offsetof(Scene, tree_light_count) == 184);
-static_assert(offsetof(Scene, light_sums) == 188);
-static_assert(offsetof(Scene, tree_probability) == 192);
-static_assert(offsetof(Scene, environment_light) == 196);
-static_assert(offsetof(Scene, features) == 200);
-static_assert(offsetof(Scene, tree_scale) == 204);
+static_assert(offsetof(Scene, instance_count) == 192);
+static_assert(offsetof(Scene, light_count) == 196);
+static_assert(offsetof(Scene, tree_light_count) == 200);
+static_assert(offsetof(Scene, light_sums) == 204);
+static_assert(offsetof(Scene, tree_probability) == 208);
+static_assert(offsetof(Scene, environment_light) == 212);
+static_assert(offsetof(Scene, features) == 216);
+static_assert(offsetof(Scene, tree_scale) == 220);
 
 static_assert(sizeof(View) == 136);
 static_assert(offsetof(View, seed) == 0);

@@ -12,9 +12,10 @@ inline bool has_extras(IN(Scene) scene, IN(Material) material) {
 }
 
 // The texel, or white where there is no texture.
-inline vec4 texel_or_white(IN(Scene) scene, IN(TextureUse) use, IN(Mesh) mesh, uvec3 corners, vec2 b) {
+inline vec4 texel_or_white(IN(Scene) scene, IN(TextureUse) use, IN(Mesh) mesh, uvec3 corners, vec2 b,
+                           float footprint) {
     if (!is_used(scene, use)) return vec4(1.0f);
-    return texel_of(scene, use, mesh, corners, b);
+    return texel_of(scene, use, mesh, corners, b, footprint);
 }
 
 // KHR_materials_anisotropy: roughness along the direction of anisotropy grows to 1.
@@ -24,10 +25,11 @@ inline vec2 stretched_alpha(float alpha, float anisotropy) {
 
 // What the direction and the strength of anisotropy are: cosine and sine of the angle to the tangent, and the
 // strength.
-inline vec3 anisotropy_at(IN(Scene) scene, IN(MaterialExtras) extras, IN(Mesh) mesh, uvec3 corners, vec2 b) {
+inline vec3 anisotropy_at(IN(Scene) scene, IN(MaterialExtras) extras, IN(Mesh) mesh, uvec3 corners, vec2 b,
+                          float footprint) {
     const vec2 turn = extras.anisotropy_direction;
     if (!is_used(scene, extras.anisotropy_texture)) return vec3(turn.x, turn.y, extras.anisotropy);
-    const vec4 texel = texel_of(scene, extras.anisotropy_texture, mesh, corners, b);
+    const vec4 texel = texel_of(scene, extras.anisotropy_texture, mesh, corners, b, footprint);
     const vec2 way = vec2(2.0f * texel.x - 1.0f, 2.0f * texel.y - 1.0f);
     const float length2 = dot(way, way);
     const float strength = extras.anisotropy * texel.z;
@@ -37,22 +39,24 @@ inline vec3 anisotropy_at(IN(Scene) scene, IN(MaterialExtras) extras, IN(Mesh) m
 }
 
 inline void add_extras(INOUT(Look) look, IN(Scene) scene, IN(MaterialExtras) extras, IN(Mesh) mesh,
-                       uvec3 corners, vec2 b) {
-    look.specular = extras.specular * texel_or_white(scene, extras.specular_texture, mesh, corners, b).w;
-    look.specular_color =
-        extras.specular_color * vec3(texel_or_white(scene, extras.specular_color_texture, mesh, corners, b));
-    look.transmission *= texel_or_white(scene, extras.transmission_texture, mesh, corners, b).x;
-    look.coat = extras.coat * texel_or_white(scene, extras.coat_texture, mesh, corners, b).x;
-    look.coat_roughness =
-        extras.coat_roughness * texel_or_white(scene, extras.coat_roughness_texture, mesh, corners, b).y;
-    look.sheen_color =
-        extras.sheen_color * vec3(texel_or_white(scene, extras.sheen_color_texture, mesh, corners, b));
+                       uvec3 corners, vec2 b, float footprint) {
+    look.specular =
+        extras.specular * texel_or_white(scene, extras.specular_texture, mesh, corners, b, footprint).w;
+    look.specular_color = extras.specular_color * vec3(texel_or_white(scene, extras.specular_color_texture,
+                                                                      mesh, corners, b, footprint));
+    look.transmission *= texel_or_white(scene, extras.transmission_texture, mesh, corners, b, footprint).x;
+    look.coat = extras.coat * texel_or_white(scene, extras.coat_texture, mesh, corners, b, footprint).x;
+    look.coat_roughness = extras.coat_roughness *
+                          texel_or_white(scene, extras.coat_roughness_texture, mesh, corners, b, footprint).y;
+    look.sheen_color = extras.sheen_color *
+                       vec3(texel_or_white(scene, extras.sheen_color_texture, mesh, corners, b, footprint));
     look.sheen_roughness =
-        extras.sheen_roughness * texel_or_white(scene, extras.sheen_roughness_texture, mesh, corners, b).w;
+        extras.sheen_roughness *
+        texel_or_white(scene, extras.sheen_roughness_texture, mesh, corners, b, footprint).w;
     if (look.coat > 0.0f) look.lobes |= scene.features & FeatureCoat;
     if (largest(look.sheen_color) > 0.0f) look.lobes |= scene.features & FeatureSheen;
     if (extras.anisotropy > 0.0f) {
-        const float strength = anisotropy_at(scene, extras, mesh, corners, b).z;
+        const float strength = anisotropy_at(scene, extras, mesh, corners, b, footprint).z;
         look.alpha = stretched_alpha(look.alpha.x, strength);
     }
 }
@@ -60,8 +64,9 @@ inline void add_extras(INOUT(Look) look, IN(Scene) scene, IN(MaterialExtras) ext
 // `front`: of the face that is seen. Bodies are solid unless their walls are thin: behind the front is glass,
 // behind the back is air. Index 0 stands for infinity.
 inline Look look_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uvec3 corners, vec2 b,
-                    vec3 base_color, bool front) {
-    const vec4 texel = texel_or_white(scene, material.metallic_roughness_texture, mesh, corners, b);
+                    float footprint, vec3 base_color, bool front) {
+    const vec4 texel =
+        texel_or_white(scene, material.metallic_roughness_texture, mesh, corners, b, footprint);
     const float n = material.index_of_refraction;
     const float eta = front || n == 0.0f || material.thin != 0u ? n : 1.0f / n;
     Look look = plain_look(base_color, material.metallic * texel.z, material.roughness * texel.y,
@@ -69,7 +74,7 @@ inline Look look_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uvec3
     look.thin = material.thin;
     look.lobes = scene.features & FeatureRoughGlass;
     if (has_extras(scene, material)) {
-        add_extras(look, scene, scene.extras.items[material.extras], mesh, corners, b);
+        add_extras(look, scene, scene.extras.items[material.extras], mesh, corners, b, footprint);
     }
     return look;
 }

@@ -12,10 +12,11 @@ inline bool emits(IN(Material) material) {
     return material.emission.x > 0.0f || material.emission.y > 0.0f || material.emission.z > 0.0f;
 }
 
-inline vec4 base_color_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uvec3 corners, vec2 b) {
+inline vec4 base_color_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uvec3 corners, vec2 b,
+                          float footprint) {
     vec4 color = material.base_color;
     if (is_used(scene, material.base_color_texture)) {
-        color *= texel_of(scene, material.base_color_texture, mesh, corners, b);
+        color *= texel_of(scene, material.base_color_texture, mesh, corners, b, footprint);
     }
     if ((mesh.arrays & MeshColors) != 0u) {
         color *= mesh.colors.items[corners.x] * (1.0f - b.x - b.y) + mesh.colors.items[corners.y] * b.x +
@@ -27,12 +28,14 @@ inline vec4 base_color_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh,
 // 1 for opaque materials.
 inline float alpha_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uvec3 corners, vec2 b) {
     if (material.alpha_mode == AlphaOpaque) return 1.0f;
-    return base_color_at(scene, material, mesh, corners, b).w;
+    return base_color_at(scene, material, mesh, corners, b, 0.0f).w;
 }
 
+// At the point itself, however wide the path: light that is sampled and light that is found by chance have to
+// be the same.
 inline vec3 emission_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uvec3 corners, vec2 b) {
     if (!is_used(scene, material.emission_texture)) return material.emission;
-    return material.emission * vec3(texel_of(scene, material.emission_texture, mesh, corners, b));
+    return material.emission * vec3(texel_of(scene, material.emission_texture, mesh, corners, b, 0.0f));
 }
 
 inline bool alpha_stops(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uint instance, uint triangle,

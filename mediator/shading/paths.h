@@ -1,6 +1,7 @@
 #ifndef TESSERA_MEDIATOR_SHADING_PATHS_H
 #define TESSERA_MEDIATOR_SHADING_PATHS_H
 
+#include "mediator/shading/cones.h"
 #include "mediator/shading/maths.h"
 #include "mediator/shading/records.h"
 #include "mediator/shading/sobol.h"
@@ -38,7 +39,8 @@ struct Path {
     float bsdf_pdf;     // of the direction it travels; 0 = from the camera or a perfect specular
     vec3 last_position;
     vec3 last_normal;  // of the receiver there (light_tree.h)
-    Way way;           // that light takes which is found next
+    Cone cone;
+    Way way;  // that light takes which is found next
     PathSample found;
     uint rays;
 };
@@ -53,8 +55,8 @@ inline PathSample nothing_found() {
 }
 
 inline Path start_path(IN(Sampler) numbers) {
-    return Path(numbers, 0u, vec3(1.0f), 1.0f, 0.0f, vec3(0.0f), vec3(0.0f), direct_way(), nothing_found(),
-                0u);
+    return Path(numbers, 0u, vec3(1.0f), 1.0f, 0.0f, vec3(0.0f), vec3(0.0f), Cone(0.0f, 0.0f), direct_way(),
+                nothing_found(), 0u);
 }
 
 // Seeds of the two kinds of rays at a vertex, for surfaces with alpha.

@@ -22,15 +22,20 @@ inline constexpr uint WrapRepeat = 0u, WrapMirror = 1u, WrapClamp = 2u;
 inline constexpr uint TextureLinear = 0u, TextureNearest = 1u;
 inline constexpr uint AlphaOpaque = 0u, AlphaMask = 1u, AlphaBlend = 2u;
 
-// Rows from the top, without gaps. Rgba8: red in the lowest byte; RgbFloat: three floats a texel.
+// Rows from the top, without gaps. Rgba8: red in the lowest byte; RgbFloat: three floats a texel. Levels are
+// the same picture at half the size (rounded down, at least 1) and half of that and so on, one after the
+// other.
 struct Texture {
     UintArray texels;
+    UintArray levels;
     uint width;
     uint height;
     uint format;
     uint wrap_s;
     uint wrap_t;
     uint texture_filter;
+    uint level_count;  // without the picture itself
+    uint unused;       // keeps the size a multiple of an address's
 };
 
 // A use of a texture, with its transform: u' = dot(row_u, uv) + offset.x, and v' likewise.

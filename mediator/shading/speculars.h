@@ -12,6 +12,7 @@ inline constexpr float MinBranchWeight = 1.0f / 512.0f;
 
 struct Branch {
     Ray ray;
+    Cone cone;
     vec3 weight;        // of what is seen along it
     float probability;  // with which a path that chooses one lobe at a time would come here
     uint node;          // in the tree of branches, breadth first: 0, then 2 node + 1 and 2 node + 2
@@ -24,11 +25,12 @@ struct BranchStack {
     uint count;
 };
 
-inline Branch root_branch(IN(Ray) camera_ray) {
-    return Branch(camera_ray, vec3(1.0f), 1.0f, 0u, 0u);
+inline Branch root_branch(IN(Ray) camera_ray, IN(Cone) cone) {
+    return Branch(camera_ray, cone, vec3(1.0f), 1.0f, 0u, 0u);
 }
 
-inline void push_children(INOUT(BranchStack) open, IN(Branch) parent, IN(Surface) surface) {
+// `cone`: the parent's where it meets the surface.
+inline void push_children(INOUT(BranchStack) open, IN(Branch) parent, IN(Cone) cone, IN(Surface) surface) {
     if (surface.rough_share == 1.0f || parent.depth == MaxSpecularDepth) return;
     const LobeChances chances = lobe_chances(surface);
     for (uint child = 1u; child <= 2u; ++child) {
@@ -39,7 +41,7 @@ inline void push_children(INOUT(BranchStack) open, IN(Branch) parent, IN(Surface
         const float probability = parent.probability * (reflects ? chances.reflection : chances.refraction);
         const Ray ray = leaving(surface, reflects ? surface.specular.reflected : surface.specular.refracted);
         open.branches[open.count] =
-            Branch(ray, weight, probability, 2u * parent.node + child, parent.depth + 1u);
+            Branch(ray, cone, weight, probability, 2u * parent.node + child, parent.depth + 1u);
         open.count += 1u;
     }
 }
@@ -49,6 +51,7 @@ inline void enter_branch(INOUT(Path) path, IN(Branch) branch) {
     path.throughput = branch.weight;
     path.probability = branch.probability;
     path.bsdf_pdf = 0.0f;
+    path.cone = branch.cone;
     path.way = direct_way();
 }
 

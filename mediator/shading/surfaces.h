@@ -1,6 +1,7 @@
 #ifndef TESSERA_MEDIATOR_SHADING_SURFACES_H
 #define TESSERA_MEDIATOR_SHADING_SURFACES_H
 
+#include "mediator/shading/cones.h"
 #include "mediator/shading/looks.h"
 #include "mediator/shading/points.h"
 #include "mediator/shading/specular.h"
@@ -45,13 +46,13 @@ inline vec4 tangent_at(IN(Instance) instance, IN(Mesh) mesh, uvec3 corners, vec2
 
 // What a normal map makes of the vertices' normal.
 inline vec3 mapped_normal(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(TextureUse) map,
-                          float scale, uvec3 corners, vec2 b, vec3 normal) {
+                          float scale, uvec3 corners, vec2 b, float footprint, vec3 normal) {
     if ((scene.features & FeatureNormalMaps) == 0u || !is_used(scene, map)) return normal;
     const vec4 tangent4 = tangent_at(instance, mesh, corners, b, normal);
     if (tangent4.w == 0.0f || (mesh.arrays & (MeshTexCoords | MeshTexCoords1)) == 0u) return normal;
     const vec3 tangent = vec3(tangent4);
     const vec3 bitangent = cross(normal, tangent) * tangent4.w;
-    const vec3 texel = vec3(texel_of(scene, map, mesh, corners, b));
+    const vec3 texel = vec3(texel_of(scene, map, mesh, corners, b, footprint));
     vec3 n = 2.0f * texel - 1.0f;
     n.x *= scale;
     n.y *= scale;
@@ -75,21 +76,21 @@ inline vec3 seen_normal(vec3 normal, vec3 face, vec3 direction) {
 }
 
 inline vec3 shading_normal(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
-                           uvec3 corners, vec2 b, vec3 face, vec3 direction) {
+                           uvec3 corners, vec2 b, float footprint, vec3 face, vec3 direction) {
     const vec3 normal = mapped_normal(scene, instance, mesh, material.normal_texture, material.normal_scale,
-                                      corners, b, vertex_normal(instance, mesh, corners, b, face));
+                                      corners, b, footprint, vertex_normal(instance, mesh, corners, b, face));
     return seen_normal(normal, face, direction);
 }
 
 // Around the normal; x along the direction of anisotropy, where there is one.
 inline mat3 shading_frame(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
-                          uvec3 corners, vec2 b, vec3 normal) {
+                          uvec3 corners, vec2 b, float footprint, vec3 normal) {
     if (!has_extras(scene, material)) return frame_around(normal);
     const MaterialExtras extras = scene.extras.items[material.extras];
     if (!(extras.anisotropy > 0.0f)) return frame_around(normal);
     const vec4 tangent4 = tangent_at(instance, mesh, corners, b, normal);
     if (tangent4.w == 0.0f) return frame_around(normal);
-    const vec3 turn = anisotropy_at(scene, extras, mesh, corners, b);
+    const vec3 turn = anisotropy_at(scene, extras, mesh, corners, b, footprint);
     const vec3 tangent = vec3(tangent4);
     const vec3 x = direction_of(tangent * turn.x + cross(normal, tangent) * (tangent4.w * turn.y), tangent);
     return mat3(x, cross(normal, x), normal);
@@ -151,14 +152,15 @@ inline void set_specular(INOUT(Surface) surface, IN(Look) look, IN(Mixture) mixt
 }
 
 inline void set_scattering(INOUT(Surface) surface, IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
-                           IN(Material) material, uvec3 corners, vec2 b, vec3 face, vec3 direction) {
+                           IN(Material) material, uvec3 corners, vec2 b, float footprint, vec3 face,
+                           vec3 direction) {
     const bool front = dot(face, direction) < 0.0f;
-    Look look = look_at(scene, material, mesh, corners, b, surface.albedo, front);
+    Look look = look_at(scene, material, mesh, corners, b, footprint, surface.albedo, front);
     if ((look.lobes & FeatureCoat) != 0u) {
         const MaterialExtras extras = scene.extras.items[material.extras];
         const vec3 mapped =
             mapped_normal(scene, instance, mesh, extras.coat_normal_texture, extras.coat_normal_scale,
-                          corners, b, vertex_normal(instance, mesh, corners, b, face));
+                          corners, b, footprint, vertex_normal(instance, mesh, corners, b, face));
         look.coat_normal = to_local(surface, seen_normal(mapped, face, direction));
     }
     const Mixture mixture = make_mixture(look);
@@ -169,7 +171,7 @@ inline void set_scattering(INOUT(Surface) surface, IN(Scene) scene, IN(Instance)
 }
 
 inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
-                          IN(Hit) hit, vec3 direction) {
+                          IN(Hit) hit, vec3 direction, float width) {
     Surface surface;
     const uvec3 corners = mesh.triangles.items[hit.triangle];
     const vec2 b = hit.barycentric;
@@ -183,11 +185,12 @@ inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     const vec3 face = face_normal(instance, triangle, vec3(0.0f, 0.0f, 1.0f));
     const bool front = dot(face, direction) < 0.0f;
     surface.geometric_normal = front ? face : -face;
-    surface.frame =
-        shading_frame(scene, instance, mesh, material, corners, b,
-                      shading_normal(scene, instance, mesh, material, corners, b, face, direction));
+    const float footprint = triangle_footprint(scene, instance, triangle, abs(dot(face, direction)), width);
+    surface.frame = shading_frame(
+        scene, instance, mesh, material, corners, b, footprint,
+        shading_normal(scene, instance, mesh, material, corners, b, footprint, face, direction));
 
-    const vec3 color = vec3(base_color_at(scene, material, mesh, corners, b));
+    const vec3 color = vec3(base_color_at(scene, material, mesh, corners, b, footprint));
     surface.albedo = clamp(color, 0.0f, 1.0f);  // vertex colours may say more than 1: no surface does
     surface.scatters = material.unlit == 0u;
     surface.emission = vec3(0.0f);
@@ -198,18 +201,18 @@ inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     }
     surface.rough_share = 1.0f;
     surface.specular = Specular(vec3(0.0f), vec3(0.0f), vec3(0.0f), vec3(0.0f));
-    set_scattering(surface, scene, instance, mesh, material, corners, b, face, direction);
+    set_scattering(surface, scene, instance, mesh, material, corners, b, footprint, face, direction);
     return surface;
 }
 
-inline Surface surface_on(IN(Scene) scene, IN(Instance) instance, IN(Hit) hit, vec3 direction) {
+inline Surface surface_on(IN(Scene) scene, IN(Instance) instance, IN(Hit) hit, vec3 direction, float width) {
     return surface_of(scene, instance, scene.meshes.items[instance.mesh],
-                      scene.materials.items[instance.material], hit, direction);
+                      scene.materials.items[instance.material], hit, direction, width);
 }
 
-// `direction`: of the ray that hit, unit length.
-inline Surface make_surface(IN(Scene) scene, IN(Hit) hit, vec3 direction) {
-    return surface_on(scene, scene.instances.items[hit.instance], hit, direction);
+// `direction`: of the ray that hit, unit length; `width`: of the path there (cones.h).
+inline Surface make_surface(IN(Scene) scene, IN(Hit) hit, vec3 direction, float width) {
+    return surface_on(scene, scene.instances.items[hit.instance], hit, direction, width);
 }
 
 SHADING_END

@@ -1,6 +1,7 @@
 #ifndef TESSERA_MEDIATOR_SHADING_TEXTURES_H
 #define TESSERA_MEDIATOR_SHADING_TEXTURES_H
 
+#include "mediator/shading/maths.h"
 #include "mediator/shading/records.h"
 
 // Textures lie in buffers and are sampled here: not every device lets a shader choose among many of its own,
@@ -41,8 +42,9 @@ inline vec4 texel_at(IN(Scene) scene, IN(Texture) map, uint index) {
 }
 
 // Linear values (sRGB decoded before filtering), bilinear or nearest; RgbFloat has alpha 1. In a loop:
-// written out, the four texels of all lookups of a kernel are a good part of its code.
-inline vec4 lookup(IN(Scene) scene, IN(Texture) map, vec2 uv) {
+// written out, the four texels of all lookups of a kernel are a good part of its code. `first`: index of the
+// first texel.
+inline vec4 lookup_from(IN(Scene) scene, IN(Texture) map, uint first, vec2 uv) {
     const bool nearest = map.texture_filter == TextureNearest;
     const float half_texel = nearest ? 0.0f : 0.5f;
     const float x = wrapped(uv.x, map.wrap_s) * float(map.width) - half_texel;
@@ -58,7 +60,39 @@ inline vec4 lookup(IN(Scene) scene, IN(Texture) map, vec2 uv) {
         const uint column = wrapped_texel(int(fx) + dx, map.width, map.wrap_s);
         const uint row = wrapped_texel(int(fy) + dy, map.height, map.wrap_t);
         const float weight = (dx == 0 ? 1.0f - wx : wx) * (dy == 0 ? 1.0f - wy : wy);
-        sum += weight * texel_at(scene, map, row * map.width + column);
+        sum += weight * texel_at(scene, map, first + row * map.width + column);
+    }
+    return sum;
+}
+
+inline vec4 lookup(IN(Scene) scene, IN(Texture) map, vec2 uv) {
+    return lookup_from(scene, map, 0u, uv);
+}
+
+// Of a footprint of this area in texture coordinates: between the two levels whose texels are next to it in
+// size; one of a texel or less sees the picture itself.
+inline vec4 lookup_wide(IN(Scene) scene, IN(Texture) map, vec2 uv, float area) {
+    const float covered = area * float(map.width) * float(map.height);
+    float wanted = 0.0f;
+    if (map.level_count > 0u && covered > 1.0f) {
+        wanted = lesser_of(0.5f * 1.44269504f * logarithm(lesser_of(covered, 1e30f)), float(map.level_count));
+    }
+    const uint finer = uint(wanted);
+    const float coarser_share = wanted - float(finer);
+    const uint last = coarser_share > 0.0f ? finer + 1u : finer;
+    Texture level = map;
+    uint first = 0u;
+    vec4 sum = vec4(0.0f);
+    KEEP_LOOP
+    for (uint i = 0u; i <= last; ++i) {
+        if (i >= finer) {
+            const vec4 value = lookup_from(scene, level, first, uv);
+            sum += (i == finer ? 1.0f - coarser_share : coarser_share) * value;
+        }
+        first = i == 0u ? 0u : first + level.width * level.height;
+        level.texels = map.levels;
+        level.width = max(level.width >> 1u, 1u);
+        level.height = max(level.height >> 1u, 1u);
     }
     return sum;
 }
@@ -76,14 +110,27 @@ inline vec2 tex_coord_at(IN(Mesh) mesh, uint set, uvec3 corners, vec2 b) {
            coords.items[corners.z] * b.y;
 }
 
-inline vec4 lookup_use(IN(Scene) scene, IN(TextureUse) use, vec2 uv) {
+// `area`: of what is looked at, in texture coordinates; 0: a point.
+inline vec4 lookup_use(IN(Scene) scene, IN(TextureUse) use, vec2 uv, float area) {
     const vec2 place = vec2(use.row_u.x * uv.x + use.row_u.y * uv.y + use.offset.x,
                             use.row_v.x * uv.x + use.row_v.y * uv.y + use.offset.y);
-    return lookup(scene, scene.textures.items[use.texture], place);
+    const float stretch = abs(use.row_u.x * use.row_v.y - use.row_u.y * use.row_v.x);
+    return lookup_wide(scene, scene.textures.items[use.texture], place, area * stretch);
 }
 
-inline vec4 texel_of(IN(Scene) scene, IN(TextureUse) use, IN(Mesh) mesh, uvec3 corners, vec2 b) {
-    return lookup_use(scene, use, tex_coord_at(mesh, use.set, corners, b));
+// Of the parallelogram over two edges of a triangle, in texture coordinates.
+inline float tex_area(IN(Mesh) mesh, uint set, uvec3 corners) {
+    const vec2 first = tex_coord_at(mesh, set, corners, vec2(0.0f));
+    const vec2 p = tex_coord_at(mesh, set, corners, vec2(1.0f, 0.0f)) - first;
+    const vec2 q = tex_coord_at(mesh, set, corners, vec2(0.0f, 1.0f)) - first;
+    return abs(p.x * q.y - p.y * q.x);
+}
+
+// `footprint`: the area that is looked at, as a share of that parallelogram (cones.h); 0: a point.
+inline vec4 texel_of(IN(Scene) scene, IN(TextureUse) use, IN(Mesh) mesh, uvec3 corners, vec2 b,
+                     float footprint) {
+    const float area = footprint > 0.0f ? footprint * tex_area(mesh, use.set, corners) : 0.0f;
+    return lookup_use(scene, use, tex_coord_at(mesh, use.set, corners, b), area);
 }
 
 SHADING_END

@@ -87,7 +87,8 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
     tell_camera(context, ray);
     const Ray camera = ray;
     bool is_caught = false;  // by a shadow catcher, and has met nothing since
-    Branch branch = root_branch(ray);
+    path.cone = camera_cone(context.view, ray, path.numbers.index);
+    Branch branch = root_branch(ray, path.cone);
     BranchStack open;
     open.count = 0u;
     uint stage = whitted ? StageBranch : StagePath;
@@ -107,7 +108,8 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
         }
         if (lit && !is_caught) add_shapes(context, path, ray, is_hit ? hit.distance : infinity());
         if (is_hit) {
-            const Surface surface = make_surface(context.scene, hit, ray.direction);
+            path.cone.width += path.cone.spread * hit.distance;
+            const Surface surface = make_surface(context.scene, hit, ray.direction, path.cone.width);
             tell_hit(context, surface, path.throughput);
             if (first) {
                 path.found.depth = depth_along(context.view, ray, hit.distance);
@@ -128,7 +130,7 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                 is_caught = false;
                 if (stage == StageBranch || (first && wants_range)) {
                     if (wants_range) path.found.range += range_at(branch, surface);
-                    push_children(open, branch, surface);
+                    push_children(open, branch, path.cone, surface);
                 }
                 if (lit) goes_on = leave_vertex(context, path, ray, stage, surface);
             }

@@ -178,6 +178,7 @@ inline bool scatter(FloatArray energy, IN(View) view, INOUT(Path) path, IN(Surfa
     const Receiver receiver = receiver_at(surface);
     path.last_position = receiver.position;
     path.last_normal = receiver.normal;
+    path.cone.spread = greater_of(path.cone.spread, chosen_spread(bsdf.pdf, path.numbers.index));
     if (keeps(view, KeepsDiffuse) && path.way.scatterings == 0u) path.way.diffuse_share = diffuse_share(bsdf);
     path.way.scatterings += 1u;
     path.way.last_is_delta = false;

@@ -28,6 +28,8 @@ struct Stage {
     SceneBuilder builder;
     ShadowScene shadow;
 
+    TexturePyramids pyramids;
+
     template <class T, std::size_t N>
     scene::BlobRef blob(const std::array<T, N>& values) {
         return scene::reference(*blobs->insert(std::as_bytes(std::span(values))));
@@ -42,7 +44,7 @@ struct Stage {
     SceneTables make(std::vector<scene::Entry> entries) {
         EXPECT_TRUE(shadow.apply(builder.edit(std::move(entries))));
         steps = meshes.update(shadow.scene(), shadow.take_delta());
-        return make_tables(shadow.scene(), shadow.lowered(), meshes, *blobs);
+        return make_tables(shadow.scene(), shadow.lowered(), meshes, *blobs, pyramids);
     }
 };
 

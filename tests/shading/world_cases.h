@@ -38,6 +38,7 @@ inline Path path_in(IN(Inputs) x) {
     path.bsdf_pdf = x.c % 3u == 0u ? 0.0f : x.pdf;
     path.last_position = x.wo;
     path.last_normal = x.n;
+    path.cone = Cone(x.metallic, x.transmission);
     path.way = Way(x.c % 4u, x.c % 5u == 0u, x.light);
     path.found.low = x.light;
     path.found.high = x.color;
@@ -72,11 +73,12 @@ inline Case make_case(IN(World) world, IN(Inputs) x) {
     made.light = made.context.scene.lights.items[x.d % LightCount];
     made.emitter = made.context.scene.emitters.items[x.d % TriangleEmitters];
     made.receiver = Receiver(x.wo, x.c % 3u == 0u ? vec3(0.0f) : x.n);
-    made.surface = make_surface(made.context.scene, made.hit, x.n);
+    made.surface = make_surface(made.context.scene, made.hit, x.n, x.c % 2u == 0u ? 0.0f : x.metallic);
     made.wo = to_local(made.surface, -x.n);
     made.path = path_in(x);
     made.way = Way(x.d % 4u, x.d % 5u == 0u, x.light);
-    made.branch = Branch(made.ray, x.color, x.transmission, x.c % 64u, x.c % (MaxSpecularDepth + 1u));
+    made.branch = Branch(made.ray, Cone(x.metallic, x.transmission), x.color, x.transmission, x.c % 64u,
+                         x.c % (MaxSpecularDepth + 1u));
     return made;
 }
 
@@ -100,7 +102,7 @@ inline LightSample on_sphere(IN(Case) c, vec2 u) {
 inline Surface with_scattering(IN(Case) c) {
     Surface surface = c.surface;
     set_scattering(surface, c.context.scene, c.instance, c.mesh, c.material, c.corners, c.hit.barycentric,
-                   c.surface.geometric_normal, c.ray.direction);
+                   0.25f, c.surface.geometric_normal, c.ray.direction);
     return surface;
 }
 inline Surface coated(IN(Case) c, IN(Inputs) x) {
@@ -208,7 +210,7 @@ inline BranchStack with_children(IN(Case) c) {
     open.branches[0] = c.branch;
     open.branches[1] = c.branch;
     open.count = 0u;
-    push_children(open, c.branch, c.surface);
+    push_children(open, c.branch, c.branch.cone, c.surface);
     return open;
 }
 inline Path in_branch(IN(Case) c) {

@@ -67,6 +67,16 @@ std::vector<Texture> make_textures(Packer& packer, Generator& random) {
             words.push_back(floats ? float_bits(random.between(0.0f, 4.0f)) : random.bits());
         }
         texture.texels = packer.add<UintArray>(words);
+        if (!floats && texture.texture_filter == TextureLinear) {
+            words.clear();
+            for (uint width = texture.width, height = texture.height; width > 1u || height > 1u;
+                 ++texture.level_count) {
+                width = std::max(width / 2u, 1u);
+                height = std::max(height / 2u, 1u);
+                for (uint texel = 0; texel < width * height; ++texel) words.push_back(hash_u32(texel));
+            }
+            if (!words.empty()) texture.levels = packer.add<UintArray>(words);
+        }
         textures.push_back(texture);
     }
     return textures;

@@ -10,6 +10,10 @@ inline void put(INOUT(Outputs) y, IN(Ray) ray) {
     put(y, ray.origin);
     put(y, ray.direction);
 }
+inline void put(INOUT(Outputs) y, IN(Cone) cone) {
+    put(y, cone.width);
+    put(y, cone.spread);
+}
 inline void put(INOUT(Outputs) y, IN(Measured) measured) {
     put(y, measured.direction);
     put(y, measured.distance);
@@ -109,6 +113,7 @@ inline void put(INOUT(Outputs) y, IN(Path) path) {
     put(y, path.bsdf_pdf);
     put(y, path.last_position);
     put(y, path.last_normal);
+    put(y, path.cone);
     put(y, path.way);
     put(y, path.found);
     put(y, path.rays);
@@ -128,6 +133,7 @@ inline void put(INOUT(Outputs) y, IN(Step) step) {
 }
 inline void put(INOUT(Outputs) y, IN(Branch) branch) {
     put(y, branch.ray);
+    put(y, branch.cone);
     put(y, branch.weight);
     put(y, branch.probability);
     put(y, branch.node);

@@ -102,7 +102,8 @@ TEST(Sampling, EnvironmentMap) {
                                            .height = Height,
                                            .format = scene::TexelFormat::RgbFloat,
                                            .texels = scene::reference(*blob)}}}));
-    const auto tables = backend::make_tables(described, {}, backend::MeshCatalog(blobs), *blobs);
+    backend::TexturePyramids pyramids;
+    const auto tables = backend::make_tables(described, {}, backend::MeshCatalog(blobs), *blobs, pyramids);
     const Scene sky = backend::on_host(tables);
     expect_directions([&](CounterRandom& r) { return sample_sky(sky, pair(r)); },
                       [&](const glm::vec3& w) { return double(sky_at(sky, w).pdf); });

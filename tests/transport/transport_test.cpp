@@ -170,7 +170,9 @@ TEST_P(TransportOnDevice, FindsWhatTheHostFinds) {
     ASSERT_TRUE(shadow.apply(scene::snapshot(model.finished())));
     backend::MeshCatalog meshes(model.blobs());
     ASSERT_TRUE(meshes.update(shadow.scene(), shadow.take_delta()).problems.empty());
-    const auto tables = backend::make_tables(shadow.scene(), shadow.lowered(), meshes, *model.blobs());
+    backend::TexturePyramids pyramids;
+    const auto tables =
+        backend::make_tables(shadow.scene(), shadow.lowered(), meshes, *model.blobs(), pyramids);
     const glm::dmat4 down = glm::rotate(glm::dmat4(1.0), -0.3, {1.0, 0.0, 0.0});
     view::View view = test::small_view({0.0, 2.5, 5.0}, 0.9, Size, down);
     view.max_bounces = 8;

@@ -27,7 +27,8 @@ class HostScene {
         backend::ShadowScene shadow;
         if (auto applied = shadow.apply(scene::snapshot(scene.content)); !applied) throw applied.error();
         meshes_.update(shadow.scene(), shadow.take_delta());
-        tables_ = backend::make_tables(shadow.scene(), shadow.lowered(), meshes_, *blobs);
+        backend::TexturePyramids pyramids;
+        tables_ = backend::make_tables(shadow.scene(), shadow.lowered(), meshes_, *blobs, pyramids);
         scene_ = backend::on_host(tables_);
     }
     const shading::Scene& scene() const { return scene_; }
@@ -67,7 +68,7 @@ RaySets ray_sets(const BenchScene& scene, std::shared_ptr<scene::BlobStore> blob
     std::vector<shading::Surface> seen;
     for (std::size_t i = 0; i < hits.size(); ++i) {
         if (hits[i].instance == shading::NoInstance) continue;
-        seen.push_back(shading::make_surface(host.scene(), hits[i], sets.primary[i].direction));
+        seen.push_back(shading::make_surface(host.scene(), hits[i], sets.primary[i].direction, 0.0f));
     }
     CounterRandom random(9);
     for (const shading::Surface& at : seen) {

@@ -1,4 +1,4 @@
-// Textures, materials and instances.
+// Materials and instances.
 #include <cmath>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -13,14 +13,6 @@ namespace {
 constexpr std::uint32_t DefaultMaterial = 0, PlaceholderMaterial = 1;
 
 // A record holds the scene's own numbers.
-static_assert(shading::TexelRgba8 == std::uint32_t(scene::TexelFormat::Rgba8) &&
-              shading::TexelRgba8Srgb == std::uint32_t(scene::TexelFormat::Rgba8Srgb) &&
-              shading::TexelRgbFloat == std::uint32_t(scene::TexelFormat::RgbFloat));
-static_assert(shading::WrapRepeat == std::uint32_t(scene::Wrap::Repeat) &&
-              shading::WrapMirror == std::uint32_t(scene::Wrap::Mirror) &&
-              shading::WrapClamp == std::uint32_t(scene::Wrap::Clamp));
-static_assert(shading::TextureLinear == std::uint32_t(scene::TextureFilter::Linear) &&
-              shading::TextureNearest == std::uint32_t(scene::TextureFilter::Nearest));
 static_assert(shading::AlphaOpaque == std::uint32_t(scene::AlphaMode::Opaque) &&
               shading::AlphaMask == std::uint32_t(scene::AlphaMode::Mask) &&
               shading::AlphaBlend == std::uint32_t(scene::AlphaMode::Blend));
@@ -95,13 +87,6 @@ bool has_extras(const scene::Material& m) {
            m.anisotropy > 0.0f || (m.transmission > 0.0f && m.transmission_texture.texture);
 }
 
-// Whether all texels are there; else validation has told of it.
-bool is_whole(const scene::Texture& texture, const scene::BlobPtr& texels) {
-    const std::uint64_t texel = texture.format == scene::TexelFormat::RgbFloat ? 12 : 4;
-    return texels && texture.width > 0 && texture.height > 0 &&
-           texels->bytes().size() / texel / texture.width >= texture.height;
-}
-
 void add_mesh(SceneTables& tables, const Mesh& mesh) {
     const auto flag = [](const scene::BlobPtr& blob, std::uint32_t bit) { return blob ? bit : 0u; };
     const auto triangles = elements<glm::uvec3>(mesh.triangles);
@@ -172,26 +157,6 @@ std::uint32_t features_of(const shading::Material& material, const shading::Mate
 }
 
 }  // namespace
-
-Indices add_textures(SceneTables& tables, const scene::Scene& scene, const scene::BlobStore& blobs) {
-    Indices indices;
-    for (const auto& [id, object] : scene.objects()) {
-        const auto* texture = std::get_if<scene::Texture>(object.get());
-        if (texture == nullptr) continue;
-        scene::BlobPtr texels = blobs.find(texture->texels.hash);
-        if (!is_whole(*texture, texels)) continue;
-        indices[id] = static_cast<std::uint32_t>(tables.textures.size());
-        tables.textures.push_back({.texels = {texels->as<std::uint32_t>().data()},
-                                   .width = texture->width,
-                                   .height = texture->height,
-                                   .format = static_cast<std::uint32_t>(texture->format),
-                                   .wrap_s = static_cast<std::uint32_t>(texture->wrap_s),
-                                   .wrap_t = static_cast<std::uint32_t>(texture->wrap_t),
-                                   .texture_filter = static_cast<std::uint32_t>(texture->filter)});
-        tables.texels.push_back(std::move(texels));
-    }
-    return indices;
-}
 
 Indices add_materials(SceneTables& tables, const scene::Scene& scene, const Indices& textures) {
     Indices indices;

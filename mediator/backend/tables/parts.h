@@ -11,7 +11,9 @@ namespace tessera::backend {
 
 using Indices = std::map<ObjectId, std::uint32_t>;  // of objects in their table
 
-Indices add_textures(SceneTables& tables, const scene::Scene& scene, const scene::BlobStore& blobs);
+// Those alone that something placed, or the background, refers to: no others are in anybody's memory.
+Indices add_textures(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
+                     const MeshCatalog& meshes, const scene::BlobStore& blobs, TexturePyramids& pyramids);
 Indices add_materials(SceneTables& tables, const scene::Scene& scene, const Indices& textures);
 void add_instances(SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes,
                    const Indices& materials);

@@ -47,6 +47,7 @@ std::span<const float> srgb_values() {
 void set_addresses(SceneTables& tables, const BlobAddress& address_of) {
     for (std::size_t i = 0; i < tables.textures.size(); ++i) {
         set_address(tables.textures[i].texels, tables.texels[i], address_of);
+        set_address(tables.textures[i].levels, tables.levels[i], address_of);
     }
     for (std::size_t i = 0; i < tables.meshes.size(); ++i) {
         const SceneTables::Arrays& blobs = tables.arrays[i];
@@ -85,12 +86,12 @@ std::uint32_t features_for(const SceneTables& tables, std::uint32_t layers) {
 }
 
 SceneTables make_tables(const scene::Scene& scene, const Lowered& lowered, const MeshCatalog& meshes,
-                        const scene::BlobStore& blobs) {
+                        const scene::BlobStore& blobs, TexturePyramids& pyramids) {
     SceneTables tables;
     if (const auto* root = scene.find_as<scene::Root>(scene::RootId)) {
         tables.render_origin = root->render_origin;
     }
-    const Indices textures = add_textures(tables, scene, blobs);
+    const Indices textures = add_textures(tables, scene, lowered, meshes, blobs, pyramids);
     const Indices materials = add_materials(tables, scene, textures);
     add_instances(tables, lowered, meshes, materials);
     mark_shadow_catchers(tables, scene, lowered, meshes);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mediator/backend/tables/meshes.h"
+#include "mediator/backend/tables/pyramids.h"
 #include "mediator/shading/layout.h"
 
 namespace tessera::backend {
@@ -13,7 +14,7 @@ namespace tessera::backend {
 // the scene's content alone, the same for all back-ends. Made anew at each commit; vertices and texels stay
 // in their blobs.
 struct SceneTables {
-    std::vector<shading::Texture> textures;
+    std::vector<shading::Texture> textures;       // that are used
     std::vector<shading::Material> materials;     // 0 = the default grey, 1 = the placeholder's
     std::vector<shading::MaterialExtras> extras;  // of those that have any
     std::vector<shading::Mesh> meshes;            // of the geometries that are placed
@@ -29,7 +30,7 @@ struct SceneTables {
     std::vector<std::uint32_t> layers;  // each mask of instances and lights once
 
     // What the records' addresses point into: of each texture, of the environment's map and of each mesh.
-    std::vector<scene::BlobPtr> texels;
+    std::vector<scene::BlobPtr> texels, levels;
     scene::BlobPtr environment_texels;
     struct Arrays {
         scene::BlobPtr positions, triangles, normals, tangents, colors, tex_coords, tex_coords_1;
@@ -40,7 +41,7 @@ struct SceneTables {
 // The light tree or one of the distant lights is chosen in proportion to its power, a tenth uniformly, so
 // that a wrong estimate costs noise, never light. Addresses are the host's.
 SceneTables make_tables(const scene::Scene& scene, const Lowered& lowered, const MeshCatalog& meshes,
-                        const scene::BlobStore& blobs);
+                        const scene::BlobStore& blobs, TexturePyramids& pyramids);
 
 // The scene on the host: addresses of the tables' own memory, valid while they are neither changed nor moved.
 shading::Scene on_host(const SceneTables& tables);
