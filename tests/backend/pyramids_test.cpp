@@ -72,7 +72,7 @@ TEST(Pyramids, OddSizesLoseNothing) {
 }
 
 TEST(Pyramids, MeansOfSrgbAreThoseOfLight) {
-    const Bytes bytes{255, 0, 0, 255, 0, 0, 0, 0};
+    const Bytes bytes{255, 0, 0, 255, 0, 0, 0, 1};
     const Bytes levels = Picture(2, 1, scene::TexelFormat::Rgba8Srgb, bytes).levels();
     EXPECT_EQ(levels, (Bytes{188, 0, 0, 128})) << "half of the light, and half of the opacity as it is";
     const Bytes same(4 * 64, 77);
