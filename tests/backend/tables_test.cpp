@@ -8,6 +8,7 @@
 #include <numeric>
 #include <set>
 
+#include "mediator/shading/surfaces.h"
 #include "tests/backend/scene_builder.h"
 
 namespace tessera::backend {
@@ -181,6 +182,38 @@ TEST(Tables, ATriangleWhoseLightWasMissedIsStillTried) {
         EXPECT_EQ(tables.light_nodes.size(), brightest > 0.0f ? 3u : 0u);
         EXPECT_EQ(tables.lights.size(), brightest > 0.0f ? 1u : 0u);
     }
+}
+
+// A checker of single texels: a point sees one of them, a wide path their mean.
+TEST(Tables, TexturesAreSeenAsWideAsAPathIs) {
+    Stage stage;
+    std::vector<std::uint8_t> texels;
+    for (std::uint32_t i = 0; i < 64 * 64; ++i)
+        texels.insert(texels.end(), 4, (i + i / 64) % 2 == 0 ? std::uint8_t{255} : std::uint8_t{0});
+    scene::Geometry painted = stage.corner(Paint);
+    painted.tex_coords = stage.blob(std::array<glm::vec2, 4>{{{0, 0}, {1, 0}, {1, 1}, {0, 3}}});
+    scene::Texture map{.width = 64, .height = 64};
+    map.texels = scene::reference(*stage.blobs->insert(std::as_bytes(std::span(texels))));
+    const SceneTables tables =
+        stage.make({Create{scene::RootId, scene::Root{.children = {Corner}}}, Create{Corner, painted},
+                    Create{Paint, scene::Material{.base_color = glm::vec4(1.0f),
+                                                  .base_color_texture = {.texture = Picture}}},
+                    Create{Picture, map}});
+    EXPECT_EQ(tables.textures.at(0).level_count, 6u);
+    const shading::Scene scene = on_host(tables);
+    // In the middle of a texel of the first triangle.
+    const auto seen = [&](float width) {
+        const shading::Hit hit{
+            .instance = 0, .triangle = 0, .barycentric = {8.0f / 64, 8.5f / 64}, .distance = 1.0f};
+        return shading::make_surface(scene, hit, {0.0f, 0.0f, -1.0f}, width).albedo.x;
+    };
+    const float point = seen(0.0f);
+    EXPECT_TRUE(std::abs(point - 0.5f) > 0.49f) << point;
+    EXPECT_EQ(seen(0.9f / 64), point) << "no wider than a texel: the same bits";
+    EXPECT_NEAR(seen(2.0f / 64), 0.5f, 0.003f);
+    EXPECT_NEAR(seen(1e6f), 0.5f, 0.003f);
+    const float between = std::abs(seen(1.4f / 64) - 0.5f);
+    EXPECT_TRUE(between > 0.1f && between < 0.4f) << between;
 }
 
 TEST(Tables, WhatIsInLayersIsMarkedAndSoIsAViewThatDoesNotSeeAll) {
