@@ -216,6 +216,41 @@ TEST(Tables, TexturesAreSeenAsWideAsAPathIs) {
     EXPECT_TRUE(between > 0.1f && between < 0.4f) << between;
 }
 
+// Of a material that nothing placed has, of nothing at all, and of what only an edit brings in.
+TEST(Tables, OnlyTexturesThatAreUsedAreThere) {
+    Stage stage;
+    const auto map = [&](std::uint8_t value) {
+        scene::Texture texture{.width = 2, .height = 1};
+        texture.texels = stage.blob(std::array<std::uint8_t, 8>{value, 0, 0, 0, 0, 0, 0, 0});
+        return texture;
+    };
+    constexpr ObjectId Unused{20}, Unseen{21}, Shine{22}, Coat{23};
+    const auto only = [](const SceneTables& tables) {
+        std::set<std::uint8_t> first;
+        for (const scene::BlobPtr& texels : tables.texels) first.insert(texels->as<std::uint8_t>()[0]);
+        return first;
+    };
+    SceneTables tables = stage.make(
+        {Create{scene::RootId, scene::Root{.children = {Corner, Panel}, .background = Sky}},
+         Create{Sky, scene::Background{.environment = Bulb}}, Create{Bulb, map(1)}, Create{Picture, map(2)},
+         Create{Unused, map(3)}, Create{Unseen, map(4)}, Create{Shine, map(5)}, Create{Coat, map(6)},
+         Create{Corner, stage.corner(Paint)}, Create{Panel, stage.corner(Glow)},
+         Create{Paint, scene::Material{.emission_texture = {.texture = Shine},
+                                       .clearcoat = 1.0f,
+                                       .clearcoat_roughness_texture = {.texture = Coat}}},
+         Create{Glow, scene::SurfaceShader{.ambient_texture = {.texture = Unused},
+                                           .diffuse_texture = {.texture = Picture}}},
+         Create{Sun, scene::Material{.base_color_texture = {.texture = Unseen}}}});
+    EXPECT_EQ(only(tables), (std::set<std::uint8_t>{1, 2, 5, 6}));
+    for (std::size_t i = 0; i < tables.textures.size(); ++i) {
+        const std::uint8_t first = tables.texels[i]->as<std::uint8_t>()[0];
+        EXPECT_EQ(tables.levels[i] != nullptr, first == 2 || first == 6) << "not of light: " << int{first};
+    }
+    tables = stage.make(
+        {SceneBuilder::update<scene::Geometry>(Corner, scene::Geometry::Field::Material, {.material = Sun})});
+    EXPECT_EQ(only(tables), (std::set<std::uint8_t>{1, 2, 4}));
+}
+
 TEST(Tables, WhatIsInLayersIsMarkedAndSoIsAViewThatDoesNotSeeAll) {
     Stage stage;
     scene::Transform place = transform(moved(0.0, 0.0, 0.0), {Corner, Bulb});
