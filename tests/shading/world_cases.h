@@ -99,6 +99,13 @@ inline LightSample on_sphere(IN(Case) c, vec2 u) {
     found.target -= c.surface.position;
     return found;
 }
+// What a footprint is relative to, beside the product of edges that its rounding is relative to.
+inline float covered_area(IN(Case) c, float cosine, float width) {
+    const float footprint = triangle_footprint(c.context.scene, c.instance, c.triangle, cosine, width);
+    const float first = vector_length(c.instance.linear * (c.triangle.q - c.triangle.p));
+    const float second = vector_length(c.instance.linear * (c.triangle.r - c.triangle.p));
+    return first * second * cosine + (footprint > 0.0f ? width * width / footprint : 0.0f);
+}
 inline Surface with_scattering(IN(Case) c) {
     Surface surface = c.surface;
     set_scattering(surface, c.context.scene, c.instance, c.mesh, c.material, c.corners, c.hit.barycentric,
