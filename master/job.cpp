@@ -20,12 +20,19 @@ bool finite(const view::CameraPose& camera) {
             if (!std::isfinite(camera.world_from_camera[column][row])) return false;
         }
     }
+    for (const glm::dmat4& step : camera.motion) {
+        for (int column = 0; column < 4; ++column) {
+            if (!glm::all(glm::lessThan(glm::abs(step[column]), glm::dvec4(1e15)))) return false;
+        }
+    }
     return std::isfinite(camera.left) && std::isfinite(camera.right) && std::isfinite(camera.bottom) &&
            std::isfinite(camera.top) && camera.left < camera.right && camera.bottom < camera.top;
 }
 
 std::string problem_of(const view::CameraPose& camera) {
     constexpr double WidestLens = 1e6, NearestFocus = 1e-6, Farthest = 1e15;  // m; ratios stay within floats
+    if (camera.motion.size() > scene::MaxMotion)
+        return "the camera moves in more than " + std::to_string(scene::MaxMotion) + " steps";
     if (!finite(camera)) return "the camera is not finite or has an empty frustum";
     if (!(camera.lens_radius >= 0.0 && camera.lens_radius <= WidestLens))
         return "the lens' radius is not between 0 and 1e6 m";

@@ -28,7 +28,7 @@ bool trace_closest(const Context& context, const shading::Ray& ray, std::uint32_
                  ray.direction.x,
                  ray.direction.y,
                  ray.direction.z,
-                 0.0f,
+                 context.time,
                  std::numeric_limits<float>::infinity(),
                  context.view.layers,
                  0,
@@ -44,8 +44,8 @@ bool trace_closest(const Context& context, const shading::Ray& ray, std::uint32_
 bool trace_occluded(const Context& context, const glm::vec3& origin, const glm::vec3& segment, float far,
                     std::uint32_t seed) {
     TraceContext started = start(context, seed);
-    RTCRay ray{origin.x,  origin.y, origin.z, shading::NearestHit, segment.x, segment.y,
-               segment.z, 0.0f,     far,      context.view.layers, 0,         0};
+    RTCRay ray{origin.x,  origin.y,     origin.z, shading::NearestHit, segment.x, segment.y,
+               segment.z, context.time, far,      context.view.layers, 0,         0};
     rtcOccluded1(context.top, &started.embree, &ray);
     return ray.tfar < 0.0f;
 }

@@ -11,6 +11,7 @@ struct Context : backend::Teller {
     const shading::Scene& scene;
     const shading::View& view;
     RTCScene top;
+    float time = 0.0f;
 };
 
 bool trace_closest(const Context& context, const shading::Ray& ray, std::uint32_t seed, shading::Hit& hit);

@@ -13,6 +13,11 @@ void attach(RTCGeometry geometry, const backend::Mesh& mesh) {
                                sizeof(glm::uvec3), triangles.size());
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions.data(), 0,
                                sizeof(glm::vec3), positions.size());
+    for (std::size_t i = 0; i < mesh.motion_positions.size(); ++i) {
+        const auto step = backend::elements<glm::vec3>(mesh.motion_positions[i]);
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, static_cast<unsigned>(i + 1),
+                                   RTC_FORMAT_FLOAT3, step.data(), 0, sizeof(glm::vec3), step.size());
+    }
 }
 
 }  // namespace
@@ -45,6 +50,7 @@ MeshScenes::MeshScene MeshScenes::build(const backend::Mesh& mesh) const {
     built.geometry = handle.get();
     rtcSetGeometryBuildQuality(handle.get(),
                                mesh.refits ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetGeometryTimeStepCount(handle.get(), static_cast<unsigned>(mesh.motion_positions.size() + 1));
     attach(handle.get(), mesh);
     rtcCommitGeometry(handle.get());
     rtcAttachGeometryByID(built.scene.get(), handle.get(), 0);

@@ -7,14 +7,20 @@ namespace tessera::embree {
 
 PathTracer::PathTracer(const backend::SceneTables& tables, RTCScene top, const view::View& view,
                        Strategy strategy)
-    : scene_(backend::on_host(tables)), view_(backend::make_view(view, tables.render_origin)), top_(top) {
-    scene_.features = backend::features_for(tables, view.layers);
+    : scene_(backend::on_host(tables)),
+      camera_places_(backend::camera_places(view.camera, tables.render_origin)),
+      view_(backend::make_view(view, tables.render_origin)),
+      top_(top) {
+    view_.camera_places.items = camera_places_.data();
+    scene_.features = backend::features_for(tables, view_);
     view_.strategy = static_cast<std::uint32_t>(strategy);
 }
 
 PathSample PathTracer::trace(std::uint32_t x, std::uint32_t y, std::uint64_t sample, std::uint64_t& rays,
                              std::vector<std::string>* story) const {
-    const shading::Path path = shading::trace_sample(Context{{story}, scene_, view_, top_}, x, y, sample);
+    const float time = shading::sample_time(scene_.features, view_, x, y, sample);
+    const shading::Path path =
+        shading::trace_sample(Context{{story}, scene_, view_, top_, time}, x, y, sample);
     rays += path.rays;
     return path.found;
 }

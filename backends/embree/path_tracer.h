@@ -25,6 +25,8 @@ class PathTracer {
   public:
     PathTracer(const backend::SceneTables& tables, RTCScene top, const view::View& view,
                Strategy strategy = Strategy::Both);
+    PathTracer(const PathTracer&) = delete;  // its view points into it
+    PathTracer& operator=(const PathTracer&) = delete;
 
     // Any thread. `rays` is raised by the rays traced; `story`, if given, gets a line per vertex.
     PathSample trace(std::uint32_t x, std::uint32_t y, std::uint64_t sample, std::uint64_t& rays,
@@ -34,6 +36,7 @@ class PathTracer {
 
   private:
     shading::Scene scene_;
+    std::vector<shading::Place> camera_places_;
     shading::View view_;
     RTCScene top_;
 };

@@ -4,6 +4,18 @@
 
 namespace tessera::embree {
 
+namespace {
+
+void set_transform(RTCGeometry geometry, unsigned step, const glm::mat3& linear,
+                   const glm::vec3& translation) {
+    const std::array<float, 12> columns{linear[0].x, linear[0].y,   linear[0].z,   linear[1].x,
+                                        linear[1].y, linear[1].z,   linear[2].x,   linear[2].y,
+                                        linear[2].z, translation.x, translation.y, translation.z};
+    rtcSetGeometryTransform(geometry, step, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
+}
+
+}  // namespace
+
 World::World(RTCDevice device, std::shared_ptr<scene::BlobStore> blobs)
     : device_(device),
       blobs_(std::move(blobs)),
@@ -37,12 +49,18 @@ Expected<backend::EditReport> World::commit() {
 
 void World::place(std::uint32_t instance) {
     const shading::Instance& data = tables_.instances[instance];
-    const std::array<float, 12> columns{data.linear[0].x,   data.linear[0].y,   data.linear[0].z,
-                                        data.linear[1].x,   data.linear[1].y,   data.linear[1].z,
-                                        data.linear[2].x,   data.linear[2].y,   data.linear[2].z,
-                                        data.translation.x, data.translation.y, data.translation.z};
     const RTCGeometry geometry = rtcGetGeometry(top_.get(), instance);
-    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
+    if (data.motion < 0) {
+        rtcSetGeometryTimeStepCount(geometry, 1);
+        set_transform(geometry, 0, data.linear, data.translation);
+    } else {
+        const shading::Motion& motion = tables_.motions[static_cast<std::size_t>(data.motion)];
+        rtcSetGeometryTimeStepCount(geometry, motion.steps + 1);
+        for (std::uint32_t step = 0; step <= motion.steps; ++step) {
+            const shading::Place& place = tables_.places[motion.first_place + step];
+            set_transform(geometry, step, place.linear, place.translation);
+        }
+    }
     rtcSetGeometryMask(geometry, data.layers);
     rtcCommitGeometry(geometry);
 }
@@ -54,7 +72,6 @@ void World::rebuild_top() {
         const GeometryHandle geometry(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE));
         rtcSetGeometryInstancedScene(geometry.get(),
                                      mesh_scenes_.find(ObjectId{tables_.instances[i].object}));
-        rtcSetGeometryTimeStepCount(geometry.get(), 1);
         rtcAttachGeometryByID(top_.get(), geometry.get(), i);
         place(i);
     }

@@ -17,7 +17,7 @@ MeshHashes hashes_of(const backend::Mesh& mesh) {
 }  // namespace
 
 BvhPool::Work BvhPool::update(const backend::MeshCatalog& meshes, const backend::MeshCatalog::Result& changes,
-                              std::span<const shading::Instance> instances) {
+                              const backend::SceneTables& tables) {
     Work work;
     const auto remove = [&](ObjectId id) {
         const auto place = meshes_.find(id);
@@ -41,21 +41,23 @@ BvhPool::Work BvhPool::update(const backend::MeshCatalog& meshes, const backend:
         }
         remove(id);
         const MeshData data = data_of(mesh);
-        // One of many positions of an animation is not worth a file.
-        std::optional<WideTree> tree = moves ? std::nullopt : trees_.load(data, hashes_of(mesh));
+        // One of many positions of an animation is not worth a file; one that bends has boxes of its own.
+        const bool is_kept = !moves && data.steps.empty();
+        std::optional<WideTree> tree = is_kept ? trees_.load(data, hashes_of(mesh)) : std::nullopt;
         if (!tree) {
             tree = build_mesh(builder_, data);
-            if (!moves) trees_.save(*tree, hashes_of(mesh));
+            if (is_kept) trees_.save(*tree, hashes_of(mesh));
             ++work.rebuilt;
         }
-        insert(id, std::move(*tree));
+        insert(id, std::move(*tree), data.steps.size());
     }
     // Nodes have two children at least, so there are fewer of them than instances, but for the root.
-    place_rows((2 * instances.size() + 1) * sizeof(shading::BvhNode));
+    place_rows((2 * tables.instances.size() + 1) * sizeof(shading::BvhNode) +
+               tables.places.size() * sizeof(glm::vec4) * shading::BvhPlaceItems);
     for (auto& [id, rows] : meshes_) {
         if (rows.dirty) send(rows, *meshes.find(id));
     }
-    update_top(instances);
+    update_top(tables);
     if (top_.row.size() > top_row_.bytes)
         throw Error(ErrorCode::Internal, "the top level is larger than planned");
     upload_bytes(device_, buffer_, top_.row, top_row_.offset);
@@ -67,17 +69,19 @@ bool BvhPool::refit(MeshRows& rows, const backend::Mesh& mesh) {
     return refit_mesh(rows.tree, data_of(mesh), rows.built_cost);
 }
 
-void BvhPool::insert(ObjectId id, WideTree&& tree) {
+void BvhPool::insert(ObjectId id, WideTree&& tree, std::size_t steps) {
     MeshRows rows;
     rows.tree = std::move(tree);
     rows.built_cost = rows.tree.cost;
     rows.nodes.bytes = std::max<std::uint64_t>(rows.tree.nodes.size() * sizeof(shading::BvhNode), 16);
+    rows.steps = static_cast<std::uint32_t>(steps);
     rows.triangles.bytes =
-        std::max<std::uint64_t>(rows.tree.primitives.size() * sizeof(shading::BvhTriangle), 16);
+        std::max<std::uint64_t>(rows.tree.primitives.size() * (steps + 1) * sizeof(shading::BvhTriangle), 16);
     meshes_.emplace(id, std::move(rows));
 }
 
-void BvhPool::update_top(std::span<const shading::Instance> instances) {
+void BvhPool::update_top(const backend::SceneTables& tables) {
+    const std::span<const shading::Instance> instances = tables.instances;
     std::vector<PlacedMesh> placed(instances.size());
     for (std::size_t i = 0; i < instances.size(); ++i) {
         const shading::Instance& instance = instances[i];
@@ -88,7 +92,11 @@ void BvhPool::update_top(std::span<const shading::Instance> instances) {
                      .nodes = rows.nodes.item(),
                      .triangles = rows.triangles.item(),
                      .alpha_tested = instance.alpha_tested != 0,
-                     .layers = instance.layers};
+                     .layers = instance.layers,
+                     .mesh_steps = rows.steps};
+        if (instance.motion < 0) continue;
+        const shading::Motion& motion = tables.motions[static_cast<std::size_t>(instance.motion)];
+        placed[i].places = std::span(tables.places).subspan(motion.first_place, motion.steps + 1);
     }
     boxes_.clear();
     for (const PlacedMesh& instance : placed) boxes_.push_back(world_box(instance));
@@ -142,7 +150,7 @@ void BvhPool::release(Row& row) {
 
 void BvhPool::send(MeshRows& rows, const backend::Mesh& mesh) {
     upload_bytes(device_, buffer_, std::as_bytes(std::span(rows.tree.nodes)), rows.nodes.offset);
-    std::vector<shading::BvhTriangle> triangles(rows.tree.primitives.size());
+    std::vector<shading::BvhTriangle> triangles(rows.tree.primitives.size() * (rows.steps + 1));
     write_triangles(rows.tree.primitives, data_of(mesh), triangles);
     upload_bytes(device_, buffer_, std::as_bytes(std::span(triangles)), rows.triangles.offset);
     rows.dirty = false;

@@ -26,7 +26,7 @@ class BvhPool final {
     // Brings the meshes in step with the catalog, then the top level with the instances. A refit that would
     // make a tree bad is a rebuild. Throws Error{OutOfMemory} and DeviceLost; the pool is to be dropped then.
     Work update(const backend::MeshCatalog& meshes, const backend::MeshCatalog::Result& changes,
-                std::span<const shading::Instance> instances);
+                const backend::SceneTables& tables);
 
     const Buffer& buffer() const { return buffer_; }
     // What each instance can be hit in; empty: it is left out and never hit.
@@ -44,12 +44,13 @@ class BvhPool final {
         WideTree tree;
         double built_cost = 0.0;
         Row nodes, triangles;
-        bool dirty = true;  // the device does not have it yet
+        std::uint32_t steps = 0;  // of its motion, after the beginning
+        bool dirty = true;        // the device does not have it yet
     };
 
     bool refit(MeshRows& rows, const backend::Mesh& mesh);
-    void insert(ObjectId id, WideTree&& tree);
-    void update_top(std::span<const shading::Instance> instances);
+    void insert(ObjectId id, WideTree&& tree, std::size_t steps);
+    void update_top(const backend::SceneTables& tables);
     // Places all rows that have no place, in a larger pool if need be.
     void place_rows(std::uint64_t top_bytes);
     bool try_place();

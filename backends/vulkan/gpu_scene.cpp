@@ -35,6 +35,9 @@ GpuScene::GpuScene(Device& device, TreeCache& cache, Trees trees)
       materials_(device),
       extras_(device),
       meshes_(device),
+      mesh_steps_(device),
+      places_(device),
+      motions_(device),
       instances_(device),
       lights_(device),
       emitters_(device),
@@ -61,12 +64,15 @@ BvhPool::Work GpuScene::update(const backend::MeshCatalog& meshes,
     if (plain_) {
         work.rebuilt = plain_->update(meshes, tables.instances);
     } else {
-        work = bvh_.update(meshes, changes, tables.instances);
+        work = bvh_.update(meshes, changes, tables);
     }
     textures_.update(there.textures);
     materials_.update(there.materials);
     extras_.update(there.extras);
     meshes_.update(there.meshes);
+    mesh_steps_.update(there.mesh_steps);
+    places_.update(there.places);
+    motions_.update(there.motions);
     instances_.update(there.instances);
     lights_.update(there.lights);
     emitters_.update(there.emitters);
@@ -78,6 +84,9 @@ BvhPool::Work GpuScene::update(const backend::MeshCatalog& meshes,
     set_address(there.scene.materials, materials_);
     set_address(there.scene.extras, extras_);
     set_address(there.scene.meshes, meshes_);
+    set_address(there.scene.mesh_steps, mesh_steps_);
+    set_address(there.scene.places, places_);
+    set_address(there.scene.motions, motions_);
     set_address(there.scene.instances, instances_);
     set_address(there.scene.lights, lights_);
     set_address(there.scene.emitters, emitters_);

@@ -6,7 +6,12 @@
 namespace tessera::vulkan {
 
 inline MeshData data_of(const backend::Mesh& mesh) {
-    return {backend::elements<glm::vec3>(mesh.positions), backend::elements<glm::uvec3>(mesh.triangles)};
+    MeshData data{backend::elements<glm::vec3>(mesh.positions),
+                  backend::elements<glm::uvec3>(mesh.triangles)};
+    for (const scene::BlobPtr& step : mesh.motion_positions) {
+        data.steps.push_back(backend::elements<glm::vec3>(step));
+    }
+    return data;
 }
 
 }  // namespace tessera::vulkan

@@ -26,7 +26,8 @@ std::uint32_t PlainPool::update(const backend::MeshCatalog& meshes,
     std::vector<glm::uvec4> pool;
     std::map<ObjectId, PlacedMesh> rows;
     for (const auto& [id, mesh] : meshes.all()) {
-        const MeshData data = data_of(mesh);
+        MeshData data = data_of(mesh);
+        data.steps.clear();
         const PlainTree tree = build_plain_mesh(builder_, data);
         std::vector<shading::BvhTriangle> triangles(tree.primitives.size());
         write_triangles(tree.primitives, data, triangles);

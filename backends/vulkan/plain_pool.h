@@ -8,7 +8,8 @@
 
 namespace tessera::vulkan {
 
-// The scene as trees of two children (shading/plain_trace.h): the baseline. Built anew at each edit.
+// The scene as trees of two children (shading/plain_trace.h): the baseline. Built anew at each edit. What
+// moves while the shutter is open stands where it is at the beginning.
 class PlainPool final {
   public:
     explicit PlainPool(Device& device) : device_(device) {}

@@ -14,6 +14,7 @@ namespace {
 struct HostContext : backend::Teller {
     const shading::Scene& scene;
     const shading::View& view;
+    float time;
     shading::BvhItems pool;
     std::uint32_t top;
 };
@@ -25,16 +26,18 @@ bool stops_ray(const HostContext& context, const shading::Hit& candidate, std::u
 
 bool trace_closest(const HostContext& context, const shading::Ray& ray, std::uint32_t seed,
                    shading::Hit& hit) {
-    hit = shading::bvh_trace(context.pool, context.top, ray.origin, ray.direction, shading::NearestHit,
-                             shading::infinity(), shading::BvhClosest | shading::BvhAlpha,
-                             context.view.layers, context, seed);
+    hit =
+        shading::bvh_trace(context.pool, context.top, ray.origin, ray.direction, shading::NearestHit,
+                           shading::infinity(), shading::BvhClosest | shading::BvhAlpha | shading::BvhMotion,
+                           context.view.layers, context.time, context, seed);
     return hit.instance != shading::NoInstance;
 }
 
 bool trace_occluded(const HostContext& context, const glm::vec3& origin, const glm::vec3& segment, float far,
                     std::uint32_t seed) {
     return shading::bvh_trace(context.pool, context.top, origin, segment, shading::NearestHit, far,
-                              shading::BvhAny | shading::BvhAlpha, context.view.layers, context, seed)
+                              shading::BvhAny | shading::BvhAlpha | shading::BvhMotion, context.view.layers,
+                              context.time, context, seed)
                .instance != shading::NoInstance;
 }
 
@@ -53,9 +56,10 @@ std::vector<std::string> replay(Device& device, const GpuScene& scene, const bac
                                 const shading::View& view, glm::uvec2 pixel, std::uint64_t sample) {
     const auto pool = download<glm::uvec4>(device, scene.pool());
     shading::Scene on_host = backend::on_host(tables);
-    on_host.features = backend::features_for(tables, view.layers);
+    on_host.features = backend::features_for(tables, view);
     backend::Story story;
-    const HostContext context{{&story}, on_host, view, {pool.data()}, scene.top()};
+    const float time = shading::sample_time(on_host.features, view, pixel.x, pixel.y, sample);
+    const HostContext context{{&story}, on_host, view, time, {pool.data()}, scene.top()};
     const shading::Path path = view.renderer == shading::RendererRaster
                                    ? trace_drawn(context, pixel, sample)
                                    : shading::trace_sample(context, pixel.x, pixel.y, sample);

@@ -42,7 +42,7 @@ std::optional<frame::SampleBlock> next_block(std::uint64_t sample, std::uint64_t
 // Renders one unit.
 class UnitRun {
   public:
-    UnitRun(const TileRenderer& with, const shading::View& view, const view::WorkUnit& unit,
+    UnitRun(const TileRenderer& with, shading::View view, const view::WorkUnit& unit,
             frame::ChannelSet channels)
         : device_(with.device),
           kernels_(with.kernels),
@@ -53,8 +53,12 @@ class UnitRun {
           values_(value_count(channels)),
           planes_(channels.plane_count()),
           all_(unit.block.count() * pixels_),
-          view_(make_buffer(device_, std::vector<shading::View>{view})),
           film_(unit, channels) {
+        if (!with.camera_places.empty()) {
+            camera_places_ = make_buffer(device_, with.camera_places);
+            view.camera_places.items = reinterpret_cast<const shading::Place*>(camera_places_.address());
+        }
+        view_ = make_buffer(device_, std::vector<shading::View>{view});
         const bool trees =
             view.renderer != shading::RendererPathTracing || (view.keeps & shading::KeepsRange) != 0;
         kernel_ = &kernels_.find({.features = with.features,
@@ -193,7 +197,7 @@ class UnitRun {
     const view::WorkUnit& unit_;
     std::uint32_t pixels_, values_, planes_;
     std::uint64_t all_, sent_ = 0;  // items
-    Buffer view_, columns_;
+    Buffer camera_places_, view_, columns_;
     std::uint32_t column_count_ = 0;
     bool merges_ = false;
     const ComputePipeline* kernel_ = nullptr;

@@ -19,8 +19,9 @@ struct TileRenderer {
     Kernels& kernels;
     Pace& pace;
     const GpuScene& scene;
-    std::uint32_t features = 0;           // of the scene for the view (backend::features_for)
-    const RasterTools* raster = nullptr;  // for first hits that are drawn (view::Renderer::Raster)
+    std::uint32_t features = 0;                   // of the scene for the view (backend::features_for)
+    const RasterTools* raster = nullptr;          // for first hits that are drawn (view::Renderer::Raster)
+    std::vector<shading::Place> camera_places{};  // of a camera that moves
 
     backend::RenderResult run(const shading::View& view, const view::WorkUnit& unit,
                               frame::ChannelSet channels, const std::stop_token& stop) const;

@@ -51,15 +51,16 @@ class VulkanBackend final : public Backend {
         require_renderer(capabilities_.renderers, view);
         return on_device([&]() -> RenderResult {
             if (unit.version != world_.version()) return {};
-            const shading::View record = make_view(view, world_.tables().render_origin);
+            const shading::View record = record_of(view);
             const bool rasters = record.renderer == shading::RendererRaster;
             const RasterTools tools{opened_->raster, opened_->targets, {}};
             const TileRenderer renderer{opened_->device,
                                         opened_->kernels,
                                         rasters ? opened_->raster_pace : opened_->pace,
                                         world_.scene(),
-                                        features_for(world_.tables(), view.layers),
-                                        rasters ? &tools : nullptr};
+                                        features_for(world_.tables(), record),
+                                        rasters ? &tools : nullptr,
+                                        camera_places(view.camera, world_.tables().render_origin)};
             return renderer.run(record, unit, view.channels, stop);
         });
     }
@@ -68,8 +69,11 @@ class VulkanBackend final : public Backend {
                                    std::uint64_t sample) override {
         require_renderer(capabilities_.renderers, view);
         return on_device([&] {
-            return replay(opened_->device, world_.scene(), world_.tables(),
-                          make_view(view, world_.tables().render_origin), {x, y}, sample);
+            const std::vector<shading::Place> places =
+                camera_places(view.camera, world_.tables().render_origin);
+            shading::View record = record_of(view);
+            record.camera_places.items = places.data();
+            return replay(opened_->device, world_.scene(), world_.tables(), record, {x, y}, sample);
         });
     }
 
@@ -87,6 +91,14 @@ class VulkanBackend final : public Backend {
         VulkanBackend& backend_;
         std::unique_lock<std::shared_mutex> lock_;
     };
+
+    // What moves is seen by rays.
+    shading::View record_of(const view::View& view) const {
+        shading::View record = make_view(view, world_.tables().render_origin);
+        const bool moves = (world_.tables().scene.features & shading::FeatureMotion) != 0;
+        if (moves && record.renderer == shading::RendererRaster) record.renderer = shading::RendererWhitted;
+        return record;
+    }
 
     // `work` with the scene on the device, under the lock of renders; on another device where this one is
     // lost. A device that could not be had the last time is asked for again.

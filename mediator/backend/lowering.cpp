@@ -5,6 +5,8 @@
 #include <unordered_map>
 #include <variant>
 
+#include "mediator/scene/motion.h"
+
 namespace tessera::backend {
 
 namespace {
@@ -101,13 +103,15 @@ class Unfolding {
             if (!object) continue;
             if (const auto* geometry = std::get_if<scene::Geometry>(object)) {
                 const MotionHint own = geometry->hint == MotionHint::Unflagged ? above.hint : geometry->hint;
-                result.instances.push_back({id, above.world, own, above.layers, path_});
+                result.instances.push_back({id, above.world, own, above.layers, path_, motion()});
             } else if (std::holds_alternative<scene::Light>(*object)) {
-                result.lights.push_back({id, above.world, above.layers, path_});
+                result.lights.push_back({id, above.world, above.layers, path_, motion()});
             } else if (const auto* transform = std::get_if<scene::Transform>(object)) {
                 if (!counted_.anything_below(id)) continue;
                 path_.push_back(id);
+                moving_ += transform->motion.empty() ? 0 : 1;
                 children(transform->children, above.below(*transform));
+                moving_ -= transform->motion.empty() ? 0 : 1;
                 path_.pop_back();
             }
         }
@@ -116,9 +120,14 @@ class Unfolding {
     Lowered result;
 
   private:
+    std::vector<glm::dmat4> motion() const {
+        return moving_ == 0 ? std::vector<glm::dmat4>() : scene::motion_along(scene_, path_);
+    }
+
     const scene::Scene& scene_;
     const Counting& counted_;
     std::vector<ObjectId> path_;
+    std::size_t moving_ = 0;  // transforms of the path
 };
 
 }  // namespace

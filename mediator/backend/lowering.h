@@ -19,6 +19,7 @@ struct Instance {
         scene::MotionHint::Unflagged;          // of the geometry or the nearest flagged transform
     std::uint32_t layers = scene::RootLayers;  // never 0
     std::vector<ObjectId> path;                // transforms from the root down
+    std::vector<glm::dmat4> motion;            // world_from_object at even steps of time after the first
 };
 
 struct PlacedLight {
@@ -26,6 +27,7 @@ struct PlacedLight {
     glm::dmat4 world_from_light{1.0};
     std::uint32_t layers = scene::RootLayers;  // never 0
     std::vector<ObjectId> path;
+    std::vector<glm::dmat4> motion;
 };
 
 struct Lowered {

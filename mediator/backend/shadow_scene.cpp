@@ -4,6 +4,8 @@
 #include <iterator>
 #include <utility>
 
+#include "mediator/scene/motion.h"
+
 namespace tessera::backend {
 
 using scene::Fields;
@@ -124,14 +126,14 @@ void ShadowScene::record_relowering(const Lowered& before) {
     };
     const auto same_light = [](const PlacedLight& a, const PlacedLight& b) {
         return a.light == b.light && a.path == b.path && a.world_from_light == b.world_from_light &&
-               a.layers == b.layers;
+               a.layers == b.layers && a.motion == b.motion;
     };
     const auto& now = lowered_.instances;
     if (std::equal(now.begin(), now.end(), before.instances.begin(), before.instances.end(), same_member)) {
         for (std::uint32_t i = 0; i < now.size(); ++i) {
             const Instance& old = before.instances[i];
-            const bool is_same =
-                now[i].world_from_object == old.world_from_object && now[i].layers == old.layers;
+            const bool is_same = now[i].world_from_object == old.world_from_object &&
+                                 now[i].layers == old.layers && now[i].motion == old.motion;
             if (!is_same) moved_.insert(i);
         }
     } else {
@@ -152,12 +154,15 @@ bool ShadowScene::move_below(const std::vector<ObjectId>& transforms, std::set<s
             for (const std::uint32_t i : below->second) {
                 Instance& instance = lowered_.instances[i];
                 instance.world_from_object = placement(scene_, instance.path);
+                instance.motion = scene::motion_along(scene_, instance.path);
                 moved.insert(i);
             }
         }
         if (const auto below = lights_below_.find(transform); below != lights_below_.end()) {
             for (const std::uint32_t i : below->second) {
-                lowered_.lights[i].world_from_light = placement(scene_, lowered_.lights[i].path);
+                PlacedLight& light = lowered_.lights[i];
+                light.world_from_light = placement(scene_, light.path);
+                light.motion = scene::motion_along(scene_, light.path);
                 lights = true;
             }
         }
@@ -308,7 +313,8 @@ void ShadowScene::touch_updated(Touched& touched, const scene::Update& update) c
         const auto fields = Fields<Transform>::from_bits(mask);
         touched.structure |=
             fields.intersects({Transform::Field::Children, Transform::Field::Hint, Transform::Field::Layers});
-        if (fields.contains(Transform::Field::Matrix)) touched.moved_transforms.push_back(update.id);
+        if (fields.intersects({Transform::Field::Matrix, Transform::Field::Motion}))
+            touched.moved_transforms.push_back(update.id);
     } else if (std::holds_alternative<Geometry>(update.fields)) {
         const auto fields = Fields<Geometry>::from_bits(mask);
         touched.structure |= fields.contains(Geometry::Field::Hint);

@@ -49,12 +49,18 @@ struct BvhInstance {
     vec4 object_x, object_y, object_z;  // rows of object from world
     uint nodes, triangles;              // where the mesh's rows begin, in items of the pool
     uint instance;                      // index in the scene
-    uint flags;                         // BvhAlphaTested
+    uint flags;                         // BvhAlphaTested, BvhMoves
     uint layers;                        // rays of none of them pass it by
-    uvec3 unused;
+    // Of BvhMoves alone. Where its matrices begin, in items from the top level's root: BvhPlaceItems for each
+    // step, rows of world from object; and the steps after the first. None: object_x to object_z hold.
+    uint places;
+    uint steps;
+    uint mesh_steps;  // of its triangles after the first; each has BvhTriangleItems for each step
 };
 
 inline constexpr uint BvhAlphaTested = 2u;  // what it hits has to be asked
+inline constexpr uint BvhMoves = 4u;        // it or its vertices, while the shutter is open
+inline constexpr uint BvhPlaceItems = 3u;
 
 #ifdef __cplusplus
 
@@ -74,7 +80,8 @@ static_assert(offsetof(BvhInstance, object_x) == 0 && offsetof(BvhInstance, obje
 static_assert(offsetof(BvhInstance, object_z) == 32);
 static_assert(offsetof(BvhInstance, nodes) == 48 && offsetof(BvhInstance, triangles) == 52);
 static_assert(offsetof(BvhInstance, instance) == 56 && offsetof(BvhInstance, flags) == 60);
-static_assert(offsetof(BvhInstance, layers) == 64 && offsetof(BvhInstance, unused) == 68);
+static_assert(offsetof(BvhInstance, layers) == 64 && offsetof(BvhInstance, places) == 68);
+static_assert(offsetof(BvhInstance, steps) == 72 && offsetof(BvhInstance, mesh_steps) == 76);
 static_assert(BvhStackSize >= BvhTopDepth + BvhMeshDepth + 2);
 
 #endif

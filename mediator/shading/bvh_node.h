@@ -9,8 +9,10 @@ SHADING_BEGIN
 
 // What is asked of a ray; sums of them. Constants, so that compilers leave out what is not needed.
 inline constexpr uint BvhClosest = 0u;
-inline constexpr uint BvhAny = 1u;    // any hit will do: children are visited in any order
-inline constexpr uint BvhAlpha = 2u;  // instances marked BvhAlphaTested stop only what stops_ray() says
+inline constexpr uint BvhAny = 1u;     // any hit will do: children are visited in any order
+inline constexpr uint BvhAlpha = 2u;   // instances marked BvhAlphaTested stop only what stops_ray() says
+inline constexpr uint BvhMotion = 4u;  // instances marked BvhMoves are where they are at the ray's time; else
+                                       // all is as at the beginning
 
 // Slots of children, 3 bits each, the nearest lowest; a set bit above the last slot; from bit 25 on the count
 // of inner children. BvhEnd instead: nothing is left. BvhLeave: an instance is finished.

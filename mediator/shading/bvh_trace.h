@@ -2,6 +2,7 @@
 #define TESSERA_MEDIATOR_SHADING_BVH_TRACE_H
 
 #include "mediator/shading/bvh_node.h"
+#include "mediator/shading/motion.h"
 #include "mediator/shading/rays.h"
 
 // Rays through the two levels of the acceleration structure. Hits are a function of the triangles alone:
@@ -48,6 +49,8 @@ struct BvhPlace {
     BvhRay ray;
     uint nodes, corners;  // where the rows begin
     uint instance, flags;
+    uint stride;    // of triangles, in items
+    Moment moment;  // of a mesh that bends
 };
 
 inline BvhPlace bvh_top(uint top, vec3 origin, vec3 direction) {
@@ -57,11 +60,51 @@ inline BvhPlace bvh_top(uint top, vec3 origin, vec3 direction) {
     place.corners = 0u;
     place.instance = NoInstance;
     place.flags = 0u;
+    place.stride = BvhTriangleItems;
+    place.moment = Moment(0u, 0.0f);
+    return place;
+}
+
+inline Place bvh_place(BvhItems pool, uint at) {
+    const vec4 x = bvh_floats(bvh_item(pool, at)), y = bvh_floats(bvh_item(pool, at + 1u));
+    const vec4 z = bvh_floats(bvh_item(pool, at + 2u));
+    return Place(mat3(vec3(x.x, y.x, z.x), vec3(x.y, y.y, z.y), vec3(x.z, y.z, z.z)), vec3(x.w, y.w, z.w));
+}
+
+// The ray in the space of what is at this place: motion_error bounds the rounding. A place without an inverse
+// gives a ray that hits nothing.
+inline BvhRay bvh_ray_from(IN(Place) place, vec3 origin, vec3 direction) {
+    const mat3 m = place.linear;
+    const float scale = unit_scale(extent_of(max(max(abs(m[0]), abs(m[1])), abs(m[2]))));
+    const vec3 a = m[0] * scale, b = m[1] * scale, c = m[2] * scale;
+    const vec3 x = cross(b, c), y = cross(c, a), z = cross(a, b);
+    const float inverse = scale / dot(a, x);
+    const vec3 from = origin - place.translation;
+    return bvh_ray(vec3(dot(x, from), dot(y, from), dot(z, from)) * inverse,
+                   vec3(dot(x, direction), dot(y, direction), dot(z, direction)) * inverse);
+}
+
+inline BvhPlace bvh_enter_moving(BvhItems pool, uint top, uint at, IN(BvhPlace) still, vec3 origin,
+                                 vec3 direction, float time) {
+    const uvec4 motion = bvh_item(pool, at + 4u);
+    BvhPlace place = still;
+    if (motion.z > 0u) {
+        const Moment moment = moment_at(motion.z, time);
+        const uint from = top + motion.y + moment.step * BvhPlaceItems;
+        place.ray = bvh_ray_from(
+            place_between(bvh_place(pool, from), bvh_place(pool, from + BvhPlaceItems), moment.share), origin,
+            direction);
+    }
+    if (motion.w > 0u) {
+        place.moment = moment_at(motion.w, time);
+        place.stride = BvhTriangleItems * (motion.w + 1u);
+    }
     return place;
 }
 
 // Directions are not made unit: distances are those of the world.
-inline BvhPlace bvh_enter(BvhItems pool, uint at, vec3 origin, vec3 direction) {
+inline BvhPlace bvh_enter(BvhItems pool, uint top, uint at, vec3 origin, vec3 direction, uint question,
+                          float time) {
     const vec4 x = bvh_floats(bvh_item(pool, at)), y = bvh_floats(bvh_item(pool, at + 1u));
     const vec4 z = bvh_floats(bvh_item(pool, at + 2u));
     const uvec4 about = bvh_item(pool, at + 3u);
@@ -72,7 +115,10 @@ inline BvhPlace bvh_enter(BvhItems pool, uint at, vec3 origin, vec3 direction) {
     place.corners = about.y;
     place.instance = about.z;
     place.flags = about.w;
-    return place;
+    place.stride = BvhTriangleItems;
+    place.moment = Moment(0u, 0.0f);
+    if ((question & about.w & BvhMoves) == 0u) return place;
+    return bvh_enter_moving(pool, top, at, place, origin, direction, time);
 }
 
 // Whether a ray of these layers passes the instance there by.
@@ -97,10 +143,30 @@ inline BvhStep bvh_step(BvhItems pool, uint node, IN(BvhPlace) place, float near
     return made;
 }
 
-// A closer hit of the triangle there, or the hit as it was.
-inline Hit bvh_meet(BvhItems pool, uint at, IN(BvhPlace) place, float near, IN(Hit) hit) {
+inline Triangle bvh_triangle(BvhItems pool, uint at) {
+    return Triangle(bvh_corner(bvh_item(pool, at)), bvh_corner(bvh_item(pool, at + 1u)),
+                    bvh_corner(bvh_item(pool, at + 2u)));
+}
+
+inline BvhCrossing bvh_cross_moving(BvhItems pool, uint at, IN(BvhPlace) place) {
+    const uint step = at + place.moment.step * BvhTriangleItems;
+    const Triangle from = bvh_triangle(pool, step), to = bvh_triangle(pool, step + BvhTriangleItems);
+    return bvh_cross_triangle(place.ray, between(from.p, to.p, place.moment.share),
+                              between(from.q, to.q, place.moment.share),
+                              between(from.r, to.r, place.moment.share));
+}
+
+// A closer hit of the triangle of this number in the row, or the hit as it was.
+inline Hit bvh_meet(BvhItems pool, uint number, IN(BvhPlace) place, float near, uint question, IN(Hit) hit) {
+    const bool moves = (question & BvhMotion) != 0u;
+    const uint at = place.corners + number * (moves ? place.stride : BvhTriangleItems);
     const uvec4 a = bvh_item(pool, at), b = bvh_item(pool, at + 1u), c = bvh_item(pool, at + 2u);
-    const BvhCrossing crossing = bvh_cross_triangle(place.ray, bvh_corner(a), bvh_corner(b), bvh_corner(c));
+    BvhCrossing crossing;
+    if (moves && place.stride != BvhTriangleItems) {
+        crossing = bvh_cross_moving(pool, at, place);
+    } else {
+        crossing = bvh_cross_triangle(place.ray, bvh_corner(a), bvh_corner(b), bvh_corner(c));
+    }
     Hit met = hit;
     if (crossing.crosses && crossing.distance > near &&
         bvh_is_closer(hit, crossing.distance, place.instance, a.w)) {
@@ -114,12 +180,12 @@ inline Hit bvh_meet(BvhItems pool, uint at, IN(BvhPlace) place, float near, IN(H
 
 // The closest hit with near < distance <= far, or any; distance = far where there is none. `top`: where the
 // top level's root is, in items. `layers`: instances in none of them are not there; AllLayers, as a constant,
-// costs nothing. Whoever includes this says what Context is and defines
+// costs nothing. `time`: of BvhMotion. Whoever includes this says what Context is and defines
 //     bool stops_ray(IN(Context) context, IN(Hit) candidate, uint seed)
 // before. Memory: BvhStackSize entries of 8 bytes; the builder bounds the depth of every tree.
 WITH_CONTEXT
 inline Hit bvh_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float near, float far,
-                     uint question, uint layers, IN(Context) context, uint seed) {
+                     uint question, uint layers, float time, IN(Context) context, uint seed) {
     Hit hit;
     hit.distance = far;
     hit.barycentric = vec2(0.0f, 0.0f);
@@ -159,9 +225,9 @@ inline Hit bvh_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float
             }
         }
         while (triangles != 0u && !asked) {
-            const uint at = place.corners + (first_triangle + lowest_bit(triangles)) * BvhTriangleItems;
+            const uint number = first_triangle + lowest_bit(triangles);
             triangles &= triangles - 1u;
-            candidate = bvh_meet(pool, at, place, near, hit);
+            candidate = bvh_meet(pool, number, place, near, question, hit);
             asked = (question & place.flags & BvhAlpha) != 0u &&
                     (candidate.instance != hit.instance || candidate.triangle != hit.triangle);
             if (!asked) hit = candidate;
@@ -182,7 +248,7 @@ inline Hit bvh_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float
         }
         if (triangles == 0u && list > BvhLeave && !bvh_is_node(list)) {  // into an instance
             const uint at = top + (first + (list & 7u)) * BvhInstanceItems;
-            place = bvh_enter(pool, at, origin, direction);
+            place = bvh_enter(pool, top, at, origin, direction, question, time);
             list = bvh_without_nearest(list);
             stack_first[height + 1u] = first;
             stack_list[height + 1u] = list;

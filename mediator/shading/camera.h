@@ -1,6 +1,7 @@
 #ifndef TESSERA_MEDIATOR_SHADING_CAMERA_H
 #define TESSERA_MEDIATOR_SHADING_CAMERA_H
 
+#include "mediator/shading/motion.h"
 #include "mediator/shading/rays.h"
 #include "mediator/shading/sampling.h"
 
@@ -30,6 +31,18 @@ inline vec2 picture_place(IN(View) view, uint x, uint y, vec2 u) {
     const vec2 offset = filter_offset(view, u);
     return vec2(view.middle.x + (from_middle(x, view.width) * view.step.x + offset.x * view.step.x),
                 view.middle.y + (from_middle(y, view.height) * view.step.y + offset.y * view.step.y));
+}
+
+// The view at a time; compilers see where its camera stands still.
+inline View view_at(uint features, IN(View) view, float time) {
+    if ((features & FeatureCameraMotion) == 0u) return view;
+    const Place place = place_at(view.camera_places, 0u, view.camera_steps, time);
+    View moved = view;
+    moved.eye = place.translation;
+    moved.right = place.linear[0];
+    moved.up = place.linear[1];
+    moved.forward = -place.linear[2];
+    return moved;
 }
 
 inline Ray pinhole_ray(IN(View) view, vec2 place) {

@@ -67,7 +67,11 @@ static_assert(offsetof(MaterialExtras, sheen_color_texture) == 248);
 static_assert(offsetof(MaterialExtras, sheen_roughness_texture) == 280);
 static_assert(offsetof(MaterialExtras, anisotropy_texture) == 312);
 
-static_assert(sizeof(Mesh) == 64);
+static_assert(sizeof(MeshStep) == 16);
+static_assert(offsetof(MeshStep, positions) == 0);
+static_assert(offsetof(MeshStep, normals) == 8);
+
+static_assert(sizeof(Mesh) == 96);
 static_assert(offsetof(Mesh, positions) == 0);
 static_assert(offsetof(Mesh, triangles) == 8);
 static_assert(offsetof(Mesh, normals) == 16);
@@ -77,8 +81,24 @@ static_assert(offsetof(Mesh, tex_coords) == 40);
 static_assert(offsetof(Mesh, tex_coords_1) == 48);
 static_assert(offsetof(Mesh, arrays) == 56);
 static_assert(offsetof(Mesh, triangle_count) == 60);
+static_assert(offsetof(Mesh, first_step) == 64);
+static_assert(offsetof(Mesh, steps) == 68);
+static_assert(offsetof(Mesh, reach) == 72);
+static_assert(offsetof(Mesh, share) == 76);
+static_assert(offsetof(Mesh, next_positions) == 80);
+static_assert(offsetof(Mesh, next_normals) == 88);
 
-static_assert(sizeof(Instance) == 108);
+static_assert(sizeof(Place) == 48);
+static_assert(offsetof(Place, linear) == 0);
+static_assert(offsetof(Place, translation) == 36);
+
+static_assert(sizeof(Motion) == 24);
+static_assert(offsetof(Motion, first_place) == 0);
+static_assert(offsetof(Motion, steps) == 4);
+static_assert(offsetof(Motion, sizes) == 8);
+static_assert(offsetof(Motion, reach) == 12);
+
+static_assert(sizeof(Instance) == 112);
 static_assert(offsetof(Instance, mesh) == 0);
 static_assert(offsetof(Instance, material) == 4);
 static_assert(offsetof(Instance, object) == 8);
@@ -88,8 +108,9 @@ static_assert(offsetof(Instance, translation) == 52);
 static_assert(offsetof(Instance, normals) == 64);
 static_assert(offsetof(Instance, alpha_tested) == 100);
 static_assert(offsetof(Instance, layers) == 104);
+static_assert(offsetof(Instance, motion) == 108);
 
-static_assert(sizeof(LightSource) == 104);
+static_assert(sizeof(LightSource) == 108);
 static_assert(offsetof(LightSource, kind) == 0);
 static_assert(offsetof(LightSource, probability) == 4);
 static_assert(offsetof(LightSource, intensity) == 8);
@@ -105,6 +126,7 @@ static_assert(offsetof(LightSource, half_size) == 84);
 static_assert(offsetof(LightSource, instance) == 92);
 static_assert(offsetof(LightSource, first_emitter) == 96);
 static_assert(offsetof(LightSource, layers) == 100);
+static_assert(offsetof(LightSource, motion) == 104);
 
 static_assert(sizeof(Emitter) == 16);
 static_assert(offsetof(Emitter, light) == 0);
@@ -134,7 +156,7 @@ static_assert(offsetof(Environment, visible_color) == 80);
 static_assert(offsetof(Environment, shows_color) == 96);
 static_assert(offsetof(Environment, unused) == 100);
 
-static_assert(sizeof(Scene) == 224);
+static_assert(sizeof(Scene) == 248);
 static_assert(offsetof(Scene, textures) == 0);
 static_assert(offsetof(Scene, materials) == 8);
 static_assert(offsetof(Scene, extras) == 16);
@@ -146,17 +168,20 @@ static_assert(offsetof(Scene, light_nodes) == 56);
 static_assert(offsetof(Scene, sums) == 64);
 static_assert(offsetof(Scene, srgb) == 72);
 static_assert(offsetof(Scene, energy) == 80);
-static_assert(offsetof(Scene, environment) == 88);
-static_assert(offsetof(Scene, instance_count) == 192);
-static_assert(offsetof(Scene, light_count) == 196);
-static_assert(offsetof(Scene, tree_light_count) == 200);
-static_assert(offsetof(Scene, light_sums) == 204);
-static_assert(offsetof(Scene, tree_probability) == 208);
-static_assert(offsetof(Scene, environment_light) == 212);
-static_assert(offsetof(Scene, features) == 216);
-static_assert(offsetof(Scene, tree_scale) == 220);
+static_assert(offsetof(Scene, mesh_steps) == 88);
+static_assert(offsetof(Scene, places) == 96);
+static_assert(offsetof(Scene, motions) == 104);
+static_assert(offsetof(Scene, environment) == 112);
+static_assert(offsetof(Scene, instance_count) == 216);
+static_assert(offsetof(Scene, light_count) == 220);
+static_assert(offsetof(Scene, tree_light_count) == 224);
+static_assert(offsetof(Scene, light_sums) == 228);
+static_assert(offsetof(Scene, tree_probability) == 232);
+static_assert(offsetof(Scene, environment_light) == 236);
+static_assert(offsetof(Scene, features) == 240);
+static_assert(offsetof(Scene, tree_scale) == 244);
 
-static_assert(sizeof(View) == 136);
+static_assert(sizeof(View) == 152);
 static_assert(offsetof(View, seed) == 0);
 static_assert(offsetof(View, eye) == 8);
 static_assert(offsetof(View, right) == 20);
@@ -180,5 +205,8 @@ static_assert(offsetof(View, layers) == 120);
 static_assert(offsetof(View, camera) == 124);
 static_assert(offsetof(View, lens_radius) == 128);
 static_assert(offsetof(View, focus_distance) == 132);
+static_assert(offsetof(View, camera_places) == 136);
+static_assert(offsetof(View, camera_steps) == 144);
+static_assert(offsetof(View, unused) == 148);
 
 }  // namespace tessera::shading

@@ -110,16 +110,19 @@ inline LightSample sample_mesh_light(IN(Scene) scene, IN(Emitter) emitter, float
         found.radiance *= material.alpha_mode == AlphaMask ? masked : clamp(alpha, 0.0f, 1.0f);
     }
     found.intensity = found.radiance;
-    found.pdf = probability * area_pdf(emitter.inverse_root_area, way.distance, abs(facing));
+    const float inverse_root_area = inverse_root_area_of(scene, emitter, instance, triangle);
+    found.pdf = probability * area_pdf(inverse_root_area, way.distance, abs(facing));
     // By its own error and that of the segment's rounding on the way there.
-    const vec3 error = point.error + 2.0f * 5.9604644775390625e-8f * abs(offset);
+    const vec3 error = point.error + motion_error(scene, instance, mesh, triangle, b, point.position) +
+                       2.0f * 5.9604644775390625e-8f * abs(offset);
     found.target = leave_surface(point.position, error, normal, -found.direction);
     return found;
 }
 
 inline LightSample sample_instance_light(IN(Scene) scene, IN(Emitter) emitter, float probability,
                                          IN(Instance) instance, IN(Surface) surface, vec2 u) {
-    return sample_mesh_light(scene, emitter, probability, instance, scene.meshes.items[instance.mesh],
+    return sample_mesh_light(scene, emitter, probability, instance_at(scene, instance, surface.time),
+                             mesh_at(scene, scene.meshes.items[instance.mesh], surface.time),
                              scene.materials.items[instance.material], surface, u);
 }
 
@@ -166,7 +169,8 @@ inline Receiver receiver_at(IN(Surface) surface) {
 inline LightSample sample_chosen(IN(Scene) scene, uint layers, IN(Surface) surface, IN(Emitter) emitter,
                                  IN(LightSource) light, float probability, vec2 u) {
     if (!is_seen(scene, light, layers)) return no_light();
-    return sample_emitter(scene, emitter, light, scene.tree_probability * probability, surface, u);
+    return sample_emitter(scene, emitter, light_at(scene, light, surface.time),
+                          scene.tree_probability * probability, surface, u);
 }
 
 inline LightSample sample_tree(IN(Scene) scene, uint layers, IN(Surface) surface, vec2 choice, vec2 u) {
@@ -189,7 +193,16 @@ inline LightSample sample_light(IN(Scene) scene, uint layers, IN(Surface) surfac
     if (chosen.index == 0u) return sample_tree(scene, layers, surface, vec2(chosen.rest, choice.y), u);
     const uint index = scene.tree_light_count + chosen.index - 1u;
     if (!is_seen(scene, scene.lights.items[index], layers)) return no_light();
-    return sample_distant(scene, scene.lights.items[index], u);
+    return sample_distant(scene, light_at(scene, scene.lights.items[index], surface.time), u);
+}
+
+// 1 / the square root of the area of the triangle that was hit, of this emitter.
+inline float inverse_root_area_at(IN(Scene) scene, IN(Emitter) emitter, IN(Surface) hit) {
+    if ((scene.features & FeatureMotion) == 0u) return emitter.inverse_root_area;
+    const Instance instance = scene.instances.items[scene.lights.items[hit.light].instance];
+    Mesh mesh = mesh_at(scene, scene.meshes.items[instance.mesh], hit.time);
+    return inverse_root_area_of(scene, emitter, instance_at(scene, instance, hit.time),
+                                triangle_of(mesh, mesh.triangles.items[hit.triangle]));
 }
 
 // Density with which sample_light finds, for a receiver, the point of a mesh light that was hit.
@@ -200,7 +213,7 @@ inline float mesh_light_pdf(IN(Scene) scene, IN(Surface) hit, IN(Receiver) recei
     const Measured way = measure(hit.position - receiver.position);
     const float cosine_there = abs(dot(hit.geometric_normal, way.direction));
     const float probability = scene.tree_probability * leaf_probability(scene, emitter.node, receiver);
-    return probability * area_pdf(emitter.inverse_root_area, way.distance, cosine_there);
+    return probability * area_pdf(inverse_root_area_at(scene, emitter, hit), way.distance, cosine_there);
 }
 
 // The same of a direction to the sky.

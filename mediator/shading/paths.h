@@ -72,6 +72,14 @@ inline constexpr uint CameraPair = 0u;
 inline constexpr uint LensPair = 0xffffffffu;  // no vertex comes so far
 inline constexpr uint PairBsdfDirection = 0u, PairLobeAndRoulette = 1u, PairLightChoice = 2u,
                       PairLightPoint = 3u, PairsPerVertex = 4u;
+inline constexpr uint TimePair = 0xfffffffeu;  // nor here
+
+// When a sample is taken, as a share of the time that the shutter is open; 0 where nothing moves.
+inline float sample_time(uint features, IN(View) view, uint x, uint y, uint64_t index) {
+    if ((features & (FeatureMotion | FeatureCameraMotion)) == 0u) return 0.0f;
+    return sample_pair(make_sampler(x, y, view.seed, index), TimePair).x;
+}
+
 inline vec2 pair_at(IN(Path) path, uint pair) {
     return sample_pair(path.numbers, 1u + path.vertex * PairsPerVertex + pair);
 }

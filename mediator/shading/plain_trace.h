@@ -51,7 +51,7 @@ inline float plain_enter(IN(BvhRay) ray, uint child, uvec4 low_item, uvec4 high_
 
 WITH_CONTEXT
 inline Hit plain_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float near, float far,
-                       uint question, uint layers, IN(Context) context, uint seed) {
+                       uint question, uint layers, float time, IN(Context) context, uint seed) {
     Hit hit;
     hit.distance = far;
     hit.barycentric = vec2(0.0f, 0.0f);
@@ -85,7 +85,7 @@ inline Hit plain_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, flo
             }
         } else if (place.instance == NoInstance) {
             const uint at = instances + (child & ~PlainLeaf) * BvhInstanceItems;
-            place = bvh_enter(pool, at, origin, direction);
+            place = bvh_enter(pool, top, at, origin, direction, question, time);
             const bool hidden = bvh_is_hidden(pool, at, layers);
             stack[height + 1u] = PlainLeave;
             height += hidden ? 0u : 1u;
@@ -93,8 +93,7 @@ inline Hit plain_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, flo
         } else {
             const uint first = (child & ~PlainLeaf) >> 2u;
             for (uint i = 0u; i < (child & 3u); ++i) {
-                const Hit met =
-                    bvh_meet(pool, place.corners + (first + i) * BvhTriangleItems, place, near, hit);
+                const Hit met = bvh_meet(pool, first + i, place, near, question, hit);
                 const bool is_new = met.instance != hit.instance || met.triangle != hit.triangle;
                 const bool asked = is_new && (question & place.flags & BvhAlpha) != 0u;
                 if (!asked || stops_ray(context, met, seed)) hit = met;

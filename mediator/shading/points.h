@@ -13,9 +13,19 @@ struct Triangle {
     vec3 r;
 };
 
+// Exact where nothing changes.
+inline vec3 between(vec3 from, vec3 to, float share) {
+    return from + (to - from) * share;
+}
+
+// One that bends is a mesh at a time (motion.h).
 inline Triangle triangle_of(IN(Mesh) mesh, uvec3 corners) {
-    return Triangle(mesh.positions.items[corners.x], mesh.positions.items[corners.y],
-                    mesh.positions.items[corners.z]);
+    const Triangle t = Triangle(mesh.positions.items[corners.x], mesh.positions.items[corners.y],
+                                mesh.positions.items[corners.z]);
+    if ((mesh.arrays & MeshBends) == 0u) return t;
+    return Triangle(between(t.p, mesh.next_positions.items[corners.x], mesh.share),
+                    between(t.q, mesh.next_positions.items[corners.y], mesh.share),
+                    between(t.r, mesh.next_positions.items[corners.z], mesh.share));
 }
 
 struct PointWithError {

@@ -92,7 +92,13 @@ struct MaterialExtras {
 
 // Which of a mesh's arrays are there besides positions and triangles.
 inline constexpr uint MeshNormals = 1u, MeshTangents = 2u, MeshColors = 4u, MeshTexCoords = 8u,
-                      MeshTexCoords1 = 16u;
+                      MeshTexCoords1 = 16u, MeshBends = 32u;
+
+// Vertices at a step of a mesh's motion; normals where the mesh has some.
+struct MeshStep {
+    Vec3Array positions;
+    Vec3Array normals;
+};
 
 struct Mesh {
     Vec3Array positions;
@@ -104,10 +110,30 @@ struct Mesh {
     Vec2Array tex_coords_1;
     uint arrays;
     uint triangle_count;
+    uint first_step;  // of MeshBends: index of the beginning's
+    uint steps;       // after it
+    float reach;      // of any coordinate at any step
+    float share;      // of a mesh at a time (motion.h): of the way from `positions` and `normals` to
+    Vec3Array next_positions;
+    Vec3Array next_normals;
 };
 
 inline constexpr uint AllLayers = 0xffffffffu;
 inline constexpr int ShadowCatcher = -2;
+
+// Where something is at a step of its motion: world from its own space.
+struct Place {
+    mat3 linear;
+    vec3 translation;
+};
+
+// A way through places that stand together, at even steps of time; between them all goes in a straight line.
+struct Motion {
+    uint first_place;
+    uint steps;   // after it; at least 1
+    float sizes;  // of any element of `linear` at any step, at most
+    vec3 reach;   // of the translation, likewise
+};
 
 struct Instance {
     uint mesh;      // index
@@ -119,6 +145,7 @@ struct Instance {
     mat3 normals;       // cofactors of `linear` times a power of two: they turn normals, to their own side
     uint alpha_tested;  // whether a hit has to be asked (stops_at)
     uint layers;        // not there for views that see none of them
+    int motion;         // index; -1 = it stands still
 };
 
 inline constexpr uint LightPoint = 0u, LightSpot = 1u, LightDirectional = 2u, LightMesh = 3u,
@@ -140,6 +167,7 @@ struct LightSource {
     uint instance;       // of a mesh light
     uint first_emitter;  // of a mesh light: that of its first triangle; else its own
     uint layers;         // as of an instance
+    int motion;          // of a light that is no mesh, likewise
 };
 
 // What the light tree chooses: a triangle of a mesh light, or a light of its own.
@@ -147,7 +175,8 @@ struct Emitter {
     uint light;               // index
     uint triangle;            // of the mesh
     uint node;                // its leaf; NoLightNode where no light comes from it
-    float inverse_root_area;  // 1 / square root of its area in the world, which may leave the range of floats
+    float inverse_root_area;  // 1 / square root of its area in the world, which may leave the range of
+                              // floats; 0: its area changes, and is asked for (motion.h)
 };
 inline constexpr uint NoLightNode = 0xffffffffu;
 
@@ -195,11 +224,16 @@ inline constexpr uint FeatureLayers = 256u;
 // More than one emitter; spheres and quads; suns.
 inline constexpr uint FeatureLightTree = 0x10000u, FeatureShapedLights = 0x20000u, FeatureSuns = 0x40000u;
 inline constexpr uint FeatureShadowCatcher = 0x80000u;
+// While the shutter is open something moves; of a view: its camera does.
+inline constexpr uint FeatureMotion = 0x2000000u, FeatureCameraMotion = 0x4000000u;
 
 ARRAY_OF(Texture, TextureArray, 8);
 ARRAY_OF(Material, MaterialArray, 4);
 ARRAY_OF(MaterialExtras, MaterialExtrasArray, 4);
 ARRAY_OF(Mesh, MeshArray, 8);
+ARRAY_OF(MeshStep, MeshStepArray, 8);
+ARRAY_OF(Place, PlaceArray, 4);
+ARRAY_OF(Motion, MotionArray, 4);
 ARRAY_OF(Instance, InstanceArray, 4);
 ARRAY_OF(LightSource, LightSourceArray, 4);
 ARRAY_OF(Emitter, EmitterArray, 4);
@@ -217,6 +251,9 @@ struct Scene {
     FloatArray sums;    // all cumulative sums: whoever has some knows the index of the first
     FloatArray srgb;    // linear value of each byte (IEC 61966-2-1)
     FloatArray energy;  // what lobes reflect (energy.h)
+    MeshStepArray mesh_steps;
+    PlaceArray places;
+    MotionArray motions;
     Environment environment;
     uint instance_count;
     uint light_count;
@@ -265,6 +302,9 @@ struct View {
     uint camera;  // bits, CameraPinhole for the usual one
     float lens_radius;
     float focus_distance;
+    PlaceArray camera_places;  // where it moves: the beginning's and those of the steps after it
+    uint camera_steps;
+    uint unused;  // keeps the size a multiple of an address's
 };
 
 SHADING_END

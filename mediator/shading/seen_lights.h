@@ -60,7 +60,8 @@ WITH_CONTEXT inline void add_shapes(IN(Context) context, INOUT(Path) path, IN(Ra
         }
         if (is_met) {
             const Emitter emitter = context.scene.emitters.items[node.link & LightIndexBits];
-            add_shape(context, path, ray, far, emitter, context.scene.lights.items[emitter.light]);
+            add_shape(context, path, ray, far, emitter,
+                      light_at(context.scene, context.scene.lights.items[emitter.light], context.time));
         }
         at = next_light_node(context.scene, at);
     } while (at != 0u);
@@ -71,7 +72,7 @@ WITH_CONTEXT inline void add_suns(IN(Context) context, INOUT(Path) path, IN(Ray)
     if ((context.scene.features & FeatureSuns) == 0u) return;
     KEEP_LOOP
     for (uint i = context.scene.tree_light_count; i < context.scene.light_count; ++i) {
-        const LightSource light = context.scene.lights.items[i];
+        const LightSource light = light_at(context.scene, context.scene.lights.items[i], context.time);
         if (light.kind != LightDirectional || !(light.cap > 0.0f)) continue;
         if (!is_seen(context.scene, light, context.view.layers)) continue;
         if (!is_in_cap(-light.direction, light.cap, ray.direction)) continue;

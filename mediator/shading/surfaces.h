@@ -3,6 +3,7 @@
 
 #include "mediator/shading/cones.h"
 #include "mediator/shading/looks.h"
+#include "mediator/shading/motion.h"
 #include "mediator/shading/points.h"
 #include "mediator/shading/specular.h"
 
@@ -21,7 +22,8 @@ struct Surface {
     float rough_share;  // of the material that is no perfect specular
     uint object;        // id
     uint triangle;
-    int light;  // index, if it is one
+    int light;   // index, if it is one
+    float time;  // of the path
     bool scatters;
 };
 
@@ -63,7 +65,10 @@ inline vec3 vertex_normal(IN(Instance) instance, IN(Mesh) mesh, uvec3 corners, v
     if ((mesh.arrays & MeshNormals) == 0u) return face;
     const vec3 mean = mesh.normals.items[corners.x] * (1.0f - b.x - b.y) +
                       mesh.normals.items[corners.y] * b.x + mesh.normals.items[corners.z] * b.y;
-    return direction_of(instance.normals * mean, face);
+    if ((mesh.arrays & MeshBends) == 0u) return direction_of(instance.normals * mean, face);
+    const vec3 next = mesh.next_normals.items[corners.x] * (1.0f - b.x - b.y) +
+                      mesh.next_normals.items[corners.y] * b.x + mesh.next_normals.items[corners.z] * b.y;
+    return direction_of(instance.normals * between(mean, next, mesh.share), face);
 }
 
 // A normal of the front, on the side that `direction` comes to. One that faces away from the viewer describes
@@ -178,7 +183,7 @@ inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     const Triangle triangle = triangle_of(mesh, corners);
     const PointWithError point = point_on(instance, triangle, b);
     surface.position = point.position;
-    surface.error = point.error;
+    surface.error = point.error + motion_error(scene, instance, mesh, triangle, b, point.position);
     surface.object = instance.object;
     surface.triangle = hit.triangle;
     surface.light = instance.light;
@@ -205,14 +210,18 @@ inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     return surface;
 }
 
-inline Surface surface_on(IN(Scene) scene, IN(Instance) instance, IN(Hit) hit, vec3 direction, float width) {
-    return surface_of(scene, instance, scene.meshes.items[instance.mesh],
-                      scene.materials.items[instance.material], hit, direction, width);
+inline Surface surface_on(IN(Scene) scene, IN(Instance) instance, IN(Hit) hit, vec3 direction, float width,
+                          float time) {
+    Surface surface = surface_of(scene, instance_at(scene, instance, time),
+                                 mesh_at(scene, scene.meshes.items[instance.mesh], time),
+                                 scene.materials.items[instance.material], hit, direction, width);
+    surface.time = time;
+    return surface;
 }
 
 // `direction`: of the ray that hit, unit length; `width`: of the path there (cones.h).
-inline Surface make_surface(IN(Scene) scene, IN(Hit) hit, vec3 direction, float width) {
-    return surface_on(scene, scene.instances.items[hit.instance], hit, direction, width);
+inline Surface make_surface(IN(Scene) scene, IN(Hit) hit, vec3 direction, float width, float time) {
+    return surface_on(scene, scene.instances.items[hit.instance], hit, direction, width, time);
 }
 
 SHADING_END

@@ -5,7 +5,7 @@
 #include "mediator/shading/shadow_catcher.h"
 #include "mediator/shading/speculars.h"
 
-// One sample, a pure function of (scene, view, pixel, index).
+// One sample, a pure function of (scene, view, pixel, index); of its context's time that is sample_time.
 //
 // Path tracing: unidirectional; Russian roulette from the fourth vertex on, by the largest component of the
 // throughput. The renderer Whitted: emission and sky along all branches of perfect speculars, and where one
@@ -109,10 +109,12 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
         if (lit && !is_caught) add_shapes(context, path, ray, is_hit ? hit.distance : infinity());
         if (is_hit) {
             path.cone.width += path.cone.spread * hit.distance;
-            const Surface surface = make_surface(context.scene, hit, ray.direction, path.cone.width);
+            const Surface surface =
+                make_surface(context.scene, hit, ray.direction, path.cone.width, context.time);
             tell_hit(context, surface, path.throughput);
             if (first) {
-                path.found.depth = depth_along(context.view, ray, hit.distance);
+                path.found.depth = depth_along(view_at(context.scene.features, context.view, context.time),
+                                               ray, hit.distance);
                 path.found.object = surface.object;
                 path.found.alpha = 1.0f;
             }
@@ -157,7 +159,8 @@ WITH_CONTEXT inline Path trace_sample(IN(Context) context, uint x, uint y, uint6
     const Path path = start_path(make_sampler(x, y, context.view.seed, index));
     const vec2 lens =
         (context.view.camera & CameraLens) != 0u ? sample_pair(path.numbers, LensPair) : vec2(0.5f);
-    const Ray ray = camera_ray(context.view, x, y, sample_pair(path.numbers, CameraPair), lens);
+    View view = view_at(context.scene.features, context.view, context.time);
+    const Ray ray = camera_ray(view, x, y, sample_pair(path.numbers, CameraPair), lens);
     FirstHit unknown;
     unknown.is_known = false;
     return trace_from(context, path, ray, unknown);

@@ -8,7 +8,8 @@
 // light sample per vertex, combined with BSDF sampling by the power heuristic (Veach 1997); none of both at
 // perfect speculars: what is seen in them counts in full.
 //
-// A Context is the including side's: it has `scene` (Scene) and `view` (View), and there are
+// A Context is the including side's: it has `scene` (Scene), `view` (View) and `time` (of the sample: all its
+// rays are traced at that time, paths.h), and there are
 //   bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, OUT(Hit) hit);
 //       the closest hit beyond NearestHit; false where there is none
 //   bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed);

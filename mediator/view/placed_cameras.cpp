@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "mediator/scene/fields.h"
+#include "mediator/scene/motion.h"
 
 namespace tessera::view {
 
@@ -43,7 +44,7 @@ Expected<glm::dmat4> checked(const glm::dmat4& world_from_camera, const std::str
 
 class Walk {
   public:
-    explicit Walk(const Scene& scene) {
+    explicit Walk(const Scene& scene) : scene_(scene) {
         if (const auto* root = scene.find_as<Root>(RootId)) open_.push_back({RootId, &root->children});
         while (!open_.empty()) {
             Step& step = open_.back();
@@ -83,10 +84,14 @@ class Walk {
         if (transform != nullptr) {
             open_.push_back({id, &transform->children, parent.world * transform->matrix});
         } else {
-            cameras.push_back({id, camera->name, rigid(parent.world), *camera});
+            cameras.push_back({id, camera->name, rigid(parent.world), *camera, {}});
+            for (const glm::dmat4& step : motion_along(scene_, path(id))) {
+                cameras.back().motion.push_back(rigid(step));
+            }
         }
     }
 
+    const Scene& scene_;
     std::vector<Step> open_;
     std::unordered_map<ObjectId, ObjectId> above_;  // of each transform and camera: where it is placed first
 };
@@ -136,7 +141,9 @@ std::vector<PlacedCamera> placed_cameras(const Scene& scene) {
 }
 
 CameraPose pose(const PlacedCamera& camera, std::uint32_t width, std::uint32_t height) {
-    return pose(camera.values, camera.world_from_camera, double(width) / double(height));
+    CameraPose pose = view::pose(camera.values, camera.world_from_camera, double(width) / double(height));
+    pose.motion = camera.motion;
+    return pose;
 }
 
 Expected<PlacedCamera> choose_camera(const Scene& scene, const std::string& choice) {
@@ -144,6 +151,9 @@ Expected<PlacedCamera> choose_camera(const Scene& scene, const std::string& choi
     if (!camera) return camera;
     if (const auto world = checked(camera->world_from_camera, camera->name); !world)
         return tl::unexpected(world.error());
+    for (const glm::dmat4& step : camera->motion) {
+        if (const auto world = checked(step, camera->name); !world) return tl::unexpected(world.error());
+    }
     return camera;
 }
 

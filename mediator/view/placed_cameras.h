@@ -18,6 +18,7 @@ struct PlacedCamera {
     glm::dmat4 world_from_camera{1.0};  // rigid: scale and shear of its transforms are taken out; no numbers
                                         // where they leave it no direction
     scene::Camera values;
+    std::vector<glm::dmat4> motion;  // world_from_camera at steps of time, as scene::Transform::motion
 };
 
 // In the order of the graph, depth first. A view takes their values, since nodes know no cameras. Each

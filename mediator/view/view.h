@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "mediator/base/ids.h"
 #include "mediator/base/rect.h"
@@ -24,6 +25,8 @@ struct CameraPose {
     double lens_radius = 0.0;  // m; 0 = a pinhole
     double focus_distance = 1.0;
     scene::Aperture aperture = scene::Aperture::Uniform;
+    // As scene::Transform::motion: world_from_camera at even steps of time, each element in a straight line.
+    std::vector<glm::dmat4> motion;
 
     bool is_pinhole() const { return projection == scene::Projection::Perspective && !(lens_radius > 0.0); }
     friend bool operator==(const CameraPose&, const CameraPose&) = default;
@@ -49,8 +52,8 @@ enum class Renderer : std::uint8_t {
     PathTracing,
     Whitted,  // direct light and perfect speculars, every branch of them followed (Whitted 1980)
     Raster,   // the same from first hits of a rasteriser, for navigation; all pixels of a sample share their
-              // place in the pixel. Orthographic views and views through a lens find theirs by rays, as
-              // Whitted
+              // place in the pixel. Orthographic views, views through a lens and what moves while the
+              // shutter is open find theirs by rays, as Whitted
 };
 
 std::string_view renderer_name(Renderer renderer);  // as --renderer has it: "path", "whitted", "raster"

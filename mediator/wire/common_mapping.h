@@ -11,6 +11,9 @@
 // Private to wire/*.cpp: how the smallest structures map to their messages.
 namespace tessera::wire {
 
+// Steps of motion that are decoded; validation takes far fewer and says so better.
+inline constexpr std::size_t MaxSteps = 256;
+
 // Of scenes and of views.
 template <>
 constexpr scene::Projection last_of() {

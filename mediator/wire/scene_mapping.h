@@ -45,8 +45,6 @@ constexpr scene::NormalSpace last_of() {
 }
 
 inline constexpr std::size_t MaxChildren = 16'000'000;
-// What is decoded; the scene's validation takes far fewer and says so better.
-inline constexpr std::size_t MaxSteps = 256;
 
 template <class Io>
 void map(const Io& io, typename Io::template Ref<scene::TextureSlot> s, proto::TextureSlot& p) {

@@ -73,6 +73,7 @@ void map(const Io& io, typename Io::template Ref<view::View> s, proto::View& p) 
     io(s.camera.lens_radius, p, &P::lens_radius, &P::set_lens_radius);
     io(s.camera.focus_distance, p, &P::focus_distance, &P::set_focus_distance);
     io(s.camera.aperture, p, &P::aperture, &P::set_aperture);
+    io.matrices(s.camera.motion, p.mutable_camera_motion(), MaxSteps);
     io(s.eye, p, &P::eye, &P::set_eye);
     io(s.width, p, &P::width, &P::set_width);
     io(s.height, p, &P::height, &P::set_height);

@@ -205,7 +205,7 @@ TEST(Tables, TexturesAreSeenAsWideAsAPathIs) {
     const auto seen = [&](float width) {
         const shading::Hit hit{
             .instance = 0, .triangle = 0, .barycentric = {8.0f / 64, 8.5f / 64}, .distance = 1.0f};
-        return shading::make_surface(scene, hit, {0.0f, 0.0f, -1.0f}, width).albedo.x;
+        return shading::make_surface(scene, hit, {0.0f, 0.0f, -1.0f}, width, 0.0f).albedo.x;
     };
     const float point = seen(0.0f);
     EXPECT_TRUE(std::abs(point - 0.5f) > 0.49f) << point;
@@ -268,10 +268,12 @@ TEST(Tables, WhatIsInLayersIsMarkedAndSoIsAViewThatDoesNotSeeAll) {
     EXPECT_EQ(tables.lights[1].layers, 6u) << "the bulb";
     EXPECT_EQ(tables.lights[2].layers, shading::AllLayers) << "the sky is for all";
     for (const std::uint32_t sees_all : {shading::AllLayers, 3u, 5u}) {
-        EXPECT_EQ(features_for(tables, sees_all), tables.scene.features);
+        EXPECT_EQ(features_for(tables, shading::View{.layers = sees_all}), tables.scene.features);
     }
     for (const std::uint32_t hides : {0u, 1u, 4u, 8u}) {
-        EXPECT_EQ(features_for(tables, hides), tables.scene.features | shading::FeatureLayers) << hides;
+        EXPECT_EQ(features_for(tables, shading::View{.layers = hides}),
+                  tables.scene.features | shading::FeatureLayers)
+            << hides;
     }
 }
 

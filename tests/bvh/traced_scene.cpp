@@ -138,12 +138,13 @@ void TracedScene::move(std::uint32_t mesh, const std::vector<glm::vec3>& positio
 
 shading::Hit TracedScene::trace(const TestRay& ray, std::uint32_t question) const {
     return shading::bvh_trace(shading::BvhItems{pool_.data()}, top_place_, ray.origin, ray.direction,
-                              ray.near, ray.far, question, ray.layers, ThirdsPass{}, 0);
+                              ray.near, ray.far, question, ray.layers, ray.time, ThirdsPass{}, 0);
 }
 
 shading::Hit TracedScene::trace_plain(const TestRay& ray, std::uint32_t question) const {
     return shading::plain_trace(shading::BvhItems{plain_pool_.data()}, plain_top_place_, ray.origin,
-                                ray.direction, ray.near, ray.far, question, ray.layers, ThirdsPass{}, 0);
+                                ray.direction, ray.near, ray.far, question, ray.layers, ray.time,
+                                ThirdsPass{}, 0);
 }
 
 shading::Hit TracedScene::ask_all(const TestRay& ray, std::uint32_t question) const {

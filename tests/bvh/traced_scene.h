@@ -34,6 +34,7 @@ struct TestRay {
     glm::vec3 origin, direction;
     float near = 1.17549435e-38f, far = INFINITY;
     std::uint32_t layers = shading::AllLayers;
+    float time = 0.0f;
 };
 
 // Stops at all but every third triangle: CastSettings{.passes_every = 3}.

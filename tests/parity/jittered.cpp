@@ -61,14 +61,17 @@ JitteredEmbree::JitteredEmbree(const tools::bench::BenchScene& scene)
 frame::FilmTile JitteredEmbree::film(const view::View& view, const Rect& tile, std::uint64_t sample) const {
     frame::FilmTile film(tile, {sample, 0}, view.channels);
     shading::Scene scene = backend::on_host(world_.tables());
-    scene.features = backend::features_for(world_.tables(), view.layers);
-    const shading::View record = backend::make_view(view, world_.tables().render_origin);
-    const JitteredContext context{{{}, scene, record, world_.scene()}};
+    const auto places = backend::camera_places(view.camera, world_.tables().render_origin);
+    shading::View record = backend::make_view(view, world_.tables().render_origin);
+    record.camera_places.items = places.data();
+    scene.features = backend::features_for(world_.tables(), record);
     std::size_t pixel = 0;
     for (std::int32_t y = tile.y; y < tile.bottom(); ++y) {
         for (std::int32_t x = tile.x; x < tile.right(); ++x, ++pixel) {
-            const shading::Path path = shading::trace_sample(context, static_cast<std::uint32_t>(x),
-                                                             static_cast<std::uint32_t>(y), sample);
+            const auto px = static_cast<std::uint32_t>(x), py = static_cast<std::uint32_t>(y);
+            const float time = shading::sample_time(scene.features, record, px, py, sample);
+            const JitteredContext context{{{}, scene, record, world_.scene(), time}};
+            const shading::Path path = shading::trace_sample(context, px, py, sample);
             const shading::SampleValues values =
                 shading::sample_values(record, path.found, static_cast<std::uint32_t>(sample));
             frame::put_sample(film, pixel, {values.items, values.count});

@@ -20,6 +20,7 @@ struct World {
 struct Context {
     Scene scene;
     View view;
+    float time;
 };
 
 SHADING_END

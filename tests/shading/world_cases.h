@@ -73,7 +73,8 @@ inline Case make_case(IN(World) world, IN(Inputs) x) {
     made.light = made.context.scene.lights.items[x.d % LightCount];
     made.emitter = made.context.scene.emitters.items[x.d % TriangleEmitters];
     made.receiver = Receiver(x.wo, x.c % 3u == 0u ? vec3(0.0f) : x.n);
-    made.surface = make_surface(made.context.scene, made.hit, x.n, x.c % 2u == 0u ? 0.0f : x.metallic);
+    made.surface = make_surface(made.context.scene, made.hit, x.n, x.c % 2u == 0u ? 0.0f : x.metallic,
+                                made.context.time);
     made.wo = to_local(made.surface, -x.n);
     made.path = path_in(x);
     made.way = Way(x.d % 4u, x.d % 5u == 0u, x.light);

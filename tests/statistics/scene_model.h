@@ -108,8 +108,27 @@ class SceneModel {
     }
     void light(const scene::Light& source, const glm::dmat4& place) { hang(create(source), place); }
 
+    // How what is put in from now on moves while the shutter is open: its places at even steps after the
+    // first, each seen from the first.
+    void moves(const std::vector<glm::dmat4>& steps) { steps_ = steps; }
+    // As quad, but its corners move.
+    void bending_quad(ObjectId material, const std::vector<std::array<glm::vec3, 4>>& corners) {
+        const std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 3};
+        scene::Geometry geometry{.material = material, .indices = blob(indices)};
+        for (const std::array<glm::vec3, 4>& step : corners) {
+            const scene::BlobRef positions = blob(std::vector<glm::vec3>(step.begin(), step.end()));
+            if (geometry.positions.empty()) {
+                geometry.positions = positions;
+            } else {
+                geometry.motion_positions.push_back(positions);
+            }
+        }
+        hang(create(geometry), glm::dmat4(1.0));
+    }
+
     // Where what is put in from now on has its origin, and how large it is.
     void placed_at(const glm::dvec3& origin) { frame_ = glm::translate(glm::dmat4(1.0), origin); }
+    void framed_by(const glm::dmat4& frame) { frame_ = frame; }
     void scaled_by(double size) { frame_ = glm::scale(glm::dmat4(1.0), glm::dvec3(size)); }
 
     // Once.
@@ -134,13 +153,15 @@ class SceneModel {
         return id;
     }
     void hang(ObjectId child, const glm::dmat4& place, std::uint32_t layers = scene::RootLayers) {
-        root_.children.push_back(
-            create(scene::Transform{.matrix = frame_ * place, .children = {child}, .layers = layers}));
+        scene::Transform transform{.matrix = frame_ * place, .children = {child}, .layers = layers};
+        for (const glm::dmat4& step : steps_) transform.motion.push_back(step * transform.matrix);
+        root_.children.push_back(create(transform));
     }
 
     std::shared_ptr<scene::BlobStore> blobs_ = std::make_shared<scene::BlobStore>();
     scene::Root root_;
     glm::dmat4 frame_{1.0};
+    std::vector<glm::dmat4> steps_;
     std::vector<scene::Entry> entries_;
     std::uint64_t next_ = 2;
 };

@@ -10,6 +10,7 @@ SHADING_BEGIN
 struct Context {
     Scene scene;
     View view;
+    float time;
 };
 
 #ifdef __cplusplus

@@ -122,18 +122,18 @@ frame::FilmTile RasterTest::film(const view::View& view, const Rect& tile, frame
                                  const RasterSettings& settings) {
     const RasterTools tools{*raster_kernels_, *targets_, settings};
     const bool rasters = view.renderer == view::Renderer::Raster;
+    const shading::View record = backend::make_view(view, world_->tables().render_origin);
     const TileRenderer renderer{device(),
                                 *kernels_,
                                 pace_,
                                 world_->scene(),
-                                backend::features_for(world_->tables(), view.layers),
+                                backend::features_for(world_->tables(), record),
                                 rasters ? &tools : nullptr};
     const view::WorkUnit unit{.view = view.id,
                               .revision = view.revision,
                               .version = world_->version(),
                               .tile = tile,
                               .block = block};
-    const shading::View record = backend::make_view(view, world_->tables().render_origin);
     backend::RenderResult result = renderer.run(record, unit, view.channels, {});
     EXPECT_EQ(result.status, backend::RenderStatus::Done);
     return std::move(result.blocks.at(0));

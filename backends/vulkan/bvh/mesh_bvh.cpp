@@ -13,28 +13,36 @@ namespace {
 
 constexpr float LargestCoordinate = 1.844e18f;  // Embree's FLT_LARGE
 
+bool is_in_range(const glm::vec3& p) {
+    return std::fabs(p.x) < LargestCoordinate && std::fabs(p.y) < LargestCoordinate &&
+           std::fabs(p.z) < LargestCoordinate;
+}
+
 bool has_area(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-    for (const glm::vec3& p : {a, b, c}) {
-        for (int axis = 0; axis < 3; ++axis) {
-            if (!(std::fabs(p[axis]) < LargestCoordinate)) return false;
-        }
-    }
     // In double: tiny triangles are small, not degenerate.
     const glm::dvec3 normal = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
     return glm::dot(normal, normal) > 0.0;
 }
 
+std::span<const glm::vec3> positions_at(const MeshData& mesh, std::size_t step) {
+    return step == 0 ? mesh.positions : mesh.steps[step - 1];
+}
+
 // Empty for a triangle that is left out.
 Box box_of(const MeshData& mesh, std::uint32_t triangle) {
     const glm::uvec3& corners = mesh.triangles[triangle];
-    const glm::vec3 &a = mesh.positions[corners.x], &b = mesh.positions[corners.y],
-                    &c = mesh.positions[corners.z];
     Box box;
-    if (!has_area(a, b, c)) return box;
-    box.add(a);
-    box.add(b);
-    box.add(c);
-    return box;
+    bool can_be_hit = false;
+    for (std::size_t step = 0; step <= mesh.steps.size(); ++step) {
+        const auto positions = positions_at(mesh, step);
+        const glm::vec3 &a = positions[corners.x], &b = positions[corners.y], &c = positions[corners.z];
+        if (!is_in_range(a) || !is_in_range(b) || !is_in_range(c)) return {};
+        can_be_hit = can_be_hit || has_area(a, b, c);
+        box.add(a);
+        box.add(b);
+        box.add(c);
+    }
+    return can_be_hit ? box : Box();
 }
 
 void fit(WideTree& tree, const MeshData& mesh, const TraversalCosts& costs) {
@@ -81,14 +89,20 @@ void write_triangles(std::span<const std::uint32_t> primitives, const MeshData& 
                      std::span<shading::BvhTriangle> out) {
     tbb::parallel_for(std::size_t{0}, primitives.size(), [&](std::size_t place) {
         const std::uint32_t triangle = primitives[place];
-        shading::BvhTriangle written{.triangle = triangle};
-        if (!box_of(mesh, triangle).empty()) {  // after a refit: else zero, which is never hit
-            const glm::uvec3& corners = mesh.triangles[triangle];
-            written.a = mesh.positions[corners.x];
-            written.b = mesh.positions[corners.y];
-            written.c = mesh.positions[corners.z];
+        const bool can_be_hit =
+            !box_of(mesh, triangle).empty();  // after a refit: else zero, which is never hit
+        const std::size_t count = mesh.steps.size() + 1;
+        for (std::size_t step = 0; step < count; ++step) {
+            shading::BvhTriangle written{.triangle = triangle};
+            if (can_be_hit) {
+                const auto positions = positions_at(mesh, step);
+                const glm::uvec3& corners = mesh.triangles[triangle];
+                written.a = positions[corners.x];
+                written.b = positions[corners.y];
+                written.c = positions[corners.z];
+            }
+            out[place * count + step] = written;
         }
-        out[place] = written;
     });
 }
 

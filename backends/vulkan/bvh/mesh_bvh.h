@@ -11,10 +11,12 @@ namespace tessera::vulkan {
 struct MeshData {
     std::span<const glm::vec3> positions;
     std::span<const glm::uvec3> triangles;  // their indices are within `positions`
+    std::vector<std::span<const glm::vec3>>
+        steps{};  // where the positions are at steps of time after the first
 };
 
-// Boxes of the triangles that can be hit. Left out are those without area, or with a coordinate that is no
-// number or beyond +-1.8e18 (where Embree stops, too).
+// Boxes of the triangles that can be hit, at all times. Left out are those without area at any step, or with
+// a coordinate that is no number or beyond +-1.8e18 (where Embree stops, too).
 struct MeshBoxes {
     std::vector<Box> boxes;
     std::vector<std::uint32_t> triangles;
@@ -29,7 +31,7 @@ WideTree build_mesh(BinaryTreeBuilder& builder, const MeshData& mesh, const Trav
 // in the second case). `built_cost`: WideTree::cost after the last build.
 bool refit_mesh(WideTree& tree, const MeshData& mesh, double built_cost, const TraversalCosts& costs = {});
 
-// The row of triangles: WideTree::primitives of the mesh; `out` has as many.
+// The row of triangles: WideTree::primitives of the mesh; `out` has as many, for each step of time.
 void write_triangles(std::span<const std::uint32_t> primitives, const MeshData& mesh,
                      std::span<shading::BvhTriangle> out);
 

@@ -15,7 +15,7 @@ struct Rows {
     glm::vec4 x, y, z;  // object from world
 };
 
-std::optional<Rows> inverse_of(const PlacedMesh& placed) {
+std::optional<Rows> inverse_of(const shading::Place& placed) {
     const glm::dmat3 inverse = glm::inverse(glm::dmat3(placed.linear));
     const glm::dvec3 translation = -(inverse * glm::dvec3(placed.translation));
     Rows rows;
@@ -27,6 +27,26 @@ std::optional<Rows> inverse_of(const PlacedMesh& placed) {
     return rows;
 }
 
+// How many roundings of sizes in the world the way back through an inverse made of floats may add: 9 of the
+// cofactors' sums of sizes and 6 of the determinant's, which have to be seen against the determinant
+// (motion_error in shading/motion.h); 8 of the interpolation.
+double roundings_of(const shading::Place& placed) {
+    const glm::dmat3 m(placed.linear);
+    const glm::dmat3 sizes(glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2]));
+    const auto across = [](const glm::dvec3& v, const glm::dvec3& w) {
+        return glm::dvec3(v.y * w.z + v.z * w.y, v.z * w.x + v.x * w.z, v.x * w.y + v.y * w.x);
+    };
+    const glm::dvec3 x = across(sizes[1], sizes[2]), y = across(sizes[2], sizes[0]),
+                     z = across(sizes[0], sizes[1]);
+    const glm::dmat3 back = sizes * glm::transpose(glm::dmat3(x, y, z));
+    double most = 0.0;
+    for (int column = 0; column < 3; ++column) {
+        for (int row = 0; row < 3; ++row) most = std::max(most, back[column][row]);
+    }
+    const double determinant = std::fabs(glm::determinant(m));
+    return determinant > 0.0 ? 8.0 + (9.0 * 3.0 * most + 6.0 * glm::dot(sizes[0], x)) / determinant : 12.0;
+}
+
 float outward(double value, double direction) {
     return std::nextafter(static_cast<float>(value), static_cast<float>(direction));
 }
@@ -35,21 +55,19 @@ float outward(double value, double direction) {
 
 // Around the mesh as rays see it: their way to the object's space is rounded, 6 roundings of what is summed
 // up there, and as many of the transform that it inverts.
-Box world_box(const PlacedMesh& placed) {
-    if (placed.box.empty() || !inverse_of(placed)) return {};
+Box box_at(const Box& mesh, const shading::Place& placed, double roundings) {
     glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low), size(0.0);
     const glm::dmat3 linear(placed.linear);
     const glm::dmat3 sizes(glm::abs(linear[0]), glm::abs(linear[1]), glm::abs(linear[2]));
     for (unsigned i = 0; i < 8; ++i) {
-        const glm::dvec3 corner((i & 1u) ? placed.box.low.x : placed.box.high.x,
-                                (i & 2u) ? placed.box.low.y : placed.box.high.y,
-                                (i & 4u) ? placed.box.low.z : placed.box.high.z);
+        const glm::dvec3 corner((i & 1u) ? mesh.low.x : mesh.high.x, (i & 2u) ? mesh.low.y : mesh.high.y,
+                                (i & 4u) ? mesh.low.z : mesh.high.z);
         const glm::dvec3 world = linear * corner + glm::dvec3(placed.translation);
         low = glm::min(low, world);
         high = glm::max(high, world);
         size = glm::max(size, sizes * glm::abs(corner) + glm::abs(glm::dvec3(placed.translation)));
     }
-    const glm::dvec3 margin = 12.0 * UnitRoundoff * size;
+    const glm::dvec3 margin = roundings * UnitRoundoff * size;
     Box box;
     for (int axis = 0; axis < 3; ++axis) {
         box.low[axis] = outward(low[axis] - margin[axis], -INFINITY);
@@ -59,17 +77,47 @@ Box world_box(const PlacedMesh& placed) {
     return box;
 }
 
-shading::BvhInstance record_of(const PlacedMesh& placed, std::uint32_t number) {
-    const Rows rows = inverse_of(placed).value();
+Box world_box(const PlacedMesh& placed) {
+    if (placed.box.empty()) return {};
+    const shading::Place still{placed.linear, placed.translation};
+    if (placed.places.empty()) return inverse_of(still) ? box_at(placed.box, still, 12.0) : Box();
+    Box all;
+    bool can_be_hit = false;
+    double roundings = 12.0;
+    for (const shading::Place& place : placed.places) {
+        can_be_hit = can_be_hit || inverse_of(place);
+        roundings = std::max(roundings, 12.0 + roundings_of(place));
+    }
+    for (const shading::Place& place : placed.places) {
+        const Box box = box_at(placed.box, place, roundings);
+        if (box.empty()) return {};
+        all.add(box);
+    }
+    return can_be_hit ? all : Box();
+}
+
+std::array<glm::vec4, shading::BvhPlaceItems> rows_of(const shading::Place& place) {
+    const auto row = [&](int i) {
+        return glm::vec4(place.linear[0][i], place.linear[1][i], place.linear[2][i], place.translation[i]);
+    };
+    return {row(0), row(1), row(2)};
+}
+
+shading::BvhInstance record_of(const PlacedMesh& placed, std::uint32_t number, std::uint32_t places) {
+    const bool moves = !placed.places.empty();
+    const Rows rows = moves ? Rows() : inverse_of({placed.linear, placed.translation}).value();
     return {.object_x = rows.x,
             .object_y = rows.y,
             .object_z = rows.z,
             .nodes = placed.nodes,
             .triangles = placed.triangles,
             .instance = number,
-            .flags = placed.alpha_tested ? shading::BvhAlphaTested : 0u,
+            .flags = (placed.alpha_tested ? shading::BvhAlphaTested : 0u) |
+                     (moves || placed.mesh_steps > 0 ? shading::BvhMoves : 0u),
             .layers = placed.layers,
-            .unused = {}};
+            .places = places,
+            .steps = moves ? static_cast<std::uint32_t>(placed.places.size()) - 1 : 0u,
+            .mesh_steps = placed.mesh_steps};
 }
 
 }  // namespace tessera::vulkan

@@ -104,7 +104,7 @@ std::vector<std::byte> build_plain_top(BinaryTreeBuilder& builder, std::span<con
     std::memcpy(row.data() + 16, tree.nodes.data(), node_bytes);
     for (std::size_t i = 0; i < tree.primitives.size(); ++i) {
         const std::uint32_t number = numbers[tree.primitives[i]];
-        const shading::BvhInstance record = record_of(instances[number], number);
+        const shading::BvhInstance record = record_of(instances[number], number, 0);
         std::memcpy(row.data() + 16 + node_bytes + i * sizeof record, &record, sizeof record);
     }
     return row;

@@ -26,16 +26,24 @@ void fit(TopBvh& top, std::span<const Box> boxes, std::span<const PlacedMesh> in
               [&](std::uint32_t place) { return boxes[top.tree.primitives[place]]; });
     static_assert(sizeof(BvhNode) == sizeof(BvhInstance));
     top.row.resize(top.tree.nodes.size() * sizeof(BvhNode));
+    std::vector<glm::vec4> places;
     for (std::size_t place = 0; place < top.tree.nodes.size(); ++place) {
         std::byte* target = top.row.data() + place * sizeof(BvhNode);
         const std::uint32_t number = top.tree.primitives[place];
         if (number == WideTree::NoPrimitive) {
             std::memcpy(target, &top.tree.nodes[place], sizeof(BvhNode));
         } else {
-            const BvhInstance record = record_of(instances[number], number);
+            const auto place_item = static_cast<std::uint32_t>(top.row.size() / 16 + places.size());
+            const BvhInstance record = record_of(instances[number], number, place_item);
             std::memcpy(target, &record, sizeof record);
+            for (const shading::Place& at : instances[number].places) {
+                const auto rows = rows_of(at);
+                places.insert(places.end(), rows.begin(), rows.end());
+            }
         }
     }
+    const auto bytes = std::as_bytes(std::span(places));
+    top.row.insert(top.row.end(), bytes.begin(), bytes.end());
 }
 
 }  // namespace

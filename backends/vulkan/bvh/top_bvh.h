@@ -8,7 +8,8 @@
 
 namespace tessera::vulkan {
 
-// The top level: one row of nodes and instances as in shading/bvh_layout.h, each 80 bytes.
+// The top level: one row of nodes and instances as in shading/bvh_layout.h, each 80 bytes; then the places of
+// what moves.
 struct TopBvh {
     WideTree tree;
     std::vector<std::byte> row;

@@ -13,7 +13,7 @@ bool stops(uvec2 pixel) {
     Scene scene = job.scene.items[0];
     scene.features = Features;
     if (scene.instances.items[ids.x].alpha_tested == 0u) return true;
-    const View view = job.view.items[0];
+    View view = job.view.items[0];
     const Ray ray = camera_ray(view, pixel.x, pixel.y, raster_place(view, job.index));
     const Hit hit = raster_hit(scene, ray, ids.x, ids.y);
     const Path path = start_path(make_sampler(pixel.x, pixel.y, view.seed, job.index));

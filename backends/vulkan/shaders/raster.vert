@@ -12,7 +12,7 @@ void main() {
     Mesh mesh = job.scene.items[0].meshes.items[instance.mesh];
     const uint triangle = mesh.triangle_count - 1u - uint(gl_VertexIndex) / 3u;
     const vec3 corner = mesh.positions.items[mesh.triangles.items[triangle][uint(gl_VertexIndex) % 3u]];
-    const View view = job.view.items[0];
+    View view = job.view.items[0];
     gl_Position = raster_clip(view, job.cell, seen_from(view.eye, instance, corner));
     ids = uvec2(index, triangle);
 }

@@ -63,14 +63,14 @@ void main() {
 #if defined(PLAIN)
     const AskedRay ray = rays.items[at];
     hits.items[at] =
-        plain_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, AllLayers, context, 0u);
+        plain_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, AllLayers, 0.0f, context, 0u);
 #elif defined(TEXELS)
     const AskedRay ray = asked_ray(at);
     bound_hits[at] =
-        bvh_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, AllLayers, context, 0u);
+        bvh_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, AllLayers, 0.0f, context, 0u);
 #else
     const AskedRay ray = rays.items[at];
     hits.items[at] =
-        bvh_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, AllLayers, context, 0u);
+        bvh_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, AllLayers, 0.0f, context, 0u);
 #endif
 }

@@ -22,6 +22,7 @@ layout(constant_id = 1) const uint Features = 0xffffffffu;
 struct Context {
     Scene scene;
     View view;
+    float time;
     uint64_t pool;  // address; used where the pool is not bound
     uint top;
 };
@@ -38,8 +39,8 @@ bool stops_ray(IN(Context) context, IN(Hit) candidate, uint seed) {
     return stops_at(context.scene, candidate.instance, candidate.triangle, candidate.barycentric, seed);
 }
 
-uint alpha_question() {
-    return (Features & FeatureAlpha) != 0u ? BvhAlpha : 0u;
+uint scene_question() {
+    return ((Features & FeatureAlpha) != 0u ? BvhAlpha : 0u) | ((Features & FeatureMotion) != 0u ? BvhMotion : 0u);
 }
 
 uint seen_layers(IN(Context) context) {
@@ -48,13 +49,13 @@ uint seen_layers(IN(Context) context) {
 
 bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, OUT(Hit) hit) {
     hit = find_hit(BvhItems(context.pool), context.top, ray.origin, ray.direction, NearestHit, infinity(),
-                    BvhClosest | alpha_question(), seen_layers(context), context, seed);
+                    BvhClosest | scene_question(), seen_layers(context), context.time, context, seed);
     return hit.instance != NoInstance;
 }
 
 bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed) {
     return find_hit(BvhItems(context.pool), context.top, origin, segment, NearestHit, far,
-                     BvhAny | alpha_question(), seen_layers(context), context, seed)
+                     BvhAny | scene_question(), seen_layers(context), context.time, context, seed)
                .instance != NoInstance;
 }
 
@@ -143,7 +144,10 @@ void main() {
     context.pool = job.pool;
     context.top = job.top;
 
-    const Path path = trace(context, job.x + pixel % job.width, job.y + pixel / job.width, index, at);
+    const uint x = job.x + pixel % job.width, y = job.y + pixel / job.width;
+    context.time = sample_time(Features, context.view, x, y, index);
+
+    const Path path = trace(context, x, y, index, at);
     Sink sink = Sink(job.values, item, job.item_count);
     put_sample_values(sink, context.view, path.found, uint(index));
     store_value(sink, float_from_bits(path.rays));

@@ -14,23 +14,21 @@ namespace {
 using shading::luminance;
 using std::numbers::pi;
 
-glm::vec3 to_world(const shading::Instance& instance, const glm::vec3& p) {
-    return instance.linear * p + instance.translation;
-}
-
 // How far the scene reaches, for the power of what shines on all of it.
 double radius_of(const SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes) {
     glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
     for (std::size_t i = 0; i < tables.instances.size(); ++i) {
         const Mesh& mesh = *meshes.find(lowered.instances[i].geometry);
         if (!(mesh.low.x <= mesh.high.x)) continue;
-        for (unsigned corner = 0; corner < 8; ++corner) {
-            const glm::dvec3 place =
-                to_world(tables.instances[i],
-                         {(corner & 1u) ? mesh.low.x : mesh.high.x, (corner & 2u) ? mesh.low.y : mesh.high.y,
-                          (corner & 4u) ? mesh.low.z : mesh.high.z});
-            low = glm::min(low, place);
-            high = glm::max(high, place);
+        for (const shading::Place& step : places_of(tables, tables.instances[i])) {
+            for (unsigned corner = 0; corner < 8; ++corner) {
+                const glm::vec3 object{(corner & 1u) ? mesh.low.x : mesh.high.x,
+                                       (corner & 2u) ? mesh.low.y : mesh.high.y,
+                                       (corner & 4u) ? mesh.low.z : mesh.high.z};
+                const glm::dvec3 place = step.linear * object + step.translation;
+                low = glm::min(low, place);
+                high = glm::max(high, place);
+            }
         }
     }
     const double radius = 0.5 * glm::length(high - low);
@@ -102,6 +100,24 @@ float make_quad(shading::LightSource& light, LightLeaf& leaf, const scene::Light
     return inverse;
 }
 
+// A leaf that holds all of a light's way.
+void spread_over_motion(LightLeaf& leaf, const SceneTables& tables, const shading::LightSource& light) {
+    if (light.motion < 0) return;
+    const shading::Motion& motion = tables.motions[static_cast<std::size_t>(light.motion)];
+    const LightLeaf first = leaf;
+    for (const shading::Place& place :
+         std::span(tables.places).subspan(motion.first_place, motion.steps + 1)) {
+        const glm::dvec3 way = glm::dvec3(place.translation) - glm::dvec3(light.position);
+        // What reaches out of a place may do so in any direction, once it turns.
+        const glm::dvec3 size(glm::length(first.high - first.low) * 0.5);
+        const bool turns = place.linear != tables.places[motion.first_place].linear;
+        const glm::dvec3 middle = 0.5 * (first.low + first.high);
+        leaf.low = glm::min(leaf.low, (turns ? middle - size : first.low) + way);
+        leaf.high = glm::max(leaf.high, (turns ? middle + size : first.high) + way);
+        if (turns) leaf.spread = pi;
+    }
+}
+
 // A light that is somewhere becomes an emitter.
 void add_local_light(SceneTables& tables, EmitterList& list, const scene::Light& source,
                      shading::LightSource light, const glm::dvec3& up) {
@@ -119,6 +135,7 @@ void add_local_light(SceneTables& tables, EmitterList& list, const scene::Light&
         inverse_root_area = make_quad(light, leaf, source, up);
         if (inverse_root_area == 0.0f) return;
     }
+    spread_over_motion(leaf, tables, light);
     if (leaf.shaped) tables.scene.features |= shading::FeatureShapedLights;
     light.first_emitter = leaf.emitter;
     list.emitters.push_back(
@@ -148,9 +165,10 @@ void add_placed_lights(SceneTables& tables, const scene::Scene& scene, const Low
         if (!(length > 0.0)) continue;  // flattened: it has no direction
         const double brightness = luminance(source.intensity);
         if (!(brightness > 0.0) || !std::isfinite(brightness)) continue;
-        shading::LightSource light{.intensity = source.intensity, .layers = placed.layers};
+        shading::LightSource light{.intensity = source.intensity, .layers = placed.layers, .motion = -1};
         light.position = glm::vec3(glm::dvec3(placed.world_from_light[3]) - tables.render_origin);
         light.direction = glm::vec3(shines / length);
+        light.motion = add_motion(tables, placed.world_from_light, placed.motion);
         tables.scene.features |= shading::FeaturePlacedLights;
         if (source.kind == scene::LightKind::Directional) {
             light.kind = shading::LightDirectional;
@@ -211,7 +229,7 @@ void add_lights(SceneTables& tables, const scene::Scene& scene, const Lowered& l
     add_placed_lights(tables, scene, lowered, radius, list, distant);
     add_tree(tables, list);
     if (sky_luminance > 0.0) {
-        distant.add({.kind = shading::LightEnvironment, .layers = shading::AllLayers},
+        distant.add({.kind = shading::LightEnvironment, .layers = shading::AllLayers, .motion = -1},
                     4.0 * pi * pi * radius * radius * sky_luminance);
     }
     assign_probabilities(tables, list, distant);

@@ -104,6 +104,7 @@ void add_mesh(SceneTables& tables, const Mesh& mesh) {
                    flag(mesh.colors, shading::MeshColors) | flag(mesh.tex_coords, shading::MeshTexCoords) |
                    flag(mesh.tex_coords_1, shading::MeshTexCoords1),
          .triangle_count = static_cast<std::uint32_t>(triangles.size())});
+    add_mesh_steps(tables, mesh, tables.meshes.back());
 }
 
 // Only the direction of a normal counts, so its matrix may be scaled into the range of floats; by a power of
@@ -202,6 +203,7 @@ void add_instances(SceneTables& tables, const Lowered& lowered, const MeshCatalo
         const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                                    glm::cross(linear[0], linear[1]));
         instance.normals = scaled(glm::determinant(linear) < 0.0 ? -cofactors : cofactors);
+        instance.motion = add_motion(tables, source.world_from_object, source.motion);
         const shading::Material& look = tables.materials[instance.material];
         instance.alpha_tested = look.alpha_mode != shading::AlphaOpaque ? 1u : 0u;
         tables.scene.features |= features_of(

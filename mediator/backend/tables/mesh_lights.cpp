@@ -1,6 +1,8 @@
 // The triangles of glowing meshes, as emitters.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "mediator/backend/tables/parts.h"
@@ -15,9 +17,47 @@ namespace {
 using shading::luminance;
 using std::numbers::pi;
 
-glm::vec3 to_world(const shading::Instance& instance, const glm::vec3& p) {
-    return instance.linear * p + instance.translation;
-}
+// An instance and its mesh as they are at the steps of their motion.
+struct Shape {
+    std::vector<shading::Place> places;
+    std::vector<shading::Mesh> meshes;
+    bool turns = false;  // its triangles: they have other directions or areas from time to time
+
+    Shape(const SceneTables& tables, const shading::Instance& instance, const shading::Mesh& mesh)
+        : places(places_of(tables, instance)), meshes{mesh} {
+        meshes.front().arrays &= ~shading::MeshBends;
+        for (std::uint32_t step = 1; (mesh.arrays & shading::MeshBends) != 0 && step <= mesh.steps; ++step) {
+            meshes.push_back(meshes.front());
+            meshes.back().positions = tables.mesh_steps[mesh.first_step + step].positions;
+        }
+        turns = meshes.size() > 1;
+        for (const shading::Place& place : places) turns = turns || place.linear != places.front().linear;
+    }
+};
+
+// Of a triangle at all times: between steps it stays within the hull.
+struct Reach {
+    glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-low};
+    double area = 0.0;  // at the steps, in the mean
+
+    Reach(const Shape& shape, const glm::uvec3& corners) {
+        for (const shading::Place& place : shape.places) {
+            for (const shading::Mesh& mesh : shape.meshes) {
+                const shading::Triangle t = shading::triangle_of(mesh, corners);
+                const auto to_world = [&](const glm::vec3& p) {
+                    return glm::dvec3(place.linear * p + place.translation);
+                };
+                const std::array world{to_world(t.p), to_world(t.q), to_world(t.r)};
+                for (const glm::dvec3& corner : world) {
+                    low = glm::min(low, corner);
+                    high = glm::max(high, corner);
+                }
+                area += 0.5 * glm::length(glm::cross(world[1] - world[0], world[2] - world[0]));
+            }
+        }
+        area /= static_cast<double>(shape.places.size() * shape.meshes.size());
+    }
+};
 
 // Luminance that is 0 where it is none.
 double brightness(const glm::vec3& emission) {
@@ -79,17 +119,14 @@ struct Glow {
 };
 
 // One of an instance's triangles; its leaf where it shines.
-void add_triangle(EmitterList& list, const Glow& glow, const shading::Instance& instance, std::uint32_t light,
-                  std::uint32_t triangle) {
+void add_triangle(EmitterList& list, const Glow& glow, const Shape& shape, const shading::Instance& instance,
+                  std::uint32_t light, std::uint32_t triangle) {
     const glm::uvec3 corners = glow.mesh.triangles.items[triangle];
-    const glm::dvec3 a = to_world(instance, glow.mesh.positions.items[corners.x]);
-    const glm::dvec3 b = to_world(instance, glow.mesh.positions.items[corners.y]);
-    const glm::dvec3 c = to_world(instance, glow.mesh.positions.items[corners.z]);
-    const glm::dvec3 normal = glm::cross(b - a, c - a);
-    const double area = 0.5 * glm::length(normal);
+    const Reach reach(shape, corners);
+    const double area = reach.area;
     const auto inverse = static_cast<float>(1.0 / std::sqrt(area));
     const auto index = static_cast<std::uint32_t>(list.emitters.size());
-    list.emitters.push_back({light, triangle, shading::NoLightNode, inverse});
+    list.emitters.push_back({light, triangle, shading::NoLightNode, shape.turns ? 0.0f : inverse});
     if (!(inverse > 0.0f) || !std::isfinite(inverse)) return;  // it cannot be hit
     const double sides = glow.material.double_sided != 0 ? 2.0 : 1.0;
     const double power = area * glow.mean(corners) * pi * sides;
@@ -97,9 +134,9 @@ void add_triangle(EmitterList& list, const Glow& glow, const shading::Instance& 
     // The side that the shading takes for the front, whichever way a mirrored instance turns the corners.
     const shading::Triangle face = shading::triangle_of(glow.mesh, corners);
     const glm::dvec3 front = shading::face_normal(instance, face, glm::vec3(0.0f));
-    const bool has_front = front != glm::dvec3(0.0);
-    list.leaves.push_back({.low = glm::min(a, glm::min(b, c)),
-                           .high = glm::max(a, glm::max(b, c)),
+    const bool has_front = front != glm::dvec3(0.0) && !shape.turns;
+    list.leaves.push_back({.low = reach.low,
+                           .high = reach.high,
                            .axis = front,
                            .spread = has_front ? 0.0 : pi,
                            .reach = 0.5 * pi,
@@ -117,11 +154,12 @@ void add_mesh_lights(SceneTables& tables, EmitterList& list) {
         const shading::Material& material = tables.materials[instance.material];
         if (!shading::emits(material) || material.unlit != 0 || instance.light == shading::ShadowCatcher)
             continue;
-        const Glow glow{scene, material, tables.meshes[instance.mesh], brightest(scene, material)};
+        const Shape shape(tables, instance, tables.meshes[instance.mesh]);
+        const Glow glow{scene, material, shape.meshes.front(), brightest(scene, material)};
         const std::size_t emitters = list.emitters.size(), leaves = list.leaves.size();
         const auto index = static_cast<std::uint32_t>(tables.lights.size());
         for (std::uint32_t t = 0; t < glow.mesh.triangle_count; ++t) {
-            add_triangle(list, glow, instance, index, t);
+            add_triangle(list, glow, shape, instance, index, t);
         }
         if (list.leaves.size() == leaves) {  // nothing of it shines, or can be hit
             list.emitters.resize(emitters);
@@ -131,7 +169,8 @@ void add_mesh_lights(SceneTables& tables, EmitterList& list) {
         tables.lights.push_back({.kind = shading::LightMesh,
                                  .instance = i,
                                  .first_emitter = static_cast<std::uint32_t>(emitters),
-                                 .layers = instance.layers});
+                                 .layers = instance.layers,
+                                 .motion = -1});
         tables.scene.features |= shading::FeatureMeshLights;
     }
 }

@@ -25,6 +25,13 @@ void resolve_blobs(Mesh& mesh, const scene::BlobStore& blobs) {
     mesh.tex_coords = find(mesh.source.tex_coords);
     mesh.tex_coords_1 = find(mesh.source.tex_coords_1);
     mesh.triangles = find(mesh.source.indices);
+    const auto find_all = [&](const std::vector<scene::BlobRef>& references) {
+        std::vector<scene::BlobPtr> found;
+        for (const scene::BlobRef& reference : references) found.push_back(find(reference));
+        return found;
+    };
+    mesh.motion_positions = find_all(mesh.source.motion_positions);
+    mesh.motion_normals = find_all(mesh.source.motion_normals);
 }
 
 scene::BlobPtr placeholder_positions() {
@@ -54,11 +61,19 @@ void measure(Mesh& mesh) {
         mesh.degenerate_triangles += glm::dot(n, n) > 0.0 ? 0 : 1;
         mesh.low = glm::min(mesh.low, glm::min(positions[t.x], glm::min(positions[t.y], positions[t.z])));
         mesh.high = glm::max(mesh.high, glm::max(positions[t.x], glm::max(positions[t.y], positions[t.z])));
+        for (const scene::BlobPtr& step : mesh.motion_positions) {
+            const auto moved = elements<glm::vec3>(step);
+            for (const std::uint32_t corner : {t.x, t.y, t.z}) {
+                mesh.low = glm::min(mesh.low, moved[corner]);
+                mesh.high = glm::max(mesh.high, moved[corner]);
+            }
+        }
     }
 }
 
 bool fits(const Mesh& mesh, const Geometry& geometry) {
-    return mesh.refits && geometry.indices == mesh.source.indices && geometry.hint == mesh.source.hint &&
+    return mesh.refits && geometry.motion_positions.empty() && geometry.indices == mesh.source.indices &&
+           geometry.hint == mesh.source.hint &&
            geometry.positions.byte_size == mesh.source.positions.byte_size;
 }
 
@@ -82,7 +97,8 @@ MeshCatalog::Result MeshCatalog::update(const scene::Scene& scene, const SceneDe
         const auto* geometry = scene.find_as<Geometry>(change.id);
         if (geometry == nullptr) continue;
         const auto place = meshes_.find(change.id);
-        const scene::Fields<Geometry> shape{Field::Hint, Field::Indices, Field::Positions};
+        const scene::Fields<Geometry> shape{Field::Hint, Field::Indices, Field::Positions,
+                                            Field::MotionPositions};
         MeshStep step = MeshStep::Rebuild;
         if (place != meshes_.end() && !place->second.placeholder &&
             scene::validate_blobs(change.id, *scene.find(change.id), *blobs_).empty()) {
@@ -105,7 +121,8 @@ MeshCatalog::Result MeshCatalog::update(const scene::Scene& scene, const SceneDe
 }
 
 Mesh MeshCatalog::build(ObjectId id, const Geometry& geometry, std::vector<std::string>& problems) const {
-    Mesh mesh{.source = geometry, .refits = geometry.hint == scene::MotionHint::Animated};
+    Mesh mesh{.source = geometry,
+              .refits = geometry.hint == scene::MotionHint::Animated && geometry.motion_positions.empty()};
     for (const scene::Problem& problem : scene::validate_blobs(id, scene::Object(geometry), *blobs_)) {
         mesh.placeholder = true;
         problems.push_back(problem.message + " (a placeholder is drawn instead)");

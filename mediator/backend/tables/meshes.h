@@ -20,10 +20,12 @@ namespace tessera::backend {
 struct Mesh {
     scene::Geometry source;
     scene::BlobPtr positions, normals, tangents, colors, tex_coords, tex_coords_1, triangles;
-    glm::vec3 low{std::numeric_limits<float>::infinity()};    // bounds of what can be hit;
-    glm::vec3 high{-std::numeric_limits<float>::infinity()};  // low > high: nothing
+    std::vector<scene::BlobPtr> motion_positions, motion_normals;  // as scene::Geometry
+    glm::vec3 low{std::numeric_limits<float>::infinity()};         // bounds of what can be hit, at any time;
+    glm::vec3 high{-std::numeric_limits<float>::infinity()};       // low > high: nothing
     std::uint64_t degenerate_triangles = 0;
-    bool refits = false;  // its structure is built for updates in place
+    bool refits =
+        false;  // its structure is built for updates in place; none is that moves within the shutter
     bool placeholder = false;
 };
 

@@ -18,6 +18,15 @@ Indices add_materials(SceneTables& tables, const scene::Scene& scene, const Indi
 void add_instances(SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes,
                    const Indices& materials);
 
+// Adds the way of what goes through these places, relative to the render origin; -1 where it stands still.
+int add_motion(SceneTables& tables, const glm::dmat4& beginning, std::span<const glm::dmat4> steps);
+
+// Where an instance is at the beginning and at each step after it.
+std::vector<shading::Place> places_of(const SceneTables& tables, const shading::Instance& instance);
+
+// Makes a mesh one that bends.
+void add_mesh_steps(SceneTables& tables, const Mesh& source, shading::Mesh& mesh);
+
 // Instances of a material that catches shadows: they stop rays where their mask says so, and do not shine.
 void mark_shadow_catchers(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
                           const MeshCatalog& meshes);

@@ -60,6 +60,10 @@ void set_addresses(SceneTables& tables, const BlobAddress& address_of) {
         set_address(mesh.tex_coords, blobs.tex_coords, address_of);
         set_address(mesh.tex_coords_1, blobs.tex_coords_1, address_of);
     }
+    for (std::size_t i = 0; i < tables.mesh_steps.size(); ++i) {
+        set_address(tables.mesh_steps[i].positions, tables.step_arrays[i].positions, address_of);
+        set_address(tables.mesh_steps[i].normals, tables.step_arrays[i].normals, address_of);
+    }
     set_address(tables.scene.environment.map.texels, tables.environment_texels, address_of);
 }
 
@@ -69,6 +73,9 @@ shading::Scene on_host(const SceneTables& tables) {
     scene.materials.items = tables.materials.data();
     scene.extras.items = tables.extras.data();
     scene.meshes.items = tables.meshes.data();
+    scene.mesh_steps.items = tables.mesh_steps.data();
+    scene.places.items = tables.places.data();
+    scene.motions.items = tables.motions.data();
     scene.instances.items = tables.instances.data();
     scene.lights.items = tables.lights.data();
     scene.emitters.items = tables.emitters.data();
@@ -79,10 +86,11 @@ shading::Scene on_host(const SceneTables& tables) {
     return scene;
 }
 
-std::uint32_t features_for(const SceneTables& tables, std::uint32_t layers) {
+std::uint32_t features_for(const SceneTables& tables, const shading::View& view) {
     const bool sees_all =
-        std::ranges::all_of(tables.layers, [&](std::uint32_t mask) { return (mask & layers) != 0; });
-    return sees_all ? tables.scene.features : tables.scene.features | shading::FeatureLayers;
+        std::ranges::all_of(tables.layers, [&](std::uint32_t mask) { return (mask & view.layers) != 0; });
+    return tables.scene.features | (sees_all ? 0u : shading::FeatureLayers) |
+           (view.camera_steps > 0 ? shading::FeatureCameraMotion : 0u);
 }
 
 SceneTables make_tables(const scene::Scene& scene, const Lowered& lowered, const MeshCatalog& meshes,

@@ -18,6 +18,9 @@ struct SceneTables {
     std::vector<shading::Material> materials;     // 0 = the default grey, 1 = the placeholder's
     std::vector<shading::MaterialExtras> extras;  // of those that have any
     std::vector<shading::Mesh> meshes;            // of the geometries that are placed
+    std::vector<shading::MeshStep> mesh_steps;    // of meshes that bend, the beginning's and each after it
+    std::vector<shading::Place> places;           // of what moves, likewise
+    std::vector<shading::Motion> motions;         // of instances, then of lights
     std::vector<shading::Instance> instances;     // as in Lowered::instances
     // In the tree: mesh lights by instance, placed lights by (id, path); distant: placed lights likewise, the
     // sky.
@@ -36,6 +39,10 @@ struct SceneTables {
         scene::BlobPtr positions, triangles, normals, tangents, colors, tex_coords, tex_coords_1;
     };
     std::vector<Arrays> arrays;
+    struct StepArrays {
+        scene::BlobPtr positions, normals;
+    };
+    std::vector<StepArrays> step_arrays;  // of each mesh step
 };
 
 // The light tree or one of the distant lights is chosen in proportion to its power, a tenth uniformly, so
@@ -46,8 +53,8 @@ SceneTables make_tables(const scene::Scene& scene, const Lowered& lowered, const
 // The scene on the host: addresses of the tables' own memory, valid while they are neither changed nor moved.
 shading::Scene on_host(const SceneTables& tables);
 
-// The scene's features for a view of these layers.
-std::uint32_t features_for(const SceneTables& tables, std::uint32_t layers);
+// The scene's features and the view's.
+std::uint32_t features_for(const SceneTables& tables, const shading::View& view);
 
 // 256 linear values, for Scene::srgb.
 std::span<const float> srgb_values();

@@ -61,10 +61,11 @@ std::uint32_t camera_bits(const view::CameraPose& camera) {
     return bits;
 }
 
-// A rasteriser draws what a pinhole sees.
+// A rasteriser draws what a pinhole sees at one time.
 view::Renderer renderer_of(const view::View& view) {
     const bool draws = view.renderer == view::Renderer::Raster;
-    return draws && !view.camera.is_pinhole() ? view::Renderer::Whitted : view.renderer;
+    return draws && (!view.camera.is_pinhole() || !view.camera.motion.empty()) ? view::Renderer::Whitted
+                                                                               : view.renderer;
 }
 
 }  // namespace
@@ -98,7 +99,22 @@ shading::View make_view(const view::View& view, const glm::dvec3& render_origin)
             .layers = view.layers,
             .camera = camera_bits(camera),
             .lens_radius = static_cast<float>(camera.lens_radius),
-            .focus_distance = static_cast<float>(camera.focus_distance)};
+            .focus_distance = static_cast<float>(camera.focus_distance),
+            .camera_places = {},
+            .camera_steps = static_cast<std::uint32_t>(camera.motion.size()),
+            .unused = 0};
+}
+
+std::vector<shading::Place> camera_places(const view::CameraPose& camera, const glm::dvec3& render_origin) {
+    std::vector<shading::Place> places;
+    if (camera.motion.empty()) return places;
+    const auto add = [&](const glm::dmat4& world_from_camera) {
+        places.push_back({.linear = glm::mat3(glm::dmat3(world_from_camera)),
+                          .translation = glm::vec3(glm::dvec3(world_from_camera[3]) - render_origin)});
+    };
+    add(camera.world_from_camera);
+    for (const glm::dmat4& step : camera.motion) add(step);
+    return places;
 }
 
 }  // namespace tessera::backend

@@ -1,0 +1,59 @@
+#include <algorithm>
+
+#include "mediator/backend/tables/parts.h"
+
+namespace tessera::backend {
+
+int add_motion(SceneTables& tables, const glm::dmat4& beginning, std::span<const glm::dmat4> steps) {
+    if (steps.empty()) return -1;
+    shading::Motion motion{.first_place = static_cast<std::uint32_t>(tables.places.size()),
+                           .steps = static_cast<std::uint32_t>(steps.size()),
+                           .sizes = 0.0f,
+                           .reach = glm::vec3(0.0f)};
+    const auto add = [&](const glm::dmat4& world) {
+        // Relative to the origin in double, then rounded once.
+        const shading::Place place{.linear = glm::mat3(glm::dmat3(world)),
+                                   .translation = glm::vec3(glm::dvec3(world[3]) - tables.render_origin)};
+        for (int column = 0; column < 3; ++column) {
+            for (int row = 0; row < 3; ++row) {
+                motion.sizes = std::max(motion.sizes, std::abs(place.linear[column][row]));
+            }
+        }
+        motion.reach = glm::max(motion.reach, glm::abs(place.translation));
+        tables.places.push_back(place);
+    };
+    add(beginning);
+    for (const glm::dmat4& step : steps) add(step);
+    tables.motions.push_back(motion);
+    tables.scene.features |= shading::FeatureMotion;
+    return static_cast<int>(tables.motions.size()) - 1;
+}
+
+std::vector<shading::Place> places_of(const SceneTables& tables, const shading::Instance& instance) {
+    if (instance.motion < 0) return {{instance.linear, instance.translation}};
+    const shading::Motion& motion = tables.motions[static_cast<std::size_t>(instance.motion)];
+    const auto first = tables.places.begin() + motion.first_place;
+    return {first, first + motion.steps + 1};
+}
+
+void add_mesh_steps(SceneTables& tables, const Mesh& source, shading::Mesh& mesh) {
+    if (source.placeholder || source.motion_positions.empty()) return;
+    mesh.arrays |= shading::MeshBends;
+    mesh.first_step = static_cast<std::uint32_t>(tables.mesh_steps.size());
+    mesh.steps = static_cast<std::uint32_t>(source.motion_positions.size());
+    const glm::vec3 reach = glm::max(glm::abs(source.low), glm::abs(source.high));
+    mesh.reach = std::max({reach.x, reach.y, reach.z});
+    const auto add = [&](const scene::BlobPtr& positions, const scene::BlobPtr& normals) {
+        tables.mesh_steps.push_back(
+            {{elements<glm::vec3>(positions).data()}, {elements<glm::vec3>(normals).data()}});
+        tables.step_arrays.push_back({positions, normals});
+    };
+    add(source.positions, source.normals);
+    for (std::size_t i = 0; i < source.motion_positions.size(); ++i) {
+        add(source.motion_positions[i],
+            source.motion_normals.empty() ? source.normals : source.motion_normals[i]);
+    }
+    tables.scene.features |= shading::FeatureMotion;
+}
+
+}  // namespace tessera::backend
