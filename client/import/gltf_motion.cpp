@@ -101,7 +101,7 @@ std::vector<ObjectId> GltfMotion::bent_geometries(int index, GltfMeshes& meshes)
     std::vector<ObjectId> geometries =
         meshes.bent_geometries(model_.nodes[static_cast<std::size_t>(index)].mesh,
                                {pose_.weights[static_cast<std::size_t>(index)], joints}, made);
-    if (builder_.options().motion == Motion::Still) return geometries;
+    if (!keeps()) return geometries;
     for (BendingGeometry& geometry : made) {
         geometry.node = index;
         geometry.skin = number;
@@ -117,9 +117,14 @@ bool GltfMotion::is_moved(int index, int end) const {
     return false;
 }
 
+bool GltfMotion::keeps() const {
+    return builder_.options().motion == Motion::Sequence || builder_.options().shutter > 0.0;
+}
+
 void GltfMotion::keep() {
-    if (builder_.options().motion == Motion::Still || playback_.motion.tracks.empty()) return;
-    for (std::size_t i = 0; i < playback_.transforms.size(); ++i) {
+    if (!keeps() || playback_.motion.tracks.empty()) return;
+    const bool is_sequence = builder_.options().motion == Motion::Sequence;
+    for (std::size_t i = 0; i < playback_.transforms.size() && is_sequence; ++i) {
         if (const ObjectId id = playback_.transforms[i]; id && playback_.motion.nodes[i].moves())
             builder_.get<scene::Transform>(id).hint = scene::MotionHint::Animated;
     }
@@ -130,8 +135,10 @@ void GltfMotion::keep() {
         return std::none_of(skin.joints.begin(), skin.joints.end(),
                             [&](int joint) { return is_moved(joint, skin.anchor); });
     });
-    for (const BendingGeometry& geometry : playback_.bending)
+    for (const BendingGeometry& geometry : playback_.bending) {
+        if (!is_sequence) break;
         builder_.get<scene::Geometry>(geometry.geometry).hint = scene::MotionHint::Animated;
+    }
     builder_.result().seconds = builder_.options().at;
     builder_.result().playback = std::make_shared<const Playback>(std::move(playback_));
 }

@@ -46,6 +46,7 @@ class GltfMotion {
     void keep();  // for move_to, where the options ask for it and something moves; flags what does
 
   private:
+    bool keeps() const;  // what moves, for other times
     void place(int index);
     void read_skin_of(int index);
     bool is_moved(int index, int end) const;  // between a node and one above it

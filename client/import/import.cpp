@@ -10,6 +10,7 @@
 #include "client/import/finish.h"
 #include "client/import/gltf_import.h"
 #include "client/import/ply_import.h"
+#include "client/import/shutter.h"
 #include "client/import/tessera_import.h"
 #include "client/import/x3d_import.h"
 #include "mediator/scene/fields.h"
@@ -32,6 +33,10 @@ void check_options(const ImportOptions& options) {
     }
     if (options.at && !(std::abs(*options.at) <= 1e9))
         throw Error(ErrorCode::InvalidInput, "the time must be a number of seconds up to 1e9");
+    if (!(options.shutter >= 0.0 && options.shutter <= 1e9))
+        throw Error(ErrorCode::InvalidInput, "the shutter must be open for 0 to 1e9 seconds");
+    if (options.shutter > 0.0 && !options.at)
+        throw Error(ErrorCode::InvalidInput, "a shutter needs the time when it opens");
     const glm::vec3 color = options.background.value_or(glm::vec3(0.0f));
     for (const float value : {color.x, color.y, color.z, options.environment_strength}) {
         if (!(value >= 0.0f && value <= 1e12f)) {
@@ -76,6 +81,13 @@ void read_into(const std::filesystem::path& file, SceneBuilder& builder) {
     finish(builder);
 }
 
+bool moves(const ImportedScene& scene) {
+    return std::any_of(scene.objects.begin(), scene.objects.end(), [](const scene::Create& create) {
+        const auto* transform = std::get_if<scene::Transform>(&create.object);
+        return transform && !transform->motion.empty();
+    });
+}
+
 }  // namespace
 
 Expected<ImportedScene> import_scene(const std::filesystem::path& file, const ImportOptions& options) {
@@ -87,6 +99,14 @@ Expected<ImportedScene> import_scene(const std::filesystem::path& file, const Im
         }
         SceneBuilder builder(options);
         read_into(file, builder);
+        ImportedScene& scene = builder.result();
+        if (options.shutter > 0.0 && scene.playback) {
+            scene.shutter = options.shutter;
+            if (auto opened = move_to(scene, *options.at); !opened) throw opened.error();
+            if (options.motion == Motion::Still) scene.playback.reset();
+        } else if (moves(scene)) {
+            move_cameras(scene);
+        }
         return std::move(builder.result());
     } catch (const Error& error) {
         return failure(error.code(), named + error.what());

@@ -37,6 +37,7 @@ struct ImportOptions {
     float environment_strength = 1.0f;
     Missing missing = Missing::Add;
     std::optional<double> at;  // seconds into the animations; none = at rest, as without them
+    double shutter = 0.0;      // seconds that it is open, from `at` on: what is animated moves meanwhile
     std::string animation;     // only this one, by its name, else its number; "" = all together
     Motion motion = Motion::Still;
     Glass glass = Glass::Thin;
@@ -47,6 +48,7 @@ struct CameraInfo {
     std::string name;                   // unique
     glm::dmat4 world_from_camera{1.0};  // rigid; looks along -z, y up
     scene::Camera camera;               // its values
+    std::vector<glm::dmat4> motion;     // world_from_camera at steps of time, as scene::Transform::motion
 };
 
 struct AnimationInfo {
@@ -78,6 +80,7 @@ struct ImportedScene {
     // Geometries that are not among the children of a transform while it leaves them no volume.
     std::map<ObjectId, std::vector<ObjectId>> without_volume;
     std::optional<double> seconds;             // the time it shows; none = at rest
+    double shutter = 0.0;                      // seconds that it is open from then on
     std::shared_ptr<const Playback> playback;  // for move_to; none = nothing moves
 };
 

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "client/import/import.h"
+#include "client/import/shutter.h"
 #include "client/import/survey.h"
 #include "mediator/scene/fields.h"
 #include "mediator/scene/inverse.h"
@@ -16,6 +17,7 @@ using scene::Geometry;
 using scene::Transform;
 
 constexpr std::uint32_t MatrixBit = scene::Fields<Transform>(Transform::Field::Matrix).bits();
+constexpr scene::FieldMask MotionBit = scene::Fields<Transform>(Transform::Field::Motion).bits();
 constexpr std::uint32_t ChildrenBit = scene::Fields<Transform>(Transform::Field::Children).bits();
 
 class Step {
@@ -25,29 +27,31 @@ class Step {
           playback_(*scene.playback),
           seconds_(seconds),
           before_(playback_.motion.pose(scene.seconds)),
-          now_(playback_.motion.pose(seconds)) {}
+          now_(playback_.motion.pose(seconds)) {
+        for (std::size_t i = 0; scene.shutter > 0.0 && i <= Looks; ++i) {
+            looks_.push_back(playback_.motion.pose(seconds + scene.shutter * double(i) / double(Looks)));
+        }
+    }
 
     // Everything that may fail, before anything is changed.
     void bend() {
         for (const BendingGeometry& geometry : playback_.bending) {
             const auto node = static_cast<std::size_t>(geometry.node);
             const std::vector<glm::dmat4> joints = joints_of(geometry, now_);
+            if (!looks_.empty()) look_at(geometry);
             if (now_.weights[node] == before_.weights[node] && joints == joints_of(geometry, before_))
                 continue;
-            try {
-                bent_.emplace_back(&geometry, import::bend(*geometry.mesh, now_.weights[node], joints));
-            } catch (const Error& error) {
-                throw Error(error.code(), "mesh '" + geometry.name + "' at " + std::to_string(seconds_) +
-                                              " s: " + error.what() + "; repair its animation");
-            }
+            bent_.emplace_back(&geometry, bent(geometry, now_));
         }
     }
 
     TimeStep apply() {
         move_transforms();
         for (const auto& [geometry, mesh] : bent_) set_arrays(geometry->geometry, mesh);
-        if (!bent_.empty()) renew_blobs();
+        for (const auto& [id, steps] : bending_) set_steps(id, steps);
+        if (!bent_.empty() || !bending_.empty()) renew_blobs();
         look_around();
+        if (!looks_.empty()) move_cameras(scene_);
         scene_.seconds = seconds_;
         for (const auto& [id, mask] : changed_)
             step_.entries.push_back(scene::Update{id, mask, scene::only(object(id), mask)});
@@ -60,6 +64,36 @@ class Step {
         glm::dmat4 parent{1.0};
         bool is_moved = false;  // by a transform above
     };
+
+    // A geometry's vertices while the shutter is open.
+    struct Steps {
+        std::vector<std::vector<glm::vec3>> positions, normals;
+    };
+
+    MeshData bent(const BendingGeometry& geometry, const Pose& pose) const {
+        try {
+            return import::bend(*geometry.mesh, pose.weights[static_cast<std::size_t>(geometry.node)],
+                                joints_of(geometry, pose));
+        } catch (const Error& error) {
+            throw Error(error.code(), "mesh '" + geometry.name + "' at " + std::to_string(seconds_) +
+                                          " s: " + error.what() + "; repair its animation");
+        }
+    }
+
+    void look_at(const BendingGeometry& geometry) {
+        std::vector<std::vector<glm::vec3>> positions, normals;
+        for (const Pose& look : looks_) {
+            MeshData mesh = bent(geometry, look);
+            positions.push_back(std::move(mesh.positions));
+            normals.push_back(std::move(mesh.normals));
+        }
+        Steps steps{steps_of(positions), {}};
+        // Normals at the same times, where there are some.
+        for (std::size_t i = 1; i <= steps.positions.size() && !normals.front().empty(); ++i) {
+            steps.normals.push_back(std::move(normals[i * (Looks / steps.positions.size())]));
+        }
+        bending_.emplace_back(geometry.geometry, std::move(steps));
+    }
 
     scene::Object& object(ObjectId id) {
         return scene_.objects[id.value - scene_.objects.front().id.value].object;
@@ -81,6 +115,12 @@ class Step {
                  above = nodes[static_cast<std::size_t>(above)].parent)
                 leading_.insert(playback_.transforms[static_cast<std::size_t>(above)]);
             auto& transform = std::get<Transform>(object(id));
+            std::vector<glm::dmat4> looks;
+            for (const Pose& look : looks_) looks.push_back(look.local[i]);
+            if (std::vector<glm::dmat4> steps = steps_of(looks); transform.motion != steps) {
+                transform.motion = std::move(steps);
+                changed_[id] |= MotionBit;
+            }
             if (transform.matrix == now_.local[i]) continue;
             transform.matrix = now_.local[i];
             changed_[id] |= MatrixBit;
@@ -103,6 +143,25 @@ class Step {
         reference = scene::reference(*blob);
         changed_[id] |= scene::Fields<Geometry>(field).bits();
         made_.emplace(blob->hash(), std::move(blob));
+    }
+
+    void set_steps(ObjectId id, const Steps& steps) {
+        auto& geometry = std::get<Geometry>(object(id));
+        set_list(id, geometry.motion_positions, steps.positions, Geometry::Field::MotionPositions);
+        set_list(id, geometry.motion_normals, steps.normals, Geometry::Field::MotionNormals);
+    }
+
+    void set_list(ObjectId id, std::vector<scene::BlobRef>& references,
+                  const std::vector<std::vector<glm::vec3>>& steps, Geometry::Field field) {
+        std::vector<scene::BlobRef> now;
+        for (const std::vector<glm::vec3>& step : steps) {
+            auto blob = std::make_shared<const scene::Blob>(std::as_bytes(std::span(step)));
+            now.push_back(scene::reference(*blob));
+            made_.emplace(blob->hash(), std::move(blob));
+        }
+        if (now == references) return;
+        references = std::move(now);
+        changed_[id] |= scene::Fields<Geometry>(field).bits();
     }
 
     // Those of the time before go, unless something else has them, too.
@@ -171,8 +230,10 @@ class Step {
     const Playback& playback_;
     double seconds_;
     Pose before_, now_;
+    std::vector<Pose> looks_;  // while the shutter is open
     std::vector<std::pair<const BendingGeometry*, MeshData>> bent_;
-    std::map<ObjectId, std::uint32_t> changed_;
+    std::vector<std::pair<ObjectId, Steps>> bending_;
+    std::map<ObjectId, scene::FieldMask> changed_;
     std::map<Hash256, scene::BlobPtr> made_;
     std::set<ObjectId> moving_, leading_;  // transforms: that move; on the way from the root to one
     TimeStep step_;

@@ -85,6 +85,8 @@ Expected<void> set_sequence(const RenderOptions& options, RenderPlan& plan) {
             return wrong("--fps and --skip-existing are for sequences; say which with --frames A:B");
         if (options.view.animation && !options.view.at)
             return wrong("--animation: say when with --at SECONDS, or --frames A:B");
+        if (options.view.shutter && !options.view.at)
+            return wrong("--shutter: say when it opens with --at SECONDS, or --frames A:B");
         return {};
     }
     if (options.view.at) return wrong("--at and --frames exclude each other");

@@ -53,6 +53,8 @@ void ViewOptions::add_to(cli::CommandLine& command) {
     command.choice("--aperture", "how light is spread over the lens (the camera's own)", aperture,
                    {"uniform", "gaussian"});
     command.option("--at", "seconds into the scene's animations (the pose at rest)", at);
+    command.option("--shutter", "seconds that the shutter is open: what moves from then on is blurred (0)",
+                   shutter);
     command.option("--animation", "play only this one: its name, or its number from 0 (all together)",
                    animation);
     command.option("--hide", "leave out this part, by its name in the file; may be given several times",
@@ -112,6 +114,9 @@ Expected<ViewPlan> understand(const ViewOptions& options) {
     if (options.at && !(std::abs(*options.at) <= 1e9))
         return failure(ErrorCode::InvalidInput, "--at: must be a number of seconds up to 1e9");
     plan.import.at = options.at;
+    if (options.shutter && !(*options.shutter >= 0.0 && *options.shutter <= 1e9))
+        return failure(ErrorCode::InvalidInput, "--shutter: must be open for 0 to 1e9 seconds");
+    plan.import.shutter = options.shutter.value_or(0.0);
     plan.import.animation = options.animation.value_or("");
     if (options.environment) plan.import.environment = *options.environment;
     if (!std::isfinite(options.environment_strength) || options.environment_strength < 0.0) {
@@ -181,6 +186,7 @@ view::View view_from(const ViewPlan& plan, const import::CameraInfo& camera) {
     values.aperture = plan.aperture.value_or(values.aperture);
     view.camera =
         view::pose(values, camera.world_from_camera, double(plan.size.width) / double(plan.size.height));
+    view.camera.motion = camera.motion;
     return view;
 }
 

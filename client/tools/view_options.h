@@ -18,7 +18,7 @@ struct ViewOptions {
     std::string scene;
     std::string size = "1280x720";
     std::optional<std::string> camera, background, environment, crop, layers, animation;
-    std::optional<double> at, lens_radius, focus, orthographic;
+    std::optional<double> at, lens_radius, focus, orthographic, shutter;
     std::string aperture;
     std::vector<std::string> hidden, materials;
     double environment_strength = 1.0;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <glm/geometric.hpp>
 
 #include "tests/backend/scene_builder.h"
 
@@ -39,6 +40,43 @@ TEST(Lowering, KeepsSharingAndMultipliesNestedTransforms) {
     EXPECT_EQ(lowered->instances[1].world_from_object, moved(0, 2, 3));
     ASSERT_EQ(lowered->lights.size(), 1u);
     EXPECT_EQ(lowered->lights[0].world_from_light, moved(0, 2, 0));
+}
+
+std::vector<scene::Entry> moving_copies(const std::vector<glm::dmat4>& outer,
+                                        const std::vector<glm::dmat4>& inner) {
+    std::vector<scene::Entry> entries = two_copies();
+    std::get<scene::Transform>(std::get<Create>(entries[1]).object).motion = outer;
+    std::get<scene::Transform>(std::get<Create>(entries[3]).object).motion = inner;
+    return entries;
+}
+
+TEST(Lowering, OneTransformThatMovesKeepsItsSteps) {
+    const Expected<Lowered> lowered = lower(made(moving_copies({moved(2, 0, 0), moved(5, 0, 0)}, {})));
+    ASSERT_TRUE(lowered);
+    EXPECT_EQ(lowered->instances[0].motion, (std::vector{moved(2, 0, 3), moved(5, 0, 3)}));
+    EXPECT_TRUE(lowered->instances[1].motion.empty()) << "it hangs elsewhere";
+    EXPECT_TRUE(lowered->lights[0].motion.empty());
+}
+
+TEST(Lowering, StepsOfSeveralThatMoveFallTogether) {
+    const std::vector<glm::dmat4> outer{moved(2, 0, 0), moved(3, 0, 0)},
+        inner{moved(0, 1, 3), moved(0, 5, 3), moved(0, 6, 3)};
+    const Expected<Lowered> lowered = lower(made(moving_copies(outer, inner)));
+    ASSERT_TRUE(lowered);
+    // Twelve, since six are too few for what is no straight line; the first goes from 1 by 2 and 3, the other
+    // from 0 by 1, 5 and 6.
+    const std::vector<glm::dmat4>& motion = lowered->instances[0].motion;
+    ASSERT_EQ(motion.size(), 12u);
+    EXPECT_LT(glm::distance(motion[5][3], moved(2, 3, 3)[3]), 1e-12);
+    EXPECT_LT(glm::distance(motion[3][3], glm::dvec4(1.0 + 2.0 / 3.0, 1, 3, 1)), 1e-12);
+    EXPECT_LT(glm::distance(motion[11][3], moved(3, 6, 3)[3]), 1e-12);
+    EXPECT_EQ(lowered->instances[1].motion, (std::vector{moved(0, 3, 3), moved(0, 7, 3), moved(0, 8, 3)}));
+}
+
+TEST(Lowering, StepsThatAreAllTheSameAreNoMotion) {
+    const Expected<Lowered> lowered = lower(made(moving_copies({moved(1, 0, 0), moved(1, 0, 0)}, {})));
+    ASSERT_TRUE(lowered);
+    EXPECT_TRUE(lowered->instances[0].motion.empty());
 }
 
 TEST(Lowering, DoesNotDependOnTheOrderOfCreation) {

@@ -39,11 +39,13 @@ void expect_like_rebuilt(const ShadowScene& shadow) {
         EXPECT_EQ(a.instances[i].hint, b.instances[i].hint);
         EXPECT_EQ(a.instances[i].layers, b.instances[i].layers);
         EXPECT_EQ(a.instances[i].world_from_object, b.instances[i].world_from_object);
+        EXPECT_EQ(a.instances[i].motion, b.instances[i].motion);
     }
     ASSERT_EQ(a.lights.size(), b.lights.size());
     for (std::size_t i = 0; i < a.lights.size(); ++i) {
         EXPECT_EQ(a.lights[i].world_from_light, b.lights[i].world_from_light);
         EXPECT_EQ(a.lights[i].layers, b.lights[i].layers);
+        EXPECT_EQ(a.lights[i].motion, b.lights[i].motion);
     }
 }
 
@@ -77,6 +79,17 @@ TEST_F(ShadowSceneTest, AMatrixMovesOnlyWhatHangsBelowIt) {
     ASSERT_TRUE(shadow.apply(builder.move(Inner, moved(7, 0, 0))));
     expect_like_rebuilt(shadow);
     EXPECT_EQ(shadow.take_delta().moved_instances, (std::vector<std::uint32_t>{0, 1}));
+}
+
+TEST_F(ShadowSceneTest, MotionMovesWhatHangsBelow) {
+    const scene::Update update{Right, scene::Fields<Transform>(Transform::Field::Motion).bits(),
+                               Transform{.motion = {moved(0, 9, 0)}}};
+    ASSERT_TRUE(shadow.apply(builder.edit({update})));
+    expect_like_rebuilt(shadow);
+    EXPECT_EQ(shadow.lowered().instances[1].motion, std::vector{moved(0, 9, 3)});
+    const SceneDelta delta = shadow.take_delta();
+    EXPECT_EQ(delta.moved_instances, (std::vector<std::uint32_t>{1}));
+    EXPECT_TRUE(delta.lights_changed);
 }
 
 TEST_F(ShadowSceneTest, DeltasOfSeveralListsAddUp) {

@@ -187,6 +187,75 @@ TEST(GltfAnimation, StepsLeadToWhatTheFileIsAtThatTime) {
     }
 }
 
+// From 0.5 s on for 0.75 s: the cart goes from 2.5 m to 6.25 m, the hand turns by 45 degrees and then stands
+// still, the weight goes from 0.5 to 1 and back to 0.75.
+TEST(GltfShutter, WhatMovesGetsSteps) {
+    const ImportOptions options{.at = 0.5, .shutter = 0.75};
+    const ImportedScene scene = load(moving_file(), options);
+    EXPECT_EQ(scene.playback, nullptr);
+    const Transform& cart = named<Transform>(scene, "cart");
+    ASSERT_EQ(cart.motion.size(), 1u) << "a straight line needs one";
+    EXPECT_NEAR(cart.motion[0][3].x, 6.25, 1e-6);
+    EXPECT_NEAR(cart.matrix[3].x, 2.5, 1e-6);
+    EXPECT_EQ(named<Transform>(scene, "hand").motion.size(), 15u)
+        << "45 degrees in 6-degree chords, and a corner";
+    EXPECT_TRUE(named<Transform>(scene, "shoulder").motion.empty());
+
+    const Geometry& face = named<Geometry>(scene, "face");
+    ASSERT_EQ(face.motion_positions.size(), 3u) << "its corner is at 2/3 of the time";
+    const std::vector<double> heights{1.5 + 0.75, 3.0, 2.25};
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_NEAR(values<glm::vec3>(scene, face.motion_positions[i])[2].z, heights[i], 1e-5) << i;
+    EXPECT_EQ(named<Geometry>(scene, "arm").motion_positions.size(), 15u);
+    ASSERT_EQ(scene.cameras[0].motion.size(), 1u);
+    EXPECT_NEAR(scene.cameras[0].motion[0][3].x, 6.25, 1e-6);
+    expect_valid(scene);
+}
+
+// Of what the steps say at their times is what the file says.
+TEST(GltfShutter, ItsStepsAreThePosesOfTheirTimes) {
+    const ImportedScene scene = load(moving_file(), {.at = 0.25, .shutter = 1.5});
+    const Geometry& arm = named<Geometry>(scene, "arm");
+    ASSERT_EQ(arm.motion_positions.size(), 15u);
+    for (std::size_t i = 0; i < 15; ++i) {
+        const ImportedScene later = at(0.25 + 0.1 * double(i + 1));
+        const auto ours = values<glm::vec3>(scene, arm.motion_positions[i]),
+                   theirs = values<glm::vec3>(later, named<Geometry>(later, "arm").positions);
+        for (std::size_t v = 0; v < ours.size(); ++v)
+            EXPECT_LT(glm::distance(ours[v], theirs[v]), 1e-5f) << i;
+    }
+}
+
+TEST(GltfShutter, OpensAnewAtEachFrame) {
+    const ImportOptions options{.at = 0.0, .shutter = 0.5, .motion = Motion::Sequence};
+    ImportedScene scene = load(moving_file(), options);
+    scene::Scene mirror;
+    ASSERT_TRUE(mirror.apply_entries(entries(scene, RootEntry::Create)));
+    for (const double seconds : {0.25, 1.0, 1.75, 2.5}) {
+        SCOPED_TRACE(seconds);
+        const auto step = move_to(scene, seconds);
+        ASSERT_TRUE(step) << step.error().what();
+        expect_sound(scene);
+        ImportOptions again = options;
+        again.at = seconds;
+        expect_same(scene, load(moving_file(), again));
+        ASSERT_TRUE(mirror.apply_entries(step->entries));
+        scene::Scene direct;
+        ASSERT_TRUE(direct.apply_entries(entries(scene, RootEntry::Create)));
+        EXPECT_EQ(mirror.state_hash(), direct.state_hash()) << "the updates say all that changed";
+    }
+    EXPECT_TRUE(named<Transform>(scene, "cart").motion.empty()) << "all keys are over";
+    EXPECT_TRUE(named<Geometry>(scene, "face").motion_positions.empty());
+}
+
+TEST(GltfShutter, NeedsATimeAndALength) {
+    const TestFolder folder;
+    const auto file = folder.write("scene.glb", moving_file().glb());
+    EXPECT_FALSE(import_scene(file, {.shutter = 0.5}));
+    EXPECT_FALSE(import_scene(file, {.at = 0.0, .shutter = -0.5}));
+    EXPECT_FALSE(import_scene(file, {.at = 0.0, .shutter = std::nan("")}));
+}
+
 TEST(GltfAnimation, WhatHasNoVolumeComesAndGoes) {
     ImportedScene scene = at(0.0, Motion::Sequence);
     EXPECT_TRUE(seen(scene, "face.2").empty());

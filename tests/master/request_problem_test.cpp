@@ -34,6 +34,10 @@ TEST(RequestProblem, CamerasThatCannot) {
         EXPECT_TRUE(is_refused_for({.lens_radius = radius}, "the lens' radius")) << radius;
     for (const double focus : {-1.0, 0.0, 1e-9, NaN, Infinity})
         EXPECT_TRUE(is_refused_for({.lens_radius = 0.1, .focus_distance = focus}, "focus distance")) << focus;
+    const std::vector<glm::dmat4> most(scene::MaxMotion, glm::dmat4(1.0));
+    EXPECT_EQ(problem_of(request_with({.motion = most})), "");
+    EXPECT_TRUE(is_refused_for({.motion = std::vector(scene::MaxMotion + 1, glm::dmat4(1.0))}, "steps"));
+    EXPECT_TRUE(is_refused_for({.motion = {glm::dmat4(NaN)}}, "not finite"));
     EXPECT_TRUE(is_refused_for({.right = -2.0}, "empty frustum"));
     EXPECT_TRUE(is_refused_for({.right = 1e16, .projection = scene::Projection::Orthographic}, "wider than"));
 }

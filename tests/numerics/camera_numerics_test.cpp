@@ -144,6 +144,9 @@ TEST(PinholeNumerics, ARasteriserDrawsWhatAPinholeSeesAndRaysTheRest) {
     view.camera.lens_radius = 0.0;
     view.camera.projection = scene::Projection::Orthographic;
     EXPECT_EQ(backend::make_view(view, {}).renderer, RendererWhitted);
+    view.camera.projection = scene::Projection::Perspective;
+    view.camera.motion = {view.camera.world_from_camera};
+    EXPECT_EQ(backend::make_view(view, {}).renderer, RendererWhitted);
 }
 
 }  // namespace

@@ -58,6 +58,7 @@ inline Case make_case(IN(World) world, IN(Inputs) x) {
     Case made;
     made.context.scene = world.scenes.items[x.c % 8u == 0u ? 1u : 0u];
     made.context.view = world.views.items[x.d % ViewCount];
+    made.context.time = 0.0f;
     made.ray = Ray(x.wi, x.n);
     made.instance = made.context.scene.instances.items[x.instance];
     made.mesh = made.context.scene.meshes.items[made.instance.mesh];
@@ -81,6 +82,57 @@ inline Case make_case(IN(World) world, IN(Inputs) x) {
     made.branch = Branch(made.ray, Cone(x.metallic, x.transmission), x.color, x.transmission, x.c % 64u,
                          x.c % (MaxSpecularDepth + 1u));
     return made;
+}
+
+// The scene where all that can moves, by its first motion; a mesh that bends from the first mesh to the
+// fourth.
+inline Scene moving_scene(IN(Case) c) {
+    Scene scene = c.context.scene;
+    scene.features = scene.features | FeatureMotion;
+    return scene;
+}
+inline Mesh bending_mesh(IN(Case) c, float time) {
+    Mesh mesh = c.mesh;
+    mesh.arrays = mesh.arrays | MeshBends;
+    mesh.first_step = 0u;
+    mesh.steps = 3u;
+    mesh.reach = 2.0f;
+    return mesh_at(moving_scene(c), mesh, time);
+}
+inline Place moved_place(IN(Case) c, float time) {
+    const Instance moved = instance_at(moving_scene(c), c.instance, time);
+    return Place(moved.linear, moved.translation);
+}
+inline mat3 moved_light(IN(Case) c, float time) {
+    const LightSource moved = light_at(moving_scene(c), c.light, time);
+    return mat3(moved.position, moved.direction, moved.edge_u);
+}
+inline float changing_area(IN(Case) c, float time) {
+    Emitter emitter = c.emitter;
+    emitter.inverse_root_area = 0.0f;
+    return inverse_root_area_of(moving_scene(c), emitter, instance_at(moving_scene(c), c.instance, time),
+                                triangle_of(bending_mesh(c, time), c.corners));
+}
+// Of a triangle of the first mesh light.
+inline float area_at(IN(Case) c, float time) {
+    Emitter emitter = c.emitter;
+    emitter.inverse_root_area = 0.0f;
+    Surface hit = c.surface;
+    hit.time = time;
+    hit.triangle = 0u;
+    for (uint i = 0u; i < LightCount; ++i) {
+        if (c.context.scene.lights.items[i].kind != LightMesh) continue;
+        hit.light = int(i);
+        return inverse_root_area_at(moving_scene(c), emitter, hit);
+    }
+    return 0.0f;
+}
+inline Ray moved_eye(IN(Case) c, float time) {
+    View view = c.context.view;
+    view.camera_places = c.context.scene.places;
+    view.camera_steps = 3u;
+    View moved = view_at(FeatureCameraMotion, view, time);
+    return Ray(moved.eye, moved.forward);
 }
 
 // Where a cell of 512 pixels from the picture's corner on has a point, and its depth.

@@ -14,6 +14,14 @@ inline void put(INOUT(Outputs) y, IN(Cone) cone) {
     put(y, cone.width);
     put(y, cone.spread);
 }
+inline void put(INOUT(Outputs) y, IN(Moment) moment) {
+    put(y, moment.step);
+    put(y, moment.share);
+}
+inline void put(INOUT(Outputs) y, IN(Place) place) {
+    put(y, place.linear);
+    put(y, place.translation);
+}
 inline void put(INOUT(Outputs) y, IN(Measured) measured) {
     put(y, measured.direction);
     put(y, measured.distance);

@@ -251,14 +251,14 @@ TEST(Motion, WhatMovesWithTheCameraStandsStill) {
 // The same where directions turn, and samples with them: in the mean.
 TEST(Motion, WhatTurnsWithTheCameraStandsStill) {
     Together still(glm::dmat4(1.0), {});
-    const Mean calm = mean_of(still.model.build(), still.view, 1024, red);
+    const Mean calm = mean_of(still.model.build(), still.view, 8192, red);
     EXPECT_LE(calm.standard_error / calm.value, 0.003);
     const glm::dmat4 mirror = glm::scale(glm::dmat4(1.0), {-1.0, 1.0, 1.0});
     for (const auto& [place, steps] : {std::pair(glm::dmat4(1.0), turning(1.5)),
                                        std::pair(mirror, std::vector{moved({3, 2, 1}) * turned(0.01)}),
                                        std::pair(turned(2.0, {1, 2, 3}), std::vector{moved({-3, 2, 1})})}) {
         Together moving(place, steps);
-        const Mean mean = mean_of(moving.model.build(), moving.view, 1024, red);
+        const Mean mean = mean_of(moving.model.build(), moving.view, 8192, red);
         EXPECT_NEAR(mean.value, calm.value, 4.0 * std::hypot(mean.standard_error, calm.standard_error));
     }
 }

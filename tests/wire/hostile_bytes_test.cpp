@@ -25,6 +25,7 @@ view::View some_view() {
     view.camera.lens_radius = 0.125;
     view.camera.focus_distance = 3.5;
     view.camera.aperture = scene::Aperture::Gaussian;
+    view.camera.motion = {glm::dmat4(2.0), glm::dmat4(0.5)};
     view.renderer = view::Renderer::Raster;
     view.path_class = view::PathClass::Caustics;
     view.feature_rule = view::FeatureRule::Connections;
