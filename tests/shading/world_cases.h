@@ -57,6 +57,8 @@ inline Path path_in(IN(Inputs) x) {
 inline Case make_case(IN(World) world, IN(Inputs) x) {
     Case made;
     made.context.scene = world.scenes.items[x.c % 8u == 0u ? 1u : 0u];
+    // What moves has functions of its own: the others compile without it.
+    made.context.scene.features = made.context.scene.features & ~(FeatureMotion | FeatureCameraMotion);
     made.context.view = world.views.items[x.d % ViewCount];
     made.context.time = 0.0f;
     made.ray = Ray(x.wi, x.n);
@@ -107,11 +109,16 @@ inline mat3 moved_light(IN(Case) c, float time) {
     const LightSource moved = light_at(moving_scene(c), c.light, time);
     return mat3(moved.position, moved.direction, moved.edge_u);
 }
-inline float changing_area(IN(Case) c, float time) {
+// The area as a share of the triangle's extent squared, since that of a needle is of the size of its
+// rounding.
+inline float changing_area(IN(Case) c) {
     Emitter emitter = c.emitter;
     emitter.inverse_root_area = 0.0f;
-    return inverse_root_area_of(moving_scene(c), emitter, instance_at(moving_scene(c), c.instance, time),
-                                triangle_of(bending_mesh(c, time), c.corners));
+    const vec3 q = c.instance.linear * (c.triangle.q - c.triangle.p);
+    const vec3 r = c.instance.linear * (c.triangle.r - c.triangle.p);
+    const float ratio = inverse_root_area_of(moving_scene(c), emitter, c.instance, c.triangle) *
+                        extent_of(max(abs(q), abs(r)));
+    return 1.0f + 1.0f / (ratio * ratio);
 }
 // Of a triangle of the first mesh light.
 inline float area_at(IN(Case) c, float time) {

@@ -345,14 +345,13 @@ PackedWorld make_world(std::uint64_t address) {
     std::vector<MeshStep> steps;
     for (const Mesh& mesh : meshes) steps.push_back({mesh.positions, mesh.normals});
     scene.mesh_steps = packer.add<MeshStepArray>(steps);
+    const std::vector<Instance> instances = make_instances(random);
     std::vector<Place> places;
-    for (const Instance& instance : make_instances(random)) {
-        places.push_back({instance.linear, instance.translation});
-    }
+    for (const Instance& instance : instances) places.push_back({instance.linear, instance.translation});
     scene.places = packer.add<PlaceArray>(places);
     scene.motions = packer.add<MotionArray>(
         std::vector<Motion>{{.first_place = 0, .steps = 3, .sizes = 2.0f, .reach = glm::vec3(4.0f)}});
-    scene.instances = packer.add<InstanceArray>(make_instances(random));
+    scene.instances = packer.add<InstanceArray>(instances);
     scene.lights = packer.add<LightSourceArray>(make_lights(random));
     std::vector<Emitter> emitters = make_emitters();
     scene.light_nodes = packer.add<LightNodeArray>(make_nodes(emitters, random));

@@ -151,7 +151,7 @@ class TransportOnDevice : public VulkanTest, public testing::WithParamInterface<
 };
 
 std::vector<float> on_host(const backend::SceneTables& tables, const shading::View& view) {
-    const shading::Context context{backend::on_host(tables), view};
+    const shading::Context context{backend::on_host(tables), view, 0.0f};
     std::vector<float> results;
     for (std::uint32_t i = 0; i < Size * Size * SamplesPerPixel; ++i) {
         const std::uint32_t pixel = i % (Size * Size), index = i / (Size * Size);
