@@ -105,6 +105,13 @@ inline Place moved_place(IN(Case) c, float time) {
     const Instance moved = instance_at(moving_scene(c), c.instance, time);
     return Place(moved.linear, moved.translation);
 }
+// Off 0, where sums of what cancels are of the size of their rounding.
+inline Place far_place(IN(Place) p) {
+    return Place(mat3(4.0f + p.linear[0], 4.0f + p.linear[1], 4.0f + p.linear[2]), 4.0f + p.translation);
+}
+inline Triangle far_triangle(IN(Triangle) t) {
+    return Triangle(4.0f + t.p, 4.0f + t.q, 4.0f + t.r);
+}
 inline mat3 moved_light(IN(Case) c, float time) {
     const LightSource moved = light_at(moving_scene(c), c.light, time);
     return mat3(moved.position, moved.direction, moved.edge_u);
