@@ -30,7 +30,8 @@ int main(int argc, char** argv) {
         tools::keys_command(line),       tools::compare_command(line),
         tools::filter_command(line),     tools::filters_command(line),
         tools::set_filter_command(line), tools::bench_command(line),
-        tools::display_command(line),    tools::doctor_command(line)};
+        tools::display_command(line),    tools::doctor_command(line),
+        tools::coverage_command(line)};
     line.examples(
         {"tessera render room.glb -o room.exr -o room.png", "tessera doctor", "tessera render --help"});
     if (const auto exit = line.parse(argc, argv, std::cout, std::cerr)) return *exit;

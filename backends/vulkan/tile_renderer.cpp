@@ -59,8 +59,9 @@ class UnitRun {
             view.camera_places.items = reinterpret_cast<const shading::Place*>(camera_places_.address());
         }
         view_ = make_buffer(device_, std::vector<shading::View>{view});
-        const bool trees =
-            view.renderer != shading::RendererPathTracing || (view.keeps & shading::KeepsRange) != 0;
+        const bool trees = view.renderer == shading::RendererWhitted ||
+                           view.renderer == shading::RendererRaster ||
+                           (view.keeps & shading::KeepsRange) != 0;
         kernel_ = &kernels_.find({.features = with.features,
                                   .specular_trees = trees,
                                   .rasterised = with.raster != nullptr,

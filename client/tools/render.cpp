@@ -19,8 +19,6 @@ namespace tessera::tools {
 
 namespace {
 
-constexpr const char* Name = "render";
-
 // Ids that a master lends first; a scene imported with them need not be read again.
 constexpr ObjectId UsualFirstId{1u << 16};
 
@@ -41,24 +39,27 @@ master::EventSink quiet_log(const cli::Log& log) {
 class Render {
   public:
     Render(RenderPlan plan, const RenderOptions& options)
-        : plan_(std::move(plan)), json_(options.json), log_(options.log) {}
+        : name_(options.coverage ? "coverage" : "render"),
+          plan_(std::move(plan)),
+          json_(options.json),
+          log_(options.log) {}
 
     int run() {
         if (const auto code = import(UsualFirstId)) return *code;
         if (stopped()) return interrupted("nothing was rendered");
         if (plan_.sequence && !scene_.playback)
-            return complain(Name, ExitBadInput, "--frames: the scene has no animation that can be played");
+            return complain(name_, ExitBadInput, "--frames: the scene has no animation that can be played");
         connect();
         if (const auto code = bring_in_scene()) return *code;
         if (plan_.sequence) return render_sequence();
         render(plan_.view.view.seed);
-        return finish(plan_.outputs);
+        return plan_.coverage ? count() : finish(plan_.outputs);
     }
 
   private:
     bool stopped() const { return interrupts_.token().stop_requested(); }
 
-    int fail(int code, const std::string& message) const { return complain(Name, code, where_ + message); }
+    int fail(int code, const std::string& message) const { return complain(name_, code, where_ + message); }
     int interrupted(const std::string& what) const {
         return fail(ExitInterrupted, "interrupted; " + (frame_ ? "the frames before it are there" : what));
     }
@@ -66,10 +67,10 @@ class Render {
     std::optional<int> import(ObjectId first_id) {
         plan_.view.import.first_id = first_id;
         auto scene = import_scene(plan_.view);
-        if (!scene) return complain(Name, ExitBadInput, scene.error().what());
+        if (!scene) return complain(name_, ExitBadInput, scene.error().what());
         scene_ = std::move(*scene);
         auto camera = choose_camera(scene_.cameras, plan_.view.camera);
-        if (!camera) return complain(Name, cli::ExitUsage, camera.error().what());
+        if (!camera) return complain(name_, cli::ExitUsage, camera.error().what());
         camera_ = std::move(*camera);
         for (const scene::BlobPtr& blob : scene_.blobs) blobs_->insert(blob);
         return std::nullopt;
@@ -77,11 +78,11 @@ class Render {
 
     void connect() {
         if (plan_.address) {
-            session_ = client::connect(*plan_.address, blobs_, clock_, session_settings("tessera render"));
+            session_ = client::connect(*plan_.address, blobs_, clock_, session_settings("tessera " + name_));
             return;
         }
         embedded_.emplace(plan_.embedded, blobs_, clock_, quiet_log(log_));
-        client::SessionSettings settings = session_settings("tessera render");
+        client::SessionSettings settings = session_settings("tessera " + name_);
         settings.lost_limit = std::chrono::minutes(10);  // silence in here is a busy machine
         session_ = std::make_unique<client::Session>(embedded_->client(), std::function<void()>(), blobs_,
                                                      clock_, settings);
@@ -145,7 +146,7 @@ class Render {
             interrupts_.token());
         if (std::holds_alternative<client::Stopped>(outcome)) return interrupted("nothing was rendered");
         if (const auto* busy = std::get_if<client::Busy>(&outcome)) {
-            return complain(Name, cli::ExitTryLater, busy->reason);
+            return complain(name_, cli::ExitTryLater, busy->reason);
         }
         const auto& opened = std::get<client::OpenedScene>(outcome);
         if (opened.first_id != plan_.view.import.first_id) {
@@ -163,6 +164,21 @@ class Render {
             plan_.job,
             [&](const client::Progress& progress) { line.show(where_ + describe(progress, plan_.job)); },
             interrupts_.token());
+    }
+
+    // Of a whole picture alone: shares of a part would be those of another one.
+    int count() {
+        using client::Outcome;
+        if (result_.outcome == Outcome::Stopped) return interrupted("nothing was counted");
+        if (result_.outcome == Outcome::NoNodes) return fail(cli::ExitUnavailable, result_.message);
+        if (result_.outcome != Outcome::Complete || !result_.film)
+            return fail(ExitInternal, "the frame failed: " + result_.message);
+        const SampleGrid grid = *plan_.coverage;
+        for (const std::string& output : plan_.outputs)
+            write_picture(output, gather(frame::resolve_picture(*result_.film), grid));
+        const Coverage coverage = count_coverage(*result_.film, scene_.objects);
+        std::cout << (json_ ? as_json(coverage, grid.count()) : as_text(coverage, grid.count())) << std::endl;
+        return 0;
     }
 
     // The pictures of what there is, unless there is nothing; then the reason decides. Those of a sequence
@@ -186,11 +202,13 @@ class Render {
         const RenderReport report{plan_.job, result_, seconds(clock_.now() - started_), hash, frame_};
         std::cout << (json_ ? as_json(report) : as_text(report, outputs)) << std::endl;
         if (result_.outcome == Outcome::Stopped) return interrupted("what was merged so far is written");
-        if (result_.outcome == Outcome::NoNodes) return complain(Name, cli::ExitUnavailable, result_.message);
+        if (result_.outcome == Outcome::NoNodes)
+            return complain(name_, cli::ExitUnavailable, result_.message);
         return 0;
     }
 
     Interrupts interrupts_;  // before anything that starts threads
+    std::string name_;       // of the command
     RenderPlan plan_;
     bool json_;
     cli::Log log_;
@@ -207,12 +225,13 @@ class Render {
 };
 
 int run(const RenderOptions& options) {
+    const char* name = options.coverage ? "coverage" : "render";
     auto plan = understand(options);
-    if (!plan) return complain(Name, cli::ExitUsage, plan.error().what());
+    if (!plan) return complain(name, cli::ExitUsage, plan.error().what());
     try {
         return Render(std::move(*plan), options).run();
     } catch (const Error& error) {
-        return complain(Name, exit_code(error.code()), error.what());
+        return complain(name, exit_code(error.code()), error.what());
     }
 }
 
@@ -220,8 +239,16 @@ int run(const RenderOptions& options) {
 
 Command render_command(cli::CommandLine& program) {
     const auto options = std::make_shared<RenderOptions>();
-    options->add_to(program.command(Name, "Render a scene to pictures, in this process or on a cluster."));
-    return {Name, [options](std::string_view) { return run(*options); }};
+    options->add_to(
+        program.command("render", "Render a scene to pictures, in this process or on a cluster."));
+    return {"render", [options](std::string_view) { return run(*options); }};
+}
+
+Command coverage_command(cli::CommandLine& program) {
+    const auto options = std::make_shared<RenderOptions>();
+    options->add_coverage_to(
+        program.command("coverage", "Which objects a camera sees, and how much of the picture each takes."));
+    return {"coverage", [options](std::string_view) { return run(*options); }};
 }
 
 }  // namespace tessera::tools

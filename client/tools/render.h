@@ -7,4 +7,7 @@ namespace tessera::tools {
 // tessera render SCENE -o PICTURE…
 Command render_command(cli::CommandLine& program);
 
+// tessera coverage SCENE
+Command coverage_command(cli::CommandLine& program);
+
 }  // namespace tessera::tools

@@ -27,10 +27,10 @@ std::vector<std::string> backend_names() {
     return names;
 }
 
-Expected<void> check_outputs(const std::vector<std::string>& outputs) {
-    if (outputs.empty())
+Expected<void> check_outputs(const RenderOptions& options) {
+    if (options.outputs.empty() && !options.coverage)
         return wrong("no output: say where the picture goes with -o FILE.exr or -o FILE.png");
-    for (const std::string& output : outputs) {
+    for (const std::string& output : options.outputs) {
         if (!picture_format(output)) {
             return wrong("-o: '" + output +
                          "' is no picture that can be written; end it with .exr, .png or .jpg");
@@ -146,7 +146,65 @@ Expected<void> set_filter(const RenderOptions& options, client::JobRequest& job)
     return {};
 }
 
+// One sample for each pixel of a larger picture, which the master bounds as any other.
+Expected<void> set_coverage(const RenderOptions& options, RenderPlan& plan) {
+    constexpr std::uint64_t MaxSamples = 4096, DefaultSamples = 16, MaxEdge = 65536;
+    const std::uint64_t samples = options.spp.value_or(DefaultSamples);
+    if (samples == 0 || samples > MaxSamples) return wrong("--spp: between 1 and 4096");
+    plan.coverage = sample_grid(static_cast<std::uint32_t>(samples));
+    const std::uint64_t width = std::uint64_t{plan.view.size.width} * plan.coverage->across;
+    const std::uint64_t height = std::uint64_t{plan.view.size.height} * plan.coverage->down;
+    if (width > MaxEdge || height > MaxEdge) {
+        return wrong("--spp: every sample is a pixel of a picture, which would have " +
+                     std::to_string(width) + "x" + std::to_string(height) +
+                     "; choose fewer, or a smaller --size");
+    }
+    spread(plan.view.view, *plan.coverage);
+    plan.view.view.renderer = view::Renderer::Coverage;
+    plan.view.view.channels = {frame::Channel::ObjectIndex};
+    if (!plan.outputs.empty()) plan.view.view.channels.insert(frame::Channel::Color);
+    plan.job.spp = 1;
+    return {};
+}
+
+void add_cluster_to(cli::CommandLine& command, RenderOptions& options) {
+    command.option("--backend", "back-end of the embedded nodes", options.backend);
+    if (backend::offers_devices()) {
+        command.option("--device",
+                       "its device: index or part of a name, as tessera doctor lists them (the best)",
+                       options.device);
+    }
+    command.option("--cache", "keep built trees and kernels in this folder, for the next start",
+                   options.cache);
+    command.option("--nodes", "number of embedded nodes (1)", options.nodes);
+    command.option("--threads", "threads of all embedded nodes together (all cores)", options.threads);
+    command.option("--master", "use a running cluster: tcp://host:port", options.master);
+    command.option("--keys", "keys for that cluster: a folder, or an exported file", options.keys);
+    command.option("--user", "whose pair in a folder of keys", options.user);
+    command.option("--wait-nodes", "begin when N nodes are ready, give up after seconds: N[:seconds]",
+                   options.wait_nodes);
+    command.flag("--no-wait", "exit with 75 when the cluster is busy, instead of waiting", options.no_wait);
+}
+
+void add_log_to(cli::CommandLine& command, RenderOptions& options) {
+    command.choice("--log-level", "how much to tell", options.log.level, cli::log_levels());
+    command.option("--log-file", "write the log there instead of standard error", options.log.file);
+}
+
 }  // namespace
+
+void RenderOptions::add_coverage_to(cli::CommandLine& command) {
+    coverage = true;
+    view.size = "640x360";
+    view.add_scene_to(command);
+    command.option("-o,--output", "picture with a colour for each object, .exr, .png or .jpg", outputs);
+    command.option("--spp", "samples per pixel (16)", spp);
+    add_cluster_to(command, *this);
+    command.flag("--json", "print one JSON object", json);
+    add_log_to(command, *this);
+    command.examples({"tessera coverage room.glb", "tessera coverage room.glb --camera 1 --json -o seen.png",
+                      "tessera coverage room.glb --master tcp://render-1:7420 --keys ~/.tessera"});
+}
 
 void RenderOptions::add_to(cli::CommandLine& command) {
     view.add_to(command);
@@ -164,24 +222,9 @@ void RenderOptions::add_to(cli::CommandLine& command) {
     command.flag("--save-statistics", "keep all channels in the EXR, for tessera filter", save_statistics);
     command.choice("--policy", "how frames are cut into work", policy, {"tiled", "cooperative", "mixed"});
     command.flag("--reproducible", "the same bits on every x86-64-v3 machine: AVX2 only", reproducible);
-    command.option("--backend", "back-end of the embedded nodes", backend);
-    if (backend::offers_devices()) {
-        command.option("--device",
-                       "its device: index or part of a name, as tessera doctor lists them (the best)",
-                       device);
-    }
-    command.option("--cache", "keep built trees and kernels in this folder, for the next start", cache);
-    command.option("--nodes", "number of embedded nodes (1)", nodes);
-    command.option("--threads", "threads of all embedded nodes together (all cores)", threads);
-    command.option("--master", "use a running cluster: tcp://host:port", master);
-    command.option("--keys", "keys for that cluster: a folder, or an exported file", keys);
-    command.option("--user", "whose pair in a folder of keys", user);
-    command.option("--wait-nodes", "begin when N nodes are ready, give up after seconds: N[:seconds]",
-                   wait_nodes);
-    command.flag("--no-wait", "exit with 75 when the cluster is busy, instead of waiting", no_wait);
+    add_cluster_to(command, *this);
     command.flag("--json", "print one JSON object with everything measured", json);
-    command.choice("--log-level", "how much to tell", log.level, cli::log_levels());
-    command.option("--log-file", "write the log there instead of standard error", log.file);
+    add_log_to(command, *this);
     command.examples({"tessera render room.glb -o room.exr -o room.png --spp 256",
                       "tessera render room.glb -o room.exr --spp 8 --filter fdf",
                       "tessera render still.glb --env studio.exr -o still.png --time 800ms --filter fdf",
@@ -197,7 +240,7 @@ Expected<RenderPlan> understand(const RenderOptions& options) {
     RenderPlan plan;
     plan.view = *view;
     plan.outputs = options.outputs;
-    if (auto fine = check_outputs(options.outputs); !fine) return tl::unexpected(fine.error());
+    if (auto fine = check_outputs(options); !fine) return tl::unexpected(fine.error());
     if (auto fine = set_sequence(options, plan); !fine) return tl::unexpected(fine.error());
     auto embedded = embedded_settings(options);
     if (!embedded) return tl::unexpected(embedded.error());
@@ -226,6 +269,10 @@ Expected<RenderPlan> understand(const RenderOptions& options) {
         return wrong("--renderer raster: " + plan.embedded.backend + " does not draw; add --backend vulkan");
     }
     if (options.no_wait) plan.when_busy = client::WhenBusy::GiveUp;
+    if (options.coverage) {
+        if (auto fine = set_coverage(options, plan); !fine) return tl::unexpected(fine.error());
+        return plan;
+    }
     if (auto fine = set_amount(options, plan.job); !fine) return tl::unexpected(fine.error());
     plan.job.policy = options.policy == "tiled"         ? client::Policy::Tiled
                       : options.policy == "cooperative" ? client::Policy::Cooperative

@@ -7,13 +7,14 @@
 #include "client/cli/log.h"
 #include "client/job.h"
 #include "client/session.h"
+#include "client/tools/coverage.h"
 #include "client/tools/embedded_cluster.h"
 #include "client/tools/view_options.h"
 #include "mediator/picture/film_exr.h"
 
 namespace tessera::tools {
 
-// The options of `tessera render`, as typed.
+// The options of `tessera render` and `tessera coverage`, as typed.
 struct RenderOptions {
     ViewOptions view;
     std::vector<std::string> outputs;
@@ -26,7 +27,10 @@ struct RenderOptions {
     bool reproducible = false, no_wait = false, json = false, save_statistics = false, skip_existing = false;
     cli::LogSettings log{.program = "tessera"};
 
+    bool coverage = false;  // of objects, instead of light (client/tools/coverage.h)
+
     void add_to(cli::CommandLine& command);
+    void add_coverage_to(cli::CommandLine& command);
 };
 
 // Frames of an animation: frame i shows the scene at i / fps seconds.
@@ -48,6 +52,7 @@ struct RenderPlan {
     EmbeddedSettings embedded;
     client::WhenBusy when_busy = client::WhenBusy::Queue;
     picture::Statistics statistics = picture::Statistics::Left;
+    std::optional<SampleGrid> coverage;  // the view is spread by it
 };
 Expected<RenderPlan> understand(const RenderOptions& options);
 

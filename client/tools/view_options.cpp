@@ -39,7 +39,7 @@ Expected<void> set_optics(const ViewOptions& options, ViewPlan& plan) {
 
 }  // namespace
 
-void ViewOptions::add_to(cli::CommandLine& command) {
+void ViewOptions::add_scene_to(cli::CommandLine& command) {
     command.positional(
         "SCENE",
         "scene file: .gltf, .glb, .obj, .ply, .stl, .tessera, .x3d (its lights fall off by the square)",
@@ -60,24 +60,29 @@ void ViewOptions::add_to(cli::CommandLine& command) {
     command.option("--hide", "leave out this part, by its name in the file; may be given several times",
                    hidden);
     command.option("--material", "PART=MATERIAL, both by name; may be given several times", materials);
+    command.option("--crop", "render only the part X,Y,W,H of the picture", crop);
+    command.option("--layers", "see only objects in these layers of the scene, 0 to 31: 0,2 (all)", layers);
+    command.option("--seed", "another seed, other noise", seed);
+}
+
+void ViewOptions::add_to(cli::CommandLine& command) {
+    add_scene_to(command);
     command.option("--background", "uniform light from all around: linear R,G,B", background);
     command.option("--env", "environment map, latitude-longitude .exr or .hdr", environment);
     command.option("--env-strength", "factor on the environment map", environment_strength);
     command.flag("--solid-glass", "glass of glTF files refracts although they tell of no volume",
                  solid_glass);
     command.option("--bounces", "how often light is scattered on; 0 = direct light only", bounces);
-    command.option("--crop", "render only the part X,Y,W,H of the picture", crop);
     command.choice("--pixel-filter", "how a sample counts for the pixels around it", pixel_filter,
                    {"box", "gaussian", "blackman-harris"});
-    command.option("--seed", "another seed, other noise", seed);
-    command.choice("--renderer",
-                   "path tracing, or direct light and perfect speculars only; raster: the latter with first "
-                   "hits from a rasteriser, by nodes with --backend vulkan",
-                   renderer, {"path", "whitted", "raster"});
+    command.choice(
+        "--renderer",
+        "path tracing, or direct light and perfect speculars only; raster: the latter with first "
+        "hits from a rasteriser, by nodes with --backend vulkan; coverage: a colour for each object",
+        renderer, {"path", "whitted", "raster", "coverage"});
     command.choice("--path-class", "paths that the pixel filter may blur", path_class, path_class_names());
     command.choice("--feature-rule", "what the shading feature of the filter fdf counts", feature_rule,
                    {"demodulated", "connections"});
-    command.option("--layers", "see only objects in these layers of the scene, 0 to 31: 0,2 (all)", layers);
     command.flag("--transparent", "nothing behind the scene: write alpha", transparent);
 }
 
@@ -126,8 +131,8 @@ Expected<ViewPlan> understand(const ViewOptions& options) {
     if (options.solid_glass) plan.import.glass = import::Glass::Solid;
     plan.view.seed = options.seed;
     plan.view.max_bounces = options.bounces;
-    for (const view::Renderer renderer :
-         {view::Renderer::PathTracing, view::Renderer::Whitted, view::Renderer::Raster}) {
+    for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted,
+                                          view::Renderer::Raster, view::Renderer::Coverage}) {
         if (options.renderer == view::renderer_name(renderer)) plan.view.renderer = renderer;
     }
     const auto& classes = path_class_names();

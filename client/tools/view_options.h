@@ -29,7 +29,8 @@ struct ViewOptions {
     std::string renderer = "path", path_class = "indirect", feature_rule = "demodulated";
     bool transparent = false;
 
-    void add_to(cli::CommandLine& command);
+    void add_scene_to(cli::CommandLine& command);  // what is seen, whatever its light
+    void add_to(cli::CommandLine& command);        // all of them
 };
 
 // The same, understood.

@@ -267,7 +267,8 @@ struct Scene {
 
 // Values as in view/view.h.
 inline constexpr uint FilterBox = 0u, FilterGaussian = 1u, FilterBlackmanHarris = 2u;
-inline constexpr uint RendererPathTracing = 0u, RendererWhitted = 1u, RendererRaster = 2u;
+inline constexpr uint RendererPathTracing = 0u, RendererWhitted = 1u, RendererRaster = 2u,
+                      RendererCoverage = 3u;
 inline constexpr uint ClassIndirect = 0u, ClassCaustics = 1u, ClassDiffuse = 2u, ClassAll = 3u,
                       ClassNone = 4u;
 inline constexpr uint RuleDemodulated = 0u, RuleConnections = 1u;

@@ -2,6 +2,7 @@
 #define TESSERA_MEDIATOR_SHADING_TRACE_H
 
 #include "mediator/shading/camera.h"
+#include "mediator/shading/coverage.h"
 #include "mediator/shading/shadow_catcher.h"
 #include "mediator/shading/speculars.h"
 
@@ -11,7 +12,8 @@
 // throughput. The renderer Whitted: emission and sky along all branches of perfect speculars, and where one
 // ends on a surface direct light, as path tracing finds it with max_bounces = 0; the features of a sample are
 // the branches' by their weights, the normal by their probabilities. The range is that of all branches in
-// both. The renderer Raster is Whitted from first hits that a rasteriser has found (raster.h).
+// both. The renderer Raster is Whitted from first hits that a rasteriser has found (raster.h). The renderer
+// Coverage finds the first hit alone.
 //
 // All rays but those to lights are asked for at one place and shaded at one place: a shader has all its
 // functions inlined, and what is written twice is compiled twice. The including side says whether its views
@@ -82,7 +84,9 @@ struct FirstHit {
 };
 
 WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(FirstHit) seen) {
-    const bool whitted = has_specular_trees(context) && context.view.renderer != RendererPathTracing;
+    const bool covers = context.view.renderer == RendererCoverage;
+    const bool whitted =
+        has_specular_trees(context) && context.view.renderer != RendererPathTracing && !covers;
     const bool wants_range = has_specular_trees(context) && keeps(context.view, KeepsRange);
     tell_camera(context, ray);
     const Ray camera = ray;
@@ -95,7 +99,7 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
     while (true) {
         const bool first = path.rays == 0u;
         // The tree of a path is followed, after the path itself, for its range alone.
-        const bool lit = whitted || stage == StagePath;
+        const bool lit = !covers && (whitted || stage == StagePath);
         bool goes_on = false;
         path.rays += 1u;
         Hit hit;
@@ -107,7 +111,10 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
             is_hit = trace_closest(context, ray, closest_seed(path), hit);
         }
         if (lit && !is_caught) add_shapes(context, path, ray, is_hit ? hit.distance : infinity());
-        if (is_hit) {
+        if (is_hit && covers) {
+            show_object(path.found, context.scene.instances.items[hit.instance].object,
+                        depth_along(context.view, ray, hit.distance));
+        } else if (is_hit) {
             path.cone.width += path.cone.spread * hit.distance;
             const Surface surface =
                 make_surface(context.scene, hit, ray.direction, path.cone.width, context.time);

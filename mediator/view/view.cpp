@@ -12,6 +12,8 @@ std::string_view renderer_name(Renderer renderer) {
             return "whitted";
         case Renderer::Raster:
             return "raster";
+        case Renderer::Coverage:
+            return "coverage";
     }
     return "unknown";
 }

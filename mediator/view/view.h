@@ -50,13 +50,15 @@ struct PixelFilter {
 
 enum class Renderer : std::uint8_t {
     PathTracing,
-    Whitted,  // direct light and perfect speculars, every branch of them followed (Whitted 1980)
-    Raster,   // the same from first hits of a rasteriser, for navigation; all pixels of a sample share their
-              // place in the pixel. Orthographic views, views through a lens and what moves while the
-              // shutter is open find theirs by rays, as Whitted
+    Whitted,   // direct light and perfect speculars, every branch of them followed (Whitted 1980)
+    Raster,    // the same from first hits of a rasteriser, for navigation; all pixels of a sample share their
+               // place in the pixel. Orthographic views, views through a lens and what moves while the
+               // shutter is open find theirs by rays, as Whitted
+    Coverage,  // what the camera sees first of which object, in a colour for each, unlit (Schwenk 5.4.3)
 };
 
-std::string_view renderer_name(Renderer renderer);  // as --renderer has it: "path", "whitted", "raster"
+// As --renderer has it: "path", "whitted", "raster", "coverage".
+std::string_view renderer_name(Renderer renderer);
 
 class RendererSet {
   public:
@@ -66,7 +68,7 @@ class RendererSet {
     }
     static constexpr RendererSet from_bits(std::uint32_t bits) {
         RendererSet set;
-        set.bits_ = bits & (bit(Renderer::Raster) * 2u - 1u);
+        set.bits_ = bits & (bit(Renderer::Coverage) * 2u - 1u);
         return set;
     }
     constexpr std::uint32_t bits() const { return bits_; }
@@ -80,7 +82,7 @@ class RendererSet {
 };
 
 // Of every back-end that traces rays.
-inline constexpr RendererSet TracingRenderers{Renderer::PathTracing, Renderer::Whitted};
+inline constexpr RendererSet TracingRenderers{Renderer::PathTracing, Renderer::Whitted, Renderer::Coverage};
 
 // Which paths go to the channel HighVariance (Schwenk 3.3). A path's scatterings are counted from the eye;
 // perfect speculars in front of the first other hit only show it somewhere else.

@@ -17,7 +17,7 @@ constexpr view::PixelFilterKind last_of() {
 }
 template <>
 constexpr view::Renderer last_of() {
-    return view::Renderer::Raster;
+    return view::Renderer::Coverage;
 }
 template <>
 constexpr view::PathClass last_of() {

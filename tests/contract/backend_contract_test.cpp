@@ -200,8 +200,8 @@ TEST_P(BackendContract, ChoicesOfLightLeaveTheGeometryAlone) {
 TEST_P(BackendContract, HasTheRenderersThatItNames) {
     const view::RendererSet renderers = backend->capabilities().renderers;
     EXPECT_TRUE(renderers.contains(view::Renderer::PathTracing));
-    for (const view::Renderer renderer :
-         {view::Renderer::PathTracing, view::Renderer::Whitted, view::Renderer::Raster}) {
+    for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted,
+                                          view::Renderer::Raster, view::Renderer::Coverage}) {
         view.renderer = renderer;
         ++view.revision;
         if (renderers.contains(renderer)) {

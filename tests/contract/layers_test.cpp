@@ -56,10 +56,15 @@ struct Layers : testing::TestWithParam<std::string> {
     }
     std::vector<view::Renderer> renderers() const {
         std::vector<view::Renderer> all;
-        for (const auto one :
-             {view::Renderer::PathTracing, view::Renderer::Whitted, view::Renderer::Raster}) {
+        for (const auto one : {view::Renderer::PathTracing, view::Renderer::Whitted, view::Renderer::Raster,
+                               view::Renderer::Coverage}) {
             if (backend->capabilities().renderers.contains(one)) all.push_back(one);
         }
+        return all;
+    }
+    std::vector<view::Renderer> lit_renderers() const {
+        std::vector<view::Renderer> all = renderers();
+        std::erase(all, view::Renderer::Coverage);
         return all;
     }
     static std::size_t pixels_of(const FilmTile& film, ObjectId object) {
@@ -138,7 +143,7 @@ TEST_P(Layers, WhatIsHiddenLightsNothing) {
     std::vector<Entry> without = plain();
     std::get<scene::Root>(std::get<Create>(without[0]).object).children = {test::FloorAt, test::BlockAlsoAt};
     show(without);
-    const auto all = renderers();
+    const auto all = lit_renderers();
     std::vector<Mean> expected;
     for (const view::Renderer one : all) expected.push_back(mean_light(film(view::AllLayers, one, Many)));
     std::vector<Entry> with = plain();
@@ -160,7 +165,7 @@ TEST_P(Layers, WithoutAnyLightItIsBlackToTheBit) {
     std::get<scene::Root>(std::get<Create>(dark[0]).object).background = {};
     put(dark, {test::BlockAt, test::BlockAlsoAt, test::LampAt}, 2);
     show(dark);
-    for (const view::Renderer renderer : renderers()) {
+    for (const view::Renderer renderer : lit_renderers()) {
         const FilmTile film_of_floor = film(1, renderer);
         EXPECT_GT(pixels_of(film_of_floor, test::Floor), 100u);
         for (const float value : frame::resolve(film_of_floor, Channel::Radiance).values)

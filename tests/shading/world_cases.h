@@ -184,6 +184,11 @@ inline Surface coated(IN(Case) c, IN(Inputs) x) {
     add_smooth_coat(surface, look_of(x), mixture_of(x), x.n);
     return surface;
 }
+inline PathSample with_object(IN(Case) c, uint object, float depth) {
+    PathSample found = c.path.found;
+    show_object(found, object, depth);
+    return found;
+}
 inline PathSample with_light(IN(Case) c, vec3 light) {
     PathSample found = c.path.found;
     add_light(found, c.context.view, light, c.way);

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 Message = Any
 CameraLike = camera.Pose | Camera | str
 ALL_LAYERS = 0xFFFFFFFF
-RENDERERS = ("path", "whitted", "raster")
+RENDERERS = ("path", "whitted", "raster", "coverage")
 STALL_SECONDS = 5.0  # without a further piece of a frame: the rest was lost
 
 

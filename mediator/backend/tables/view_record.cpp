@@ -14,7 +14,8 @@ static_assert(shading::FilterBox == std::uint32_t(view::PixelFilterKind::Box) &&
               shading::FilterBlackmanHarris == std::uint32_t(view::PixelFilterKind::BlackmanHarris));
 static_assert(shading::RendererPathTracing == std::uint32_t(view::Renderer::PathTracing) &&
               shading::RendererWhitted == std::uint32_t(view::Renderer::Whitted) &&
-              shading::RendererRaster == std::uint32_t(view::Renderer::Raster));
+              shading::RendererRaster == std::uint32_t(view::Renderer::Raster) &&
+              shading::RendererCoverage == std::uint32_t(view::Renderer::Coverage));
 static_assert(shading::ClassIndirect == std::uint32_t(view::PathClass::Indirect) &&
               shading::ClassCaustics == std::uint32_t(view::PathClass::Caustics) &&
               shading::ClassDiffuse == std::uint32_t(view::PathClass::Diffuse) &&
