@@ -34,6 +34,7 @@ GpuScene::GpuScene(Device& device, TreeCache& cache, Trees trees)
       textures_(device),
       materials_(device),
       extras_(device),
+      shaders_(device),
       meshes_(device),
       mesh_steps_(device),
       places_(device),
@@ -69,6 +70,7 @@ BvhPool::Work GpuScene::update(const backend::MeshCatalog& meshes,
     textures_.update(there.textures);
     materials_.update(there.materials);
     extras_.update(there.extras);
+    shaders_.update(there.shaders);
     meshes_.update(there.meshes);
     mesh_steps_.update(there.mesh_steps);
     places_.update(there.places);
@@ -83,6 +85,7 @@ BvhPool::Work GpuScene::update(const backend::MeshCatalog& meshes,
     set_address(there.scene.textures, textures_);
     set_address(there.scene.materials, materials_);
     set_address(there.scene.extras, extras_);
+    set_address(there.scene.shaders, shaders_);
     set_address(there.scene.meshes, meshes_);
     set_address(there.scene.mesh_steps, mesh_steps_);
     set_address(there.scene.places, places_);

@@ -6,17 +6,6 @@ namespace {
 
 // What of a material is not drawn, or nothing.
 std::string left_out(const scene::Object& object) {
-    if (const auto* shader = std::get_if<scene::SurfaceShader>(&object)) {
-        const glm::vec3 none(0.0f);
-        if (shader->specular != none || shader->reflection != none || shader->transmission != none) {
-            return "its glossy and perfect reflection and its transmission are not drawn, its diffuse part "
-                   "is";
-        }
-        if (shader->normal_texture.texture || shader->height_texture.texture ||
-            shader->alpha_texture.texture) {
-            return "its normal, height and alpha textures are not drawn";
-        }
-    }
     if (const auto* material = std::get_if<scene::Material>(&object)) {
         if (material->iridescence > 0.0f) return "its iridescence is not drawn";
         if (material->transmission > 0.0f && material->attenuation_distance > 0.0f &&

@@ -3,6 +3,7 @@
 
 #include "mediator/shading/energy.h"
 #include "mediator/shading/rough_glass.h"
+#include "mediator/shading/shader_lobes.h"
 #include "mediator/shading/sheen.h"
 
 // The surface model: a set of lobes that both models of materials lower to. All directions are in the shading
@@ -16,6 +17,7 @@
 //   glass     rough boundary of two dielectrics, or of a thin wall; single scattering only
 // A layer passes the lesser of what it lets through on the way in and on the way out. Every lobe is
 // reciprocal; the sum never reflects more than comes in.
+// The lobes of CommonSurfaceShader are others, in shader_lobes.h: a surface has those or these.
 // Perfect mirrors and smooth glass have no density and are in specular.h; a material is a mixture of both
 // kinds.
 SHADING_BEGIN
@@ -116,6 +118,7 @@ struct Bsdf {
     vec3 coat_normal;
     vec3 sheen;
     float sheen_alpha, sheen_roughness, sheen_out;
+    ShaderLobes shader;
     vec3 chances;       // of sampling diffuse, specular, coat; the rest is rough glass
     float reflectance;  // estimate of all that is reflected and let through, as luminance
 };
@@ -202,11 +205,9 @@ inline void add_layers(INOUT(Bsdf) bsdf, FloatArray table, IN(Look) look, vec3 w
     bsdf.coat_roughness = look.coat_roughness;
     bsdf.coat_alpha = greater_of(look.coat_roughness * look.coat_roughness, MinAlpha);
     bsdf.coat_normal = look.coat_normal;
-    bsdf.coat_out = 1.0f;
     bsdf.sheen = look.sheen_color;
     bsdf.sheen_roughness = look.sheen_roughness;
     bsdf.sheen_alpha = sheen_alpha_of(look.sheen_roughness);
-    bsdf.sheen_out = 1.0f;
     if ((bsdf.lobes & FeatureCoat) != 0u) bsdf.coat_out = passes_coat(table, bsdf, wo);
     if ((bsdf.lobes & FeatureSheen) != 0u) bsdf.sheen_out = passes_sheen(table, bsdf, wo.z);
 }
@@ -240,8 +241,7 @@ inline void choose_chances(INOUT(Bsdf) bsdf, FloatArray table, float late_reflec
     bsdf.chances = all > 0.0f ? vec3(diffuse, specular, coat) / all : vec3(1.0f, 0.0f, 0.0f);
 }
 
-inline Bsdf make_bsdf(FloatArray table, IN(Look) look, IN(Mixture) mixture, vec3 wo) {
-    Bsdf bsdf;
+inline void fill_bsdf(INOUT(Bsdf) bsdf, FloatArray table, IN(Look) look, IN(Mixture) mixture, vec3 wo) {
     bsdf.lobes = look.lobes;
     const Interface face = interface_of(look);
     bsdf.diffuse = look.base_color * mixture.dielectric;
@@ -252,18 +252,21 @@ inline Bsdf make_bsdf(FloatArray table, IN(Look) look, IN(Mixture) mixture, vec3
     bsdf.glass_share = mixture.rough_glass;
     bsdf.glass = RoughGlass(look.base_color, look.eta, face.f0, face.f90, bsdf.alpha, look.thin);
     if (!(mixture.rough_glass > 0.0f)) bsdf.lobes &= ~FeatureRoughGlass;
-    add_layers(bsdf, table, look, wo);
+    bsdf.coat_out = 1.0f;
+    bsdf.sheen_out = 1.0f;
+    if ((bsdf.lobes & (FeatureCoat | FeatureSheen)) != 0u) add_layers(bsdf, table, look, wo);
     choose_chances(bsdf, table, late_reflectance, wo.z);
-    return bsdf;
+}
+
+inline void fill_shader_bsdf(INOUT(Bsdf) bsdf, IN(ShaderLobes) lobes) {
+    bsdf.lobes = FeatureShader;
+    bsdf.shader = lobes;
+    bsdf.coat_out = 1.0f;
+    bsdf.sheen_out = 1.0f;
+    bsdf.reflectance = rough_reflectance(lobes);
 }
 
 // ---- light from wi to wo ----
-
-struct BsdfValue {
-    vec3 value;    // f |cos(wi)|
-    float pdf;     // per solid angle, of sample_bsdf
-    vec3 diffuse;  // the diffuse lobe's part of the value
-};
 
 inline void evaluate_base(INOUT(BsdfValue) result, FloatArray table, IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
     const vec3 sum = wi + wo;
@@ -316,6 +319,9 @@ inline float capped_sheen(FloatArray table, IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
 
 inline BsdfValue evaluate_bsdf(FloatArray table, IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
     BsdfValue result = BsdfValue(vec3(0.0f), 0.0f, vec3(0.0f));
+    if ((bsdf.lobes & FeatureShader) != 0u) {
+        return wo.z > 0.0f && wi.z > 0.0f ? evaluate_shader(bsdf.shader, wo, wi) : result;
+    }
     const bool glass = (bsdf.lobes & FeatureRoughGlass) != 0u;
     if (!(wo.z > 0.0f) || wi.z == 0.0f || (wi.z < 0.0f && !glass)) return result;
     if (wi.z > 0.0f) evaluate_base(result, table, bsdf, wo, wi);
@@ -343,6 +349,7 @@ inline BsdfValue evaluate_bsdf(FloatArray table, IN(Bsdf) bsdf, vec3 wo, vec3 wi
 
 // A direction, or none (0, 0, 0).
 inline vec3 sample_bsdf(IN(Bsdf) bsdf, vec3 wo, float choice, vec2 u) {
+    if ((bsdf.lobes & FeatureShader) != 0u) return sample_shader(bsdf.shader, wo, choice, u);
     float first = bsdf.chances.y;
     if (choice < first) {
         const vec3 h = sample_visible_normal(wo, bsdf.alpha, u);

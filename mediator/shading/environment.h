@@ -18,9 +18,9 @@ inline float sine_from_pole(vec3 direction) {
     return sqrt(direction.x * direction.x + direction.z * direction.z);
 }
 
-// Where a direction is in the map, in [0, 1].
-inline vec2 map_place(IN(Environment) sky, vec3 direction) {
-    const float u = 0.5f + (arc_tangent(direction.x, -direction.z) + sky.rotation) * (0.5f * InversePi);
+// Where a direction is in a map that is turned by `rotation`, in [0, 1].
+inline vec2 direction_place(vec3 direction, float rotation) {
+    const float u = 0.5f + (arc_tangent(direction.x, -direction.z) + rotation) * (0.5f * InversePi);
     return vec2(u - floor(u), arc_tangent(sine_from_pole(direction), direction.y) * InversePi);
 }
 
@@ -32,7 +32,7 @@ struct Sky {
 inline Sky sky_at(IN(Scene) scene, vec3 direction) {
     Sky sky = Sky(scene.environment.color, 1.0f / (4.0f * Pi));
     if (!has_map(scene)) return sky;
-    const vec2 uv = map_place(scene.environment, direction);
+    const vec2 uv = direction_place(direction, scene.environment.rotation);
     sky.radiance += scene.environment.strength * vec3(lookup(scene, scene.environment.map, uv));
     const uint width = scene.environment.map.width;
     const uint height = scene.environment.map.height;

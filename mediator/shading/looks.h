@@ -38,21 +38,22 @@ inline vec3 anisotropy_at(IN(Scene) scene, IN(MaterialExtras) extras, IN(Mesh) m
     return vec3(from.x * turn.x - from.y * turn.y, from.x * turn.y + from.y * turn.x, strength);
 }
 
-inline void add_extras(INOUT(Look) look, IN(Scene) scene, IN(MaterialExtras) extras, IN(Mesh) mesh,
-                       uvec3 corners, vec2 b, float footprint) {
-    look.specular =
-        extras.specular * texel_or_white(scene, extras.specular_texture, mesh, corners, b, footprint).w;
-    look.specular_color = extras.specular_color * vec3(texel_or_white(scene, extras.specular_color_texture,
-                                                                      mesh, corners, b, footprint));
-    look.transmission *= texel_or_white(scene, extras.transmission_texture, mesh, corners, b, footprint).x;
-    look.coat = extras.coat * texel_or_white(scene, extras.coat_texture, mesh, corners, b, footprint).x;
-    look.coat_roughness = extras.coat_roughness *
-                          texel_or_white(scene, extras.coat_roughness_texture, mesh, corners, b, footprint).y;
-    look.sheen_color = extras.sheen_color *
-                       vec3(texel_or_white(scene, extras.sheen_color_texture, mesh, corners, b, footprint));
-    look.sheen_roughness =
-        extras.sheen_roughness *
-        texel_or_white(scene, extras.sheen_roughness_texture, mesh, corners, b, footprint).w;
+// `index`: of the extras. They are read where they lie: a copy would have to be kept for the loop.
+inline void add_extras(INOUT(Look) look, IN(Scene) scene, uint index, IN(Mesh) mesh, uvec3 corners, vec2 b,
+                       float footprint) {
+    vec4 texels[ExtrasTextureCount];
+    KEEP_LOOP
+    for (uint i = 0u; i < ExtrasTextureCount; ++i) {
+        texels[i] = texel_or_white(scene, scene.extras.items[index].textures[i], mesh, corners, b, footprint);
+    }
+    const MaterialExtras extras = scene.extras.items[index];
+    look.specular = extras.specular * texels[ExtrasSpecular].w;
+    look.specular_color = extras.specular_color * vec3(texels[ExtrasSpecularColor]);
+    look.transmission *= texels[ExtrasTransmission].x;
+    look.coat = extras.coat * texels[ExtrasCoat].x;
+    look.coat_roughness = extras.coat_roughness * texels[ExtrasCoatRoughness].y;
+    look.sheen_color = extras.sheen_color * vec3(texels[ExtrasSheenColor]);
+    look.sheen_roughness = extras.sheen_roughness * texels[ExtrasSheenRoughness].w;
     if (look.coat > 0.0f) look.lobes |= scene.features & FeatureCoat;
     if (largest(look.sheen_color) > 0.0f) look.lobes |= scene.features & FeatureSheen;
     if (extras.anisotropy > 0.0f) {
@@ -74,7 +75,7 @@ inline Look look_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uvec3
     look.thin = material.thin;
     look.lobes = scene.features & FeatureRoughGlass;
     if (has_extras(scene, material)) {
-        add_extras(look, scene, scene.extras.items[material.extras], mesh, corners, b, footprint);
+        add_extras(look, scene, uint(material.extras), mesh, corners, b, footprint);
     }
     return look;
 }

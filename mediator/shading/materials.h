@@ -12,22 +12,40 @@ inline bool emits(IN(Material) material) {
     return material.emission.x > 0.0f || material.emission.y > 0.0f || material.emission.z > 0.0f;
 }
 
+// White where there are none.
+inline vec4 vertex_color(IN(Mesh) mesh, uvec3 corners, vec2 b) {
+    if ((mesh.arrays & MeshColors) == 0u) return vec4(1.0f);
+    return mesh.colors.items[corners.x] * (1.0f - b.x - b.y) + mesh.colors.items[corners.y] * b.x +
+           mesh.colors.items[corners.z] * b.y;
+}
+
 inline vec4 base_color_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uvec3 corners, vec2 b,
                           float footprint) {
     vec4 color = material.base_color;
     if (is_used(scene, material.base_color_texture)) {
         color *= texel_of(scene, material.base_color_texture, mesh, corners, b, footprint);
     }
-    if ((mesh.arrays & MeshColors) != 0u) {
-        color *= mesh.colors.items[corners.x] * (1.0f - b.x - b.y) + mesh.colors.items[corners.y] * b.x +
-                 mesh.colors.items[corners.z] * b.y;
-    }
+    if ((mesh.arrays & MeshColors) != 0u) color *= vertex_color(mesh, corners, b);
     return color;
+}
+
+// CommonSurfaceShader: by its own texture, and not that of the diffuse colour.
+inline float shader_alpha(IN(Scene) scene, IN(Material) material, IN(Shader) shader, IN(Mesh) mesh,
+                          uvec3 corners, vec2 b) {
+    float alpha = material.base_color.w * vertex_color(mesh, corners, b).w;
+    if (is_used(scene, shader.alpha_texture)) {
+        const float texel = texel_of(scene, shader.alpha_texture, mesh, corners, b, 0.0f).w;
+        alpha *= shader.inverts_alpha != 0u ? 1.0f - texel : texel;
+    }
+    return alpha;
 }
 
 // 1 for opaque materials.
 inline float alpha_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uvec3 corners, vec2 b) {
     if (material.alpha_mode == AlphaOpaque) return 1.0f;
+    if ((scene.features & FeatureShader) != 0u && material.shader >= 0) {
+        return shader_alpha(scene, material, scene.shaders.items[material.shader], mesh, corners, b);
+    }
     return base_color_at(scene, material, mesh, corners, b, 0.0f).w;
 }
 

@@ -30,6 +30,12 @@ struct Way {
     vec3 diffuse_share;  // of its light: what the diffuse lobe of the first non-delta hit passed on
 };
 
+// What perfect speculars have made of a path.
+struct Chain {
+    bool has_one_channel;  // of channel_of: the others went other ways
+    int environment;       // index of the shader whose environment it sees; -1: no more than the sky
+};
+
 // Where a path is: what it still carries and what it has gathered.
 struct Path {
     Sampler numbers;
@@ -40,6 +46,7 @@ struct Path {
     vec3 last_position;
     vec3 last_normal;  // of the receiver there (light_tree.h)
     Cone cone;
+    Chain chain;
     Way way;  // that light takes which is found next
     PathSample found;
     uint rays;
@@ -55,8 +62,13 @@ inline PathSample nothing_found() {
 }
 
 inline Path start_path(IN(Sampler) numbers) {
-    return Path(numbers, 0u, vec3(1.0f), 1.0f, 0.0f, vec3(0.0f), vec3(0.0f), Cone(0.0f, 0.0f), direct_way(),
-                nothing_found(), 0u);
+    return Path(numbers, 0u, vec3(1.0f), 1.0f, 0.0f, vec3(0.0f), vec3(0.0f), Cone(0.0f, 0.0f),
+                Chain(false, -1), direct_way(), nothing_found(), 0u);
+}
+
+// Red, green or blue: in turn, from sample to sample.
+inline uint channel_of(IN(Sampler) numbers) {
+    return (numbers.index % 3u + numbers.seed % 3u) % 3u;
 }
 
 // Seeds of the two kinds of rays at a vertex, for surfaces with alpha.

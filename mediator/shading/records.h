@@ -18,6 +18,8 @@ ARRAY_OF(uvec3, UVec3Array, 4);
 
 // Values as in scene/objects.h.
 inline constexpr uint TexelRgba8 = 0u, TexelRgba8Srgb = 1u, TexelRgbFloat = 2u;
+inline constexpr uint TexelRgba8Signed = 3u;  // bytes of -127 to 127: a use of Rgba8
+inline constexpr uint NormalTangent = 0u, NormalObject = 1u;
 inline constexpr uint WrapRepeat = 0u, WrapMirror = 1u, WrapClamp = 2u;
 inline constexpr uint TextureLinear = 0u, TextureNearest = 1u;
 inline constexpr uint AlphaOpaque = 0u, AlphaMask = 1u, AlphaBlend = 2u;
@@ -66,9 +68,13 @@ struct Material {
     uint unlit;
     uint thin;   // walls instead of a body
     int extras;  // index; -1 = none
+    int shader;  // index; -1 = none
 };
 
-// What few materials have.
+// What few materials have. Textures that are looked up in a loop: written out, lookups are most of a kernel.
+inline constexpr uint ExtrasTransmission = 0u, ExtrasSpecular = 1u, ExtrasSpecularColor = 2u, ExtrasCoat = 3u,
+                      ExtrasCoatRoughness = 4u, ExtrasSheenColor = 5u, ExtrasSheenRoughness = 6u,
+                      ExtrasTextureCount = 7u;
 struct MaterialExtras {
     vec3 specular_color;
     float specular;
@@ -79,15 +85,34 @@ struct MaterialExtras {
     float coat_normal_scale;
     float anisotropy;
     vec2 anisotropy_direction;  // cosine and sine of the angle to the tangent
-    TextureUse transmission_texture;
-    TextureUse specular_texture;
-    TextureUse specular_color_texture;
-    TextureUse coat_texture;
-    TextureUse coat_roughness_texture;
+    TextureUse textures[ExtrasTextureCount];
     TextureUse coat_normal_texture;
-    TextureUse sheen_color_texture;
-    TextureUse sheen_roughness_texture;
     TextureUse anisotropy_texture;
+};
+
+inline constexpr uint ShaderSpecular = 0u, ShaderShininess = 1u, ShaderReflection = 2u,
+                      ShaderTransmission = 3u, ShaderTextureCount = 4u;
+// What only CommonSurfaceShader has (Schwenk 5.A.3); its diffuse part, emission and normal map are a
+// Material's.
+struct Shader {
+    vec3 specular;
+    float fresnel_blend;
+    vec2 shininess;
+    vec3 reflection;
+    float height_scale;
+    vec3 transmission;
+    uint normal_space;
+    vec3 index_of_refraction;  // inside / outside, for each channel
+    uint inverts_alpha;
+    vec3 environment;
+    int tangent_set;  // of texture coordinates, whose u grows along the tangent; -1: as the mesh says
+    vec3 normal_scale;
+    int binormal_set;
+    vec3 normal_bias;
+    TextureUse textures[ShaderTextureCount];
+    TextureUse alpha_texture;
+    TextureUse height_texture;
+    TextureUse environment_texture;
 };
 
 // Which of a mesh's arrays are there besides positions and triangles.
@@ -226,10 +251,13 @@ inline constexpr uint FeatureLightTree = 0x10000u, FeatureShapedLights = 0x20000
 inline constexpr uint FeatureShadowCatcher = 0x80000u;
 // While the shutter is open something moves; of a view: its camera does.
 inline constexpr uint FeatureMotion = 0x2000000u, FeatureCameraMotion = 0x4000000u;
+// CommonSurfaceShader.
+inline constexpr uint FeatureShader = 0x800000u;
 
 ARRAY_OF(Texture, TextureArray, 8);
 ARRAY_OF(Material, MaterialArray, 4);
 ARRAY_OF(MaterialExtras, MaterialExtrasArray, 4);
+ARRAY_OF(Shader, ShaderArray, 4);
 ARRAY_OF(Mesh, MeshArray, 8);
 ARRAY_OF(MeshStep, MeshStepArray, 8);
 ARRAY_OF(Place, PlaceArray, 4);
@@ -243,6 +271,7 @@ struct Scene {
     TextureArray textures;
     MaterialArray materials;
     MaterialExtrasArray extras;
+    ShaderArray shaders;
     MeshArray meshes;
     InstanceArray instances;
     LightSourceArray lights;  // those in the tree, then those infinitely far

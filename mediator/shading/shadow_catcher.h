@@ -25,6 +25,7 @@ WITH_CONTEXT inline void leave_scene(IN(Context) context, INOUT(Path) path, IN(R
         add_light(path.found, context.view, vec3(shown) * shown.w, path.way);
         return;
     }
+    add_own_environment(context, path, ray);
     add_sky(context, path, ray);
     add_suns(context, path, ray);
 }

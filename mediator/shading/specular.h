@@ -15,12 +15,21 @@ SHADING_BEGIN
 struct Specular {
     vec3 reflection, refraction;  // shares of the light that goes this way
     vec3 reflected, refracted;    // directions, of unit length where the share is not 0
+    bool splits;                  // each channel is refracted in a direction of its own (split_direction):
+    vec3 arriving;                // of light that comes from here,
+    vec3 normal;                  // by this normal,
+    vec3 eta;                     // into these indices of refraction
 };
+
+inline Specular no_specular() {
+    return Specular(vec3(0.0f), vec3(0.0f), vec3(0.0f), vec3(0.0f), false, vec3(0.0f), vec3(0.0f),
+                    vec3(1.0f));
+}
 
 // For mixtures without mirror and glass both shares are 0. At total reflection nothing is refracted; through
 // thin walls light goes straight on. `glass`: the boundary; its tint is the base colour.
 inline Specular make_specular(IN(Mixture) mixture, IN(RoughGlass) glass, vec3 wo) {
-    Specular specular;
+    Specular specular = no_specular();
     const vec3 fresnel = bent_fresnel(glass, wo.z);
     specular.reflected = vec3(-wo.x, -wo.y, wo.z);
     specular.reflection =
@@ -37,6 +46,47 @@ inline Specular make_specular(IN(Mixture) mixture, IN(RoughGlass) glass, vec3 wo
     const float inside = sqrt(greater_of(0.0f, refracted_cosine2(wo.z, sine2, glass.eta)));
     specular.refracted = unit_vector(vec3(-wo.x / glass.eta, -wo.y / glass.eta, -inside));
     return specular;
+}
+
+// Snell's law, for a direction that comes to the side of the normal. At total reflection: along the surface.
+inline vec3 bent_direction(vec3 direction, vec3 normal, float eta) {
+    const float cosine = -dot(direction, normal);
+    const vec3 across = direction + cosine * normal;
+    const float inside2 = refracted_cosine2(cosine, dot(across, across), eta);
+    return unit_vector(across / eta - sqrt(greater_of(inside2, 0.0f)) * normal);
+}
+
+// CommonSurfaceShader's perfect lobes (shader_lobes.h). Directions in the world; `direction` comes to the
+// side of the normal. Where channels go different ways, `refracted` is that of green.
+inline Specular perfect_specular(IN(PerfectPart) part, vec3 direction, vec3 normal) {
+    Specular specular = no_specular();
+    const float cosine = clamp(-dot(direction, normal), 0.0f, 1.0f);
+    const PerfectShares shares = perfect_shares(part, cosine);
+    specular.reflection = shares.reflected;
+    specular.refraction = shares.refracted;
+    specular.reflected = unit_vector(direction + 2.0f * cosine * normal);
+    if (!(largest(shares.refracted) > 0.0f)) return specular;
+    specular.refracted = part.eta.y == 1.0f ? direction : bent_direction(direction, normal, part.eta.y);
+    specular.splits = disperses(part);
+    specular.arriving = direction;
+    specular.normal = normal;
+    specular.eta = part.eta;
+    return specular;
+}
+
+// A way through a surface that refracts channels differently is that of one of them, which counts for all
+// three unless the path has only this one left.
+struct Refraction {
+    vec3 share;
+    vec3 direction;
+};
+
+inline Refraction refraction_of(IN(Specular) specular, uint channel, bool has_one_channel) {
+    if (!specular.splits) return Refraction(specular.refraction, specular.refracted);
+    const vec3 one =
+        vec3(channel == 0u ? 1.0f : 0.0f, channel == 1u ? 1.0f : 0.0f, channel == 2u ? 1.0f : 0.0f);
+    return Refraction(specular.refraction * one * (has_one_channel ? 1.0f : 3.0f),
+                      bent_direction(specular.arriving, specular.normal, dot(specular.eta, one)));
 }
 
 SHADING_END

@@ -17,6 +17,7 @@ struct Branch {
     float probability;  // with which a path that chooses one lobe at a time would come here
     uint node;          // in the tree of branches, breadth first: 0, then 2 node + 1 and 2 node + 2
     uint depth;
+    Chain chain;
 };
 
 // Branches still to follow: depth first, so one sibling per level at most.
@@ -26,22 +27,28 @@ struct BranchStack {
 };
 
 inline Branch root_branch(IN(Ray) camera_ray, IN(Cone) cone) {
-    return Branch(camera_ray, cone, vec3(1.0f), 1.0f, 0u, 0u);
+    return Branch(camera_ray, cone, vec3(1.0f), 1.0f, 0u, 0u, Chain(false, -1));
 }
 
-// `cone`: the parent's where it meets the surface.
-inline void push_children(INOUT(BranchStack) open, IN(Branch) parent, IN(Cone) cone, IN(Surface) surface) {
+// `cone`: the parent's where it meets the surface; `channel`: that is followed where they part.
+inline void push_children(INOUT(BranchStack) open, IN(Branch) parent, IN(Cone) cone, IN(Surface) surface,
+                          uint channel) {
     if (surface.rough_share == 1.0f || parent.depth == MaxSpecularDepth) return;
     const LobeChances chances = lobe_chances(surface);
     for (uint child = 1u; child <= 2u; ++child) {
         const bool reflects = child == 1u;
-        const vec3 weight =
-            parent.weight * (reflects ? surface.specular.reflection : surface.specular.refraction);
+        Refraction way = Refraction(surface.specular.reflection, surface.specular.reflected);
+        Chain chain = Chain(parent.chain.has_one_channel, surface.environment);
+        if (!reflects) {
+            way = refraction_of(surface.specular, channel, chain.has_one_channel);
+            chain.has_one_channel = chain.has_one_channel || surface.specular.splits;
+        }
+        const vec3 weight = parent.weight * way.share;
         if (!(largest(weight) >= MinBranchWeight)) continue;
         const float probability = parent.probability * (reflects ? chances.reflection : chances.refraction);
-        const Ray ray = leaving(surface, reflects ? surface.specular.reflected : surface.specular.refracted);
+        const Ray ray = leaving(surface, way.direction);
         open.branches[open.count] =
-            Branch(ray, cone, weight, probability, 2u * parent.node + child, parent.depth + 1u);
+            Branch(ray, cone, weight, probability, 2u * parent.node + child, parent.depth + 1u, chain);
         open.count += 1u;
     }
 }
@@ -52,6 +59,7 @@ inline void enter_branch(INOUT(Path) path, IN(Branch) branch) {
     path.probability = branch.probability;
     path.bsdf_pdf = 0.0f;
     path.cone = branch.cone;
+    path.chain = branch.chain;
     path.way = direct_way();
 }
 

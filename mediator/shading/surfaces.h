@@ -2,9 +2,9 @@
 #define TESSERA_MEDIATOR_SHADING_SURFACES_H
 
 #include "mediator/shading/cones.h"
-#include "mediator/shading/looks.h"
 #include "mediator/shading/motion.h"
 #include "mediator/shading/points.h"
+#include "mediator/shading/shader_looks.h"
 #include "mediator/shading/specular.h"
 
 SHADING_BEGIN
@@ -24,6 +24,7 @@ struct Surface {
     uint triangle;
     int light;   // index, if it is one
     float time;  // of the path
+    int environment;  // of perfect speculars: index of the shader that has one; -1 = none
     bool scatters;
 };
 
@@ -32,18 +33,6 @@ inline vec3 to_local(IN(Surface) surface, vec3 world) {
 }
 inline vec3 to_world(IN(Surface) surface, vec3 local) {
     return surface.frame * local;
-}
-
-// The vertices' tangent, turned into the plane of the normal; w: 1 or -1, the side of the bitangent; 0: there
-// is no tangent.
-inline vec4 tangent_at(IN(Instance) instance, IN(Mesh) mesh, uvec3 corners, vec2 b, vec3 normal) {
-    if ((mesh.arrays & MeshTangents) == 0u) return vec4(0.0f);
-    const vec4 mean = mesh.tangents.items[corners.x] * (1.0f - b.x - b.y) +
-                      mesh.tangents.items[corners.y] * b.x + mesh.tangents.items[corners.z] * b.y;
-    const vec3 tangent = instance.linear * vec3(mean);
-    const vec3 across = direction_of(tangent - normal * dot(normal, tangent), vec3(0.0f));
-    if (across == vec3(0.0f)) return vec4(0.0f);
-    return vec4(across.x, across.y, across.z, mean.w < 0.0f ? -1.0f : 1.0f);
 }
 
 // What a normal map makes of the vertices' normal.
@@ -61,16 +50,6 @@ inline vec3 mapped_normal(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     return direction_of(tangent * n.x + bitangent * n.y + normal * n.z, normal);
 }
 
-inline vec3 vertex_normal(IN(Instance) instance, IN(Mesh) mesh, uvec3 corners, vec2 b, vec3 face) {
-    if ((mesh.arrays & MeshNormals) == 0u) return face;
-    const vec3 mean = mesh.normals.items[corners.x] * (1.0f - b.x - b.y) +
-                      mesh.normals.items[corners.y] * b.x + mesh.normals.items[corners.z] * b.y;
-    if ((mesh.arrays & MeshBends) == 0u) return direction_of(instance.normals * mean, face);
-    const vec3 next = mesh.next_normals.items[corners.x] * (1.0f - b.x - b.y) +
-                      mesh.next_normals.items[corners.y] * b.x + mesh.next_normals.items[corners.z] * b.y;
-    return direction_of(instance.normals * between(mean, next, mesh.share), face);
-}
-
 // A normal of the front, on the side that `direction` comes to. One that faces away from the viewer describes
 // no surface that can be seen: the geometric one stands in.
 inline vec3 seen_normal(vec3 normal, vec3 face, vec3 direction) {
@@ -81,7 +60,14 @@ inline vec3 seen_normal(vec3 normal, vec3 face, vec3 direction) {
 }
 
 inline vec3 shading_normal(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
-                           uvec3 corners, vec2 b, float footprint, vec3 face, vec3 direction) {
+                           IN(Triangle) t, uvec3 corners, vec2 b, float footprint, vec3 face,
+                           vec3 direction) {
+    if (has_shader(scene, material)) {
+        const vec3 bumped =
+            shader_normal(scene, instance, scene.shaders.items[material.shader], material.normal_texture, t,
+                          mesh, corners, b, footprint, vertex_normal(instance, mesh, corners, b, face));
+        return seen_normal(bumped, face, direction);
+    }
     const vec3 normal = mapped_normal(scene, instance, mesh, material.normal_texture, material.normal_scale,
                                       corners, b, footprint, vertex_normal(instance, mesh, corners, b, face));
     return seen_normal(normal, face, direction);
@@ -89,7 +75,14 @@ inline vec3 shading_normal(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh
 
 // Around the normal; x along the direction of anisotropy, where there is one.
 inline mat3 shading_frame(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
-                          uvec3 corners, vec2 b, float footprint, vec3 normal) {
+                          IN(Triangle) t, uvec3 corners, vec2 b, float footprint, vec3 normal) {
+    if (has_shader(scene, material)) {
+        const Shader shader = scene.shaders.items[material.shader];
+        if (shader.shininess.x == shader.shininess.y) return frame_around(normal);
+        const vec3 x = shader_frame(instance, shader, edges_in_world(instance, t), mesh,
+                                    material.normal_texture.set, corners, b, normal)[0];
+        return mat3(x, cross(normal, x), normal);
+    }
     if (!has_extras(scene, material)) return frame_around(normal);
     const MaterialExtras extras = scene.extras.items[material.extras];
     if (!(extras.anisotropy > 0.0f)) return frame_around(normal);
@@ -156,10 +149,38 @@ inline void set_specular(INOUT(Surface) surface, IN(Look) look, IN(Mixture) mixt
     }
 }
 
+// By the shading normal or the geometric one, as specular_at.
+inline void set_shader_specular(INOUT(Surface) surface, IN(Scene) scene, IN(ShaderLobes) lobes,
+                                vec3 direction) {
+    const bool wanted = (scene.features & FeatureSpecular) != 0u && surface.scatters;
+    if (!wanted || !is_perfect(lobes.perfect)) return;
+    const vec3 up = surface.geometric_normal;
+    Specular specular = perfect_specular(lobes.perfect, direction, surface.frame[2]);
+    const float down = -dot(direction, up);
+    const bool refracts = largest(specular.refraction) > 0.0f;
+    const bool stays = refracts ? dot(specular.refracted, up) < 0.0f
+                                : !(largest(lobes.perfect.transmission) > 0.0f) ||
+                                      reflects_totally(down, lobes.perfect.eta.y);
+    if (!stays || !(dot(specular.reflected, up) > 0.0f)) {
+        specular = perfect_specular(lobes.perfect, direction, up);
+    }
+    surface.specular = specular;
+    surface.rough_share = lesser_of(luminance(lobes.left), 0.99999994f);
+}
+
 inline void set_scattering(INOUT(Surface) surface, IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
                            IN(Material) material, uvec3 corners, vec2 b, float footprint, vec3 face,
                            vec3 direction) {
     const bool front = dot(face, direction) < 0.0f;
+    if (has_shader(scene, material)) {
+        const uint shader = uint(material.shader);
+        const ShaderLobes lobes = shader_lobes_at(scene, shader, mesh, corners, b, footprint, surface.albedo,
+                                                  front, -dot(direction, surface.frame[2]));
+        fill_shader_bsdf(surface.bsdf, lobes);
+        set_shader_specular(surface, scene, lobes, direction);
+        if (largest(scene.shaders.items[shader].environment) > 0.0f) surface.environment = material.shader;
+        return;
+    }
     Look look = look_at(scene, material, mesh, corners, b, footprint, surface.albedo, front);
     if ((look.lobes & FeatureCoat) != 0u) {
         const MaterialExtras extras = scene.extras.items[material.extras];
@@ -169,7 +190,7 @@ inline void set_scattering(INOUT(Surface) surface, IN(Scene) scene, IN(Instance)
         look.coat_normal = to_local(surface, seen_normal(mapped, face, direction));
     }
     const Mixture mixture = make_mixture(look);
-    surface.bsdf = make_bsdf(scene.energy, look, mixture, to_local(surface, -direction));
+    fill_bsdf(surface.bsdf, scene.energy, look, mixture, to_local(surface, -direction));
     if ((scene.features & FeatureSpecular) != 0u && surface.scatters) {
         set_specular(surface, look, mixture, direction);
     }
@@ -192,8 +213,8 @@ inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     surface.geometric_normal = front ? face : -face;
     const float footprint = triangle_footprint(scene, instance, triangle, abs(dot(face, direction)), width);
     surface.frame = shading_frame(
-        scene, instance, mesh, material, corners, b, footprint,
-        shading_normal(scene, instance, mesh, material, corners, b, footprint, face, direction));
+        scene, instance, mesh, material, triangle, corners, b, footprint,
+        shading_normal(scene, instance, mesh, material, triangle, corners, b, footprint, face, direction));
 
     const vec3 color = vec3(base_color_at(scene, material, mesh, corners, b, footprint));
     surface.albedo = clamp(color, 0.0f, 1.0f);  // vertex colours may say more than 1: no surface does
@@ -205,7 +226,8 @@ inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
         surface.emission = emission_at(scene, material, mesh, corners, b);
     }
     surface.rough_share = 1.0f;
-    surface.specular = Specular(vec3(0.0f), vec3(0.0f), vec3(0.0f), vec3(0.0f));
+    surface.specular = no_specular();
+    surface.environment = -1;
     set_scattering(surface, scene, instance, mesh, material, corners, b, footprint, face, direction);
     return surface;
 }

@@ -32,6 +32,12 @@ inline vec4 texel_at(IN(Scene) scene, IN(Texture) map, uint index) {
                     float_from_bits(map.texels.items[3u * index + 2u]), 1.0f);
     }
     const uint rgba = map.texels.items[index];
+    if (map.format == TexelRgba8Signed) {
+        // Bytes of two's complement, in the upper byte of an int and back; -128 counts as -127.
+        const vec4 bytes = vec4(float(int(rgba << 24u) >> 24), float(int(rgba << 16u) >> 24),
+                                float(int(rgba << 8u) >> 24), float(int(rgba) >> 24));
+        return max(bytes * (1.0f / 127.0f), vec4(-1.0f));
+    }
     const uint r = rgba & 255u, g = (rgba >> 8u) & 255u, b = (rgba >> 16u) & 255u;
     const float unit = 1.0f / 255.0f;
     const float alpha = float(rgba >> 24u) * unit;

@@ -139,7 +139,7 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                 is_caught = false;
                 if (stage == StageBranch || (first && wants_range)) {
                     if (wants_range) path.found.range += range_at(branch, surface);
-                    push_children(open, branch, path.cone, surface);
+                    push_children(open, branch, path.cone, surface, channel_of(path.numbers));
                 }
                 if (lit) goes_on = leave_vertex(context, path, ray, stage, surface);
             }

@@ -88,6 +88,19 @@ inline float weight_by_chance(IN(View) view, IN(Path) path, float other) {
     return view.strategy == StrategyLightsOnly && other > 0.0f ? 0.0f : 1.0f;
 }
 
+// What perfect speculars of CommonSurfaceShader see besides the sky (Schwenk 5.A.3): a map like that of the
+// background, over the colour.
+WITH_CONTEXT inline void add_own_environment(IN(Context) context, INOUT(Path) path, IN(Ray) ray) {
+    if ((context.scene.features & FeatureShader) == 0u || path.chain.environment < 0) return;
+    const Shader shader = context.scene.shaders.items[path.chain.environment];
+    vec3 radiance = shader.environment;
+    if (is_used(context.scene, shader.environment_texture)) {
+        const vec2 place = direction_place(ray.direction, 0.0f);
+        radiance *= vec3(lookup_use(context.scene, shader.environment_texture, place, 0.0f));
+    }
+    add_light(path.found, context.view, path.throughput * radiance, path.way);
+}
+
 WITH_CONTEXT inline void add_sky(IN(Context) context, INOUT(Path) path, IN(Ray) ray) {
     if (context.scene.environment.emits == 0u) return;
     const Sky sky = sky_at(context.scene, ray.direction);
@@ -183,19 +196,25 @@ inline bool scatter(FloatArray energy, IN(View) view, INOUT(Path) path, IN(Surfa
     if (keeps(view, KeepsDiffuse) && path.way.scatterings == 0u) path.way.diffuse_share = diffuse_share(bsdf);
     path.way.scatterings += 1u;
     path.way.last_is_delta = false;
+    path.chain.environment = -1;
     return true;
 }
 
 // By a perfect specular; returns the next direction.
 WITH_CONTEXT inline vec3 pass_on(IN(Context) context, INOUT(Path) path, IN(Surface) surface, IN(Lobe) lobe) {
     const bool reflects = lobe.kind == LobeReflection;
-    path.throughput *= reflects ? surface.specular.reflection : surface.specular.refraction;
+    Refraction way = Refraction(surface.specular.reflection, surface.specular.reflected);
+    if (!reflects) {
+        way = refraction_of(surface.specular, channel_of(path.numbers), path.chain.has_one_channel);
+        path.chain.has_one_channel = path.chain.has_one_channel || surface.specular.splits;
+    }
+    path.chain.environment = surface.environment;
+    path.throughput *= way.share;
     path.bsdf_pdf = 0.0f;
     if (path.way.scatterings > 0u) path.way.scatterings += 1u;
     path.way.last_is_delta = true;
-    const vec3 direction = reflects ? surface.specular.reflected : surface.specular.refracted;
-    tell_specular(context, reflects, direction);
-    return direction;
+    tell_specular(context, reflects, way.direction);
+    return way.direction;
 }
 
 SHADING_END

@@ -136,8 +136,30 @@ inline void put(INOUT(Outputs) y, IN(GlassValue) value) {
     put(y, value.value);
     put(y, value.pdf);
 }
+inline void put(INOUT(Outputs) y, IN(PerfectPart) value) {
+    put(y, value.reflection);
+    put(y, value.transmission);
+    put(y, value.eta);
+    put(y, value.blend);
+}
+inline void put(INOUT(Outputs) y, IN(PerfectShares) value) {
+    put(y, 1.0f + value.reflected);
+    put(y, 1.0f + value.refracted);
+}
+inline void put(INOUT(Outputs) y, IN(ShaderLobes) value) {
+    put(y, value.diffuse);
+    put(y, value.glossy);
+    put(y, value.exponents);
+    put(y, value.glossy_chance);
+    put(y, 1.0f + value.left);  // a difference from 1
+}
 inline void put(INOUT(Outputs) y, IN(Bsdf) value) {
     put(y, value.lobes);
+    if ((value.lobes & FeatureShader) != 0u) {
+        put(y, value.shader);
+        put(y, 1.0f + value.reflectance);
+        return;
+    }
     put(y, value.diffuse);
     put(y, value.f0);
     put(y, value.f90);
@@ -147,13 +169,15 @@ inline void put(INOUT(Outputs) y, IN(Bsdf) value) {
     put(y, value.late);
     put(y, vec3(value.base_late, value.late_out, value.base_out));  // differences from 1
     put(y, value.glass_share);
-    put(y, value.coat);
-    put(y, vec2(value.coat_alpha, value.coat_roughness));
-    put(y, value.coat_normal);
     put(y, vec3(value.coat_out, value.sheen_out, 1.0f));
-    put(y, value.sheen);
-    put(y, vec2(value.sheen_alpha, value.sheen_roughness));
     put(y, value.chances);
+    if ((value.lobes & (FeatureCoat | FeatureSheen)) != 0u) {
+        put(y, value.coat);
+        put(y, vec2(value.coat_alpha, value.coat_roughness));
+        put(y, value.coat_normal);
+        put(y, value.sheen);
+        put(y, vec2(value.sheen_alpha, value.sheen_roughness));
+    }
     put(y, value.reflectance);
 }
 inline void put(INOUT(Outputs) y, IN(Look) value) {
@@ -181,6 +205,11 @@ inline void put(INOUT(Outputs) y, IN(Specular) value) {
     put_next(y, value.refraction);  // shares of the same light
     put(y, value.reflected);
     put(y, value.refracted);
+    put(y, value.splits);
+}
+inline void put(INOUT(Outputs) y, IN(Refraction) value) {
+    put(y, value.share);
+    put(y, value.direction);
 }
 
 // A material with all lobes, and the boundary of glass; each half of the inputs with its own side.
@@ -208,8 +237,35 @@ inline RoughGlass boundary_of(IN(Inputs) x) {
     return RoughGlass(x.color, is_boundary(eta) ? eta : 1.5f, face.f0, face.f90, vec2(x.alpha, 0.5f),
                       x.d % 2u);
 }
+inline PerfectPart perfect_of(IN(Inputs) x) {
+    return PerfectPart(0.6f * x.color, x.light, vec3(greater_of(x.eta, 0.4f), 1.2f, x.index + 0.1f), x.u.x);
+}
+inline vec2 exponents_of(IN(Inputs) x) {
+    return vec2(1024.0f * x.roughness, 16.0f);
+}
+inline ShaderLobes shader_of(IN(Inputs) x) {
+    return make_shader_lobes(x.color, x.light, exponents_of(x), perfect_of(x), x.wo.z);
+}
+inline Bsdf shader_bsdf_of(IN(Inputs) x) {
+    Bsdf bsdf;
+    fill_shader_bsdf(bsdf, shader_of(x));
+    return bsdf;
+}
+// That comes to the side of x.n.
+inline vec3 arriving_at(IN(Inputs) x) {
+    return dot(x.wi, x.n) < 0.0f ? x.wi : -x.wi;
+}
+inline Bsdf layered_bsdf_of(FloatArray energy, IN(Inputs) x) {
+    Look look = look_of(x);
+    look.lobes |= FeatureCoat | FeatureSheen;
+    Bsdf bsdf;
+    fill_bsdf(bsdf, energy, look, mixture_of(x), x.wo);
+    return bsdf;
+}
 inline Bsdf bsdf_of(FloatArray energy, IN(Inputs) x) {
-    return make_bsdf(energy, look_of(x), mixture_of(x), x.wo);
+    Bsdf bsdf;
+    fill_bsdf(bsdf, energy, look_of(x), mixture_of(x), x.wo);
+    return bsdf;
 }
 
 SHADING_END

@@ -98,6 +98,9 @@ std::vector<SharedFunction> functions_of(std::uint32_t list) {
         {
 #include "tests/shading/functions/samples.inc"
         },
+        {
+#include "tests/shading/functions/shaders.inc"
+        },
     };
     // clang-format on
     return Lists[list];

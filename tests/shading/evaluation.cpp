@@ -46,10 +46,13 @@ void branches(const Case& c, [[maybe_unused]] const Inputs& x, std::size_t count
 void samples(const Case& c, [[maybe_unused]] const Inputs& x, std::size_t count, Outputs* y) {
 #include "tests/shading/functions/samples.inc"
 }
+void shaders(const Case& c, const Inputs& x, std::size_t count, Outputs* y) {
+#include "tests/shading/functions/shaders.inc"
+}
 
 using List = void(const Case& c, const Inputs& x, std::size_t count, Outputs* y);
 constexpr List* Lists[FunctionListCount] = {numbers, lobes, textures, surfaces, lights,
-                                            found,   steps, branches, samples};
+                                            found,   steps, branches, samples,  shaders};
 
 }  // namespace
 }  // namespace shading

@@ -7,8 +7,8 @@ namespace tessera {
 
 // The lists in functions/, by number; shading.comp and CMakeLists.txt count the same.
 inline constexpr const char* FunctionLists[] = {"numbers", "lobes", "textures", "surfaces", "lights",
-                                                "found",   "steps", "branches", "samples"};
-inline constexpr std::uint32_t FunctionListCount = 9;
+                                                "found",   "steps", "branches", "samples",  "shaders"};
+inline constexpr std::uint32_t FunctionListCount = 10;
 
 // Results of all functions of a list: from shading::World and `count` shading::Inputs to shading::Outputs,
 // those of one function after those of the other.

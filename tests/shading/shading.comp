@@ -49,5 +49,7 @@ void main() {
 #include "tests/shading/functions/branches.inc"
 #elif LIST == 8
 #include "tests/shading/functions/samples.inc"
+#elif LIST == 9
+#include "tests/shading/functions/shaders.inc"
 #endif
 }

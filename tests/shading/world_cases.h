@@ -15,6 +15,7 @@ struct Case {
     Mesh mesh;
     Material material;
     MaterialExtras extras;
+    Shader shader;
     uvec3 corners;
     Triangle triangle;
     Texture map;
@@ -66,6 +67,7 @@ inline Case make_case(IN(World) world, IN(Inputs) x) {
     made.mesh = made.context.scene.meshes.items[made.instance.mesh];
     made.material = made.context.scene.materials.items[made.instance.material];
     made.extras = made.context.scene.extras.items[x.d % 4u];
+    made.shader = made.context.scene.shaders.items[x.d % ShaderCount];
     made.hit = Hit(x.instance, x.c % made.mesh.triangle_count, x.weights, x.pdf);
     made.corners = made.mesh.triangles.items[made.hit.triangle];
     made.triangle = triangle_of(made.mesh, made.corners);
@@ -82,7 +84,7 @@ inline Case make_case(IN(World) world, IN(Inputs) x) {
     made.path = path_in(x);
     made.way = Way(x.d % 4u, x.d % 5u == 0u, x.light);
     made.branch = Branch(made.ray, Cone(x.metallic, x.transmission), x.color, x.transmission, x.c % 64u,
-                         x.c % (MaxSpecularDepth + 1u));
+                         x.c % (MaxSpecularDepth + 1u), made.path.chain);
     return made;
 }
 
@@ -189,6 +191,30 @@ inline PathSample with_object(IN(Case) c, uint object, float depth) {
     show_object(found, object, depth);
     return found;
 }
+inline EdgesInWorld edges_of(IN(Case) c) {
+    return edges_in_world(c.instance, c.triangle);
+}
+// Relative to what its terms are.
+inline vec3 gradient_of(IN(Case) c, vec2 steps) {
+    const EdgesInWorld edges = edges_of(c);
+    const float area = vector_length(edges.across);
+    return area > 0.0f ? surface_gradient(edges, steps.x, steps.y) * (area / edges.scale) : vec3(0.0f);
+}
+inline ShaderLobes shader_here(IN(Case) c, IN(Inputs) x) {
+    return shader_lobes_at(c.context.scene, x.d % ShaderCount, c.mesh, c.corners, x.weights, x.metallic,
+                           x.color, x.c % 2u == 0u, x.wo.z);
+}
+inline Surface with_shader_specular(IN(Case) c, IN(Inputs) x) {
+    Surface surface = c.surface;
+    set_shader_specular(surface, c.context.scene, shader_of(x), c.ray.direction);
+    return surface;
+}
+inline Path with_own_environment(IN(Case) c) {
+    Path path = c.path;
+    path.chain.environment = c.context.scene.instance_count > 0u ? 0 : -1;
+    add_own_environment(c.context, path, c.ray);
+    return path;
+}
 inline PathSample with_light(IN(Case) c, vec3 light) {
     PathSample found = c.path.found;
     add_light(found, c.context.view, light, c.way);
@@ -289,7 +315,7 @@ inline BranchStack with_children(IN(Case) c) {
     open.branches[0] = c.branch;
     open.branches[1] = c.branch;
     open.count = 0u;
-    push_children(open, c.branch, c.branch.cone, c.surface);
+    push_children(open, c.branch, c.branch.cone, c.surface, channel_of(c.path.numbers));
     return open;
 }
 inline Path in_branch(IN(Case) c) {

@@ -108,7 +108,8 @@ std::vector<Material> make_materials(Generator& random) {
                           .alpha_mode = i % 3u,
                           .double_sided = i % 2u,
                           .thin = i % 4u == 1u ? 1u : 0u,
-                          .extras = i % 2u == 0u ? int(i / 2u) : -1};
+                          .extras = i % 2u == 0u ? int(i / 2u) : -1,
+                          .shader = i == 1 ? 0 : -1};
         if (i == 2 || i == 6) material.emission = vec3(1.0f, 2.0f, 3.0f);
         materials.push_back(material);
     }
@@ -120,10 +121,38 @@ std::vector<Material> make_materials(Generator& random) {
         materials[6].normal_texture.texture = materials[6].emission_texture.texture = -1;
     materials[6].emission = vec3(0.5f);
     materials[6].extras = -1;
+    materials[6].shader = -1;
     materials[7].index_of_refraction = 0.0f;
     materials[7].transmission = 1.0f;
     materials[7].metallic = 0.0f;
     return materials;
+}
+
+// With and without perfect parts, maps of normals and of heights, frames of their own.
+std::vector<Shader> make_shaders(Generator& random) {
+    std::vector<Shader> shaders;
+    for (uint i = 0; i < ShaderCount; ++i) {
+        shaders.push_back({.specular = random.color(),
+                           .fresnel_blend = random.between(0.0f, 1.0f),
+                           .shininess = {random.between(0.0f, 4.0f), random.between(0.0f, 1.0f)},
+                           .reflection = i % 2u == 0u ? random.color() : vec3(0.0f),
+                           .height_scale = 0.01f,
+                           .transmission = i == 0u ? random.color() : vec3(0.0f),
+                           .normal_space = i == 2u ? NormalObject : NormalTangent,
+                           .index_of_refraction = {1.3f, 1.4f, 1.5f},
+                           .inverts_alpha = i % 2u,
+                           .environment = i == 0u ? random.color() : vec3(0.0f),
+                           .tangent_set = i == 3u ? 0 : -1,
+                           .normal_scale = vec3(2.0f),
+                           .binormal_set = i == 3u ? 1 : -1,
+                           .normal_bias = vec3(-1.0f),
+                           .textures = {use_of(i == 1u ? 1 : -1, random), use_of(i == 2u ? 2 : -1, random),
+                                        use_of(-1, random), use_of(i == 0u ? 1 : -1, random)},
+                           .alpha_texture = use_of(i < 2u ? 4 : -1, random),
+                           .height_texture = use_of(i == 1u ? 5 : -1, random),
+                           .environment_texture = use_of(i == 0u ? 3 : -1, random)});
+    }
+    return shaders;
 }
 
 // Each with lobes of its own.
@@ -140,14 +169,8 @@ std::vector<MaterialExtras> make_extras(Generator& random) {
                        .coat_normal_scale = 0.5f,
                        .anisotropy = i != 0 ? random.between(0.2f, 1.0f) : 0.0f,
                        .anisotropy_direction = {0.8f, -0.6f},
-                       .transmission_texture = use(0),
-                       .specular_texture = use(1),
-                       .specular_color_texture = use(0),
-                       .coat_texture = use(1),
-                       .coat_roughness_texture = use(0),
+                       .textures = {use(0), use(1), use(0), use(1), use(0), use(1), use(0)},
                        .coat_normal_texture = use(1),
-                       .sheen_color_texture = use(1),
-                       .sheen_roughness_texture = use(0),
                        .anisotropy_texture = use(1)});
     }
     return all;
@@ -313,13 +336,13 @@ PackedWorld make_world(std::uint64_t address) {
     Generator random(false);
     const std::vector<Texture> textures = make_textures(packer, random);
     std::vector<float> sums;
-    Scene scene{
-        .instance_count = Instances,
-        .light_count = LightCount,
-        .tree_light_count = TreeLightCount,
-        .tree_probability = 0.4f,
-        .features = 0xf0ffu | FeatureLightTree | FeatureShapedLights | FeatureSuns | FeatureShadowCatcher,
-        .tree_scale = 0.25f};
+    Scene scene{.instance_count = Instances,
+                .light_count = LightCount,
+                .tree_light_count = TreeLightCount,
+                .tree_probability = 0.4f,
+                .features = 0xf0ffu | FeatureLightTree | FeatureShapedLights | FeatureSuns |
+                            FeatureShadowCatcher | FeatureShader,
+                .tree_scale = 0.25f};
     scene.light_sums = uint(sums.size());
     add_sums(sums, LightCount - TreeLightCount + 1u, random);
     scene.environment = {.map = textures[2],
@@ -339,6 +362,8 @@ PackedWorld make_world(std::uint64_t address) {
     scene.textures = packer.add<TextureArray>(textures);
     scene.materials = packer.add<MaterialArray>(make_materials(random));
     scene.extras = packer.add<MaterialExtrasArray>(make_extras(random));
+    Generator shader_random(false);  // its own: all else stays as it is
+    scene.shaders = packer.add<ShaderArray>(make_shaders(shader_random));
     std::vector<Mesh> meshes;
     for (uint i = 0; i < 4; ++i) meshes.push_back(make_mesh(i, packer, random));
     scene.meshes = packer.add<MeshArray>(meshes);

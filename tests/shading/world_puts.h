@@ -22,6 +22,19 @@ inline void put(INOUT(Outputs) y, IN(Place) place) {
     put(y, place.linear);
     put(y, place.translation);
 }
+inline void put(INOUT(Outputs) y, IN(Chain) chain) {
+    put(y, chain.has_one_channel);
+    put(y, chain.environment);
+}
+inline void put(INOUT(Outputs) y, IN(TexSteps) steps) {
+    put(y, vec3(steps.p, 1.0f));
+    put(y, vec3(steps.q, 1.0f));
+}
+inline void put(INOUT(Outputs) y, IN(EdgesInWorld) edges) {
+    put(y, edges.p);
+    put(y, edges.q);
+    put(y, edges.scale);
+}
 inline void put(INOUT(Outputs) y, IN(Measured) measured) {
     put(y, measured.direction);
     put(y, measured.distance);
@@ -51,13 +64,17 @@ inline void put(INOUT(Outputs) y, IN(Surface) surface) {
     put(y, surface.albedo);
     put(y, surface.emission);
     put(y, surface.bsdf.lobes);
-    put(y, surface.bsdf.diffuse);
-    put(y, surface.bsdf.f0);
-    put(y, surface.bsdf.alpha);
-    put(y, surface.bsdf.late);
-    put(y, vec3(surface.bsdf.base_late, surface.bsdf.late_out, surface.bsdf.base_out));
-    put(y, vec3(surface.bsdf.coat_out, surface.bsdf.sheen_out, 1.0f));
-    put(y, surface.bsdf.chances);
+    if ((surface.bsdf.lobes & FeatureShader) != 0u) {
+        put(y, surface.bsdf.shader);
+    } else {
+        put(y, surface.bsdf.diffuse);
+        put(y, surface.bsdf.f0);
+        put(y, surface.bsdf.alpha);
+        put(y, surface.bsdf.late);
+        put(y, vec3(surface.bsdf.base_late, surface.bsdf.late_out, surface.bsdf.base_out));
+        put(y, vec3(surface.bsdf.coat_out, surface.bsdf.sheen_out, 1.0f));
+        put(y, surface.bsdf.chances);
+    }
     put(y, surface.bsdf.reflectance);
     put(y, surface.specular);
     put(y, surface.rough_share);
@@ -122,6 +139,7 @@ inline void put(INOUT(Outputs) y, IN(Path) path) {
     put(y, path.last_position);
     put(y, path.last_normal);
     put(y, path.cone);
+    put(y, path.chain);
     put(y, path.way);
     put(y, path.found);
     put(y, path.rays);
@@ -146,6 +164,7 @@ inline void put(INOUT(Outputs) y, IN(Branch) branch) {
     put(y, branch.probability);
     put(y, branch.node);
     put(y, branch.depth);
+    put(y, branch.chain);
 }
 inline void put(INOUT(Outputs) y, IN(BranchStack) open) {
     put(y, open.count);

@@ -70,7 +70,7 @@ glm::vec3 towards(float cosine, float azimuth = 0.7f) {
 }
 
 Bsdf bsdf_of(const Look& look, const glm::vec3& out) {
-    return make_bsdf(energy_table(), look, make_mixture(look), out);
+    return test::make_bsdf(look, make_mixture(look), out);
 }
 
 struct Reflected {

@@ -116,7 +116,7 @@ class SurfaceModel : public testing::TestWithParam<std::tuple<float, float, floa
     glm::vec3 out{std::sqrt(1.0f - cosine * cosine), 0.0f, cosine};
     shading::Look look = shading::plain_look(glm::vec3(1.0f), metallic, roughness, 0.0f, 1.5f, 1.5f);
     shading::FloatArray table = test::energy_table();
-    Bsdf bsdf = make_bsdf(table, look, {metallic, 1.0f - metallic}, out);
+    Bsdf bsdf = test::make_bsdf(look, {metallic, 1.0f - metallic}, out);
 };
 
 // Lobes that are wide against the cells.
@@ -168,7 +168,7 @@ TEST_P(SurfaceModel, IsReciprocal) {
     for (int i = 0; i < 1000; ++i) {
         const glm::vec3 in = sample_cosine_hemisphere(pair(random));
         if (!(in.z > 1e-3f)) continue;
-        const Bsdf back = make_bsdf(table, look, {metallic, 1.0f - metallic}, in);
+        const Bsdf back = test::make_bsdf(look, {metallic, 1.0f - metallic}, in);
         const double there = evaluate_bsdf(table, bsdf, out, in).value.x / in.z;
         const double again = evaluate_bsdf(table, back, in, out).value.x / out.z;
         EXPECT_NEAR(there, again, 1e-4 * std::max(there, again) + 1e-6);

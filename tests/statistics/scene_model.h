@@ -21,6 +21,7 @@ class SceneModel {
     explicit SceneModel(glm::dvec3 render_origin = glm::dvec3(0.0)) { root_.render_origin = render_origin; }
 
     ObjectId material(const scene::Material& material) { return create(material); }
+    ObjectId shader(const scene::SurfaceShader& shader) { return create(shader); }
 
     void sphere(ObjectId material, const glm::dvec3& center, double radius, Normals normals = Normals::Flat,
                 unsigned rings = 24) {
@@ -74,7 +75,8 @@ class SceneModel {
             .material = material, .indices = blob(indices), .positions = blob(positions)};
         hang(create(geometry), glm::dmat4(1.0), layers);
     }
-    // A quad with a texture, `repeats` times along the edges, and tangents along the first one.
+    // A quad with a texture, `repeats` times along the edges, and tangents along the first one. The second
+    // set of coordinates has u along the second edge.
     void textured_quad(ObjectId material, const std::array<glm::vec3, 4>& corners, float repeats) {
         const std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 3};
         const std::vector<glm::vec2> tex_coords{{0, 0}, {repeats, 0}, {repeats, repeats}, {0, repeats}};
@@ -84,7 +86,8 @@ class SceneModel {
             .indices = blob(indices),
             .positions = blob(std::vector<glm::vec3>(corners.begin(), corners.end())),
             .tangents = blob(tangents),
-            .tex_coords = blob(tex_coords)};
+            .tex_coords = blob(tex_coords),
+            .tex_coords_1 = blob(std::vector<glm::vec2>{{0, 1}, {0, 0}, {1, 0}, {1, 1}})};
         hang(create(geometry), glm::dmat4(1.0));
     }
     // A square of half edge `size` at height z, its front to +z (or to -z, size negative).

@@ -28,6 +28,7 @@ DeviceScene::DeviceScene(Device& device, backend::SceneTables tables) {
     put(record_.textures, tables.textures);
     put(record_.materials, tables.materials);
     put(record_.extras, tables.extras);
+    put(record_.shaders, tables.shaders);
     put(record_.meshes, tables.meshes);
     put(record_.instances, tables.instances);
     put(record_.lights, tables.lights);

@@ -1,4 +1,5 @@
 // Materials and instances.
+#include <algorithm>
 #include <cmath>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -17,67 +18,24 @@ static_assert(shading::AlphaOpaque == std::uint32_t(scene::AlphaMode::Opaque) &&
               shading::AlphaMask == std::uint32_t(scene::AlphaMode::Mask) &&
               shading::AlphaBlend == std::uint32_t(scene::AlphaMode::Blend));
 
-shading::TextureUse make_use(const scene::TextureSlot& slot, const Indices& textures) {
-    const auto place = textures.find(slot.texture);
-    const float c = std::cos(slot.rotation), s = std::sin(slot.rotation);
-    // KHR_texture_transform: uv' = offset + rotation x scale x uv, with v down.
-    return {.texture = place == textures.end() ? -1 : static_cast<int>(place->second),
-            .set = slot.set,
-            .row_u = {c * slot.scale.x, s * slot.scale.y},
-            .row_v = {-s * slot.scale.x, c * slot.scale.y},
-            .offset = slot.offset};
-}
-
-shading::Material make_material(const scene::Material& material, const Indices& textures) {
-    return {.base_color = material.base_color,
-            .emission = material.emission,
-            .metallic = material.metallic,
-            .roughness = material.roughness,
-            .normal_scale = material.normal_scale,
-            .index_of_refraction = material.index_of_refraction,
-            .alpha_cutoff = material.alpha_cutoff,
-            .transmission = material.transmission,
-            .base_color_texture = make_use(material.base_color_texture, textures),
-            .metallic_roughness_texture = make_use(material.metallic_roughness_texture, textures),
-            .normal_texture = make_use(material.normal_texture, textures),
-            .emission_texture = make_use(material.emission_texture, textures),
-            .alpha_mode = static_cast<std::uint32_t>(material.alpha_mode),
-            .double_sided = material.double_sided ? 1u : 0u,
-            .unlit = material.unlit ? 1u : 0u,
-            .thin = material.thickness > 0.0f ? 0u : 1u,
-            .extras = -1};
-}
-
-// Emission, the diffuse lobe and opacity: index 1 has no interface above them.
-scene::Material diffuse_part(const scene::SurfaceShader& shader) {
-    return {.base_color = glm::vec4(shader.diffuse, shader.alpha),
-            .base_color_texture = shader.diffuse_texture,
-            .emission = shader.emission,
-            .emission_texture = shader.emission_texture,
-            .alpha_mode = shader.alpha < 1.0f ? scene::AlphaMode::Blend : scene::AlphaMode::Opaque,
-            .double_sided = true,
-            .index_of_refraction = 1.0f};
-}
-
 shading::MaterialExtras make_extras(const scene::Material& m, const Indices& textures) {
-    return {.specular_color = m.specular_color,
-            .specular = m.specular,
-            .sheen_color = m.sheen_color,
-            .sheen_roughness = m.sheen_roughness,
-            .coat = m.clearcoat,
-            .coat_roughness = m.clearcoat_roughness,
-            .coat_normal_scale = m.clearcoat_normal_scale,
-            .anisotropy = m.anisotropy,
-            .anisotropy_direction = {std::cos(m.anisotropy_rotation), std::sin(m.anisotropy_rotation)},
-            .transmission_texture = make_use(m.transmission_texture, textures),
-            .specular_texture = make_use(m.specular_texture, textures),
-            .specular_color_texture = make_use(m.specular_color_texture, textures),
-            .coat_texture = make_use(m.clearcoat_texture, textures),
-            .coat_roughness_texture = make_use(m.clearcoat_roughness_texture, textures),
-            .coat_normal_texture = make_use(m.clearcoat_normal_texture, textures),
-            .sheen_color_texture = make_use(m.sheen_color_texture, textures),
-            .sheen_roughness_texture = make_use(m.sheen_roughness_texture, textures),
-            .anisotropy_texture = make_use(m.anisotropy_texture, textures)};
+    return {
+        .specular_color = m.specular_color,
+        .specular = m.specular,
+        .sheen_color = m.sheen_color,
+        .sheen_roughness = m.sheen_roughness,
+        .coat = m.clearcoat,
+        .coat_roughness = m.clearcoat_roughness,
+        .coat_normal_scale = m.clearcoat_normal_scale,
+        .anisotropy = m.anisotropy,
+        .anisotropy_direction = {std::cos(m.anisotropy_rotation), std::sin(m.anisotropy_rotation)},
+        .textures = {make_use(m.transmission_texture, textures), make_use(m.specular_texture, textures),
+                     make_use(m.specular_color_texture, textures), make_use(m.clearcoat_texture, textures),
+                     make_use(m.clearcoat_roughness_texture, textures),
+                     make_use(m.sheen_color_texture, textures),
+                     make_use(m.sheen_roughness_texture, textures)},
+        .coat_normal_texture = make_use(m.clearcoat_normal_texture, textures),
+        .anisotropy_texture = make_use(m.anisotropy_texture, textures)};
 }
 
 // Whether a material says what only extras can hold.
@@ -139,14 +97,9 @@ std::uint32_t features_of(const shading::Material& material, const shading::Mate
     std::uint32_t lobes = flag(glass && rough, shading::FeatureRoughGlass);
     if (extras != nullptr) {
         mapped |= used(extras->coat_normal_texture) && has_tangents;
-        for (const shading::TextureUse* use :
-             {&extras->transmission_texture, &extras->specular_texture, &extras->specular_color_texture,
-              &extras->coat_texture, &extras->coat_roughness_texture, &extras->sheen_color_texture,
-              &extras->sheen_roughness_texture, &extras->anisotropy_texture}) {
-            textured |= used(*use);
-        }
+        textured |= used(extras->anisotropy_texture) || std::ranges::any_of(extras->textures, used);
         specular |=
-            extras->coat > 0.0f && (used(extras->coat_roughness_texture) ||
+            extras->coat > 0.0f && (used(extras->textures[shading::ExtrasCoatRoughness]) ||
                                     shading::is_smooth(extras->coat_roughness * extras->coat_roughness));
         lobes |= shading::FeatureExtras | flag(extras->coat > 0.0f, shading::FeatureCoat) |
                  flag(extras->sheen_color != glm::vec3(0.0f), shading::FeatureSheen) |
@@ -159,6 +112,38 @@ std::uint32_t features_of(const shading::Material& material, const shading::Mate
 
 }  // namespace
 
+shading::TextureUse make_use(const scene::TextureSlot& slot, const Indices& textures) {
+    const auto place = textures.find(slot.texture);
+    const float c = std::cos(slot.rotation), s = std::sin(slot.rotation);
+    // KHR_texture_transform: uv' = offset + rotation x scale x uv, with v down.
+    return {.texture = place == textures.end() ? -1 : static_cast<int>(place->second),
+            .set = slot.set,
+            .row_u = {c * slot.scale.x, s * slot.scale.y},
+            .row_v = {-s * slot.scale.x, c * slot.scale.y},
+            .offset = slot.offset};
+}
+
+shading::Material make_material(const scene::Material& material, const Indices& textures) {
+    return {.base_color = material.base_color,
+            .emission = material.emission,
+            .metallic = material.metallic,
+            .roughness = material.roughness,
+            .normal_scale = material.normal_scale,
+            .index_of_refraction = material.index_of_refraction,
+            .alpha_cutoff = material.alpha_cutoff,
+            .transmission = material.transmission,
+            .base_color_texture = make_use(material.base_color_texture, textures),
+            .metallic_roughness_texture = make_use(material.metallic_roughness_texture, textures),
+            .normal_texture = make_use(material.normal_texture, textures),
+            .emission_texture = make_use(material.emission_texture, textures),
+            .alpha_mode = static_cast<std::uint32_t>(material.alpha_mode),
+            .double_sided = material.double_sided ? 1u : 0u,
+            .unlit = material.unlit ? 1u : 0u,
+            .thin = material.thickness > 0.0f ? 0u : 1u,
+            .extras = -1,
+            .shader = -1};
+}
+
 Indices add_materials(SceneTables& tables, const scene::Scene& scene, const Indices& textures) {
     Indices indices;
     const Indices none;
@@ -167,7 +152,7 @@ Indices add_materials(SceneTables& tables, const scene::Scene& scene, const Indi
     for (const auto& [id, object] : scene.objects()) {
         if (const auto* shader = std::get_if<scene::SurfaceShader>(object.get())) {
             indices[id] = static_cast<std::uint32_t>(tables.materials.size());
-            tables.materials.push_back(make_material(diffuse_part(*shader), textures));
+            tables.materials.push_back(add_shader(tables, *shader, textures));
         }
         const auto* material = std::get_if<scene::Material>(object.get());
         if (material == nullptr) continue;
@@ -206,9 +191,13 @@ void add_instances(SceneTables& tables, const Lowered& lowered, const MeshCatalo
         instance.motion = add_motion(tables, source.world_from_object, source.motion);
         const shading::Material& look = tables.materials[instance.material];
         instance.alpha_tested = look.alpha_mode != shading::AlphaOpaque ? 1u : 0u;
-        tables.scene.features |= features_of(
-            look, look.extras >= 0 ? &tables.extras[static_cast<std::size_t>(look.extras)] : nullptr,
-            tables.meshes.back());
+        tables.scene.features |=
+            look.shader >= 0
+                ? features_of(look, tables.shaders[static_cast<std::size_t>(look.shader)])
+                : features_of(
+                      look,
+                      look.extras >= 0 ? &tables.extras[static_cast<std::size_t>(look.extras)] : nullptr,
+                      tables.meshes.back());
         tables.instances.push_back(instance);
     }
     tables.scene.instance_count = static_cast<std::uint32_t>(tables.instances.size());

@@ -14,6 +14,14 @@ using Indices = std::map<ObjectId, std::uint32_t>;  // of objects in their table
 // Those alone that something placed, or the background, refers to: no others are in anybody's memory.
 Indices add_textures(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
                      const MeshCatalog& meshes, const scene::BlobStore& blobs, TexturePyramids& pyramids);
+shading::TextureUse make_use(const scene::TextureSlot& slot, const Indices& textures);
+shading::Material make_material(const scene::Material& material, const Indices& textures);
+
+// Appends what only CommonSurfaceShader has, and returns the rest.
+shading::Material add_shader(SceneTables& tables, const scene::SurfaceShader& shader,
+                             const Indices& textures);
+std::uint32_t features_of(const shading::Material& material, const shading::Shader& shader);
+
 Indices add_materials(SceneTables& tables, const scene::Scene& scene, const Indices& textures);
 void add_instances(SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes,
                    const Indices& materials);

@@ -72,6 +72,7 @@ shading::Scene on_host(const SceneTables& tables) {
     scene.textures.items = tables.textures.data();
     scene.materials.items = tables.materials.data();
     scene.extras.items = tables.extras.data();
+    scene.shaders.items = tables.shaders.data();
     scene.meshes.items = tables.meshes.data();
     scene.mesh_steps.items = tables.mesh_steps.data();
     scene.places.items = tables.places.data();

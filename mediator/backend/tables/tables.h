@@ -17,6 +17,7 @@ struct SceneTables {
     std::vector<shading::Texture> textures;       // that are used
     std::vector<shading::Material> materials;     // 0 = the default grey, 1 = the placeholder's
     std::vector<shading::MaterialExtras> extras;  // of those that have any
+    std::vector<shading::Shader> shaders;         // of the materials that are CommonSurfaceShaders
     std::vector<shading::Mesh> meshes;            // of the geometries that are placed
     std::vector<shading::MeshStep> mesh_steps;    // of meshes that bend, the beginning's and each after it
     std::vector<shading::Place> places;           // of what moves, likewise
