@@ -205,7 +205,6 @@ inline void put(INOUT(Outputs) y, IN(Specular) value) {
     put_next(y, value.refraction);  // shares of the same light
     put(y, value.reflected);
     put(y, value.refracted);
-    put(y, value.splits);
 }
 inline void put(INOUT(Outputs) y, IN(Refraction) value) {
     put(y, value.share);

@@ -101,6 +101,12 @@ std::vector<SharedFunction> functions_of(std::uint32_t list) {
         {
 #include "tests/shading/functions/shaders.inc"
         },
+        {
+#include "tests/shading/functions/views.inc"
+        },
+        {
+#include "tests/shading/functions/looks.inc"
+        },
     };
     // clang-format on
     return Lists[list];

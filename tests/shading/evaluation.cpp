@@ -49,10 +49,16 @@ void samples(const Case& c, [[maybe_unused]] const Inputs& x, std::size_t count,
 void shaders(const Case& c, const Inputs& x, std::size_t count, Outputs* y) {
 #include "tests/shading/functions/shaders.inc"
 }
+void looks([[maybe_unused]] const Case& c, [[maybe_unused]] const Inputs& x, std::size_t count, Outputs* y) {
+#include "tests/shading/functions/looks.inc"
+}
+void views([[maybe_unused]] const Case& c, [[maybe_unused]] const Inputs& x, std::size_t count, Outputs* y) {
+#include "tests/shading/functions/views.inc"
+}
 
 using List = void(const Case& c, const Inputs& x, std::size_t count, Outputs* y);
-constexpr List* Lists[FunctionListCount] = {numbers, lobes, textures, surfaces, lights,
-                                            found,   steps, branches, samples,  shaders};
+constexpr List* Lists[FunctionListCount] = {numbers, lobes,    textures, surfaces, lights, found,
+                                            steps,   branches, samples,  shaders,  views,  looks};
 
 }  // namespace
 }  // namespace shading

@@ -51,5 +51,9 @@ void main() {
 #include "tests/shading/functions/samples.inc"
 #elif LIST == 9
 #include "tests/shading/functions/shaders.inc"
+#elif LIST == 10
+#include "tests/shading/functions/views.inc"
+#elif LIST == 11
+#include "tests/shading/functions/looks.inc"
 #endif
 }

@@ -10,12 +10,14 @@
 #include "tests/shading/shading_found.comp.h"
 #include "tests/shading/shading_lights.comp.h"
 #include "tests/shading/shading_lobes.comp.h"
+#include "tests/shading/shading_looks.comp.h"
 #include "tests/shading/shading_numbers.comp.h"
 #include "tests/shading/shading_samples.comp.h"
 #include "tests/shading/shading_shaders.comp.h"
 #include "tests/shading/shading_steps.comp.h"
 #include "tests/shading/shading_surfaces.comp.h"
 #include "tests/shading/shading_textures.comp.h"
+#include "tests/shading/shading_views.comp.h"
 #include "tests/shading/world_maker.h"
 #include "tests/vulkan/vulkan_test.h"
 
@@ -60,9 +62,9 @@ std::span<const std::uint32_t> shader_of(std::uint32_t list) {
     using namespace vulkan::shaders;
     using Words = std::span<const std::uint32_t>();
     constexpr Words* Shaders[FunctionListCount] = {
-        shading_numbers_comp, shading_lobes_comp,  shading_textures_comp, shading_surfaces_comp,
-        shading_lights_comp,  shading_found_comp,  shading_steps_comp,    shading_branches_comp,
-        shading_samples_comp, shading_shaders_comp};
+        shading_numbers_comp, shading_lobes_comp,   shading_textures_comp, shading_surfaces_comp,
+        shading_lights_comp,  shading_found_comp,   shading_steps_comp,    shading_branches_comp,
+        shading_samples_comp, shading_shaders_comp, shading_views_comp,    shading_looks_comp};
     return Shaders[list]();
 }
 

@@ -204,10 +204,16 @@ inline ShaderLobes shader_here(IN(Case) c, IN(Inputs) x) {
     return shader_lobes_at(c.context.scene, x.d % ShaderCount, c.mesh, c.corners, x.weights, x.metallic,
                            x.color, x.c % 2u == 0u, x.wo.z);
 }
-inline Surface with_shader_specular(IN(Case) c, IN(Inputs) x) {
-    Surface surface = c.surface;
-    set_shader_specular(surface, c.context.scene, shader_of(x), c.ray.direction);
-    return surface;
+// On a surface without anything else.
+inline Specular shader_specular(IN(Case) c, IN(Inputs) x) {
+    Surface surface;
+    surface.geometric_normal = x.n;
+    surface.frame = frame_around(unit_vector(x.n + 0.3f * x.wo));
+    surface.scatters = true;
+    surface.rough_share = 1.0f;
+    surface.specular = no_specular();
+    set_shader_specular(surface, c.context.scene, shader_of(x), arriving_at(x));
+    return surface.specular;
 }
 inline Path with_own_environment(IN(Case) c) {
     Path path = c.path;
