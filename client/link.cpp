@@ -91,16 +91,17 @@ void Link::run(std::stop_token stop) {
 
 bool Link::step(std::stop_token stop) {
     constexpr int BurstLimit = 256;  // so that heartbeats never wait for a flood
-    net::Received received = channel_->receive(next_wake(clock_.now()));
-    for (int i = 0; i < BurstLimit && std::holds_alternative<net::Message>(received); ++i) {
-        receive(std::get<net::Message>(received), clock_.now());
+    TimePoint deadline = next_wake(clock_.now());
+    for (int i = 0; i < BurstLimit; ++i) {
+        const net::Received received = channel_->receive(deadline);
+        deadline = clock_.now();  // after the first only what is there already
+        if (const auto* nothing = std::get_if<net::NoMessage>(&received)) {
+            if (*nothing != net::NoMessage::Closed) break;
+            fail(Error(ErrorCode::Unavailable, "the connection to the master was closed"));
+            return false;
+        }
+        receive(std::get<net::Message>(received), deadline);
         if (stop.stop_requested()) return false;
-        received = channel_->receive(clock_.now());
-    }
-    if (const auto* nothing = std::get_if<net::NoMessage>(&received);
-        nothing && *nothing == net::NoMessage::Closed) {
-        fail(Error(ErrorCode::Unavailable, "the connection to the master was closed"));
-        return false;
     }
     std::vector<wire::ControlMessage> to_send;
     std::vector<wire::BlobRequest> to_ask;

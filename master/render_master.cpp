@@ -72,11 +72,14 @@ void RenderMaster::run(std::stop_token stop) {
 void RenderMaster::step(TimePoint now, std::stop_token stop) {
     // A burst is taken in one go, but never so long that heartbeats wait.
     constexpr int BurstLimit = 256;
-    net::Received received = channel_->receive(next_wake(now));
-    for (int i = 0; i < BurstLimit && std::holds_alternative<net::Message>(received); ++i) {
-        receive(std::move(std::get<net::Message>(received)), clock_.now());
+    TimePoint deadline = next_wake(now);
+    for (int i = 0; i < BurstLimit; ++i) {
+        net::Received received = channel_->receive(deadline);
+        auto* message = std::get_if<net::Message>(&received);
+        if (message == nullptr) break;
+        receive(std::move(*message), clock_.now());
         if (stop.stop_requested()) return;
-        received = channel_->receive(now);
+        deadline = now;  // after the first only what is there already
     }
     now = clock_.now();
     std::vector<std::function<void(net::Channel&)>> posted;

@@ -250,6 +250,25 @@ TEST_F(SessionTest, PutsTheTilesTogetherInAnyOrderAlsoBeforeTheSummary) {
     EXPECT_EQ(heard, std::vector<std::uint64_t>{9});
 }
 
+// More than the link takes at a time.
+TEST_F(SessionTest, NoTileOfAFloodIsLost) {
+    const auto session = connected();
+    JobRequest request = small_job();
+    request.view.window = {0, 0, 30, 30};
+    request.view.width = request.view.height = 30;
+    auto rendered = in_background([&] { return session->render(request, {}, {}); });
+    const auto start = master_.expect<wire::StartJob>();
+    std::vector<net::Bytes> tiles;
+    for (std::int32_t i = 0; i < 900; ++i) {
+        tiles.push_back(wire::encode(
+            wire::BulkMessage(tile(start.job, static_cast<std::uint32_t>(i), 900, {i % 30, i / 30, 1, 1}))));
+    }
+    for (net::Bytes& bytes : tiles) master_.send_raw(net::Link::Bulk, std::move(bytes));
+    master_.send(wire::JobDone{.job = start.job, .tiles = 900, .rays = 1, .samples = 1800});
+    ASSERT_EQ(rendered.wait_for(std::chrono::seconds(30)), std::future_status::ready);
+    EXPECT_EQ(rendered.get().film->nonfinite_samples, 900u);
+}
+
 TEST_F(SessionTest, AStopAsksForWhatIsThere) {
     const auto session = connected();
     std::stop_source stop;

@@ -53,6 +53,15 @@ TEST(SequenceProcess, FramesOfAClusterHaveTheBitsOfFramesAlone) {
     EXPECT_NE(together.at(1), together.at(2));
 }
 
+// Of more tiles than the master takes in one go.
+TEST(BigPictureProcess, ArrivesWhole) {
+    const import::TestFolder files;
+    const TemporaryFolder folder;
+    const json done = render_embedded(folder, "big", moving_scene(files),
+                                      {"--size", "1600x1200", "--spp", "1", "--backend", "null"});
+    EXPECT_EQ(done["samples"].get<std::uint64_t>(), 1600u * 1200u);
+}
+
 TEST(SequenceProcess, AnInterruptedOneLeavesWholeFramesAndGoesOn) {
     const import::TestFolder files;
     const TemporaryFolder folder;

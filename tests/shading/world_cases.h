@@ -191,8 +191,19 @@ inline PathSample with_object(IN(Case) c, uint object, float depth) {
     show_object(found, object, depth);
     return found;
 }
+// The area of a thinner triangle is what rounding leaves of the products of its edges.
+inline bool has_area(IN(EdgesInWorld) edges) {
+    return dot(edges.across, edges.across) > 1e-4f * dot(edges.p, edges.p) * dot(edges.q, edges.q);
+}
 inline EdgesInWorld edges_of(IN(Case) c) {
-    return edges_in_world(c.instance, c.triangle);
+    const EdgesInWorld edges = edges_in_world(c.instance, c.triangle);
+    if (has_area(edges)) return edges;
+    return EdgesInWorld(vec3(1.0f, 0.0f, 0.0f), vec3(0.0f, 1.0f, 0.0f), vec3(0.0f, 0.0f, 1.0f), 1.0f);
+}
+inline vec3 bumped_normal(IN(Case) c, IN(Inputs) x) {
+    if (!has_area(edges_in_world(c.instance, c.triangle))) return x.n;
+    return shader_normal(c.context.scene, c.instance, c.shader, c.use, c.triangle, c.mesh, c.corners,
+                         x.weights, x.metallic, x.n);
 }
 // Relative to what its terms are.
 inline vec3 gradient_of(IN(Case) c, vec2 steps) {

@@ -297,10 +297,10 @@ TEST(HostileBytes, RenderersThatNobodyKnowsAreRefused) {
     };
     const ControlMessage view = OpenView{some_view()};
     EXPECT_TRUE(with(view, std::byte{2}, std::byte{1}));
-    EXPECT_FALSE(with(view, std::byte{2}, std::byte{3}));
+    EXPECT_FALSE(with(view, std::byte{2}, std::byte{4}));
     const ControlMessage hello = Hello{.peer = PeerKind::Node, .renderers = {view::Renderer::Raster}};
     EXPECT_TRUE(with(hello, std::byte{4}, std::byte{5}));
-    EXPECT_FALSE(with(hello, std::byte{4}, std::byte{8}));
+    EXPECT_FALSE(with(hello, std::byte{4}, std::byte{16}));
 }
 
 // Film that would poison the frame does not decode.
