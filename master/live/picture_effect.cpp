@@ -67,7 +67,8 @@ struct Matters {
     }
     bool operator()(const Transform&) const {
         if (any<Transform>(Transform::Field::Children)) return true;
-        return any<Transform>({Transform::Field::Matrix, Transform::Field::Layers}) &&
+        return any<Transform>(
+                   {Transform::Field::Matrix, Transform::Field::Motion, Transform::Field::Layers}) &&
                content.finds_any(update.id);
     }
     bool operator()(const Geometry&) const {
