@@ -59,7 +59,7 @@ TEST(BigPictureProcess, ArrivesWhole) {
     const TemporaryFolder folder;
     const json done = render_embedded(folder, "big", moving_scene(files),
                                       {"--size", "1600x1200", "--spp", "1", "--backend", "null"});
-    EXPECT_EQ(done["samples"].get<std::uint64_t>(), 1600u * 1200u);
+    EXPECT_EQ(done["rays"].get<std::uint64_t>(), 1600u * 1200u);  // one a sample
 }
 
 TEST(SequenceProcess, AnInterruptedOneLeavesWholeFramesAndGoesOn) {
