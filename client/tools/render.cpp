@@ -121,9 +121,11 @@ class Render {
         if (!step->entries.empty()) {
             if (const auto code = submit(std::move(step->entries))) return code;
         }
-        blobs_->erase_unused();  // those of earlier frames; the scene holds the others
         camera_ = *choose_camera(scene_.cameras, plan_.view.camera);
         render(plan_.view.view.seed + frame);
+        // Those of earlier frames; the scene holds the others. Not before: nodes that share the store may
+        // still be on their way through an earlier version.
+        blobs_->erase_unused();
         const int code = finish(outputs);
         return code == 0 ? std::nullopt : std::optional(code);
     }
