@@ -12,7 +12,9 @@ void alpha_filter(const RTCFilterFunctionNArguments* arguments) {
         const std::uint32_t instance = RTCHitN_instID(arguments->hit, count, i, 0);
         const std::uint32_t triangle = RTCHitN_primID(arguments->hit, count, i);
         const glm::vec2 barycentric{RTCHitN_u(arguments->hit, count, i), RTCHitN_v(arguments->hit, count, i)};
-        if (!shading::stops_at(*context->scene, instance, triangle, barycentric, context->seed)) {
+        const float distance = RTCRayN_tfar(arguments->ray, count, i);
+        if (shading::skips(context->skip, instance, distance) ||
+            !shading::stops_at(*context->scene, instance, triangle, barycentric, context->seed)) {
             arguments->valid[i] = 0;
         }
     }

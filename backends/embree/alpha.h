@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "mediator/shading/records.h"
+#include "mediator/shading/rays.h"
 
 namespace tessera::embree {
 
@@ -13,9 +13,10 @@ struct TraceContext {
     RTCIntersectContext embree;  // first, so that Embree's pointer is ours
     const shading::Scene* scene = nullptr;
     std::uint32_t seed = 0;  // of (pixel, sample, bounce, kind of ray)
+    shading::Skip skip = shading::skip_nothing();
 };
 
-// Stops or passes rays at a surface with alpha, by shading::stops_at.
+// Stops or passes rays at a surface with alpha, by shading::stops_at, or that was just passed.
 void alpha_filter(const RTCFilterFunctionNArguments* arguments);
 
 }  // namespace tessera::embree

@@ -18,8 +18,10 @@ TraceContext start(const Context& context, std::uint32_t seed) {
 
 }  // namespace
 
-bool trace_closest(const Context& context, const shading::Ray& ray, std::uint32_t seed, shading::Hit& hit) {
+bool trace_closest(const Context& context, const shading::Ray& ray, std::uint32_t seed,
+                   const shading::Skip& skip, shading::Hit& hit) {
     TraceContext started = start(context, seed);
+    started.skip = skip;
     RTCRayHit query;
     query.ray = {ray.origin.x,
                  ray.origin.y,

@@ -14,7 +14,8 @@ struct Context : backend::Teller {
     float time = 0.0f;
 };
 
-bool trace_closest(const Context& context, const shading::Ray& ray, std::uint32_t seed, shading::Hit& hit);
+bool trace_closest(const Context& context, const shading::Ray& ray, std::uint32_t seed,
+                   const shading::Skip& skip, shading::Hit& hit);
 bool trace_occluded(const Context& context, const glm::vec3& origin, const glm::vec3& segment, float far,
                     std::uint32_t seed);
 

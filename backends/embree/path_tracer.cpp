@@ -1,5 +1,6 @@
 #include "backends/embree/path_tracer.h"
 
+#include "mediator/backend/tables/bodies.h"
 #include "mediator/backend/tables/view_record.h"
 #include "mediator/shading/trace.h"
 
@@ -11,6 +12,7 @@ PathTracer::PathTracer(const backend::SceneTables& tables, RTCScene top, const v
       camera_places_(backend::camera_places(view.camera, tables.render_origin)),
       view_(backend::make_view(view, tables.render_origin)),
       top_(top) {
+    view_.inside = backend::bodies_around(tables, view_);
     view_.camera_places.items = camera_places_.data();
     scene_.features = backend::features_for(tables, view_);
     view_.strategy = static_cast<std::uint32_t>(strategy);

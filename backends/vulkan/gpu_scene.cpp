@@ -39,6 +39,7 @@ GpuScene::GpuScene(Device& device, TreeCache& cache, Trees trees)
       mesh_steps_(device),
       places_(device),
       motions_(device),
+      bodies_(device),
       instances_(device),
       lights_(device),
       emitters_(device),
@@ -75,6 +76,7 @@ BvhPool::Work GpuScene::update(const backend::MeshCatalog& meshes,
     mesh_steps_.update(there.mesh_steps);
     places_.update(there.places);
     motions_.update(there.motions);
+    bodies_.update(there.bodies);
     instances_.update(there.instances);
     lights_.update(there.lights);
     emitters_.update(there.emitters);
@@ -90,6 +92,7 @@ BvhPool::Work GpuScene::update(const backend::MeshCatalog& meshes,
     set_address(there.scene.mesh_steps, mesh_steps_);
     set_address(there.scene.places, places_);
     set_address(there.scene.motions, motions_);
+    set_address(there.scene.bodies, bodies_);
     set_address(there.scene.instances, instances_);
     set_address(there.scene.lights, lights_);
     set_address(there.scene.emitters, emitters_);

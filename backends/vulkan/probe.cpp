@@ -17,19 +17,23 @@ struct HostContext : backend::Teller {
     float time;
     shading::BvhItems pool;
     std::uint32_t top;
+    shading::Skip skip = shading::skip_nothing();
 };
 
 bool stops_ray(const HostContext& context, const shading::Hit& candidate, std::uint32_t seed) {
+    if (shading::skips(context.skip, candidate.instance, candidate.distance)) return false;
     return shading::stops_at(context.scene, candidate.instance, candidate.triangle, candidate.barycentric,
                              seed);
 }
 
 bool trace_closest(const HostContext& context, const shading::Ray& ray, std::uint32_t seed,
-                   shading::Hit& hit) {
+                   const shading::Skip& skip, shading::Hit& hit) {
+    HostContext asked = context;
+    asked.skip = skip;
     hit =
         shading::bvh_trace(context.pool, context.top, ray.origin, ray.direction, shading::NearestHit,
                            shading::infinity(), shading::BvhClosest | shading::BvhAlpha | shading::BvhMotion,
-                           context.view.layers, context.time, context, seed);
+                           context.view.layers, context.time, asked, seed);
     return hit.instance != shading::NoInstance;
 }
 

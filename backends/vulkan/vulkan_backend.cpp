@@ -8,6 +8,7 @@
 #include "backends/vulkan/probe.h"
 #include "backends/vulkan/tile_renderer.h"
 #include "backends/vulkan/world.h"
+#include "mediator/backend/tables/bodies.h"
 #include "mediator/backend/tables/view_record.h"
 
 namespace tessera::vulkan {
@@ -95,6 +96,7 @@ class VulkanBackend final : public Backend {
     // What moves is seen by rays.
     shading::View record_of(const view::View& view) const {
         shading::View record = make_view(view, world_.tables().render_origin);
+        record.inside = bodies_around(world_.tables(), record);
         const bool moves = (world_.tables().scene.features & shading::FeatureMotion) != 0;
         if (moves && record.renderer == shading::RendererRaster) record.renderer = shading::RendererWhitted;
         return record;

@@ -8,12 +8,7 @@ namespace {
 std::string left_out(const scene::Object& object) {
     if (const auto* material = std::get_if<scene::Material>(&object)) {
         if (material->iridescence > 0.0f) return "its iridescence is not drawn";
-        if (material->transmission > 0.0f && material->attenuation_distance > 0.0f &&
-            material->thickness > 0.0f) {
-            return "its body does not dim light, only its surface does";
-        }
     }
-    if (std::holds_alternative<scene::Medium>(object)) return "media are not drawn";
     return {};
 }
 

@@ -2,6 +2,7 @@
 #define TESSERA_MEDIATOR_SHADING_BSDF_H
 
 #include "mediator/shading/energy.h"
+#include "mediator/shading/phase.h"
 #include "mediator/shading/rough_glass.h"
 #include "mediator/shading/shader_lobes.h"
 #include "mediator/shading/sheen.h"
@@ -119,6 +120,7 @@ struct Bsdf {
     vec3 sheen;
     float sheen_alpha, sheen_roughness, sheen_out;
     ShaderLobes shader;
+    float anisotropy;   // of a medium (phase.h)
     vec3 chances;       // of sampling diffuse, specular, coat; the rest is rough glass
     float reflectance;  // estimate of all that is reflected and let through, as luminance
 };
@@ -322,6 +324,10 @@ inline BsdfValue evaluate_bsdf(FloatArray table, IN(Bsdf) bsdf, vec3 wo, vec3 wi
     if ((bsdf.lobes & FeatureShader) != 0u) {
         return wo.z > 0.0f && wi.z > 0.0f ? evaluate_shader(bsdf.shader, wo, wi) : result;
     }
+    if ((bsdf.lobes & FeatureMedia) != 0u) {
+        const float value = phase_value(bsdf.anisotropy, wi);
+        return BsdfValue(vec3(value), value, vec3(0.0f));
+    }
     const bool glass = (bsdf.lobes & FeatureRoughGlass) != 0u;
     if (!(wo.z > 0.0f) || wi.z == 0.0f || (wi.z < 0.0f && !glass)) return result;
     if (wi.z > 0.0f) evaluate_base(result, table, bsdf, wo, wi);
@@ -350,6 +356,7 @@ inline BsdfValue evaluate_bsdf(FloatArray table, IN(Bsdf) bsdf, vec3 wo, vec3 wi
 // A direction, or none (0, 0, 0).
 inline vec3 sample_bsdf(IN(Bsdf) bsdf, vec3 wo, float choice, vec2 u) {
     if ((bsdf.lobes & FeatureShader) != 0u) return sample_shader(bsdf.shader, wo, choice, u);
+    if ((bsdf.lobes & FeatureMedia) != 0u) return sample_phase(bsdf.anisotropy, u);
     float first = bsdf.chances.y;
     if (choice < first) {
         const vec3 h = sample_visible_normal(wo, bsdf.alpha, u);

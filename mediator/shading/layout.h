@@ -19,7 +19,7 @@ static_assert(offsetof(Texture, wrap_s) == 28);
 static_assert(offsetof(Texture, wrap_t) == 32);
 static_assert(offsetof(Texture, texture_filter) == 36);
 static_assert(offsetof(Texture, level_count) == 40);
-static_assert(offsetof(Texture, unused) == 44);
+static_assert(offsetof(Texture, depth) == 44);
 
 static_assert(sizeof(TextureUse) == 32);
 static_assert(offsetof(TextureUse, texture) == 0);
@@ -113,7 +113,7 @@ static_assert(offsetof(Motion, steps) == 4);
 static_assert(offsetof(Motion, sizes) == 8);
 static_assert(offsetof(Motion, reach) == 12);
 
-static_assert(sizeof(Instance) == 112);
+static_assert(sizeof(Instance) == 116);
 static_assert(offsetof(Instance, mesh) == 0);
 static_assert(offsetof(Instance, material) == 4);
 static_assert(offsetof(Instance, object) == 8);
@@ -124,6 +124,19 @@ static_assert(offsetof(Instance, normals) == 64);
 static_assert(offsetof(Instance, alpha_tested) == 100);
 static_assert(offsetof(Instance, layers) == 104);
 static_assert(offsetof(Instance, motion) == 108);
+static_assert(offsetof(Instance, body) == 112);
+
+static_assert(sizeof(Body) == 172);
+static_assert(offsetof(Body, absorption) == 0);
+static_assert(offsetof(Body, priority) == 12);
+static_assert(offsetof(Body, scattering) == 16);
+static_assert(offsetof(Body, anisotropy) == 28);
+static_assert(offsetof(Body, emission) == 32);
+static_assert(offsetof(Body, open) == 44);
+static_assert(offsetof(Body, low) == 48);
+static_assert(offsetof(Body, textured) == 60);
+static_assert(offsetof(Body, inverse_size) == 64);
+static_assert(offsetof(Body, textures) == 76);
 
 static_assert(sizeof(LightSource) == 108);
 static_assert(offsetof(LightSource, kind) == 0);
@@ -171,7 +184,7 @@ static_assert(offsetof(Environment, visible_color) == 80);
 static_assert(offsetof(Environment, shows_color) == 96);
 static_assert(offsetof(Environment, unused) == 100);
 
-static_assert(sizeof(Scene) == 256);
+static_assert(sizeof(Scene) == 264);
 static_assert(offsetof(Scene, textures) == 0);
 static_assert(offsetof(Scene, materials) == 8);
 static_assert(offsetof(Scene, extras) == 16);
@@ -187,17 +200,18 @@ static_assert(offsetof(Scene, energy) == 88);
 static_assert(offsetof(Scene, mesh_steps) == 96);
 static_assert(offsetof(Scene, places) == 104);
 static_assert(offsetof(Scene, motions) == 112);
-static_assert(offsetof(Scene, environment) == 120);
-static_assert(offsetof(Scene, instance_count) == 224);
-static_assert(offsetof(Scene, light_count) == 228);
-static_assert(offsetof(Scene, tree_light_count) == 232);
-static_assert(offsetof(Scene, light_sums) == 236);
-static_assert(offsetof(Scene, tree_probability) == 240);
-static_assert(offsetof(Scene, environment_light) == 244);
-static_assert(offsetof(Scene, features) == 248);
-static_assert(offsetof(Scene, tree_scale) == 252);
+static_assert(offsetof(Scene, bodies) == 120);
+static_assert(offsetof(Scene, environment) == 128);
+static_assert(offsetof(Scene, instance_count) == 232);
+static_assert(offsetof(Scene, light_count) == 236);
+static_assert(offsetof(Scene, tree_light_count) == 240);
+static_assert(offsetof(Scene, light_sums) == 244);
+static_assert(offsetof(Scene, tree_probability) == 248);
+static_assert(offsetof(Scene, environment_light) == 252);
+static_assert(offsetof(Scene, features) == 256);
+static_assert(offsetof(Scene, tree_scale) == 260);
 
-static_assert(sizeof(View) == 152);
+static_assert(sizeof(View) == 168);
 static_assert(offsetof(View, seed) == 0);
 static_assert(offsetof(View, eye) == 8);
 static_assert(offsetof(View, right) == 20);
@@ -223,6 +237,7 @@ static_assert(offsetof(View, lens_radius) == 128);
 static_assert(offsetof(View, focus_distance) == 132);
 static_assert(offsetof(View, camera_places) == 136);
 static_assert(offsetof(View, camera_steps) == 144);
-static_assert(offsetof(View, unused) == 148);
+static_assert(offsetof(View, inside) == 148);
+static_assert(offsetof(View, unused) == 164);
 
 }  // namespace tessera::shading

@@ -162,7 +162,7 @@ inline bool is_seen(IN(Scene) scene, IN(LightSource) light, uint layers) {
 
 // Light is welcome from both sides where it goes through.
 inline Receiver receiver_at(IN(Surface) surface) {
-    const bool through = (surface.bsdf.lobes & FeatureRoughGlass) != 0u;
+    const bool through = (surface.bsdf.lobes & (FeatureRoughGlass | FeatureMedia)) != 0u;
     return Receiver(surface.position, through ? vec3(0.0f) : surface.geometric_normal);
 }
 

@@ -1,6 +1,7 @@
 #ifndef TESSERA_MEDIATOR_SHADING_PATHS_H
 #define TESSERA_MEDIATOR_SHADING_PATHS_H
 
+#include "mediator/shading/bodies.h"
 #include "mediator/shading/cones.h"
 #include "mediator/shading/maths.h"
 #include "mediator/shading/records.h"
@@ -47,7 +48,8 @@ struct Path {
     vec3 last_normal;  // of the receiver there (light_tree.h)
     Cone cone;
     Chain chain;
-    Way way;  // that light takes which is found next
+    uvec4 inside;  // what the ray goes through (bodies.h)
+    Way way;       // that light takes which is found next
     PathSample found;
     uint rays;
 };
@@ -63,7 +65,7 @@ inline PathSample nothing_found() {
 
 inline Path start_path(IN(Sampler) numbers) {
     return Path(numbers, 0u, vec3(1.0f), 1.0f, 0.0f, vec3(0.0f), vec3(0.0f), Cone(0.0f, 0.0f),
-                Chain(false, -1), direct_way(), nothing_found(), 0u);
+                Chain(false, -1), nowhere(), direct_way(), nothing_found(), 0u);
 }
 
 // Red, green or blue: in turn, from sample to sample.
@@ -85,6 +87,9 @@ inline constexpr uint LensPair = 0xffffffffu;  // no vertex comes so far
 inline constexpr uint PairBsdfDirection = 0u, PairLobeAndRoulette = 1u, PairLightChoice = 2u,
                       PairLightPoint = 3u, PairsPerVertex = 4u;
 inline constexpr uint TimePair = 0xfffffffeu;  // nor here
+// Of a leg through a medium: two pairs for each ray of a path, by its number. A place in a medium that a branch
+// of perfect speculars (speculars.h) is scattered at has the numbers of no surface.
+inline constexpr uint LegPairs = 0x80000000u, MediumVertex = 0x10000000u;
 
 // When a sample is taken, as a share of the time that the shutter is open; 0 where nothing moves.
 inline float sample_time(uint features, IN(View) view, uint x, uint y, uint64_t index) {

@@ -12,12 +12,26 @@ struct Ray {
 
 inline constexpr uint NoInstance = 0xffffffffu;  // of a Hit: nothing was hit
 
+// A surface that a ray has just gone through: hits of this instance up to there are none.
+struct Skip {
+    uint instance;
+    float far;
+};
+
 struct Hit {
     uint instance;     // index
     uint triangle;     // of its mesh
     vec2 barycentric;  // weights of the second and third vertex
     float distance;
 };
+
+inline Skip skip_nothing() {
+    return Skip(NoInstance, 0.0f);
+}
+
+inline bool skips(IN(Skip) skip, uint instance, float distance) {
+    return instance == skip.instance && distance <= skip.far;
+}
 
 // A path starts exactly on its surface where the error bound is 0 (an axis-aligned plane through the origin):
 // hits nearer than this are that surface. The smallest number that no device takes for 0.

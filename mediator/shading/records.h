@@ -37,7 +37,7 @@ struct Texture {
     uint wrap_t;
     uint texture_filter;
     uint level_count;  // without the picture itself
-    uint unused;       // keeps the size a multiple of an address's
+    uint depth;        // slices, one after the other; only bodies look at more than the first
 };
 
 // A use of a texture, with its transform: u' = dot(row_u, uv) + offset.x, and v' likewise.
@@ -171,7 +171,25 @@ struct Instance {
     uint alpha_tested;  // whether a hit has to be asked (stops_at)
     uint layers;        // not there for views that see none of them
     int motion;         // index; -1 = it stands still
+    int body;           // index; -1 = nothing but its surface
 };
+
+inline constexpr uint BodyAbsorption = 0u, BodyScattering = 1u, BodyEmission = 2u, BodyTextureCount = 3u;
+// What a closed geometry is filled with (Schwenk 5.B.3), per metre of the world. Textures lie in the box around
+// the geometry, in its own space: u along x, v against y, slices along z.
+struct Body {
+    vec3 absorption;
+    int priority;  // where bodies overlap, the highest fills them; of equal ones that which was entered last
+    vec3 scattering;
+    float anisotropy;  // Henyey and Greenstein's g
+    vec3 emission;     // radiance
+    uint open;         // its surface is none: rays go through
+    vec3 low;          // of the box
+    uint textured;     // whether any of the textures is there
+    vec3 inverse_size;
+    TextureUse textures[BodyTextureCount];
+};
+inline constexpr uint MaxBodies = 4u;  // that a place is in at once; those of the least priority are forgotten
 
 inline constexpr uint LightPoint = 0u, LightSpot = 1u, LightDirectional = 2u, LightMesh = 3u,
                       LightEnvironment = 4u, LightSphere = 5u, LightQuad = 6u;
@@ -253,6 +271,9 @@ inline constexpr uint FeatureShadowCatcher = 0x80000u;
 inline constexpr uint FeatureMotion = 0x2000000u, FeatureCameraMotion = 0x4000000u;
 // CommonSurfaceShader.
 inline constexpr uint FeatureShader = 0x800000u;
+// Bodies that do something to light; some have no surface; some scatter; some have textures.
+inline constexpr uint FeatureMedia = 0x1000000u, FeatureOpenMedia = 0x10000000u,
+                      FeatureScattering = 0x20000000u, FeatureMediaTextures = 0x40000000u;
 
 ARRAY_OF(Texture, TextureArray, 8);
 ARRAY_OF(Material, MaterialArray, 4);
@@ -263,6 +284,7 @@ ARRAY_OF(MeshStep, MeshStepArray, 8);
 ARRAY_OF(Place, PlaceArray, 4);
 ARRAY_OF(Motion, MotionArray, 4);
 ARRAY_OF(Instance, InstanceArray, 4);
+ARRAY_OF(Body, BodyArray, 4);
 ARRAY_OF(LightSource, LightSourceArray, 4);
 ARRAY_OF(Emitter, EmitterArray, 4);
 ARRAY_OF(LightNode, LightNodeArray, 4);
@@ -283,6 +305,7 @@ struct Scene {
     MeshStepArray mesh_steps;
     PlaceArray places;
     MotionArray motions;
+    BodyArray bodies;
     Environment environment;
     uint instance_count;
     uint light_count;
@@ -334,7 +357,8 @@ struct View {
     float focus_distance;
     PlaceArray camera_places;  // where it moves: the beginning's and those of the steps after it
     uint camera_steps;
-    uint unused;  // keeps the size a multiple of an address's
+    uvec4 inside;  // instances of the bodies that the eye is in (bodies.h)
+    uint unused;   // keeps the size a multiple of an address's
 };
 
 SHADING_END

@@ -42,7 +42,12 @@ WITH_CONTEXT inline void add_shape(IN(Context) context, INOUT(Path) path, IN(Ray
                 hit.pdf;
     }
     const float weight = weight_by_chance(context.view, path, other);
-    add_light(path.found, context.view, path.throughput * light.intensity * weight, path.way);
+    vec3 arriving = path.throughput * light.intensity * weight;
+    if ((context.scene.features & FeatureMedia) != 0u) {
+        arriving *= transmittance(context.scene, path.inside, ray.origin, ray.direction, hit.distance,
+                                  context.time);
+    }
+    add_light(path.found, context.view, arriving, path.way);
     tell_emission(context, light.intensity, ray.direction);
 }
 

@@ -15,14 +15,23 @@ inline bool catches(IN(Scene) scene, IN(Surface) surface) {
     return (scene.features & FeatureShadowCatcher) != 0u && surface.light == ShadowCatcher;
 }
 
+// Alpha of a background behind a medium: 1 but for what comes through.
+inline float seen_through(IN(Path) path, float alpha) {
+    const float passed = (path.throughput.x + path.throughput.y + path.throughput.z) * (1.0f / 3.0f);
+    return 1.0f - (1.0f - alpha) * passed;
+}
+
 // A ray that hits nothing. What the camera sees itself may be another background than what lights the scene
 // (Lardinoije 3), or none.
 WITH_CONTEXT inline void leave_scene(IN(Context) context, INOUT(Path) path, IN(Ray) ray, bool is_first) {
     const vec4 shown = context.scene.environment.visible_color;
-    if (is_first && context.view.transparent_background != 0u) return;
+    if (is_first && context.view.transparent_background != 0u) {
+        path.found.alpha = seen_through(path, 0.0f);
+        return;
+    }
     if (is_first && context.scene.environment.shows_color != 0u) {
-        path.found.alpha = shown.w;
-        add_light(path.found, context.view, vec3(shown) * shown.w, path.way);
+        path.found.alpha = seen_through(path, shown.w);
+        add_light(path.found, context.view, path.throughput * vec3(shown) * shown.w, path.way);
         return;
     }
     add_own_environment(context, path, ray);

@@ -18,6 +18,10 @@ struct Branch {
     uint node;          // in the tree of branches, breadth first: 0, then 2 node + 1 and 2 node + 2
     uint depth;
     Chain chain;
+    uvec4 inside;
+    bool passes;  // it is the rest of a branch, whose medium has been dealt with
+    bool first;   // nothing has been met yet,
+    float way;    // so far
 };
 
 // Branches still to follow: depth first, so one sibling per level at most.
@@ -27,12 +31,12 @@ struct BranchStack {
 };
 
 inline Branch root_branch(IN(Ray) camera_ray, IN(Cone) cone) {
-    return Branch(camera_ray, cone, vec3(1.0f), 1.0f, 0u, 0u, Chain(false, -1));
+    return Branch(camera_ray, cone, vec3(1.0f), 1.0f, 0u, 0u, Chain(false, -1), nowhere(), false, true, 0.0f);
 }
 
-// `cone`: the parent's where it meets the surface; `channel`: that is followed where they part.
-inline void push_children(INOUT(BranchStack) open, IN(Branch) parent, IN(Cone) cone, IN(Surface) surface,
-                          uint channel) {
+// `cone`, `inside`: the parent's where it meets the surface; `channel`: that is followed where they part.
+inline void push_children(INOUT(BranchStack) open, IN(Scene) scene, IN(Branch) parent, IN(Cone) cone,
+                          uvec4 inside, IN(Surface) surface, uint channel) {
     if (surface.rough_share == 1.0f || parent.depth == MaxSpecularDepth) return;
     const LobeChances chances = lobe_chances(surface);
     for (uint child = 1u; child <= 2u; ++child) {
@@ -48,9 +52,26 @@ inline void push_children(INOUT(BranchStack) open, IN(Branch) parent, IN(Cone) c
         const float probability = parent.probability * (reflects ? chances.reflection : chances.refraction);
         const Ray ray = leaving(surface, way.direction);
         open.branches[open.count] =
-            Branch(ray, cone, weight, probability, 2u * parent.node + child, parent.depth + 1u, chain);
+            Branch(ray, cone, weight, probability, 2u * parent.node + child, parent.depth + 1u, chain,
+                   inside_after(scene, inside, surface, way.direction), false, false, 0.0f);
         open.count += 1u;
     }
+}
+
+// What is behind a place in a medium that the branch is scattered at; there is room, since it has no children
+// yet.
+inline void push_rest(INOUT(BranchStack) open, IN(Branch) branch, IN(Path) path, IN(Ray) ray, bool first,
+                      float way) {
+    Branch rest = branch;
+    rest.ray = ray;
+    rest.cone = path.cone;
+    rest.weight = path.throughput;
+    rest.inside = path.inside;
+    rest.passes = true;
+    rest.first = first;
+    rest.way = way;
+    open.branches[open.count] = rest;
+    open.count += 1u;
 }
 
 inline void enter_branch(INOUT(Path) path, IN(Branch) branch) {
@@ -60,6 +81,7 @@ inline void enter_branch(INOUT(Path) path, IN(Branch) branch) {
     path.bsdf_pdf = 0.0f;
     path.cone = branch.cone;
     path.chain = branch.chain;
+    path.inside = branch.inside;
     path.way = direct_way();
 }
 

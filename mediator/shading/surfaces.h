@@ -1,6 +1,7 @@
 #ifndef TESSERA_MEDIATOR_SHADING_SURFACES_H
 #define TESSERA_MEDIATOR_SHADING_SURFACES_H
 
+#include "mediator/shading/bodies.h"
 #include "mediator/shading/cones.h"
 #include "mediator/shading/motion.h"
 #include "mediator/shading/points.h"
@@ -26,7 +27,16 @@ struct Surface {
     float time;  // of the path
     int environment;  // of perfect speculars: index of the shader that has one; -1 = none
     bool scatters;
+    uint body;    // instance of the body whose boundary it is; NoInstance = of none
+    bool enters;  // it, whoever goes through
 };
+
+// The bodies that light goes on in, in this direction.
+inline uvec4 inside_after(IN(Scene) scene, uvec4 inside, IN(Surface) surface, vec3 direction) {
+    if ((scene.features & FeatureMedia) == 0u || surface.body == NoInstance) return inside;
+    if (!(dot(direction, surface.geometric_normal) < 0.0f)) return inside;
+    return crossed(scene, inside, surface.body, surface.enters);
+}
 
 inline vec3 to_local(IN(Surface) surface, vec3 world) {
     return world * surface.frame;
@@ -211,6 +221,8 @@ inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     const vec3 face = face_normal(instance, triangle, vec3(0.0f, 0.0f, 1.0f));
     const bool front = dot(face, direction) < 0.0f;
     surface.geometric_normal = front ? face : -face;
+    surface.body = has_body(scene, hit.instance) ? hit.instance : NoInstance;
+    surface.enters = front;
     const float footprint = triangle_footprint(scene, instance, triangle, abs(dot(face, direction)), width);
     surface.frame = shading_frame(
         scene, instance, mesh, material, triangle, corners, b, footprint,
@@ -239,6 +251,61 @@ inline Surface surface_on(IN(Scene) scene, IN(Instance) instance, IN(Hit) hit, v
                                  scene.materials.items[instance.material], hit, direction, width);
     surface.time = time;
     return surface;
+}
+
+// A place in a medium that a path is scattered at; by the feature FeatureMedia among its lobes.
+inline Surface scattering_place(vec3 position, vec3 direction, float anisotropy, uint object, float time) {
+    Surface surface;
+    surface.position = position;
+    surface.error = vec3(0.0f);
+    surface.geometric_normal = vec3(0.0f);
+    surface.frame = frame_around(-direction);
+    surface.albedo = vec3(1.0f);  // what is absorbed is the path's
+    surface.emission = vec3(0.0f);
+    surface.bsdf.lobes = FeatureMedia;
+    surface.bsdf.anisotropy = anisotropy;
+    surface.bsdf.coat_out = 1.0f;
+    surface.bsdf.sheen_out = 1.0f;
+    surface.bsdf.reflectance = 1.0f;
+    surface.specular = no_specular();
+    surface.rough_share = 1.0f;
+    surface.object = object;
+    surface.triangle = 0u;
+    surface.light = -1;
+    surface.time = time;
+    surface.environment = -1;
+    surface.scatters = true;
+    surface.body = NoInstance;
+    surface.enters = false;
+    return surface;
+}
+
+inline bool is_in_medium(IN(Surface) surface) {
+    return (surface.bsdf.lobes & FeatureMedia) != 0u;
+}
+
+// Where a ray meets the boundary of a body that has no surface.
+struct Boundary {
+    vec3 position;
+    vec3 error;
+    vec3 normal;  // to the side the ray came from
+    bool enters;
+};
+
+inline Boundary boundary_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Hit) hit, vec3 direction) {
+    const Triangle triangle = triangle_of(mesh, mesh.triangles.items[hit.triangle]);
+    const PointWithError point = point_on(instance, triangle, hit.barycentric);
+    const vec3 face = face_normal(instance, triangle, vec3(0.0f, 0.0f, 1.0f));
+    const bool front = dot(face, direction) < 0.0f;
+    const vec3 error =
+        point.error + motion_error(scene, instance, mesh, triangle, hit.barycentric, point.position);
+    return Boundary(point.position, error, front ? face : -face, front);
+}
+
+inline Boundary boundary_at(IN(Scene) scene, IN(Hit) hit, vec3 direction, float time) {
+    const Instance instance = scene.instances.items[hit.instance];
+    return boundary_of(scene, instance_at(scene, instance, time),
+                       mesh_at(scene, scene.meshes.items[instance.mesh], time), hit, direction);
 }
 
 // `direction`: of the ray that hit, unit length; `width`: of the path there (cones.h).

@@ -42,7 +42,7 @@ inline constexpr uint StagePath = 0u, StageBranch = 1u, StageGather = 2u;
 
 // From a hit to the next ray; false: there is none.
 WITH_CONTEXT inline bool leave_vertex(IN(Context) context, INOUT(Path) path, INOUT(Ray) ray,
-                                      INOUT(uint) stage, IN(Surface) surface) {
+                                      INOUT(uint) stage, IN(Surface) surface, INOUT(Connection) connection) {
     add_emission(context, path, ray, surface);
     if (stage == StageGather) return false;
     Lobe lobe = rough_lobe(path);
@@ -55,14 +55,14 @@ WITH_CONTEXT inline bool leave_vertex(IN(Context) context, INOUT(Path) path, INO
     }
     if (lobe.kind == LobeRough && path.way.scatterings == 0u) {
         path.found.albedo += surface.albedo * surface.rough_share * path.throughput;
-        path.found.normal += path.probability * surface.frame[2];
+        if (!is_in_medium(surface)) path.found.normal += path.probability * surface.frame[2];
     }
     if (!surface.scatters) return false;
     if (stage == StagePath && path.vertex >= context.view.max_scatterings) return false;
     vec3 direction = vec3(0.0f);
     if (lobe.kind == LobeRough) {
         const vec3 wo = to_local(surface, -ray.direction);
-        add_lights(context, path, surface, wo);
+        add_lights(context, path, surface, wo, connection);
         if (!scatter(context.scene.energy, context.view, path, surface, wo, lobe, direction)) return false;
     } else {
         direction = pass_on(context, path, surface, lobe);
@@ -73,6 +73,7 @@ WITH_CONTEXT inline bool leave_vertex(IN(Context) context, INOUT(Path) path, INO
         stage = StageGather;
     }
     ray = leaving(surface, direction);
+    path.inside = inside_after(context.scene, path.inside, surface, direction);
     path.vertex += 1u;
     return true;
 }
@@ -83,72 +84,211 @@ struct FirstHit {
     Hit hit;
 };
 
+// ---- legs through media ----
+
+// A path is scattered by chance, or once on each leg of a branch of perfect speculars, for single scattering;
+// not where no scattering would count.
+inline uint leg_kind(IN(Path) path, uint stage, bool passes, uint max_scatterings) {
+    if (stage == StageBranch && !passes) return LegScatters;
+    return stage == StagePath && path.vertex < max_scatterings ? LegMayScatter : LegPasses;
+}
+
+// `length`: in lengths of the ray's direction.
+WITH_CONTEXT inline Leg leg_of(IN(Context) context, IN(Path) path, IN(Ray) ray, float length, uint kind) {
+    if ((context.scene.features & FeatureMedia) == 0u || path.inside.x == NoInstance) return clear_leg();
+    const float size = vector_length(ray.direction);
+    vec2 u = vec2(0.0f);
+    if (kind != LegPasses) u = sample_pair(path.numbers, LegPairs + path.rays);
+    const float place = unit_float(hash_combine(closest_seed(path), path.rays));
+    return leg_through(context.scene, path.inside, ray.origin, ray.direction / size, length * size,
+                       ask_leg(kind, path.throughput, u, place), context.time);
+}
+
+// A boundary without a surface. A ray goes on just before it, and passes it by: so that it meets a surface that
+// lies in the boundary, and is not taken to have crossed it then. Where it started there already, it goes on
+// behind.
+struct Crossing {
+    Skip skip;
+    bool enters;
+};
+
+inline Crossing no_crossing() {
+    return Crossing(skip_nothing(), false);
+}
+
+inline vec3 go_through(IN(Scene) scene, INOUT(Crossing) crossing, INOUT(uvec4) inside, IN(Hit) hit,
+                       IN(Ray) ray, float time) {
+    const Boundary boundary = boundary_at(scene, hit, ray.direction, time);
+    const float along = abs(dot(boundary.normal, ray.direction));
+    const float tolerance = 4.0f * dot(abs(boundary.normal), boundary.error) / along;
+    if (hit.distance > 4.0f * tolerance) {
+        crossing = Crossing(Skip(hit.instance, tolerance), boundary.enters);
+        return leave_surface(boundary.position, boundary.error, boundary.normal, -ray.direction);
+    }
+    inside = crossed(scene, inside, hit.instance, boundary.enters);
+    return leave_surface(boundary.position, boundary.error, boundary.normal, ray.direction);
+}
+
+// Once it is known what the ray meets next.
+inline void end_crossing(IN(Scene) scene, INOUT(Crossing) crossing, INOUT(uvec4) inside, bool is_hit,
+                         IN(Hit) hit) {
+    if (crossing.skip.instance == NoInstance) return;
+    const bool is_at_surface =
+        is_hit && hit.distance <= crossing.skip.far && !is_open(scene, hit.instance);
+    if (!is_at_surface) inside = crossed(scene, inside, crossing.skip.instance, crossing.enters);
+    crossing = no_crossing();
+}
+
+// The path waits with its next ray until the light has arrived or not.
+inline bool look_for_light(INOUT(Connection) connection, INOUT(Path) path, INOUT(Ray) ray, bool goes_on) {
+    const Ray toward = connection.resume;
+    const uvec4 inside = connection.inside;
+    connection.resume = ray;
+    connection.resumes = goes_on;
+    connection.inside = path.inside;
+    ray = toward;
+    path.inside = inside;
+    return true;
+}
+inline bool go_on_with_path(INOUT(Connection) connection, INOUT(Path) path, INOUT(Ray) ray) {
+    connection.is_open = false;
+    ray = connection.resume;
+    path.inside = connection.inside;
+    return connection.resumes;
+}
+
 WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(FirstHit) seen) {
     const bool covers = context.view.renderer == RendererCoverage;
     const bool whitted =
         has_specular_trees(context) && context.view.renderer != RendererPathTracing && !covers;
     const bool wants_range = has_specular_trees(context) && keeps(context.view, KeepsRange);
+    const bool opens = (context.scene.features & FeatureOpenMedia) != 0u;
     tell_camera(context, ray);
     const Ray camera = ray;
     bool is_caught = false;  // by a shadow catcher, and has met nothing since
     path.cone = camera_cone(context.view, ray, path.numbers.index);
+    if ((context.scene.features & FeatureMedia) != 0u) path.inside = context.view.inside;
     Branch branch = root_branch(ray, path.cone);
     BranchStack open;
     open.count = 0u;
     uint stage = whitted ? StageBranch : StagePath;
+    Connection connection = no_connection();
+    Crossing crossing = no_crossing();
+    bool first = true;  // nothing has been met
+    bool passes = false;
+    float way = 0.0f;  // through boundaries
     while (true) {
-        const bool first = path.rays == 0u;
+        const bool connects = opens && connection.is_open;
         // The tree of a path is followed, after the path itself, for its range alone.
         const bool lit = !covers && (whitted || stage == StagePath);
         bool goes_on = false;
         path.rays += 1u;
         Hit hit;
         bool is_hit = false;
-        if (first && seen.is_known) {
+        if (path.rays == 1u && seen.is_known) {
             hit = seen.hit;
             is_hit = hit.instance != NoInstance;
         } else {
-            is_hit = trace_closest(context, ray, closest_seed(path), hit);
+            const uint seed = connects ? connection.seed : closest_seed(path);
+            is_hit = trace_closest(context, ray, seed, crossing.skip, hit);
         }
-        if (lit && !is_caught) add_shapes(context, path, ray, is_hit ? hit.distance : infinity());
-        if (is_hit && covers) {
-            show_object(path.found, context.scene.instances.items[hit.instance].object,
-                        depth_along(context.view, ray, hit.distance));
-        } else if (is_hit) {
-            path.cone.width += path.cone.spread * hit.distance;
-            const Surface surface =
-                make_surface(context.scene, hit, ray.direction, path.cone.width, context.time);
-            tell_hit(context, surface, path.throughput);
-            if (first) {
-                path.found.depth = depth_along(view_at(context.scene.features, context.view, context.time),
-                                               ray, hit.distance);
-                path.found.object = surface.object;
-                path.found.alpha = 1.0f;
+        if (opens) end_crossing(context.scene, crossing, path.inside, is_hit, hit);
+        const float length = is_hit ? hit.distance : infinity();
+        const bool arrives = connects && (connection.distant ? !is_hit : !(length < 1.0f));
+        Leg leg = clear_leg();
+        if (connects) {
+            leg = leg_of(context, path, ray, arrives && !connection.distant ? 1.0f : length, LegPasses);
+        } else if (lit) {
+            leg = leg_of(context, path, ray, length,
+                         leg_kind(path, stage, passes, context.view.max_scatterings));
+            if (!is_caught && !passes) add_shapes(context, path, ray, length);
+            if (largest(leg.emitted) > 0.0f && !passes) {
+                add_light(path.found, context.view, path.throughput * leg.emitted, path.way);
             }
-            const bool catches_path = catches(context.scene, surface);
-            if (catches_path && is_caught) {
-                show_background(context, path, camera);
-            } else if (catches_path && first) {
-                is_caught = true;
-                goes_on = true;
-                ray = caught(path, surface);
-                if (stage == StageBranch) stage = StageGather;
-            } else if (catches_path) {
-                goes_on = pass_catcher(context, path, ray, surface);
+        }
+        const bool goes_through = is_hit && !arrives && !leg.scatters && is_open(context.scene, hit.instance);
+        if (goes_through) {
+            ray.origin = go_through(context.scene, crossing, path.inside, hit, ray, context.time);
+            goes_on = true;
+        }
+        if (connects) {
+            connection.light *= leg.passed;
+            if (arrives) receive_light(context, path.found, connection, unit_vector(ray.direction));
+            if (goes_through) {
+                ray = connecting_ray(connection, ray.origin, ray.direction);
             } else {
-                is_caught = false;
-                if (stage == StageBranch || (first && wants_range)) {
-                    if (wants_range) path.found.range += range_at(branch, surface);
-                    push_children(open, branch, path.cone, surface, channel_of(path.numbers));
-                }
-                if (lit) goes_on = leave_vertex(context, path, ray, stage, surface);
+                goes_on = go_on_with_path(connection, path, ray);
             }
         } else {
-            tell_miss(context);
-            if (is_caught) {
-                show_background(context, path, camera);
-            } else if (lit) {
-                leave_scene(context, path, ray, first);
+            if (leg.scatters) {
+                if (stage == StageBranch) {
+                    push_rest(open, branch, path, ray, first, way);
+                    path.vertex += MediumVertex;
+                }
+                path.throughput *= leg.scattered;
+            } else {
+                path.throughput *= leg.passed;
+                if (stage == StageBranch) branch.weight = path.throughput;
+            }
+            passes = false;
+            const float distance = leg.scatters ? leg.distance : length;
+            if (goes_through) {
+                path.cone.width += path.cone.spread * distance;
+                way += distance;
+            } else if (is_hit && covers) {
+                show_object(path.found, context.scene.instances.items[hit.instance].object,
+                            depth_along(context.view, ray, way + distance));
+            } else if (is_hit || leg.scatters) {
+                path.cone.width += path.cone.spread * distance;
+                Surface surface;
+                if (leg.scatters) {
+                    surface = scattering_place(ray.origin + distance * ray.direction, ray.direction,
+                                               leg.anisotropy,
+                                               context.scene.instances.items[path.inside.x].object,
+                                               context.time);
+                } else {
+                    surface = make_surface(context.scene, hit, ray.direction, path.cone.width, context.time);
+                }
+                tell_hit(context, surface, path.throughput);
+                const bool on_the_way = leg.scatters && stage == StageBranch;
+                if (first && !on_the_way) {
+                    path.found.depth =
+                        depth_along(view_at(context.scene.features, context.view, context.time), ray,
+                                    way + distance);
+                    path.found.object = surface.object;
+                    path.found.alpha = 1.0f;
+                }
+                const bool catches_path = catches(context.scene, surface);
+                if (catches_path && is_caught) {
+                    show_background(context, path, camera);
+                } else if (catches_path && first) {
+                    is_caught = true;
+                    goes_on = true;
+                    ray = caught(path, surface);
+                    if (stage == StageBranch) stage = StageGather;
+                } else if (catches_path) {
+                    goes_on = pass_catcher(context, path, ray, surface);
+                } else {
+                    is_caught = false;
+                    if (!leg.scatters && (stage == StageBranch || (first && wants_range))) {
+                        if (wants_range) path.found.range += range_at(branch, surface);
+                        push_children(open, context.scene, branch, path.cone, path.inside, surface,
+                                      channel_of(path.numbers));
+                    }
+                    if (lit) goes_on = leave_vertex(context, path, ray, stage, surface, connection);
+                    if (opens && connection.is_open) {
+                        goes_on = look_for_light(connection, path, ray, goes_on);
+                    }
+                }
+                first = false;
+            } else {
+                tell_miss(context);
+                if (is_caught) {
+                    show_background(context, path, camera);
+                } else if (lit) {
+                    leave_scene(context, path, ray, first);
+                }
+                first = false;
             }
         }
         if (!goes_on) {
@@ -157,6 +297,9 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
             branch = open.branches[open.count];
             enter_branch(path, branch);
             ray = branch.ray;
+            passes = branch.passes;
+            first = branch.first;
+            way = branch.way;
             stage = StageBranch;
         }
     }

@@ -2,6 +2,7 @@
 #define TESSERA_MEDIATOR_SHADING_TRANSPORT_H
 
 #include "mediator/shading/lights.h"
+#include "mediator/shading/media.h"
 #include "mediator/shading/paths.h"
 
 // The steps of a path from surface to surface, shared by all ways to render. Next-event estimation with one
@@ -10,8 +11,9 @@
 //
 // A Context is the including side's: it has `scene` (Scene), `view` (View) and `time` (of the sample: all its
 // rays are traced at that time, paths.h), and there are
-//   bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, OUT(Hit) hit);
-//       the closest hit beyond NearestHit; false where there is none
+//   bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, IN(Skip) skip, OUT(Hit) hit);
+//       the closest hit beyond NearestHit that is not skipped; false where there is none. Distances are in
+//       lengths of the direction.
 //   bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed);
 //       whether anything lies beyond NearestHit, before the share `far` of the segment
 // both of which ask stops_at where an instance is alpha_tested, with this seed. GLSL: declared before this
@@ -63,6 +65,7 @@ struct Lobe {
 // Whether a direction leads to the same side of the surface by both normals: up, or down where light goes
 // through.
 inline bool leads_on(IN(Surface) surface, vec3 direction, vec3 wi) {
+    if (is_in_medium(surface)) return true;
     const float side = dot(direction, surface.geometric_normal);
     if ((surface.bsdf.lobes & FeatureRoughGlass) != 0u && wi.z < 0.0f) return side < 0.0f;
     return side > 0.0f;
@@ -121,7 +124,41 @@ WITH_CONTEXT inline void add_emission(IN(Context) context, INOUT(Path) path, IN(
     tell_emission(context, surface.emission, ray.direction);
 }
 
-WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Surface) surface, vec3 wo) {
+// Light that a path has asked for, while it is looked for through bodies that have no surface: with the path's
+// own rays, one after the other (trace.h).
+struct Connection {
+    bool is_open;
+    vec3 light;      // that arrives, unless something is on the way
+    vec3 intensity;  // of the light
+    vec3 target;     // as of a LightSample
+    bool distant;
+    Way way;
+    uint seed;
+    Ray resume;  // the path's next ray, if it has one, and what that goes through
+    bool resumes;
+    uvec4 inside;
+};
+
+inline Connection no_connection() {
+    return Connection(false, vec3(0.0f), vec3(0.0f), vec3(0.0f), false, direct_way(), 0u,
+                      Ray(vec3(0.0f), vec3(0.0f)), false, nowhere());
+}
+
+// To the light's place, at distance 1, or in its direction. Of a connection alone directions have any length.
+inline Ray connecting_ray(IN(Connection) connection, vec3 origin, vec3 direction) {
+    return Ray(origin, connection.distant ? direction : connection.target - origin);
+}
+
+WITH_CONTEXT inline void receive_light(IN(Context) context, INOUT(PathSample) found, IN(Connection) received,
+                                       vec3 direction) {
+    add_light(found, context.view, received.light, received.way);
+    connect_light(found, context.view, received.intensity);
+    tell_light(context, direction, received.light);
+}
+
+// What is asked for and may arrive: `connection` is open where it has to be looked for.
+WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Surface) surface, vec3 wo,
+                                    INOUT(Connection) connection) {
     if (context.scene.light_count == 0u) return;
     const vec2 choice = pair_at(path, PairLightChoice);
     const vec2 u = pair_at(path, PairLightPoint);
@@ -134,19 +171,37 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
     if (!(largest(bsdf.value) > 0.0f)) return;
     const bool alone = light.delta || context.view.strategy == StrategyLightsOnly;
     const float weight = alone ? 1.0f : power_heuristic(light.pdf, bsdf.pdf);
-    path.rays += 1u;
     const vec3 origin = leaving(surface, light.direction).origin;
-    const vec3 segment = light.distant ? light.direction : light.target - origin;
-    const float far = light.distant ? infinity() : 1.0f;
-    if (trace_occluded(context, origin, segment, far, shadow_seed(path))) return;
-    const vec3 gathered = path.throughput * bsdf.value * light.radiance * (weight / light.pdf);
-    Way way = Way(path.way.scatterings + 1u, false, path.way.diffuse_share);
-    if (keeps(context.view, KeepsDiffuse) && path.way.scatterings == 0u) {
-        way.diffuse_share = diffuse_share(bsdf);
+    const bool is_open = (context.scene.features & FeatureOpenMedia) != 0u;
+    Connection asked = no_connection();
+    asked.target = light.target;
+    asked.distant = light.distant;
+    asked.seed = shadow_seed(path);
+    const Ray ray = connecting_ray(asked, origin, light.direction);
+    if (!is_open) {
+        const float far = light.distant ? infinity() : 1.0f;
+        path.rays += 1u;
+        if (trace_occluded(context, ray.origin, ray.direction, far, asked.seed)) return;
     }
-    add_light(path.found, context.view, gathered, way);
-    connect_light(path.found, context.view, path.probability * light.intensity);
-    tell_light(context, light.direction, gathered);
+    asked.light = path.throughput * bsdf.value * light.radiance * (weight / light.pdf);
+    asked.intensity = path.probability * light.intensity;
+    asked.way = Way(path.way.scatterings + 1u, false, path.way.diffuse_share);
+    if (keeps(context.view, KeepsDiffuse) && path.way.scatterings == 0u) {
+        asked.way.diffuse_share = diffuse_share(bsdf);
+    }
+    const uvec4 inside = inside_after(context.scene, path.inside, surface, light.direction);
+    if (is_open) {
+        connection = asked;
+        connection.is_open = true;
+        connection.resume = ray;  // until the path's own next is known (look_for_light)
+        connection.inside = inside;
+        return;
+    }
+    if ((context.scene.features & FeatureMedia) != 0u && !asked.distant) {
+        const float length = vector_length(ray.direction);
+        asked.light *= transmittance(context.scene, inside, origin, light.direction, length, context.time);
+    }
+    receive_light(context, path.found, asked, light.direction);
 }
 
 // The rough group for certain: all there is, or the others are followed on their own.

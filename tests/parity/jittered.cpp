@@ -34,10 +34,10 @@ class Jitter {
 };
 
 bool trace_closest(const JitteredContext& context, const shading::Ray& ray, std::uint32_t seed,
-                   shading::Hit& hit) {
+                   const shading::Skip& skip, shading::Hit& hit) {
     Jitter jitter(seed, ray.origin);
     const embree::Context& exact = context;
-    if (!embree::trace_closest(exact, {ray.origin, jitter(ray.direction)}, seed, hit)) return false;
+    if (!embree::trace_closest(exact, {ray.origin, jitter(ray.direction)}, seed, skip, hit)) return false;
     hit.barycentric = {jitter(hit.barycentric.x), jitter(hit.barycentric.y)};
     hit.distance = jitter(hit.distance);
     return true;

@@ -42,10 +42,11 @@ inline Hit hit_by(IN(Scene) scene, uint bits) {
     return Hit(instance, (bits >> 8) % triangles, weights, 1.0f + unit_float(bits));
 }
 
-inline bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, OUT(Hit) hit) {
+inline bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, IN(Skip) skip, OUT(Hit) hit) {
     const uint bits = hash_u32(seed);
     hit = hit_by(context.scene, bits);
-    return is_ray(ray.origin, ray.direction) && (bits & 7u) != 0u;
+    return is_ray(ray.origin, ray.direction) && (bits & 7u) != 0u &&
+           !skips(skip, hit.instance, hit.distance);
 }
 
 inline bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed) {

@@ -22,6 +22,9 @@ class SceneModel {
 
     ObjectId material(const scene::Material& material) { return create(material); }
     ObjectId shader(const scene::SurfaceShader& shader) { return create(shader); }
+    // What boxes and spheres are filled with that are put in from now on.
+    void filled_with(const scene::Medium& medium) { medium_ = create(medium); }
+    void filled_with_nothing() { medium_ = ObjectId{}; }
 
     void sphere(ObjectId material, const glm::dvec3& center, double radius, Normals normals = Normals::Flat,
                 unsigned rings = 24) {
@@ -44,9 +47,25 @@ class SceneModel {
             }
         }
         scene::Geometry geometry{
-            .material = material, .indices = blob(indices), .positions = blob(positions)};
+            .material = material, .indices = blob(indices), .positions = blob(positions), .medium = medium_};
         if (normals == Normals::Smooth) geometry.normals = geometry.positions;
         hang(create(geometry), glm::scale(glm::translate(glm::dmat4(1.0), center), glm::dvec3(radius)));
+    }
+
+    // Closed, with its front outside. No material: without a surface, if it is filled.
+    void box(ObjectId material, const glm::vec3& low, const glm::vec3& high) {
+        std::vector<glm::vec3> positions;
+        for (int i = 0; i < 8; ++i) {
+            positions.emplace_back((i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y,
+                                   (i & 4) != 0 ? high.z : low.z);
+        }
+        const std::vector<std::uint32_t> indices{0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
+                                                 2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
+        hang(create(scene::Geometry{.material = material,
+                                    .indices = blob(indices),
+                                    .positions = blob(positions),
+                                    .medium = medium_}),
+             glm::dmat4(1.0));
     }
 
     // Corners counter-clockwise as seen from the front; colours, if any, per corner.
@@ -164,6 +183,7 @@ class SceneModel {
     std::shared_ptr<scene::BlobStore> blobs_ = std::make_shared<scene::BlobStore>();
     scene::Root root_;
     glm::dmat4 frame_{1.0};
+    ObjectId medium_;
     std::vector<glm::dmat4> steps_;
     std::vector<scene::Entry> entries_;
     std::uint64_t next_ = 2;

@@ -25,6 +25,7 @@ struct Context {
     float time;
     uint64_t pool;  // address; used where the pool is not bound
     uint top;
+    Skip skip;  // of the ray that is asked for
 };
 
 #ifdef PLAIN
@@ -36,20 +37,23 @@ struct Context {
 #endif
 
 bool stops_ray(IN(Context) context, IN(Hit) candidate, uint seed) {
+    if ((Features & FeatureOpenMedia) != 0u && skips(context.skip, candidate.instance, candidate.distance)) return false;
     return stops_at(context.scene, candidate.instance, candidate.triangle, candidate.barycentric, seed);
 }
 
 uint scene_question() {
-    return ((Features & FeatureAlpha) != 0u ? BvhAlpha : 0u) | ((Features & FeatureMotion) != 0u ? BvhMotion : 0u);
+    return ((Features & (FeatureAlpha | FeatureOpenMedia)) != 0u ? BvhAlpha : 0u) | ((Features & FeatureMotion) != 0u ? BvhMotion : 0u);
 }
 
 uint seen_layers(IN(Context) context) {
     return (Features & FeatureLayers) != 0u ? context.view.layers : AllLayers;
 }
 
-bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, OUT(Hit) hit) {
+bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, IN(Skip) skip, OUT(Hit) hit) {
+    Context asked = context;
+    asked.skip = skip;
     hit = find_hit(BvhItems(context.pool), context.top, ray.origin, ray.direction, NearestHit, infinity(),
-                    BvhClosest | scene_question(), seen_layers(context), context.time, context, seed);
+                    BvhClosest | scene_question(), seen_layers(context), context.time, asked, seed);
     return hit.instance != NoInstance;
 }
 
@@ -143,6 +147,7 @@ void main() {
     context.view.strategy = StrategyBoth;
     context.pool = job.pool;
     context.top = job.top;
+    context.skip = skip_nothing();
 
     const uint x = job.x + pixel % job.width, y = job.y + pixel / job.width;
     context.time = sample_time(Features, context.view, x, y, index);

@@ -178,7 +178,8 @@ void add_instances(SceneTables& tables, const Lowered& lowered, const MeshCatalo
             .material = material == materials.end() ? DefaultMaterial : material->second,
             .object = static_cast<std::uint32_t>(source.geometry.value),
             .light = -1,
-            .layers = source.layers};
+            .layers = source.layers,
+            .body = -1};
         if (mesh.placeholder) instance.material = PlaceholderMaterial;
         // Relative to the origin in double, then rounded once.
         const glm::dmat3 linear(source.world_from_object);

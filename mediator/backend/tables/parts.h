@@ -39,6 +39,10 @@ void add_mesh_steps(SceneTables& tables, const Mesh& source, shading::Mesh& mesh
 void mark_shadow_catchers(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
                           const MeshCatalog& meshes);
 
+// What instances are filled with, if anything placed is filled with what can be seen.
+void add_bodies(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
+                const MeshCatalog& meshes, const Indices& textures);
+
 // Radiance over the sphere in the mean, as luminance; 0: there is no sky.
 double add_environment(SceneTables& tables, const scene::Scene& scene, const Indices& textures);
 

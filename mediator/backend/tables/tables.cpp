@@ -77,6 +77,7 @@ shading::Scene on_host(const SceneTables& tables) {
     scene.mesh_steps.items = tables.mesh_steps.data();
     scene.places.items = tables.places.data();
     scene.motions.items = tables.motions.data();
+    scene.bodies.items = tables.bodies.data();
     scene.instances.items = tables.instances.data();
     scene.lights.items = tables.lights.data();
     scene.emitters.items = tables.emitters.data();
@@ -104,6 +105,7 @@ SceneTables make_tables(const scene::Scene& scene, const Lowered& lowered, const
     const Indices materials = add_materials(tables, scene, textures);
     add_instances(tables, lowered, meshes, materials);
     mark_shadow_catchers(tables, scene, lowered, meshes);
+    add_bodies(tables, scene, lowered, meshes, textures);
     tables.layers = masks_of(lowered);
     const double sky_luminance = add_environment(tables, scene, textures);
     add_lights(tables, scene, lowered, meshes, sky_luminance);

@@ -22,6 +22,7 @@ struct SceneTables {
     std::vector<shading::MeshStep> mesh_steps;    // of meshes that bend, the beginning's and each after it
     std::vector<shading::Place> places;           // of what moves, likewise
     std::vector<shading::Motion> motions;         // of instances, then of lights
+    std::vector<shading::Body> bodies;            // of the geometries that are filled with something
     std::vector<shading::Instance> instances;     // as in Lowered::instances
     // In the tree: mesh lights by instance, placed lights by (id, path); distant: placed lights likewise, the
     // sky.

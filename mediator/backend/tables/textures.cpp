@@ -21,8 +21,8 @@ static_assert(shading::TextureLinear == std::uint32_t(scene::TextureFilter::Line
 // Whether all texels are there; else validation has told of it.
 bool is_whole(const scene::Texture& texture, const scene::BlobPtr& texels) {
     const std::uint64_t texel = texture.format == scene::TexelFormat::RgbFloat ? 12 : 4;
-    return texels && texture.width > 0 && texture.height > 0 &&
-           texels->bytes().size() / texel / texture.width >= texture.height;
+    return texels && texture.width > 0 && texture.height > 0 && texture.depth > 0 &&
+           texels->bytes().size() / texel / texture.width / texture.height >= texture.depth;
 }
 
 struct Used {
@@ -86,7 +86,8 @@ Indices add_textures(SceneTables& tables, const scene::Scene& scene, const Lower
                                    .wrap_s = static_cast<std::uint32_t>(texture->wrap_s),
                                    .wrap_t = static_cast<std::uint32_t>(texture->wrap_t),
                                    .texture_filter = static_cast<std::uint32_t>(texture->filter),
-                                   .level_count = levels ? level_count(texture->width, texture->height) : 0});
+                                   .level_count = levels ? level_count(texture->width, texture->height) : 0,
+                                   .depth = texture->depth});
         tables.texels.push_back(std::move(texels));
         tables.levels.push_back(std::move(levels));
     }

@@ -1,5 +1,6 @@
 #include "mediator/backend/tables/view_record.h"
 
+#include "mediator/shading/bodies.h"
 #include "mediator/shading/sample_values.h"
 
 namespace tessera::backend {
@@ -103,6 +104,7 @@ shading::View make_view(const view::View& view, const glm::dvec3& render_origin)
             .focus_distance = static_cast<float>(camera.focus_distance),
             .camera_places = {},
             .camera_steps = static_cast<std::uint32_t>(camera.motion.size()),
+            .inside = shading::nowhere(),
             .unused = 0};
 }
 
