@@ -26,7 +26,7 @@ bool trace_closest(const Context& context, const shading::Ray& ray, std::uint32_
     query.ray = {ray.origin.x,
                  ray.origin.y,
                  ray.origin.z,
-                 shading::NearestHit,
+                 skip.near,
                  ray.direction.x,
                  ray.direction.y,
                  ray.direction.z,

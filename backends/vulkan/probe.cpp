@@ -31,7 +31,7 @@ bool trace_closest(const HostContext& context, const shading::Ray& ray, std::uin
     HostContext asked = context;
     asked.skip = skip;
     hit =
-        shading::bvh_trace(context.pool, context.top, ray.origin, ray.direction, shading::NearestHit,
+        shading::bvh_trace(context.pool, context.top, ray.origin, ray.direction, skip.near,
                            shading::infinity(), shading::BvhClosest | shading::BvhAlpha | shading::BvhMotion,
                            context.view.layers, context.time, asked, seed);
     return hit.instance != shading::NoInstance;

@@ -12,9 +12,10 @@ struct Ray {
 
 inline constexpr uint NoInstance = 0xffffffffu;  // of a Hit: nothing was hit
 
-// A surface that a ray has just gone through: hits of this instance up to there are none.
+// What a ray has gone through already: nothing up to `near` is hit, and up to `far` nothing of this instance.
 struct Skip {
     uint instance;
+    float near;
     float far;
 };
 
@@ -25,10 +26,6 @@ struct Hit {
     float distance;
 };
 
-inline Skip skip_nothing() {
-    return Skip(NoInstance, 0.0f);
-}
-
 inline bool skips(IN(Skip) skip, uint instance, float distance) {
     return instance == skip.instance && distance <= skip.far;
 }
@@ -36,6 +33,10 @@ inline bool skips(IN(Skip) skip, uint instance, float distance) {
 // A path starts exactly on its surface where the error bound is 0 (an axis-aligned plane through the origin):
 // hits nearer than this are that surface. The smallest number that no device takes for 0.
 inline constexpr float NearestHit = 1.17549435e-38f;
+
+inline Skip skip_nothing() {
+    return Skip(NoInstance, NearestHit, 0.0f);
+}
 
 SHADING_END
 

@@ -28,12 +28,12 @@ inline uint next_light_node(IN(Scene) scene, uint at) {
     return 0u;
 }
 
-WITH_CONTEXT inline void add_shape(IN(Context) context, INOUT(Path) path, IN(Ray) ray, float far,
-                                   IN(Emitter) emitter, IN(LightSource) light) {
+WITH_CONTEXT inline void add_shape(IN(Context) context, INOUT(Path) path, IN(Ray) ray, float near,
+                                   float far, IN(Emitter) emitter, IN(LightSource) light) {
     if (!is_seen(context.scene, light, context.view.layers)) return;
     const ShapeHit hit =
         light.kind == LightSphere ? hit_sphere(light, ray) : hit_quad(light, emitter.inverse_root_area, ray);
-    if (!hit.is_hit || !(hit.distance > 0.0f) || !(hit.distance < far)) return;
+    if (!hit.is_hit || !(hit.distance > near) || !(hit.distance < far)) return;
     connect_light(path.found, context.view, path.probability * light.intensity);
     float other = 0.0f;
     if (path.bsdf_pdf > 0.0f) {
@@ -44,15 +44,16 @@ WITH_CONTEXT inline void add_shape(IN(Context) context, INOUT(Path) path, IN(Ray
     const float weight = weight_by_chance(context.view, path, other);
     vec3 arriving = path.throughput * light.intensity * weight;
     if ((context.scene.features & FeatureMedia) != 0u) {
-        arriving *= transmittance(context.scene, path.inside, ray.origin, ray.direction, hit.distance,
-                                  context.time);
+        arriving *= transmittance(context.scene, path.inside, ray.origin + near * ray.direction,
+                                  ray.direction, hit.distance - near, context.time);
     }
     add_light(path.found, context.view, arriving, path.way);
     tell_emission(context, light.intensity, ray.direction);
 }
 
-// What shines on the way of a ray, up to `far`.
-WITH_CONTEXT inline void add_shapes(IN(Context) context, INOUT(Path) path, IN(Ray) ray, float far) {
+// What shines on the way of a ray, from `near` up to `far`.
+WITH_CONTEXT inline void add_shapes(IN(Context) context, INOUT(Path) path, IN(Ray) ray, float near,
+                                    float far) {
     if ((context.scene.features & FeatureShapedLights) == 0u) return;
     uint at = 0u;
     KEEP_LOOP
@@ -65,7 +66,7 @@ WITH_CONTEXT inline void add_shapes(IN(Context) context, INOUT(Path) path, IN(Ra
         }
         if (is_met) {
             const Emitter emitter = context.scene.emitters.items[node.link & LightIndexBits];
-            add_shape(context, path, ray, far, emitter,
+            add_shape(context, path, ray, near, far, emitter,
                       light_at(context.scene, context.scene.lights.items[emitter.light], context.time));
         }
         at = next_light_node(context.scene, at);

@@ -10,6 +10,18 @@ inline constexpr uint MaxSpecularDepth = 8u;
 // A branch that carries less than half a step of an 8-bit picture is not followed.
 inline constexpr float MinBranchWeight = 1.0f / 512.0f;
 
+// How far a ray has come through boundaries without a surface (trace.h).
+struct Course {
+    Skip skip;    // the last of them, which counts once it is known what the ray meets next
+    bool enters;  // its body
+    float begun;  // where the leg begins,
+    vec3 start;   // more exactly than the ray can tell
+};
+
+inline Course new_course(vec3 origin) {
+    return Course(skip_nothing(), false, 0.0f, origin);
+}
+
 struct Branch {
     Ray ray;
     Cone cone;
@@ -19,9 +31,9 @@ struct Branch {
     uint depth;
     Chain chain;
     uvec4 inside;
-    bool passes;  // it is the rest of a branch, whose medium has been dealt with
-    bool first;   // nothing has been met yet,
-    float way;    // so far
+    Course course;  // of its ray
+    bool passes;    // it is the rest of a branch, whose medium has been dealt with
+    bool first;     // nothing has been met yet
 };
 
 // Branches still to follow: depth first, so one sibling per level at most.
@@ -31,7 +43,8 @@ struct BranchStack {
 };
 
 inline Branch root_branch(IN(Ray) camera_ray, IN(Cone) cone) {
-    return Branch(camera_ray, cone, vec3(1.0f), 1.0f, 0u, 0u, Chain(false, -1), nowhere(), false, true, 0.0f);
+    return Branch(camera_ray, cone, vec3(1.0f), 1.0f, 0u, 0u, Chain(false, -1), nowhere(), new_course(camera_ray.origin), false,
+                  true);
 }
 
 // `cone`, `inside`: the parent's where it meets the surface; `channel`: that is followed where they part.
@@ -53,23 +66,23 @@ inline void push_children(INOUT(BranchStack) open, IN(Scene) scene, IN(Branch) p
         const Ray ray = leaving(surface, way.direction);
         open.branches[open.count] =
             Branch(ray, cone, weight, probability, 2u * parent.node + child, parent.depth + 1u, chain,
-                   inside_after(scene, inside, surface, way.direction), false, false, 0.0f);
+                   inside_after(scene, inside, surface, way.direction), new_course(ray.origin), false, false);
         open.count += 1u;
     }
 }
 
 // What is behind a place in a medium that the branch is scattered at; there is room, since it has no children
 // yet.
-inline void push_rest(INOUT(BranchStack) open, IN(Branch) branch, IN(Path) path, IN(Ray) ray, bool first,
-                      float way) {
+inline void push_rest(INOUT(BranchStack) open, IN(Branch) branch, IN(Path) path, IN(Ray) ray,
+                      IN(Course) course, bool first) {
     Branch rest = branch;
     rest.ray = ray;
     rest.cone = path.cone;
     rest.weight = path.throughput;
     rest.inside = path.inside;
     rest.passes = true;
+    rest.course = course;
     rest.first = first;
-    rest.way = way;
     open.branches[open.count] = rest;
     open.count += 1u;
 }

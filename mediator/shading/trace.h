@@ -26,9 +26,13 @@ inline constexpr uint RouletteFrom = 3u;  // vertices that are never cut short
 // body has to end. Diffuse paths do not come so far: albedo 0.99 survives 1024 times in 30,000.
 inline constexpr uint NothingCertainFrom = 1024u;
 
-inline bool survives(INOUT(Path) path, float choice) {
+// Light finds its way out of dense media, slowly: of paths in a half space that absorbs nothing, one in
+// sqrt(pi n) is scattered more than n times.
+inline constexpr uint NothingCertainInMediaFrom = 65536u;
+
+inline bool survives(INOUT(Path) path, uint nothing_certain_from, float choice) {
     if (path.vertex >= RouletteFrom) {
-        const float most = path.vertex >= NothingCertainFrom ? 0.95f : 1.0f;
+        const float most = path.vertex >= nothing_certain_from ? 0.95f : 1.0f;
         const float probability = lesser_of(largest(path.throughput), most);
         if (!(choice < probability)) return false;
         path.throughput /= probability;
@@ -68,7 +72,8 @@ WITH_CONTEXT inline bool leave_vertex(IN(Context) context, INOUT(Path) path, INO
         direction = pass_on(context, path, surface, lobe);
     }
     if (stage == StagePath) {
-        if (!survives(path, lobe.roulette)) return false;
+        const uint end = is_in_medium(surface) ? NothingCertainInMediaFrom : NothingCertainFrom;
+        if (!survives(path, end, lobe.roulette)) return false;
     } else {
         stage = StageGather;
     }
@@ -93,50 +98,43 @@ inline uint leg_kind(IN(Path) path, uint stage, bool passes, uint max_scattering
     return stage == StagePath && path.vertex < max_scatterings ? LegMayScatter : LegPasses;
 }
 
-// `length`: in lengths of the ray's direction.
-WITH_CONTEXT inline Leg leg_of(IN(Context) context, IN(Path) path, IN(Ray) ray, float length, uint kind) {
+// From where it begins to `end`, in lengths of the ray's direction.
+WITH_CONTEXT inline Leg leg_of(IN(Context) context, IN(Path) path, IN(Ray) ray, IN(Course) course, float end,
+                               uint kind) {
     if ((context.scene.features & FeatureMedia) == 0u || path.inside.x == NoInstance) return clear_leg();
     const float size = vector_length(ray.direction);
     vec2 u = vec2(0.0f);
     if (kind != LegPasses) u = sample_pair(path.numbers, LegPairs + path.rays);
     const float place = unit_float(hash_combine(closest_seed(path), path.rays));
-    return leg_through(context.scene, path.inside, ray.origin, ray.direction / size, length * size,
-                       ask_leg(kind, path.throughput, u, place), context.time);
+    return leg_through(context.scene, path.inside, course.start, ray.direction / size,
+                       greater_of(end - course.begun, 0.0f) * size, ask_leg(kind, path.throughput, u, place),
+                       context.time);
 }
 
-// A boundary without a surface. A ray goes on just before it, and passes it by: so that it meets a surface that
-// lies in the boundary, and is not taken to have crossed it then. Where it started there already, it goes on
-// behind.
-struct Crossing {
-    Skip skip;
-    bool enters;
-};
-
-inline Crossing no_crossing() {
-    return Crossing(skip_nothing(), false);
-}
-
-inline vec3 go_through(IN(Scene) scene, INOUT(Crossing) crossing, INOUT(uvec4) inside, IN(Hit) hit,
-                       IN(Ray) ray, float time) {
+// A boundary without a surface: the same ray goes on, and passes it by. Surfaces that lie in the boundary are
+// found all the same, as far as rounding may take them apart; then the ray has not come through.
+inline void go_through(IN(Scene) scene, INOUT(Course) course, INOUT(uvec4) inside, IN(Hit) hit, IN(Ray) ray,
+                       float time) {
     const Boundary boundary = boundary_at(scene, hit, ray.direction, time);
-    const float along = abs(dot(boundary.normal, ray.direction));
-    const float tolerance = 4.0f * dot(abs(boundary.normal), boundary.error) / along;
-    if (hit.distance > 4.0f * tolerance) {
-        crossing = Crossing(Skip(hit.instance, tolerance), boundary.enters);
-        return leave_surface(boundary.position, boundary.error, boundary.normal, -ray.direction);
-    }
+    const float tolerance = 2.0f * dot(abs(boundary.normal), boundary.error) /
+                                abs(dot(boundary.normal, ray.direction)) +
+                            rounding_bound(16.0f) * hit.distance;
+    const bool at_another = course.skip.instance != NoInstance && hit.distance <= course.skip.far;
+    course.begun = hit.distance;
+    course.start = boundary.position;
+    course.enters = boundary.enters;
+    course.skip = Skip(hit.instance, greater_of(hit.distance - tolerance, NearestHit), hit.distance + tolerance);
+    if (!at_another) return;
+    // Two that lie in each other would be met in turn for ever.
     inside = crossed(scene, inside, hit.instance, boundary.enters);
-    return leave_surface(boundary.position, boundary.error, boundary.normal, ray.direction);
+    course.skip = Skip(NoInstance, hit.distance + tolerance, 0.0f);
 }
 
 // Once it is known what the ray meets next.
-inline void end_crossing(IN(Scene) scene, INOUT(Crossing) crossing, INOUT(uvec4) inside, bool is_hit,
-                         IN(Hit) hit) {
-    if (crossing.skip.instance == NoInstance) return;
-    const bool is_at_surface =
-        is_hit && hit.distance <= crossing.skip.far && !is_open(scene, hit.instance);
-    if (!is_at_surface) inside = crossed(scene, inside, crossing.skip.instance, crossing.enters);
-    crossing = no_crossing();
+inline void come_through(IN(Scene) scene, IN(Course) course, INOUT(uvec4) inside, bool is_hit, IN(Hit) hit) {
+    if (course.skip.instance == NoInstance) return;
+    const bool is_at_surface = is_hit && hit.distance <= course.skip.far && !is_open(scene, hit.instance);
+    if (!is_at_surface) inside = crossed(scene, inside, course.skip.instance, course.enters);
 }
 
 // The path waits with its next ray until the light has arrived or not.
@@ -173,10 +171,9 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
     open.count = 0u;
     uint stage = whitted ? StageBranch : StagePath;
     Connection connection = no_connection();
-    Crossing crossing = no_crossing();
+    Course course = new_course(ray.origin);
     bool first = true;  // nothing has been met
     bool passes = false;
-    float way = 0.0f;  // through boundaries
     while (true) {
         const bool connects = opens && connection.is_open;
         // The tree of a path is followed, after the path itself, for its range alone.
@@ -190,39 +187,38 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
             is_hit = hit.instance != NoInstance;
         } else {
             const uint seed = connects ? connection.seed : closest_seed(path);
-            is_hit = trace_closest(context, ray, seed, crossing.skip, hit);
+            is_hit = trace_closest(context, ray, seed, course.skip, hit);
         }
-        if (opens) end_crossing(context.scene, crossing, path.inside, is_hit, hit);
+        if (opens) come_through(context.scene, course, path.inside, is_hit, hit);
         const float length = is_hit ? hit.distance : infinity();
         const bool arrives = connects && (connection.distant ? !is_hit : !(length < 1.0f));
         Leg leg = clear_leg();
         if (connects) {
-            leg = leg_of(context, path, ray, arrives && !connection.distant ? 1.0f : length, LegPasses);
+            leg = leg_of(context, path, ray, course, arrives && !connection.distant ? 1.0f : length,
+                         LegPasses);
         } else if (lit) {
-            leg = leg_of(context, path, ray, length,
+            leg = leg_of(context, path, ray, course, length,
                          leg_kind(path, stage, passes, context.view.max_scatterings));
-            if (!is_caught && !passes) add_shapes(context, path, ray, length);
+            if (!is_caught && !passes) add_shapes(context, path, ray, course.begun, length);
             if (largest(leg.emitted) > 0.0f && !passes) {
                 add_light(path.found, context.view, path.throughput * leg.emitted, path.way);
             }
         }
         const bool goes_through = is_hit && !arrives && !leg.scatters && is_open(context.scene, hit.instance);
-        if (goes_through) {
-            ray.origin = go_through(context.scene, crossing, path.inside, hit, ray, context.time);
-            goes_on = true;
-        }
+        const Course before = course;
+        if (goes_through) go_through(context.scene, course, path.inside, hit, ray, context.time);
+        goes_on = goes_through;
         if (connects) {
             connection.light *= leg.passed;
             if (arrives) receive_light(context, path.found, connection, unit_vector(ray.direction));
-            if (goes_through) {
-                ray = connecting_ray(connection, ray.origin, ray.direction);
-            } else {
+            if (!goes_through) {
                 goes_on = go_on_with_path(connection, path, ray);
+                course = new_course(ray.origin);
             }
         } else {
             if (leg.scatters) {
                 if (stage == StageBranch) {
-                    push_rest(open, branch, path, ray, first, way);
+                    push_rest(open, branch, path, ray, course, first);
                     path.vertex += MediumVertex;
                 }
                 path.throughput *= leg.scattered;
@@ -231,18 +227,17 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                 if (stage == StageBranch) branch.weight = path.throughput;
             }
             passes = false;
-            const float distance = leg.scatters ? leg.distance : length;
+            const float distance = leg.scatters ? course.begun + leg.distance : length;
             if (goes_through) {
-                path.cone.width += path.cone.spread * distance;
-                way += distance;
+                path.cone.width += path.cone.spread * (distance - before.begun);
             } else if (is_hit && covers) {
                 show_object(path.found, context.scene.instances.items[hit.instance].object,
-                            depth_along(context.view, ray, way + distance));
+                            depth_along(context.view, ray, distance));
             } else if (is_hit || leg.scatters) {
-                path.cone.width += path.cone.spread * distance;
+                path.cone.width += path.cone.spread * (distance - course.begun);
                 Surface surface;
                 if (leg.scatters) {
-                    surface = scattering_place(ray.origin + distance * ray.direction, ray.direction,
+                    surface = scattering_place(course.start + leg.distance * ray.direction, ray.direction,
                                                leg.anisotropy,
                                                context.scene.instances.items[path.inside.x].object,
                                                context.time);
@@ -254,7 +249,7 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                 if (first && !on_the_way) {
                     path.found.depth =
                         depth_along(view_at(context.scene.features, context.view, context.time), ray,
-                                    way + distance);
+                                    distance);
                     path.found.object = surface.object;
                     path.found.alpha = 1.0f;
                 }
@@ -280,6 +275,7 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                         goes_on = look_for_light(connection, path, ray, goes_on);
                     }
                 }
+                course = new_course(ray.origin);
                 first = false;
             } else {
                 tell_miss(context);
@@ -299,7 +295,7 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
             ray = branch.ray;
             passes = branch.passes;
             first = branch.first;
-            way = branch.way;
+            course = branch.course;
             stage = StageBranch;
         }
     }

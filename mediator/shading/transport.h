@@ -12,7 +12,7 @@
 // A Context is the including side's: it has `scene` (Scene), `view` (View) and `time` (of the sample: all its
 // rays are traced at that time, paths.h), and there are
 //   bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, IN(Skip) skip, OUT(Hit) hit);
-//       the closest hit beyond NearestHit that is not skipped; false where there is none. Distances are in
+//       the closest hit that is not skipped; false where there is none. Distances are in
 //       lengths of the direction.
 //   bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed);
 //       whether anything lies beyond NearestHit, before the share `far` of the segment
@@ -130,8 +130,7 @@ struct Connection {
     bool is_open;
     vec3 light;      // that arrives, unless something is on the way
     vec3 intensity;  // of the light
-    vec3 target;     // as of a LightSample
-    bool distant;
+    bool distant;    // infinitely far; else its place is at distance 1
     Way way;
     uint seed;
     Ray resume;  // the path's next ray, if it has one, and what that goes through
@@ -140,13 +139,8 @@ struct Connection {
 };
 
 inline Connection no_connection() {
-    return Connection(false, vec3(0.0f), vec3(0.0f), vec3(0.0f), false, direct_way(), 0u,
+    return Connection(false, vec3(0.0f), vec3(0.0f), false, direct_way(), 0u,
                       Ray(vec3(0.0f), vec3(0.0f)), false, nowhere());
-}
-
-// To the light's place, at distance 1, or in its direction. Of a connection alone directions have any length.
-inline Ray connecting_ray(IN(Connection) connection, vec3 origin, vec3 direction) {
-    return Ray(origin, connection.distant ? direction : connection.target - origin);
 }
 
 WITH_CONTEXT inline void receive_light(IN(Context) context, INOUT(PathSample) found, IN(Connection) received,
@@ -174,14 +168,14 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
     const vec3 origin = leaving(surface, light.direction).origin;
     const bool is_open = (context.scene.features & FeatureOpenMedia) != 0u;
     Connection asked = no_connection();
-    asked.target = light.target;
     asked.distant = light.distant;
     asked.seed = shadow_seed(path);
-    const Ray ray = connecting_ray(asked, origin, light.direction);
+    // Of a ray to a light alone the direction has any length.
+    const vec3 segment = light.distant ? light.direction : light.target - origin;
     if (!is_open) {
         const float far = light.distant ? infinity() : 1.0f;
         path.rays += 1u;
-        if (trace_occluded(context, ray.origin, ray.direction, far, asked.seed)) return;
+        if (trace_occluded(context, origin, segment, far, asked.seed)) return;
     }
     asked.light = path.throughput * bsdf.value * light.radiance * (weight / light.pdf);
     asked.intensity = path.probability * light.intensity;
@@ -193,12 +187,12 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
     if (is_open) {
         connection = asked;
         connection.is_open = true;
-        connection.resume = ray;  // until the path's own next is known (look_for_light)
+        connection.resume = Ray(origin, segment);  // until the path's own next is known (look_for_light)
         connection.inside = inside;
         return;
     }
     if ((context.scene.features & FeatureMedia) != 0u && !asked.distant) {
-        const float length = vector_length(ray.direction);
+        const float length = vector_length(segment);
         asked.light *= transmittance(context.scene, inside, origin, light.direction, length, context.time);
     }
     receive_light(context, path.found, asked, light.direction);

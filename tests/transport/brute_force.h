@@ -32,7 +32,8 @@ inline vec3 placed(IN(Instance) instance, vec3 p) {
 }
 
 // Möller and Trumbore 1997; `hit` is overwritten by what is nearer.
-inline bool meets(IN(Instance) instance, IN(Triangle) t, vec3 origin, vec3 direction, INOUT(Hit) hit) {
+inline bool meets(IN(Instance) instance, IN(Triangle) t, vec3 origin, vec3 direction, float near,
+                  INOUT(Hit) hit) {
     const vec3 p = placed(instance, t.p);
     const vec3 edge1 = placed(instance, t.q) - p;
     const vec3 edge2 = placed(instance, t.r) - p;
@@ -44,7 +45,7 @@ inline bool meets(IN(Instance) instance, IN(Triangle) t, vec3 origin, vec3 direc
     const vec3 other = cross(offset, edge1);
     const float v = dot(direction, other) / determinant;
     const float distance = dot(edge2, other) / determinant;
-    if (u < 0.0f || v < 0.0f || u + v > 1.0f || distance < NearestHit || distance >= hit.distance)
+    if (u < 0.0f || v < 0.0f || u + v > 1.0f || !(distance > near) || distance >= hit.distance)
         return false;
     hit.barycentric = vec2(u, v);
     hit.distance = distance;
@@ -56,7 +57,8 @@ inline bool trace_instance(IN(Context) context, uint index, IN(Instance) instanc
     bool found = false;
     for (uint i = 0u; i < mesh.triangle_count; ++i) {
         Hit hit = nearest;
-        if (!meets(instance, triangle_of(mesh, mesh.triangles.items[i]), origin, direction, hit)) continue;
+        if (!meets(instance, triangle_of(mesh, mesh.triangles.items[i]), origin, direction, skip.near,
+                   hit)) continue;
         if (skips(skip, index, hit.distance)) continue;
         if (instance.alpha_tested != 0u && !stops_at(context.scene, index, i, hit.barycentric, seed))
             continue;

@@ -52,7 +52,7 @@ uint seen_layers(IN(Context) context) {
 bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, IN(Skip) skip, OUT(Hit) hit) {
     Context asked = context;
     asked.skip = skip;
-    hit = find_hit(BvhItems(context.pool), context.top, ray.origin, ray.direction, NearestHit, infinity(),
+    hit = find_hit(BvhItems(context.pool), context.top, ray.origin, ray.direction, skip.near, infinity(),
                     BvhClosest | scene_question(), seen_layers(context), context.time, asked, seed);
     return hit.instance != NoInstance;
 }
