@@ -49,7 +49,7 @@ class EmbreeCaster final : public RayCaster {
         if (question_ == Question::Any) {
             if (embree::trace_occluded(context, ray.origin, ray.direction, ray.far, 0)) hit.instance = 0;
         } else {
-            embree::trace_closest(context, {ray.origin, ray.direction}, 0, hit);
+            embree::trace_closest(context, {ray.origin, ray.direction}, 0, shading::skip_nothing(), hit);
         }
         return hit;
     }

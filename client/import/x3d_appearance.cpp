@@ -41,7 +41,7 @@ X3dSurface X3dAppearances::make(pugi::xml_node appearance, VertexColors colors) 
         add_shader(parts.shader, surface);
     } else if (parts.material) {
         add_material(parts, colors, surface);
-    } else {
+    } else if (!parts.volume || parts.texture) {  // a volume alone has no surface
         add_unlit(x3d_name(appearance), parts.texture, surface);
     }
     if (parts.volume) surface.medium = medium(parts.volume);

@@ -1,7 +1,7 @@
 #ifndef TESSERA_MEDIATOR_SHADING_SPECULARS_H
 #define TESSERA_MEDIATOR_SHADING_SPECULARS_H
 
-#include "mediator/shading/transport.h"
+#include "mediator/shading/courses.h"
 
 // Perfect speculars followed through both branches (Whitted 1980).
 SHADING_BEGIN
@@ -9,18 +9,6 @@ SHADING_BEGIN
 inline constexpr uint MaxSpecularDepth = 8u;
 // A branch that carries less than half a step of an 8-bit picture is not followed.
 inline constexpr float MinBranchWeight = 1.0f / 512.0f;
-
-// How far a ray has come through boundaries without a surface (trace.h).
-struct Course {
-    Skip skip;    // the last of them, which counts once it is known what the ray meets next
-    bool enters;  // its body
-    float begun;  // where the leg begins,
-    vec3 start;   // more exactly than the ray can tell
-};
-
-inline Course new_course(vec3 origin) {
-    return Course(skip_nothing(), false, 0.0f, origin);
-}
 
 struct Branch {
     Ray ray;

@@ -40,10 +40,6 @@ inline bool survives(INOUT(Path) path, uint nothing_certain_from, float choice) 
     return largest(path.throughput) > 0.0f;
 }
 
-// What a ray is for: the next step of a path; a branch of perfect speculars; from a branch's end, to find by
-// chance what shines on it.
-inline constexpr uint StagePath = 0u, StageBranch = 1u, StageGather = 2u;
-
 // From a hit to the next ray; false: there is none.
 WITH_CONTEXT inline bool leave_vertex(IN(Context) context, INOUT(Path) path, INOUT(Ray) ray,
                                       INOUT(uint) stage, IN(Surface) surface, INOUT(Connection) connection) {
@@ -88,72 +84,6 @@ struct FirstHit {
     bool is_known;
     Hit hit;
 };
-
-// ---- legs through media ----
-
-// A path is scattered by chance, or once on each leg of a branch of perfect speculars, for single scattering;
-// not where no scattering would count.
-inline uint leg_kind(IN(Path) path, uint stage, bool passes, uint max_scatterings) {
-    if (stage == StageBranch && !passes) return LegScatters;
-    return stage == StagePath && path.vertex < max_scatterings ? LegMayScatter : LegPasses;
-}
-
-// From where it begins to `end`, in lengths of the ray's direction.
-WITH_CONTEXT inline Leg leg_of(IN(Context) context, IN(Path) path, IN(Ray) ray, IN(Course) course, float end,
-                               uint kind) {
-    if ((context.scene.features & FeatureMedia) == 0u || path.inside.x == NoInstance) return clear_leg();
-    const float size = vector_length(ray.direction);
-    vec2 u = vec2(0.0f);
-    if (kind != LegPasses) u = sample_pair(path.numbers, LegPairs + path.rays);
-    const float place = unit_float(hash_combine(closest_seed(path), path.rays));
-    return leg_through(context.scene, path.inside, course.start, ray.direction / size,
-                       greater_of(end - course.begun, 0.0f) * size, ask_leg(kind, path.throughput, u, place),
-                       context.time);
-}
-
-// A boundary without a surface: the same ray goes on, and passes it by. Surfaces that lie in the boundary are
-// found all the same, as far as rounding may take them apart; then the ray has not come through.
-inline void go_through(IN(Scene) scene, INOUT(Course) course, INOUT(uvec4) inside, IN(Hit) hit, IN(Ray) ray,
-                       float time) {
-    const Boundary boundary = boundary_at(scene, hit, ray.direction, time);
-    const float tolerance = 2.0f * dot(abs(boundary.normal), boundary.error) /
-                                abs(dot(boundary.normal, ray.direction)) +
-                            rounding_bound(16.0f) * hit.distance;
-    const bool at_another = course.skip.instance != NoInstance && hit.distance <= course.skip.far;
-    course.begun = hit.distance;
-    course.start = boundary.position;
-    course.enters = boundary.enters;
-    course.skip = Skip(hit.instance, greater_of(hit.distance - tolerance, NearestHit), hit.distance + tolerance);
-    if (!at_another) return;
-    // Two that lie in each other would be met in turn for ever.
-    inside = crossed(scene, inside, hit.instance, boundary.enters);
-    course.skip = Skip(NoInstance, hit.distance + tolerance, 0.0f);
-}
-
-// Once it is known what the ray meets next.
-inline void come_through(IN(Scene) scene, IN(Course) course, INOUT(uvec4) inside, bool is_hit, IN(Hit) hit) {
-    if (course.skip.instance == NoInstance) return;
-    const bool is_at_surface = is_hit && hit.distance <= course.skip.far && !is_open(scene, hit.instance);
-    if (!is_at_surface) inside = crossed(scene, inside, course.skip.instance, course.enters);
-}
-
-// The path waits with its next ray until the light has arrived or not.
-inline bool look_for_light(INOUT(Connection) connection, INOUT(Path) path, INOUT(Ray) ray, bool goes_on) {
-    const Ray toward = connection.resume;
-    const uvec4 inside = connection.inside;
-    connection.resume = ray;
-    connection.resumes = goes_on;
-    connection.inside = path.inside;
-    ray = toward;
-    path.inside = inside;
-    return true;
-}
-inline bool go_on_with_path(INOUT(Connection) connection, INOUT(Path) path, INOUT(Ray) ray) {
-    connection.is_open = false;
-    ray = connection.resume;
-    path.inside = connection.inside;
-    return connection.resumes;
-}
 
 WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(FirstHit) seen) {
     const bool covers = context.view.renderer == RendererCoverage;

@@ -234,6 +234,13 @@ TEST(X3dMaterial, WithoutOneASurfaceIsUnlit) {
     EXPECT_EQ(picture.alpha_mode, scene::AlphaMode::Blend);
 }
 
+TEST(X3dVolumeShader, AloneItHasNoSurface) {
+    const scene::Geometry fog = only_geometry(read_appearance("<CommonVolumeShader/>"));
+    EXPECT_TRUE(fog.medium);
+    EXPECT_FALSE(fog.material);
+    EXPECT_TRUE(only_geometry(read_appearance("<Material/><CommonVolumeShader/>")).material);
+}
+
 TEST(X3dVolumeShader, DefaultsAndFields) {
     const ImportedScene empty = read_appearance("<CommonSurfaceShader/><CommonVolumeShader/>");
     EXPECT_THAT(differences(only<scene::Medium>(empty), scene::Medium{}), testing::IsEmpty());

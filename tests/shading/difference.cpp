@@ -107,6 +107,9 @@ std::vector<SharedFunction> functions_of(std::uint32_t list) {
         {
 #include "tests/shading/functions/looks.inc"
         },
+        {
+#include "tests/shading/functions/media.inc"
+        },
     };
     // clang-format on
     return Lists[list];

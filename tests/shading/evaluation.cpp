@@ -52,13 +52,16 @@ void shaders(const Case& c, const Inputs& x, std::size_t count, Outputs* y) {
 void looks([[maybe_unused]] const Case& c, [[maybe_unused]] const Inputs& x, std::size_t count, Outputs* y) {
 #include "tests/shading/functions/looks.inc"
 }
+void media(const Case& c, const Inputs& x, std::size_t count, Outputs* y) {
+#include "tests/shading/functions/media.inc"
+}
 void views([[maybe_unused]] const Case& c, [[maybe_unused]] const Inputs& x, std::size_t count, Outputs* y) {
 #include "tests/shading/functions/views.inc"
 }
 
 using List = void(const Case& c, const Inputs& x, std::size_t count, Outputs* y);
 constexpr List* Lists[FunctionListCount] = {numbers, lobes,    textures, surfaces, lights, found,
-                                            steps,   branches, samples,  shaders,  views,  looks};
+                                            steps,   branches, samples,  shaders,  views,  looks, media};
 
 }  // namespace
 }  // namespace shading

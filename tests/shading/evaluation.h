@@ -8,8 +8,9 @@ namespace tessera {
 // The lists in functions/, by number; shading.comp and CMakeLists.txt count the same.
 inline constexpr const char* FunctionLists[] = {"numbers", "lobes",   "textures", "surfaces",
                                                 "lights",  "found",   "steps",    "branches",
-                                                "samples", "shaders", "views",    "looks"};
-inline constexpr std::uint32_t FunctionListCount = 12;
+                                                "samples", "shaders", "views",    "looks",
+                                                "media"};
+inline constexpr std::uint32_t FunctionListCount = 13;
 
 // Results of all functions of a list: from shading::World and `count` shading::Inputs to shading::Outputs,
 // those of one function after those of the other.

@@ -55,5 +55,7 @@ void main() {
 #include "tests/shading/functions/views.inc"
 #elif LIST == 11
 #include "tests/shading/functions/looks.inc"
+#elif LIST == 12
+#include "tests/shading/functions/media.inc"
 #endif
 }

@@ -11,6 +11,7 @@
 #include "tests/shading/shading_lights.comp.h"
 #include "tests/shading/shading_lobes.comp.h"
 #include "tests/shading/shading_looks.comp.h"
+#include "tests/shading/shading_media.comp.h"
 #include "tests/shading/shading_numbers.comp.h"
 #include "tests/shading/shading_samples.comp.h"
 #include "tests/shading/shading_shaders.comp.h"
@@ -64,7 +65,8 @@ std::span<const std::uint32_t> shader_of(std::uint32_t list) {
     constexpr Words* Shaders[FunctionListCount] = {
         shading_numbers_comp, shading_lobes_comp,   shading_textures_comp, shading_surfaces_comp,
         shading_lights_comp,  shading_found_comp,   shading_steps_comp,    shading_branches_comp,
-        shading_samples_comp, shading_shaders_comp, shading_views_comp,    shading_looks_comp};
+        shading_samples_comp, shading_shaders_comp, shading_views_comp,    shading_looks_comp,
+        shading_media_comp};
     return Shaders[list]();
 }
 

@@ -10,7 +10,7 @@ ARRAY_OF(View, ViewArray, 8);
 
 // Scenes and views that functions are tried in (make_world in world_maker.h).
 inline constexpr uint SceneCount = 2u, ViewCount = 16u, LightCount = 8u, TreeLightCount = 6u,
-                      TriangleEmitters = 20u, LightNodes = 36u, TextureCount = 8u, ShaderCount = 4u;
+                      TriangleEmitters = 20u, LightNodes = 36u, TextureCount = 8u, ShaderCount = 4u, BodyCount = 4u;
 struct World {
     SceneArray scenes;  // the second has no lights and no map
     ViewArray views;

@@ -60,7 +60,8 @@ std::vector<Texture> make_textures(Packer& packer, Generator& random) {
                         .format = i % 3u,
                         .wrap_s = i % 3u,
                         .wrap_t = (i / 2u) % 3u,
-                        .texture_filter = i == 5u ? TextureNearest : TextureLinear};
+                        .texture_filter = i == 5u ? TextureNearest : TextureLinear,
+                        .depth = 1u};
         const bool floats = texture.format == TexelRgbFloat;
         std::vector<uint> words;
         for (uint word = 0; word < texture.width * texture.height * (floats ? 3u : 1u); ++word) {
@@ -232,9 +233,30 @@ std::vector<Instance> make_instances(Generator& random) {
                              .linear = linear,
                              .translation = size * vec3(1.0f, -2.0f, 3.0f),
                              .normals = normals,
-                             .alpha_tested = i % 2u});
+                             .alpha_tested = i % 2u,
+                             .motion = -1,
+                             .body = i == 7u ? -1 : int(i % BodyCount)});
     }
     return instances;
+}
+
+// Even and textured, with and without a surface.
+std::vector<Body> make_bodies(Generator& random) {
+    std::vector<Body> bodies;
+    for (uint i = 0; i < BodyCount; ++i) {
+        bodies.push_back({.absorption = random.color(),
+                          .priority = int(i % 3u),
+                          .scattering = i != 2u ? random.color() : vec3(0.0f),
+                          .anisotropy = random.between(-0.9f, 0.9f),
+                          .emission = i != 1u ? random.color() : vec3(0.0f),
+                          .open = i % 2u,
+                          .low = vec3(-1.0f),
+                          .textured = i < 2u ? 1u : 0u,
+                          .inverse_size = vec3(0.5f),
+                          .textures = {use_of(i < 2u ? 1 : -1, random), use_of(i == 1u ? 4 : -1, random),
+                                       use_of(i == 0u ? 2 : -1, random)}});
+    }
+    return bodies;
 }
 
 constexpr uint Emitters = TriangleEmitters + 4u;
@@ -324,7 +346,8 @@ std::vector<View> make_views(Generator& random) {
                          .strategy = i % 6u == 4u ? StrategyLightsOnly : StrategyBoth,
                          .camera = i % 8u,
                          .lens_radius = 0.1f,
-                         .focus_distance = 2.0f});
+                         .focus_distance = 2.0f,
+                         .inside = nowhere()});
     }
     return views;
 }
@@ -377,6 +400,8 @@ PackedWorld make_world(std::uint64_t address) {
     scene.motions = packer.add<MotionArray>(
         std::vector<Motion>{{.first_place = 0, .steps = 3, .sizes = 2.0f, .reach = glm::vec3(4.0f)}});
     scene.instances = packer.add<InstanceArray>(instances);
+    Generator body_random(false);
+    scene.bodies = packer.add<BodyArray>(make_bodies(body_random));
     scene.lights = packer.add<LightSourceArray>(make_lights(random));
     std::vector<Emitter> emitters = make_emitters();
     scene.light_nodes = packer.add<LightNodeArray>(make_nodes(emitters, random));

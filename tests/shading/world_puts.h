@@ -171,6 +171,49 @@ inline void put(INOUT(Outputs) y, IN(BranchStack) open) {
     put(y, open.branches[0]);
     put(y, open.branches[1]);
 }
+inline void put(INOUT(Outputs) y, uvec4 v) {
+    put(y, v.x);
+    put(y, v.y);
+    put(y, v.z);
+    put(y, v.w);
+}
+inline void put(INOUT(Outputs) y, IN(Skip) skip) {
+    put(y, skip.instance);
+    put(y, vec3(skip.near, skip.far, 1.0f));
+}
+inline void put(INOUT(Outputs) y, IN(Boundary) boundary) {
+    put(y, boundary.position);
+    put(y, boundary.error);
+    put(y, boundary.normal);
+    put(y, boundary.enters);
+}
+inline void put(INOUT(Outputs) y, IN(BoxRay) ray) {
+    put(y, ray.origin);
+    put(y, ray.direction);
+}
+inline void put(INOUT(Outputs) y, IN(Coefficients) coefficients) {
+    put(y, coefficients.extinction);
+    put(y, coefficients.scattering);
+}
+// Shares divided by densities, so that they may be of any size.
+inline void put(INOUT(Outputs) y, IN(Leg) leg) {
+    put(y, leg.passed);
+    put(y, leg.emitted);
+    put(y, leg.scattered);
+    put(y, vec3(leg.distance, 1.0f, 0.0f));
+    put(y, leg.scatters);
+    put(y, leg.anisotropy);
+}
+inline void put(INOUT(Outputs) y, IN(Connection) connection) {
+    put(y, connection.is_open);
+    put(y, connection.light);
+}
+inline void put(INOUT(Outputs) y, IN(Course) course) {
+    put(y, course.skip);
+    put(y, course.enters);
+    put(y, course.begun);
+    put(y, course.start);
+}
 inline void put(INOUT(Outputs) y, IN(Sink) values) {
     put(y, vec3(values.sums, 1.0f));
     put(y, values.infinite);
