@@ -13,7 +13,7 @@ import sys
 
 # Whole paths: tests/transport compares what they find on both sides. What is drawn: tests/vulkan compares what the
 # device finds with what rays find on the host.
-ELSEWHERE = ("leave_vertex", "trace_from", "trace_sample", "raster_hit")
+ELSEWHERE = ("transmittance", "leave_vertex", "trace_from", "trace_sample", "raster_hit")
 
 FUNCTION = re.compile(r"^(?:WITH_CONTEXT )?inline (?!constexpr)\w+ (\w+)\(", re.MULTILINE)
 

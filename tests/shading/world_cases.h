@@ -422,22 +422,10 @@ inline Leg even_leg(IN(Inputs) x) {
 inline Leg cell_leg(IN(Case) c, IN(Inputs) x) {
     return leg_through_cells(in_media(c).scene, body_of(c, x), in_box(x), 0.1f + x.metallic, question_of(x));
 }
-inline Leg body_leg(IN(Case) c, IN(Inputs) x) {
-    return leg_in_body(in_media(c).scene, body_of(c, x), 0u, x.wo, x.n, 0.1f + x.metallic, question_of(x),
-                       0.0f);
-}
-inline Leg leg_here(IN(Case) c, IN(Inputs) x) {
-    return leg_through(in_media(c).scene, uvec4(x.d % 4u, NoInstance, NoInstance, NoInstance), x.wo, x.n, 0.1f + x.metallic,
-                       question_of(x), 0.0f);
-}
 inline Leg asked_leg(IN(Case) c, IN(Inputs) x) {
     Path path = c.path;
     path.inside = uvec4(x.d % 4u, NoInstance, NoInstance, NoInstance);
     return leg_of(in_media(c), path, Ray(x.wo, x.n), new_course(x.wo), 0.1f + x.metallic, x.c % 3u);
-}
-inline vec3 passed_here(IN(Case) c, IN(Inputs) x) {
-    return transmittance(in_media(c).scene, uvec4(x.d % 4u, NoInstance, NoInstance, NoInstance), x.wo, x.n,
-                         0.1f + x.metallic, 0.0f);
 }
 inline Surface medium_here(IN(Inputs) x) {
     return scattering_place(x.wo, x.n, x.x, x.d, 0.0f);

@@ -30,6 +30,7 @@ DeviceScene::DeviceScene(Device& device, backend::SceneTables tables) {
     put(record_.extras, tables.extras);
     put(record_.shaders, tables.shaders);
     put(record_.meshes, tables.meshes);
+    put(record_.bodies, tables.bodies);
     put(record_.instances, tables.instances);
     put(record_.lights, tables.lights);
     put(record_.emitters, tables.emitters);

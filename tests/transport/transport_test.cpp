@@ -3,7 +3,9 @@
 #include <cstdio>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "mediator/backend/tables/bodies.h"
 #include "mediator/backend/tables/view_record.h"
+#include "mediator/base/random.h"
 #include "mediator/shading/sample_values.h"
 #include "mediator/shading/trace.h"
 #include "tests/statistics/scene_model.h"
@@ -113,6 +115,35 @@ void alpha_and_colors(SceneModel& model) {
     model.sky(glm::vec3(0.5f, 0.7f, 1.0f));
 }
 
+// Fog, with and without a floor in its boundary; smoke in slices; a body of glass; what glows.
+void media(SceneModel& model) {
+    model.filled_with({.absorption = glm::vec3(0.02f), .scattering = glm::vec3(0.1f, 0.15f, 0.2f), .anisotropy = 0.5f});
+    model.box({}, {-3, 0, -3}, {3, 3, 6});
+    CounterRandom random(8);
+    std::vector<std::uint32_t> texels;
+    for (int i = 0; i < 4 * 3 * 5; ++i) texels.push_back(static_cast<std::uint32_t>(random.below(1u << 24)));
+    const scene::TextureSlot smoke = model.texture({.width = 4, .height = 3, .depth = 5}, texels);
+    model.filled_with({.absorption = glm::vec3(0.5f),
+                       .absorption_texture = smoke,
+                       .scattering = glm::vec3(2.0f),
+                       .scattering_texture = smoke,
+                       .priority = 1});
+    model.box({}, {-1.5f, 0.2f, -1}, {0, 1.5f, 0.5f});
+    model.filled_with({.emission = {1.0f, 0.5f, 0.2f}, .emission_texture = smoke, .absorption = glm::vec3(0.7f), .priority = 1});
+    model.box({}, {-0.5f, 1.7f, -0.5f}, {0.5f, 2.2f, 0.5f});
+    model.filled_with_nothing();
+    scene::Material body = test::glass(1.4f);
+    body.attenuation_color = {0.4f, 0.8f, 0.9f};
+    body.attenuation_distance = 0.5f;
+    model.box(model.material(body), {0.3f, 0.1f, -0.5f}, {1.4f, 1.2f, 0.4f});
+    model.quad(model.material(test::chalk(glm::vec3(0.6f))), Ground);
+    model.light({.kind = scene::LightKind::Sphere, .intensity = glm::vec3(20.0f), .radius = 0.2f},
+                glm::translate(glm::dmat4(1.0), glm::dvec3(1.5, 2.0, 1.0)));
+    model.light({.kind = scene::LightKind::Directional, .intensity = glm::vec3(1.0f)},
+                glm::rotate(glm::dmat4(1.0), -1.2, glm::dvec3(1, 0.2, 0)));
+    model.sky(glm::vec3(0.3f, 0.4f, 0.5f));
+}
+
 struct Case {
     const char* name;
     void (*build)(SceneModel&);
@@ -136,7 +167,10 @@ class TransportOnDevice : public VulkanTest, public testing::WithParamInterface<
         const Buffer results(device(), Count * shading::MaxSampleValues * sizeof(float));
         const ComputePipeline kernel(
             device(),
-            {.name = "transport", .code = shaders::transport_comp(), .push_bytes = sizeof(Arguments)});
+            {.name = "transport",
+             .code = shaders::transport_comp(),
+             .constants = {{0, backend::features_for(tables, view)}},
+             .push_bytes = sizeof(Arguments)});
         run(device(), {.pipeline = &kernel,
                        .arguments = Arguments{record.address(), view_record.address(), results.address()},
                        .groups = {Count / 64},
@@ -180,7 +214,8 @@ TEST_P(TransportOnDevice, FindsWhatTheHostFinds) {
     view.renderer = GetParam().renderer;
     view.path_class = GetParam().path_class;
     view.pixel_filter = {GetParam().filter, 1.5f};
-    const shading::View record = backend::make_view(view, tables.render_origin);
+    shading::View record = backend::make_view(view, tables.render_origin);
+    record.inside = backend::bodies_around(tables, record);
 
     const std::vector<float> host = on_host(tables, record), device = on_device(tables, record);
     ASSERT_EQ(host.size(), device.size());
@@ -211,7 +246,11 @@ INSTANTIATE_TEST_SUITE_P(Scenes, TransportOnDevice,
                                          Case{"speculars_whitted", speculars_and_sky, view::Renderer::Whitted,
                                               view::PathClass::None, view::PixelFilterKind::BlackmanHarris},
                                          Case{"alpha", alpha_and_colors, view::Renderer::PathTracing,
-                                              view::PathClass::Diffuse, view::PixelFilterKind::Box}),
+                                              view::PathClass::Diffuse, view::PixelFilterKind::Box},
+                                         Case{"media", media, view::Renderer::PathTracing,
+                                              view::PathClass::Indirect, view::PixelFilterKind::Box},
+                                         Case{"media_whitted", media, view::Renderer::Whitted,
+                                              view::PathClass::All, view::PixelFilterKind::Box}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
