@@ -16,10 +16,11 @@ struct Course {
     bool enters;  // its body
     float begun;  // where the leg begins,
     vec3 start;   // more exactly than the ray can tell
+    uint number;  // of the leg
 };
 
 inline Course new_course(vec3 origin) {
-    return Course(skip_nothing(), false, 0.0f, origin);
+    return Course(skip_nothing(), false, 0.0f, origin, 0u);
 }
 
 // A path is scattered by chance, or once on each leg of a branch of perfect speculars, for single scattering;
@@ -34,9 +35,10 @@ WITH_CONTEXT inline Leg leg_of(IN(Context) context, IN(Path) path, IN(Ray) ray, 
                                uint kind) {
     if ((context.scene.features & FeatureMedia) == 0u || path.inside.x == NoInstance) return clear_leg();
     const float size = vector_length(ray.direction);
+    const uint pair = leg_pair(path.vertex, course.number);
     vec2 u = vec2(0.0f);
-    if (kind != LegPasses) u = sample_pair(path.numbers, LegPairs + path.rays);
-    const float place = unit_float(hash_combine(closest_seed(path), path.rays));
+    if (kind != LegPasses) u = sample_pair(path.numbers, pair);
+    const float place = unit_float(hash_combine(path.numbers.seed, pair ^ path.numbers.index));
     return leg_through(context.scene, path.inside, course.start, ray.direction / size,
                        greater_of(end - course.begun, 0.0f) * size, ask_leg(kind, path.throughput, u, place),
                        context.time);
@@ -53,6 +55,7 @@ inline void go_through(IN(Scene) scene, INOUT(Course) course, INOUT(uvec4) insid
     const bool at_another = course.skip.instance != NoInstance && hit.distance <= course.skip.far;
     course.begun = hit.distance;
     course.start = boundary.position;
+    course.number += 1u;
     course.enters = boundary.enters;
     course.skip = Skip(hit.instance, greater_of(hit.distance - tolerance, NearestHit), hit.distance + tolerance);
     if (!at_another) return;

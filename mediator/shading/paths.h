@@ -87,9 +87,14 @@ inline constexpr uint LensPair = 0xffffffffu;  // no vertex comes so far
 inline constexpr uint PairBsdfDirection = 0u, PairLobeAndRoulette = 1u, PairLightChoice = 2u,
                       PairLightPoint = 3u, PairsPerVertex = 4u;
 inline constexpr uint TimePair = 0xfffffffeu;  // nor here
-// Of a leg through a medium: two pairs for each ray of a path, by its number. A place in a medium that a branch
-// of perfect speculars (speculars.h) is scattered at has the numbers of no surface.
-inline constexpr uint LegPairs = 0x80000000u, MediumVertex = 0x10000000u;
+// A place in a medium that a branch of perfect speculars (speculars.h) is scattered at has the numbers of no
+// surface.
+inline constexpr uint MediumVertex = 0x10000000u;
+
+// Of a leg from a vertex on through media: by how many there were before it.
+inline uint leg_pair(uint vertex, uint number) {
+    return 0x80000000u + (vertex * 64u + (number & 63u)) % 0x7ffffff0u;
+}
 
 // When a sample is taken, as a share of the time that the shutter is open; 0 where nothing moves.
 inline float sample_time(uint features, IN(View) view, uint x, uint y, uint64_t index) {

@@ -123,12 +123,12 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
         const float length = is_hit ? hit.distance : infinity();
         const bool arrives = connects && (connection.distant ? !is_hit : !(length < 1.0f));
         Leg leg = clear_leg();
-        if (connects) {
-            leg = leg_of(context, path, ray, course, arrives && !connection.distant ? 1.0f : length,
-                         LegPasses);
-        } else if (lit) {
-            leg = leg_of(context, path, ray, course, length,
-                         leg_kind(path, stage, passes, context.view.max_scatterings));
+        if (connects || lit) {
+            const uint kind =
+                connects ? LegPasses : leg_kind(path, stage, passes, context.view.max_scatterings);
+            leg = leg_of(context, path, ray, course, arrives && !connection.distant ? 1.0f : length, kind);
+        }
+        if (!connects && lit) {
             if (!is_caught && !passes) add_shapes(context, path, ray, course.begun, length);
             if (largest(leg.emitted) > 0.0f && !passes) {
                 add_light(path.found, context.view, path.throughput * leg.emitted, path.way);
