@@ -4,12 +4,11 @@
 #include <glm/geometric.hpp>
 
 #include "client/import/environment.h"
+#include "client/import/soft_sky.h"
 #include "client/import/survey.h"
 
 namespace tessera::import {
 namespace {
-
-constexpr glm::vec3 SoftSky{0.8f, 0.9f, 1.0f};  // radiance
 
 // From the front right and above, as far as the bounding sphere asks for.
 glm::dmat4 framing_pose(Bounds bounds, double vertical_fov) {
@@ -57,11 +56,14 @@ void finish(SceneBuilder& builder, scene::Background of_file) {
         background.environment = add_environment(options.environment, builder);
         background.strength = options.environment_strength;
     }
-    const bool lit = result.counts.lights > 0 || result.counts.emissive_geometries > 0 ||
-                     background.color != glm::vec3(0.0f) || background.environment;
-    if (!lit && !options.background && may_add) {
-        background.color = SoftSky;
-        builder.notice("no light: a soft sky was added");
+    const bool shines = result.counts.lights > 0 || background.color != glm::vec3(0.0f) ||
+                        background.environment || options.background;
+    if (may_add && !shines && !found.glow.lights(found.bounds)) {
+        background.environment = add_soft_sky(builder);
+        builder.notice(result.counts.emissive_geometries == 0
+                           ? "no light: a soft sky was added"
+                           : "no light but what glows faintly: a soft sky was added; a black background "
+                             "leaves it out (--background 0,0,0)");
     }
     result.root.background = builder.add(std::move(background));
     result.root.name = "root";

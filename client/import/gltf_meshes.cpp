@@ -3,6 +3,7 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <numeric>
 
 #include "client/import/gltf_draco.h"
@@ -29,6 +30,17 @@ bool draws_triangles(int mode) {
 
 bool draws_points_or_lines(int mode) {
     return mode >= TINYGLTF_MODE_POINTS && mode <= TINYGLTF_MODE_LINE_STRIP;
+}
+
+// glTF 2.0, 3.7.2.1: components of colours must be clamped. What is not a number stays, and is told of later.
+bool clamp_colors(std::vector<glm::vec4>& colors) {
+    bool clamped = false;
+    for (glm::vec4& color : colors) {
+        const glm::vec4 inside = glm::clamp(color, 0.0f, 1.0f);
+        for (int k = 0; k < 4; ++k) clamped |= inside[k] < color[k] || inside[k] > color[k];
+        color = inside;
+    }
+    return clamped;
 }
 
 }  // namespace
@@ -100,8 +112,12 @@ GltfMeshes::Source GltfMeshes::read(const tinygltf::Primitive& primitive, const 
     }
     MeshData& mesh = source.mesh;
     if (const auto draco = primitive.extensions.find(Draco); draco != primitive.extensions.end()) {
-        mesh = decode_draco(accessors_.view(index_member(draco->second, "bufferView")),
-                            draco_attributes(draco->second));
+        DracoMesh decoded = decode_draco(accessors_.view(index_member(draco->second, "bufferView")),
+                                         draco_attributes(draco->second));
+        mesh = std::move(decoded.mesh);
+        source.sets = std::move(decoded.sets);
+        for (const JointSet& set : source.sets)
+            builder_.spend(set.joints.size() * (sizeof(glm::u16vec4) + sizeof(glm::vec4)));
         if (!source.material.wants_second_set) mesh.tex_coords_1.clear();
         return source;
     }
@@ -131,7 +147,8 @@ ObjectId GltfMeshes::make(const tinygltf::Primitive& primitive, const std::strin
     BendingMesh bends;
     if (pose != nullptr) {
         bends = read_bending(primitive, mesh.positions.size(),
-                             pose->joints.empty() ? Joints::Ignored : Joints::Used, accessors_, builder_);
+                             pose->joints.empty() ? Joints::Ignored : Joints::Used, std::move(source.sets),
+                             accessors_, builder_);
         if (bends.joint_count > pose->joints.size()) {
             throw Error(ErrorCode::InvalidInput,
                         "a vertex follows joint " + std::to_string(bends.joint_count - 1) +
@@ -140,6 +157,8 @@ ObjectId GltfMeshes::make(const tinygltf::Primitive& primitive, const std::strin
         mesh.origins.resize(mesh.positions.size());
         std::iota(mesh.origins.begin(), mesh.origins.end(), 0u);
     }
+    if (clamp_colors(mesh.colors))
+        builder_.notice("mesh '" + name + "': vertex colours beyond 0 to 1 are clamped, as glTF has it");
     for (const std::string& repair : check_and_repair(mesh))
         builder_.notice("mesh '" + name + "': " + repair);
     if (mesh.normals.empty()) mesh.tangents.clear();  // glTF 3.7.2.1: given tangents belong to given normals

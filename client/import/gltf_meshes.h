@@ -40,6 +40,7 @@ class GltfMeshes {
   private:
     struct Source {
         MeshData mesh;
+        std::vector<JointSet> sets;  // of a compressed mesh
         GltfMaterial material;
     };
     Source read(const tinygltf::Primitive& primitive, const std::string& mesh_name);
