@@ -1,5 +1,6 @@
 #include "client/import/finish.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -20,6 +21,15 @@ glm::dmat4 framing_pose(Bounds bounds, double vertical_fov) {
     const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(0.0, 1.0, 0.0), z));
     const glm::dvec3 eye = center + z * (1.05 * radius / std::sin(0.5 * vertical_fov));
     return {glm::dvec4(x, 0.0), glm::dvec4(glm::cross(z, x), 0.0), glm::dvec4(z, 0.0), glm::dvec4(eye, 1.0)};
+}
+
+// What was told of the file until nothing of it was left, in brackets.
+std::string causes(const std::vector<std::string>& notices) {
+    constexpr std::size_t Most = 3;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(notices.size(), Most); ++i)
+        text += (i == 0 ? " (" : "; ") + notices[i];
+    return text.empty() ? text : text + (notices.size() > Most ? "; and others)" : ")");
 }
 
 }  // namespace
@@ -43,7 +53,8 @@ void finish(SceneBuilder& builder, scene::Background of_file) {
     ImportedScene& result = builder.result();
     const ImportOptions& options = builder.options();
     if (result.counts.instances == 0) {
-        throw Error(ErrorCode::InvalidInput, "it places no triangles: there is nothing to draw");
+        throw Error(ErrorCode::InvalidInput, "it places no triangles" + causes(result.notices) +
+                                                 ": there is nothing to draw, export meshes in its scene");
     }
     result.cameras = std::move(found.cameras);
     const bool may_add = options.missing == Missing::Add;

@@ -73,6 +73,7 @@ std::vector<ObjectId> GltfMeshes::make_all(int index, const MeshPose* pose,
     }
     const tinygltf::Mesh& mesh = model_.meshes[static_cast<std::size_t>(index)];
     const std::string name = mesh.name.empty() ? "mesh " + std::to_string(index) : mesh.name;
+    if (mesh.primitives.empty()) builder_.notice("mesh '" + name + "' has no list of primitives");
     std::string first_cause;
     std::size_t bad = 0;
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {

@@ -61,7 +61,7 @@ TEST(TestModels, EveryPrimitiveMode) {
             text.find("\"mode\": 0") != text.npos || text.find("\"mode\": 1") != text.npos ||
             text.find("\"mode\": 2") != text.npos || text.find("\"mode\": 3") != text.npos;
         if (points_or_lines) {
-            expect_refused(name, "nothing to draw");
+            expect_refused(name, "points and lines are not drawn): there is nothing to draw");
         } else {
             EXPECT_EQ(sound(name).counts.triangles, 2u);
         }
@@ -92,7 +92,9 @@ TEST(TestModels, CamerasAndTextureTransforms) {
 TEST(TestModels, WhatIsNotSupportedIsNoticed) {
     EXPECT_TRUE(has_notice(sound("glTF2/BoxTextured-glTF-pbrSpecularGlossiness/BoxTextured.gltf"),
                            "KHR_materials_pbrSpecularGlossiness is ignored"));
-    EXPECT_EQ(sound("glTF2/ClearCoat-glTF/ClearCoatTest.gltf").counts.placeholders, 0u);
+    const ImportedScene coats = sound("glTF2/ClearCoat-glTF/ClearCoatTest.gltf");
+    EXPECT_EQ(coats.counts.placeholders, 0u);
+    EXPECT_TRUE(has_notice(coats, "no light but what glows faintly")) << "its labels";
 }
 
 TEST(TestModels, BadMeshesArePlaceholders) {
@@ -100,11 +102,21 @@ TEST(TestModels, BadMeshesArePlaceholders) {
     EXPECT_EQ(sound("glTF2/IndexOutOfRange/AllIndicesOutOfRange.gltf").counts.placeholders, 1u);
     EXPECT_EQ(sound("glTF2/BoxWithInfinites-glTF-Binary/BoxWithInfinites.glb").counts.placeholders, 1u);
     EXPECT_EQ(sound("glTF2/BoxBadNormals-glTF-Binary/BoxBadNormals.glb").counts.triangles, 12u);
-    sound("glTF2/IncorrectVertexArrays/Cube.gltf");
+    EXPECT_TRUE(has_notice(sound("glTF2/IncorrectVertexArrays/Cube.gltf"),
+                           "mesh 'TruncatedCube': its last 2 vertices make no triangle"));
+}
+
+TEST(TestModels, ValuesOfWrongTypesAreToldOrRefused) {
+    const std::string folder = "glTF2/wrongTypes/bad";
+    EXPECT_TRUE(has_notice(sound(folder + "Extension.gltf"), "KHR_texture_transform is \"Not an object\""));
+    EXPECT_TRUE(has_notice(sound(folder + "Number.gltf"), "material 'Texture': normalTexture is "));
+    EXPECT_TRUE(has_notice(sound(folder + "Object.gltf"), "pbrMetallicRoughness is [\"not an object\"]"));
+    EXPECT_TRUE(has_notice(sound(folder + "Uint.gltf"), "baseColorTexture is {\"index\":-1}"));
+    expect_refused(folder + "Array.gltf", "mesh 'Mesh' has no list of primitives");
 }
 
 TEST(TestModels, FilesThatCannotBeReadAreOneClearError) {
-    expect_refused("glTF2/RecursiveNodes/RecursiveNodes.gltf", "nothing to draw");
+    expect_refused("glTF2/RecursiveNodes/RecursiveNodes.gltf", "inside itself");
     expect_refused("glTF2/TestNoRootNode/NoScene.gltf", "nothing to draw");
     expect_refused("glTF2/TestNoRootNode/SceneWithoutNodes.gltf", "nothing to draw");
     expect_refused("glTF2/MissingBin/BoxTextured.gltf", "there is no file 'BoxTextured0.bin'");
