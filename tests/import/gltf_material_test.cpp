@@ -168,8 +168,10 @@ TEST(GltfMaterial, AMissingMaterialIsTheDefaultOne) {
 TEST(GltfTexture, IsDecodedToTexelsFromTheTop) {
     SceneFile file;
     file.image(png(3, 2, {10, 20, 30, 40}));
+    ImportOptions dark;  // without the sky's texture
+    dark.background = glm::vec3(0.0f);
     const ImportedScene scene =
-        with_materials(file, {R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})"});
+        with_materials(file, {R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})"}, dark);
     ASSERT_EQ(all<Texture>(scene).size(), 1u);
     const Texture& texture = *all<Texture>(scene)[0];
     EXPECT_EQ(texture.width, 3u);
