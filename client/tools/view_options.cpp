@@ -37,6 +37,8 @@ Expected<void> set_optics(const ViewOptions& options, ViewPlan& plan) {
     return {};
 }
 
+constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 28;  // that a master takes at a time
+
 }  // namespace
 
 void ViewOptions::add_scene_to(cli::CommandLine& command) {
@@ -103,6 +105,9 @@ Expected<ViewPlan> understand(const ViewOptions& options) {
         if (!crop) return wrong("--crop", crop.error());
         plan.view.window = *crop;
     }
+    if (plan.view.window.pixel_count() > MaxPixels)
+        return failure(ErrorCode::InvalidInput,
+                       "--size: more than 2^28 pixels; take fewer, or a part with --crop");
     if (options.background) {
         const auto color = parse_color(*options.background);
         if (!color) return wrong("--background", color.error());
