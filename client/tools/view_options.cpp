@@ -69,7 +69,9 @@ void ViewOptions::add_scene_to(cli::CommandLine& command) {
 
 void ViewOptions::add_to(cli::CommandLine& command) {
     add_scene_to(command);
-    command.option("--background", "uniform light from all around: linear R,G,B", background);
+    command.option("--background",
+                   "uniform light from all around: linear R,G,B (a soft sky where the scene has no light)",
+                   background);
     command.option("--env", "environment map, latitude-longitude .exr or .hdr", environment);
     command.option("--env-strength", "factor on the environment map", environment_strength);
     command.flag("--solid-glass", "glass of glTF files refracts although they tell of no volume",
