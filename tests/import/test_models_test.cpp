@@ -170,6 +170,24 @@ TEST(TestModels, EveryObjAndPlyEndsInASoundSceneOrAnError) {
     EXPECT_GT(files, 30);
 }
 
+TEST(ObjFile, BadValuesAreToldAndTheirDefaultsStand) {
+    const TestFolder folder;
+    folder.write("a.mtl", "newmtl odd\nKd 2 0 0\nd -1\nKe -1 0 0\nKs 1 1 1\nNs -5\nmap_Kd lost.png\n");
+    const ImportedScene scene = loaded(folder.write(
+        "a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl odd\nf 1/1 2/1 3/1\n"));
+    expect_sound(scene);
+    for (const char* told :
+         {"diffuse colour is 2 0 0, outside 0 to 1: its default", "opacity is -1, outside 0 to 1",
+          "emission is -1 0 0, outside 0 to", "shininess is -5, outside 0 to"}) {
+        EXPECT_TRUE(has_notice(scene, std::string("material 'odd': its ") + told));
+    }
+    EXPECT_TRUE(has_notice(scene, "material 'odd': texture 'lost.png' cannot be used"));
+    const scene::Material& odd = named<scene::Material>(scene, "odd");
+    EXPECT_EQ(odd.base_color, glm::vec4(0.8f, 0.8f, 0.8f, 1.0f));
+    EXPECT_EQ(odd.emission, glm::vec3(0.0f));
+    EXPECT_EQ(odd.roughness, 1.0f);
+}
+
 TEST(ObjFile, MaterialsAndTexturesStayInsideTheFolder) {
     const TestFolder folder;
     folder.write("secret.png", png(1, 1, {1, 2, 3, 4}));
