@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Writes the scenes of the README's material charts: rows of spheres before a checker, one feature a row.
 
-material_chart.py FOLDER writes materials.gltf and surface-shaders.x3d; docs/make_pictures.sh renders them.
-A row is a line in ROWS or SHADER_ROWS: eight materials from left to right. The cameras look at all rows.
+material_chart.py FOLDER writes materials-1.gltf, ... and surface-shaders-1.x3d, ..., of four rows each, and prints
+a line for each: its name and its number of rows. docs/make_pictures.sh renders them. A row is a line in ROWS or
+SHADER_ROWS: eight materials from left to right. The cameras look at all rows of a scene.
 """
 
 import base64
@@ -12,7 +13,7 @@ import os
 import struct
 import sys
 
-COLUMNS = 8
+COLUMNS, MOST_ROWS = 8, 4
 STEPS = [i / (COLUMNS - 1) for i in range(COLUMNS)]
 DISTANCE = 2.3  # of the spheres' centres, in radii
 BACK = -1.6     # of the checker
@@ -140,7 +141,7 @@ class Gltf:
         return self.add(triangles, "SCALAR", "I", 5125)
 
 
-def write_gltf(path):
+def write_gltf(path, rows):
     file = Gltf()
     points, tangents, coordinates, triangles = sphere()
     position = file.add(points, "VEC3")
@@ -148,7 +149,7 @@ def write_gltf(path):
                   "TEXCOORD_0": file.add(coordinates, "VEC2")}
     order = file.indices(triangles)
     materials, meshes, nodes = [], [], []
-    for grey, (corners, faces) in zip((0.1, 0.3), checker(len(ROWS))):
+    for grey, (corners, faces) in zip((0.1, 0.3), checker(len(rows))):
         materials.append({"name": f"grey {grey}", **pbr((grey, grey, grey), 0, 1)})
         meshes.append({"primitives": [{"attributes": {"POSITION": file.add(corners, "VEC3")},
                                        "indices": file.indices(faces), "material": len(materials) - 1}]})
@@ -159,13 +160,13 @@ def write_gltf(path):
         meshes.append({"primitives": [{"attributes": {"POSITION": file.add(panel(position, width, height), "VEC3")},
                                        "indices": file.indices(FACES), "material": len(materials) - 1}]})
         nodes.append({"mesh": len(meshes) - 1})
-    for row, (name, looks) in enumerate(ROWS):
+    for row, (name, looks) in enumerate(rows):
         for column, look in enumerate(looks):
             materials.append({"name": f"{name}: {column}", **look})
             meshes.append({"primitives": [{"attributes": attributes, "indices": order, "material": len(materials) - 1}]})
-            nodes.append({"mesh": len(meshes) - 1, "translation": place(row, column, len(ROWS))})
+            nodes.append({"mesh": len(meshes) - 1, "translation": place(row, column, len(rows))})
     fov = 0.35
-    nodes.append({"camera": 0, "translation": [0, 0, eye(len(ROWS), fov)]})
+    nodes.append({"camera": 0, "translation": [0, 0, eye(len(rows), fov)]})
     used = sorted({name for material in materials for name in material.get("extensions", {})})
     json.dump({
         "asset": {"version": "2.0", "generator": "docs/material_chart.py"}, "extensionsUsed": used,
@@ -211,29 +212,33 @@ def x3d_mesh(material, corners, faces):
             "</IndexedTriangleSet></Shape>")
 
 
-def write_x3d(path):
+def write_x3d(path, rows):
     shapes = []
-    for grey, (corners, faces) in zip((0.1, 0.3), checker(len(SHADER_ROWS))):
+    for grey, (corners, faces) in zip((0.1, 0.3), checker(len(rows))):
         shapes.append(x3d_mesh(f"diffuseColor='{grey} {grey} {grey}'", corners, faces))
     for position, width, height, radiance in PANELS:
         shapes.append(x3d_mesh(f"diffuseColor='0 0 0' emissiveColor='{radiance} {radiance} {radiance}'",
                                panel(position, width, height), FACES))
-    for row, (_, looks) in enumerate(SHADER_ROWS):
+    for row, (_, looks) in enumerate(rows):
         for column, look in enumerate(looks):
-            at = " ".join(f"{x:g}" for x in place(row, column, len(SHADER_ROWS)))
+            at = " ".join(f"{x:g}" for x in place(row, column, len(rows)))
             shapes.append(f"<Transform translation='{at}'><Shape><Appearance>{look}</Appearance><Sphere/></Shape></Transform>")
     fov = 0.35
     with open(path, "w") as file:
         file.write("<X3D profile='Interchange' version='3.3'><Scene>\n"
-                   f"<Viewpoint fieldOfView='{fov}' position='0 0 {eye(len(SHADER_ROWS), fov):g}'/>\n"
+                   f"<Viewpoint fieldOfView='{fov}' position='0 0 {eye(len(rows), fov):g}'/>\n"
                    + "\n".join(shapes) + "\n</Scene></X3D>\n")
 
 
 def main():
     folder = sys.argv[1] if len(sys.argv) == 2 else sys.exit(__doc__)
     os.makedirs(folder, exist_ok=True)
-    write_gltf(os.path.join(folder, "materials.gltf"))
-    write_x3d(os.path.join(folder, "surface-shaders.x3d"))
+    for name, suffix, write, rows in (("materials", "gltf", write_gltf, ROWS),
+                                      ("surface-shaders", "x3d", write_x3d, SHADER_ROWS)):
+        for first in range(0, len(rows), MOST_ROWS):
+            file, some = f"{name}-{first // MOST_ROWS + 1}.{suffix}", rows[first:first + MOST_ROWS]
+            write(os.path.join(folder, file), some)
+            print(file, len(some))
 
 
 if __name__ == "__main__":
