@@ -9,6 +9,7 @@
 #include "client/import/gltf_draco.h"
 #include "client/import/gltf_text.h"
 #include "client/import/limits.h"
+#include "client/import/thick_lines.h"
 
 namespace tessera::import {
 namespace {
@@ -78,10 +79,8 @@ std::vector<ObjectId> GltfMeshes::make_all(int index, const MeshPose* pose,
     std::size_t bad = 0;
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
         const tinygltf::Primitive& primitive = mesh.primitives[i];
-        if (draws_points_or_lines(primitive.mode)) {
-            builder_.notice("mesh '" + name + "': points and lines are not drawn");
-            continue;
-        }
+        if (draws_points_or_lines(primitive.mode))
+            builder_.notice("mesh '" + name + "': its points and lines are drawn as thin bodies");
         const std::string part = i == 0 ? name : name + " part " + std::to_string(i);
         try {
             geometries.push_back(make(primitive, name, part, pose, bending));
@@ -100,7 +99,7 @@ std::vector<ObjectId> GltfMeshes::make_all(int index, const MeshPose* pose,
 
 GltfMeshes::Source GltfMeshes::read(const tinygltf::Primitive& primitive, const std::string& mesh_name) {
     const auto& attributes = primitive.attributes;
-    if (!draws_triangles(primitive.mode)) {
+    if (!draws_triangles(primitive.mode) && !draws_points_or_lines(primitive.mode)) {
         throw Error(ErrorCode::InvalidInput, "its mode " + std::to_string(primitive.mode) + " is unknown");
     }
     if (!attributes.contains("POSITION")) throw Error(ErrorCode::InvalidInput, "it has no positions");
@@ -135,6 +134,9 @@ GltfMeshes::Source GltfMeshes::read(const tinygltf::Primitive& primitive, const 
         mesh.indices.resize(mesh.positions.size());
         std::iota(mesh.indices.begin(), mesh.indices.end(), 0u);
     }
+    if (primitive.mode == TINYGLTF_MODE_LINE) mesh.indices = segments_of_pairs(mesh.indices);
+    if (primitive.mode == TINYGLTF_MODE_LINE_STRIP) mesh.indices = segments_of_strip(mesh.indices);
+    if (primitive.mode == TINYGLTF_MODE_LINE_LOOP) mesh.indices = segments_of_loop(mesh.indices);
     if (primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP) mesh.indices = triangles_of_strip(mesh.indices);
     if (primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN) mesh.indices = triangles_of_fan(mesh.indices);
     return source;
@@ -158,6 +160,8 @@ ObjectId GltfMeshes::make(const tinygltf::Primitive& primitive, const std::strin
         mesh.origins.resize(mesh.positions.size());
         std::iota(mesh.origins.begin(), mesh.origins.end(), 0u);
     }
+    if (draws_points_or_lines(primitive.mode))
+        mesh = primitive.mode == TINYGLTF_MODE_POINTS ? thick_points(mesh) : thick_lines(mesh);
     if (clamp_colors(mesh.colors))
         builder_.notice("mesh '" + name + "': vertex colours beyond 0 to 1 are clamped, as glTF has it");
     for (const std::string& repair : check_and_repair(mesh))
