@@ -142,14 +142,15 @@ std::vector<Command> make_commands() {
          "",
          remove_object},
         {"load",
-         "load FILE [in PARENT]",
+         "load FILE [at=SECONDS] [in PARENT]",
          "bring in a scene file",
          "glTF (.gltf, .glb), .obj, .ply, .stl, .x3d or .tessera: its objects come under a new transform "
          "with "
-         "the file's name, in the root or in PARENT. Its background is taken when the scene has none.",
+         "the file's name, in the root or in PARENT. Its background is taken when the scene has none. Nodes, "
+         "skins and morph targets are posed at SECONDS of its animations, else at rest.",
          1,
-         1,
-         {File},
+         2,
+         {File, Free},
          "in",
          load_file},
         {"save",

@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <set>
+#include <string_view>
 
 #include "client/edit/graph.h"
 #include "client/edit/script_error.h"
@@ -37,18 +40,34 @@ std::set<ObjectId> background_alone(const import::ImportedScene& imported) {
     return alone;
 }
 
+// "at=SECONDS".
+double seconds_of(const Word& word) {
+    constexpr std::string_view Name = "at=";
+    const std::string& text = word.text();
+    double seconds = 0.0;
+    if (text.starts_with(Name)) {
+        const char* const end = text.data() + text.size();
+        const auto [last, error] = std::from_chars(text.data() + Name.size(), end, seconds);
+        if (error == std::errc{} && last == end && std::isfinite(seconds)) return seconds;
+    }
+    throw ScriptError(word.column(),
+                      "'" + text +
+                          "' is no time of the file's animations: write at=SECONDS, like at=1.5 "
+                          "(a name with blanks goes into quotes)");
+}
+
 }  // namespace
 
 void load_file(Rehearsal& rehearsal, const Arguments& given, std::size_t end) {
     Arguments arguments = given;
     const auto parent_path = take_keyword(arguments, "in", end);
-    if (arguments.size() != 1)
-        throw ScriptError(end, "'load' takes one file; a name with blanks goes into quotes");
+    if (arguments.empty()) throw ScriptError(end, "'load' takes a file");
     const ObjectId parent = parent_path ? read_parent(rehearsal, *parent_path) : scene::RootId;
     const std::filesystem::path file = arguments[0].text();
     import::ImportOptions options;
     // An empty scene is to be seen; another one has its cameras and its light.
     if (has_camera(rehearsal.scene())) options.missing = import::Missing::Leave;
+    if (arguments.size() > 1) options.at = seconds_of(arguments[1]);
     auto imported = import::import_scene(file, options);
     if (!imported) throw ScriptError(arguments[0].column(), imported.error().what());
 

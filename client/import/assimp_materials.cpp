@@ -6,26 +6,57 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "client/import/image_decoder.h"
 
 namespace tessera::import {
 namespace {
 
-glm::vec3 color(const aiMaterial& material, const char* key, glm::vec3 otherwise) {
-    aiColor3D value;
-    if (material.Get(key, 0, 0, value) != AI_SUCCESS) return otherwise;
-    glm::vec3 result{value.r, value.g, value.b};
-    for (int i = 0; i < 3; ++i)
-        result[i] = std::isfinite(result[i]) ? std::max(result[i], 0.0f) : otherwise[i];
-    return result;
-}
+// Reads the fields of one material. What is not finite or out of range is told, and its default stands.
+class Fields {
+  public:
+    Fields(const aiMaterial& source, const std::string& material, SceneBuilder& builder)
+        : source_(source), material_(material), builder_(builder) {}
 
-float number(const aiMaterial& material, const char* key, float otherwise) {
-    float value = otherwise;
-    if (material.Get(key, 0, 0, value) != AI_SUCCESS || !std::isfinite(value)) return otherwise;
-    return value;
-}
+    glm::vec3 color(const char* key, const char* name, glm::vec3 otherwise, float highest) const {
+        aiColor3D value;
+        if (source_.Get(key, 0, 0, value) != AI_SUCCESS) return otherwise;
+        const glm::vec3 color(value.r, value.g, value.b);
+        const bool usable =
+            is_within(color.x, highest) && is_within(color.y, highest) && is_within(color.z, highest);
+        if (!usable) {
+            tell(name, shown(color.x) + " " + shown(color.y) + " " + shown(color.z), highest);
+            return otherwise;
+        }
+        return color;
+    }
+    float number(const char* key, const char* name, float otherwise, float highest) const {
+        float value = otherwise;
+        if (source_.Get(key, 0, 0, value) != AI_SUCCESS) return otherwise;
+        if (is_within(value, highest)) return value;
+        tell(name, shown(value), highest);
+        return otherwise;
+    }
+
+  private:
+    static bool is_within(float value, float highest) { return value >= 0.0f && value <= highest; }
+    static std::string shown(float value) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%g", static_cast<double>(value));
+        return text;
+    }
+    void tell(const std::string& name, const std::string& value, float highest) const {
+        builder_.notice("material '" + material_ + "': its " + name + " is " + value + ", outside 0 to " +
+                        shown(highest) + ": its default is used, correct it");
+    }
+
+    const aiMaterial& source_;
+    const std::string& material_;
+    SceneBuilder& builder_;
+};
+
+constexpr float Brightest = 1e12f;
 
 }  // namespace
 
@@ -41,26 +72,28 @@ ObjectId AssimpMaterials::make(unsigned index, const aiMesh& mesh) {
     aiString text;
     if (source.Get(AI_MATKEY_NAME, text) == AI_SUCCESS) material.name = text.C_Str();
 
-    glm::vec3 diffuse = glm::min(color(source, "$clr.diffuse", glm::vec3(0.8f)), glm::vec3(1.0f));
+    const std::string name = material.name;
+    const Fields fields(source, name, builder_);
+    glm::vec3 diffuse = fields.color("$clr.diffuse", "diffuse colour", glm::vec3(0.8f), 1.0f);
     aiString file;
     const bool textured = source.GetTexture(aiTextureType_DIFFUSE, 0, &file) == AI_SUCCESS;
     // Files with colours or textures but without a material colour mean those as they are, not times a
     // default grey.
     const bool is_default = material.name == AI_DEFAULT_MATERIAL_NAME || material.name.empty();
     if (is_default && (mesh.HasVertexColors(0) || textured)) diffuse = glm::vec3(1.0f);
-    material.base_color = glm::vec4(diffuse, std::clamp(number(source, "$mat.opacity", 1.0f), 0.0f, 1.0f));
+    material.base_color = glm::vec4(diffuse, fields.number("$mat.opacity", "opacity", 1.0f, 1.0f));
     if (material.base_color.a < 1.0f) material.alpha_mode = scene::AlphaMode::Blend;
-    if (textured) material.base_color_texture.texture = texture(file.C_Str());
-    material.emission = glm::min(color(source, "$clr.emissive", glm::vec3(0.0f)), glm::vec3(1e12f));
-    if (color(source, "$clr.specular", glm::vec3(0.0f)) != glm::vec3(0.0f)) {
-        const float exponent = std::max(number(source, "$mat.shininess", 0.0f), 0.0f);
+    if (textured) material.base_color_texture.texture = texture(file.C_Str(), name);
+    material.emission = fields.color("$clr.emissive", "emission", glm::vec3(0.0f), Brightest);
+    if (fields.color("$clr.specular", "specular colour", glm::vec3(0.0f), Brightest) != glm::vec3(0.0f)) {
+        const float exponent = fields.number("$mat.shininess", "shininess", 0.0f, Brightest);
         material.roughness = std::pow(2.0f / (exponent + 2.0f), 0.25f);  // alpha = roughness^2
     }
     material.double_sided = true;  // these formats have no notion of a back side
     return builder_.add(std::move(material));
 }
 
-ObjectId AssimpMaterials::texture(const std::string& named) {
+ObjectId AssimpMaterials::texture(const std::string& named, const std::string& material) {
     std::string name = named;
     std::replace(name.begin(), name.end(), '\\', '/');
     const auto [place, is_new] = textures_.try_emplace(name);
@@ -82,8 +115,8 @@ ObjectId AssimpMaterials::texture(const std::string& named) {
         cause = image.error().what();
     }
     if (!cause.empty()) {
-        builder_.notice("texture '" + name.substr(0, 200) + "' cannot be used (" + cause +
-                        "): a magenta checker stands for it");
+        builder_.notice("material '" + material + "': texture '" + name.substr(0, 200) +
+                        "' cannot be used (" + cause + "): a magenta checker stands for it");
         place->second = builder_.placeholder_texture();
     }
     return place->second;

@@ -22,7 +22,7 @@ class AssimpMaterials {
 
   private:
     ObjectId make(unsigned index, const aiMesh& mesh);
-    ObjectId texture(const std::string& name);
+    ObjectId texture(const std::string& name, const std::string& material);
 
     const aiScene& source_;
     const LocalFolder& folder_;

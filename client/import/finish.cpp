@@ -1,15 +1,15 @@
 #include "client/import/finish.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "client/import/environment.h"
+#include "client/import/soft_sky.h"
 #include "client/import/survey.h"
 
 namespace tessera::import {
 namespace {
-
-constexpr glm::vec3 SoftSky{0.8f, 0.9f, 1.0f};  // radiance
 
 // From the front right and above, as far as the bounding sphere asks for.
 glm::dmat4 framing_pose(Bounds bounds, double vertical_fov) {
@@ -21,6 +21,15 @@ glm::dmat4 framing_pose(Bounds bounds, double vertical_fov) {
     const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(0.0, 1.0, 0.0), z));
     const glm::dvec3 eye = center + z * (1.05 * radius / std::sin(0.5 * vertical_fov));
     return {glm::dvec4(x, 0.0), glm::dvec4(glm::cross(z, x), 0.0), glm::dvec4(z, 0.0), glm::dvec4(eye, 1.0)};
+}
+
+// What was told of the file until nothing of it was left, in brackets.
+std::string causes(const std::vector<std::string>& notices) {
+    constexpr std::size_t Most = 3;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(notices.size(), Most); ++i)
+        text += (i == 0 ? " (" : "; ") + notices[i];
+    return text.empty() ? text : text + (notices.size() > Most ? "; and others)" : ")");
 }
 
 }  // namespace
@@ -44,7 +53,8 @@ void finish(SceneBuilder& builder, scene::Background of_file) {
     ImportedScene& result = builder.result();
     const ImportOptions& options = builder.options();
     if (result.counts.instances == 0) {
-        throw Error(ErrorCode::InvalidInput, "it places no triangles: there is nothing to draw");
+        throw Error(ErrorCode::InvalidInput, "it places no triangles" + causes(result.notices) +
+                                                 ": there is nothing to draw, export meshes in its scene");
     }
     result.cameras = std::move(found.cameras);
     const bool may_add = options.missing == Missing::Add;
@@ -57,11 +67,14 @@ void finish(SceneBuilder& builder, scene::Background of_file) {
         background.environment = add_environment(options.environment, builder);
         background.strength = options.environment_strength;
     }
-    const bool lit = result.counts.lights > 0 || result.counts.emissive_geometries > 0 ||
-                     background.color != glm::vec3(0.0f) || background.environment;
-    if (!lit && !options.background && may_add) {
-        background.color = SoftSky;
-        builder.notice("no light: a soft sky was added");
+    const bool shines = result.counts.lights > 0 || background.color != glm::vec3(0.0f) ||
+                        background.environment || options.background;
+    if (may_add && !shines && !found.glow.lights(found.bounds)) {
+        background.environment = add_soft_sky(builder);
+        builder.notice(result.counts.emissive_geometries == 0
+                           ? "no light: a soft sky was added"
+                           : "no light but what glows faintly: a soft sky was added; a black background "
+                             "leaves it out (--background 0,0,0)");
     }
     result.root.background = builder.add(std::move(background));
     result.root.name = "root";

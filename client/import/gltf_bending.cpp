@@ -9,8 +9,6 @@
 namespace tessera::import {
 namespace {
 
-constexpr const char* Draco = "KHR_draco_mesh_compression";
-
 [[noreturn]] void reject(const std::string& cause) {
     throw Error(ErrorCode::InvalidInput, cause);
 }
@@ -50,7 +48,8 @@ JointSet read_set(const tinygltf::Primitive& primitive, std::size_t number, std:
 }  // namespace
 
 BendingMesh read_bending(const tinygltf::Primitive& primitive, std::size_t vertices, Joints joints,
-                         const GltfAccessors& accessors, SceneBuilder& builder) {
+                         std::vector<JointSet> decoded, const GltfAccessors& accessors,
+                         SceneBuilder& builder) {
     BendingMesh mesh;
     for (const auto& target : primitive.targets) {
         mesh.targets.push_back({differences(target, "POSITION", vertices, accessors, builder),
@@ -58,7 +57,8 @@ BendingMesh read_bending(const tinygltf::Primitive& primitive, std::size_t verti
                                 differences(target, "TANGENT", vertices, accessors, builder)});
     }
     if (joints == Joints::Ignored) return mesh;
-    for (std::size_t i = 0; primitive.attributes.contains(numbered("JOINTS_", i)); ++i)
+    mesh.sets = std::move(decoded);
+    for (std::size_t i = mesh.sets.size(); primitive.attributes.contains(numbered("JOINTS_", i)); ++i)
         mesh.sets.push_back(read_set(primitive, i, vertices, accessors, builder));
     normalize_weights(mesh.sets);
     for (const JointSet& set : mesh.sets) {
@@ -75,9 +75,8 @@ std::size_t target_count(const tinygltf::Mesh& mesh) {
 }
 
 bool has_joints(const tinygltf::Mesh& mesh) {
-    return std::all_of(mesh.primitives.begin(), mesh.primitives.end(), [](const auto& primitive) {
-        return primitive.attributes.contains("JOINTS_0") && !primitive.extensions.contains(Draco);
-    });
+    return std::all_of(mesh.primitives.begin(), mesh.primitives.end(),
+                       [](const auto& primitive) { return primitive.attributes.contains("JOINTS_0"); });
 }
 
 Skin read_skin(const tinygltf::Model& model, int index, const std::vector<MovingNode>& nodes,

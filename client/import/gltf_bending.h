@@ -14,13 +14,15 @@ namespace tessera::import {
 
 enum class Joints { Used, Ignored };
 
-// The morph targets of a primitive of `vertices` vertices and, where they are used, its joints. Throws
-// Error{InvalidInput}: arrays of other lengths or not finite, weights that are no weights.
+// The morph targets of a primitive of `vertices` vertices and, where they are used, its joints: those that
+// were decoded with a compressed mesh, else those of its accessors. Throws Error{InvalidInput}: arrays of
+// other lengths or not finite, weights that are no weights.
 BendingMesh read_bending(const tinygltf::Primitive& primitive, std::size_t vertices, Joints joints,
-                         const GltfAccessors& accessors, SceneBuilder& builder);
+                         std::vector<JointSet> decoded, const GltfAccessors& accessors,
+                         SceneBuilder& builder);
 
 std::size_t target_count(const tinygltf::Mesh& mesh);  // of its first primitive
-bool has_joints(const tinygltf::Mesh& mesh);           // all of its primitives, none compressed
+bool has_joints(const tinygltf::Mesh& mesh);           // all of its primitives
 
 // The joints among `reached` nodes, with their matrices as bound. Throws Error{InvalidInput}: joints that are
 // missing or not drawn, fewer matrices than joints, matrices that are not finite.

@@ -108,6 +108,7 @@ Expected<GltfDocument> load_gltf(const std::filesystem::path& file) {
 
     auto model = std::make_shared<tinygltf::Model>();
     GltfDocument document;
+    document.notices = std::move(prepared->notices);
     FileAccess access{LocalFolder(file), {}};
     tinygltf::TinyGLTF loader;
     loader.SetFsCallbacks({file_exists, expand_path, read_file, never_write, &access});
@@ -115,13 +116,13 @@ Expected<GltfDocument> load_gltf(const std::filesystem::path& file) {
     std::string error, warning;
     bool loaded = false;
     const auto length = static_cast<unsigned int>(
-        std::min<std::size_t>(prepared->size(), std::numeric_limits<unsigned int>::max()));
+        std::min<std::size_t>(prepared->text.size(), std::numeric_limits<unsigned int>::max()));
     try {
-        loaded =
-            binary ? loader.LoadBinaryFromMemory(model.get(), &error, &warning,
-                                                 reinterpret_cast<const unsigned char*>(prepared->data()),
-                                                 length)
-                   : loader.LoadASCIIFromString(model.get(), &error, &warning, prepared->data(), length, "");
+        loaded = binary ? loader.LoadBinaryFromMemory(
+                              model.get(), &error, &warning,
+                              reinterpret_cast<const unsigned char*>(prepared->text.data()), length)
+                        : loader.LoadASCIIFromString(model.get(), &error, &warning, prepared->text.data(),
+                                                     length, "");
     } catch (const std::exception& problem) {
         error += problem.what();
     }

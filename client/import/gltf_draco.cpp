@@ -13,8 +13,8 @@ namespace {
     throw Error(ErrorCode::InvalidInput, "its Draco data " + cause);
 }
 
-template <class Vector>
-std::vector<Vector> values_of(const draco::Mesh& mesh, const std::map<std::string, int>& ids,
+template <class Number, class Vector>
+std::vector<Vector> converted(const draco::Mesh& mesh, const std::map<std::string, int>& ids,
                               const std::string& name) {
     const auto found = ids.find(name);
     if (found == ids.end()) return {};
@@ -26,20 +26,38 @@ std::vector<Vector> values_of(const draco::Mesh& mesh, const std::map<std::strin
     if (given != Vector::length() && !(given == 3 && Vector::length() == 4)) {
         reject("has " + std::to_string(given) + " components in " + name);
     }
-    std::vector<Vector> values(mesh.num_points(), Vector(1.0f));  // alpha of a colour without one
+    std::vector<Vector> values(mesh.num_points(), Vector(1));  // alpha of a colour without one
     for (std::uint32_t i = 0; i < mesh.num_points(); ++i) {
         const draco::AttributeValueIndex index = attribute->mapped_index(draco::PointIndex(i));
         if (index.value() >= attribute->size() ||
-            !attribute->ConvertValue<float>(index, static_cast<std::int8_t>(given), &values[i][0])) {
+            !attribute->ConvertValue<Number>(index, static_cast<std::int8_t>(given), &values[i][0])) {
             reject("lacks a value of " + name);
         }
     }
     return values;
 }
 
+template <class Vector>
+std::vector<Vector> values_of(const draco::Mesh& mesh, const std::map<std::string, int>& ids,
+                              const std::string& name) {
+    return converted<float, Vector>(mesh, ids, name);
+}
+
+std::vector<JointSet> joint_sets(const draco::Mesh& mesh, const std::map<std::string, int>& ids) {
+    std::vector<JointSet> sets;
+    for (std::size_t i = 0; ids.contains("JOINTS_" + std::to_string(i)); ++i) {
+        const std::string number = std::to_string(i);
+        if (!ids.contains("WEIGHTS_" + number)) reject("lacks WEIGHTS_" + number);
+        sets.push_back({converted<std::uint16_t, glm::u16vec4>(mesh, ids, "JOINTS_" + number),
+                        values_of<glm::vec4>(mesh, ids, "WEIGHTS_" + number)});
+    }
+    return sets;
+}
+
 }  // namespace
 
-MeshData decode_draco(std::span<const unsigned char> bytes, const std::map<std::string, int>& attribute_ids) {
+DracoMesh decode_draco(std::span<const unsigned char> bytes,
+                       const std::map<std::string, int>& attribute_ids) {
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     draco::Decoder decoder;
@@ -49,7 +67,8 @@ MeshData decode_draco(std::span<const unsigned char> bytes, const std::map<std::
     if (mesh->num_points() > MaxElements || mesh->num_faces() > MaxElements / 3)
         reject("claims too many elements");
 
-    MeshData result;
+    DracoMesh decoded_mesh;
+    MeshData& result = decoded_mesh.mesh;
     result.indices.reserve(std::size_t{mesh->num_faces()} * 3);
     for (std::uint32_t i = 0; i < mesh->num_faces(); ++i) {
         const draco::Mesh::Face& face = mesh->face(draco::FaceIndex(i));
@@ -61,7 +80,8 @@ MeshData decode_draco(std::span<const unsigned char> bytes, const std::map<std::
     result.tex_coords = values_of<glm::vec2>(*mesh, attribute_ids, "TEXCOORD_0");
     result.tex_coords_1 = values_of<glm::vec2>(*mesh, attribute_ids, "TEXCOORD_1");
     result.colors = values_of<glm::vec4>(*mesh, attribute_ids, "COLOR_0");
-    return result;
+    decoded_mesh.sets = joint_sets(*mesh, attribute_ids);
+    return decoded_mesh;
 }
 
 }  // namespace tessera::import

@@ -4,13 +4,17 @@
 #include <span>
 #include <string>
 
-#include "client/import/mesh_data.h"
+#include "client/import/deform.h"
 
 namespace tessera::import {
 
 // KHR_draco_mesh_compression: triangles and the attributes POSITION, NORMAL, TANGENT, COLOR_0, TEXCOORD_0 and
-// TEXCOORD_1 of a compressed mesh, by the unique ids that the extension gives. Throws
-// Error{InvalidInput}.
-MeshData decode_draco(std::span<const unsigned char> bytes, const std::map<std::string, int>& attribute_ids);
+// TEXCOORD_1 of a compressed mesh, and its sets of joints (JOINTS_n with WEIGHTS_n) with their weights as
+// they stand, by the unique ids that the extension gives. Throws Error{InvalidInput}.
+struct DracoMesh {
+    MeshData mesh;
+    std::vector<JointSet> sets;
+};
+DracoMesh decode_draco(std::span<const unsigned char> bytes, const std::map<std::string, int>& attribute_ids);
 
 }  // namespace tessera::import

@@ -15,27 +15,17 @@ const tinygltf::Value* extension(const tinygltf::ExtensionMap& extensions, const
     return found == extensions.end() ? nullptr : &found->second;
 }
 
-// Brings numbers of a file into their range and remembers whether that was necessary.
-class Ranges {
-  public:
-    float number(double value, double lowest, double highest, double otherwise) {
-        const double result = std::isfinite(value) ? std::clamp(value, lowest, highest) : otherwise;
-        changed_ |= result != value;
-        return static_cast<float>(result);
-    }
-    bool changed() const { return changed_; }
-
-  private:
-    bool changed_ = false;
-};
-
-constexpr double Large = 1e6;  // of offsets and scales, beyond which texture coordinates have no digits left
 constexpr double Brightest = 1e12;
+
+// Numbers of a material were checked when its text was read (check_gltf_materials).
+float number(double value) {
+    return static_cast<float>(value);
+}
 
 // Reads the texture references of one material: slots, and which set of coordinates they all use.
 class Slots {
   public:
-    Slots(GltfTextures& textures, Ranges& ranges) : textures_(textures), ranges_(ranges) {}
+    Slots(GltfTextures& textures, const std::string& material) : textures_(textures), material_(material) {}
 
     template <class Info>
     scene::TextureSlot slot(const Info& info, TextureUse use) {
@@ -62,16 +52,16 @@ class Slots {
     scene::TextureSlot slot(int index, int set, const tinygltf::Value* transform, TextureUse use) {
         scene::TextureSlot slot;
         if (index < 0) return slot;
-        slot.texture = textures_.texture(index, use);
+        slot.texture = textures_.texture(index, use, material_);
         if (transform != nullptr && transform->IsObject()) {
             const std::vector<double> offset = number_array(*transform, "offset");
             const std::vector<double> scale = number_array(*transform, "scale");
             for (int i = 0; i < 2; ++i) {
                 const auto k = static_cast<std::size_t>(i);
-                if (offset.size() == 2) slot.offset[i] = ranges_.number(offset[k], -Large, Large, 0.0);
-                if (scale.size() == 2) slot.scale[i] = ranges_.number(scale[k], -Large, Large, 1.0);
+                if (offset.size() == 2) slot.offset[i] = number(offset[k]);
+                if (scale.size() == 2) slot.scale[i] = number(scale[k]);
             }
-            slot.rotation = ranges_.number(number_member(*transform, "rotation", 0.0), -Large, Large, 0.0);
+            slot.rotation = number(number_member(*transform, "rotation", 0.0));
             if (transform->Has("texCoord")) set = index_member(*transform, "texCoord");
         }
         if (!slot.texture) return slot;
@@ -81,52 +71,51 @@ class Slots {
     }
 
     GltfTextures& textures_;
-    Ranges& ranges_;
+    const std::string& material_;
     bool misses_set_ = false;
 };
 
 // The KHR_materials_* extensions of one material.
 class Extensions {
   public:
-    Extensions(const tinygltf::Material& source, Slots& slots, Ranges& ranges)
-        : source_(source.extensions), slots_(slots), ranges_(ranges) {}
+    Extensions(const tinygltf::Material& source, Slots& slots) : source_(source.extensions), slots_(slots) {}
 
     void read(scene::Material& material) {
         if (open("KHR_materials_unlit")) material.unlit = true;
-        if (open("KHR_materials_ior")) number("ior", material.index_of_refraction, 1.0, 100.0);
+        if (open("KHR_materials_ior")) number("ior", material.index_of_refraction);
         if (open("KHR_materials_transmission")) {
-            number("transmissionFactor", material.transmission, 0.0, 1.0);
+            number("transmissionFactor", material.transmission);
             texture("transmissionTexture", material.transmission_texture);
         }
         if (open("KHR_materials_volume")) {
-            number("thicknessFactor", material.thickness, 0.0, Large);
-            number("attenuationDistance", material.attenuation_distance, 0.0, Brightest);
-            color("attenuationColor", material.attenuation_color, 1.0);
+            number("thicknessFactor", material.thickness);
+            number("attenuationDistance", material.attenuation_distance);
+            color("attenuationColor", material.attenuation_color);
         }
         if (open("KHR_materials_specular")) {
-            number("specularFactor", material.specular, 0.0, 1.0);
+            number("specularFactor", material.specular);
             texture("specularTexture", material.specular_texture);
-            color("specularColorFactor", material.specular_color, Brightest);
+            color("specularColorFactor", material.specular_color);
             texture("specularColorTexture", material.specular_color_texture, TextureUse::Color);
         }
         if (open("KHR_materials_clearcoat")) read_coat(material);
         if (open("KHR_materials_sheen")) {
-            color("sheenColorFactor", material.sheen_color, 1.0);
+            color("sheenColorFactor", material.sheen_color);
             texture("sheenColorTexture", material.sheen_color_texture, TextureUse::Color);
-            number("sheenRoughnessFactor", material.sheen_roughness, 0.0, 1.0);
+            number("sheenRoughnessFactor", material.sheen_roughness);
             texture("sheenRoughnessTexture", material.sheen_roughness_texture);
         }
         if (open("KHR_materials_anisotropy")) {
-            number("anisotropyStrength", material.anisotropy, 0.0, 1.0);
-            number("anisotropyRotation", material.anisotropy_rotation, -Large, Large);
+            number("anisotropyStrength", material.anisotropy);
+            number("anisotropyRotation", material.anisotropy_rotation);
             texture("anisotropyTexture", material.anisotropy_texture);
         }
         if (open("KHR_materials_iridescence")) {
-            number("iridescenceFactor", material.iridescence, 0.0, 1.0);
+            number("iridescenceFactor", material.iridescence);
             texture("iridescenceTexture", material.iridescence_texture);
-            number("iridescenceIor", material.iridescence_index_of_refraction, 1.0, 100.0);
-            number("iridescenceThicknessMinimum", material.iridescence_thickness_minimum, 0.0, Large);
-            number("iridescenceThicknessMaximum", material.iridescence_thickness_maximum, 0.0, Large);
+            number("iridescenceIor", material.iridescence_index_of_refraction);
+            number("iridescenceThicknessMinimum", material.iridescence_thickness_minimum);
+            number("iridescenceThicknessMaximum", material.iridescence_thickness_maximum);
             texture("iridescenceThicknessTexture", material.iridescence_thickness_texture);
         }
     }
@@ -136,36 +125,31 @@ class Extensions {
         here_ = extension(source_, name);
         return here_ != nullptr && here_->IsObject();
     }
-    void number(const char* member, float& value, double lowest, double highest) {
-        value = ranges_.number(number_member(*here_, member, double{value}), lowest, highest, double{value});
+    void number(const char* member, float& value) {
+        value = static_cast<float>(number_member(*here_, member, double{value}));
     }
-    void color(const char* member, glm::vec3& value, double highest) {
+    void color(const char* member, glm::vec3& value) {
         const std::vector<double> given = number_array(*here_, member);
         if (given.size() != 3) return;
-        for (int i = 0; i < 3; ++i) {
-            value[i] = ranges_.number(given[static_cast<std::size_t>(i)], 0.0, highest, double{value[i]});
-        }
+        for (int i = 0; i < 3; ++i) value[i] = static_cast<float>(given[static_cast<std::size_t>(i)]);
     }
     void texture(const char* member, scene::TextureSlot& slot, TextureUse use = TextureUse::Data) {
         slot = slots_.slot(*here_, member, use);
     }
     void read_coat(scene::Material& material) {
-        number("clearcoatFactor", material.clearcoat, 0.0, 1.0);
+        number("clearcoatFactor", material.clearcoat);
         texture("clearcoatTexture", material.clearcoat_texture);
-        number("clearcoatRoughnessFactor", material.clearcoat_roughness, 0.0, 1.0);
+        number("clearcoatRoughnessFactor", material.clearcoat_roughness);
         texture("clearcoatRoughnessTexture", material.clearcoat_roughness_texture);
         texture("clearcoatNormalTexture", material.clearcoat_normal_texture);
         if (!here_->Has("clearcoatNormalTexture")) return;
         const tinygltf::Value& map = here_->Get("clearcoatNormalTexture");
-        if (map.IsObject()) {
-            material.clearcoat_normal_scale =
-                ranges_.number(number_member(map, "scale", 1.0), -1e3, 1e3, 1.0);
-        }
+        if (map.IsObject())
+            material.clearcoat_normal_scale = static_cast<float>(number_member(map, "scale", 1.0));
     }
 
     const tinygltf::ExtensionMap& source_;
     Slots& slots_;
-    Ranges& ranges_;
     const tinygltf::Value* here_ = nullptr;
 };
 
@@ -201,21 +185,21 @@ bool uses_second_set(const scene::Material& material) {
 
 GltfMaterial GltfMaterials::make(const tinygltf::Material& source, const std::string& fallback_name) {
     const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-    Ranges ranges;
-    Slots slots(textures_, ranges);
     scene::Material material;
     material.name = source.name.empty() ? fallback_name : source.name;
+    const std::string name = material.name;
+    Slots slots(textures_, name);
     for (int i = 0; i < 4; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const double value = pbr.baseColorFactor.size() == 4 ? pbr.baseColorFactor[k] : 1.0;
-        material.base_color[i] = ranges.number(value, 0.0, 1.0, 1.0);
+        material.base_color[i] = number(value);
     }
     material.base_color_texture = slots.slot(pbr.baseColorTexture, TextureUse::Color);
-    material.metallic = ranges.number(pbr.metallicFactor, 0.0, 1.0, 1.0);
-    material.roughness = ranges.number(pbr.roughnessFactor, 0.0, 1.0, 1.0);
+    material.metallic = number(pbr.metallicFactor);
+    material.roughness = number(pbr.roughnessFactor);
     material.metallic_roughness_texture = slots.slot(pbr.metallicRoughnessTexture, TextureUse::Data);
     material.normal_texture = slots.slot(source.normalTexture, TextureUse::Data);
-    material.normal_scale = ranges.number(source.normalTexture.scale, -1e3, 1e3, 1.0);
+    material.normal_scale = number(source.normalTexture.scale);
 
     double strength = 1.0;
     if (const auto* found = extension(source.extensions, "KHR_materials_emissive_strength")) {
@@ -224,16 +208,16 @@ GltfMaterial GltfMaterials::make(const tinygltf::Material& source, const std::st
     for (int i = 0; i < 3; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const double factor = source.emissiveFactor.size() == 3 ? source.emissiveFactor[k] : 0.0;
-        material.emission[i] = ranges.number(factor * strength, 0.0, Brightest, 0.0);
+        material.emission[i] = number(std::min(factor * strength, Brightest));
     }
     if (material.emission != glm::vec3(0.0f)) {
         material.emission_texture = slots.slot(source.emissiveTexture, TextureUse::Color);
     }
     if (source.alphaMode == "MASK") material.alpha_mode = scene::AlphaMode::Mask;
     if (source.alphaMode == "BLEND") material.alpha_mode = scene::AlphaMode::Blend;
-    material.alpha_cutoff = ranges.number(source.alphaCutoff, 0.0, 1e3, 0.5);
+    material.alpha_cutoff = number(source.alphaCutoff);
     material.double_sided = source.doubleSided;
-    Extensions(source, slots, ranges).read(material);
+    Extensions(source, slots).read(material);
     if (material.transmission > 0.0f && extension(source.extensions, "KHR_materials_volume") == nullptr) {
         if (builder_.options().glass == Glass::Solid) {
             material.thickness = 1.0f;
@@ -248,8 +232,6 @@ GltfMaterial GltfMaterials::make(const tinygltf::Material& source, const std::st
             "material '" + material.name +
             "': its textures use more than two sets of coordinates; the second stands for others");
     }
-    if (ranges.changed())
-        builder_.notice("material '" + material.name + "': numbers out of range are clamped");
     GltfMaterial made;
     made.wants_tangents = material.normal_texture.texture || material.clearcoat_normal_texture.texture ||
                           material.anisotropy > 0.0f;

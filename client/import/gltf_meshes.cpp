@@ -3,11 +3,13 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <numeric>
 
 #include "client/import/gltf_draco.h"
 #include "client/import/gltf_text.h"
 #include "client/import/limits.h"
+#include "client/import/thick_lines.h"
 
 namespace tessera::import {
 namespace {
@@ -29,6 +31,17 @@ bool draws_triangles(int mode) {
 
 bool draws_points_or_lines(int mode) {
     return mode >= TINYGLTF_MODE_POINTS && mode <= TINYGLTF_MODE_LINE_STRIP;
+}
+
+// glTF 2.0, 3.7.2.1: components of colours must be clamped. What is not a number stays, and is told of later.
+bool clamp_colors(std::vector<glm::vec4>& colors) {
+    bool clamped = false;
+    for (glm::vec4& color : colors) {
+        const glm::vec4 inside = glm::clamp(color, 0.0f, 1.0f);
+        for (int k = 0; k < 4; ++k) clamped |= inside[k] < color[k] || inside[k] > color[k];
+        color = inside;
+    }
+    return clamped;
 }
 
 }  // namespace
@@ -61,14 +74,13 @@ std::vector<ObjectId> GltfMeshes::make_all(int index, const MeshPose* pose,
     }
     const tinygltf::Mesh& mesh = model_.meshes[static_cast<std::size_t>(index)];
     const std::string name = mesh.name.empty() ? "mesh " + std::to_string(index) : mesh.name;
+    if (mesh.primitives.empty()) builder_.notice("mesh '" + name + "' has no list of primitives");
     std::string first_cause;
     std::size_t bad = 0;
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
         const tinygltf::Primitive& primitive = mesh.primitives[i];
-        if (draws_points_or_lines(primitive.mode)) {
-            builder_.notice("mesh '" + name + "': points and lines are not drawn");
-            continue;
-        }
+        if (draws_points_or_lines(primitive.mode))
+            builder_.notice("mesh '" + name + "': its points and lines are drawn as thin bodies");
         const std::string part = i == 0 ? name : name + " part " + std::to_string(i);
         try {
             geometries.push_back(make(primitive, name, part, pose, bending));
@@ -87,7 +99,7 @@ std::vector<ObjectId> GltfMeshes::make_all(int index, const MeshPose* pose,
 
 GltfMeshes::Source GltfMeshes::read(const tinygltf::Primitive& primitive, const std::string& mesh_name) {
     const auto& attributes = primitive.attributes;
-    if (!draws_triangles(primitive.mode)) {
+    if (!draws_triangles(primitive.mode) && !draws_points_or_lines(primitive.mode)) {
         throw Error(ErrorCode::InvalidInput, "its mode " + std::to_string(primitive.mode) + " is unknown");
     }
     if (!attributes.contains("POSITION")) throw Error(ErrorCode::InvalidInput, "it has no positions");
@@ -100,8 +112,12 @@ GltfMeshes::Source GltfMeshes::read(const tinygltf::Primitive& primitive, const 
     }
     MeshData& mesh = source.mesh;
     if (const auto draco = primitive.extensions.find(Draco); draco != primitive.extensions.end()) {
-        mesh = decode_draco(accessors_.view(index_member(draco->second, "bufferView")),
-                            draco_attributes(draco->second));
+        DracoMesh decoded = decode_draco(accessors_.view(index_member(draco->second, "bufferView")),
+                                         draco_attributes(draco->second));
+        mesh = std::move(decoded.mesh);
+        source.sets = std::move(decoded.sets);
+        for (const JointSet& set : source.sets)
+            builder_.spend(set.joints.size() * (sizeof(glm::u16vec4) + sizeof(glm::vec4)));
         if (!source.material.wants_second_set) mesh.tex_coords_1.clear();
         return source;
     }
@@ -118,6 +134,9 @@ GltfMeshes::Source GltfMeshes::read(const tinygltf::Primitive& primitive, const 
         mesh.indices.resize(mesh.positions.size());
         std::iota(mesh.indices.begin(), mesh.indices.end(), 0u);
     }
+    if (primitive.mode == TINYGLTF_MODE_LINE) mesh.indices = segments_of_pairs(mesh.indices);
+    if (primitive.mode == TINYGLTF_MODE_LINE_STRIP) mesh.indices = segments_of_strip(mesh.indices);
+    if (primitive.mode == TINYGLTF_MODE_LINE_LOOP) mesh.indices = segments_of_loop(mesh.indices);
     if (primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP) mesh.indices = triangles_of_strip(mesh.indices);
     if (primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN) mesh.indices = triangles_of_fan(mesh.indices);
     return source;
@@ -131,7 +150,8 @@ ObjectId GltfMeshes::make(const tinygltf::Primitive& primitive, const std::strin
     BendingMesh bends;
     if (pose != nullptr) {
         bends = read_bending(primitive, mesh.positions.size(),
-                             pose->joints.empty() ? Joints::Ignored : Joints::Used, accessors_, builder_);
+                             pose->joints.empty() ? Joints::Ignored : Joints::Used, std::move(source.sets),
+                             accessors_, builder_);
         if (bends.joint_count > pose->joints.size()) {
             throw Error(ErrorCode::InvalidInput,
                         "a vertex follows joint " + std::to_string(bends.joint_count - 1) +
@@ -140,6 +160,10 @@ ObjectId GltfMeshes::make(const tinygltf::Primitive& primitive, const std::strin
         mesh.origins.resize(mesh.positions.size());
         std::iota(mesh.origins.begin(), mesh.origins.end(), 0u);
     }
+    if (draws_points_or_lines(primitive.mode))
+        mesh = primitive.mode == TINYGLTF_MODE_POINTS ? thick_points(mesh) : thick_lines(mesh);
+    if (clamp_colors(mesh.colors))
+        builder_.notice("mesh '" + name + "': vertex colours beyond 0 to 1 are clamped, as glTF has it");
     for (const std::string& repair : check_and_repair(mesh))
         builder_.notice("mesh '" + name + "': " + repair);
     if (mesh.normals.empty()) mesh.tangents.clear();  // glTF 3.7.2.1: given tangents belong to given normals

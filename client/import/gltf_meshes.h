@@ -30,7 +30,7 @@ class GltfMeshes {
     GltfMeshes(const tinygltf::Model& model, SceneBuilder& builder)
         : model_(model), builder_(builder), accessors_(model), materials_(model, builder) {}
 
-    // Empty when the mesh has only points and lines. A bad mesh is the placeholder, once, and one notice.
+    // Points and lines become thin bodies. A bad mesh is the placeholder, once, and one notice.
     const std::vector<ObjectId>& geometries(int mesh);
 
     // For one node alone, bent.
@@ -40,6 +40,7 @@ class GltfMeshes {
   private:
     struct Source {
         MeshData mesh;
+        std::vector<JointSet> sets;  // of a compressed mesh
         GltfMaterial material;
     };
     Source read(const tinygltf::Primitive& primitive, const std::string& mesh_name);

@@ -64,8 +64,7 @@ void GltfMotion::read_skin_of(int index) {
     }
     if (place->second < 0) return;
     if (!has_joints(model_.meshes[static_cast<std::size_t>(source.mesh)])) {
-        builder_.notice("node '" + node(index).name +
-                        "': its skin is ignored, the mesh has no joints or holds them compressed");
+        builder_.notice("node '" + node(index).name + "': its skin is ignored, the mesh has no joints");
         return;
     }
     skin_of_node_[index] = place->second;

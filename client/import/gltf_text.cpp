@@ -1,11 +1,14 @@
 #include "client/import/gltf_text.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <limits>
-#include <vector>
 
+#include "client/import/gltf_material_check.h"
 #include "client/import/limits.h"
 
 namespace tessera::import {
@@ -16,9 +19,18 @@ struct Range {
     bool empty() const { return begin == end; }
 };
 
+// Replaces `length` bytes from `position` on.
 struct Edit {
     std::size_t position = 0;
     std::string insertion;
+    std::size_t length = 0;
+};
+
+// What the text needs: edits by their positions, and among them none in the materials but those that make
+// JSON of them.
+struct Scan {
+    std::vector<Edit> edits;
+    Range materials;  // the array at the top, brackets included
 };
 
 // One open array or object.
@@ -33,6 +45,9 @@ struct Level {
 constexpr bool is_space(char c) {
     return c == ' ' || c == '\t' || c == '\n' || c == '\r';
 }
+constexpr bool is_letter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
 constexpr bool is_number(char c) {
     return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.' || c == 'e' || c == 'E';
 }
@@ -41,7 +56,7 @@ class Scanner {
   public:
     explicit Scanner(std::string_view json) : json_(json) {}
 
-    Expected<std::vector<Edit>> edits() {
+    Expected<Scan> run() {
         while (at_ < json_.size()) {
             const char c = json_[at_];
             if (c == '"') {
@@ -55,6 +70,8 @@ class Scanner {
                 open(c == '{');
             } else if (c == '}' || c == ']') {
                 close();
+            } else if (in_materials() && (is_number(c) || is_letter(c))) {
+                word();
             } else if (is_number(c)) {
                 number();
             } else {
@@ -63,12 +80,13 @@ class Scanner {
                 ++at_;
             }
         }
-        std::sort(edits_.begin(), edits_.end(),
-                  [](const Edit& a, const Edit& b) { return a.position < b.position; });
-        return std::move(edits_);
+        std::stable_sort(scan_.edits.begin(), scan_.edits.end(),
+                         [](const Edit& a, const Edit& b) { return a.position < b.position; });
+        return std::move(scan_);
     }
 
   private:
+    bool in_materials() const { return materials_level_ != 0; }
     std::string_view text(Range range) const { return json_.substr(range.begin, range.end - range.begin); }
 
     void string() {
@@ -85,6 +103,10 @@ class Scanner {
             text(levels_.back().key) == "attributes") {
             levels_.back().attributes = at_;
         }
+        if (!is_object && levels_.size() == 1 && levels_[0].has_key && text(levels_[0].key) == "materials") {
+            scan_.materials.begin = at_ - 1;
+            materials_level_ = levels_.size() + 1;
+        }
         levels_.emplace_back();
         levels_.back().is_object = is_object;
     }
@@ -93,14 +115,19 @@ class Scanner {
         ++at_;
         if (levels_.empty()) return;
         const Level level = levels_.back();
+        if (levels_.size() == materials_level_) {
+            scan_.materials.end = at_;
+            materials_level_ = 0;
+        }
         levels_.pop_back();
+        if (in_materials()) return;
         if (!level.is_object || level.indices.empty() || level.attributes == 0) return;
         std::size_t next = level.attributes;
         while (next < json_.size() && is_space(json_[next])) ++next;
         const bool alone = next < json_.size() && json_[next] == '}';
-        edits_.push_back({level.indices_key.begin, "_"});
-        edits_.push_back({level.attributes, '"' + std::string(IndicesAttribute) + "\":" +
-                                                std::string(text(level.indices)) + (alone ? "" : ",")});
+        scan_.edits.push_back({level.indices_key.begin, "_"});
+        scan_.edits.push_back({level.attributes, '"' + std::string(IndicesAttribute) + "\":" +
+                                                     std::string(text(level.indices)) + (alone ? "" : ",")});
     }
 
     void number() {
@@ -111,11 +138,55 @@ class Scanner {
         levels_.back().indices = {begin, at_};
     }
 
+    // A number or word in a material: what is neither JSON's nor finite becomes a string, which a check sees.
+    void word() {
+        const std::size_t begin = at_;
+        while (at_ < json_.size() && (is_number(json_[at_]) || is_letter(json_[at_]))) ++at_;
+        const std::string_view word = json_.substr(begin, at_ - begin);
+        double value = 0.0;
+        const auto [last, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        const bool is_number =
+            error == std::errc{} && last == word.data() + word.size() && std::isfinite(value);
+        if (!is_number && word != "true" && word != "false" && word != "null")
+            scan_.edits.push_back({begin, '"' + std::string(word) + '"', word.size()});
+    }
+
     std::string_view json_;
     std::size_t at_ = 0;
     std::vector<Level> levels_;
-    std::vector<Edit> edits_;
+    std::size_t materials_level_ = 0;  // of the array while it is open, from 1
+    Scan scan_;
 };
+
+std::string applied(std::string_view text, std::size_t first, const std::vector<Edit>& edits) {
+    std::string result;
+    result.reserve(text.size() + edits.size() * 24);
+    std::size_t done = 0;
+    for (const Edit& edit : edits) {
+        const std::size_t position = edit.position - first;
+        result.append(text.substr(done, position - done));
+        result.append(edit.insertion);
+        done = position + edit.length;
+    }
+    result.append(text.substr(done));
+    return result;
+}
+
+// Takes what is wrong out of the materials: one edit of all of them, where there is something.
+std::vector<std::string> check_materials(std::string_view json, Scan& scan) {
+    const auto [begin, end] = scan.materials;
+    if (end <= begin) return {};
+    const auto inside = [&](const Edit& edit) { return edit.position >= begin && edit.position < end; };
+    std::vector<Edit> quotes;
+    std::copy_if(scan.edits.begin(), scan.edits.end(), std::back_inserter(quotes), inside);
+    CheckedMaterials checked = check_gltf_materials(applied(json.substr(begin, end - begin), begin, quotes));
+    std::erase_if(scan.edits, inside);
+    if (checked.json.empty()) return std::move(checked.notices);
+    const auto next = std::find_if(scan.edits.begin(), scan.edits.end(),
+                                   [&](const Edit& edit) { return edit.position >= end; });
+    scan.edits.insert(next, {begin, std::move(checked.json), end - begin});
+    return std::move(checked.notices);
+}
 
 std::uint32_t read_u32(std::span<const unsigned char> bytes, std::size_t offset) {
     std::uint32_t value = 0;
@@ -134,18 +205,12 @@ tl::unexpected<Error> damaged(const std::string& what) {
 
 }  // namespace
 
-Expected<std::string> prepare_gltf_text(std::string_view json) {
-    const Expected<std::vector<Edit>> edits = Scanner(json).edits();
-    if (!edits) return tl::unexpected<Error>(edits.error());
-    std::string prepared;
-    prepared.reserve(json.size() + edits->size() * 24);
-    std::size_t done = 0;
-    for (const Edit& edit : *edits) {
-        prepared.append(json.substr(done, edit.position - done));
-        prepared.append(edit.insertion);
-        done = edit.position;
-    }
-    prepared.append(json.substr(done));
+Expected<PreparedText> prepare_gltf_text(std::string_view json) {
+    Expected<Scan> scan = Scanner(json).run();
+    if (!scan) return tl::unexpected<Error>(scan.error());
+    PreparedText prepared;
+    prepared.notices = check_materials(json, *scan);
+    prepared.text = applied(json, 0, scan->edits);
     return prepared;
 }
 
@@ -153,7 +218,7 @@ bool is_glb(std::span<const unsigned char> bytes) {
     return bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
 }
 
-Expected<std::string> prepare_glb(std::span<const unsigned char> bytes) {
+Expected<PreparedText> prepare_glb(std::span<const unsigned char> bytes) {
     constexpr std::size_t Header = 12, ChunkHeader = 8;
     constexpr std::uint32_t Json = 0x4e4f534a;
     if (bytes.size() < Header + ChunkHeader) return damaged("the GLB ends inside its header");
@@ -173,23 +238,25 @@ Expected<std::string> prepare_glb(std::span<const unsigned char> bytes) {
         return damaged("the GLB has no complete JSON chunk");
     }
     const auto* text = reinterpret_cast<const char*>(bytes.data() + Header + ChunkHeader);
-    Expected<std::string> json = prepare_gltf_text({text, json_length});
-    if (!json) return json;
-    json->resize((json->size() + 3) / 4 * 4, ' ');
+    Expected<PreparedText> prepared = prepare_gltf_text({text, json_length});
+    if (!prepared) return prepared;
+    std::string& json = prepared->text;
+    json.resize((json.size() + 3) / 4 * 4, ' ');
     const auto rest =
         bytes.subspan(Header + ChunkHeader + json_length, length - Header - ChunkHeader - json_length);
-    const std::size_t total = Header + ChunkHeader + json->size() + rest.size();
+    const std::size_t total = Header + ChunkHeader + json.size() + rest.size();
     if (total > std::numeric_limits<std::uint32_t>::max()) {
         return failure(ErrorCode::InvalidInput, "the GLB is larger than 4 GiB: split it");
     }
     std::string glb = "glTF";
     append_u32(glb, 2);
     append_u32(glb, total);
-    append_u32(glb, json->size());
+    append_u32(glb, json.size());
     append_u32(glb, Json);
-    glb += *json;
+    glb += json;
     glb.append(reinterpret_cast<const char*>(rest.data()), rest.size());
-    return glb;
+    prepared->text = std::move(glb);
+    return prepared;
 }
 
 }  // namespace tessera::import

@@ -33,42 +33,48 @@ std::string image_name(const tinygltf::Image& image, int index) {
 
 }  // namespace
 
-const std::optional<GltfTextures::Texels>& GltfTextures::decoded(int index) {
-    const auto [place, is_new] = images_.try_emplace(index);
-    if (!is_new) return place->second;
+Expected<GltfTextures::Texels> GltfTextures::decode(int index) {
     const tinygltf::Image* image = find(model_.images, index);
-    if (!image) {
-        builder_.notice("image " + std::to_string(index) + " is missing: export the scene again");
-        return place->second;
-    }
-    std::string cause;
+    if (!image) return failure(ErrorCode::InvalidInput, "the file has no image " + std::to_string(index));
     try {
         const bool embedded = image->bufferView >= 0;
         const std::span<const unsigned char> bytes = embedded ? GltfAccessors(model_).view(image->bufferView)
                                                               : std::span<const unsigned char>(image->image);
-        if (bytes.empty() && !image->uri.empty()) {
-            cause = "its file cannot be read";
-        } else if (const Expected<DecodedImage> pixels = decode_image(bytes)) {
-            place->second = Texels{pixels->width, pixels->height, builder_.blob(pixels->rgba)};
-        } else {
-            cause = pixels.error().what();
-        }
+        if (bytes.empty() && !image->uri.empty())
+            return failure(ErrorCode::InvalidInput, "its file cannot be read: put it beside the scene");
+        const Expected<DecodedImage> pixels = decode_image(bytes);
+        if (!pixels) return tl::unexpected<Error>(pixels.error());
+        return Texels{pixels->width, pixels->height, builder_.blob(pixels->rgba)};
     } catch (const Error& error) {
         if (error.code() == ErrorCode::OutOfMemory) throw;
-        cause = error.what();
+        return tl::unexpected<Error>(error);
     }
-    if (!cause.empty()) {
-        builder_.notice("texture '" + image_name(*image, index) + "' cannot be used (" + cause +
-                        "): a magenta checker or the plain factor stands for it");
-    }
-    return place->second;
 }
 
-ObjectId GltfTextures::texture(int index, TextureUse use) {
-    const tinygltf::Texture* source = find(model_.textures, index);
-    const std::optional<Texels>& texels = decoded(source ? source->source : -1);
-    if (!texels) return use == TextureUse::Color ? builder_.placeholder_texture() : ObjectId{};
+const Expected<GltfTextures::Texels>& GltfTextures::decoded(int index) {
+    const auto found = images_.find(index);
+    return found != images_.end() ? found->second : images_.emplace(index, decode(index)).first->second;
+}
 
+ObjectId GltfTextures::texture(int index, TextureUse use, const std::string& material) {
+    const bool shows = use == TextureUse::Color;
+    const auto refuse = [&](const std::string& name, const std::string& cause) {
+        builder_.notice("material '" + material + "': texture " + name + " cannot be used (" + cause +
+                        "): " + (shows ? "a magenta checker" : "the plain factor") + " stands for it");
+        return shows ? builder_.placeholder_texture() : ObjectId{};
+    };
+    const std::string number = std::to_string(index);
+    const tinygltf::Texture* source = find(model_.textures, index);
+    if (!source) {
+        return refuse(number, "the file has " + std::to_string(model_.textures.size()) +
+                                  " textures: correct its index");
+    }
+    if (source->source == -1) return refuse(number, "it names no image: export it as PNG or JPEG");
+    const Expected<Texels>& texels = decoded(source->source);
+    if (!texels) {
+        const tinygltf::Image* image = find(model_.images, source->source);
+        return refuse(image ? "'" + image_name(*image, source->source) + "'" : number, texels.error().what());
+    }
     scene::Texture texture;
     texture.width = texels->width;
     texture.height = texels->height;

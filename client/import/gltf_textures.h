@@ -1,7 +1,7 @@
 #pragma once
 
 #include <map>
-#include <optional>
+#include <string>
 #include <tuple>
 
 #include "client/import/gltf_document.h"
@@ -11,23 +11,24 @@
 namespace tessera::import {
 
 // Makes Texture objects on demand: one per image, sampler and colour space. Each image is decoded once, so an
-// image used both ways is two objects over one blob.
+// image used both ways is two objects over one blob. What cannot be used is a notice for each material.
 class GltfTextures {
   public:
     GltfTextures(const tinygltf::Model& model, SceneBuilder& builder) : model_(model), builder_(builder) {}
 
-    ObjectId texture(int index, TextureUse use);  // 0 for bad data
+    ObjectId texture(int index, TextureUse use, const std::string& material);  // 0 for bad data
 
   private:
     struct Texels {
         std::uint32_t width = 0, height = 0;
         scene::BlobRef blob;
     };
-    const std::optional<Texels>& decoded(int image);  // empty after a notice
+    const Expected<Texels>& decoded(int image);
+    Expected<Texels> decode(int image);
 
     const tinygltf::Model& model_;
     SceneBuilder& builder_;
-    std::map<int, std::optional<Texels>> images_;
+    std::map<int, Expected<Texels>> images_;
     std::map<std::tuple<int, scene::TexelFormat, scene::Wrap, scene::Wrap, scene::TextureFilter>, ObjectId>
         made_;
 };

@@ -86,12 +86,12 @@ struct ImportedScene {
 
 // glTF 2.0 (.gltf, .glb), PLY, X3D (.x3d), through assimp .obj and .stl, or .tessera, which is taken as it
 // was saved (names, attachments, shared transforms; only a camera is added). Of the others: a scene without
-// any light gets a soft sky, one without a camera gets one. A bad mesh or texture becomes a placeholder and a
-// notice. Photometric units of KHR_lights_punctual are taken one to one as radiometric ones (1 cd = 1 W/sr, 1
-// lx = 1 W/m2), as most renderers do. NotFound: no such file. InvalidInput: damaged, another format, an
-// unknown required extension, or nothing to draw; the message names file, object and remedy. Opens only files
-// inside the scene's own folder, and the environment. Any thread; reads, decodes and allocates on the
-// caller's.
+// any light gets a soft sky (surfaces that glow only faintly are none), one without a camera gets one. A bad
+// mesh or texture becomes a placeholder and a notice. Photometric units of KHR_lights_punctual are taken one
+// to one as radiometric ones (1 cd = 1 W/sr, 1 lx = 1 W/m2), as most renderers do. NotFound: no such file.
+// InvalidInput: damaged, another format, an unknown required extension, or nothing to draw; the message names
+// file, object and remedy. Opens only files inside the scene's own folder, and the environment. Any thread;
+// reads, decodes and allocates on the caller's.
 Expected<ImportedScene> import_scene(const std::filesystem::path& file, const ImportOptions& options = {});
 
 // The edit that brings the scene in. Root is created, or updated (name aside) where the scene already has

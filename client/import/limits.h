@@ -9,6 +9,7 @@ namespace tessera::import {
 
 inline constexpr std::uint64_t MaxFileBytes = 0xffffffffull;      // a GLB's own length field ends here
 inline constexpr std::uint64_t MaxElements = 1ull << 28;          // of one array: vertices or indices
+inline constexpr std::uint64_t MaxThinBodies = 1ull << 22;        // of one mesh: its points or lines
 inline constexpr std::uint64_t MaxUnbackedElements = 1ull << 20;  // of an array of zeros that no buffer backs
 inline constexpr std::uint64_t MaxDecodedBytes = 8ull << 30;      // of all arrays and texels together
 inline constexpr std::uint64_t MaxInstances = 4'000'000;          // geometries as placed

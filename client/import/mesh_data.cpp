@@ -100,7 +100,8 @@ std::vector<std::uint32_t> triangles_of_fan(std::span<const std::uint32_t> verti
 
 std::vector<std::string> check_and_repair(MeshData& mesh) {
     const std::size_t vertices = mesh.positions.size();
-    if (mesh.indices.size() % 3 != 0) mesh.indices.resize(mesh.indices.size() / 3 * 3);
+    const std::size_t beyond = mesh.indices.size() % 3;
+    mesh.indices.resize(mesh.indices.size() - beyond);
     if (mesh.indices.empty()) throw Error(ErrorCode::InvalidInput, "it has no triangles");
     for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
         if (mesh.indices[i] >= vertices) {
@@ -111,6 +112,9 @@ std::vector<std::string> check_and_repair(MeshData& mesh) {
     }
     if (!all_finite(mesh.positions)) throw Error(ErrorCode::InvalidInput, "some positions are not finite");
     std::vector<std::string> repairs;
+    if (beyond != 0)
+        repairs.push_back("its last " + std::to_string(beyond) +
+                          " vertices make no triangle and are left out");
     if (!mesh.normals.empty() && mesh.normals.size() != vertices) {
         drop_if_unusable(mesh.normals, vertices, "normals", repairs);
     }

@@ -65,9 +65,9 @@ scene::BlobRef SceneBuilder::blob(std::span<const std::byte> bytes) {
     if (bytes.empty()) return {};
     spend(bytes.size());
     auto made = std::make_shared<const scene::Blob>(bytes);
-    const auto [position, is_new] = blobs_.emplace(made->hash(), scene::reference(*made));
+    const auto [position, is_new] = blobs_.emplace(made->hash(), made);
     if (is_new) result_.blobs.push_back(std::move(made));
-    return position->second;
+    return scene::reference(*position->second);
 }
 
 void SceneBuilder::spend(std::uint64_t bytes) {

@@ -29,11 +29,16 @@ class SceneBuilder {
         return std::get<T>(result_.objects[id.value - options_.first_id.value].object);
     }
 
+    const scene::Object& object(ObjectId id) const {
+        return result_.objects[id.value - options_.first_id.value].object;
+    }
+
     template <class T>
     scene::BlobRef blob(const std::vector<T>& values) {
         return blob(std::as_bytes(std::span(values)));
     }
     scene::BlobRef blob(std::span<const std::byte> bytes);  // empty gives an empty reference
+    const scene::Blob& stored(const scene::BlobRef& blob) const { return *blobs_.at(blob.hash); }
 
     // Counts what is decoded without becoming a blob.
     void spend(std::uint64_t bytes);
@@ -57,7 +62,7 @@ class SceneBuilder {
     std::set<std::pair<scene::ObjectKind, std::string>> names_;
     std::map<std::pair<scene::ObjectKind, std::string>, std::uint64_t> last_suffix_;
     std::map<scene::ObjectKind, std::uint64_t> added_;
-    std::unordered_map<Hash256, scene::BlobRef> blobs_;
+    std::unordered_map<Hash256, scene::BlobPtr> blobs_;
     std::unordered_map<ObjectId, Bounds> bounds_;
     std::set<std::string> notices_;
     std::uint64_t decoded_bytes_ = 0;

@@ -13,7 +13,7 @@ namespace {
 
 class Walk {
   public:
-    explicit Walk(SceneBuilder& builder) : builder_(builder) {}
+    explicit Walk(SceneBuilder& builder) : builder_(builder), survey_{.glow = Glow(builder)} {}
 
     Survey run() {
         enter(builder_.result().root.children, glm::dmat4(1.0));
@@ -79,9 +79,7 @@ class Walk {
         }
     }
 
-    const scene::Object& object(ObjectId id) const {
-        return builder_.result().objects[id.value - builder_.options().first_id.value].object;
-    }
+    const scene::Object& object(ObjectId id) const { return builder_.object(id); }
 
     void place_geometry(ObjectId id, const glm::dmat4& world) {
         if (++builder_.result().counts.instances > MaxInstances) {
@@ -91,7 +89,10 @@ class Walk {
         survey_.bounds.add(builder_.bounds(id), world);
         const auto& geometry = builder_.get<scene::Geometry>(id);
         const auto shines = [&](ObjectId made_of) { return made_of && emits(object(made_of)); };
-        if (shines(geometry.material) || shines(geometry.medium)) emissive_.insert(id);
+        if (shines(geometry.material) || shines(geometry.medium)) {
+            emissive_.insert(id);
+            survey_.glow.place(id, world);
+        }
     }
 
     void place_camera(ObjectId id, const scene::Camera& camera, glm::dmat4 world) {
@@ -115,6 +116,8 @@ class Walk {
 }  // namespace
 
 bool emits(const scene::Object& made_of) {
+    if (const auto* material = std::get_if<scene::Material>(&made_of); material && material->unlit)
+        return false;
     return std::visit(
         [](const auto& value) {
             if constexpr (requires { value.emission; }) return value.emission != glm::vec3(0.0f);

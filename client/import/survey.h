@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "client/import/scene_builder.h"
+#include "client/import/glow.h"
 
 namespace tessera::import {
 
@@ -10,6 +10,7 @@ namespace tessera::import {
 struct Survey {
     Bounds bounds;                    // of all geometries as placed
     std::vector<CameraInfo> cameras;  // by object id, that is in file order
+    Glow glow;                        // of all emissive geometries as placed
 };
 
 // Fills the counts of instances, lights and emissive geometries. Takes geometries out of transforms that
@@ -19,7 +20,7 @@ struct Survey {
 // have no cycles.
 Survey survey(SceneBuilder& builder);
 
-// Of a material, surface shader or medium; other objects do not.
+// Of a material that is lit, a surface shader or a medium; other objects do not.
 bool emits(const scene::Object& made_of);
 
 // Whether what is placed so has a volume, and its inverse one that numbers can tell.

@@ -154,7 +154,7 @@ class Render {
         if (opened.first_id != plan_.view.import.first_id) {
             if (const auto code = import(opened.first_id)) return code;
         }
-        for (const std::string& notice : scene_.notices) log_.info(notice);
+        for (const std::string& notice : scene_.notices) log_.info(title + ": " + notice);
         return submit(entries(scene_, import::RootEntry::Update));
     }
 

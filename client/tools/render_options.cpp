@@ -149,6 +149,7 @@ Expected<void> set_filter(const RenderOptions& options, client::JobRequest& job)
 // One sample for each pixel of a larger picture, which the master bounds as any other.
 Expected<void> set_coverage(const RenderOptions& options, RenderPlan& plan) {
     constexpr std::uint64_t MaxSamples = 4096, DefaultSamples = 16, MaxEdge = 65536;
+    constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 28;  // that a master takes at a time
     const std::uint64_t samples = options.spp.value_or(DefaultSamples);
     if (samples == 0 || samples > MaxSamples) return wrong("--spp: between 1 and 4096");
     plan.coverage = sample_grid(static_cast<std::uint32_t>(samples));
@@ -160,6 +161,10 @@ Expected<void> set_coverage(const RenderOptions& options, RenderPlan& plan) {
                      "; choose fewer, or a smaller --size");
     }
     spread(plan.view.view, *plan.coverage);
+    if (plan.view.view.window.pixel_count() > MaxPixels)
+        return wrong(
+            "--spp: every sample is a pixel of a picture, which would have more than 2^28; choose "
+            "fewer, a smaller --size, or a part with --crop");
     plan.view.view.renderer = view::Renderer::Coverage;
     plan.view.view.channels = {frame::Channel::ObjectIndex};
     if (!plan.outputs.empty()) plan.view.view.channels.insert(frame::Channel::Color);

@@ -82,8 +82,9 @@ Expected<Rect> parse_crop(std::string_view text, Size picture) {
     }
     const Rect crop{values[0], values[1], values[2], values[3]};
     const std::int64_t right = std::int64_t{crop.x} + crop.width, bottom = std::int64_t{crop.y} + crop.height;
-    if (crop.x < 0 || crop.y < 0 || crop.width < 1 || crop.height < 1 || right > picture.width ||
-        bottom > picture.height) {
+    if (crop.width < 1 || crop.height < 1)
+        return wrong(text, "has no pixels; write X,Y,W,H, like 0,0,320,240");
+    if (crop.x < 0 || crop.y < 0 || right > picture.width || bottom > picture.height) {
         return wrong(text, "reaches outside the picture of " + std::to_string(picture.width) + "x" +
                                std::to_string(picture.height) + " pixels");
     }

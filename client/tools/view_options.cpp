@@ -37,6 +37,8 @@ Expected<void> set_optics(const ViewOptions& options, ViewPlan& plan) {
     return {};
 }
 
+constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 28;  // that a master takes at a time
+
 }  // namespace
 
 void ViewOptions::add_scene_to(cli::CommandLine& command) {
@@ -67,7 +69,9 @@ void ViewOptions::add_scene_to(cli::CommandLine& command) {
 
 void ViewOptions::add_to(cli::CommandLine& command) {
     add_scene_to(command);
-    command.option("--background", "uniform light from all around: linear R,G,B", background);
+    command.option("--background",
+                   "uniform light from all around: linear R,G,B (a soft sky where the scene has no light)",
+                   background);
     command.option("--env", "environment map, latitude-longitude .exr or .hdr", environment);
     command.option("--env-strength", "factor on the environment map", environment_strength);
     command.flag("--solid-glass", "glass of glTF files refracts although they tell of no volume",
@@ -103,6 +107,9 @@ Expected<ViewPlan> understand(const ViewOptions& options) {
         if (!crop) return wrong("--crop", crop.error());
         plan.view.window = *crop;
     }
+    if (plan.view.window.pixel_count() > MaxPixels)
+        return failure(ErrorCode::InvalidInput,
+                       "--size: more than 2^28 pixels; take fewer, or a part with --crop");
     if (options.background) {
         const auto color = parse_color(*options.background);
         if (!color) return wrong("--background", color.error());

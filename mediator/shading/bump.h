@@ -80,18 +80,19 @@ inline vec4 along_u(IN(EdgesInWorld) edges, IN(Mesh) mesh, uint set, uvec3 corne
     return vec4(along.x, along.y, along.z, -side);
 }
 
-// Slope of a height map along u and v: of the picture between its texels, over the width of one.
+// Slope of a height map along u and v: of the picture between its texels, over the width of one. Differences
+// come first: what is flat has slope 0, not what rounding leaves of two products.
 inline vec2 height_slope(IN(Scene) scene, IN(Texture) map, vec2 uv) {
     const vec2 size = vec2(float(map.width), float(map.height));
-    vec2 slope = vec2(0.0f);
+    vec2 rise = vec2(0.0f);
     KEEP_LOOP
     for (uint i = 0u; i < 4u; ++i) {
         const float side = (i & 1u) == 0u ? 0.5f : -0.5f;
         const vec2 step = i < 2u ? vec2(side / size.x, 0.0f) : vec2(0.0f, side / size.y);
         const float height = lookup(scene, map, uv + step).x * (2.0f * side);
-        slope += i < 2u ? vec2(height * size.x, 0.0f) : vec2(0.0f, height * size.y);
+        rise += i < 2u ? vec2(height, 0.0f) : vec2(0.0f, height);
     }
-    return slope;
+    return rise * size;
 }
 
 // As a gradient along the surface.

@@ -62,6 +62,21 @@ TEST(ViewOptions, AFailureNamesTheOption) {
     EXPECT_NE(std::string(understand(options).error().what()).find("--crop"), std::string::npos);
 }
 
+TEST(ViewOptions, MorePixelsThanAMasterTakesAreRefusedHere) {
+    ViewOptions options{.scene = "a.glb", .size = "16385x16384"};
+    EXPECT_NE(std::string(understand(options).error().what()).find("--size: more than 2^28"),
+              std::string::npos);
+    options.crop = "0,0,16384,16384";
+    EXPECT_TRUE(understand(options));
+    RenderOptions coverage;
+    coverage.coverage = true;
+    coverage.view = {.scene = "a.glb", .size = "4000x4000"};
+    coverage.spp = 64;
+    const auto plan = understand(coverage);
+    ASSERT_FALSE(plan);
+    EXPECT_NE(std::string(plan.error().what()).find("--spp: every sample is a pixel"), std::string::npos);
+}
+
 RenderOptions sequence_options() {
     RenderOptions options;
     options.view.scene = "a.glb";

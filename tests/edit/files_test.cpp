@@ -2,6 +2,7 @@
 #include "client/import/import.h"
 #include "client/import/tessera_format.h"
 #include "tests/edit/fake_target.h"
+#include "tests/import/animated_file.h"
 #include "tests/import/scene_file.h"
 
 namespace tessera::edit {
@@ -56,6 +57,21 @@ TEST_F(EditFiles, LoadBringsAFileInUnderATransform) {
     EXPECT_EQ(target_.labels.size(), 1u);
 }
 
+TEST_F(EditFiles, LoadPosesAFileAtATime) {
+    const std::string file = quoted(folder_.write("moving.glb", import::moving_file().glb()).string());
+    ASSERT_TRUE(target_.script("load " + file)) << target_.error();
+    EXPECT_EQ(target_.named<scene::Transform>("cart").matrix[3][0], 0.0) << "at rest";
+    FakeTarget posed;
+    ASSERT_TRUE(posed.script("load " + file + " at=1.5 in transforms/left")) << posed.error();
+    EXPECT_NEAR(posed.named<scene::Transform>("cart").matrix[3][0], 7.5, 1e-6) << "10 m in 2 s";
+    for (const char* wrong : {"at=soon", "at=", "at=nan", "1.5", "at=1.5s"}) {
+        EXPECT_FALSE(target_.script("load " + file + " " + wrong)) << wrong;
+        EXPECT_THAT(target_.error(), HasSubstr("write at=SECONDS")) << wrong;
+    }
+    EXPECT_FALSE(target_.script("load " + file + " at=1 at=2"));
+    EXPECT_THAT(target_.error(), HasSubstr("'at=2' is too much"));
+}
+
 TEST_F(EditFiles, TheSameFileTwiceIsThereTwice) {
     const std::string line = "load " + triangle() + "\n";
     ASSERT_TRUE(target_.script(line + line)) << target_.error();
@@ -72,7 +88,7 @@ TEST_F(EditFiles, AnEmptySceneGetsLightAndACamera) {
     ASSERT_TRUE(target_.script("load " + triangle())) << target_.error();
     const auto& root = *target_.scene().find_as<scene::Root>(scene::RootId);
     EXPECT_EQ(root.children.size(), 1u);
-    EXPECT_NE(target_.scene().find_as<scene::Background>(root.background)->color, glm::vec3(0.0f));
+    EXPECT_TRUE(target_.scene().find_as<scene::Background>(root.background)->environment) << "a soft sky";
     target_.named<scene::Camera>("framing");
 }
 

@@ -3,6 +3,7 @@
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/type_precision.hpp>
 
 #include "mediator/base/random.h"
 #include "tests/import/inspect.h"
@@ -39,6 +40,54 @@ Compressed compressed_square() {
     EXPECT_TRUE(encoder.EncodeMeshToBuffer(*mesh, &buffer).ok());
     return {std::string(buffer.data(), buffer.size()), mesh->attribute(position)->unique_id(),
             mesh->attribute(normal)->unique_id(), mesh->attribute(tex_coord)->unique_id()};
+}
+
+// A triangle whose corners follow joint 0, joint 1, and both of them alike.
+struct CompressedSkin {
+    std::string bytes;
+    std::uint32_t position = 0, joints = 0, weights = 0;  // unique ids
+};
+
+CompressedSkin compressed_skin() {
+    draco::TriangleSoupMeshBuilder builder;
+    builder.Start(1);
+    using draco::GeometryAttribute;
+    const int position = builder.AddAttribute(GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+    const int joints = builder.AddAttribute(GeometryAttribute::GENERIC, 4, draco::DT_UINT16);
+    const int weights = builder.AddAttribute(GeometryAttribute::GENERIC, 4, draco::DT_FLOAT32);
+    const glm::vec3 corners[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    const glm::u16vec4 joint_values[3] = {{0, 0, 0, 0}, {1, 0, 0, 0}, {1, 0, 0, 0}};
+    const glm::vec4 weight_values[3] = {{1, 0, 0, 0}, {1, 0, 0, 0}, {0.5f, 0.5f, 0, 0}};
+    const draco::FaceIndex face(0);
+    builder.SetAttributeValuesForFace(position, face, &corners[0], &corners[1], &corners[2]);
+    builder.SetAttributeValuesForFace(joints, face, &joint_values[0], &joint_values[1], &joint_values[2]);
+    builder.SetAttributeValuesForFace(weights, face, &weight_values[0], &weight_values[1], &weight_values[2]);
+    const std::unique_ptr<draco::Mesh> mesh = builder.Finalize();
+    draco::Encoder encoder;
+    draco::EncoderBuffer buffer;
+    EXPECT_TRUE(encoder.EncodeMeshToBuffer(*mesh, &buffer).ok());
+    return {std::string(buffer.data(), buffer.size()), mesh->attribute(position)->unique_id(),
+            mesh->attribute(joints)->unique_id(), mesh->attribute(weights)->unique_id()};
+}
+
+// The skin's second joint stands 10 m above the place where it was bound.
+SceneFile skin_file(const CompressedSkin& skin, const std::string& weights) {
+    SceneFile file;
+    const int view = file.view_of_bytes(skin.bytes);
+    const int of_joints = file.add("accessors", R"({"componentType":5123,"type":"VEC4","count":3})");
+    const int of_floats = file.add("accessors", R"({"componentType":5126,"type":"VEC3","count":3})");
+    const auto number = [](auto value) { return std::to_string(value); };
+    file.add("meshes", R"({"name":"arm","primitives":[{"attributes":{"POSITION":)" + number(of_floats) +
+                           R"(,"JOINTS_0":)" + number(of_joints) + R"(,"WEIGHTS_0":)" + number(of_joints) +
+                           R"(},"extensions":{"KHR_draco_mesh_compression":{"bufferView":)" + number(view) +
+                           R"(,"attributes":{"POSITION":)" + number(skin.position) + R"(,"JOINTS_0":)" +
+                           number(skin.joints) + weights + "}}}}]}");
+    file.add("nodes", R"({"mesh":0,"skin":0})");
+    file.add("nodes", "{}");
+    file.add("nodes", R"({"translation":[0,10,0]})");
+    file.add("skins", R"({"joints":[1,2]})");
+    file.add("scenes", R"({"nodes":[0,1,2]})");
+    return file;
 }
 
 // As exporters write it: accessors without buffer views, the data in the extension.
@@ -85,6 +134,28 @@ TEST(Draco, ACompressedMeshIsDecoded) {
         EXPECT_NEAR(glm::distance(glm::vec2(positions[i]), tex_coords[i]), 0.0f, 1e-2f);
     }
     EXPECT_NEAR(values<glm::vec3>(scene, mesh.normals)[0].z, 1.0f, 1e-2f);
+}
+
+TEST(Draco, JointsAndWeightsAreDecoded) {
+    const CompressedSkin skin = compressed_skin();
+    const TestFolder folder;
+    const std::string weights = R"(,"WEIGHTS_0":)" + std::to_string(skin.weights);
+    const ImportedScene scene = loaded(folder.write("scene.glb", skin_file(skin, weights).glb()));
+    expect_sound(scene);
+    for (const std::string& notice : scene.notices)
+        EXPECT_FALSE(notice.find("skin") != notice.npos) << notice;
+    std::vector<float> heights;
+    for (const glm::vec3& at : values<glm::vec3>(scene, all<scene::Geometry>(scene).front()->positions))
+        heights.push_back(at.y);
+    // (0, 0), (1, 0) and (0, 1), moved by none, all and half of 10 m.
+    EXPECT_THAT(heights, testing::UnorderedElementsAre(0.0f, 10.0f, 6.0f));
+}
+
+TEST(Draco, JointsWithoutWeightsAreAPlaceholder) {
+    const TestFolder folder;
+    const ImportedScene scene = loaded(folder.write("scene.glb", skin_file(compressed_skin(), "").glb()));
+    EXPECT_TRUE(has_notice(scene, "its Draco data lacks WEIGHTS_0"));
+    EXPECT_EQ(scene.counts.placeholders, 1u);
 }
 
 TEST(Draco, AnAttributeThatIsNotThereIsAPlaceholder) {

@@ -376,12 +376,11 @@ TEST(GltfHostile, AChainOfScalesThatOverflowsIsCut) {
 TEST(GltfHostile, NothingToDrawIsAnError) {
     EXPECT_THAT(error_of("scene.gltf", R"({"asset":{"version":"2.0"}})").what(),
                 HasSubstr("nothing to draw"));
-    SceneFile points;
-    const int at = points.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
-    points.add("meshes",
-               R"({"primitives":[{"mode":0,"attributes":{"POSITION":)" + std::to_string(at) + "}}]}");
-    points.add("nodes", R"({"mesh":0})");
-    EXPECT_THAT(error_of("scene.glb", points.glb()).what(), HasSubstr("nothing to draw"));
+    SceneFile empty;
+    empty.add("meshes", R"({"name":"hull","primitives":[]})");
+    empty.add("nodes", R"({"mesh":0})");
+    EXPECT_THAT(error_of("scene.glb", empty.glb()).what(),
+                HasSubstr("no triangles (mesh 'hull' has no list of primitives): there is nothing to draw"));
 }
 
 TEST(GltfHostile, InstancesOutOfNothingAreNotMade) {

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "tests/import/inspect.h"
@@ -80,15 +81,37 @@ TEST(GltfMesh, StripsAndFansKeepTheWinding) {
     }
 }
 
-TEST(GltfMesh, PointsAndLinesAreLeftOutWithANotice) {
-    SceneFile file;
-    const int at = file.positions(square());
-    const std::string both = primitive(attribute("POSITION", at), R"(,"mode":1)") + "," +
-                             primitive(attribute("POSITION", at), R"(,"mode":5)");
-    const ImportedScene scene = scene_of(file, both);
-    EXPECT_TRUE(has_notice(scene, "points and lines are not drawn"));
-    EXPECT_EQ(scene.counts.geometries, 1u);
-    EXPECT_EQ(scene.counts.triangles, 2u);
+// Octahedra of 4/3 r^3 and prisms of 3 sqrt(3)/4 r^2 a metre, r = 0.2 % of the diagonal; their volume is
+// positive where all faces look outwards.
+TEST(GltfMesh, PointsAndLinesAreThinBodies) {
+    const double r = 0.002 * std::sqrt(2.0), octahedron = 4.0 / 3.0 * r * r * r;
+    const double prism = 0.75 * std::sqrt(3.0) * r * r;
+    const struct {
+        int mode;
+        std::uint64_t triangles;
+        double volume;
+    } Cases[] = {{0, 32, 4.0 * octahedron}, {1, 16, 2.0 * prism}, {2, 32, 4.0 * prism}, {3, 24, 3.0 * prism}};
+    for (const auto& expected : Cases) {
+        SCOPED_TRACE(expected.mode);
+        SceneFile file;
+        const int at = file.positions({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+        const ImportedScene scene = scene_of(
+            file, primitive(attribute("POSITION", at), ",\"mode\":" + std::to_string(expected.mode)));
+        EXPECT_TRUE(has_notice(scene, "mesh 'it': its points and lines are drawn as thin bodies"));
+        EXPECT_EQ(scene.counts.triangles, expected.triangles);
+        EXPECT_EQ(scene.counts.degenerate_triangles, 0u);
+        const Geometry& mesh = named<Geometry>(scene, "it");
+        const auto indices = values<std::uint32_t>(scene, mesh.indices);
+        const auto positions = values<glm::vec3>(scene, mesh.positions);
+        double volume = 0.0;
+        for (std::size_t i = 0; i < indices.size(); i += 3) {
+            const glm::dvec3 a(positions[indices[i]]), b(positions[indices[i + 1]]),
+                c(positions[indices[i + 2]]);
+            volume += glm::dot(a, glm::cross(b, c)) / 6.0;
+        }
+        // Positions are rounded to 2^-24 of a metre, r is 2.8 mm: 6e-5 of r, in the volume up to three times.
+        EXPECT_NEAR(volume, expected.volume, 2e-4 * expected.volume);
+    }
 }
 
 TEST(GltfMesh, ReadsInterleavedAndNormalizedIntegers) {

@@ -61,7 +61,9 @@ TEST(TestModels, EveryPrimitiveMode) {
             text.find("\"mode\": 0") != text.npos || text.find("\"mode\": 1") != text.npos ||
             text.find("\"mode\": 2") != text.npos || text.find("\"mode\": 3") != text.npos;
         if (points_or_lines) {
-            expect_refused(name, "nothing to draw");
+            const ImportedScene scene = sound(name);
+            EXPECT_TRUE(has_notice(scene, "points and lines are drawn as thin bodies"));
+            EXPECT_EQ(scene.counts.placeholders, 0u);
         } else {
             EXPECT_EQ(sound(name).counts.triangles, 2u);
         }
@@ -92,7 +94,9 @@ TEST(TestModels, CamerasAndTextureTransforms) {
 TEST(TestModels, WhatIsNotSupportedIsNoticed) {
     EXPECT_TRUE(has_notice(sound("glTF2/BoxTextured-glTF-pbrSpecularGlossiness/BoxTextured.gltf"),
                            "KHR_materials_pbrSpecularGlossiness is ignored"));
-    EXPECT_EQ(sound("glTF2/ClearCoat-glTF/ClearCoatTest.gltf").counts.placeholders, 0u);
+    const ImportedScene coats = sound("glTF2/ClearCoat-glTF/ClearCoatTest.gltf");
+    EXPECT_EQ(coats.counts.placeholders, 0u);
+    EXPECT_TRUE(has_notice(coats, "no light but what glows faintly")) << "its labels";
 }
 
 TEST(TestModels, BadMeshesArePlaceholders) {
@@ -100,11 +104,21 @@ TEST(TestModels, BadMeshesArePlaceholders) {
     EXPECT_EQ(sound("glTF2/IndexOutOfRange/AllIndicesOutOfRange.gltf").counts.placeholders, 1u);
     EXPECT_EQ(sound("glTF2/BoxWithInfinites-glTF-Binary/BoxWithInfinites.glb").counts.placeholders, 1u);
     EXPECT_EQ(sound("glTF2/BoxBadNormals-glTF-Binary/BoxBadNormals.glb").counts.triangles, 12u);
-    sound("glTF2/IncorrectVertexArrays/Cube.gltf");
+    EXPECT_TRUE(has_notice(sound("glTF2/IncorrectVertexArrays/Cube.gltf"),
+                           "mesh 'TruncatedCube': its last 2 vertices make no triangle"));
+}
+
+TEST(TestModels, ValuesOfWrongTypesAreToldOrRefused) {
+    const std::string folder = "glTF2/wrongTypes/bad";
+    EXPECT_TRUE(has_notice(sound(folder + "Extension.gltf"), "KHR_texture_transform is \"Not an object\""));
+    EXPECT_TRUE(has_notice(sound(folder + "Number.gltf"), "material 'Texture': normalTexture is "));
+    EXPECT_TRUE(has_notice(sound(folder + "Object.gltf"), "pbrMetallicRoughness is [\"not an object\"]"));
+    EXPECT_TRUE(has_notice(sound(folder + "Uint.gltf"), "baseColorTexture is {\"index\":-1}"));
+    expect_refused(folder + "Array.gltf", "mesh 'Mesh' has no list of primitives");
 }
 
 TEST(TestModels, FilesThatCannotBeReadAreOneClearError) {
-    expect_refused("glTF2/RecursiveNodes/RecursiveNodes.gltf", "nothing to draw");
+    expect_refused("glTF2/RecursiveNodes/RecursiveNodes.gltf", "inside itself");
     expect_refused("glTF2/TestNoRootNode/NoScene.gltf", "nothing to draw");
     expect_refused("glTF2/TestNoRootNode/SceneWithoutNodes.gltf", "nothing to draw");
     expect_refused("glTF2/MissingBin/BoxTextured.gltf", "there is no file 'BoxTextured0.bin'");
@@ -156,6 +170,24 @@ TEST(TestModels, EveryObjAndPlyEndsInASoundSceneOrAnError) {
         }
     }
     EXPECT_GT(files, 30);
+}
+
+TEST(ObjFile, BadValuesAreToldAndTheirDefaultsStand) {
+    const TestFolder folder;
+    folder.write("a.mtl", "newmtl odd\nKd 2 0 0\nd -1\nKe -1 0 0\nKs 1 1 1\nNs -5\nmap_Kd lost.png\n");
+    const ImportedScene scene = loaded(folder.write(
+        "a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl odd\nf 1/1 2/1 3/1\n"));
+    expect_sound(scene);
+    for (const char* told :
+         {"diffuse colour is 2 0 0, outside 0 to 1: its default", "opacity is -1, outside 0 to 1",
+          "emission is -1 0 0, outside 0 to", "shininess is -5, outside 0 to"}) {
+        EXPECT_TRUE(has_notice(scene, std::string("material 'odd': its ") + told));
+    }
+    EXPECT_TRUE(has_notice(scene, "material 'odd': texture 'lost.png' cannot be used"));
+    const scene::Material& odd = named<scene::Material>(scene, "odd");
+    EXPECT_EQ(odd.base_color, glm::vec4(0.8f, 0.8f, 0.8f, 1.0f));
+    EXPECT_EQ(odd.emission, glm::vec3(0.0f));
+    EXPECT_EQ(odd.roughness, 1.0f);
 }
 
 TEST(ObjFile, MaterialsAndTexturesStayInsideTheFolder) {

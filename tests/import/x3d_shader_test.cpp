@@ -189,6 +189,18 @@ TEST(X3dSurfaceShader, AHighlightLongerThanWideHasTangents) {
     EXPECT_FALSE(has_tangents("2 2"));
 }
 
+// Of a sphere of radius 1, with both sides: pi L 2 A / (4 pi R^2) in the sphere around its box, R^2 = 3, so
+// about 2.1 L against 0.2 (Glow).
+TEST(X3dMaterial, WhatGlowsFaintlyIsNoLight) {
+    EXPECT_TRUE(has_notice(read_appearance("<Material emissiveColor='0.05 0.05 0.05'/>"),
+                           "no light but what glows faintly"));
+    for (const char* shining :
+         {"<Material emissiveColor='0.2 0.2 0.2'/>", "<CommonSurfaceShader emissionFactor='0.2 0.2 0.2'/>",
+          "<Material/><CommonVolumeShader emissionFactor='0.01 0 0'/>"}) {
+        EXPECT_FALSE(has_notice(read_appearance(shining), "soft sky")) << shining;
+    }
+}
+
 TEST(X3dMaterial, DefaultsAndFields) {
     const auto plain = only<scene::SurfaceShader>(read_appearance("<Material/>"));
     EXPECT_THAT(differences(plain, scene::SurfaceShader{}),

@@ -66,7 +66,7 @@ LIBRARIES = [
     (r"zmq.*\.h(pp)?$", ["mediator/net/", "tests/net/"], EVERYWHERE),
     (r"sodium", ["mediator/base/"], SOURCES),
     (r"google/protobuf/|.*\.pb\.h$", ["mediator/wire/", "tests/wire/"], EVERYWHERE),
-    (r"(spdlog|CLI|nlohmann|toml\+\+)/", PROGRAMS + ["client/display_file/", "tests/"], SOURCES),
+    (r"(spdlog|CLI|nlohmann|toml\+\+)/", PROGRAMS + ["client/display_file/", "client/import/", "tests/"], SOURCES),
     (r"embree\d/", ["backends/embree/", "backends/vulkan/bvh/", "tests/bvh/"], EVERYWHERE),
     (r"vulkan/", ["backends/vulkan/", "client/tools/", "tests/vulkan/"], EVERYWHERE),
     (r"(OpenEXR/|Imath/)?(Imf|Imath|Iex|half)\w*\.h$", ["mediator/picture/", "client/import/", "tests/"],

@@ -1,0 +1,258 @@
+#include "client/import/gltf_material_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <span>
+
+namespace tessera::import {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t MostNotices = 64;  // a hostile file does not make an endless list
+
+enum class Type { Number, Pair, Color, ColorAndAlpha, WholeNumber, Flag, AlphaMode, Object, Texture };
+
+struct Range {
+    double lowest = 0.0, highest = 1.0;
+};
+constexpr Range Unit{};
+constexpr Range NotNegative{0.0, 1e12};
+constexpr Range Positive{1e-12, 1e12};
+constexpr Range Any{-1e6, 1e6};  // beyond, texture coordinates have no digits left
+constexpr Range Index{1.0, 100.0};
+constexpr Range Scale{-1e3, 1e3};
+constexpr Range Whole{0.0, 2147483647.0};
+
+// A member, its owners before it. Owners have rules of their own, above.
+struct Rule {
+    const char* path;
+    Type type;
+    Range range{};
+};
+
+constexpr Rule OfMaterials[] = {
+    {"pbrMetallicRoughness", Type::Object},
+    {"pbrMetallicRoughness/baseColorFactor", Type::ColorAndAlpha, Unit},
+    {"pbrMetallicRoughness/baseColorTexture", Type::Texture},
+    {"pbrMetallicRoughness/metallicFactor", Type::Number, Unit},
+    {"pbrMetallicRoughness/roughnessFactor", Type::Number, Unit},
+    {"pbrMetallicRoughness/metallicRoughnessTexture", Type::Texture},
+    {"normalTexture", Type::Texture},
+    {"occlusionTexture", Type::Texture},
+    {"emissiveFactor", Type::Color, NotNegative},
+    {"emissiveTexture", Type::Texture},
+    {"alphaMode", Type::AlphaMode},
+    {"alphaCutoff", Type::Number, NotNegative},
+    {"doubleSided", Type::Flag},
+    {"extensions", Type::Object},
+    {"extensions/KHR_materials_emissive_strength", Type::Object},
+    {"extensions/KHR_materials_emissive_strength/emissiveStrength", Type::Number, NotNegative},
+    {"extensions/KHR_materials_unlit", Type::Object},
+    {"extensions/KHR_materials_ior", Type::Object},
+    {"extensions/KHR_materials_ior/ior", Type::Number, Index},
+    {"extensions/KHR_materials_transmission", Type::Object},
+    {"extensions/KHR_materials_transmission/transmissionFactor", Type::Number, Unit},
+    {"extensions/KHR_materials_transmission/transmissionTexture", Type::Texture},
+    {"extensions/KHR_materials_volume", Type::Object},
+    {"extensions/KHR_materials_volume/thicknessFactor", Type::Number, NotNegative},
+    {"extensions/KHR_materials_volume/attenuationDistance", Type::Number, Positive},
+    {"extensions/KHR_materials_volume/attenuationColor", Type::Color, Unit},
+    {"extensions/KHR_materials_specular", Type::Object},
+    {"extensions/KHR_materials_specular/specularFactor", Type::Number, Unit},
+    {"extensions/KHR_materials_specular/specularTexture", Type::Texture},
+    {"extensions/KHR_materials_specular/specularColorFactor", Type::Color, NotNegative},
+    {"extensions/KHR_materials_specular/specularColorTexture", Type::Texture},
+    {"extensions/KHR_materials_clearcoat", Type::Object},
+    {"extensions/KHR_materials_clearcoat/clearcoatFactor", Type::Number, Unit},
+    {"extensions/KHR_materials_clearcoat/clearcoatTexture", Type::Texture},
+    {"extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor", Type::Number, Unit},
+    {"extensions/KHR_materials_clearcoat/clearcoatRoughnessTexture", Type::Texture},
+    {"extensions/KHR_materials_clearcoat/clearcoatNormalTexture", Type::Texture},
+    {"extensions/KHR_materials_sheen", Type::Object},
+    {"extensions/KHR_materials_sheen/sheenColorFactor", Type::Color, Unit},
+    {"extensions/KHR_materials_sheen/sheenColorTexture", Type::Texture},
+    {"extensions/KHR_materials_sheen/sheenRoughnessFactor", Type::Number, Unit},
+    {"extensions/KHR_materials_sheen/sheenRoughnessTexture", Type::Texture},
+    {"extensions/KHR_materials_anisotropy", Type::Object},
+    {"extensions/KHR_materials_anisotropy/anisotropyStrength", Type::Number, Unit},
+    {"extensions/KHR_materials_anisotropy/anisotropyRotation", Type::Number, Any},
+    {"extensions/KHR_materials_anisotropy/anisotropyTexture", Type::Texture},
+    {"extensions/KHR_materials_iridescence", Type::Object},
+    {"extensions/KHR_materials_iridescence/iridescenceFactor", Type::Number, Unit},
+    {"extensions/KHR_materials_iridescence/iridescenceTexture", Type::Texture},
+    {"extensions/KHR_materials_iridescence/iridescenceIor", Type::Number, Index},
+    {"extensions/KHR_materials_iridescence/iridescenceThicknessMinimum", Type::Number, NotNegative},
+    {"extensions/KHR_materials_iridescence/iridescenceThicknessMaximum", Type::Number, NotNegative},
+    {"extensions/KHR_materials_iridescence/iridescenceThicknessTexture", Type::Texture},
+};
+
+constexpr Rule OfTextures[] = {
+    {"texCoord", Type::WholeNumber, Whole},
+    {"scale", Type::Number, Scale},
+    {"strength", Type::Number, Unit},
+    {"extensions", Type::Object},
+    {"extensions/KHR_texture_transform", Type::Object},
+    {"extensions/KHR_texture_transform/offset", Type::Pair, Any},
+    {"extensions/KHR_texture_transform/rotation", Type::Number, Any},
+    {"extensions/KHR_texture_transform/scale", Type::Pair, Any},
+    {"extensions/KHR_texture_transform/texCoord", Type::WholeNumber, Whole},
+};
+
+bool is_whole(const json& value) {
+    return value.is_number_integer() && value >= 0 && value <= Whole.highest;
+}
+
+std::string outside(Range range) {
+    char text[64];
+    std::snprintf(text, sizeof text, "outside %g to %g", range.lowest, range.highest);
+    return text;
+}
+
+std::string numbers_wrong(const json& value, std::size_t count, Range range) {
+    if (!value.is_array() || value.size() != count) return "no " + std::to_string(count) + " numbers";
+    for (const json& number : value) {
+        if (!number.is_number()) return "no " + std::to_string(count) + " numbers";
+        const double it = number;
+        if (!(it >= range.lowest && it <= range.highest)) return outside(range);
+    }
+    return "";
+}
+
+// Why a value cannot be used; "" = it can.
+std::string wrong(const json& value, const Rule& rule) {
+    switch (rule.type) {
+        case Type::Number:
+            if (!value.is_number()) return "no number";
+            // KHR_materials_ior: 0 is a surface that reflects everything.
+            if (rule.path == std::string_view("extensions/KHR_materials_ior/ior") && value == 0.0) return "";
+            return numbers_wrong(json::array({value}), 1, rule.range);
+        case Type::Pair:
+            return numbers_wrong(value, 2, rule.range);
+        case Type::Color:
+            return numbers_wrong(value, 3, rule.range);
+        case Type::ColorAndAlpha:
+            return numbers_wrong(value, 4, rule.range);
+        case Type::WholeNumber:
+            return is_whole(value) ? "" : "no whole number from 0 on";
+        case Type::Flag:
+            return value.is_boolean() ? "" : "neither true nor false";
+        case Type::AlphaMode:
+            return value == "OPAQUE" || value == "MASK" || value == "BLEND"
+                       ? ""
+                       : "none of OPAQUE, MASK and BLEND";
+        case Type::Object:
+            return value.is_object() ? "" : "no object";
+        case Type::Texture:
+            return value.is_object() && value.contains("index") && is_whole(value["index"])
+                       ? ""
+                       : "no object whose index is a whole number";
+    }
+    return "";
+}
+
+class Check {
+  public:
+    explicit Check(json& materials) : materials_(materials) {}
+
+    bool changed() const { return changed_; }
+
+    std::vector<std::string> run() {
+        for (std::size_t i = 0; i < materials_.size(); ++i) {
+            json& material = materials_[i];
+            name_ = "material " + std::to_string(i);
+            if (!material.is_object()) {
+                tell("", material, "no object");
+                material = json::object();
+                continue;
+            }
+            if (const auto name = material.find("name");
+                name != material.end() && name->is_string() && !name->get_ref<const std::string&>().empty())
+                name_ = "material '" + name->get<std::string>().substr(0, 100) + "'";
+            check(material, OfMaterials, "");
+            tell_of_brightness(material);
+        }
+        if (others_ > 0) notices_.push_back(std::to_string(others_) + " other wrong values of materials");
+        return std::move(notices_);
+    }
+
+  private:
+    void check(json& object, std::span<const Rule> rules, const std::string& owner) {
+        for (const Rule& rule : rules) {
+            const json::json_pointer pointer("/" + std::string(rule.path));
+            if (!object.contains(pointer)) continue;
+            json& value = object[pointer];
+            const std::string path = owner + rule.path;
+            round(value, rule.range);
+            if (const std::string cause = wrong(value, rule); !cause.empty()) {
+                tell(path, value, cause);
+                object[pointer.parent_pointer()].erase(pointer.back());
+            } else if (rule.type == Type::Texture) {
+                check(value, OfTextures, path + "/");
+            }
+        }
+    }
+
+    // What programs write for 0 or 1 in single precision is no mistake.
+    void round(json& value, Range range) {
+        if (value.is_array()) {
+            for (json& number : value) round(number, range);
+        } else if (value.is_number_float()) {
+            const double it = value, near = std::clamp(it, range.lowest, range.highest);
+            if (it == near || !(std::abs(it - near) < 1e-6)) return;
+            value = near;
+            changed_ = true;
+        }
+    }
+
+    void tell_of_brightness(const json& material) {
+        const auto factor = material.find("emissiveFactor");
+        if (factor == material.end()) return;
+        for (const json& number : *factor) {
+            if (number <= 1.0) continue;
+            return add("emissiveFactor is " + shown(*factor) +
+                       ", above 1: it is taken as it is, write KHR_materials_emissive_strength");
+        }
+    }
+
+    void tell(const std::string& field, const json& value, const std::string& cause) {
+        changed_ = true;
+        add((field.empty() ? "it" : field) + " is " + shown(value) + ", " + cause +
+            ": its default is used, correct it");
+    }
+
+    void add(const std::string& what) {
+        if (notices_.size() < MostNotices) {
+            notices_.push_back(name_ + ": " + what);
+        } else {
+            ++others_;
+        }
+    }
+
+    static std::string shown(const json& value) {
+        const std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
+        return text.size() <= 60 ? text : text.substr(0, 57) + "...";
+    }
+
+    json& materials_;
+    std::string name_;
+    std::vector<std::string> notices_;
+    std::size_t others_ = 0;
+    bool changed_ = false;
+};
+
+}  // namespace
+
+CheckedMaterials check_gltf_materials(std::string_view text) {
+    json materials = json::parse(text, nullptr, false);
+    if (materials.is_discarded() || !materials.is_array()) return {};
+    CheckedMaterials checked;
+    Check check(materials);
+    checked.notices = check.run();
+    if (check.changed()) checked.json = materials.dump(-1, ' ', false, json::error_handler_t::replace);
+    return checked;
+}
+
+}  // namespace tessera::import
