@@ -7,7 +7,6 @@ namespace {
 // What of a material is not drawn, or nothing.
 std::string left_out(const scene::Object& object) {
     if (const auto* material = std::get_if<scene::Material>(&object)) {
-        if (material->iridescence > 0.0f) return "its iridescence is not drawn";
         if (material->transmission > 0.0f && material->attenuation_distance > 0.0f &&
             material->thickness > 0.0f) {
             return "its body does not dim light, only its surface does";

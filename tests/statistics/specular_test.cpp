@@ -236,7 +236,8 @@ TEST(Mirror, AClosedBodyOfMirrorsEnds) {
 TEST(Materials, WhatIsNotDrawnIsToldOnce) {
     Model model;
     scene::Material bubble = glass(1.5f);
-    bubble.iridescence = 0.5f;
+    bubble.thickness = 0.1f;
+    bubble.attenuation_distance = 0.5f;
     bubble.name = "bubble";
     const ObjectId material = model.material(bubble);
     model.floor(material, 1.0f, 0.0f);
