@@ -129,8 +129,8 @@ inline void put(INOUT(Outputs) y, IN(ThinFilm) value) {
 // Cosines of phases, beside their size.
 inline void put(INOUT(Outputs) y, IN(FilmLight) value) {
     put(y, 1.0f + value.amplitude);
-    put(y, value.reflectance);
-    put(y, value.weight);
+    put(y, 1.0f + value.reflectance);
+    put(y, 1.0f + value.weight);
     put(y, 4.0f + value.once);
     put(y, 4.0f + value.twice);
 }
@@ -234,8 +234,11 @@ inline void put(INOUT(Outputs) y, IN(Refraction) value) {
     put(y, value.direction);
 }
 
+// Denser than air: what light along a boundary of nearly nothing does is decided by the last bit of its
+// index.
 inline ThinFilm film_of(IN(Inputs) x) {
-    return make_film(0.2f + 0.8f * x.u.x, 0.5f + 0.5f * x.metallic, 1.0f + 1.5f * x.u.y, 800.0f * x.v.x);
+    return make_film(0.2f + 0.8f * x.u.x, 0.5f + 0.5f * x.metallic, 1.1f + 1.5f * x.u.y,
+                     50.0f + 800.0f * x.v.x);
 }
 
 // A material with all lobes, and the boundary of glass; each half of the inputs with its own side.
