@@ -212,6 +212,61 @@ TEST(Energy, FilmsOverWhiteLoseLittleAndAddNothing) {
     EXPECT_LT(lost / count, 0.06);
 }
 
+// Below a coat there is the lesser of what it lets through on either way, and not both.
+TEST(Coat, DimsTheBaseByTheLesserOfBothWays) {
+    Look look = plain_look(vec3(1.0f), 0.0f, 0.6f, 0.0f, 1.5f, 1.5f);
+    look.lobes = FeatureCoat;
+    look.coat_roughness = 0.3f;
+    for (const float cosine : {0.9f, 0.4f}) {
+        const glm::vec3 out = towards(cosine), in = towards(0.7f, 2.9f);
+        const double bare = evaluate_bsdf(energy_table(), bsdf_of(look, out), out, in).diffuse.y;
+        look.coat = 0.75f;
+        const double dimmed = evaluate_bsdf(energy_table(), bsdf_of(look, out), out, in).diffuse.y;
+        look.coat = 0.0f;
+        const auto passes = [](float cos) {
+            const vec2 energy = lobe_energy(energy_table(), cos, 0.3f);
+            return 1.0 - 0.75 * (0.04 * double(energy.x) + double(energy.y));
+        };
+        EXPECT_NEAR(dimmed / bare, std::min(passes(cosine), passes(0.7f)), 1e-5) << cosine;
+    }
+}
+
+// A coat with a normal of its own is the coat of the frame around that normal.
+TEST(Coat, HasItsOwnNormal) {
+    Look look = plain_look(vec3(0.0f), 1.0f, 0.5f, 0.0f, 1.5f, 1.5f);
+    look.lobes = FeatureCoat;
+    look.coat = 1.0f;
+    look.coat_roughness = 0.5f;
+    const auto coat = [&](const glm::vec3& normal, const glm::vec3& out, const glm::vec3& in) {
+        look.coat_normal = normal;
+        BsdfValue value{};
+        add_coat(value, bsdf_of(look, out), out, in);
+        return double(value.value.y);
+    };
+    const glm::vec3 normal = towards(0.9f, 1.0f), up(0.0f, 0.0f, 1.0f);
+    const mat3 frame = frame_around(normal);
+    for (const float azimuth : {0.0f, 2.0f, 4.0f}) {
+        const glm::vec3 out = towards(0.8f, azimuth), in = towards(0.6f, azimuth + 2.5f);
+        const double there = coat(normal, out, in);
+        EXPECT_NEAR(there, coat(up, out * frame, in * frame), 1e-5 * there) << azimuth;
+        EXPECT_GT(std::fabs(there - coat(up, out, in)), 1e-2 * there) << azimuth;
+    }
+}
+
+// The projected areas of a sheen's fibres sum to that of the surface.
+TEST(Sheen, CoversTheSurface) {
+    for (const float alpha : {0.05f, 0.2f, 0.6f, 1.0f}) {
+        double sum = 0.0;
+        constexpr int Steps = 20'000;
+        for (int i = 0; i < Steps; ++i) {
+            const double sine = (i + 0.5) / Steps;  // cos sin d(angle) = sin d(sin)
+            const glm::vec3 h(float(sine), 0.0f, float(std::sqrt(1.0 - sine * sine)));
+            sum += double(sheen_distribution(h, alpha)) * sine * 2.0 * double(Pi) / Steps;
+        }
+        EXPECT_NEAR(sum, 1.0, 1e-3) << alpha;
+    }
+}
+
 // Light that goes through is not lost at the other side: from air into glass as from glass into air, with the
 // factor of solid angles, eta^2, that basic radiance leaves out.
 TEST(RoughGlass, IsTheSameTheOtherWayRound) {

@@ -83,6 +83,35 @@ TEST(ThinFilm, SensitivitiesAreThoseOfTheColourMatchingCurves) {
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(white[i], 1.0f, 1e-6f);
 }
 
+// Aslant the way down and up is shorter, by the cosine inside: n d cos = d sqrt(n^2 - sin^2).
+TEST(ThinFilm, IsThinnerAslant) {
+    for (const double cosine : {0.9, 0.5, 0.1}) {
+        const double inside = std::sqrt(1.0 - (1.0 - cosine * cosine) / (1.5 * 1.5));
+        const FilmLight aslant = film_light(make_film(1.0f, 1.0f, 1.5f, 400.0f), float(cosine));
+        const FilmLight straight = film_light(make_film(1.0f, 1.0f, 1.5f, float(400.0 * inside)), 1.0f);
+        for (int i = 0; i < 3; ++i) EXPECT_NEAR(aslant.once[i], straight.once[i], 1e-5f) << cosine;
+    }
+}
+
+// Half of a surface under a film is half of one and half of the other, whatever it is made of.
+TEST(ThinFilm, CoversItsShare) {
+    const auto fresnel = [](float strength, float metallic) {
+        shading::Look look =
+            shading::plain_look(glm::vec3(0.8f, 0.5f, 0.2f), metallic, 0.5f, 0.0f, 1.5f, 1.5f);
+        look.lobes = shading::FeatureIridescence;
+        look.film = make_film(strength, 1.0f, 1.8f, 330.0f);
+        const shading::Bsdf bsdf = test::make_bsdf(look, make_mixture(look), {0.6f, 0.0f, 0.8f});
+        return specular_fresnel(bsdf, 0.7f);
+    };
+    for (const float metallic : {0.0f, 0.4f, 1.0f}) {
+        const glm::vec3 none = fresnel(0.0f, metallic), all = fresnel(1.0f, metallic);
+        for (int i = 0; i < 3; ++i) {
+            EXPECT_NEAR(fresnel(0.3f, metallic)[i], 0.7f * none[i] + 0.3f * all[i], 1e-6f) << metallic;
+        }
+        EXPECT_GT(shading::largest(glm::abs(all - none)), 0.01f) << metallic;
+    }
+}
+
 // Light straight down, where Fresnel's and Schlick's reflectances are exact: the sum over all orders, by
 // complex amplitudes, for every wavelength.
 TEST(ThinFilm, ReflectsWhatAirysSumOverTheSpectrumSays) {
