@@ -174,6 +174,36 @@ TEST(ThinFilm, OfAirOrWithoutThicknessIsNone) {
     }
 }
 
+// Nor does it change any lobe, of facets at first and late or of the base: up to the steps that its means are
+// taken with.
+TEST(ThinFilm, WithoutThicknessChangesNoLobe) {
+    for (const float metallic : {0.0f, 1.0f}) {
+        shading::Look look = shading::plain_look(glm::vec3(0.3f), metallic, 0.9f, 0.0f, 1.5f, 1.5f);
+        look.specular = 0.5f;
+        const glm::vec3 out(0.6f, 0.0f, 0.8f);
+        const shading::Bsdf plain = test::make_bsdf(look, make_mixture(look), out);
+        look.lobes = shading::FeatureIridescence;
+        look.film = make_film(1.0f, look.specular, 1.8f, 0.0f);
+        const shading::Bsdf filmed = test::make_bsdf(look, make_mixture(look), out);
+        for (const float x : {-0.9f, -0.6f, 0.0f, 0.8f}) {
+            const glm::vec3 in(x, 0.0f, std::sqrt(1.0f - x * x));
+            const auto bare = evaluate_bsdf(test::energy_table(), plain, out, in);
+            const auto covered = evaluate_bsdf(test::energy_table(), filmed, out, in);
+            EXPECT_NEAR(covered.value.y / bare.value.y, 1.0f, 0.01f) << metallic << " " << x;
+        }
+    }
+}
+
+// KHR_materials_specular takes its share of what a film on a dielectric reflects.
+TEST(ThinFilm, OnADielectricIsWeighedAsItsSpecular) {
+    const FilmLight light = film_light(make_film(1.0f, 0.5f, 1.8f, 300.0f), 0.8f);
+    const glm::vec3 half = filmed_dielectric(make_film(1.0f, 0.5f, 1.8f, 300.0f), light, glm::vec3(0.02f));
+    const glm::vec3 all = filmed_dielectric(make_film(1.0f, 1.0f, 1.8f, 300.0f), light, glm::vec3(0.04f));
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(half[i], 0.5f * all[i], 1e-6f);
+    EXPECT_EQ(filmed_dielectric(make_film(1.0f, 0.0f, 1.8f, 300.0f), light, glm::vec3(0.0f)),
+              glm::vec3(0.0f));
+}
+
 // White metal loses nothing under any film, nor does anything at grazing angles.
 TEST(ThinFilm, TakesNothingFromWhite) {
     for (const float n : {1.0f, 1.3f, 2.0f, 100.0f}) {
