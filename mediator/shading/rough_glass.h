@@ -28,6 +28,12 @@ inline bool is_boundary(float eta) {
     return abs(eta - 1.0f) > NoBoundary;
 }
 
+// `cosine`: in air.
+SELDOM inline vec3 filmed_boundary(IN(RoughGlass) glass, float cosine, vec3 plain) {
+    const vec3 filmed = filmed_dielectric(glass.film, film_light(glass.film, cosine), glass.f0);
+    return plain + glass.film.strength * (filmed - plain);
+}
+
 // Fresnel's equations between other ends. Total reflection is total.
 inline vec3 bent_fresnel(IN(RoughGlass) glass, float cosine) {
     const float eta = glass.thin != 0u && glass.eta < 1.0f ? 1.0f / glass.eta : glass.eta;
@@ -40,9 +46,7 @@ inline vec3 bent_fresnel(IN(RoughGlass) glass, float cosine) {
     if (!(glass.film.strength > 0.0f)) return plain;
     // What goes back into the glass is, without loss, the same share as that of light on the other end of
     // the refracted way.
-    const float in_air = eta < 1.0f ? sqrt(refracted_cosine2(cosine, sine2, eta)) : cosine;
-    const vec3 filmed = filmed_dielectric(glass.film, film_light(glass.film, in_air), glass.f0);
-    return plain + glass.film.strength * (filmed - plain);
+    return filmed_boundary(glass, eta < 1.0f ? sqrt(refracted_cosine2(cosine, sine2, eta)) : cosine, plain);
 }
 
 // Probability of reflection among the two ways.

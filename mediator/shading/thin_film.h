@@ -47,7 +47,7 @@ inline vec3 film_colors(vec4 bands) {
 // Beyond this way down and up, in nanometres, nothing is left of the interference but its mean, 0.
 inline constexpr float LongestPath = 1e5f;
 
-inline FilmLight film_light(IN(ThinFilm) film, float cos_out) {
+SELDOM inline FilmLight film_light(IN(ThinFilm) film, float cos_out) {
     const float amplitude = (film.index - 1.0f) / (film.index + 1.0f);
     const float inside = sqrt(refracted_cosine2(cos_out, (1.0f - cos_out) * (1.0f + cos_out), film.index));
     const float path = lesser_of(2.0f * film.index * film.thickness * inside, LongestPath);
@@ -102,7 +102,7 @@ struct FilmMean {
     float f0, f90;
 };
 
-inline FilmMean film_mean(IN(ThinFilm) film, vec3 dielectric_f0, vec3 metal_f0) {
+SELDOM inline FilmMean film_mean(IN(ThinFilm) film, vec3 dielectric_f0, vec3 metal_f0) {
     const uint steps = 8u;
     FilmMean result = FilmMean(vec3(0.0f), vec3(0.0f), 0.0f, film.specular);
     KEEP_LOOP
