@@ -32,9 +32,6 @@ Expected<backend::EditReport> World::commit() {
     tables_ = backend::make_tables(shadow_.scene(), shadow_.lowered(), meshes_, *blobs_, pyramids_);
     mark_alpha_tested();
     backend::EditReport edit = backend::make_report(delta, meshes_, meshes, tables_);
-    for (std::string& problem : problems_.update(shadow_.scene(), delta)) {
-        edit.problems.push_back(std::move(problem));
-    }
     if (delta.everything || delta.instances_changed || delta.render_origin_changed ||
         meshes.count(backend::MeshStep::Rebuild) > 0) {
         rebuild_top();

@@ -38,7 +38,6 @@ class World {
     MeshScenes mesh_scenes_;
     backend::SceneTables tables_;
     SceneHandle top_;
-    backend::MaterialProblems problems_;
 };
 
 }  // namespace tessera::embree

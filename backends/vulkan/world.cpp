@@ -75,9 +75,6 @@ Expected<backend::EditReport> World::commit() {
         if (!delta.everything && !delta.instances_changed) {
             report.retransformed = static_cast<std::uint32_t>(delta.moved_instances.size());
         }
-        for (std::string& problem : problems_.update(shadow_.scene(), delta)) {
-            report.problems.push_back(std::move(problem));
-        }
         add_notes(cache_.take_notes(), report.problems);
         add_notes(device_->pipelines().take_notes(), report.problems);
         return report;

@@ -50,7 +50,6 @@ class World final {
     Trees trees_;
     Device* device_ = nullptr;
     std::unique_ptr<GpuScene> scene_;
-    backend::MaterialProblems problems_;
 };
 
 }  // namespace tessera::vulkan

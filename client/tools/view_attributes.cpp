@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <sstream>
+#include <vector>
 
 namespace tessera::tools {
 
@@ -12,16 +14,41 @@ namespace {
 
 constexpr const char* Camera = "tessera.camera.pose";
 constexpr const char* Optics = "tessera.camera.optics";  // where it is no pinhole: projection and lens
+// Where it moves while the shutter is open: 16 numbers for each step after the pose.
+constexpr const char* Motion = "tessera.camera.motion";
 constexpr const char* PathClassName = "tessera.pathClass";
+constexpr std::size_t MaxSteps = 256;  // of a motion that is read
 
-std::array<double, 20> numbers(const view::CameraPose& pose) {
-    std::array<double, 20> values{};
-    for (int i = 0; i < 16; ++i) values[static_cast<std::size_t>(i)] = pose.world_from_camera[i / 4][i % 4];
-    values[16] = pose.left;
-    values[17] = pose.right;
-    values[18] = pose.bottom;
-    values[19] = pose.top;
-    return values;
+void put(std::string& text, double value) {
+    std::array<char, 40> number{};
+    std::snprintf(number.data(), number.size(), "%s%.17g", text.empty() ? "" : " ", value);
+    text += number.data();
+}
+
+// Column by column.
+void put(std::string& text, const glm::dmat4& matrix) {
+    for (int i = 0; i < 16; ++i) put(text, matrix[i / 4][i % 4]);
+}
+
+bool get(std::istream& text, double& value) {
+    return (text >> value) && std::isfinite(value);
+}
+
+bool get(std::istream& text, glm::dmat4& matrix) {
+    for (int i = 0; i < 16; ++i) {
+        if (!get(text, matrix[i / 4][i % 4])) return false;
+    }
+    return true;
+}
+
+// Nothing where it is damaged.
+std::optional<std::vector<glm::dmat4>> motion_of(const std::string& attribute) {
+    std::istringstream text(attribute);
+    std::vector<glm::dmat4> steps;
+    while (!(text >> std::ws).eof()) {
+        if (steps.size() == MaxSteps || !get(text, steps.emplace_back())) return std::nullopt;
+    }
+    return steps;
 }
 
 }  // namespace
@@ -37,17 +64,18 @@ const char* name(view::PathClass path_class) {
 
 std::map<std::string, std::string> view_attributes(const view::View& view) {
     std::string pose;
-    for (const double value : numbers(view.camera)) {
-        std::array<char, 40> text{};
-        std::snprintf(text.data(), text.size(), "%s%.17g", pose.empty() ? "" : " ", value);
-        pose += text.data();
-    }
+    put(pose, view.camera.world_from_camera);
+    for (const double edge : {view.camera.left, view.camera.right, view.camera.bottom, view.camera.top})
+        put(pose, edge);
     std::map<std::string, std::string> attributes{{Camera, pose}, {PathClassName, name(view.path_class)}};
     if (!view.camera.is_pinhole()) {
         std::array<char, 120> text{};
         std::snprintf(text.data(), text.size(), "%d %.17g %.17g %d", int(view.camera.projection),
                       view.camera.lens_radius, view.camera.focus_distance, int(view.camera.aperture));
         attributes[Optics] = text.data();
+    }
+    if (!view.camera.motion.empty()) {
+        for (const glm::dmat4& step : view.camera.motion) put(attributes[Motion], step);
     }
     return attributes;
 }
@@ -62,16 +90,9 @@ Expected<view::View> view_from_attributes(const std::map<std::string, std::strin
     const auto pose = attributes.find(Camera);
     if (pose == attributes.end()) return wrong(Camera);
     std::istringstream text(pose->second);
-    std::array<double, 20> values{};
-    for (double& value : values) {
-        if (!(text >> value) || !std::isfinite(value)) return wrong(Camera);
-    }
-    for (int i = 0; i < 16; ++i)
-        view.camera.world_from_camera[i / 4][i % 4] = values[static_cast<std::size_t>(i)];
-    view.camera.left = values[16];
-    view.camera.right = values[17];
-    view.camera.bottom = values[18];
-    view.camera.top = values[19];
+    if (!get(text, view.camera.world_from_camera) || !get(text, view.camera.left) ||
+        !get(text, view.camera.right) || !get(text, view.camera.bottom) || !get(text, view.camera.top))
+        return wrong(Camera);
     if (const auto optics = attributes.find(Optics); optics != attributes.end()) {
         std::istringstream numbers_of(optics->second);
         int projection = 0, aperture = 0;
@@ -80,6 +101,11 @@ Expected<view::View> view_from_attributes(const std::map<std::string, std::strin
             return wrong(Optics);
         view.camera.projection = static_cast<scene::Projection>(projection);
         view.camera.aperture = static_cast<scene::Aperture>(aperture);
+    }
+    if (const auto motion = attributes.find(Motion); motion != attributes.end()) {
+        const auto steps = motion_of(motion->second);
+        if (!steps) return wrong(Motion);
+        view.camera.motion = *steps;
     }
     const auto& names = path_class_names();
     const auto path_class = attributes.find(PathClassName);

@@ -2,34 +2,6 @@
 
 namespace tessera::backend {
 
-namespace {
-
-// What of a material is not drawn, or nothing.
-std::string left_out(const scene::Object& object) {
-    if (const auto* material = std::get_if<scene::Material>(&object)) {
-        if (material->iridescence > 0.0f) return "its iridescence is not drawn";
-    }
-    return {};
-}
-
-}  // namespace
-
-std::vector<std::string> MaterialProblems::update(const scene::Scene& scene, const SceneDelta& delta) {
-    std::vector<std::string> problems;
-    if (delta.everything) told_.clear();
-    for (const ObjectId id : delta.materials) {
-        const scene::Object* object = scene.find(id);
-        const std::string what = object != nullptr ? left_out(*object) : std::string();
-        if (what.empty()) {
-            told_.erase(id);
-        } else if (told_.insert(id).second) {
-            problems.push_back(std::string(scene::name(scene::kind(*object))) + " " +
-                               std::to_string(id.value) + " '" + scene::name(*object) + "': " + what);
-        }
-    }
-    return problems;
-}
-
 EditReport make_report(const SceneDelta& delta, const MeshCatalog& meshes, const MeshCatalog::Result& changes,
                        const SceneTables& tables) {
     EditReport report{.entries = delta.entries,

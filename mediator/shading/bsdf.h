@@ -16,6 +16,7 @@
 //   diffuse   base colour / pi x (1 - S(i)) (1 - S(o)) / (1 - mean S), S(w) = what the dielectric interface
 //             reflects of light from w (Kelemen and Szirmay-Kalos 2001): white reflects all that comes in
 //   glass     rough boundary of two dielectrics, or of a thin wall; single scattering only
+// A thin film changes the Fresnel of specular and glass (thin_film.h); S is then that of a bound.
 // A layer passes the lesser of what it lets through on the way in and on the way out. Every lobe is
 // reciprocal; the sum never reflects more than comes in.
 // The lobes of CommonSurfaceShader are others, in shader_lobes.h: a surface has those or these.
@@ -24,7 +25,7 @@
 SHADING_BEGIN
 
 // Lobes that few surfaces have: bits of records.h's features.
-inline constexpr uint ExtraLobes = FeatureCoat | FeatureSheen | FeatureRoughGlass;
+inline constexpr uint ExtraLobes = FeatureCoat | FeatureSheen | FeatureRoughGlass | FeatureIridescence;
 
 inline constexpr float CoatF0 = 0.04f;
 
@@ -45,12 +46,13 @@ struct Look {
     vec3 coat_normal;
     vec3 sheen_color;
     float sheen_roughness;
+    ThinFilm film;  // of FeatureIridescence
 };
 
 inline Look plain_look(vec3 base_color, float metallic, float roughness, float transmission,
                        float index_of_refraction, float eta) {
     return Look(base_color, metallic, vec2(roughness * roughness), transmission, index_of_refraction, eta,
-                1.0f, vec3(1.0f), 0u, 0u, 0.0f, 0.0f, vec3(0.0f, 0.0f, 1.0f), vec3(0.0f), 0.0f);
+                1.0f, vec3(1.0f), 0u, 0u, 0.0f, 0.0f, vec3(0.0f, 0.0f, 1.0f), vec3(0.0f), 0.0f, no_film());
 }
 
 // What a surface consists of: shares that sum to 1. This file knows metal (rough), dielectric (opaque,
@@ -107,6 +109,7 @@ struct Bsdf {
     vec3 f0;                  // specular reflectance at normal incidence
     float f90;                // and at grazing: of all of its share
     float base_f0, base_f90;  // of the interface above the diffuse lobe
+    float dielectric, metal;  // shares of what is under a film, which the glass knows
     vec2 alpha;
     float roughness;    // by which the specular lobe's energy is looked up: of the smoother direction
     vec3 late;          // specular light from facet to facet: value / ((1 - E(i)) (1 - E(o)) cos(i))
@@ -114,7 +117,7 @@ struct Bsdf {
     float late_out;     // 1 - E(o), E = what the specular lobe would reflect if facets reflected all
     float base_out;     // (1 - S(o)) / (1 - mean S) / pi
     float glass_share;  // of rough glass
-    RoughGlass glass;
+    RoughGlass glass;   // its film is that of all the surface
     float coat, coat_alpha, coat_roughness, coat_out;  // share; what the coat lets pass to wo
     vec3 coat_normal;
     vec3 sheen;
@@ -139,7 +142,7 @@ inline bool has_rough_coat(IN(Bsdf) bsdf) {
 // Of the dielectric interface: (1 - S).
 inline float passes_interface(IN(Bsdf) bsdf, vec2 energy) {
     const float first = bsdf.base_f0 * energy.x + bsdf.base_f90 * energy.y;
-    return 1.0f - first - bsdf.base_late * (1.0f - energy.x - energy.y);
+    return greater_of(1.0f - first - bsdf.base_late * (1.0f - energy.x - energy.y), 0.0f);
 }
 
 inline float passes_coat(FloatArray table, IN(Bsdf) bsdf, vec3 w) {
@@ -168,6 +171,20 @@ inline float passes_layers(FloatArray table, IN(Bsdf) bsdf, vec3 wi) {
 // out: it leaves along the surface, where no other lobe would look for it.
 inline constexpr float LeastLate = 1e-3f;
 
+SELDOM inline vec3 filmed_facets(IN(Bsdf) bsdf, float cosine, vec3 plain) {
+    const FilmLight light = film_light(bsdf.glass.film, cosine);
+    const vec3 filmed = bsdf.dielectric * filmed_dielectric(bsdf.glass.film, light, bsdf.glass.f0) +
+                        bsdf.metal * film_reflectances(light, bsdf.glass.tint);
+    return plain + bsdf.glass.film.strength * (filmed - plain);
+}
+
+// Reflectance of the facets, to light under this angle.
+inline vec3 specular_fresnel(IN(Bsdf) bsdf, float cosine) {
+    const vec3 plain = bsdf.f0 + (bsdf.f90 - bsdf.f0) * schlick_weight(cosine);
+    if ((bsdf.lobes & FeatureIridescence) == 0u) return plain;
+    return filmed_facets(bsdf, cosine, plain);
+}
+
 // late_reflectance: what the lobe's late light adds to what is reflected to wo, as luminance.
 inline void add_specular(INOUT(Bsdf) bsdf, OUT(float) late_reflectance, FloatArray table, IN(Mixture) mixture,
                          IN(Interface) face, vec3 base_color, float cos_out) {
@@ -175,6 +192,18 @@ inline void add_specular(INOUT(Bsdf) bsdf, OUT(float) late_reflectance, FloatArr
     bsdf.f90 = face.f90 * mixture.dielectric + mixture.metal;
     bsdf.base_f0 = largest(face.f0);
     bsdf.base_f90 = face.f90;
+    bsdf.dielectric = mixture.dielectric;
+    bsdf.metal = mixture.metal;
+    vec3 mean_dielectric = face.f0 + (face.f90 - face.f0) * (1.0f / 21.0f);
+    vec3 mean_metal = base_color + (1.0f - base_color) * (1.0f / 21.0f);
+    if ((bsdf.lobes & FeatureIridescence) != 0u) {
+        const float strength = bsdf.glass.film.strength;
+        const FilmMean film = film_mean(bsdf.glass.film, face.f0, base_color);
+        bsdf.base_f0 += strength * (film.f0 - bsdf.base_f0);
+        bsdf.base_f90 += strength * (film.f90 - bsdf.base_f90);
+        mean_dielectric += strength * (film.dielectric - mean_dielectric);
+        mean_metal += strength * (film.metal - mean_metal);
+    }
     bsdf.late = vec3(0.0f);
     bsdf.base_late = 0.0f;
     bsdf.late_out = 0.0f;
@@ -187,16 +216,17 @@ inline void add_specular(INOUT(Bsdf) bsdf, OUT(float) late_reflectance, FloatArr
     // The tables know of one roughness: with two, that light stays lost.
     const bool has_late = bsdf.alpha.x == bsdf.alpha.y && 1.0f - e > LeastLate;
     bsdf.late_out = has_late ? 1.0f - energy.x - energy.y : 0.0f;
-    bsdf.base_late = has_late ? late_share(mean_schlick(bsdf.base_f0, bsdf.base_f90), e) : 0.0f;
+    bsdf.base_late =
+        has_late ? late_share(lesser_of(mean_schlick(bsdf.base_f0, bsdf.base_f90), 1.0f), e) : 0.0f;
     const float passes = passes_interface(bsdf, mean);
     // Below, it is rounding: the interface reflects all.
     bsdf.base_out = passes > 1e-6f ? InversePi * passes_interface(bsdf, energy) / passes : 0.0f;
     if (!has_late) return;
     if (mixture.dielectric > 0.0f) {
-        bsdf.late += mixture.dielectric * late_shares(face.f0 + (face.f90 - face.f0) * (1.0f / 21.0f), e);
+        bsdf.late += mixture.dielectric * late_shares(mean_dielectric, e);
     }
     if (mixture.metal > 0.0f) {
-        bsdf.late += mixture.metal * late_shares(base_color + (1.0f - base_color) * (1.0f / 21.0f), e);
+        bsdf.late += mixture.metal * late_shares(mean_metal, e);
     }
     late_reflectance = luminance(bsdf.late) * bsdf.late_out;
     bsdf.late *= InversePi / (1.0f - e);
@@ -219,8 +249,11 @@ inline void add_layers(INOUT(Bsdf) bsdf, FloatArray table, IN(Look) look, vec3 w
 inline void choose_chances(INOUT(Bsdf) bsdf, FloatArray table, float late_reflectance, float cos_out) {
     const float weight = schlick_weight(cos_out);
     const float below = bsdf.coat_out * bsdf.sheen_out;
-    float specular = luminance(bsdf.f0 + (bsdf.f90 - bsdf.f0) * weight) * below;
-    float diffuse = luminance(bsdf.diffuse) * (1.0f - bsdf.base_f0) * (1.0f - bsdf.base_f90 * weight) * below;
+    float specular = luminance(specular_fresnel(bsdf, cos_out)) * below;
+    // A film that reflects nothing here does so elsewhere.
+    if ((bsdf.lobes & FeatureIridescence) != 0u) specular = greater_of(specular, 1e-4f);
+    float diffuse = luminance(bsdf.diffuse) * (1.0f - bsdf.base_f0) *
+                    (1.0f - lesser_of(bsdf.base_f90, 1.0f) * weight) * below;
     diffuse += late_reflectance * below;  // as broad as the diffuse lobe, and found with it
     float coat = 0.0f, glass = 0.0f;
     if ((bsdf.lobes & FeatureSheen) != 0u) {
@@ -249,10 +282,10 @@ inline void fill_bsdf(INOUT(Bsdf) bsdf, FloatArray table, IN(Look) look, IN(Mixt
     bsdf.diffuse = look.base_color * mixture.dielectric;
     bsdf.alpha = vec2(greater_of(look.alpha.x, MinAlpha), greater_of(look.alpha.y, MinAlpha));
     bsdf.roughness = sqrt(lesser_of(bsdf.alpha.x, bsdf.alpha.y));
+    bsdf.glass_share = mixture.rough_glass;
+    bsdf.glass = RoughGlass(look.base_color, look.eta, face.f0, face.f90, bsdf.alpha, look.thin, look.film);
     float late_reflectance;
     add_specular(bsdf, late_reflectance, table, mixture, face, look.base_color, wo.z);
-    bsdf.glass_share = mixture.rough_glass;
-    bsdf.glass = RoughGlass(look.base_color, look.eta, face.f0, face.f90, bsdf.alpha, look.thin);
     if (!(mixture.rough_glass > 0.0f)) bsdf.lobes &= ~FeatureRoughGlass;
     bsdf.coat_out = 1.0f;
     bsdf.sheen_out = 1.0f;
@@ -275,7 +308,7 @@ inline void evaluate_base(INOUT(BsdfValue) result, FloatArray table, IN(Bsdf) bs
     const float length2 = dot(sum, sum);
     if (length2 > 0.0f) {
         const vec3 h = sum / sqrt(length2);
-        const vec3 fresnel = bsdf.f0 + (bsdf.f90 - bsdf.f0) * schlick_weight(dot(wi, h));
+        const vec3 fresnel = specular_fresnel(bsdf, dot(wi, h));
         const Facets facets = facets_at(wo, wi, h, bsdf.alpha);
         result.value = fresnel * facets.value;
         result.pdf = bsdf.chances.y * facets.pdf;

@@ -48,7 +48,7 @@ static_assert(offsetof(Material, thin) == 192);
 static_assert(offsetof(Material, extras) == 196);
 static_assert(offsetof(Material, shader) == 200);
 
-static_assert(sizeof(MaterialExtras) == 344);
+static_assert(sizeof(MaterialExtras) == 424);
 static_assert(offsetof(MaterialExtras, specular_color) == 0);
 static_assert(offsetof(MaterialExtras, specular) == 12);
 static_assert(offsetof(MaterialExtras, sheen_color) == 16);
@@ -58,9 +58,12 @@ static_assert(offsetof(MaterialExtras, coat_roughness) == 36);
 static_assert(offsetof(MaterialExtras, coat_normal_scale) == 40);
 static_assert(offsetof(MaterialExtras, anisotropy) == 44);
 static_assert(offsetof(MaterialExtras, anisotropy_direction) == 48);
-static_assert(offsetof(MaterialExtras, textures) == 56);
-static_assert(offsetof(MaterialExtras, coat_normal_texture) == 280);
-static_assert(offsetof(MaterialExtras, anisotropy_texture) == 312);
+static_assert(offsetof(MaterialExtras, iridescence) == 56);
+static_assert(offsetof(MaterialExtras, film_index) == 60);
+static_assert(offsetof(MaterialExtras, film_thickness) == 64);
+static_assert(offsetof(MaterialExtras, textures) == 72);
+static_assert(offsetof(MaterialExtras, coat_normal_texture) == 360);
+static_assert(offsetof(MaterialExtras, anisotropy_texture) == 392);
 
 static_assert(sizeof(Shader) == 340);
 static_assert(offsetof(Shader, specular) == 0);

@@ -76,7 +76,8 @@ inline LightSample sample_sphere_light(IN(LightSource) light, IN(Surface) surfac
 inline LightSample sample_quad_light(IN(Emitter) emitter, IN(LightSource) light, IN(Surface) surface,
                                      float probability, vec2 u) {
     LightSample found = no_light();
-    const vec2 place = (2.0f * u - 1.0f) * light.half_size;
+    const QuadView seen = view_quad(light, surface.position);
+    const vec2 place = sample_quad(seen, light.half_size, u);
     found.target = light.position + place.x * light.edge_u + place.y * light.edge_v;
     const Measured way = measure(found.target - surface.position);
     const float facing = -dot(light.direction, way.direction);
@@ -84,7 +85,7 @@ inline LightSample sample_quad_light(IN(Emitter) emitter, IN(LightSource) light,
     found.direction = way.direction;
     found.radiance = light.intensity;
     found.intensity = light.intensity;
-    found.pdf = probability * area_pdf(emitter.inverse_root_area, way.distance, facing);
+    found.pdf = probability * quad_pdf(seen, emitter.inverse_root_area, way.distance, facing);
     return found;
 }
 

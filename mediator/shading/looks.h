@@ -41,9 +41,11 @@ inline vec3 anisotropy_at(IN(Scene) scene, IN(MaterialExtras) extras, IN(Mesh) m
 // `index`: of the extras. They are read where they lie: a copy would have to be kept for the loop.
 inline void add_extras(INOUT(Look) look, IN(Scene) scene, uint index, IN(Mesh) mesh, uvec3 corners, vec2 b,
                        float footprint) {
+    const bool iridescent = (scene.features & FeatureIridescence) != 0u;
+    const uint count = iridescent ? ExtrasTextureCount : ExtrasIridescence;
     vec4 texels[ExtrasTextureCount];
     KEEP_LOOP
-    for (uint i = 0u; i < ExtrasTextureCount; ++i) {
+    for (uint i = 0u; i < count; ++i) {
         texels[i] = texel_or_white(scene, scene.extras.items[index].textures[i], mesh, corners, b, footprint);
     }
     const MaterialExtras extras = scene.extras.items[index];
@@ -56,6 +58,12 @@ inline void add_extras(INOUT(Look) look, IN(Scene) scene, uint index, IN(Mesh) m
     look.sheen_roughness = extras.sheen_roughness * texels[ExtrasSheenRoughness].w;
     if (look.coat > 0.0f) look.lobes |= scene.features & FeatureCoat;
     if (largest(look.sheen_color) > 0.0f) look.lobes |= scene.features & FeatureSheen;
+    if (iridescent && extras.iridescence > 0.0f) {
+        const vec2 ends = extras.film_thickness;
+        look.film = make_film(extras.iridescence * texels[ExtrasIridescence].x, look.specular,
+                              extras.film_index, ends.x + (ends.y - ends.x) * texels[ExtrasThickness].y);
+        if (look.film.strength > 0.0f) look.lobes |= FeatureIridescence;
+    }
     if (extras.anisotropy > 0.0f) {
         const float strength = anisotropy_at(scene, extras, mesh, corners, b, footprint).z;
         look.alpha = stretched_alpha(look.alpha.x, strength);

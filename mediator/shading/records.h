@@ -74,7 +74,7 @@ struct Material {
 // What few materials have. Textures that are looked up in a loop: written out, lookups are most of a kernel.
 inline constexpr uint ExtrasTransmission = 0u, ExtrasSpecular = 1u, ExtrasSpecularColor = 2u, ExtrasCoat = 3u,
                       ExtrasCoatRoughness = 4u, ExtrasSheenColor = 5u, ExtrasSheenRoughness = 6u,
-                      ExtrasTextureCount = 7u;
+                      ExtrasIridescence = 7u, ExtrasThickness = 8u, ExtrasTextureCount = 9u;
 struct MaterialExtras {
     vec3 specular_color;
     float specular;
@@ -85,6 +85,9 @@ struct MaterialExtras {
     float coat_normal_scale;
     float anisotropy;
     vec2 anisotropy_direction;  // cosine and sine of the angle to the tangent
+    float iridescence;
+    float film_index;
+    vec2 film_thickness;  // least and greatest, in nanometres
     TextureUse textures[ExtrasTextureCount];
     TextureUse coat_normal_texture;
     TextureUse anisotropy_texture;
@@ -261,7 +264,7 @@ inline constexpr uint FeatureTextures = 1u, FeatureNormalMaps = 2u, FeatureAlpha
                       FeatureEnvironmentMap = 128u;
 // Lobes that few materials have, and whether any material has extras.
 inline constexpr uint FeatureCoat = 4096u, FeatureSheen = 8192u, FeatureRoughGlass = 16384u,
-                      FeatureExtras = 32768u;
+                      FeatureExtras = 32768u, FeatureIridescence = 0x8000000u;
 // Of a scene and a view together: some of it is in none of the view's layers.
 inline constexpr uint FeatureLayers = 256u;
 // More than one emitter; spheres and quads; suns.

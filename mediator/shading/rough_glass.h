@@ -3,6 +3,7 @@
 
 #include "mediator/shading/fresnel.h"
 #include "mediator/shading/microfacets.h"
+#include "mediator/shading/thin_film.h"
 
 // A rough boundary of two dielectrics (Walter 2007) or a thin wall with one, whose light goes straight on but
 // for the roughness. Light is carried as basic radiance (specular.h). Scattering from facet to facet is not
@@ -16,6 +17,7 @@ struct RoughGlass {
     float f90;  // reflectance at normal incidence and at grazing
     vec2 alpha;
     uint thin;
+    ThinFilm film;  // on the air's side
 };
 
 // Indices closer than this are no boundary: light is turned by less than a ten thousandth of the facets'
@@ -26,6 +28,12 @@ inline bool is_boundary(float eta) {
     return abs(eta - 1.0f) > NoBoundary;
 }
 
+// `cosine`: in air.
+SELDOM inline vec3 filmed_boundary(IN(RoughGlass) glass, float cosine, vec3 plain) {
+    const vec3 filmed = filmed_dielectric(glass.film, film_light(glass.film, cosine), glass.f0);
+    return plain + glass.film.strength * (filmed - plain);
+}
+
 // Fresnel's equations between other ends. Total reflection is total.
 inline vec3 bent_fresnel(IN(RoughGlass) glass, float cosine) {
     const float eta = glass.thin != 0u && glass.eta < 1.0f ? 1.0f / glass.eta : glass.eta;
@@ -34,7 +42,11 @@ inline vec3 bent_fresnel(IN(RoughGlass) glass, float cosine) {
     if (eta < 1.0f && !(refracted_cosine2(cosine, sine2, eta) > 0.0f)) return vec3(1.0f);
     const float start = normal_reflectance(eta);
     const float rise = (fresnel_dielectric(cosine, eta) - start) / (1.0f - start);
-    return glass.f0 + (vec3(glass.f90) - glass.f0) * greater_of(rise, 0.0f);
+    const vec3 plain = glass.f0 + (vec3(glass.f90) - glass.f0) * greater_of(rise, 0.0f);
+    if (!(glass.film.strength > 0.0f)) return plain;
+    // What goes back into the glass is, without loss, the same share as that of light on the other end of
+    // the refracted way.
+    return filmed_boundary(glass, eta < 1.0f ? sqrt(refracted_cosine2(cosine, sine2, eta)) : cosine, plain);
 }
 
 // Probability of reflection among the two ways.

@@ -1,9 +1,7 @@
 #ifndef TESSERA_MEDIATOR_SHADING_SHAPED_LIGHTS_H
 #define TESSERA_MEDIATOR_SHADING_SHAPED_LIGHTS_H
 
-#include "mediator/shading/rays.h"
-#include "mediator/shading/sampling.h"
-#include "mediator/shading/scaling.h"
+#include "mediator/shading/quad_lights.h"
 
 // Spheres, quads and suns: lights with a size that are no geometry. They shine, are seen and stop no ray.
 SHADING_BEGIN
@@ -78,14 +76,6 @@ inline ShapeHit hit_sphere(IN(LightSource) light, IN(Ray) ray) {
     return ShapeHit(is_hit, is_hit ? sphere_distance(light, seen, ray.direction) : 0.0f, cap_pdf(seen.cap));
 }
 
-// Density per solid angle of a point of a light of area 1 / inverse_root_area^2, seen at a distance and under
-// a cosine. The ratio is squared, since the squares themselves leave the range of floats in tiny and huge
-// scenes.
-inline float area_pdf(float inverse_root_area, float distance, float cosine_there) {
-    const float ratio = distance * inverse_root_area;
-    return ratio * ratio / greater_of(cosine_there, 1e-30f);
-}
-
 // From the side on which it shines; else none.
 inline ShapeHit hit_quad(IN(LightSource) light, float inverse_root_area, IN(Ray) ray) {
     ShapeHit hit = ShapeHit(false, 0.0f, 0.0f);
@@ -96,7 +86,8 @@ inline ShapeHit hit_quad(IN(LightSource) light, float inverse_root_area, IN(Ray)
     const vec3 across = hit.distance * ray.direction - to_middle;
     hit.is_hit = abs(dot(across, light.edge_u)) <= light.half_size.x &&
                  abs(dot(across, light.edge_v)) <= light.half_size.y;
-    hit.pdf = area_pdf(inverse_root_area, hit.distance, facing);
+    hit.pdf =
+        hit.is_hit ? quad_pdf(view_quad(light, ray.origin), inverse_root_area, hit.distance, facing) : 0.0f;
     return hit;
 }
 

@@ -5,7 +5,7 @@
 
 // Perfect mirrors and smooth glass: light goes on in one direction or two, without a density. Directions are
 // in the shading frame (z = normal) and point away from the surface.
-//   mirror  Schlick's Fresnel with F0 = base colour
+//   mirror  Schlick's Fresnel with F0 = base colour, or a film's on it (thin_film.h)
 //   glass   Fresnel's equations; what is refracted is tinted by the base colour, at every crossing
 // Light is carried as basic radiance L / n^2 (Nicodemus 1963), which refraction does not change: the factors
 // 1/eta^2 and eta^2 of entering and leaving a closed body cancel. Only what shines inside of glass is given
@@ -26,14 +26,21 @@ inline Specular no_specular() {
                     vec3(1.0f));
 }
 
+// Of metal in the boundary's colour, under its film.
+inline vec3 mirror_fresnel(IN(RoughGlass) glass, float cosine) {
+    const vec3 plain = glass.tint + (1.0f - glass.tint) * schlick_weight(cosine);
+    if (!(glass.film.strength > 0.0f)) return plain;
+    const vec3 filmed = film_reflectances(film_light(glass.film, cosine), glass.tint);
+    return plain + glass.film.strength * (filmed - plain);
+}
+
 // For mixtures without mirror and glass both shares are 0. At total reflection nothing is refracted; through
 // thin walls light goes straight on. `glass`: the boundary; its tint is the base colour.
 inline Specular make_specular(IN(Mixture) mixture, IN(RoughGlass) glass, vec3 wo) {
     Specular specular = no_specular();
     const vec3 fresnel = bent_fresnel(glass, wo.z);
     specular.reflected = vec3(-wo.x, -wo.y, wo.z);
-    specular.reflection =
-        mixture.mirror * (glass.tint + (1.0f - glass.tint) * schlick_weight(wo.z)) + mixture.glass * fresnel;
+    specular.reflection = mixture.mirror * mirror_fresnel(glass, wo.z) + mixture.glass * fresnel;
     specular.refraction = glass.tint * (1.0f - fresnel) * mixture.glass;
     specular.refracted = -wo;
     if (glass.thin != 0u || !(mixture.glass > 0.0f)) return specular;

@@ -2,6 +2,7 @@
 """A session against a scripted master: what is said, and what survives forgetting, silence, restarts and lies."""
 
 import logging
+import math
 import pathlib
 import random
 import struct
@@ -253,6 +254,28 @@ class Views(WithMaster):
         self.assertAlmostEqual(view.frustum[1], 2 * view.frustum[3])
         with self.assertRaisesRegex(tessera.InvalidInput, "is no camera"):
             self.session.open_view("transforms/stand")
+
+    def test_cameras_with_lenses_and_parallel_ones(self):
+        self.session.open_view(tessera.look_at((0, 0, 5), (0, 0, 0), lens_radius=0.02, focus_distance=4.5,
+                                               aperture="gaussian"), size=(200, 100))
+        view = self.master.views[1][0].view
+        self.assertEqual((view.projection, view.lens_radius, view.focus_distance, view.aperture), (0, 0.02, 4.5, 1))
+        self.assertAlmostEqual(view.frustum[3], math.tan(0.35))
+        with self.session.transaction() as edit:
+            camera = edit.create("camera", name="plan", projection="orthographic", orthographic_height=6.0,
+                                 lens_radius=0.5, focus_distance=3.0)
+            edit.create("transform", name="above", matrix=tessera.translation(0, 0, 9), children=[camera])
+        opened = self.session.open_view("cameras/plan", size=(200, 100))
+        view = self.master.views[2][0].view
+        self.assertEqual((view.projection, view.lens_radius, view.focus_distance, view.aperture), (1, 0.5, 3.0, 0))
+        self.assertEqual(list(view.frustum), [-6, 6, -3, 3])
+        opened.look(tessera.look_at((0, 0, 5), (0, 0, 0)))  # a pinhole again
+        view = self.master.views[2][0].view
+        self.assertEqual((view.projection, view.lens_radius), (0, 0))
+        for wrong in ({"projection": "fish-eye"}, {"aperture": "square"}, {"lens_radius": -1}, {"focus_distance": 0},
+                      {"orthographic_height": 0}, {"vertical_fov": 4}):
+            with self.assertRaises(tessera.InvalidInput, msg=str(wrong)):
+                tessera.look_at((0, 0, 5), (0, 0, 0), **wrong)
 
     def test_layers(self):
         with self.session.transaction() as edit:

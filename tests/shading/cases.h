@@ -120,6 +120,26 @@ inline void put(INOUT(Outputs) y, IN(Interface) value) {
     put(y, value.f0);
     put(y, value.f90);
 }
+inline void put(INOUT(Outputs) y, IN(ThinFilm) value) {
+    put(y, value.strength);
+    put(y, value.specular);
+    put(y, value.index);
+    put(y, value.thickness);
+}
+// Cosines of phases, beside their size.
+inline void put(INOUT(Outputs) y, IN(FilmLight) value) {
+    put(y, 1.0f + value.amplitude);
+    put(y, 1.0f + value.reflectance);
+    put(y, 1.0f + value.weight);
+    put(y, 4.0f + value.once);
+    put(y, 4.0f + value.twice);
+}
+inline void put(INOUT(Outputs) y, IN(FilmMean) value) {
+    put(y, 1.0f + value.dielectric);
+    put(y, 1.0f + value.metal);
+    put(y, 1.0f + value.f0);
+    put(y, 1.0f + value.f90);
+}
 inline void put(INOUT(Outputs) y, IN(RoughGlass) value) {
     put(y, value.tint);
     put(y, value.eta);
@@ -127,6 +147,7 @@ inline void put(INOUT(Outputs) y, IN(RoughGlass) value) {
     put(y, value.f90);
     put(y, value.alpha);
     put(y, value.thin);
+    put(y, value.film);
 }
 inline void put(INOUT(Outputs) y, IN(Facets) value) {
     put(y, value.value);
@@ -164,6 +185,7 @@ inline void put(INOUT(Outputs) y, IN(Bsdf) value) {
     put(y, value.f0);
     put(y, value.f90);
     put(y, vec2(value.base_f0, value.base_f90));
+    put(y, vec2(value.dielectric, value.metal));
     put(y, value.alpha);
     put(y, value.roughness);
     put(y, value.late);
@@ -194,6 +216,7 @@ inline void put(INOUT(Outputs) y, IN(Look) value) {
     put(y, value.coat_normal);
     put(y, value.sheen_color);
     put(y, value.sheen_roughness);
+    put(y, value.film);
 }
 inline void put(INOUT(Outputs) y, IN(BsdfValue) value) {
     put(y, value.value);
@@ -211,6 +234,13 @@ inline void put(INOUT(Outputs) y, IN(Refraction) value) {
     put(y, value.direction);
 }
 
+// Denser than air: what light along a boundary of nearly nothing does is decided by the last bit of its
+// index.
+inline ThinFilm film_of(IN(Inputs) x) {
+    return make_film(0.2f + 0.8f * x.u.x, 0.5f + 0.5f * x.metallic, 1.1f + 1.5f * x.u.y,
+                     50.0f + 800.0f * x.v.x);
+}
+
 // A material with all lobes, and the boundary of glass; each half of the inputs with its own side.
 inline Look look_of(IN(Inputs) x) {
     Look look = plain_look(x.color, x.metallic, x.roughness, x.transmission, x.index,
@@ -225,6 +255,7 @@ inline Look look_of(IN(Inputs) x) {
     look.coat_normal = unit_vector(vec3(0.2f * x.x, 0.1f, 1.0f));
     look.sheen_color = x.light;
     look.sheen_roughness = x.roughness;
+    if ((look.lobes & FeatureIridescence) != 0u) look.film = film_of(x);
     return look;
 }
 inline Mixture mixture_of(IN(Inputs) x) {
@@ -234,7 +265,7 @@ inline RoughGlass boundary_of(IN(Inputs) x) {
     const Interface face = interface_of(look_of(x));
     const float eta = greater_of(x.eta, 0.4f);
     return RoughGlass(x.color, is_boundary(eta) ? eta : 1.5f, face.f0, face.f90, vec2(x.alpha, 0.5f),
-                      x.d % 2u);
+                      x.d % 2u, x.c % 4u == 0u ? film_of(x) : no_film());
 }
 inline PerfectPart perfect_of(IN(Inputs) x) {
     return PerfectPart(0.6f * x.color, x.light, vec3(greater_of(x.eta, 0.4f), 1.2f, x.index + 0.1f), x.u.x);

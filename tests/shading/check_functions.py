@@ -15,7 +15,7 @@ import sys
 # device finds with what rays find on the host.
 ELSEWHERE = ("transmittance", "leave_vertex", "trace_from", "trace_sample", "raster_hit")
 
-FUNCTION = re.compile(r"^(?:WITH_CONTEXT )?inline (?!constexpr)\w+ (\w+)\(", re.MULTILINE)
+FUNCTION = re.compile(r"^(?:WITH_CONTEXT |SELDOM )?inline (?!constexpr)\w+ (\w+)\(", re.MULTILINE)
 
 
 def text_of(path):

@@ -170,9 +170,17 @@ std::vector<MaterialExtras> make_extras(Generator& random) {
                        .coat_normal_scale = 0.5f,
                        .anisotropy = i != 0 ? random.between(0.2f, 1.0f) : 0.0f,
                        .anisotropy_direction = {0.8f, -0.6f},
+                       .iridescence = i == 2 ? 0.7f : 0.0f,
+                       .film_index = 1.4f,
+                       .film_thickness = {200.0f, 600.0f},
                        .textures = {use(0), use(1), use(0), use(1), use(0), use(1), use(0)},
                        .coat_normal_texture = use(1),
                        .anisotropy_texture = use(1)});
+    }
+    Generator film_random(false);  // its own: all else stays as it is
+    for (MaterialExtras& extras : all) {
+        extras.textures[ExtrasIridescence] = use_of(-1, film_random);
+        extras.textures[ExtrasThickness] = use_of(extras.iridescence > 0.0f ? 2 : -1, film_random);
     }
     return all;
 }
@@ -364,7 +372,7 @@ PackedWorld make_world(std::uint64_t address) {
                 .tree_light_count = TreeLightCount,
                 .tree_probability = 0.4f,
                 .features = 0xf0ffu | FeatureLightTree | FeatureShapedLights | FeatureSuns |
-                            FeatureShadowCatcher | FeatureShader,
+                            FeatureShadowCatcher | FeatureShader | FeatureIridescence,
                 .tree_scale = 0.25f};
     scene.light_sums = uint(sums.size());
     add_sums(sums, LightCount - TreeLightCount + 1u, random);

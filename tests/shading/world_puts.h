@@ -94,6 +94,15 @@ inline void put(INOUT(Outputs) y, IN(SphereView) seen) {
     put(y, seen.is_inside);
     put(y, seen.cap);
 }
+// Angles beside those that they are differences of.
+inline void put(INOUT(Outputs) y, IN(QuadView) seen) {
+    put(y, vec3(seen.low, 1.0f));
+    put(y, vec3(seen.high, 1.0f));
+    put(y, 1.0f + seen.z);
+    put(y, seen.unit);
+    put(y, 4.0f + seen.solid_angle);
+    put(y, 4.0f + seen.before);
+}
 inline void put(INOUT(Outputs) y, IN(ShapeHit) hit) {
     put(y, hit.is_hit);
     put(y, vec3(hit.distance, 1.0f, 0.0f));  // of places of about that size

@@ -25,7 +25,8 @@ inline shading::RoughGlass clear_boundary(float eta) {
             .f0 = glm::vec3(f0),
             .f90 = f0 > 0.0f ? 1.0f : 0.0f,
             .alpha = {},
-            .thin = 0};
+            .thin = 0,
+            .film = shading::no_film()};
 }
 
 }  // namespace tessera::test

@@ -14,6 +14,7 @@
 namespace tessera::test {
 
 enum class Normals { Flat, Smooth };
+enum class Tangents { Given, None };
 
 // A scene put together in a test: spheres, quads, lights, a sky.
 class SceneModel {
@@ -94,9 +95,10 @@ class SceneModel {
             .material = material, .indices = blob(indices), .positions = blob(positions)};
         hang(create(geometry), glm::dmat4(1.0), layers);
     }
-    // A quad with a texture, `repeats` times along the edges, and tangents along the first one. The second
-    // set of coordinates has u along the second edge.
-    void textured_quad(ObjectId material, const std::array<glm::vec3, 4>& corners, float repeats) {
+    // A quad with a texture, `repeats` times along the edges, and tangents along the first one, if any. The
+    // second set of coordinates has u along the second edge.
+    void textured_quad(ObjectId material, const std::array<glm::vec3, 4>& corners, float repeats,
+                       Tangents given = Tangents::Given) {
         const std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 3};
         const std::vector<glm::vec2> tex_coords{{0, 0}, {repeats, 0}, {repeats, repeats}, {0, repeats}};
         const std::vector<glm::vec4> tangents(4, glm::vec4(glm::normalize(corners[1] - corners[0]), -1.0f));
@@ -104,7 +106,7 @@ class SceneModel {
             .material = material,
             .indices = blob(indices),
             .positions = blob(std::vector<glm::vec3>(corners.begin(), corners.end())),
-            .tangents = blob(tangents),
+            .tangents = given == Tangents::Given ? blob(tangents) : scene::BlobRef{},
             .tex_coords = blob(tex_coords),
             .tex_coords_1 = blob(std::vector<glm::vec2>{{0, 1}, {0, 0}, {1, 0}, {1, 1}})};
         hang(create(geometry), glm::dmat4(1.0));

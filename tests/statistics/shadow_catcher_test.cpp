@@ -108,5 +108,43 @@ TEST(ShadowCatcher, ShinesOnThingsAsTheBackground) {
     }
 }
 
+// Before a transparent background nothing is left but the shadow: no light, no object, and of alpha what
+// hides the sky.
+TEST(ShadowCatcher, IsTransparentBeforeATransparentBackground) {
+    Ground ground(1.0f, scene::VisibleBackground::Environment);
+    view::View view = picture(view::Renderer::PathTracing);
+    view.transparent_background = true;
+    for_samples(ground.build(), view, 4, [](const PathSample& sample) {
+        ASSERT_EQ(radiance_of(sample), glm::vec3(0.0f));
+        ASSERT_EQ(sample.alpha, 0.0f);
+        ASSERT_EQ(sample.object, 0u);
+    });
+}
+
+// Lights that are no geometry hide nothing of the sky, and their shadows are not caught: neither are they.
+TEST(ShadowCatcher, CatchesNoLightsThatAreNoGeometry) {
+    Ground ground(1.0f);
+    ground.light({.kind = scene::LightKind::Sphere, .intensity = glm::vec3(3.0f), .radius = 0.5f},
+                 glm::translate(glm::dmat4(1.0), {0.0, 0.0, 1.0}));
+    for_samples(ground.build(), small_view({0.0, 0.0, 0.3}, 1e-3), 16,
+                [](const PathSample& sample) { ASSERT_EQ(radiance_of(sample), glm::vec3(Shown) * Shown.w); });
+}
+
+// A plate that hides all of the sky is lit by the ground below it, which shines like the background: what is
+// caught is that light once reflected, and it is indirect.
+TEST(ShadowCatcher, CatchesWhatAPlateReflects) {
+    Model model;
+    model.floor(model.material(catcher(1.0f)), 1000.0f, 0.0f);
+    model.floor(model.material(chalk(glm::vec3(0.5f))), -1000.0f, 0.1f);
+    model.sky(background(scene::VisibleBackground::Color));
+    view::View view = small_view({0.0, 0.0, 0.05}, 1e-3);
+    view.path_class = view::PathClass::Indirect;
+    const World& world = model.build();
+    const Mean light = mean_of(world, view, 256, red);
+    EXPECT_NEAR(light.value, 0.5 * double(Shown.x), 4.5 * light.standard_error + 1e-3);
+    const Mean indirect = mean_of(world, view, 256, [](const PathSample& s) { return double(s.high.x); });
+    EXPECT_NEAR(indirect.value, light.value, 1e-6);
+}
+
 }  // namespace
 }  // namespace tessera::embree

@@ -233,18 +233,5 @@ TEST(Mirror, AClosedBodyOfMirrorsEnds) {
                 [&](const PathSample& sample) { EXPECT_EQ(radiance_of(sample), glm::vec3(0.0f)); });
 }
 
-TEST(Materials, WhatIsNotDrawnIsToldOnce) {
-    Model model;
-    scene::Material bubble = glass(1.5f);
-    bubble.iridescence = 0.5f;
-    bubble.name = "bubble";
-    const ObjectId material = model.material(bubble);
-    model.floor(material, 1.0f, 0.0f);
-    model.floor(model.material(glass(1.5f)), 1.0f, -1.0f);
-    model.build();
-    ASSERT_EQ(model.problems.size(), 1u);
-    EXPECT_NE(model.problems[0].find("bubble"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace tessera::embree

@@ -9,24 +9,54 @@ from typing import Sequence
 from .errors import InvalidInput
 from .objects import Matrix, Vec3
 
+# In the order of the wire.
+PROJECTIONS = ("perspective", "orthographic")
+APERTURES = ("uniform", "gaussian")
+
 
 @dataclass(frozen=True)
 class Pose:
-    """A pinhole camera in the world: it looks along -z, y is up. Angles in radians."""
+    """A camera in the world: it looks along -z, y is up. Angles in radians, lengths in metres. The fields are those of the
+    scene's Camera: without a lens radius it is a pinhole; an orthographic one sees as much as its height says, whatever
+    its field of view. Raises InvalidInput where no picture can be made of them."""
 
     world_from_camera: Matrix
     vertical_fov: float = 0.7
+    projection: str = "perspective"  # or "orthographic"
+    orthographic_height: float = 2.0
+    lens_radius: float = 0.0  # 0 = a pinhole
+    focus_distance: float = 1.0  # of the plane that is sharp, along the axis
+    aperture: str = "uniform"  # or "gaussian"
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.vertical_fov < math.pi:
+            raise InvalidInput("the field of view is not between 0 and pi")
+        for value, known in ((self.projection, PROJECTIONS), (self.aperture, APERTURES)):
+            if value not in known:
+                raise InvalidInput(f"there is no '{value}': choose of {', '.join(known)}")
+        if not (0.0 < self.orthographic_height < math.inf and 0.0 < self.focus_distance < math.inf):
+            raise InvalidInput("the orthographic height or the focus distance is not positive")
+        if not 0.0 <= self.lens_radius < math.inf:
+            raise InvalidInput("the lens radius is negative: 0 is a pinhole")
+
+    def frustum(self, width: int, height: int) -> tuple[float, float, float, float]:
+        """Left, right, bottom, top of a picture of so many pixels: at distance 1, orthographic in metres."""
+        if self.projection == "perspective":
+            return frustum(self.vertical_fov, width, height)
+        top = 0.5 * self.orthographic_height
+        right = top * width / height
+        return -right, right, -top, top
 
 
 def look_at(eye: Sequence[float], target: Sequence[float], up: Sequence[float] = (0.0, 1.0, 0.0),
-            vertical_fov: float = 0.7) -> Pose:
-    """From `eye` towards `target`. Raises InvalidInput where that is no direction."""
-    if not 0.0 < vertical_fov < math.pi:
-        raise InvalidInput("the field of view is not between 0 and pi")
+            vertical_fov: float = 0.7, *, projection: str = "perspective", orthographic_height: float = 2.0,
+            lens_radius: float = 0.0, focus_distance: float = 1.0, aperture: str = "uniform") -> Pose:
+    """From `eye` towards `target`. Raises InvalidInput where that is no direction, and as Pose."""
     at = _vector(eye)
     back = _normalized(_difference(at, _vector(target)), "eye and target are the same point")
     right = _normalized(_cross(_vector(up), back), "the view goes along 'up': give another one")
-    return Pose(_matrix(right, _cross(back, right), back, at), vertical_fov)
+    return Pose(_matrix(right, _cross(back, right), back, at), vertical_fov, projection, orthographic_height,
+                lens_radius, focus_distance, aperture)
 
 
 def rigid(matrix: Matrix) -> Matrix:

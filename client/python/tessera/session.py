@@ -321,11 +321,16 @@ class Session:
                 found = mirror.value(mirror.find(at) if isinstance(at, str) else at.id)
                 if not isinstance(found, Camera):
                     raise InvalidInput(f"{mirror.path(found.id)} is no camera")
-                at = camera.Pose(camera.rigid(mirror.world_matrix(found.id)), found.vertical_fov)
+                at = camera.Pose(camera.rigid(mirror.world_matrix(found.id)), found.vertical_fov, found.projection,
+                                 found.orthographic_height, found.lens_radius, found.focus_distance, found.aperture)
         for field, values in (("world_from_camera", at.world_from_camera),
-                              ("frustum", camera.frustum(at.vertical_fov, view.width, view.height))):
+                              ("frustum", at.frustum(view.width, view.height))):
             view.ClearField(field)
             getattr(view, field).extend(values)
+        view.projection = camera.PROJECTIONS.index(at.projection)
+        view.lens_radius = at.lens_radius
+        view.focus_distance = at.focus_distance
+        view.aperture = camera.APERTURES.index(at.aperture)
 
     def forget_view(self, view: View) -> None:
         with self.connection.changed:

@@ -12,7 +12,8 @@ namespace {
 
 using std::numbers::pi;
 
-// Luminance of what is seen at the middle of each texel.
+// Luminance of what is seen at the middle of each texel, as far as it can weigh: what is no number weighs
+// nothing, and what takes light away as much as what gives it.
 std::vector<double> seen(const SceneTables& tables) {
     const shading::Scene scene = on_host(tables);
     const shading::Environment& sky = scene.environment;
@@ -24,7 +25,8 @@ std::vector<double> seen(const SceneTables& tables) {
             const glm::vec2 uv{(static_cast<float>(x) + 0.5f) / static_cast<float>(width),
                                (static_cast<float>(y) + 0.5f) / static_cast<float>(height)};
             const glm::vec3 texel(shading::lookup(scene, sky.map, uv));
-            texels.push_back(double(shading::luminance(sky.color + sky.strength * texel)));
+            const double luminance = double(shading::luminance(sky.color + sky.strength * texel));
+            texels.push_back(std::isfinite(luminance) ? std::fabs(luminance) : 0.0);
         }
     }
     return texels;

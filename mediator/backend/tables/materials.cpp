@@ -29,11 +29,15 @@ shading::MaterialExtras make_extras(const scene::Material& m, const Indices& tex
         .coat_normal_scale = m.clearcoat_normal_scale,
         .anisotropy = m.anisotropy,
         .anisotropy_direction = {std::cos(m.anisotropy_rotation), std::sin(m.anisotropy_rotation)},
+        .iridescence = m.iridescence,
+        .film_index = m.iridescence_index_of_refraction,
+        .film_thickness = {m.iridescence_thickness_minimum, m.iridescence_thickness_maximum},
         .textures = {make_use(m.transmission_texture, textures), make_use(m.specular_texture, textures),
                      make_use(m.specular_color_texture, textures), make_use(m.clearcoat_texture, textures),
                      make_use(m.clearcoat_roughness_texture, textures),
-                     make_use(m.sheen_color_texture, textures),
-                     make_use(m.sheen_roughness_texture, textures)},
+                     make_use(m.sheen_color_texture, textures), make_use(m.sheen_roughness_texture, textures),
+                     make_use(m.iridescence_texture, textures),
+                     make_use(m.iridescence_thickness_texture, textures)},
         .coat_normal_texture = make_use(m.clearcoat_normal_texture, textures),
         .anisotropy_texture = make_use(m.anisotropy_texture, textures)};
 }
@@ -42,7 +46,8 @@ shading::MaterialExtras make_extras(const scene::Material& m, const Indices& tex
 bool has_extras(const scene::Material& m) {
     return m.specular != 1.0f || m.specular_color != glm::vec3(1.0f) || m.specular_texture.texture ||
            m.specular_color_texture.texture || m.clearcoat > 0.0f || m.sheen_color != glm::vec3(0.0f) ||
-           m.anisotropy > 0.0f || (m.transmission > 0.0f && m.transmission_texture.texture);
+           m.anisotropy > 0.0f || m.iridescence > 0.0f ||
+           (m.transmission > 0.0f && m.transmission_texture.texture);
 }
 
 void add_mesh(SceneTables& tables, const Mesh& mesh) {
@@ -103,6 +108,7 @@ std::uint32_t features_of(const shading::Material& material, const shading::Mate
                                     shading::is_smooth(extras->coat_roughness * extras->coat_roughness));
         lobes |= shading::FeatureExtras | flag(extras->coat > 0.0f, shading::FeatureCoat) |
                  flag(extras->sheen_color != glm::vec3(0.0f), shading::FeatureSheen) |
+                 flag(extras->iridescence > 0.0f, shading::FeatureIridescence) |
                  flag(glass && extras->anisotropy > 0.0f, shading::FeatureRoughGlass);
     }
     return lobes | flag(mapped, shading::FeatureNormalMaps) |
