@@ -3,9 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "backends/embree/context.h"
+#include "backends/embree/kernel.h"
 #include "mediator/backend/tables/tables.h"
-#include "mediator/shading/paths.h"
 #include "mediator/view/view.h"
 
 namespace tessera::embree {
@@ -33,12 +32,15 @@ class PathTracer {
                      std::vector<std::string>* story = nullptr) const;
 
     const shading::View& view() const { return view_; }
+    const Kernel& kernel() const { return *kernel_; }
+    void set_kernel(const Kernel& kernel) { kernel_ = &kernel; }  // one that has all features
 
   private:
     shading::Scene scene_;
     std::vector<shading::Place> camera_places_;
     shading::View view_;
     RTCScene top_;
+    const Kernel* kernel_;
 };
 
 }  // namespace tessera::embree

@@ -3,7 +3,7 @@
 
 #include "mediator/shading/records.h"
 
-SHADING_BEGIN
+RECORDS_BEGIN
 
 struct Ray {
     vec3 origin;
@@ -23,6 +23,6 @@ struct Hit {
 // hits nearer than this are that surface. The smallest number that no device takes for 0.
 inline constexpr float NearestHit = 1.17549435e-38f;
 
-SHADING_END
+RECORDS_END
 
 #endif

@@ -1,0 +1,9 @@
+#define SHADING_KERNEL full
+#define SHADING_FEATURES 0xffffffffu
+#include "backends/embree/kernel_text.h"
+
+namespace tessera::embree {
+
+const Kernel FullKernel{SHADING_FEATURES, trace};
+
+}  // namespace tessera::embree

@@ -1,0 +1,37 @@
+#pragma once
+
+// A kernel: included once by a source that says which features it has (SHADING_FEATURES), and its name
+// (SHADING_KERNEL).
+#include "backends/embree/kernel.h"
+#include "backends/embree/rays.h"
+#include "mediator/shading/trace.h"
+
+namespace tessera::embree {
+
+namespace {
+
+// Tells nothing of a path.
+struct Silent : Rays {};
+
+void tell_camera(const Silent&, const shading::Ray&) {}
+void tell_hit(const Silent&, const shading::Surface&, const glm::vec3&) {}
+void tell_miss(const Silent&) {}
+void tell_emission(const Silent&, const glm::vec3&, const glm::vec3&) {}
+void tell_light(const Silent&, const glm::vec3&, const glm::vec3&) {}
+void tell_specular(const Silent&, bool, const glm::vec3&) {}
+
+constexpr bool has_specular_trees(const Silent&) {
+    return true;
+}
+
+shading::PathSample trace(const shading::Scene& scene, const shading::View& view, RTCScene top,
+                          std::uint32_t x, std::uint32_t y, std::uint64_t sample, std::uint64_t& rays) {
+    const float time = shading::sample_time(scene.features, view, x, y, sample);
+    const shading::Path path = shading::trace_sample(Silent{{scene, view, top, time}}, x, y, sample);
+    rays += path.rays;
+    return path.found;
+}
+
+}  // namespace
+
+}  // namespace tessera::embree
