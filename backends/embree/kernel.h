@@ -16,9 +16,11 @@ struct Kernel {
                                  std::uint32_t x, std::uint32_t y, std::uint64_t sample, std::uint64_t& rays);
 };
 
-extern const Kernel PlainKernel, FullKernel;
+// Plain: no extras of materials, lights with a shape or motion. Coated: and coats. Shader: and
+// CommonSurfaceShader, spheres, quads and shadow catchers. Full: all there is.
+extern const Kernel PlainKernel, CoatedKernel, ShaderKernel, FullKernel;
 
-// The one with the fewest features that has all of these.
+// The first of them that has all of these.
 const Kernel& kernel_for(std::uint32_t features);
 
 }  // namespace tessera::embree

@@ -5,6 +5,7 @@
 
 #include "backends/embree/kernel.h"
 #include "mediator/backend/tables/tables.h"
+#include "mediator/shading/paths.h"
 #include "mediator/view/view.h"
 
 namespace tessera::embree {
@@ -32,8 +33,10 @@ class PathTracer {
                      std::vector<std::string>* story = nullptr) const;
 
     const shading::View& view() const { return view_; }
+    // Chosen by what occurs in the scene and the view; only tests choose another, which has to have all of
+    // it.
     const Kernel& kernel() const { return *kernel_; }
-    void set_kernel(const Kernel& kernel) { kernel_ = &kernel; }  // one that has all features
+    void set_kernel(const Kernel& kernel) { kernel_ = &kernel; }
 
   private:
     shading::Scene scene_;

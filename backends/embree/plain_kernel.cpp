@@ -1,9 +1,5 @@
 #define SHADING_KERNEL plain
-#define SHADING_FEATURES                                                                        \
-    (shading::FeatureTextures | shading::FeatureNormalMaps | shading::FeatureAlpha |            \
-     shading::FeatureSpecular | shading::FeaturePlacedLights | shading::FeatureMeshLights |     \
-     shading::FeatureEnvironment | shading::FeatureEnvironmentMap | shading::FeatureLightTree | \
-     shading::FeatureSuns)
+#define SHADING_FEATURES PLAIN_FEATURES
 #include "backends/embree/kernel_text.h"
 
 namespace tessera::embree {
