@@ -204,7 +204,8 @@ void add_lights(SceneTables& tables, const scene::Scene& scene, const Lowered& l
     EmitterList list;
     DistantLights distant;
     add_mesh_lights(tables, list);
-    const double radius = tables.radius = radius_of(tables, lowered, meshes);
+    tables.bounds = bounds_of(tables, lowered, meshes);
+    const double radius = radius_of(tables.bounds);
     add_placed_lights(tables, scene, lowered, radius, list, distant);
     add_tree(tables, list);
     if (sky_luminance > 0.0) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <glm/vector_relational.hpp>
 #include <limits>
 
 #include "mediator/backend/tables/parts.h"
@@ -8,16 +9,23 @@ namespace tessera::backend {
 
 namespace {
 
-void add_box(glm::dvec3& low, glm::dvec3& high, const Mesh& mesh, const glm::mat3& linear,
-             const glm::vec3& translation) {
+void add_box(Bounds& bounds, const Mesh& mesh, const glm::mat3& linear, const glm::vec3& translation) {
     for (unsigned corner = 0; corner < 8; ++corner) {
         const glm::vec3 object{(corner & 1u) ? mesh.low.x : mesh.high.x,
                                (corner & 2u) ? mesh.low.y : mesh.high.y,
                                (corner & 4u) ? mesh.low.z : mesh.high.z};
         const glm::dvec3 place = linear * object + translation;
-        low = glm::min(low, place);
-        high = glm::max(high, place);
+        bounds.low = glm::min(bounds.low, place);
+        bounds.high = glm::max(bounds.high, place);
     }
+}
+
+// Whether a mesh at this place lies within bounds and makes no part of them.
+bool is_inside(const Bounds& bounds, const Mesh& mesh, const shading::Instance& instance) {
+    if (!(mesh.low.x <= mesh.high.x)) return true;
+    Bounds own;
+    add_box(own, mesh, instance.linear, instance.translation);
+    return glm::all(glm::lessThan(bounds.low, own.low)) && glm::all(glm::lessThan(own.high, bounds.high));
 }
 
 bool moves_only(const SceneDelta& delta) {
@@ -35,23 +43,20 @@ bool is_plain(const SceneTables& tables, const shading::Instance& instance, cons
 
 }  // namespace
 
-double radius_of(const SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes) {
-    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-    const Mesh* mesh = nullptr;
+Bounds bounds_of(const SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes) {
+    Bounds bounds;
     for (std::size_t i = 0; i < tables.instances.size(); ++i) {
-        const ObjectId geometry = lowered.instances[i].geometry;  // those of a geometry stand together
-        if (i == 0 || geometry != lowered.instances[i - 1].geometry) mesh = meshes.find(geometry);
-        if (!(mesh->low.x <= mesh->high.x)) continue;
-        const shading::Instance& instance = tables.instances[i];
-        if (instance.motion < 0) {
-            add_box(low, high, *mesh, instance.linear, instance.translation);
-            continue;
-        }
-        for (const shading::Place& step : places_of(tables, instance)) {
-            add_box(low, high, *mesh, step.linear, step.translation);
+        const Mesh& mesh = *meshes.find(lowered.instances[i].geometry);
+        if (!(mesh.low.x <= mesh.high.x)) continue;
+        for (const shading::Place& step : places_of(tables, tables.instances[i])) {
+            add_box(bounds, mesh, step.linear, step.translation);
         }
     }
-    const double radius = 0.5 * glm::length(high - low);
+    return bounds;
+}
+
+double radius_of(const Bounds& bounds) {
+    const double radius = 0.5 * glm::length(bounds.high - bounds.low);
     return radius > 0.0 && radius < std::numeric_limits<double>::infinity() ? radius : 1.0;
 }
 
@@ -62,13 +67,20 @@ TablesStep update_tables(SceneTables& tables, const scene::Scene& scene, const L
         return is_plain(tables, tables.instances[i], lowered.instances[i]);
     };
     if (moves_only(delta) && std::ranges::all_of(delta.moved_instances, can_move)) {
+        bool same_bounds = true;
         for (const std::uint32_t i : delta.moved_instances) {
-            place(tables.instances[i], lowered.instances[i].world_from_object, tables.render_origin);
+            const Mesh& mesh = *meshes.find(lowered.instances[i].geometry);
+            shading::Instance& instance = tables.instances[i];
+            same_bounds = same_bounds && is_inside(tables.bounds, mesh, instance);
+            place(instance, lowered.instances[i].world_from_object, tables.render_origin);
+            same_bounds = same_bounds && is_inside(tables.bounds, mesh, instance);
         }
+        if (same_bounds) return TablesStep::Moved;
         // Lights that are infinitely far are chosen by how large the scene is.
+        const double radius = radius_of(tables.bounds);
+        tables.bounds = bounds_of(tables, lowered, meshes);
         const bool has_distant = tables.scene.light_count > tables.scene.tree_light_count;
-        const double radius = has_distant ? radius_of(tables, lowered, meshes) : tables.radius;
-        if (radius == tables.radius) return TablesStep::Moved;
+        if (!has_distant || radius_of(tables.bounds) == radius) return TablesStep::Moved;
     }
     tables = make_tables(scene, lowered, meshes, blobs, pyramids);
     return TablesStep::Made;

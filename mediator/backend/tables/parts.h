@@ -29,8 +29,9 @@ void add_instances(SceneTables& tables, const Lowered& lowered, const MeshCatalo
 // Gives an instance its place, relative to the render origin.
 void place(shading::Instance& instance, const glm::dmat4& world_from_object, const glm::dvec3& origin);
 
-// How far the scene reaches, for the power of what shines on all of it.
-double radius_of(const SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes);
+// Of all that can be hit, at any time; how far that reaches, for the power of what shines on all of it.
+Bounds bounds_of(const SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes);
+double radius_of(const Bounds& bounds);
 
 // Adds the way of what goes through these places, relative to the render origin; -1 where it stands still.
 int add_motion(SceneTables& tables, const glm::dmat4& beginning, std::span<const glm::dmat4> steps);

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <vector>
 
 #include "mediator/backend/tables/meshes.h"
@@ -9,6 +10,12 @@
 #include "mediator/shading/layout.h"
 
 namespace tessera::backend {
+
+// Relative to the render origin; low > high: nothing.
+struct Bounds {
+    glm::dvec3 low{std::numeric_limits<double>::infinity()};
+    glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+};
 
 // Everything that rays are shaded with, relative to the render origin and ordered by object id: a function of
 // the scene's content alone, the same for all back-ends. Vertices and texels stay
@@ -32,7 +39,7 @@ struct SceneTables {
     shading::Scene scene{};                       // all of it but the addresses of the tables
     glm::dvec3 render_origin{0.0};
     std::vector<std::uint32_t> layers;  // each mask of instances and lights once
-    double radius = 1.0;  // of all that can be hit, m; up to date where lights are infinitely far
+    Bounds bounds;                      // of all that can be hit
 
     // What the records' addresses point into: of each texture, of the environment's map and of each mesh.
     std::vector<scene::BlobPtr> texels, levels;
