@@ -18,8 +18,7 @@ struct Bounds {
 };
 
 // Everything that rays are shaded with, relative to the render origin and ordered by object id: a function of
-// the scene's content alone, the same for all back-ends. Vertices and texels stay
-// in their blobs.
+// the scene's content alone, the same for all back-ends. Vertices and texels stay in their blobs.
 struct SceneTables {
     std::vector<shading::Texture> textures;       // that are used
     std::vector<shading::Material> materials;     // 0 = the default grey, 1 = the placeholder's
