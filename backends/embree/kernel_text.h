@@ -13,6 +13,12 @@
 #include "backends/embree/rays.h"
 #include "mediator/shading/trace.h"
 
+// In one piece, unless said otherwise: what a compiler inlines on its own changes with features that no scene
+// has asked for, and so does the time, by as much as 5 %.
+#ifndef KERNEL_PIECES
+#define KERNEL_PIECES [[gnu::flatten]]
+#endif
+
 namespace tessera::embree {
 
 namespace {
@@ -31,11 +37,9 @@ constexpr bool has_specular_trees(const Silent&) {
     return true;
 }
 
-// In one piece: what a compiler inlines on its own changes with features that no scene has asked for, and so
-// does the time, by as much as 5 %.
-[[gnu::flatten]] shading::PathSample trace(const shading::Scene& scene, const shading::View& view,
-                                           RTCScene top, std::uint32_t x, std::uint32_t y,
-                                           std::uint64_t sample, std::uint64_t& rays) {
+KERNEL_PIECES shading::PathSample trace(const shading::Scene& scene, const shading::View& view, RTCScene top,
+                                        std::uint32_t x, std::uint32_t y, std::uint64_t sample,
+                                        std::uint64_t& rays) {
     const float time = shading::sample_time(scene.features, view, x, y, sample);
     const shading::Path path = shading::trace_sample(Silent{{scene, view, top, time}}, x, y, sample);
     rays += path.rays;
