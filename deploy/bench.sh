@@ -8,6 +8,10 @@ for bench in film embree filter compose display; do
     echo "== $bench"
     "build/release/bin/tessera_${bench}_bench" "$@"
 done
+for bench in kernel update light; do
+    echo "== $bench"
+    "build/release/bin/tessera_${bench}_bench"
+done
 echo "== back-ends"
 build/release/bin/tessera bench backends --scenes room-1,balls:1000000 --repeat 3
 echo "== live"

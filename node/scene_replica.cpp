@@ -1,6 +1,7 @@
 #include "node/scene_replica.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "mediator/wire/envelope.h"
@@ -89,13 +90,16 @@ Expected<void> SceneReplica::advance() {
 
 Expected<void> SceneReplica::apply(scene::ChangeList list) {
     if (Expected<void> done = scene_.apply(list); !done) return done;
-    std::set<scene::BlobRef> blobs;
+    Applied applied;
     for (const scene::Entry& entry : list.entries) {
         const scene::Object* object = scene_.find(scene::id(entry));
-        if (!object) continue;
-        for (const scene::BlobRef& blob : scene::referenced_blobs(*object)) blobs.insert(blob);
+        if (object && std::holds_alternative<scene::Transform>(*object))
+            continue;  // most, and none has blobs
+        applied.objects.emplace_back(
+            scene::id(entry), object ? scene::referenced_blobs(*object) : std::vector<scene::BlobRef>());
     }
-    applied_lists_.push_back({std::move(list), {blobs.begin(), blobs.end()}});
+    applied.list = std::move(list);
+    applied_lists_.push_back(std::move(applied));
     return {};
 }
 
@@ -105,22 +109,41 @@ std::vector<scene::BlobRef> SceneReplica::missing() const {
         const auto* blob = std::get_if<scene::BlobRef>(&item.content);
         if (blob && !here(*blob)) missing.insert(*blob);
     }
+    std::map<ObjectId, const std::vector<scene::BlobRef>*> last;
     for (const Applied& applied : applied_lists_) {
-        for (const scene::BlobRef& blob : applied.blobs) {
+        for (const auto& [id, blobs] : applied.objects) last[id] = &blobs;
+    }
+    for (const auto& [id, blobs] : last) {
+        for (const scene::BlobRef& blob : *blobs) {
             if (!here(blob)) missing.insert(blob);
         }
     }
     return {missing.begin(), missing.end()};
 }
 
+// How many of the applied lists, from the first on, lead to a scene all of whose blobs are here.
+std::size_t SceneReplica::buildable() const {
+    std::size_t count = 0, lacking = 0;
+    std::map<ObjectId, bool> lacks;
+    for (std::size_t i = 0; i < applied_lists_.size(); ++i) {
+        for (const auto& [id, blobs] : applied_lists_[i].objects) {
+            bool& before = lacks[id];
+            const bool now =
+                !std::all_of(blobs.begin(), blobs.end(), [&](const auto& blob) { return here(blob); });
+            lacking = lacking - (before ? 1 : 0) + (now ? 1 : 0);
+            before = now;
+        }
+        if (lacking == 0) count = i + 1;
+    }
+    return count;
+}
+
 std::optional<SceneReplica::Build> SceneReplica::take_build() {
     if (building_) return std::nullopt;
     Build build;
     std::set<ObjectId> touched;
-    while (!applied_lists_.empty()) {
+    for (std::size_t count = buildable(); count > 0; --count) {
         Applied& applied = applied_lists_.front();
-        const auto is_here = [&](const scene::BlobRef& blob) { return here(blob); };
-        if (!std::all_of(applied.blobs.begin(), applied.blobs.end(), is_here)) break;
         for (const scene::Entry& entry : applied.list.entries) {
             if (!std::holds_alternative<scene::Remove>(entry)) touched.insert(scene::id(entry));
         }

@@ -13,7 +13,8 @@ namespace tessera::node {
 
 // The node's own copy of the scene and the way of change lists into the back-end. Every list passes four
 // stations, in order: announced (it may still be a blob that has to come) -> applied here (state hash
-// checked) -> all blobs it brought are in the store -> built by the back-end. Pure; one thread.
+// checked) -> all blobs it brought are in the store -> built by the back-end. A blob that a later list lets
+// go of is needed no more: both lists are built together. Pure; one thread.
 class SceneReplica {
   public:
     explicit SceneReplica(std::shared_ptr<scene::BlobStore> blobs) : blobs_(std::move(blobs)) {}
@@ -34,7 +35,7 @@ class SceneReplica {
     Expected<void> advance();
     Version refused_version() const { return refused_; }
 
-    // What has to be fetched for the next step, each once.
+    // What has to be fetched for the lists that are here, as they end: each once.
     std::vector<scene::BlobRef> missing() const;
 
     // The lists that the back-end can be given now, handed out once; with the ids whose blobs were never
@@ -70,12 +71,14 @@ class SceneReplica {
     };
     struct Applied {
         scene::ChangeList list;
-        std::vector<scene::BlobRef> blobs;  // that it brought
+        // What the objects refer to that it touched, as it left them; nothing where it removed one.
+        std::vector<std::pair<ObjectId, std::vector<scene::BlobRef>>> objects;
     };
 
     Verdict judge(Version from, Version to) const;
     Verdict announce(Announced item);
     Expected<void> apply(scene::ChangeList list);
+    std::size_t buildable() const;
     void discard();
     bool here(const scene::BlobRef& blob) const { return blob.empty() || blobs_->find(blob.hash) != nullptr; }
 

@@ -6,6 +6,7 @@
 
 #include "backends/embree/path_tracer.h"
 #include "backends/embree/world.h"
+#include "mediator/backend/story.h"
 #include "mediator/frame/block_stack.h"
 #include "mediator/frame/merge.h"
 #include "mediator/shading/sample_values.h"

@@ -6,11 +6,14 @@ namespace tessera::embree {
 
 namespace {
 
-void attach(RTCGeometry geometry, const backend::Mesh& mesh) {
+void attach_triangles(RTCGeometry geometry, const backend::Mesh& mesh) {
     const auto triangles = backend::elements<glm::uvec3>(mesh.triangles);
-    const auto positions = backend::elements<glm::vec3>(mesh.positions);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
                                sizeof(glm::uvec3), triangles.size());
+}
+
+void attach_positions(RTCGeometry geometry, const backend::Mesh& mesh) {
+    const auto positions = backend::elements<glm::vec3>(mesh.positions);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions.data(), 0,
                                sizeof(glm::vec3), positions.size());
     for (std::size_t i = 0; i < mesh.motion_positions.size(); ++i) {
@@ -46,12 +49,16 @@ MeshScenes::MeshScene MeshScenes::build(const backend::Mesh& mesh) const {
     built.scene.reset(rtcNewScene(device_));
     rtcSetSceneFlags(built.scene.get(),
                      mesh.refits ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_ROBUST);
+    // In scenes of other quality Embree builds anew what it is asked to refit.
+    if (mesh.refits) rtcSetSceneBuildQuality(built.scene.get(), RTC_BUILD_QUALITY_LOW);
     const GeometryHandle handle(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE));
     built.geometry = handle.get();
+    built.triangles = mesh.triangles;
     rtcSetGeometryBuildQuality(handle.get(),
                                mesh.refits ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
     rtcSetGeometryTimeStepCount(handle.get(), static_cast<unsigned>(mesh.motion_positions.size() + 1));
-    attach(handle.get(), mesh);
+    attach_triangles(handle.get(), mesh);
+    attach_positions(handle.get(), mesh);
     rtcCommitGeometry(handle.get());
     rtcAttachGeometryByID(built.scene.get(), handle.get(), 0);
     rtcCommitScene(built.scene.get());
@@ -59,8 +66,11 @@ MeshScenes::MeshScene MeshScenes::build(const backend::Mesh& mesh) const {
 }
 
 // Same triangles, other places: the tree stays, its boxes follow.
-void MeshScenes::refit(const MeshScene& built, const backend::Mesh& mesh) {
-    attach(built.geometry, mesh);  // the triangles too: the same blob may be under another address by now
+void MeshScenes::refit(MeshScene& built, const backend::Mesh& mesh) {
+    // The same triangles may be under another address by now; Embree takes whatever is attached for others.
+    if (built.triangles != mesh.triangles) attach_triangles(built.geometry, mesh);
+    built.triangles = mesh.triangles;
+    attach_positions(built.geometry, mesh);
     rtcUpdateGeometryBuffer(built.geometry, RTC_BUFFER_TYPE_VERTEX, 0);
     rtcCommitGeometry(built.geometry);
     rtcCommitScene(built.scene.get());

@@ -24,10 +24,11 @@ class MeshScenes {
     struct MeshScene {
         SceneHandle scene;
         RTCGeometry geometry = nullptr;  // owned by the scene
+        scene::BlobPtr triangles;        // that are attached
         bool alpha_tested = false;
     };
     MeshScene build(const backend::Mesh& mesh) const;
-    static void refit(const MeshScene& built, const backend::Mesh& mesh);
+    static void refit(MeshScene& built, const backend::Mesh& mesh);
 
     RTCDevice device_;
     std::map<ObjectId, MeshScene> meshes_;

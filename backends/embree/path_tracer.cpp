@@ -1,5 +1,6 @@
 #include "backends/embree/path_tracer.h"
 
+#include "backends/embree/context.h"
 #include "mediator/backend/tables/bodies.h"
 #include "mediator/backend/tables/view_record.h"
 #include "mediator/shading/trace.h"
@@ -16,13 +17,15 @@ PathTracer::PathTracer(const backend::SceneTables& tables, RTCScene top, const v
     view_.camera_places.items = camera_places_.data();
     scene_.features = backend::features_for(tables, view_);
     view_.strategy = static_cast<std::uint32_t>(strategy);
+    kernel_ = &kernel_for(scene_.features);
 }
 
 PathSample PathTracer::trace(std::uint32_t x, std::uint32_t y, std::uint64_t sample, std::uint64_t& rays,
                              std::vector<std::string>* story) const {
+    if (story == nullptr) return kernel_->trace(scene_, view_, top_, x, y, sample, rays);
     const float time = shading::sample_time(scene_.features, view_, x, y, sample);
     const shading::Path path =
-        shading::trace_sample(Context{{story}, scene_, view_, top_, time}, x, y, sample);
+        shading::trace_sample(Context{{story}, {scene_, view_, top_, time}}, x, y, sample);
     rays += path.rays;
     return path.found;
 }

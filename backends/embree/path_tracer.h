@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "backends/embree/context.h"
+#include "backends/embree/kernel.h"
 #include "mediator/backend/tables/tables.h"
 #include "mediator/shading/paths.h"
 #include "mediator/view/view.h"
@@ -33,12 +33,17 @@ class PathTracer {
                      std::vector<std::string>* story = nullptr) const;
 
     const shading::View& view() const { return view_; }
+    // Chosen by what occurs in the scene and the view; only tests choose another, which has to have all of
+    // it.
+    const Kernel& kernel() const { return *kernel_; }
+    void set_kernel(const Kernel& kernel) { kernel_ = &kernel; }
 
   private:
     shading::Scene scene_;
     std::vector<shading::Place> camera_places_;
     shading::View view_;
     RTCScene top_;
+    const Kernel* kernel_;
 };
 
 }  // namespace tessera::embree

@@ -29,8 +29,9 @@ Expected<backend::EditReport> World::commit() {
     backend::SceneDelta delta = shadow_.take_delta();
     const backend::MeshCatalog::Result meshes = meshes_.update(shadow_.scene(), delta);
     mesh_scenes_.update(meshes_, meshes);
-    tables_ = backend::make_tables(shadow_.scene(), shadow_.lowered(), meshes_, *blobs_, pyramids_);
-    mark_alpha_tested();
+    const backend::TablesStep step = backend::update_tables(tables_, shadow_.scene(), shadow_.lowered(),
+                                                            meshes_, *blobs_, pyramids_, delta);
+    if (step == backend::TablesStep::Made) mark_alpha_tested();
     backend::EditReport edit = backend::make_report(delta, meshes_, meshes, tables_);
     if (delta.everything || delta.instances_changed || delta.render_origin_changed ||
         meshes.count(backend::MeshStep::Rebuild) > 0) {

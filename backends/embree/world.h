@@ -8,9 +8,9 @@
 namespace tessera::embree {
 
 // The scene adapter: mirrors the scene in Embree at the cheapest level that can hold each change. Shading
-// data are tables; a moved instance is retransformed, moved vertices of an animated mesh are refitted,
-// everything else about a mesh is rebuilt. The top level is Embree's own affair: it rebuilds it at each
-// commit.
+// data are tables; a moved instance is retransformed, moved vertices of an animated mesh are refitted (Embree
+// cannot where they move in the shutter), everything else about a mesh is rebuilt. The top level is Embree's
+// own affair: it rebuilds it at each commit.
 class World {
   public:
     World(RTCDevice device, std::shared_ptr<scene::BlobStore> blobs);

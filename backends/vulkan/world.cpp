@@ -62,7 +62,7 @@ Expected<backend::EditReport> World::commit() {
     ahead_ = true;
     const std::uint64_t uploaded = device_->uploaded_bytes();
     const backend::MeshCatalog::Result changes = meshes_.update(shadow_.scene(), delta);
-    tables_ = backend::make_tables(shadow_.scene(), shadow_.lowered(), meshes_, *blobs_, pyramids_);
+    backend::update_tables(tables_, shadow_.scene(), shadow_.lowered(), meshes_, *blobs_, pyramids_, delta);
     try {
         const BvhPool::Work work = scene_->update(meshes_, changes, tables_);
         shadow_.accept();

@@ -39,8 +39,8 @@ struct Look {
     float eta;  // far side / this side; 0: without bound
     float specular;
     vec3 specular_color;
-    uint lobes;  // of ExtraLobes, which may be there
-    uint thin;   // walls: light goes straight on
+    FeatureBits lobes;  // of ExtraLobes, which may be there
+    uint thin;          // walls: light goes straight on
     float coat;
     float coat_roughness;
     vec3 coat_normal;
@@ -104,7 +104,7 @@ inline Interface interface_of(IN(Look) look) {
 }
 
 struct Bsdf {
-    uint lobes;               // of ExtraLobes
+    FeatureBits lobes;        // of ExtraLobes
     vec3 diffuse;             // albedo of the base
     vec3 f0;                  // specular reflectance at normal incidence
     float f90;                // and at grazing: of all of its share

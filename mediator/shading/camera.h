@@ -34,7 +34,7 @@ inline vec2 picture_place(IN(View) view, uint x, uint y, vec2 u) {
 }
 
 // The view at a time; compilers see where its camera stands still.
-inline View view_at(uint features, IN(View) view, float time) {
+inline View view_at(FeatureBits features, IN(View) view, float time) {
     if ((features & FeatureCameraMotion) == 0u) return view;
     const Place place = place_at(view.camera_places, 0u, view.camera_steps, time);
     View moved = view;

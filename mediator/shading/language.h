@@ -9,7 +9,7 @@
 //
 // What a shared file looks like:
 // - Include guard TESSERA_MEDIATOR_SHADING_NAME_H, since GLSL includes it too; then the includes,
-//   SHADING_BEGIN, the code, SHADING_END.
+//   SHADING_BEGIN, the code, SHADING_END; RECORDS_BEGIN and RECORDS_END around types that all kernels share.
 // - Constants are `inline constexpr float Name = 1.0f;`, functions `inline T name(...)`.
 // - Types: float, int, uint, bool, uint64_t, vec2/3/4, ivec2/3/4, uvec2/3/4, mat3, structs of them, arrays of
 //   fixed size. A `bool` never lies in a struct that goes through memory: `uint` does.
@@ -24,6 +24,7 @@
 //   GLSL T is a struct that is known before.
 // - Data in buffers: ARRAY_OF(Item, ItemArray, alignment) declares a type of the size of an address, whose
 //   `.items[i]` reads on both sides. Its members and items are laid out as in C++ (scalar layout).
+// - FeatureBits is a number whose bits are records.h's features, asked for by `&`.
 // - WITH_CONTEXT stands before a function with a parameter IN(Context): a type of the including side, through
 //   which rays are asked for (transport.h).
 //
@@ -51,8 +52,22 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#define SHADING_BEGIN namespace tessera::shading {
-#define SHADING_END }
+// A source that defines SHADING_KERNEL, a name, before it includes any shared file has all of their functions
+// for itself, compiled for scenes with no other features than SHADING_FEATURES. Records are everyone's.
+#define RECORDS_BEGIN namespace tessera::shading {
+#define RECORDS_END }
+#ifdef SHADING_KERNEL
+#define SHADING_BEGIN            \
+    namespace tessera::shading { \
+    inline namespace SHADING_KERNEL {
+#define SHADING_END \
+    }               \
+    }
+#else
+#define SHADING_FEATURES 0xffffffffu
+#define SHADING_BEGIN RECORDS_BEGIN
+#define SHADING_END RECORDS_END
+#endif
 #define IN(T) const T&
 #define OUT(T) T&
 #define INOUT(T) T&
@@ -101,6 +116,16 @@ inline bool is_finite(float x) {
     return std::fabs(x) <= 3.40282347e38f;
 }
 
+struct FeatureBits {
+    uint bits;
+
+    FeatureBits() = default;
+    constexpr FeatureBits(uint some) : bits(some) {}
+    constexpr operator uint() const { return bits; }
+    constexpr FeatureBits& operator|=(uint more) { return *this = bits | more; }
+    constexpr FeatureBits& operator&=(uint some) { return *this = bits & some; }
+};
+
 }  // namespace tessera::shading
 
 #else
@@ -113,6 +138,9 @@ inline bool is_finite(float x) {
 
 #define SHADING_BEGIN
 #define SHADING_END
+#define RECORDS_BEGIN
+#define RECORDS_END
+#define FeatureBits uint
 #define inline
 #define constexpr const
 #define IN(T) const in T

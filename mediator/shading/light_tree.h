@@ -36,19 +36,18 @@ inline float expected_light(IN(LightNode) node, IN(Receiver) receiver, float sca
     const vec3 way = (node.middle - receiver.position) * scale;
     const float distance2 = lesser_of(greater_of(dot(way, way), LeastDistance2), MostDistance2);
     const float inverse = 1.0f / sqrt(distance2);
-    const vec3 direction = way * inverse;
     const float radius = node.radius * scale;
     const float sine_of_ball = radius * inverse;
-    const float cosine_axis = -dot(node.axis, direction);
+    const float cosine_axis = -dot(node.axis, way) * inverse;
     const bool two_sided = (node.link & LightTwoSided) != 0u;
     const float leaves =
         sine_of_ball + cosine_beyond(two_sided ? abs(cosine_axis) : cosine_axis, node.cos_spread);
     const float arrives =
-        sine_of_ball + (receiver.normal == vec3(0.0f) ? 1.0f : dot(receiver.normal, direction));
+        sine_of_ball + (receiver.normal == vec3(0.0f) ? 1.0f : dot(receiver.normal, way) * inverse);
     const float facing = lesser_of(leaves, 1.0f) * lesser_of(arrives, 1.0f);
     const bool shines = leaves > node.cos_reach && arrives > 0.0f;
-    return node.power * (shines ? greater_of(facing, LeastFacing) : LeastFacing) /
-           greater_of(distance2, radius * radius);
+    const float share = node.power * (shines ? greater_of(facing, LeastFacing) : LeastFacing);
+    return sine_of_ball > 1.0f ? share / (radius * radius) : share * (inverse * inverse);
 }
 
 // Probabilities of a node's children; none is less likely than a millionth.

@@ -4,25 +4,11 @@
 #include "mediator/shading/bodies.h"
 #include "mediator/shading/cones.h"
 #include "mediator/shading/maths.h"
-#include "mediator/shading/records.h"
+#include "mediator/shading/path_sample.h"
 #include "mediator/shading/sobol.h"
 
-// What a path carries and what a sample has found.
+// What a path carries.
 SHADING_BEGIN
-
-// What one sample found. Radiance is low + high, so that its bits do not depend on the channels asked for.
-struct PathSample {
-    vec3 low;           // light outside
-    vec3 high;          // and inside of the view's path class
-    vec3 diffuse;       // of it, by the diffuse lobe of the first non-delta hit; where needed
-    float connections;  // grey intensity of the lights that were reached; where needed
-    vec3 albedo;        // of the first non-delta hit times the weight of the way to it
-    vec3 normal;        // of the first non-delta hit
-    vec3 range;         // head light and ambient (Schwenk 2A.3); where asked for
-    float depth;        // of the first hit, along the view axis; infinite: nothing hit
-    uint object;        // id of the first hit
-    float alpha;        // 1 where the camera sees something, else the background's
-};
 
 // All that decides for which channels the light of a path counts.
 struct Way {
@@ -97,7 +83,7 @@ inline uint leg_pair(uint vertex, uint number) {
 }
 
 // When a sample is taken, as a share of the time that the shutter is open; 0 where nothing moves.
-inline float sample_time(uint features, IN(View) view, uint x, uint y, uint64_t index) {
+inline float sample_time(FeatureBits features, IN(View) view, uint x, uint y, uint64_t index) {
     if ((features & (FeatureMotion | FeatureCameraMotion)) == 0u) return 0.0f;
     return sample_pair(make_sampler(x, y, view.seed, index), TimePair).x;
 }

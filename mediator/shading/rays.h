@@ -3,7 +3,7 @@
 
 #include "mediator/shading/records.h"
 
-SHADING_BEGIN
+RECORDS_BEGIN
 
 struct Ray {
     vec3 origin;
@@ -38,6 +38,6 @@ inline Skip skip_nothing() {
     return Skip(NoInstance, NearestHit, 0.0f);
 }
 
-SHADING_END
+RECORDS_END
 
 #endif

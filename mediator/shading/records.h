@@ -7,7 +7,7 @@
 // layout.h). Places are relative to the render origin. Tables are ordered by object id: a function of the
 // scene's content alone. Arrays are reached by address: a host pointer on the CPU, a device address on a GPU;
 // a record says by a count or a flag whether an array is there.
-SHADING_BEGIN
+RECORDS_BEGIN
 
 ARRAY_OF(float, FloatArray, 4);
 ARRAY_OF(uint, UintArray, 4);
@@ -316,7 +316,7 @@ struct Scene {
     uint light_sums;         // index of cumulative probabilities: of the tree, then of each distant light
     float tree_probability;  // of being chosen
     int environment_light;   // index of the light source that stands for the environment, or -1
-    uint features;
+    FeatureBits features;
     float tree_scale;  // a power of two that brings the light tree's size near to 1
 };
 
@@ -364,6 +364,19 @@ struct View {
     uint unused;   // keeps the size a multiple of an address's
 };
 
+RECORDS_END
+
+#ifdef __cplusplus
+
+SHADING_BEGIN
+
+// What a kernel was not compiled for is not there: the compiler sees it.
+constexpr uint operator&(FeatureBits features, uint asked) {
+    return features.bits & (asked & SHADING_FEATURES);
+}
+
 SHADING_END
+
+#endif
 
 #endif

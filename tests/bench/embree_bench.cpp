@@ -10,9 +10,9 @@
 
 #include "backends/embree/embree_backend.h"
 #include "backends/embree/path_tracer.h"
-#include "backends/embree/world.h"
-#include "client/import/import.h"
 #include "mediator/shading/sampling.h"
+#include "mediator/shading/surfaces.h"
+#include "tests/bench/bench_bed.h"
 
 namespace {
 
@@ -20,36 +20,8 @@ using namespace tessera;
 
 constexpr std::uint32_t Size = 256;
 
-struct Bed {
-    std::shared_ptr<scene::BlobStore> blobs = std::make_shared<scene::BlobStore>();
-    embree::DeviceHandle device = embree::make_device({.threads = 1, .blobs = blobs});
-    embree::World world{device.get(), blobs};
-    view::View view;
-
-    scene::ChangeList changes;
-
-    explicit Bed(const std::string& file) {
-        auto imported = import::import_scene(std::string(TESSERA_SCENES) + "/" + file, {});
-        if (!imported) throw imported.error();
-        for (const auto& blob : imported->blobs) blobs->insert(blob);
-        scene::Scene scene;
-        if (auto applied = scene.apply_entries(import::entries(*imported, import::RootEntry::Create));
-            !applied) {
-            throw applied.error();
-        }
-        scene.set_version({1, 1});
-        changes = scene::snapshot(scene);
-        if (auto applied = world.apply(changes); !applied) throw applied.error();
-        if (auto committed = world.commit(); !committed) throw committed.error();
-        const auto& camera = imported->cameras.at(0);
-        view.width = view.height = Size;
-        view.camera = view::perspective(camera.world_from_camera, camera.camera.vertical_fov, 1.0);
-        view.channels = {frame::Channel::Radiance};
-    }
-};
-
-const Bed& bed() {
-    static const Bed room("room-1.glb");
+const bench::Bed& bed() {
+    static const bench::Bed room("room-1.glb", Size);
     return room;
 }
 

@@ -16,7 +16,7 @@
 namespace tessera::embree {
 namespace {
 
-constexpr std::uint32_t Emitters = 10000, Size = 64, Spp = 64, ReferenceSpp = 1024, Rounds = 5;
+constexpr std::uint32_t Emitters = 10000, Size = 64, Spp = 64, ReferenceSpp = 1024, Rounds = 9;
 
 // Of this thread on a processor: others may be at work, too.
 double cpu_seconds() {
@@ -113,14 +113,15 @@ void run() {
     const World& single = one.build();
     const view::View view = ground();
     const backend::SceneTables even = uniform(world.tables());
-    std::vector<double> times, single_times;
+    std::vector<double> times, single_times, ratios;
     for (std::uint32_t i = 0; i < Rounds; ++i) {
         times.push_back(time_of(world, world.tables(), view));
         single_times.push_back(time_of(single, single.tables(), view));
+        ratios.push_back(times.back() / single_times.back());
     }
     const double time = median(times), single_time = median(single_times);
     std::printf("time per sample: %.0f ns with %u emitters, %.0f ns with one: %.2f x\n", time, Emitters,
-                single_time, time / single_time);
+                single_time, median(ratios));
     const std::vector<double> truth = picture(world, world.tables(), view, ReferenceSpp, 99);
     const std::vector<double> tree = picture(world, world.tables(), view, Spp, 1);
     const std::vector<double> plain = picture(world, even, view, Spp, 1);

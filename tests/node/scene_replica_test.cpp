@@ -88,5 +88,48 @@ TEST_F(SceneReplicaTest, ASnapshotMakesEarlierListsAndTheirBlobsPointless) {
     EXPECT_TRUE(replica.take_build());
 }
 
+TEST_F(SceneReplicaTest, ABlobThatALaterListLetsGoOfIsNotWaitedFor) {
+    const auto bytes = [](unsigned char value) { return std::vector<std::byte>(12, std::byte(value)); };
+    scene::Geometry old, now;
+    old.positions = {blake2b(bytes(1)), 12};
+    now.positions = {blake2b(bytes(2)), 12};
+    const scene::Fields<scene::Geometry> shape{scene::Geometry::Field::Positions};
+    replica.offer(builder.edit({scene::Create{ObjectId{3}, old}}));
+    replica.offer(builder.edit({test::SceneBuilder::update(ObjectId{3}, shape, now)}));
+    const auto last = builder.edit({scene::Create{ObjectId{4}, old}, scene::Remove{ObjectId{4}}});
+    replica.offer(last);
+    ASSERT_TRUE(replica.advance());
+    EXPECT_EQ(replica.missing(), std::vector{now.positions});
+    EXPECT_FALSE(replica.take_build());
+    blobs->insert(bytes(2));
+    EXPECT_TRUE(replica.missing().empty());
+    const auto build = replica.take_build();
+    ASSERT_TRUE(build);
+    EXPECT_EQ(build->lists.size(), 3u);
+    EXPECT_EQ(build->to, last.to);
+}
+
+TEST_F(SceneReplicaTest, AVersionWhoseBlobsAreHereIsBuiltThoughThoseOfALaterOneAreNot) {
+    const auto bytes = [](unsigned char value) { return std::vector<std::byte>(12, std::byte(value)); };
+    const scene::Fields<scene::Geometry> shape{scene::Geometry::Field::Positions};
+    std::vector<scene::ChangeList> lists;
+    for (unsigned char i = 0; i < 3; ++i) {
+        scene::Geometry geometry;
+        geometry.positions = {blake2b(bytes(i)), 12};
+        if (i == 0) {
+            lists.push_back(builder.edit({scene::Create{ObjectId{3}, geometry}}));
+        } else {
+            lists.push_back(builder.edit({test::SceneBuilder::update(ObjectId{3}, shape, geometry)}));
+        }
+        replica.offer(lists.back());
+    }
+    blobs->insert(bytes(1));
+    ASSERT_TRUE(replica.advance());
+    const auto build = replica.take_build();
+    ASSERT_TRUE(build);
+    EXPECT_EQ(build->to, lists[1].to);
+    EXPECT_EQ(replica.missing(), (std::vector<scene::BlobRef>{{blake2b(bytes(2)), 12}}));
+}
+
 }  // namespace
 }  // namespace tessera::node

@@ -6,6 +6,7 @@
 
 #include "backends/embree/path_tracer.h"
 #include "mediator/shading/bsdf.h"
+#include "mediator/shading/surfaces.h"
 #include "tests/statistics/furnace.h"
 #include "tests/statistics/lobes.h"
 #include "tests/statistics/model.h"

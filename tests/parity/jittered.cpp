@@ -70,7 +70,7 @@ frame::FilmTile JitteredEmbree::film(const view::View& view, const Rect& tile, s
         for (std::int32_t x = tile.x; x < tile.right(); ++x, ++pixel) {
             const auto px = static_cast<std::uint32_t>(x), py = static_cast<std::uint32_t>(y);
             const float time = shading::sample_time(scene.features, record, px, py, sample);
-            const JitteredContext context{{{}, scene, record, world_.scene(), time}};
+            const JitteredContext context{{{}, {scene, record, world_.scene(), time}}};
             const shading::Path path = shading::trace_sample(context, px, py, sample);
             const shading::SampleValues values =
                 shading::sample_values(record, path.found, static_cast<std::uint32_t>(sample));

@@ -141,7 +141,7 @@ def without_comments(lines):
 
 
 def check_shared(path, lines):
-    """A header that says SHADING_BEGIN: C++ and GLSL."""
+    """A header that says SHADING_BEGIN or RECORDS_BEGIN: C++ and GLSL."""
     guard = "TESSERA_" + re.sub(r"[^A-Z0-9]", "_", path.upper())
     if f"#ifndef {guard}" not in lines or f"#define {guard}" not in lines:
         yield f"{path}: shared header without the guard {guard}"
@@ -166,7 +166,7 @@ def check_code(path, lines):
                 yield f"{path}:{number}: include of {included} {reason}"
         elif path.endswith(".h") and re.match(r"\s*using\s+namespace\b", line):
             yield f"{path}:{number}: using namespace in a header"
-    if path.endswith(".h") and "SHADING_BEGIN" in (line.strip() for line in lines):
+    if path.endswith(".h") and {"SHADING_BEGIN", "RECORDS_BEGIN"} & {line.strip() for line in lines}:
         yield from check_shared(path, lines)
     elif path.endswith(".h") and not any(line.strip() == "#pragma once" for line in lines):
         yield f"{path}: header without #pragma once"

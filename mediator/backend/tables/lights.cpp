@@ -14,27 +14,6 @@ namespace {
 using shading::luminance;
 using std::numbers::pi;
 
-// How far the scene reaches, for the power of what shines on all of it.
-double radius_of(const SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes) {
-    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-    for (std::size_t i = 0; i < tables.instances.size(); ++i) {
-        const Mesh& mesh = *meshes.find(lowered.instances[i].geometry);
-        if (!(mesh.low.x <= mesh.high.x)) continue;
-        for (const shading::Place& step : places_of(tables, tables.instances[i])) {
-            for (unsigned corner = 0; corner < 8; ++corner) {
-                const glm::vec3 object{(corner & 1u) ? mesh.low.x : mesh.high.x,
-                                       (corner & 2u) ? mesh.low.y : mesh.high.y,
-                                       (corner & 4u) ? mesh.low.z : mesh.high.z};
-                const glm::dvec3 place = step.linear * object + step.translation;
-                low = glm::min(low, place);
-                high = glm::max(high, place);
-            }
-        }
-    }
-    const double radius = 0.5 * glm::length(high - low);
-    return radius > 0.0 && radius < std::numeric_limits<double>::infinity() ? radius : 1.0;
-}
-
 // Lights that are infinitely far, and their power.
 struct DistantLights {
     std::vector<shading::LightSource> lights;
@@ -225,7 +204,8 @@ void add_lights(SceneTables& tables, const scene::Scene& scene, const Lowered& l
     EmitterList list;
     DistantLights distant;
     add_mesh_lights(tables, list);
-    const double radius = radius_of(tables, lowered, meshes);
+    tables.bounds = bounds_of(tables, lowered, meshes);
+    const double radius = radius_of(tables.bounds);
     add_placed_lights(tables, scene, lowered, radius, list, distant);
     add_tree(tables, list);
     if (sky_luminance > 0.0) {

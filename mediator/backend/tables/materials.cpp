@@ -171,6 +171,17 @@ Indices add_materials(SceneTables& tables, const scene::Scene& scene, const Indi
     return indices;
 }
 
+void place(shading::Instance& instance, const glm::dmat4& world_from_object, const glm::dvec3& origin) {
+    // Relative to the origin in double, then rounded once.
+    const glm::dmat3 linear(world_from_object);
+    instance.linear = glm::mat3(linear);
+    instance.translation = glm::vec3(glm::dvec3(world_from_object[3]) - origin);
+    // Cofactors instead of the inverse: right for flattened instances too, and no division.
+    const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                               glm::cross(linear[0], linear[1]));
+    instance.normals = scaled(glm::determinant(linear) < 0.0 ? -cofactors : cofactors);
+}
+
 void add_instances(SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes,
                    const Indices& materials) {
     ObjectId last;
@@ -187,14 +198,7 @@ void add_instances(SceneTables& tables, const Lowered& lowered, const MeshCatalo
             .layers = source.layers,
             .body = -1};
         if (mesh.placeholder) instance.material = PlaceholderMaterial;
-        // Relative to the origin in double, then rounded once.
-        const glm::dmat3 linear(source.world_from_object);
-        instance.linear = glm::mat3(linear);
-        instance.translation = glm::vec3(glm::dvec3(source.world_from_object[3]) - tables.render_origin);
-        // Cofactors instead of the inverse: right for flattened instances too, and no division.
-        const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
-                                   glm::cross(linear[0], linear[1]));
-        instance.normals = scaled(glm::determinant(linear) < 0.0 ? -cofactors : cofactors);
+        place(instance, source.world_from_object, tables.render_origin);
         instance.motion = add_motion(tables, source.world_from_object, source.motion);
         const shading::Material& look = tables.materials[instance.material];
         instance.alpha_tested = look.alpha_mode != shading::AlphaOpaque ? 1u : 0u;

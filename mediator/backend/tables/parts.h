@@ -26,6 +26,13 @@ Indices add_materials(SceneTables& tables, const scene::Scene& scene, const Indi
 void add_instances(SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes,
                    const Indices& materials);
 
+// Gives an instance its place, relative to the render origin.
+void place(shading::Instance& instance, const glm::dmat4& world_from_object, const glm::dvec3& origin);
+
+// Of all that can be hit, at any time; how far that reaches, for the power of what shines on all of it.
+Bounds bounds_of(const SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes);
+double radius_of(const Bounds& bounds);
+
 // Adds the way of what goes through these places, relative to the render origin; -1 where it stands still.
 int add_motion(SceneTables& tables, const glm::dmat4& beginning, std::span<const glm::dmat4> steps);
 

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <vector>
 
 #include "mediator/backend/tables/meshes.h"
@@ -10,9 +11,14 @@
 
 namespace tessera::backend {
 
+// Relative to the render origin; low > high: nothing.
+struct Bounds {
+    glm::dvec3 low{std::numeric_limits<double>::infinity()};
+    glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+};
+
 // Everything that rays are shaded with, relative to the render origin and ordered by object id: a function of
-// the scene's content alone, the same for all back-ends. Made anew at each commit; vertices and texels stay
-// in their blobs.
+// the scene's content alone, the same for all back-ends. Vertices and texels stay in their blobs.
 struct SceneTables {
     std::vector<shading::Texture> textures;       // that are used
     std::vector<shading::Material> materials;     // 0 = the default grey, 1 = the placeholder's
@@ -33,6 +39,7 @@ struct SceneTables {
     shading::Scene scene{};                       // all of it but the addresses of the tables
     glm::dvec3 render_origin{0.0};
     std::vector<std::uint32_t> layers;  // each mask of instances and lights once
+    Bounds bounds;                      // of all that can be hit
 
     // What the records' addresses point into: of each texture, of the environment's map and of each mesh.
     std::vector<scene::BlobPtr> texels, levels;
@@ -51,6 +58,14 @@ struct SceneTables {
 // that a wrong estimate costs noise, never light. Addresses are the host's.
 SceneTables make_tables(const scene::Scene& scene, const Lowered& lowered, const MeshCatalog& meshes,
                         const scene::BlobStore& blobs, TexturePyramids& pyramids);
+
+// What update_tables has done: given moved instances their places, or made all tables anew.
+enum class TablesStep { Moved, Made };
+
+// The same as the tables made anew, from those of before the edit.
+TablesStep update_tables(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
+                         const MeshCatalog& meshes, const scene::BlobStore& blobs, TexturePyramids& pyramids,
+                         const SceneDelta& delta);
 
 // The scene on the host: addresses of the tables' own memory, valid while they are neither changed nor moved.
 shading::Scene on_host(const SceneTables& tables);

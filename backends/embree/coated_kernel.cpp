@@ -1,0 +1,9 @@
+#define SHADING_KERNEL coated
+#define SHADING_FEATURES (PLAIN_FEATURES | shading::FeatureExtras | shading::FeatureCoat)
+#include "backends/embree/kernel_text.h"
+
+namespace tessera::embree {
+
+const Kernel CoatedKernel{SHADING_FEATURES, trace};
+
+}  // namespace tessera::embree

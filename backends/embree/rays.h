@@ -1,0 +1,23 @@
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include "mediator/shading/rays.h"
+
+// The rays of the shared transport (mediator/shading/transport.h).
+namespace tessera::embree {
+
+// What they go through, and for whom.
+struct Rays {
+    const shading::Scene& scene;
+    const shading::View& view;
+    RTCScene top;
+    float time = 0.0f;
+};
+
+bool trace_closest(const Rays& rays, const shading::Ray& ray, std::uint32_t seed, const shading::Skip& skip,
+                   shading::Hit& hit);
+bool trace_occluded(const Rays& rays, const glm::vec3& origin, const glm::vec3& segment, float far,
+                    std::uint32_t seed);
+
+}  // namespace tessera::embree

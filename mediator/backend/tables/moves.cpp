@@ -1,0 +1,89 @@
+#include <algorithm>
+#include <glm/vector_relational.hpp>
+#include <limits>
+
+#include "mediator/backend/tables/parts.h"
+#include "mediator/shading/materials.h"
+
+namespace tessera::backend {
+
+namespace {
+
+void add_box(Bounds& bounds, const Mesh& mesh, const glm::mat3& linear, const glm::vec3& translation) {
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        const glm::vec3 object{(corner & 1u) ? mesh.low.x : mesh.high.x,
+                               (corner & 2u) ? mesh.low.y : mesh.high.y,
+                               (corner & 4u) ? mesh.low.z : mesh.high.z};
+        const glm::dvec3 place = linear * object + translation;
+        bounds.low = glm::min(bounds.low, place);
+        bounds.high = glm::max(bounds.high, place);
+    }
+}
+
+// Whether a mesh at this place lies within bounds and makes no part of them.
+bool is_inside(const Bounds& bounds, const Mesh& mesh, const shading::Instance& instance) {
+    if (!(mesh.low.x <= mesh.high.x)) return true;
+    Bounds own;
+    add_box(own, mesh, instance.linear, instance.translation);
+    return glm::all(glm::lessThan(bounds.low, own.low)) && glm::all(glm::lessThan(own.high, bounds.high));
+}
+
+bool moves_only(const SceneDelta& delta) {
+    return !delta.everything && !delta.instances_changed && !delta.lights_changed &&
+           delta.geometries.empty() && delta.removed_geometries.empty() && delta.materials.empty() &&
+           delta.textures.empty() && !delta.background_changed && !delta.render_origin_changed;
+}
+
+// Whether nothing but its place follows from where an instance is: it does not shine, nor move in the
+// shutter.
+bool is_plain(const SceneTables& tables, const shading::Instance& instance, const Instance& source) {
+    return instance.motion < 0 && source.motion.empty() && instance.layers == source.layers &&
+           !shading::emits(tables.materials[instance.material]);
+}
+
+}  // namespace
+
+Bounds bounds_of(const SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes) {
+    Bounds bounds;
+    for (std::size_t i = 0; i < tables.instances.size(); ++i) {
+        const Mesh& mesh = *meshes.find(lowered.instances[i].geometry);
+        if (!(mesh.low.x <= mesh.high.x)) continue;
+        for (const shading::Place& step : places_of(tables, tables.instances[i])) {
+            add_box(bounds, mesh, step.linear, step.translation);
+        }
+    }
+    return bounds;
+}
+
+double radius_of(const Bounds& bounds) {
+    const double radius = 0.5 * glm::length(bounds.high - bounds.low);
+    return radius > 0.0 && radius < std::numeric_limits<double>::infinity() ? radius : 1.0;
+}
+
+TablesStep update_tables(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
+                         const MeshCatalog& meshes, const scene::BlobStore& blobs, TexturePyramids& pyramids,
+                         const SceneDelta& delta) {
+    const auto can_move = [&](std::uint32_t i) {
+        return is_plain(tables, tables.instances[i], lowered.instances[i]);
+    };
+    if (moves_only(delta) && std::ranges::all_of(delta.moved_instances, can_move)) {
+        bool same_bounds = true;
+        for (const std::uint32_t i : delta.moved_instances) {
+            const Mesh& mesh = *meshes.find(lowered.instances[i].geometry);
+            shading::Instance& instance = tables.instances[i];
+            same_bounds = same_bounds && is_inside(tables.bounds, mesh, instance);
+            place(instance, lowered.instances[i].world_from_object, tables.render_origin);
+            same_bounds = same_bounds && is_inside(tables.bounds, mesh, instance);
+        }
+        if (same_bounds) return TablesStep::Moved;
+        // Lights that are infinitely far are chosen by how large the scene is.
+        const double radius = radius_of(tables.bounds);
+        tables.bounds = bounds_of(tables, lowered, meshes);
+        const bool has_distant = tables.scene.light_count > tables.scene.tree_light_count;
+        if (!has_distant || radius_of(tables.bounds) == radius) return TablesStep::Moved;
+    }
+    tables = make_tables(scene, lowered, meshes, blobs, pyramids);
+    return TablesStep::Made;
+}
+
+}  // namespace tessera::backend

@@ -1,0 +1,110 @@
+// An instance that moves costs its own place; the tables are those that are made anew.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "mediator/backend/tables/tables.h"
+#include "tests/backend/scene_builder.h"
+
+namespace tessera::backend {
+namespace {
+
+using scene::Create;
+using test::moved;
+using test::SceneBuilder;
+using test::transform;
+
+constexpr ObjectId Mesh{2}, Lamp{3}, Glow{4}, Near{5}, Far{6}, Lit{7}, Sun{8};
+
+struct MovesTest : testing::Test {
+    MovesTest() {
+        const std::vector<std::uint32_t> indices{0, 1, 2};
+        const std::vector<glm::vec3> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+        const scene::Geometry mesh{.indices = blob(indices), .positions = blob(positions)};
+        scene::Geometry lamp = mesh;
+        lamp.material = Glow;
+        edit({Create{Mesh, mesh}, Create{Lamp, lamp},
+              Create{Glow, scene::Material{.emission = glm::vec3(1.0f)}},
+              Create{Near, transform(moved(1, 0, 0), {Mesh})}, Create{Far, transform(moved(9, 0, 0), {Mesh})},
+              Create{Lit, transform(moved(2, 0, 0), {Lamp})},
+              Create{scene::RootId, scene::Root{.children = {Near, Far, Lit}}}});
+    }
+
+    template <class T>
+    scene::BlobRef blob(const std::vector<T>& values) {
+        return scene::reference(*blobs->insert(std::as_bytes(std::span(values))));
+    }
+    TablesStep edit(std::vector<scene::Entry> entries) { return take(builder.edit(std::move(entries))); }
+    TablesStep move(ObjectId id, const glm::dmat4& to) { return take(builder.move(id, to)); }
+
+    TablesStep take(const scene::ChangeList& list) {
+        EXPECT_TRUE(shadow.apply(list));
+        const SceneDelta delta = shadow.take_delta();
+        meshes.update(shadow.scene(), delta);
+        const TablesStep step =
+            update_tables(tables, shadow.scene(), shadow.lowered(), meshes, *blobs, pyramids, delta);
+        expect_as_made_anew();
+        return step;
+    }
+
+    void expect_as_made_anew() {
+        const SceneTables fresh = make_tables(shadow.scene(), shadow.lowered(), meshes, *blobs, pyramids);
+        EXPECT_TRUE(same_bytes(tables.instances, fresh.instances));
+        EXPECT_TRUE(same_bytes(tables.lights, fresh.lights));
+        EXPECT_TRUE(same_bytes(tables.emitters, fresh.emitters));
+        EXPECT_TRUE(same_bytes(tables.light_nodes, fresh.light_nodes));
+        EXPECT_EQ(tables.sums, fresh.sums);
+        EXPECT_EQ(tables.scene.features, fresh.scene.features);
+    }
+    template <class T>
+    static bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+        return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+    }
+
+    std::shared_ptr<scene::BlobStore> blobs = std::make_shared<scene::BlobStore>();
+    MeshCatalog meshes{blobs};
+    SceneBuilder builder;
+    ShadowScene shadow;
+    TexturePyramids pyramids;
+    SceneTables tables;
+};
+
+TEST_F(MovesTest, WhatDoesNotShineGetsAPlaceAndNoMore) {
+    EXPECT_EQ(move(Near, moved(1, 2, 3)), TablesStep::Moved);
+    EXPECT_EQ(move(Far, moved(20, 2, 3)), TablesStep::Moved);
+    EXPECT_EQ(move(Near, glm::scale(moved(1, 2, 3), glm::dvec3(-1.0, 2.0, 0.0))), TablesStep::Moved);
+}
+
+TEST_F(MovesTest, ALampTakesItsEmittersWithIt) {
+    EXPECT_EQ(move(Lit, moved(1, 2, 3)), TablesStep::Made);
+}
+
+TEST_F(MovesTest, LightFromInfinitelyFarGrowsWithTheScene) {
+    const scene::Light sun{.kind = scene::LightKind::Directional};
+    EXPECT_EQ(edit({Create{Sun, sun},
+                    SceneBuilder::update<scene::Root>(scene::RootId, scene::Root::Field::Children,
+                                                      scene::Root{.children = {Near, Far, Lit, Sun}})}),
+              TablesStep::Made);
+    EXPECT_EQ(move(Near, moved(2, 0, 0)), TablesStep::Made);    // it was at the scene's rim
+    EXPECT_EQ(move(Near, moved(3, 0, 0)), TablesStep::Moved);   // inside, where the lamp is the rim now
+    EXPECT_EQ(move(Near, moved(3, 0, 0.5)), TablesStep::Made);  // beyond the rim
+    EXPECT_EQ(move(Far, moved(8, 0, 0)), TablesStep::Made);
+}
+
+TEST_F(MovesTest, WhatMovesInTheShutterHasPlacesOfItsOwn) {
+    scene::Transform swings = transform(moved(1, 0, 0), {});
+    swings.motion = {moved(2, 0, 0)};
+    EXPECT_EQ(edit({SceneBuilder::update<scene::Transform>(Near, scene::Transform::Field::Motion, swings)}),
+              TablesStep::Made);
+    EXPECT_EQ(move(Near, moved(0, 0, 0)), TablesStep::Made);
+    EXPECT_EQ(move(Far, moved(7, 0, 0)), TablesStep::Moved);
+}
+
+TEST_F(MovesTest, AnEditOfAMaterialIsNoMove) {
+    EXPECT_EQ(edit({SceneBuilder::update<scene::Material>(Glow, scene::Material::Field::Emission,
+                                                          scene::Material{.emission = glm::vec3(3.0f)})}),
+              TablesStep::Made);
+}
+
+}  // namespace
+}  // namespace tessera::backend

@@ -1,0 +1,9 @@
+#define SHADING_KERNEL room
+#define SHADING_FEATURES (shading::FeatureTextures | shading::FeatureMeshLights | shading::FeatureLightTree)
+#include "backends/embree/kernel_text.h"
+#include "tests/bench/exact_kernels.h"
+namespace tessera::embree {
+
+const Kernel RoomKernel{SHADING_FEATURES, trace};
+
+}  // namespace tessera::embree

@@ -1,0 +1,9 @@
+#define SHADING_KERNEL still
+#define SHADING_FEATURES (shading::FeatureTextures | shading::FeatureSpecular | shading::FeatureEnvironment)
+#include "backends/embree/kernel_text.h"
+#include "tests/bench/exact_kernels.h"
+namespace tessera::embree {
+
+const Kernel StillKernel{SHADING_FEATURES, trace};
+
+}  // namespace tessera::embree

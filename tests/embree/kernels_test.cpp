@@ -1,0 +1,134 @@
+// A kernel that was compiled for some features finds the bits of the one with all.
+#include <cstring>
+#include <functional>
+
+#include "tests/statistics/model.h"
+
+namespace tessera::embree {
+namespace {
+
+const std::vector<const Kernel*> Kernels{&PlainKernel, &CoatedKernel, &ShaderKernel, &FullKernel};
+
+// Speculars, colours, alpha, lights of most kinds, a sky.
+void add_plain(Model& model) {
+    model.floor(model.material(chalk(glm::vec3(0.7f))), 3.0f, -1.0f);
+    scene::Material veil = chalk({0.2f, 0.8f, 0.3f});
+    veil.base_color.w = 0.5f;
+    veil.alpha_mode = scene::AlphaMode::Blend;
+    model.quad(model.material(veil), {{{-1, -1, 1}, {0, -1, 1}, {0, 0, 1}, {-1, 0, 1}}});
+    model.sphere(model.material(glass(1.5f)), {0.8, 0, 0}, 0.6, Normals::Smooth);
+    model.sphere(model.material(mirror(glm::vec3(0.9f))), {-0.8, 0.4, 0}, 0.5, Normals::Smooth);
+    model.sphere(
+        model.material({.base_color = {0.9f, 0.4f, 0.2f, 1.0f}, .metallic = 0.5f, .roughness = 0.3f}),
+        {0, -0.9, 0}, 0.4, Normals::Smooth);
+    model.floor(model.material(lamp(4.0f)), -0.3f, 3.0f);
+    model.point_light({1, 2, 2}, 5.0f);
+    model.light({.kind = scene::LightKind::Directional, .angle = 0.1f}, glm::dmat4(1.0));
+    model.sky(glm::vec3(0.2f, 0.3f, 0.5f));
+}
+
+void add_coat(Model& model) {
+    add_plain(model);
+    model.sphere(model.material({.roughness = 0.5f, .clearcoat = 0.8f, .clearcoat_roughness = 0.1f}),
+                 {0.2, 0.9, 0}, 0.4, Normals::Smooth);
+}
+
+void add_shader(Model& model) {
+    add_plain(model);
+    model.sphere(model.shader({.specular = glm::vec3(0.3f), .reflection = glm::vec3(0.2f)}), {0.2, 0.9, 0},
+                 0.4, Normals::Smooth);
+    model.light({.kind = scene::LightKind::Sphere, .radius = 0.2f},
+                glm::translate(glm::dmat4(1.0), {-1.5, 1.0, 1.0}));
+    model.floor(model.material({.shadow_catcher = true}), 6.0f, -1.5f);
+}
+
+void add_all(Model& model) {
+    add_shader(model);
+    add_coat(model);
+    model.sphere(model.material({.roughness = 0.6f, .sheen_color = glm::vec3(0.5f), .sheen_roughness = 0.4f}),
+                 {-0.2, 0.9, 0.3}, 0.3, Normals::Smooth);
+    scene::Material frosted = glass(1.3f);
+    frosted.roughness = 0.4f;
+    model.sphere(model.material(frosted), {-1.2, -0.9, 0.3}, 0.3, Normals::Smooth);
+    model.moves({glm::translate(glm::dmat4(1.0), {0.3, 0.0, 0.0})});
+    model.sphere(model.material(chalk(glm::vec3(0.9f))), {1.2, -0.9, 0.3}, 0.3);
+}
+
+std::vector<PathSample> samples(const World& world, const view::View& view, const Kernel* kernel) {
+    PathTracer tracer(world.tables(), world.scene(), view);
+    if (kernel != nullptr) tracer.set_kernel(*kernel);
+    std::vector<PathSample> found;
+    std::uint64_t rays = 0;
+    for (std::uint64_t sample = 0; sample < 4; ++sample) {
+        for (std::uint32_t i = 0; i < view.width * view.height; ++i) {
+            found.push_back(tracer.trace(i % view.width, i / view.width, sample, rays));
+        }
+    }
+    return found;
+}
+
+std::vector<PathSample> told(const World& world, const view::View& view) {
+    const PathTracer tracer(world.tables(), world.scene(), view);
+    std::vector<PathSample> found;
+    std::vector<std::string> story;
+    std::uint64_t rays = 0;
+    for (std::uint64_t sample = 0; sample < 4; ++sample) {
+        for (std::uint32_t i = 0; i < view.width * view.height; ++i) {
+            found.push_back(tracer.trace(i % view.width, i / view.width, sample, rays, &story));
+        }
+    }
+    return found;
+}
+
+bool same_bits(const std::vector<PathSample>& a, const std::vector<PathSample>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(PathSample)) == 0;
+}
+
+struct KernelCase {
+    const char* name;
+    void (*add)(Model& model);
+    const Kernel* chosen;
+};
+
+class KernelsTest : public testing::TestWithParam<KernelCase> {};
+
+TEST_P(KernelsTest, AllThatMayBeTakenFindTheSameBits) {
+    Model model;
+    GetParam().add(model);
+    const World& world = model.build();
+    for (const auto renderer :
+         {view::Renderer::PathTracing, view::Renderer::Whitted, view::Renderer::Coverage}) {
+        view::View view = small_view({0, 0, 4}, 0.9, 32);
+        view.renderer = renderer;
+        view.channels = frame::ChannelSet::from_bits((1u << frame::ChannelCount) - 1u);
+        const PathTracer tracer(world.tables(), world.scene(), view);
+        EXPECT_EQ(&tracer.kernel(), GetParam().chosen);
+        const std::vector<PathSample> all = samples(world, view, &FullKernel);
+        for (const Kernel* kernel : Kernels) {
+            if ((world.tables().scene.features & ~kernel->features) != 0) continue;
+            EXPECT_TRUE(same_bits(samples(world, view, kernel), all))
+                << "features " << kernel->features << ", renderer " << static_cast<int>(renderer);
+        }
+        EXPECT_TRUE(same_bits(told(world, view), all));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, KernelsTest,
+                         testing::Values(KernelCase{"Plain", add_plain, &PlainKernel},
+                                         KernelCase{"Coat", add_coat, &CoatedKernel},
+                                         KernelCase{"Shader", add_shader, &ShaderKernel},
+                                         KernelCase{"All", add_all, &FullKernel}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(Kernels, HaveWhatTheyAreChosenForAndComeBeforeThoseWithMore) {
+    for (std::uint32_t bit = 0; bit < 32; ++bit) {
+        EXPECT_NE(kernel_for(1u << bit).features & (1u << bit), 0u) << bit;
+    }
+    for (std::size_t i = 0; i < Kernels.size(); ++i) {
+        EXPECT_EQ(&kernel_for(Kernels[i]->features), Kernels[i]);
+        for (std::size_t j = 0; j < i; ++j) EXPECT_NE(Kernels[i]->features & ~Kernels[j]->features, 0u);
+    }
+}
+
+}  // namespace
+}  // namespace tessera::embree
