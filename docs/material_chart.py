@@ -27,8 +27,10 @@ def pbr(color=(1, 1, 1), metallic=0.0, roughness=0.5, **extensions):
     return material
 
 
-def glass(roughness=0.0, color=(1, 1, 1), ior=1.5, **volume):
+def glass(roughness=0.0, color=(1, 1, 1), ior=1.5, iridescence=None, **volume):
     extensions = {"transmission": {"transmissionFactor": 1}, "ior": {"ior": ior}}
+    if iridescence:
+        extensions["iridescence"] = iridescence
     if volume:
         extensions["volume"] = volume
     return pbr(color, 0.0, roughness, **extensions)
@@ -55,6 +57,12 @@ ROWS = [
     ("glass bodies, roughness 0 to 0.7, the last four amber inside",
      [glass(0.7 * s, thicknessFactor=1, **({} if s < 0.5 else {"attenuationDistance": 0.8,
                                                                "attenuationColor": [1, 0.55, 0.12]}))
+      for s in STEPS]),
+    ("iridescence of dark lacquer, film of 100 to 800 nm",
+     [pbr((0.02, 0.02, 0.02), 0, 0.05,
+          iridescence={"iridescenceFactor": 1, "iridescenceThicknessMaximum": 100 + 700 * s}) for s in STEPS]),
+    ("iridescence of bubbles, index of the film 1.1 to 1.6",
+     [glass(iridescence={"iridescenceFactor": 1, "iridescenceIor": 1.1 + 0.5 * s, "iridescenceThicknessMaximum": 500})
       for s in STEPS]),
 ]
 
@@ -183,6 +191,10 @@ def shader(**fields):
     return "<CommonSurfaceShader " + " ".join(f"{name}='{value}'" for name, value in values.items()) + "/>"
 
 
+def volume(**fields):
+    return shader(**fields).replace("CommonSurfaceShader", "CommonVolumeShader")
+
+
 WHITE, BLACK = (1, 1, 1), (0, 0, 0)
 
 SHADER_ROWS = [
@@ -202,6 +214,13 @@ SHADER_ROWS = [
     ("alpha 1 to 0",
      [shader(diffuseFactor=(0.1, 0.3, 0.6), specularFactor=(0.3, 0.3, 0.3), shininessFactor=0.8, alphaFactor=1 - s)
       for s in STEPS]),
+    ("media without a surface: scattering 0.3 to 30 per metre",
+     [volume(scatteringFactor=tuple(k * 100 ** s for k in (0.3, 0.27, 0.2)), absorptionFactor=(0.01, 0.02, 0.05))
+      for s in STEPS]),
+    ("glass filled with a medium: absorption 0.1 to 10 per metre, the last four glow",
+     [shader(diffuseFactor=BLACK, reflectionFactor=WHITE, transmissionFactor=WHITE, relativeIndexOfRefraction=1.5)
+      + volume(absorptionFactor=tuple(k * 100 ** s for k in (0.1, 0.02, 0.06)),
+               emissionFactor=BLACK if s < 0.5 else (0.1, 0.5, 0.2)) for s in STEPS]),
 ]
 
 
