@@ -161,9 +161,9 @@ inline bool is_seen(IN(Scene) scene, IN(LightSource) light, uint layers) {
     return (scene.features & FeatureLayers) == 0u || (light.layers & layers) != 0u;
 }
 
-// Light is welcome from both sides where it goes through.
+// Light is welcome from both sides where it goes through; a place in a medium has no normal.
 inline Receiver receiver_at(IN(Surface) surface) {
-    const bool through = (surface.bsdf.lobes & (FeatureRoughGlass | FeatureMedia)) != 0u;
+    const bool through = (surface.bsdf.lobes & FeatureRoughGlass) != 0u;
     return Receiver(surface.position, through ? vec3(0.0f) : surface.geometric_normal);
 }
 

@@ -385,6 +385,23 @@ TEST(Media, FogMayStandOnTheFloor) {
     }
 }
 
+// And what the floor scatters goes through the fog again, as if that went on below.
+TEST(Media, LightGoesOnInTheFogThatStandsOnTheFloor) {
+    const auto seen = [](float bottom) {
+        Model model;
+        model.filled_with({.absorption = vec3(0.5f)});
+        model.box(NoMaterial, {-30, -30, bottom}, {30, 30, 1.0f});
+        model.filled_with_nothing();
+        model.floor(model.material(chalk(vec3(0.8f))), 100.0f, 0.0f);
+        model.sky(vec3(1.0f));
+        return mean_of(model.build(), small_view({0.01, 0.02, 3}, 0.01), 64, red);
+    };
+    const Mean ends = seen(0.0f), goes_on = seen(-1.0f);
+    EXPECT_NEAR(ends.value, goes_on.value, 4.5 * std::hypot(ends.standard_error, goes_on.standard_error));
+    EXPECT_LE(goes_on.standard_error, 0.02 * goes_on.value);
+    EXPECT_LE(goes_on.value, 0.8 * std::exp(-1.0));  // at least a metre of fog on both ways
+}
+
 // Seen against nothing, a fog covers as much as it takes away.
 TEST(Media, CoverTransparentBackgrounds) {
     for (const float scattering : {0.0f, 0.5f}) {
