@@ -1,5 +1,5 @@
 #define SHADING_KERNEL still
-#define SHADING_FEATURES (shading::FeatureTextures | shading::FeatureSpecular | shading::FeatureEnvironment)
+#define SHADING_FEATURES (shading::FeatureTextures | shading::FeatureSpecular | shading::FeatureEnvironment | shading::FeatureEnvironmentMap)
 #include "backends/embree/kernel_text.h"
 #include "tests/bench/exact_kernels.h"
 namespace tessera::embree {
