@@ -71,19 +71,6 @@ inline Place bvh_place(BvhItems pool, uint at) {
     return Place(mat3(vec3(x.x, y.x, z.x), vec3(x.y, y.y, z.y), vec3(x.z, y.z, z.z)), vec3(x.w, y.w, z.w));
 }
 
-// The ray in the space of what is at this place: motion_error bounds the rounding. A place without an inverse
-// gives a ray that hits nothing.
-inline BvhRay bvh_ray_from(IN(Place) place, vec3 origin, vec3 direction) {
-    const mat3 m = place.linear;
-    const float scale = unit_scale(extent_of(max(max(abs(m[0]), abs(m[1])), abs(m[2]))));
-    const vec3 a = m[0] * scale, b = m[1] * scale, c = m[2] * scale;
-    const vec3 x = cross(b, c), y = cross(c, a), z = cross(a, b);
-    const float inverse = scale / dot(a, x);
-    const vec3 from = origin - place.translation;
-    return bvh_ray(vec3(dot(x, from), dot(y, from), dot(z, from)) * inverse,
-                   vec3(dot(x, direction), dot(y, direction), dot(z, direction)) * inverse);
-}
-
 inline BvhPlace bvh_enter_moving(BvhItems pool, uint top, uint at, IN(BvhPlace) still, vec3 origin,
                                  vec3 direction, float time) {
     const uvec4 motion = bvh_item(pool, at + 4u);
@@ -91,9 +78,11 @@ inline BvhPlace bvh_enter_moving(BvhItems pool, uint top, uint at, IN(BvhPlace) 
     if (motion.z > 0u) {
         const Moment moment = moment_at(motion.z, time);
         const uint from = top + motion.y + moment.step * BvhPlaceItems;
-        place.ray = bvh_ray_from(
+        // A place without an inverse gives a ray that hits nothing.
+        const Ray inner = ray_in_object(
             place_between(bvh_place(pool, from), bvh_place(pool, from + BvhPlaceItems), moment.share), origin,
             direction);
+        place.ray = bvh_ray(inner.origin, inner.direction);
     }
     if (motion.w > 0u) {
         place.moment = moment_at(motion.w, time);

@@ -33,6 +33,19 @@ inline Place place_at(PlaceArray places, uint first, uint steps, float time) {
                          moment.share);
 }
 
+// A ray in the space of what is at this place, its direction of any length; no numbers where there is no
+// inverse. By cofactors, scaled so that products stay in range: motion_error bounds the rounding.
+inline Ray ray_in_object(IN(Place) place, vec3 origin, vec3 direction) {
+    const mat3 m = place.linear;
+    const float scale = unit_scale(extent_of(max(max(abs(m[0]), abs(m[1])), abs(m[2]))));
+    const vec3 a = m[0] * scale, b = m[1] * scale, c = m[2] * scale;
+    const vec3 x = cross(b, c), y = cross(c, a), z = cross(a, b);
+    const float inverse = scale / dot(a, x);
+    const vec3 from = origin - place.translation;
+    return Ray(vec3(dot(x, from), dot(y, from), dot(z, from)) * inverse,
+               vec3(dot(x, direction), dot(y, direction), dot(z, direction)) * inverse);
+}
+
 // Cofactors, times a power of two, as Instance::normals has them.
 inline mat3 turns_normals(IN(mat3) linear) {
     const float scale = unit_scale(extent_of(max(max(abs(linear[0]), abs(linear[1])), abs(linear[2]))));

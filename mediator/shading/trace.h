@@ -108,7 +108,6 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
         const bool connects = opens && connection.is_open;
         // The tree of a path is followed, after the path itself, for its range alone.
         const bool lit = !covers && (whitted || stage == StagePath);
-        bool goes_on = false;
         path.rays += 1u;
         Hit hit;
         bool is_hit = false;
@@ -137,7 +136,7 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
         const bool goes_through = is_hit && !arrives && !leg.scatters && is_open(context.scene, hit.instance);
         const Course before = course;
         if (goes_through) go_through(context.scene, course, path.inside, hit, ray, context.time);
-        goes_on = goes_through;
+        bool goes_on = goes_through;
         if (connects) {
             connection.light *= leg.passed;
             if (arrives) receive_light(context, path.found, connection, unit_vector(ray.direction));

@@ -47,17 +47,9 @@ struct BoxRay {
     vec3 direction;  // per metre of the world
 };
 
-// A place in the object's own space, from the world's; nothing that could be used where there is no inverse.
 inline BoxRay box_ray(IN(Instance) instance, IN(Body) body, vec3 origin, vec3 direction) {
-    const mat3 m = instance.linear;
-    const float scale = unit_scale(extent_of(max(max(abs(m[0]), abs(m[1])), abs(m[2]))));
-    const vec3 a = m[0] * scale, b = m[1] * scale, c = m[2] * scale;
-    const vec3 x = cross(b, c), y = cross(c, a), z = cross(a, b);
-    const float inverse = scale / dot(a, x);
-    const vec3 from = origin - instance.translation;
-    return BoxRay((vec3(dot(x, from), dot(y, from), dot(z, from)) * inverse - body.low) * body.inverse_size,
-                  vec3(dot(x, direction), dot(y, direction), dot(z, direction)) * inverse *
-                      body.inverse_size);
+    const Ray ray = ray_in_object(Place(instance.linear, instance.translation), origin, direction);
+    return BoxRay((ray.origin - body.low) * body.inverse_size, ray.direction * body.inverse_size);
 }
 
 // Texture coordinates of a point of the box, and of a direction.

@@ -31,7 +31,7 @@ def main():
         if "SHADING_BEGIN" in text_of(path) and not traversal:
             functions += FUNCTION.findall(text_of(path))
     lists = glob.glob(os.path.join(root, "tests/shading/functions/*.inc"))
-    own = [os.path.join(root, "tests/shading", name) for name in ("cases.h", "world.h", "world_cases.h")]
+    own = [os.path.join(root, "tests/shading", name) for name in ("cases.h", "world.h", "world_cases.h", "media_cases.h")]
     named = {word for path in lists + own for word in re.findall(r"\w+", text_of(path))}
     named.update(ELSEWHERE)
     missing = [name for name in functions if name not in named]

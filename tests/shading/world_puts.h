@@ -1,7 +1,7 @@
 #ifndef TESSERA_TESTS_SHADING_WORLD_PUTS_H
 #define TESSERA_TESTS_SHADING_WORLD_PUTS_H
 
-#include "tests/shading/world_cases.h"
+#include "tests/shading/media_cases.h"
 
 // Where the members of records go that functions of a scene return.
 SHADING_BEGIN
