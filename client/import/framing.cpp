@@ -1,6 +1,7 @@
 #include "client/import/framing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -8,19 +9,35 @@
 namespace tessera::import {
 namespace {
 
-// Across one axis of the picture, all in the camera's axes: a corner is seen where |place - eye| is at most
-// slope x (distance - depth).
+// Corners as one axis of the picture sees them: places along it, and depths towards the camera.
 struct Span {
-    double slope;
-    double upper = -std::numeric_limits<double>::infinity();
-    double lower = std::numeric_limits<double>::infinity();
+    std::array<double, 8> places, depths;
 
-    void add(double place, double depth) {
-        upper = std::max(upper, place + slope * depth);
-        lower = std::min(lower, place - slope * depth);
+    // The distance at which all are seen where |place - eye| may be slope x (distance - depth).
+    double nearest(double slope) const {
+        double upper = -std::numeric_limits<double>::infinity(), lower = -upper;
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            upper = std::max(upper, places[i] + slope * depths[i]);
+            lower = std::min(lower, places[i] - slope * depths[i]);
+        }
+        return (upper - lower) / (2.0 * slope);
     }
-    double nearest() const { return (upper - lower) / (2.0 * slope); }  // distance at which all are seen
-    double middle() const { return 0.5 * (upper + lower); }
+    // Where the eye has to be for the projections to reach as far to one side as to the other; by bisection.
+    double middle(double distance) const {
+        double lower = *std::min_element(places.begin(), places.end());
+        double upper = *std::max_element(places.begin(), places.end());
+        for (int i = 0; i < 100; ++i) {
+            const double eye = 0.5 * (lower + upper);
+            double least = std::numeric_limits<double>::infinity(), most = -least;
+            for (std::size_t k = 0; k < places.size(); ++k) {
+                const double seen = (places[k] - eye) / (distance - depths[k]);
+                least = std::min(least, seen);
+                most = std::max(most, seen);
+            }
+            (least + most > 0.0 ? lower : upper) = eye;
+        }
+        return 0.5 * (lower + upper);
+    }
 };
 
 }  // namespace
@@ -37,21 +54,21 @@ glm::dmat4 framing_pose(Bounds bounds, double vertical_fov, double aspect_ratio)
     const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(0.0, 1.0, 0.0), z));
     const glm::dvec3 y = glm::cross(z, x);
     const double slope = (1.0 - 2.0 * FramingMargin) * std::tan(0.5 * vertical_fov);
-    Span across{.slope = slope * aspect_ratio}, up{.slope = slope};
-    double front = 0.0;  // depth of the nearest corner
-    for (int corner = 0; corner < 8; ++corner) {
+    Span across{}, up{};
+    for (std::size_t corner = 0; corner < 8; ++corner) {
         const glm::dvec3 place((corner & 1) != 0 ? bounds.upper.x : bounds.lower.x,
                                (corner & 2) != 0 ? bounds.upper.y : bounds.lower.y,
                                (corner & 4) != 0 ? bounds.upper.z : bounds.lower.z);
         const glm::dvec3 off = place - center;  // relative, so that far scenes lose no digits
-        front = std::max(front, glm::dot(off, z));
-        across.add(glm::dot(off, x), glm::dot(off, z));
-        up.add(glm::dot(off, y), glm::dot(off, z));
+        across.places[corner] = glm::dot(off, x);
+        up.places[corner] = glm::dot(off, y);
+        across.depths[corner] = up.depths[corner] = glm::dot(off, z);
     }
     // Never in or at the box, which very wide pictures have room for.
+    const double front = *std::max_element(up.depths.begin(), up.depths.end());
     const double distance =
-        std::max({across.nearest(), up.nearest(), front + 0.05 * glm::length(bounds.upper - bounds.lower)});
-    const glm::dvec3 eye = center + across.middle() * x + up.middle() * y + distance * z;
+        std::max({across.nearest(slope * aspect_ratio), up.nearest(slope), front + 0.05 * glm::length(size)});
+    const glm::dvec3 eye = center + across.middle(distance) * x + up.middle(distance) * y + distance * z;
     return {glm::dvec4(x, 0.0), glm::dvec4(y, 0.0), glm::dvec4(z, 0.0), glm::dvec4(eye, 1.0)};
 }
 

@@ -59,6 +59,7 @@ TEST(Framing, IsTightAndLeavesNothingOut) {
                     EXPECT_NEAR(std::max(size.x, size.y), 1.0 - 2.0 * FramingMargin, 1e-6);
                 }
                 for (int k = 0; k < 2; ++k) {
+                    EXPECT_NEAR(seen.lower[k], -seen.upper[k], 1e-6) << "in the middle";
                     EXPECT_GE(seen.lower[k], -1.0) << box.upper.x << ' ' << aspect;
                     EXPECT_LE(seen.upper[k], 1.0) << box.upper.x << ' ' << aspect;
                 }
