@@ -171,7 +171,8 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                                                context.scene.instances.items[path.inside.x].object,
                                                context.time);
                 } else {
-                    surface = make_surface(context.scene, hit, ray.direction, path.cone.width, context.time);
+                    surface = make_surface(context.scene, hit, ray.direction, path.cone.width, path.inside,
+                                           context.time);
                 }
                 tell_hit(context, surface, path.throughput);
                 const bool on_the_way = leg.scatters && stage == StageBranch;

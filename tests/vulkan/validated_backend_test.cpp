@@ -64,7 +64,7 @@ class ValidatedBackend : public testing::Test {
     std::vector<Message> messages_;
 };
 
-TEST_F(ValidatedBackend, RendersAndIsEditedAtEveryLevel) {
+TEST_F(ValidatedBackend, RendersEveryWayAndIsEditedAtEveryLevel) {
     std::vector mappings{MemorySettings::Mapping::AsOffered};
     // How memory is mapped is a matter of copies; kernels, which instruments make slow to translate, are the
     // same.
@@ -74,6 +74,7 @@ TEST_F(ValidatedBackend, RendersAndIsEditedAtEveryLevel) {
         changes = builder.edit(test::contract_scene(*blobs));
         open({.memory = {.mapping = mapping}});
         EXPECT_GT(rays_of(), 0u);
+        EXPECT_GT(rays_of(view::Renderer::Whitted), 0u);  // by the same kernel, since the range is wanted
         test::commit(*backend, {builder.move(test::BlockAt, test::moved(0.2, 0.1, -1.5))});  // retransformed
         EXPECT_GT(rays_of(), 0u);
         using Field = scene::Geometry::Field;
@@ -93,11 +94,6 @@ TEST_F(ValidatedBackend, RendersAndIsEditedAtEveryLevel) {
         EXPECT_GT(rays_of(), 0u);
         EXPECT_FALSE(backend->probe(view, 24, 16, 0).empty());
     }
-}
-
-TEST_F(ValidatedBackend, FollowsAllSpeculars) {
-    open();
-    EXPECT_GT(rays_of(view::Renderer::Whitted), 0u);
 }
 
 }  // namespace
