@@ -20,8 +20,11 @@ using Notices = std::vector<std::string>;
 // transforms come back from import_scene as they were, but: normals get unit length once more; shared
 // transforms become copies; objects that nothing places are left out; a geometry without a material gets one
 // that looks the same; a transform that has lights or cameras beside others, or geometries whose names are
-// not those of one mesh's parts, gets transforms below it. Backgrounds, maps of floats, attachments,
-// motion within the shutter and motion hints have no place in glTF: left out and told, hints excepted.
+// not those of one mesh's parts, gets transforms below it. What glTF has no fields for stands in extras of
+// ours and comes back: sphere and quad lights (point and spot lights to others), the suns' angle, lenses,
+// shadow catchers, surface shaders (to others the nearest material, nearest_material.h), media. Backgrounds,
+// maps of floats, attachments, motion within the shutter and motion hints are left out and told, hints
+// excepted.
 // InvalidInput when it would be larger than the 4 GiB of a .glb or has more than 1,000,000 places.
 Expected<Notices> write_glb(const scene::Scene& scene, const scene::BlobStore& blobs,
                             const std::filesystem::path& file);

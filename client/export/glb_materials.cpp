@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <glm/common.hpp>
 
+#include "client/export/glb_extras.h"
 #include "client/export/glb_text.h"
+#include "client/export/nearest_material.h"
+#include "client/import/gltf_extras.h"
 #include "mediator/picture/png_writer.h"
 
 namespace tessera::exporting {
@@ -53,9 +56,43 @@ int GlbMaterials::material(ObjectId id) {
     const auto [place, is_new] = materials_.try_emplace(id, 0);
     if (!is_new) return place->second;
     const auto* material = scene_.find_as<scene::Material>(id);
-    tinygltf::Material made = make(material ? *material : scene::Material{.name = "default grey"});
+    const auto* shader = scene_.find_as<scene::SurfaceShader>(id);
+    tinygltf::Material made = shader     ? make(*shader)
+                              : material ? make(*material)
+                                         : make(scene::Material{.name = "default grey"});
     model_.materials.push_back(std::move(made));
     return place->second = static_cast<int>(model_.materials.size()) - 1;
+}
+
+int GlbMaterials::medium(ObjectId id) {
+    const auto* medium = scene_.find_as<scene::Medium>(id);
+    if (medium == nullptr) return -1;
+    const auto [place, is_new] = media_.try_emplace(id, static_cast<int>(media_.size()));
+    if (is_new) {
+        Object extras = model_.extras.IsObject() ? model_.extras.Get<Object>() : Object{};
+        Value::Array media = extras.contains(import::MediaExtras)
+                                 ? extras[import::MediaExtras].Get<Value::Array>()
+                                 : Value::Array{};
+        media.push_back(extras_of(*medium, scene::Fields<scene::Medium>::all(), slots()));
+        extras[import::MediaExtras] = Value(std::move(media));
+        model_.extras = Value(std::move(extras));
+    }
+    return place->second;
+}
+
+WriteSlot GlbMaterials::slots() {
+    return [this](const scene::TextureSlot& slot) { return info_of(slot); };
+}
+
+tinygltf::Material GlbMaterials::make(const scene::SurfaceShader& shader) {
+    using Field = scene::SurfaceShader::Field;
+    tinygltf::Material made = make(nearest_material(shader));
+    // All but the name: it stands in the material.
+    const auto all = scene::Fields<scene::SurfaceShader>::all().bits() &
+                     ~scene::field_bit(static_cast<unsigned>(Field::Name));
+    const auto fields = scene::Fields<scene::SurfaceShader>::from_bits(all);
+    made.extras = Value(Object{{import::ShaderExtras, extras_of(shader, fields, slots())}});
+    return made;
 }
 
 tinygltf::Material GlbMaterials::make(const scene::Material& material) {
@@ -85,6 +122,11 @@ tinygltf::Material GlbMaterials::make(const scene::Material& material) {
     made.alphaCutoff = material.alpha_cutoff;
     made.doubleSided = material.double_sided;
     add_extensions(made, material);
+    if (material.shadow_catcher) {
+        using Field = scene::Material::Field;
+        made.extras = Value(
+            Object{{import::MaterialExtras, extras_of<scene::Material>(material, Field::ShadowCatcher)}});
+    }
     return made;
 }
 
@@ -105,6 +147,18 @@ std::optional<Value> GlbMaterials::transform_of(const scene::TextureSlot& slot) 
                         {"rotation", Value(double{slot.rotation})}});
 }
 
+std::optional<Value> GlbMaterials::info_of(const scene::TextureSlot& slot, float scale) {
+    const auto index = texture(slot.texture);
+    if (!index) return std::nullopt;
+    Object info{{"index", Value(*index)}};
+    if (slot.set != 0) info["texCoord"] = Value(static_cast<int>(slot.set));
+    if (scale != 1.0f) info["scale"] = Value(double{scale});
+    if (const auto transform = transform_of(slot)) {
+        info["extensions"] = Value(Object{{"KHR_texture_transform", *transform}});
+    }
+    return Value(std::move(info));
+}
+
 // An extension on its way into a file: only what is not its default.
 class GlbMaterials::Extension {
   public:
@@ -119,15 +173,7 @@ class GlbMaterials::Extension {
             Value(Value::Array{Value(double{value.x}), Value(double{value.y}), Value(double{value.z})});
     }
     void texture(const char* member, const scene::TextureSlot& slot, float scale = 1.0f) {
-        const auto index = owner_.texture(slot.texture);
-        if (!index) return;
-        Object info{{"index", Value(*index)}};
-        if (slot.set != 0) info["texCoord"] = Value(static_cast<int>(slot.set));
-        if (scale != 1.0f) info["scale"] = Value(double{scale});
-        if (const auto transform = owner_.transform_of(slot)) {
-            info["extensions"] = Value(Object{{"KHR_texture_transform", *transform}});
-        }
-        members_[member] = Value(std::move(info));
+        if (auto info = owner_.info_of(slot, scale)) members_[member] = *info;
     }
     void write(tinygltf::Material& to) {
         if (members_.empty()) return;
@@ -205,6 +251,8 @@ std::optional<int> GlbMaterials::texture(ObjectId id) {
     tinygltf::Texture made;
     made.name = utf8(texture->name);
     made.source = image(*texture);
+    if (texture->depth > 1)
+        made.extras = Value(Object{{import::DepthExtras, Value(static_cast<int>(texture->depth))}});
     made.sampler = sampler(*texture);
     model_.textures.push_back(std::move(made));
     return place->second = static_cast<int>(model_.textures.size()) - 1;
@@ -217,7 +265,7 @@ int GlbMaterials::image(const scene::Texture& texture) {
     image.name = utf8(texture.name);
     image.mimeType = "image/png";
     image.bufferView = buffer_.view(picture::encode_rgba_png(
-        texture.width, texture.height, buffer_.blob(texture.texels)->as<std::uint8_t>()));
+        texture.width, texture.height * texture.depth, buffer_.blob(texture.texels)->as<std::uint8_t>()));
     model_.images.push_back(std::move(image));
     return place->second = static_cast<int>(model_.images.size()) - 1;
 }

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "client/export/glb_buffer.h"
+#include "client/export/glb_extras.h"
 #include "mediator/scene/scene.h"
 
 namespace tinygltf {
@@ -23,10 +24,14 @@ class GlbMaterials {
                  std::set<std::string>& notices)
         : model_(model), scene_(scene), buffer_(buffer), notices_(notices) {}
 
-    int material(ObjectId id);  // 0: the default grey
+    int material(ObjectId id);  // of either model; 0: the default grey
+    int medium(ObjectId id);    // its number in the file's extras; -1 = none
 
   private:
     tinygltf::Material make(const scene::Material& material);
+    tinygltf::Material make(const scene::SurfaceShader& shader);
+    WriteSlot slots();
+    std::optional<tinygltf::Value> info_of(const scene::TextureSlot& slot, float scale = 1.0f);
     class Extension;
     void add_extensions(tinygltf::Material& made, const scene::Material& material);
     std::optional<tinygltf::Value> transform_of(const scene::TextureSlot& slot);  // none: as it is
@@ -41,7 +46,7 @@ class GlbMaterials {
     const scene::Scene& scene_;
     GlbBuffer& buffer_;
     std::set<std::string>& notices_;
-    std::map<ObjectId, int> materials_;
+    std::map<ObjectId, int> materials_, media_;
     std::map<ObjectId, std::optional<int>> textures_;
     std::map<std::tuple<Hash256, std::uint32_t, std::string>, int> images_;
     std::map<std::tuple<scene::Wrap, scene::Wrap, scene::TextureFilter>, int> samplers_;

@@ -3,19 +3,26 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <numbers>
 
+#include "client/export/glb_extras.h"
 #include "client/export/glb_text.h"
+#include "client/import/gltf_extras.h"
+#include "client/import/gltf_placement.h"
 
 namespace tessera::exporting {
 namespace {
 
 constexpr std::uint64_t MaxPlaces = 1'000'000;
 
+// What lights of a kind that glTF lacks are to other programs: a sphere shines to all sides, a quad to one.
 const char* type_name(scene::LightKind kind) {
     switch (kind) {
         case scene::LightKind::Point:
+        case scene::LightKind::Sphere:
             return "point";
         case scene::LightKind::Spot:
+        case scene::LightKind::Quad:
             return "spot";
         case scene::LightKind::Directional:
             return "directional";
@@ -31,6 +38,11 @@ void set_light(tinygltf::Node& node, int light) {
 void set_layers(tinygltf::Node& node, std::uint32_t layers) {
     using tinygltf::Value;
     node.extras = Value(Value::Object{{"tessera_layers", Value(static_cast<double>(layers))}});
+}
+
+void set_extras(tinygltf::Value& extras, const char* name, tinygltf::Value value) {
+    using tinygltf::Value;
+    if (!value.IsObject() || value.Size() > 0) extras = Value(Value::Object{{name, std::move(value)}});
 }
 
 // Looks before nodes are made: shared transforms may unfold to any number.
@@ -130,7 +142,10 @@ int GlbNodes::mesh(const std::vector<ObjectId>& geometries) {
         const auto& geometry = *scene_.find_as<scene::Geometry>(id);
         tinygltf::Primitive primitive;
         primitive.mode = TINYGLTF_MODE_TRIANGLES;
-        primitive.material = materials_.material(geometry.material);
+        const int medium = materials_.medium(geometry.medium);
+        if (medium >= 0) set_extras(primitive.extras, import::MediumExtras, tinygltf::Value(medium));
+        // A body without a surface has no material; who knows no media sees glTF's default.
+        if (geometry.material || medium < 0) primitive.material = materials_.material(geometry.material);
         primitive.indices = buffer_.accessor(geometry.indices, Indices, 1);
         const auto add = [&](const char* name, const scene::BlobRef& array, GlbBuffer::Role role,
                              int components) {
@@ -158,8 +173,15 @@ int GlbNodes::light(ObjectId id) {
     const double brightest = std::max({light.intensity.r, light.intensity.g, light.intensity.b});
     made.intensity = brightest;
     for (int i = 0; i < 3; ++i) made.color.push_back(brightest > 0.0 ? light.intensity[i] / brightest : 1.0);
-    made.spot.innerConeAngle = light.inner_cone_angle;
-    made.spot.outerConeAngle = light.outer_cone_angle;
+    const bool is_quad = light.kind == scene::LightKind::Quad;
+    made.spot.innerConeAngle = is_quad ? 0.0 : double{light.inner_cone_angle};
+    made.spot.outerConeAngle = is_quad ? std::numbers::pi / 2 : double{light.outer_cone_angle};
+    // What our own reader would not know of it.
+    if (auto plain = import::punctual_light(made)) {
+        plain->name = light.name;
+        plain->intensity = light.intensity;
+        set_extras(made.extras, import::LightExtras, extras_of(light, fields_beside(light, *plain)));
+    }
     model_.lights.push_back(std::move(made));
     return place->second = static_cast<int>(model_.lights.size()) - 1;
 }
@@ -183,6 +205,10 @@ int GlbNodes::camera(ObjectId id) {
         made.perspective.yfov = camera.vertical_fov;
         made.perspective.aspectRatio = camera.aspect_ratio;  // 0 is not written
         made.perspective.znear = 0.01;
+    }
+    if (auto plain = import::camera_of(made)) {
+        plain->name = camera.name;
+        set_extras(made.extras, import::CameraExtras, extras_of(camera, fields_beside(camera, *plain)));
     }
     model_.cameras.push_back(std::move(made));
     return place->second = static_cast<int>(model_.cameras.size()) - 1;

@@ -1,27 +1,14 @@
 #include "client/import/finish.h"
 
 #include <algorithm>
-#include <cmath>
-#include <glm/geometric.hpp>
 
 #include "client/import/environment.h"
+#include "client/import/framing.h"
 #include "client/import/soft_sky.h"
 #include "client/import/survey.h"
 
 namespace tessera::import {
 namespace {
-
-// From the front right and above, as far as the bounding sphere asks for.
-glm::dmat4 framing_pose(Bounds bounds, double vertical_fov) {
-    if (bounds.empty()) bounds = {glm::dvec3(-0.5), glm::dvec3(0.5)};
-    const glm::dvec3 center = 0.5 * (bounds.lower + bounds.upper);
-    const double extent = 0.5 * glm::length(bounds.upper - bounds.lower);
-    const double radius = extent > 0.0 ? extent : 1.0;
-    const glm::dvec3 z = glm::normalize(glm::dvec3(0.6, 0.45, 1.0));
-    const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(0.0, 1.0, 0.0), z));
-    const glm::dvec3 eye = center + z * (1.05 * radius / std::sin(0.5 * vertical_fov));
-    return {glm::dvec4(x, 0.0), glm::dvec4(glm::cross(z, x), 0.0), glm::dvec4(z, 0.0), glm::dvec4(eye, 1.0)};
-}
 
 // What was told of the file until nothing of it was left, in brackets.
 std::string causes(const std::vector<std::string>& notices) {
@@ -39,7 +26,7 @@ void add_framing_camera(SceneBuilder& builder, const Bounds& bounds) {
     camera.name = "framing";
     scene::Transform transform;
     transform.name = "framing camera";
-    transform.matrix = framing_pose(bounds, camera.vertical_fov);
+    transform.matrix = framing_pose(bounds, camera.vertical_fov, builder.options().aspect_ratio);
     const ObjectId id = builder.add(std::move(camera));
     const auto& added = builder.get<scene::Camera>(id);
     transform.children = {id};

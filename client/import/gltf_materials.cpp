@@ -5,15 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "client/import/gltf_extras.h"
+#include "client/import/gltf_slots.h"
 #include "mediator/scene/fields.h"
 
 namespace tessera::import {
 namespace {
-
-const tinygltf::Value* extension(const tinygltf::ExtensionMap& extensions, const char* name) {
-    const auto found = extensions.find(name);
-    return found == extensions.end() ? nullptr : &found->second;
-}
 
 constexpr double Brightest = 1e12;
 
@@ -22,63 +19,11 @@ float number(double value) {
     return static_cast<float>(value);
 }
 
-// Reads the texture references of one material: slots, and which set of coordinates they all use.
-class Slots {
-  public:
-    Slots(GltfTextures& textures, const std::string& material) : textures_(textures), material_(material) {}
-
-    template <class Info>
-    scene::TextureSlot slot(const Info& info, TextureUse use) {
-        return slot(info.index, info.texCoord, extension(info.extensions, "KHR_texture_transform"), use);
-    }
-
-    // The texture that a member of an extension names.
-    scene::TextureSlot slot(const tinygltf::Value& owner, const char* member, TextureUse use) {
-        if (!owner.Has(member)) return {};
-        const tinygltf::Value& info = owner.Get(member);
-        if (!info.IsObject() || !info.Has("index")) return {};
-        const tinygltf::Value* transform = nullptr;
-        if (info.Has("extensions") && info.Get("extensions").Has("KHR_texture_transform")) {
-            transform = &info.Get("extensions").Get("KHR_texture_transform");
-        }
-        const int set = info.Has("texCoord") ? index_member(info, "texCoord") : 0;
-        return slot(index_member(info, "index"), set, transform, use);
-    }
-
-    // Coordinates of a third set and further do not travel: the second set stands in.
-    bool misses_set() const { return misses_set_; }
-
-  private:
-    scene::TextureSlot slot(int index, int set, const tinygltf::Value* transform, TextureUse use) {
-        scene::TextureSlot slot;
-        if (index < 0) return slot;
-        slot.texture = textures_.texture(index, use, material_);
-        if (transform != nullptr && transform->IsObject()) {
-            const std::vector<double> offset = number_array(*transform, "offset");
-            const std::vector<double> scale = number_array(*transform, "scale");
-            for (int i = 0; i < 2; ++i) {
-                const auto k = static_cast<std::size_t>(i);
-                if (offset.size() == 2) slot.offset[i] = number(offset[k]);
-                if (scale.size() == 2) slot.scale[i] = number(scale[k]);
-            }
-            slot.rotation = number(number_member(*transform, "rotation", 0.0));
-            if (transform->Has("texCoord")) set = index_member(*transform, "texCoord");
-        }
-        if (!slot.texture) return slot;
-        misses_set_ |= set > 1;
-        slot.set = static_cast<std::uint32_t>(std::clamp(set, 0, 1));
-        return slot;
-    }
-
-    GltfTextures& textures_;
-    const std::string& material_;
-    bool misses_set_ = false;
-};
-
 // The KHR_materials_* extensions of one material.
 class Extensions {
   public:
-    Extensions(const tinygltf::Material& source, Slots& slots) : source_(source.extensions), slots_(slots) {}
+    Extensions(const tinygltf::Material& source, GltfSlots& slots)
+        : source_(source.extensions), slots_(slots) {}
 
     void read(scene::Material& material) {
         if (open("KHR_materials_unlit")) material.unlit = true;
@@ -122,7 +67,7 @@ class Extensions {
 
   private:
     bool open(const char* name) {
-        here_ = extension(source_, name);
+        here_ = gltf_extension(source_, name);
         return here_ != nullptr && here_->IsObject();
     }
     void number(const char* member, float& value) {
@@ -149,7 +94,7 @@ class Extensions {
     }
 
     const tinygltf::ExtensionMap& source_;
-    Slots& slots_;
+    GltfSlots& slots_;
     const tinygltf::Value* here_ = nullptr;
 };
 
@@ -171,9 +116,10 @@ GltfMaterial GltfMaterials::material(int index) {
 
 namespace {
 
-bool uses_second_set(const scene::Material& material) {
+template <class T>
+bool uses_second_set(const T& material) {
     bool uses = false;
-    scene::for_each_field<scene::Material>([&](unsigned, auto member) {
+    scene::for_each_field<T>([&](unsigned, auto member) {
         if constexpr (std::is_same_v<std::decay_t<decltype(material.*member)>, scene::TextureSlot>) {
             uses |= (material.*member).texture && (material.*member).set == 1;
         }
@@ -183,12 +129,48 @@ bool uses_second_set(const scene::Material& material) {
 
 }  // namespace
 
+GltfMaterial GltfMaterials::make_shader(const tinygltf::Value& fields, const std::string& name) {
+    scene::SurfaceShader shader;
+    shader.name = name;
+    GltfSlots slots(textures_, name);
+    read_extras(fields, shader, "material '" + name + "'", builder_, slots.reader());
+    GltfMaterial made;
+    made.wants_tangents = shader.normal_texture.texture || shader.height_texture.texture ||
+                          shader.shininess.x != shader.shininess.y;
+    made.tangent_set = shader.normal_texture.set;
+    made.wants_second_set =
+        uses_second_set(shader) || shader.tangent_tex_coords == 1 || shader.binormal_tex_coords == 1;
+    made.id = builder_.add(std::move(shader));
+    return made;
+}
+
+ObjectId GltfMaterials::medium(const tinygltf::Value& primitive_extras) {
+    if (!primitive_extras.IsObject() || !primitive_extras.Has(MediumExtras)) return {};
+    const int index = index_member(primitive_extras, MediumExtras);
+    const auto [place, is_new] = media_.try_emplace(index);
+    if (!is_new) return place->second;
+    const std::string fallback = "medium " + std::to_string(index);
+    const tinygltf::Value none;
+    const tinygltf::Value& media =
+        model_.extras.IsObject() && model_.extras.Has(MediaExtras) ? model_.extras.Get(MediaExtras) : none;
+    if (index < 0 || !media.IsArray() || static_cast<std::size_t>(index) >= media.ArrayLen() ||
+        !media.Get(index).IsObject()) {
+        builder_.notice(fallback + " is missing: bodies of it are empty");
+        return {};
+    }
+    scene::Medium medium;
+    GltfSlots slots(textures_, fallback);
+    read_extras(media.Get(index), medium, fallback, builder_, slots.reader());
+    return place->second = builder_.add(std::move(medium));
+}
+
 GltfMaterial GltfMaterials::make(const tinygltf::Material& source, const std::string& fallback_name) {
     const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
     scene::Material material;
     material.name = source.name.empty() ? fallback_name : source.name;
     const std::string name = material.name;
-    Slots slots(textures_, name);
+    if (const auto* shader = object_extras(source.extras, ShaderExtras)) return make_shader(*shader, name);
+    GltfSlots slots(textures_, name);
     for (int i = 0; i < 4; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const double value = pbr.baseColorFactor.size() == 4 ? pbr.baseColorFactor[k] : 1.0;
@@ -202,7 +184,7 @@ GltfMaterial GltfMaterials::make(const tinygltf::Material& source, const std::st
     material.normal_scale = number(source.normalTexture.scale);
 
     double strength = 1.0;
-    if (const auto* found = extension(source.extensions, "KHR_materials_emissive_strength")) {
+    if (const auto* found = gltf_extension(source.extensions, "KHR_materials_emissive_strength")) {
         strength = number_member(*found, "emissiveStrength", 1.0);
     }
     for (int i = 0; i < 3; ++i) {
@@ -218,7 +200,10 @@ GltfMaterial GltfMaterials::make(const tinygltf::Material& source, const std::st
     material.alpha_cutoff = number(source.alphaCutoff);
     material.double_sided = source.doubleSided;
     Extensions(source, slots).read(material);
-    if (material.transmission > 0.0f && extension(source.extensions, "KHR_materials_volume") == nullptr) {
+    if (const auto* own = object_extras(source.extras, MaterialExtras))
+        read_extras(*own, material, "material '" + name + "'", builder_, slots.reader());
+    if (material.transmission > 0.0f &&
+        gltf_extension(source.extensions, "KHR_materials_volume") == nullptr) {
         if (builder_.options().glass == Glass::Solid) {
             material.thickness = 1.0f;
         } else {

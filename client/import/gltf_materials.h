@@ -5,8 +5,9 @@
 #include "client/import/gltf_textures.h"
 
 namespace tinygltf {
+class Value;
 struct Material;
-}
+}  // namespace tinygltf
 
 namespace tessera::import {
 
@@ -17,7 +18,7 @@ struct GltfMaterial {
     std::uint32_t tangent_set = 0;  // of texture coordinates, along which tangents lead
 };
 
-// Makes Material objects on demand, each once; -1 is glTF's default material.
+// Makes Material, SurfaceShader and Medium objects on demand, each once; -1 is glTF's default material.
 class GltfMaterials {
   public:
     GltfMaterials(const tinygltf::Model& model, SceneBuilder& builder)
@@ -26,13 +27,18 @@ class GltfMaterials {
     // An index that the file lacks gives the default material and a notice.
     GltfMaterial material(int index);
 
+    // What the primitive's body is filled with; 0 = nothing.
+    ObjectId medium(const tinygltf::Value& primitive_extras);
+
   private:
     GltfMaterial make(const tinygltf::Material& source, const std::string& fallback_name);
+    GltfMaterial make_shader(const tinygltf::Value& fields, const std::string& name);
 
     const tinygltf::Model& model_;
     SceneBuilder& builder_;
     GltfTextures textures_;
     std::map<int, GltfMaterial> made_;
+    std::map<int, ObjectId> media_;
 };
 
 }  // namespace tessera::import

@@ -105,7 +105,9 @@ GltfMeshes::Source GltfMeshes::read(const tinygltf::Primitive& primitive, const 
     if (!attributes.contains("POSITION")) throw Error(ErrorCode::InvalidInput, "it has no positions");
 
     Source source;
-    source.material = materials_.material(primitive.material);
+    source.medium = materials_.medium(primitive.extras);
+    // A medium without a material has no surface, where others have glTF's default.
+    if (primitive.material >= 0 || !source.medium) source.material = materials_.material(primitive.material);
     if (source.material.wants_second_set && !attributes.contains("TEXCOORD_1")) {
         builder_.notice("mesh '" + mesh_name + "': it lacks the texture coordinates TEXCOORD_1");
         source.material.wants_second_set = false;
@@ -173,12 +175,16 @@ ObjectId GltfMeshes::make(const tinygltf::Primitive& primitive, const std::strin
         if (bends.is_flat) make_flat(mesh);
         generate_tangents(mesh, source.material.tangent_set);
     }
-    if (pose == nullptr) return builder_.add_geometry(name, source.material.id, mesh);
+    const auto add = [&](const MeshData& finished) {
+        const ObjectId id = builder_.add_geometry(name, source.material.id, finished);
+        builder_.get<scene::Geometry>(id).medium = source.medium;
+        return id;
+    };
+    if (pose == nullptr) return add(mesh);
     follow(bends, mesh.origins);
     mesh.origins.clear();
     bends.rest = std::move(mesh);
-    const ObjectId id =
-        builder_.add_geometry(name, source.material.id, bend(bends, pose->weights, pose->joints));
+    const ObjectId id = add(bend(bends, pose->weights, pose->joints));
     if (bending != nullptr)
         bending->push_back({id, name, std::make_shared<const BendingMesh>(std::move(bends))});
     return id;

@@ -42,6 +42,7 @@ class GltfMeshes {
         MeshData mesh;
         std::vector<JointSet> sets;  // of a compressed mesh
         GltfMaterial material;
+        ObjectId medium;
     };
     Source read(const tinygltf::Primitive& primitive, const std::string& mesh_name);
     std::vector<ObjectId> make_all(int mesh, const MeshPose* pose, std::vector<BendingGeometry>* bending);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "client/import/gltf_document.h"
+#include "client/import/gltf_extras.h"
 #include "client/import/gltf_placement.h"
 #include "client/import/limits.h"
 
@@ -247,6 +248,9 @@ void GltfNodes::add_light(const tinygltf::Node& node, const std::string& name,
             return;
         }
         if (light->name.empty()) light->name = name;
+        if (const auto* own =
+                object_extras(model_.lights[static_cast<std::size_t>(index)].extras, LightExtras))
+            read_extras(*own, *light, "light '" + light->name + "'", builder_);
         id = builder_.add(std::move(*light));
     }
     children.push_back(id);
@@ -264,6 +268,9 @@ void GltfNodes::add_camera(const tinygltf::Node& node, const std::string& name,
         return;
     }
     if (!node.name.empty() || camera->name.empty()) camera->name = name;
+    if (const auto* own =
+            object_extras(model_.cameras[static_cast<std::size_t>(node.camera)].extras, CameraExtras))
+        read_extras(*own, *camera, "camera '" + camera->name + "'", builder_);
     children.push_back(builder_.add(std::move(*camera)));
 }
 

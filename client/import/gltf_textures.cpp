@@ -3,6 +3,7 @@
 #include <tiny_gltf.h>
 
 #include "client/import/gltf_accessor.h"
+#include "client/import/gltf_extras.h"
 #include "client/import/image_decoder.h"
 
 namespace tessera::import {
@@ -88,7 +89,18 @@ ObjectId GltfTextures::texture(int index, TextureUse use, const std::string& mat
     }
     const tinygltf::Image& image = model_.images[static_cast<std::size_t>(source->source)];
     texture.name = source->name.empty() ? image_name(image, source->source) : source->name;
-    ObjectId& made = made_[{source->source, texture.format, texture.wrap_s, texture.wrap_t, texture.filter}];
+    if (source->extras.IsObject() && source->extras.Has(DepthExtras)) {
+        const int depth = index_member(source->extras, DepthExtras);
+        if (depth >= 1 && texture.height % static_cast<std::uint32_t>(depth) == 0) {
+            texture.depth = static_cast<std::uint32_t>(depth);
+            texture.height /= texture.depth;
+        } else {
+            builder_.notice("texture '" + texture.name + "': its height is no multiple of its " +
+                            DepthExtras + ": it is taken as one slice, correct it");
+        }
+    }
+    ObjectId& made = made_[{source->source, texture.depth, texture.format, texture.wrap_s, texture.wrap_t,
+                            texture.filter}];
     if (!made) {
         made = builder_.add(std::move(texture));
         ++builder_.result().counts.textures;

@@ -29,7 +29,9 @@ class GltfTextures {
     const tinygltf::Model& model_;
     SceneBuilder& builder_;
     std::map<int, Expected<Texels>> images_;
-    std::map<std::tuple<int, scene::TexelFormat, scene::Wrap, scene::Wrap, scene::TextureFilter>, ObjectId>
+    std::map<
+        std::tuple<int, std::uint32_t, scene::TexelFormat, scene::Wrap, scene::Wrap, scene::TextureFilter>,
+        ObjectId>
         made_;
 };
 

@@ -41,6 +41,9 @@ struct ImportOptions {
     std::string animation;     // only this one, by its name, else its number; "" = all together
     Motion motion = Motion::Still;
     Glass glass = Glass::Thin;
+    // Width / height of the pictures that a camera is made for where the file has none: in those, and in
+    // wider ones, all is seen.
+    double aspect_ratio = 1.0;
 };
 
 // A place to look from; the Camera object is in the scene, too.

@@ -42,7 +42,7 @@ X3dSurface X3dAppearances::make(pugi::xml_node appearance, VertexColors colors) 
     } else if (parts.material) {
         add_material(parts, colors, surface);
     } else if (!parts.volume || parts.texture) {  // a volume alone has no surface
-        add_unlit(x3d_name(appearance), parts.texture, surface);
+        add_unlit(appearance, parts.texture, surface);
     }
     if (parts.volume) surface.medium = medium(parts.volume);
     if (parts.texture_transform) {
@@ -78,21 +78,23 @@ void X3dAppearances::add_material(const Parts& parts, VertexColors colors, X3dSu
         const X3dTextures::Traits traits = textures_.traits(parts.texture);
         // X3D 3 (17.2.2.5): a coloured picture takes the place of the diffuse colour; X3D 4 multiplies.
         if (!traits.is_grey && document_.version() < 4.0) shader.diffuse = glm::vec3(1.0f);
-        shader.diffuse_texture.texture = textures_.texture(parts.texture, TextureUse::Color);
+        shader.diffuse_texture.texture =
+            textures_.texture(parts.texture, TextureUse::Color, x3d_label(parts.material));
         if (traits.has_opacity) shader.alpha_texture = shader.diffuse_texture;
         surface.is_textured = true;
     }
     surface.material = builder_.add(std::move(shader));
 }
 
-void X3dAppearances::add_unlit(std::string name, pugi::xml_node texture, X3dSurface& surface) {
+void X3dAppearances::add_unlit(pugi::xml_node appearance, pugi::xml_node texture, X3dSurface& surface) {
     scene::Material material;
-    material.name = std::move(name);
+    material.name = x3d_name(appearance);
     material.base_color = glm::vec4(1.0f);
     material.unlit = true;
     material.double_sided = true;
     if (texture) {
-        material.base_color_texture.texture = textures_.texture(texture, TextureUse::Color);
+        material.base_color_texture.texture =
+            textures_.texture(texture, TextureUse::Color, x3d_label(appearance));
         if (textures_.traits(texture).has_opacity) material.alpha_mode = scene::AlphaMode::Blend;
         surface.is_textured = true;
     }

@@ -38,7 +38,7 @@ class X3dAppearances {
     X3dSurface make(pugi::xml_node appearance, VertexColors colors);
     void add_shader(pugi::xml_node node, X3dSurface& surface);
     void add_material(const Parts& parts, VertexColors colors, X3dSurface& surface);
-    void add_unlit(std::string name, pugi::xml_node texture, X3dSurface& surface);
+    void add_unlit(pugi::xml_node appearance, pugi::xml_node texture, X3dSurface& surface);
     ObjectId medium(pugi::xml_node node);
 
     X3dDocument& document_;

@@ -60,10 +60,13 @@ std::string in_words(X3dRange range) {
 
 }  // namespace
 
+std::string x3d_label(pugi::xml_node node) {
+    const std::string name = node.attribute("DEF").value();
+    return std::string("<") + node.name() + (name.empty() ? "" : " DEF=" + shown(name)) + ">";
+}
+
 void X3dFields::problem(const std::string& what) const {
-    const std::string name = node_.attribute("DEF").value();
-    problems_.add(std::string("<") + node_.name() + (name.empty() ? "" : " DEF=" + shown(name)) + "> " + what,
-                  node_.offset_debug());
+    problems_.add(x3d_label(node_) + " " + what, node_.offset_debug());
 }
 
 bool X3dFields::flag(const char* field, bool otherwise) const {

@@ -20,6 +20,9 @@ inline constexpr X3dRange UpToOne{0.0, 1.0};
 inline constexpr X3dRange NotNegative{0.0, 1e12};
 inline constexpr X3dRange Positive{1e-18, 1e18};
 
+// How problems name a node: "<Box>", "<Material DEF='gold'>".
+std::string x3d_label(pugi::xml_node node);
+
 // Fields of one node. Numbers are separated by white space and commas, finite, and nothing else may stand
 // there. A field of one value that is wrong or out of range is a problem of the file, and its default is
 // used; one of many values throws Error{InvalidInput} without naming the node.

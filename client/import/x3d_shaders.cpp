@@ -23,7 +23,8 @@ void read_textures(X3dDocument& document, pugi::xml_node node, X3dTextures& text
         for (const TextureField& field : fields) {
             if (child.container != field.container || std::strcmp(child.node.name(), "ImageTexture") != 0)
                 continue;
-            field.slot->texture = textures.texture(child.node, field.use);
+            field.slot->texture =
+                textures.texture(child.node, field.use, x3d_label(node) + "'s " + field.container);
             used = true;
         }
         if (!used && child.container != "phaseFunction")

@@ -37,19 +37,18 @@ X3dTextures::Traits traits_of(const std::vector<std::uint8_t>& rgba) {
 
 }  // namespace
 
-std::optional<X3dTextures::Picture> X3dTextures::decoded(const std::string& name, std::string& cause) {
-    const auto [place, is_new] = pictures_.try_emplace(name);
-    if (!is_new) return place->second;
+Expected<X3dTextures::Picture> X3dTextures::decode(const std::string& name) {
     const auto bytes = folder_.read(name);
-    if (!bytes) {
-        cause = bytes.error().what();
-    } else if (const Expected<DecodedImage> image = decode_image(*bytes)) {
-        place->second =
-            Picture{image->width, image->height, builder_.blob(image->rgba), traits_of(image->rgba)};
-    } else {
-        cause = "'" + name.substr(0, 100) + "': " + image.error().what();
-    }
-    return place->second;
+    if (!bytes) return tl::unexpected<Error>(bytes.error());
+    const Expected<DecodedImage> image = decode_image(*bytes);
+    if (!image)
+        return failure(ErrorCode::InvalidInput, "'" + name.substr(0, 100) + "': " + image.error().what());
+    return Picture{image->width, image->height, builder_.blob(image->rgba), traits_of(image->rgba)};
+}
+
+const Expected<X3dTextures::Picture>& X3dTextures::decoded(const std::string& name) {
+    const auto found = pictures_.find(name);
+    return found != pictures_.end() ? found->second : pictures_.emplace(name, decode(name)).first->second;
 }
 
 const X3dTextures::Found& X3dTextures::found(pugi::xml_node image) {
@@ -57,19 +56,18 @@ const X3dTextures::Found& X3dTextures::found(pugi::xml_node image) {
     Found& found = place->second;
     if (!is_new) return found;
     const X3dFields fields(image, document_.problems());
-    std::string first_cause;
     for (const std::string& address : fields.strings("url")) {
         if (address.find("://") != address.npos)
             continue;  // another copy far away, as X3D files like to name
         found.name = decoded_address(address);
-        std::string cause;
-        found.picture = decoded(found.name, cause);
-        if (found.picture) return found;
-        if (first_cause.empty()) first_cause = cause;
+        const Expected<Picture>& picture = decoded(found.name);
+        if (picture) {
+            found.picture = *picture;
+            return found;
+        }
+        if (found.cause.empty()) found.cause = picture.error().what();
     }
-    if (first_cause.empty()) first_cause = "it names no picture in the scene's folder";
-    fields.problem("cannot be used (" + first_cause +
-                   "): a magenta checker or the plain factor stands for it");
+    if (found.cause.empty()) found.cause = "it names no picture in the scene's folder";
     return found;
 }
 
@@ -78,12 +76,17 @@ X3dTextures::Traits X3dTextures::traits(pugi::xml_node image) {
     return found.picture ? found.picture->traits : Traits{};
 }
 
-ObjectId X3dTextures::texture(pugi::xml_node image, TextureUse use) {
+ObjectId X3dTextures::texture(pugi::xml_node image, TextureUse use, const std::string& owner) {
     const Found& found = this->found(image);
-    if (!found.picture) return use == TextureUse::Color ? builder_.placeholder_texture() : ObjectId{};
+    const X3dFields fields(image, document_.problems());
+    if (!found.picture) {
+        const bool shows = use == TextureUse::Color;
+        fields.problem("of " + owner + " cannot be used (" + found.cause +
+                       "): " + (shows ? "a magenta checker" : "the plain factor") + " stands for it");
+        return shows ? builder_.placeholder_texture() : ObjectId{};
+    }
     ObjectId& made = made_[{image.internal_object(), use}];
     if (made) return made;
-    const X3dFields fields(image, document_.problems());
     scene::Texture texture;
     texture.name = x3d_name(image).empty() ? found.name : x3d_name(image);
     texture.width = found.picture->width;

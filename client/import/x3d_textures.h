@@ -19,7 +19,8 @@ class X3dTextures {
     X3dTextures(X3dDocument& document, LocalFolder folder, SceneBuilder& builder)
         : document_(document), folder_(std::move(folder)), builder_(builder) {}
 
-    ObjectId texture(pugi::xml_node image, TextureUse use);  // 0 for bad data
+    // 0 for bad data. `owner`: what problems say that it is a texture of.
+    ObjectId texture(pugi::xml_node image, TextureUse use, const std::string& owner);
 
     // Of the picture; all false of a bad one.
     struct Traits {
@@ -37,14 +38,16 @@ class X3dTextures {
     struct Found {
         std::string name;
         std::optional<Picture> picture;
+        std::string cause;  // why there is none
     };
-    const Found& found(pugi::xml_node image);  // without a picture after a problem
-    std::optional<Picture> decoded(const std::string& name, std::string& cause);
+    const Found& found(pugi::xml_node image);
+    const Expected<Picture>& decoded(const std::string& name);
+    Expected<Picture> decode(const std::string& name);
 
     X3dDocument& document_;
     LocalFolder folder_;
     SceneBuilder& builder_;
-    std::map<std::string, std::optional<Picture>> pictures_;
+    std::map<std::string, Expected<Picture>> pictures_;
     std::map<const void*, Found> found_;
     std::map<std::pair<const void*, TextureUse>, ObjectId> made_;
 };

@@ -97,6 +97,7 @@ Expected<ViewPlan> understand(const ViewOptions& options) {
     const auto size = parse_size(options.size);
     if (!size) return wrong("--size", size.error());
     plan.size = *size;
+    plan.import.aspect_ratio = double(size->width) / double(size->height);
     plan.view.width = size->width;
     plan.view.height = size->height;
     plan.view.window = {0, 0, static_cast<std::int32_t>(size->width),

@@ -3,8 +3,7 @@
 
 #include <cstring>
 
-#include "mediator/backend/tables/tables.h"
-#include "tests/backend/scene_builder.h"
+#include "tests/backend/tables_stage.h"
 
 namespace tessera::backend {
 namespace {
@@ -16,7 +15,7 @@ using test::transform;
 
 constexpr ObjectId Mesh{2}, Lamp{3}, Glow{4}, Near{5}, Far{6}, Lit{7}, Sun{8}, Glass{9};
 
-struct MovesTest : testing::Test {
+struct MovesTest : testing::Test, test::TablesStage {
     MovesTest() {
         const std::vector<std::uint32_t> indices{0, 1, 2};
         const std::vector<glm::vec3> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -30,10 +29,6 @@ struct MovesTest : testing::Test {
               Create{scene::RootId, scene::Root{.children = {Near, Far, Lit}}}});
     }
 
-    template <class T>
-    scene::BlobRef blob(const std::vector<T>& values) {
-        return scene::reference(*blobs->insert(std::as_bytes(std::span(values))));
-    }
     TablesStep edit(std::vector<scene::Entry> entries) { return take(builder.edit(std::move(entries))); }
     TablesStep move(ObjectId id, const glm::dmat4& to) { return take(builder.move(id, to)); }
 
@@ -48,7 +43,7 @@ struct MovesTest : testing::Test {
     }
 
     void expect_as_made_anew() {
-        const SceneTables fresh = make_tables(shadow.scene(), shadow.lowered(), meshes, *blobs, pyramids);
+        const SceneTables fresh = make_all();
         EXPECT_TRUE(same_bytes(tables.instances, fresh.instances));
         EXPECT_TRUE(same_bytes(tables.lights, fresh.lights));
         EXPECT_TRUE(same_bytes(tables.emitters, fresh.emitters));
@@ -61,11 +56,6 @@ struct MovesTest : testing::Test {
         return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
     }
 
-    std::shared_ptr<scene::BlobStore> blobs = std::make_shared<scene::BlobStore>();
-    MeshCatalog meshes{blobs};
-    SceneBuilder builder;
-    ShadowScene shadow;
-    TexturePyramids pyramids;
     SceneTables tables;
 };
 

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "mediator/shading/surfaces.h"
-#include "tests/backend/scene_builder.h"
+#include "tests/backend/tables_stage.h"
 
 namespace tessera::backend {
 namespace {
@@ -21,20 +21,9 @@ using test::transform;
 
 constexpr ObjectId Corner{2}, Paint{3}, Place{4}, Picture{5}, Sun{6}, Sky{7}, Bulb{8}, Glow{9}, Panel{10};
 
-// A scene that is built step by step, and what is made of it.
-struct Stage {
-    std::shared_ptr<scene::BlobStore> blobs = std::make_shared<scene::BlobStore>();
-    MeshCatalog meshes{blobs};
+struct Stage : test::TablesStage {
     MeshCatalog::Result steps;
-    SceneBuilder builder;
-    ShadowScene shadow;
 
-    TexturePyramids pyramids;
-
-    template <class T, std::size_t N>
-    scene::BlobRef blob(const std::array<T, N>& values) {
-        return scene::reference(*blobs->insert(std::as_bytes(std::span(values))));
-    }
     // Two triangles of the areas 1/2 and 3/2 times the size squared, facing +z.
     scene::Geometry corner(ObjectId material, float size = 1.0f) {
         return {.material = material,
@@ -45,7 +34,7 @@ struct Stage {
     SceneTables make(std::vector<scene::Entry> entries) {
         EXPECT_TRUE(shadow.apply(builder.edit(std::move(entries))));
         steps = meshes.update(shadow.scene(), shadow.take_delta());
-        return make_tables(shadow.scene(), shadow.lowered(), meshes, *blobs, pyramids);
+        return make_all();
     }
 };
 

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <algorithm>
-#include <ctime>
-
 #include "backends/embree/world.h"
+#include "tests/bench/timing.h"
 
 namespace tessera::bench {
 
@@ -17,17 +15,5 @@ struct Bed {
 
     Bed(const std::string& file, std::uint32_t size);
 };
-
-// Of this thread on a processor: others may be at work, too.
-inline double cpu_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
-
-inline double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-}
 
 }  // namespace tessera::bench

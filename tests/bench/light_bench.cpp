@@ -5,25 +5,21 @@
 // own: it is given the time of a scene in which one of the triangles glows and the others are black.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <ctime>
 
 #include "mediator/backend/tables/light_tree.h"
 #include "mediator/base/random.h"
-#include "tests/statistics/model.h"
+#include "tests/bench/model_bed.h"
 
 namespace tessera::embree {
 namespace {
 
-constexpr std::uint32_t Emitters = 10000, Size = 64, Spp = 64, ReferenceSpp = 1024, Rounds = 9;
+using bench::cpu_seconds;
+using bench::median;
+using bench::picture;
+using bench::time_of;
 
-// Of this thread on a processor: others may be at work, too.
-double cpu_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
+constexpr std::uint32_t Emitters = 10000, Size = 64, Spp = 64, ReferenceSpp = 1024, Rounds = 9;
 
 // The first `glowing` glow; the very first lies above what is seen and shines down.
 void add_lamps(Model& model, std::uint32_t glowing) {
@@ -64,20 +60,6 @@ backend::SceneTables uniform(backend::SceneTables tables) {
     return tables;
 }
 
-std::vector<double> picture(const World& world, const backend::SceneTables& tables, view::View view,
-                            std::uint64_t spp, std::uint64_t seed) {
-    view.seed = seed;
-    const PathTracer tracer(tables, world.scene(), view);
-    std::vector<double> pixels(Size * Size);
-    std::uint64_t rays = 0;
-    for (std::uint64_t sample = 0; sample < spp; ++sample) {
-        for (std::uint32_t i = 0; i < Size * Size; ++i) {
-            pixels[i] += red(tracer.trace(i % Size, i / Size, sample, rays)) / static_cast<double>(spp);
-        }
-    }
-    return pixels;
-}
-
 double relmse(const std::vector<double>& found, const std::vector<double>& truth) {
     double sum = 0.0;
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -93,18 +75,6 @@ double sum_of(const std::vector<double>& pixels) {
     return sum;
 }
 
-// Nanoseconds per sample.
-double time_of(const World& world, const backend::SceneTables& tables, const view::View& view) {
-    const double start = cpu_seconds();
-    picture(world, tables, view, 16, 5);
-    return (cpu_seconds() - start) / (16.0 * Size * Size) * 1e9;
-}
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-}
-
 void run() {
     Model many, one;
     add_lamps(many, Emitters);
@@ -115,8 +85,8 @@ void run() {
     const backend::SceneTables even = uniform(world.tables());
     std::vector<double> times, single_times, ratios;
     for (std::uint32_t i = 0; i < Rounds; ++i) {
-        times.push_back(time_of(world, world.tables(), view));
-        single_times.push_back(time_of(single, single.tables(), view));
+        times.push_back(time_of(world, world.tables(), view, 16));
+        single_times.push_back(time_of(single, single.tables(), view, 16));
         ratios.push_back(times.back() / single_times.back());
     }
     const double time = median(times), single_time = median(single_times);

@@ -4,23 +4,18 @@
 // levels are what points see. Errors are against 1024 samples of points.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <ctime>
 
-#include "tests/statistics/model.h"
+#include "tests/bench/model_bed.h"
 
 namespace tessera::embree {
 namespace {
 
-constexpr std::uint32_t Width = 320, Height = 200, ReferenceSpp = 1024, Edge = 64, Rounds = 5;
+using bench::median;
+using bench::picture;
+using bench::time_of;
 
-// Of this thread on a processor: others may be at work, too.
-double cpu_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
+constexpr std::uint32_t Width = 320, Height = 200, ReferenceSpp = 1024, Edge = 64, Rounds = 5;
 
 void add_floor(Model& model) {
     std::vector<std::uint8_t> texels;
@@ -46,34 +41,10 @@ view::View ahead() {
     return view;
 }
 
-std::vector<double> picture(const World& world, const backend::SceneTables& tables, view::View view,
-                            std::uint64_t spp, std::uint64_t seed) {
-    view.seed = seed;
-    const PathTracer tracer(tables, world.scene(), view);
-    std::vector<double> pixels(Width * Height);
-    std::uint64_t rays = 0;
-    for (std::uint64_t sample = 0; sample < spp; ++sample) {
-        for (std::uint32_t i = 0; i < pixels.size(); ++i)
-            pixels[i] += red(tracer.trace(i % Width, i / Width, sample, rays)) / static_cast<double>(spp);
-    }
-    return pixels;
-}
-
 double error(const std::vector<double>& found, const std::vector<double>& truth) {
     double sum = 0.0;
     for (std::size_t i = 0; i < found.size(); ++i) sum += (found[i] - truth[i]) * (found[i] - truth[i]);
     return sum / static_cast<double>(found.size());
-}
-
-double time_of(const World& world, const backend::SceneTables& tables, const view::View& view) {
-    const double start = cpu_seconds();
-    picture(world, tables, view, 8, 5);
-    return (cpu_seconds() - start) / (8.0 * Width * Height) * 1e9;
-}
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
 }
 
 void run() {
@@ -92,7 +63,7 @@ void run() {
     }
     std::vector<double> ratios;
     for (std::uint32_t i = 0; i < Rounds; ++i)
-        ratios.push_back(time_of(world, world.tables(), view) / time_of(world, points, view));
+        ratios.push_back(time_of(world, world.tables(), view, 8) / time_of(world, points, view, 8));
     std::printf("time per sample: %.2f x that of points (median of %u pairs)\n", median(ratios), Rounds);
 }
 

@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "mediator/backend/catalog.h"
@@ -139,6 +140,27 @@ Counts brute_force(const view::View& view, const std::vector<Square>& squares) {
         }
     }
     return seen;
+}
+
+// Of the channels beside colour and object: how far it is along the view's axis, even where a ray goes there
+// at an angle, and that something is there at all.
+TEST_P(CoverageRenderer, KnowsHowFarObjectsAreAndWhereNoneIs) {
+    view::View view = view_of(scene::Projection::Perspective);
+    view.channels = {Channel::Depth, Channel::Alpha};
+    show({{{-1.0, 0.0, -2.0}, 0.75f}, {{1.0, 0.0, -4.0}, 0.75f}});
+    const frame::FilmTile seen = film(view);
+    const frame::Image depths = frame::resolve(seen, Channel::Depth),
+                       alphas = frame::resolve(seen, Channel::Alpha);
+    Counts hits, expected = brute_force(view, {{{-1.0, 0.0, -2.0}, 0.75f}, {{1.0, 0.0, -4.0}, 0.75f}});
+    for (std::size_t i = 0; i < depths.values.size(); ++i) {
+        const float depth = depths.values[i];
+        const bool is_near = std::abs(depth - 2.0f) <= 1e-5f, is_far = std::abs(depth - 4.0f) <= 1e-5f;
+        EXPECT_TRUE(is_near || is_far || depth == std::numeric_limits<float>::infinity())
+            << i << ": " << depth;
+        EXPECT_EQ(alphas.values[i], is_near || is_far ? 1.0f : 0.0f) << i << ": " << depth;
+        ++hits[is_near ? First : is_far ? First + 1 : 0];
+    }
+    for (const auto& [object, count] : expected) EXPECT_NEAR(hits[object], count, 2) << object;
 }
 
 // T37. A sample on an edge may go to either side: one in 2000.

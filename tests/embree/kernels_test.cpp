@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, KernelsTest,
                                          KernelCase{"Coat", add_coat, &CoatedKernel},
                                          KernelCase{"Shader", add_shader, &ShaderKernel},
                                          KernelCase{"All", add_all, &FullKernel}),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& kernel) { return std::string(kernel.param.name); });
 
 TEST(Kernels, HaveWhatTheyAreChosenForAndComeBeforeThoseWithMore) {
     for (std::uint32_t bit = 0; bit < 32; ++bit) {

@@ -14,6 +14,8 @@
 namespace tessera::exporting {
 namespace {
 
+using Imported = import::ImportedScene;
+
 scene::Scene scene_of(const import::ImportedScene& imported) {
     scene::Scene scene;
     const auto applied = scene.apply_entries(entries(imported, import::RootEntry::Create));
@@ -95,16 +97,16 @@ void expect_same_look(const scene::Scene& a, const scene::BlobStore& blobs,
     }
 }
 
-import::ImportedScene through_glb(const scene::Scene& scene, const scene::BlobStore& blobs,
-                                  Notices& notices){const import::TestFolder folder;
-const auto file = folder.path() / "scene.glb";
-const auto written = write_glb(scene, blobs, file);
-if (!written) ADD_FAILURE() << written.error().what();
-notices = written.value_or(Notices{});
-import::ImportedScene imported = import::loaded(file);
-import::expect_sound(imported);
-return imported;
-}  // namespace
+Imported through_glb(const scene::Scene& scene, const scene::BlobStore& blobs, Notices& notices) {
+    const import::TestFolder folder;
+    const auto file = folder.path() / "scene.glb";
+    const auto written = write_glb(scene, blobs, file);
+    if (!written) ADD_FAILURE() << written.error().what();
+    notices = written.value_or(Notices{});
+    Imported imported = import::loaded(file);
+    import::expect_sound(imported);
+    return imported;
+}
 
 class GlbOfFile : public testing::TestWithParam<const char*> {};
 
@@ -212,5 +214,5 @@ TEST(GlbExport, NamesThatAreNoTextAreWrittenAsText) {
     import::named<scene::Transform>(imported, "a\xef\xbf\xbd\xef\xbf\xbdz");
 }
 
-}  // namespace tessera::exporting
+}  // namespace
 }  // namespace tessera::exporting

@@ -95,6 +95,7 @@ scene::Material colorful(ObjectId picture, ObjectId data) {
     material.iridescence_thickness_minimum = 50.0f;
     material.iridescence_thickness_maximum = 700.0f;
     material.iridescence_thickness_texture = {.texture = data};
+    material.shadow_catcher = true;
     return material;
 }
 

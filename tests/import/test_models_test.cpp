@@ -74,7 +74,7 @@ TEST(TestModels, X3dFilesThatAskForMoreThanIsRead) {
     const ImportedScene globe = sound("X3D/HelloX3dTrademark.x3d");
     EXPECT_EQ(globe.counts.instances, 1u);
     EXPECT_EQ(globe.cameras.size(), 1u);
-    EXPECT_TRUE(has_notice(globe, "<ImageTexture> cannot be used"));
+    EXPECT_TRUE(has_notice(globe, "<ImageTexture> of <Appearance> cannot be used"));
     EXPECT_TRUE(has_notice(globe, "<ROUTE> skipped: not read, or not in such a place (line 45 and 1 more)"));
     expect_refused("X3D/ComputerKeyboard.x3d", "no shape that is read (skipped: 3 <Extrusion>");
 }

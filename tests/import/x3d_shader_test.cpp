@@ -158,7 +158,12 @@ TEST(X3dSurfaceShader, BadValuesAreToldAndTheirDefaultsStand) {
           "relativeIndexOfRefraction is '0', outside 0.01 to 100",
           "fresnelBlend is 'nan', 'nan' is no number", "normalSpace is 'WORLD', neither TANGENT nor OBJECT",
           "tangentTextureCoordinatesId is no whole number", "<ImageTexture> skipped",
-          "<ImageTexture> cannot be used (there is no file 'lost.png'"}) {
+          "<ImageTexture> of <CommonSurfaceShader DEF='gold'>'s specularTexture cannot be used (there is no "
+          "file "
+          "'lost.png'",
+          "<ImageTexture> of <CommonSurfaceShader DEF='gold'>'s normalTexture cannot be used (there is no "
+          "file "
+          "'lost.png'"}) {
         EXPECT_TRUE(has_notice(scene, problem));
     }
     const auto shader = only<scene::SurfaceShader>(scene);

@@ -260,11 +260,14 @@ TEST(X3dTextures, OneFileIsDecodedOnce) {
 
 TEST(X3dTextures, AMissingPictureIsAPlaceholder) {
     const ImportedScene scene = read_x3d(
-        "<Shape><Appearance><Material/><ImageTexture url='\"https://far.example/a.png\" "
-        "\"b.png\"'/></Appearance>"
-        "<Box/></Shape>");
-    EXPECT_TRUE(has_notice(scene, "<ImageTexture> cannot be used (there is no file 'b.png'"));
-    EXPECT_EQ(scene.counts.placeholders, 1u);
+        "<Shape><Appearance><Material DEF='brick'/><ImageTexture url='\"https://far.example/a.png\" "
+        "\"b.png\"'/></Appearance><Box/></Shape>"
+        "<Shape><Appearance DEF='sign'><ImageTexture url='\"b.png\"'/></Appearance><Box/></Shape>");
+    for (const char* owner : {"<Material DEF='brick'>", "<Appearance DEF='sign'>"}) {
+        EXPECT_TRUE(has_notice(
+            scene, std::string("<ImageTexture> of ") + owner + " cannot be used (there is no file 'b.png'"));
+    }
+    EXPECT_EQ(scene.counts.placeholders, 2u);
     EXPECT_TRUE(
         has_notice(read_x3d("<Shape><Appearance><ImageTexture url='../a.png'/></Appearance><Box/></Shape>"),
                    "put the file beside the scene"));

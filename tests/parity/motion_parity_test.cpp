@@ -29,7 +29,9 @@ Shot shot(const std::string& name, SceneModel& model) {
     EXPECT_TRUE(edit->apply(scene::snapshot(model.finished())));
     const auto report = edit->commit();
     EXPECT_TRUE(report);
-    if (report) EXPECT_TRUE(report->problems.empty()) << report->problems.front();
+    if (report) {
+        EXPECT_TRUE(report->problems.empty()) << report->problems.front();
+    }
     return made;
 }
 

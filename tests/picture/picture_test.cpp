@@ -99,7 +99,8 @@ TEST_F(PictureTest, DamagedExrIsAnErrorAndNeverACrash) {
         } catch (const Error& error) {
             EXPECT_NE(std::string(error.what()).find("b.exr"), std::string::npos) << "the file is not named";
         }
-        if (i % 2 == 0) EXPECT_THROW(read_exr(file("b.exr")), Error) << "cut to " << bad.size();
+        if (i % 2 != 0) continue;
+        EXPECT_THROW(read_exr(file("b.exr")), Error) << "cut to " << bad.size();
     }
     EXPECT_THROW(read_exr(file("missing.exr")), Error);
 }

@@ -82,7 +82,8 @@ TEST(SequenceProcess, AnInterruptedOneLeavesWholeFramesAndGoesOn) {
     for (int frame = 0; frame < 100; ++frame) {
         const std::filesystem::path file = folder / ("frame." + std::to_string(frame) + ".exr");
         ASSERT_EQ(std::filesystem::exists(file), there.contains(frame)) << frame;
-        if (there.contains(frame)) EXPECT_NO_THROW(picture::read_exr(file.string())) << frame;
+        if (!there.contains(frame)) continue;
+        EXPECT_NO_THROW(picture::read_exr(file.string())) << frame;
     }
 
     const int next = static_cast<int>(there.size());

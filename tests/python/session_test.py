@@ -277,6 +277,41 @@ class Views(WithMaster):
             with self.assertRaises(tessera.InvalidInput, msg=str(wrong)):
                 tessera.look_at((0, 0, 5), (0, 0, 0), **wrong)
 
+    def test_cameras_that_move_while_the_shutter_is_open(self):
+        a, b, c = (tessera.look_at((x, 0, 5), (0, 0, 0)) for x in (0, 1, 2))
+        opened = self.session.open_view(a.moving_to(b, c), size=(8, 4))
+        view = self.master.views[1][0].view
+        self.assertEqual(tuple(view.world_from_camera), a.world_from_camera)
+        self.assertEqual(tuple(view.camera_motion), b.world_from_camera + c.world_from_camera)
+        opened.look(b)  # which stands still
+        self.assertEqual(len(self.master.views[1][0].view.camera_motion), 0)
+        with self.assertRaisesRegex(tessera.InvalidInput, "16 steps: there may be 15"):
+            a.moving_to(*[b] * 16)
+        with self.assertRaisesRegex(tessera.InvalidInput, "16 finite numbers"):
+            tessera.Pose((1.0, 2.0))
+        with self.session.transaction() as edit:
+            camera = edit.create("camera", name="main")
+            lift = edit.create("transform", name="lift", children=[camera],
+                               matrix=tessera.translation(0, 1, 0), motion=[tessera.translation(0, 2, 0)])
+        opened = self.session.open_view("cameras/main", size=(8, 4))
+        view = self.master.views[opened.number][0].view
+        self.assertEqual([list(view.world_from_camera)[12:15], list(view.camera_motion)[12:15]], [[0, 1, 0], [0, 2, 0]])
+        # Two that move: as many steps as there may be, 2 x 7, and scale is taken out.
+        big = (2.0, 0.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 2.0, 0.0)
+        with self.session.transaction() as edit:
+            edit.create("transform", name="cart", children=[lift], matrix=(*big, 0.0, 0.0, 0.0, 1.0),
+                        motion=[(*big, 7.0, 0.0, 0.0, 1.0), (*big, 0.0, 0.0, 7.0, 1.0)])
+            edit.detach(lift, "root")
+        opened.look("cameras/main")
+        motion = list(self.master.views[opened.number][0].view.camera_motion)
+        self.assertEqual(len(motion), 16 * 14)
+        for step in range(1, 15):
+            matrix = motion[16 * step - 16:16 * step]
+            x, z = (step, 0) if step <= 7 else (14 - step, step - 7)
+            for value, expected in zip(matrix[12:15], (x, 2 * (1 + step / 14), z)):
+                self.assertAlmostEqual(value, expected, 12)
+            self.assertEqual(matrix[:12], list(tessera.translation(0, 0, 0))[:12])
+
     def test_layers(self):
         with self.session.transaction() as edit:
             edit.create("transform", name="gui", layers=5)

@@ -129,8 +129,8 @@ TEST(Motion, ATurningBodyIsASectorOfTime) {
     const float diagonal = std::sqrt(0.5f);
     std::vector<std::array<glm::vec3, 3>> sector;
     for (int i = 0; i < 16; ++i) {
-        const auto at = [](int i, float radius) {
-            const double angle = 0.25 * M_PI * i / 16.0;
+        const auto at = [](int step, float radius) {
+            const double angle = 0.25 * M_PI * step / 16.0;
             return glm::vec3(radius * std::cos(angle), radius * std::sin(angle), 0.0);
         };
         sector.push_back({at(i, 1.0f), at(i, 1.5f), at(i + 1, 1.5f)});

@@ -120,11 +120,11 @@ TEST(ShaderFields, MirrorsSeeTheSkyAndTheirOwnEnvironment) {
 // What red, green and blue see through a ball is what they see through balls of their own index.
 TEST(ShaderFields, EachChannelIsRefractedByItsOwnIndex) {
     const glm::vec3 index{1.2f, 1.5f, 1.9f};
-    const auto picture = [](const glm::vec3& index, view::Renderer renderer, int c) {
+    const auto picture = [](const glm::vec3& of_glass, view::Renderer renderer, int c) {
         Model model;
         SurfaceShader glass = black();
         glass.reflection = glass.transmission = glm::vec3(1.0f);
-        glass.relative_index_of_refraction = index;
+        glass.relative_index_of_refraction = of_glass;
         model.sphere(model.shader(glass), {0, 0, 0}, 1.0, Normals::Smooth, 48);
         model.floor(model.shader({.emission = {1.0f, 2.0f, 4.0f}, .diffuse = glm::vec3(0.0f)}), 0.9f, -3.0f);
         view::View view = ball_view();

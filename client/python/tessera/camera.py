@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Sequence
 
 from .errors import InvalidInput
@@ -12,6 +12,7 @@ from .objects import Matrix, Vec3
 # In the order of the wire.
 PROJECTIONS = ("perspective", "orthographic")
 APERTURES = ("uniform", "gaussian")
+MAX_MOTION = 15  # steps after the first
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,7 @@ class Pose:
     lens_radius: float = 0.0  # 0 = a pinhole
     focus_distance: float = 1.0  # of the plane that is sharp, along the axis
     aperture: str = "uniform"  # or "gaussian"
+    motion: tuple[Matrix, ...] = ()  # world_from_camera at even steps of time, the last when the shutter closes
 
     def __post_init__(self) -> None:
         if not 0.0 < self.vertical_fov < math.pi:
@@ -38,6 +40,16 @@ class Pose:
             raise InvalidInput("the orthographic height or the focus distance is not positive")
         if not 0.0 <= self.lens_radius < math.inf:
             raise InvalidInput("the lens radius is negative: 0 is a pinhole")
+        if len(self.motion) > MAX_MOTION:
+            raise InvalidInput(f"the motion has {len(self.motion)} steps: there may be {MAX_MOTION} after the first")
+        for matrix in (self.world_from_camera, *self.motion):
+            if len(matrix) != 16 or not all(math.isfinite(v) for v in matrix):
+                raise InvalidInput("a matrix of the camera is not 16 finite numbers")
+
+    def moving_to(self, *poses: Pose) -> Pose:
+        """The same camera, on its way to the places and directions of these, at even steps of time while the shutter is
+        open: in straight lines between them. What else they are does not count."""
+        return replace(self, motion=tuple(pose.world_from_camera for pose in poses))
 
     def frustum(self, width: int, height: int) -> tuple[float, float, float, float]:
         """Left, right, bottom, top of a picture of so many pixels: at distance 1, orthographic in metres."""

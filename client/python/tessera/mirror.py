@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import difflib
-from typing import Any, Iterator
+import math
+from typing import Any, Iterator, Sequence
 
-from .camera import multiply
+from .camera import MAX_MOTION, multiply
 from .errors import InvalidInput, Malformed
 from .fields import KINDS, Kind, kind_in, kind_named
 from .objects import IDENTITY, Matrix, Object, ROOT_ID, Root, Transform
@@ -146,22 +147,64 @@ class Mirror:
 
     def world_matrix(self, object_id: int) -> Matrix:
         """Of the parents of an object's first place in the graph: world from parent. Raises InvalidInput."""
+        return world_at(self._transforms_above(object_id), 0.0)
+
+    def world_motion(self, object_id: int) -> list[Matrix]:
+        """world_matrix at even steps of time after its own, the last when the shutter closes; empty: it stands still. Where
+        several transforms above move, as many steps as there may be. Raises InvalidInput."""
+        above = self._transforms_above(object_id)
+        steps = _steps_of([t for t in above if any(step != t.matrix for step in t.motion)])
+        return [world_at(above, i / steps) for i in range(1, steps + 1)]
+
+    def _transforms_above(self, object_id: int) -> list[Transform]:
+        """Of its first place in the graph, itself included, from the root down. Raises InvalidInput."""
         parents: dict[int, int] = {}
         for parent in self.ids():
             if self._objects[parent][0].type in (Root, Transform):
                 for child in self._objects[parent][1].children:
                     parents.setdefault(child, parent)
-        matrix, at = IDENTITY, object_id
+        path: list[Transform] = []
+        at = object_id
         for _ in range(len(self._objects) + 1):
             if at == ROOT_ID:
-                return matrix
+                return path[::-1]
             value = self.value(at)
             if isinstance(value, Transform):
-                matrix = multiply(value.matrix, matrix)
+                path.append(value)
             if at not in parents:
                 break
             at = parents[at]
         raise InvalidInput(f"{self.path(object_id)} has no place in the graph: attach it to the root or a transform")
+
+
+def world_at(transforms: Sequence[Transform], time: float) -> Matrix:
+    """The product of transforms from the root down, `time` being a share of what the shutter is open."""
+    matrix = IDENTITY
+    for transform in transforms:
+        matrix = multiply(matrix, _matrix_at(transform, time))
+    return matrix
+
+
+def _matrix_at(transform: Transform, time: float) -> Matrix:
+    """Straight lines from step to step, both ends exactly."""
+    keys = (transform.matrix, *transform.motion)
+    step = min(int(time * len(transform.motion)), max(len(transform.motion) - 1, 0))
+    share = time * len(transform.motion) - step
+    if share == 0.0:
+        return keys[step]
+    if share == 1.0:
+        return keys[step + 1]
+    return tuple(a + (b - a) * share for a, b in zip(keys[step], keys[step + 1]))
+
+
+def _steps_of(moving: Sequence[Transform]) -> int:
+    """As the importer and the nodes have it (mediator/scene/motion.h)."""
+    counts = [len(transform.motion) for transform in moving]
+    if len(counts) < 2:
+        return sum(counts)
+    together = math.lcm(*counts)
+    unit = together if together <= MAX_MOTION else max(counts)
+    return MAX_MOTION // unit * unit
 
 
 def copy_field(source: Message, target: Message, field: str) -> None:

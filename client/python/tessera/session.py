@@ -322,8 +322,10 @@ class Session:
                 if not isinstance(found, Camera):
                     raise InvalidInput(f"{mirror.path(found.id)} is no camera")
                 at = camera.Pose(camera.rigid(mirror.world_matrix(found.id)), found.vertical_fov, found.projection,
-                                 found.orthographic_height, found.lens_radius, found.focus_distance, found.aperture)
+                                 found.orthographic_height, found.lens_radius, found.focus_distance, found.aperture,
+                                 tuple(camera.rigid(step) for step in mirror.world_motion(found.id)))
         for field, values in (("world_from_camera", at.world_from_camera),
+                              ("camera_motion", [number for step in at.motion for number in step]),
                               ("frustum", at.frustum(view.width, view.height))):
             view.ClearField(field)
             getattr(view, field).extend(values)
