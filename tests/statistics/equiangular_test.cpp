@@ -1,0 +1,170 @@
+// Light in fog, looked for where much of it arrives: the ways to choose such places agree with each other and with
+// closed forms, down to lights on the ray.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "mediator/base/random.h"
+#include "mediator/shading/equiangular.h"
+#include "tests/statistics/model.h"
+
+namespace tessera::embree {
+namespace {
+
+using glm::vec3;
+using shading::Span, shading::SpanView;
+
+constexpr ObjectId NoMaterial{};
+constexpr double MostError = 0.003;  // standard error of each mean, as a share of it
+
+Mean seen_with(const World& world, const view::View& view, Strategy strategy, std::uint64_t spp) {
+    const PathTracer tracer(world.tables(), world.scene(), view, strategy);
+    double sum = 0, squares = 0;
+    std::uint64_t rays = 0;
+    const std::uint32_t pixels = view.width * view.height;
+    for (std::uint64_t i = 0; i < pixels * spp; ++i) {
+        const auto pixel = static_cast<std::uint32_t>(i % pixels);
+        const double value = red(tracer.trace(pixel % view.width, pixel / view.width, i / pixels, rays));
+        sum += value;
+        squares += value * value;
+    }
+    const double n = double(pixels) * double(spp), mean = sum / n;
+    return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / n)};
+}
+
+void expect_agreement(Model& model, std::uint64_t spp, view::View view) {
+    const World& world = model.build();
+    EXPECT_TRUE(model.problems.empty());
+    const Mean both = seen_with(world, view, Strategy::Both, spp);
+    EXPECT_GT(both.value, 0.0);
+    EXPECT_LE(both.standard_error, MostError * both.value);
+    for (const Strategy strategy : {Strategy::FlightOnly, Strategy::EquiangularOnly}) {
+        const Mean alone = seen_with(world, view, strategy, 4 * spp);
+        EXPECT_NEAR(alone.value, both.value, 4.5 * std::hypot(alone.standard_error, both.standard_error))
+            << static_cast<unsigned>(strategy);
+        EXPECT_LE(alone.standard_error, MostError * alone.value) << static_cast<unsigned>(strategy);
+    }
+}
+
+view::View of_the_middle(std::uint32_t bounces) {
+    view::View view = small_view({0, 0, 5}, 0.5);
+    view.max_bounces = bounces;
+    return view;
+}
+
+void add_fog(Model& model) {
+    model.filled_with({.absorption = vec3(0.1f), .scattering = vec3(0.4f, 0.7f, 0.2f), .anisotropy = 0.4f});
+    model.box(NoMaterial, {-2, -2, -2}, {2, 2, 2});
+    model.filled_with_nothing();
+}
+
+glm::dmat4 at(const glm::dvec3& place) {
+    return glm::translate(glm::dmat4(1.0), place);
+}
+// Shines down along -y from above, and a little to the eye.
+glm::dmat4 from_above(const glm::dvec3& place) {
+    return at(place) * glm::rotate(glm::dmat4(1.0), -1.3, {1, 0, 0});
+}
+
+TEST(Equiangular, APointLightInFogIsFoundAlikeInAllWays) {
+    for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted}) {
+        Model model;
+        add_fog(model);
+        model.floor(model.material(chalk(vec3(0.5f))), 1.5f, -1.0f);
+        model.light({.kind = scene::LightKind::Point, .intensity = vec3(1.0f)}, at({0.8, 0.9, 0.4}));
+        view::View view = of_the_middle(renderer == view::Renderer::Whitted ? 0 : 2);
+        view.renderer = renderer;
+        expect_agreement(model, 512, view);
+    }
+}
+
+TEST(Equiangular, ASpotLightOutsideOfFogIsFoundAlikeInAllWays) {
+    Model model;
+    add_fog(model);
+    model.light({.kind = scene::LightKind::Spot,
+                 .intensity = vec3(20.0f),
+                 .inner_cone_angle = 0.2f,
+                 .outer_cone_angle = 0.4f},
+                from_above({0, 3, 0}));
+    expect_agreement(model, 1024, of_the_middle(1));
+}
+
+// In nested bodies, the inner one denser and coloured otherwise.
+TEST(Equiangular, LightInNestedFogIsFoundAlikeInAllWays) {
+    Model model;
+    add_fog(model);
+    model.filled_with({.scattering = vec3(1.5f, 0.2f, 3.0f), .anisotropy = -0.3f, .priority = 1});
+    model.sphere(NoMaterial, {0.2, -0.1, 0}, 0.8);
+    model.filled_with_nothing();
+    model.light({.kind = scene::LightKind::Point, .intensity = vec3(1.0f)}, at({0.7, 0.9, 0.2}));
+    expect_agreement(model, 512, of_the_middle(2));
+}
+
+TEST(Equiangular, LightInTexturedFogIsFoundAlikeInAllWays) {
+    for (const scene::TextureFilter filter : {scene::TextureFilter::Linear, scene::TextureFilter::Nearest}) {
+        CounterRandom random(9);
+        Model model;
+        std::vector<float> texels;
+        for (int i = 0; i < 3 * 4 * 4 * 4; ++i) texels.push_back(i % 5 == 0 ? 0.0f : static_cast<float>(random.uniform()));
+        const scene::TextureSlot texture = model.texture({.width = 4,
+                                                          .height = 4,
+                                                          .format = scene::TexelFormat::RgbFloat,
+                                                          .wrap_s = scene::Wrap::Clamp,
+                                                          .wrap_t = scene::Wrap::Clamp,
+                                                          .filter = filter,
+                                                          .depth = 4},
+                                                         texels);
+        model.filled_with({.emission = vec3(0.01f),
+                           .absorption = vec3(0.1f),
+                           .scattering = vec3(1.0f, 0.5f, 0.2f),
+                           .scattering_texture = texture});
+        model.box(NoMaterial, {-2, -2, -2}, {2, 2, 2});
+        model.filled_with_nothing();
+        model.light({.kind = scene::LightKind::Point, .intensity = vec3(1.0f)}, at({0.7, 0.9, 0.2}));
+        expect_agreement(model, 512, of_the_middle(1));
+    }
+}
+
+// Lights with a size are found by chance as well.
+TEST(Equiangular, LightsWithASizeAreFoundAlikeInAllWays) {
+    for (const int kind : {0, 1, 2}) {
+        Model model;
+        add_fog(model);
+        if (kind == 0) {
+            model.light({.kind = scene::LightKind::Sphere, .intensity = vec3(4.0f), .radius = 0.2f}, at({0.4, 0.2, 0}));
+        } else if (kind == 1) {
+            model.light({.kind = scene::LightKind::Quad, .intensity = vec3(4.0f), .size = {0.6f, 0.4f}},
+                        from_above({0.3, 0.8, 0}));
+        } else {
+            model.triangles(model.material(lamp(5.0f)), {{vec3(0.7f, -0.3f, 0), vec3(0.7f, 0.3f, 0), vec3(0.9f, 0, 0.5f)}});
+        }
+        expect_agreement(model, 512, of_the_middle(1));
+    }
+}
+
+// Lights of which each leg chooses others, and some that are not in the tree.
+TEST(Equiangular, ManyLightsInFogAreFoundAlikeInAllWays) {
+    Model model;
+    add_fog(model);
+    CounterRandom random(4);
+    for (int i = 0; i < 40; ++i) {
+        const auto number = [&] { return 1.8 * (2.0 * random.uniform() - 1.0); };
+        model.light({.kind = scene::LightKind::Point, .intensity = vec3(float(i % 4 + 1))}, at({number(), number(), number()}));
+    }
+    model.light({.kind = scene::LightKind::Directional, .intensity = vec3(3.0f)}, from_above({}));
+    model.sky(vec3(0.3f));
+    expect_agreement(model, 1024, of_the_middle(1));
+}
+
+// Behind glass, with a light inside of it.
+TEST(Equiangular, LightInAGlassOfFogIsFoundAlikeInAllWays) {
+    Model model;
+    model.filled_with({.scattering = vec3(1.0f)});
+    model.sphere(model.material(glass(1.0f)), {0, 0, 0}, 1.0);
+    model.filled_with_nothing();
+    model.light({.kind = scene::LightKind::Point, .intensity = vec3(1.0f)}, at({0.1, 0.5, 0.2}));
+    expect_agreement(model, 512, of_the_middle(1));
+}
+
+}  // namespace
+}  // namespace tessera::embree
