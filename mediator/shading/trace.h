@@ -113,6 +113,7 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
         // The tree of a path is followed, after the path itself, for its range alone.
         const bool lit = !covers && (whitted || stage == StagePath);
         const bool resumes = scatters && held.is_on && !connects;
+        const uint seed = connects ? connection.seed : closest_seed(path);
         Hit hit;
         bool is_hit = false;
         if (resumes) {
@@ -124,11 +125,11 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                 hit = seen.hit;
                 is_hit = hit.instance != NoInstance;
             } else {
-                const uint seed = connects ? connection.seed : closest_seed(path);
                 is_hit = trace_closest(context, ray, seed, course.skip, hit);
             }
-            if (opens) come_through(context.scene, course, path.inside, is_hit, hit);
         }
+        const bool is_boundary = opens && is_hit && passes_boundary(context.scene, hit, seed);
+        if (opens && !resumes) come_through(context.scene, course, path.inside, is_hit && !is_boundary, hit);
         const float length = is_hit ? hit.distance : infinity();
         const bool arrives = connects && (connection.distant ? !is_hit : !(length < 1.0f));
         Leg leg = clear_leg();
@@ -152,8 +153,7 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                 add_light(path.found, context.view, path.throughput * leg.emitted, path.way);
             }
         }
-        const bool goes_through =
-            is_hit && !arrives && !leg.scatters && !is_aside && is_open(context.scene, hit.instance);
+        const bool goes_through = is_boundary && !arrives && !leg.scatters && !is_aside;
         const Course before = course;
         if (goes_through) go_through(context.scene, course, path.inside, hit, ray, context.time);
         bool goes_on = goes_through;
