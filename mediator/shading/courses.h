@@ -92,9 +92,11 @@ inline void go_through(IN(Scene) scene, INOUT(Course) course, INOUT(uvec4) insid
 }
 
 // Once it is known what the ray meets next, and whether that is a surface.
-inline void come_through(IN(Scene) scene, IN(Course) course, INOUT(uvec4) inside, bool meets_surface, IN(Hit) hit) {
+inline void come_through(IN(Scene) scene, IN(Course) course, INOUT(uvec4) inside, bool meets_surface,
+                         IN(Hit) hit) {
     if (course.skip.instance == NoInstance) return;
-    if (!meets_surface || hit.distance > course.skip.far) inside = crossed(scene, inside, course.skip.instance, course.enters);
+    if (!meets_surface || hit.distance > course.skip.far)
+        inside = crossed(scene, inside, course.skip.instance, course.enters);
 }
 
 // What is known of a ray while light of a place aside of its leg is looked for.

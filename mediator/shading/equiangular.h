@@ -4,24 +4,24 @@
 #include "mediator/shading/lights.h"
 
 // Places of a leg in a medium where much light arrives: even in the angle under which the leg is seen from a
-// light, so that 1 / distance^2 cancels (Kulla and Fajardo 2012). One such place for each leg, with a light of
-// its own, beside the place that free flight finds by chance: both find light in all places of a leg that a
-// light shines on, and are combined by the balance heuristic (Veach 1997) over places and lights. Free flight
-// goes on as it would: what is behind the fog loses no samples to it.
+// light, so that 1 / distance^2 cancels (Kulla and Fajardo 2012). One such place for each leg, with a light
+// of its own, beside the place that free flight finds by chance: both find light in all places of a leg that
+// a light shines on, and are combined by the balance heuristic (Veach 1997) over places and lights. Free
+// flight goes on as it would: what is behind the fog loses no samples to it.
 SHADING_BEGIN
 
 // A straight part of a ray.
 struct Span {
     vec3 start;
     vec3 direction;  // unit length
-    float length;    // metres
+    float extent;    // metres
 };
 
 // The part of a span that a light may shine on, as seen from the light.
 struct SpanView {
-    float near;    // where it begins on the span; lengths are metres
-    float length;
-    float foot;    // from there to the foot of the light's height over the span, which may lie beyond both ends
+    float near;  // where it begins on the span; in metres, as all here
+    float extent;
+    float foot;  // from there to the foot of the light's height over the span, which may lie beyond both ends
     float height;  // more than 0
     float angle;   // that the part spans; 0: no light comes there
 };
@@ -35,7 +35,7 @@ inline vec2 lit_part(IN(Span) span, vec3 apex, vec3 axis, float cosine) {
     const float a = rise * rise - cosine2;
     const float half_b = b * rise - cosine2 * dot(from, span.direction);
     const float c = b * b - cosine2 * dot(from, from);
-    const vec2 all = vec2(0.0f, span.length);
+    const vec2 all = vec2(0.0f, span.extent);
     if (abs(a) < 1e-6f) return all;
     const float square = half_b * half_b - a * c;
     if (square < 0.0f && a < 0.0f) return vec2(0.0f);
@@ -45,9 +45,10 @@ inline vec2 lit_part(IN(Span) span, vec3 apex, vec3 axis, float cosine) {
     const float first = q / a, second = c / q;
     const float low = lesser_of(first, second), high = greater_of(first, second);
     if (a > 0.0f) {
-        return rise > 0.0f ? vec2(greater_of(high, 0.0f), span.length) : vec2(0.0f, lesser_of(low, span.length));
+        return rise > 0.0f ? vec2(greater_of(high, 0.0f), span.extent)
+                           : vec2(0.0f, lesser_of(low, span.extent));
     }
-    const vec2 between = vec2(greater_of(low, 0.0f), lesser_of(high, span.length));
+    const vec2 between = vec2(greater_of(low, 0.0f), lesser_of(high, span.extent));
     return b + 0.5f * (between.x + between.y) * rise > 0.0f ? between : vec2(0.0f);
 }
 
@@ -56,17 +57,18 @@ inline vec2 part_lit_by(IN(Span) span, IN(LightSource) light) {
     if (light.motion < 0 && light.kind == LightSpot && light.cos_outer > 0.0f) {
         return lit_part(span, light.position, light.direction, light.cos_outer);
     }
-    if (light.motion < 0 && light.kind == LightQuad) return lit_part(span, light.position, light.direction, 0.0f);
-    return vec2(0.0f, span.length);
+    if (light.motion < 0 && light.kind == LightQuad)
+        return lit_part(span, light.position, light.direction, 0.0f);
+    return vec2(0.0f, span.extent);
 }
 
-// `radius`: of the light's ball; places within it count as if they were at its rim. Nor is a light nearer than
-// rounding can tell.
+// `radius`: of the light's ball; places within it count as if they were at its rim. Nor is a light nearer
+// than rounding can tell.
 inline SpanView view_span(IN(Span) span, vec2 part, vec3 middle, float radius) {
     SpanView seen = SpanView(part.x, part.y - part.x, 0.0f, 1.0f, 0.0f);
     const vec3 offset = middle - span.start;
-    const float unit = greater_of(extent_of(offset), span.length);
-    if (!(seen.length > 0.0f) || !(unit > 0.0f) || !is_finite(unit)) return seen;
+    const float unit = greater_of(extent_of(offset), span.extent);
+    if (!(seen.extent > 0.0f) || !(unit > 0.0f) || !is_finite(unit)) return seen;
     const vec3 scaled = offset / unit;
     const float along = dot(scaled, span.direction);
     const vec3 across = scaled - along * span.direction;
@@ -88,14 +90,14 @@ inline float equiangular_distance(IN(SpanView) seen, float u) {
     const float opening = foot * across + cosine(angle);
     const float distance = (1.0f + foot * foot) * across / opening * seen.height;
     // Rounded beyond its end.
-    if (!(opening > 0.0f)) return seen.near + seen.length;
-    return seen.near + clamp(distance, 0.0f, seen.length);
+    if (!(opening > 0.0f)) return seen.near + seen.extent;
+    return seen.near + clamp(distance, 0.0f, seen.extent);
 }
 
 // Per metre.
 inline float equiangular_pdf(IN(SpanView) seen, float distance) {
     const float beyond = distance - seen.near;
-    if (!(seen.angle > 0.0f) || beyond < 0.0f || beyond > seen.length) return 0.0f;
+    if (!(seen.angle > 0.0f) || beyond < 0.0f || beyond > seen.extent) return 0.0f;
     const float ratio = (beyond - seen.foot) / seen.height;
     return 1.0f / (seen.angle * seen.height * (1.0f + ratio * ratio));
 }
@@ -112,13 +114,12 @@ struct LegLight {
 };
 
 inline LegLight no_leg_light() {
-    return LegLight(false, false, Span(vec3(0.0f), vec3(0.0f), 0.0f), no_emitter(), 0.0f, 0.0f,
-                    0.0f);
+    return LegLight(false, false, Span(vec3(0.0f), vec3(0.0f), 0.0f), no_emitter(), 0.0f, 0.0f, 0.0f);
 }
 
 // Light is welcome all along.
 inline Receiver receiver_along(IN(Span) span) {
-    return Receiver(span.start, vec3(0.0f), span.length * span.direction);
+    return Receiver(span.start, vec3(0.0f), span.extent * span.direction);
 }
 
 inline SpanView seen_from(IN(Scene) scene, IN(Span) span, uint emitter) {

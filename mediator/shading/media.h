@@ -224,8 +224,9 @@ inline Leg leg_through_cells(IN(Scene) scene, IN(Body) body, IN(BoxRay) ray, flo
             KEEP_LOOP
             for (uint place = scatters_here ? 0u : 1u; place < (is_asked ? 2u : 1u); ++place) {
                 const float rest = wanted - channel_value(depth, question.channel);
-                const float part = place == 1u ? lesser_of(question.aside, far) - near
-                                               : clamp(rest / channel_value(rate, question.channel), 0.0f, far - near);
+                const float part =
+                    place == 1u ? lesser_of(question.aside, far) - near
+                                : clamp(rest / channel_value(rate, question.channel), 0.0f, far - near);
                 const vec3 there = depth + part * mean_extinction(scene, body, ray, near, near + part);
                 const vec3 scattering = coefficients_at(scene, body, ray, near + part).scattering;
                 const float density = scattering_densities(question, rate, depth + part * rate, whole);

@@ -7,10 +7,9 @@
 // through (stops_at) they are not there. A camera ray that meets one goes on in a direction by chance. Where
 // that one leaves the scene, the background is seen as if nothing were there; else the light that comes from
 // what it meets. So it is shadows from light of all around that are caught, none of single lights. Fog before
-// the catcher dims the background as it would dim a ground there, and fog around it casts its shadow; what lies
-// behind the catcher is not seen, of fog neither. For paths
-// that come from elsewhere, catchers are not there after perfect speculars, and shine like the background
-// after anything else.
+// the catcher dims the background as it would dim a ground there, and fog around it casts its shadow; what
+// lies behind the catcher is not seen, of fog neither. For paths that come from elsewhere, catchers are not
+// there after perfect speculars, and shine like the background after anything else.
 SHADING_BEGIN
 
 inline bool catches(IN(Scene) scene, IN(Surface) surface) {

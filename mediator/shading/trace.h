@@ -197,10 +197,9 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                 if (!is_aside) path.cone.width += path.cone.spread * (distance - course.begun);
                 Surface surface;
                 if (in_medium) {
-                    surface = scattering_place(course.start + along * ray.direction, ray.direction,
-                                               leg.anisotropy,
-                                               context.scene.instances.items[path.inside.x].object,
-                                               context.time);
+                    surface =
+                        scattering_place(course.start + along * ray.direction, ray.direction, leg.anisotropy,
+                                         context.scene.instances.items[path.inside.x].object, context.time);
                 } else {
                     surface = make_surface(context.scene, hit, ray.direction, path.cone.width, context.time);
                 }
@@ -231,7 +230,8 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                                       channel_of(path.numbers));
                     }
                     if (!in_medium) leg_light = no_leg_light();
-                    if (lit) goes_on = leave_vertex(context, path, ray, stage, surface, leg_light, connection);
+                    if (lit)
+                        goes_on = leave_vertex(context, path, ray, stage, surface, leg_light, connection);
                     if (is_aside) {
                         path.throughput = held.throughput;
                         path.vertex = held.vertex;

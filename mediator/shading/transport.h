@@ -118,7 +118,8 @@ WITH_CONTEXT inline void add_emission(IN(Context) context, INOUT(Path) path, IN(
     connect_light(path.found, context.view, path.probability * surface.emission);
     float other = 0.0f;
     if (path.bsdf_pdf > 0.0f)
-        other = mesh_light_pdf(context.scene, surface, Receiver(path.last_position, path.last_normal, vec3(0.0f)));
+        other = mesh_light_pdf(context.scene, surface,
+                               Receiver(path.last_position, path.last_normal, vec3(0.0f)));
     const float weight = weight_by_chance(context.view, path, other);
     add_light(path.found, context.view, path.throughput * surface.emission * weight, path.way);
     tell_emission(context, surface.emission, ray.direction);
@@ -153,8 +154,8 @@ WITH_CONTEXT inline void receive_light(IN(Context) context, INOUT(PathSample) fo
 // Light of a place aside that has a smaller share of what is found there is looked for less often.
 inline constexpr float WorthAConnection = 0.125f;
 
-// What is asked for and may arrive: `connection` is open where it has to be looked for. `leg`: of a place in a
-// medium.
+// What is asked for and may arrive: `connection` is open where it has to be looked for. `leg`: of a place in
+// a medium.
 WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Surface) surface, vec3 wo,
                                     IN(LegLight) leg, INOUT(Connection) connection) {
     if (context.scene.light_count == 0u) return;

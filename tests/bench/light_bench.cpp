@@ -1,5 +1,5 @@
-// Many lights: what the light tree gains over uniform choice, and what it costs. Light in fog: what places that
-// are chosen by the angle from a light gain over free flight alone.
+// Many lights: what the light tree gains over uniform choice, and what it costs. Light in fog: what places
+// that are chosen by the angle from a light gain over free flight alone.
 //   tessera_light_bench [fog]
 // 10,000 glowing triangles of 0.1 m over a ground of 100 m, of all orientations, one-sided, with powers over
 // two orders of magnitude. Uniform choice is the same tree with equal expectations, so its time is not its
@@ -142,10 +142,11 @@ struct FogScene {
     float scattering;
     scene::Light light;
     bool with_floor;
+    double lamp_z = 0.0;  // the fog's front is at 2 m
 };
 
-glm::dmat4 lamp_place() {
-    return glm::translate(glm::dmat4(1.0), glm::dvec3(0, 1.8, 0)) *
+glm::dmat4 lamp_place(double z) {
+    return glm::translate(glm::dmat4(1.0), glm::dvec3(0, 1.8, z)) *
            glm::rotate(glm::dmat4(1.0), -1.3, {1, 0, 0});
 }
 
@@ -167,14 +168,16 @@ std::vector<double> foggy_picture(const World& world, const view::View& view, St
 // Errors and times of both in turn; the truth is the mean of many of both.
 void run_fog(const FogScene& fog) {
     Model model;
-    model.filled_with({.absorption = glm::vec3(0.02f), .scattering = glm::vec3(fog.scattering), .anisotropy = 0.3f});
+    model.filled_with(
+        {.absorption = glm::vec3(0.02f), .scattering = glm::vec3(fog.scattering), .anisotropy = 0.3f});
     model.box(ObjectId{}, {-2, -2, -2}, {2, 2, 2});
     model.filled_with_nothing();
     if (fog.with_floor) {
-        model.quad(model.material(chalk(glm::vec3(0.5f))),
-                   {{{-1.9f, -1.5f, 1.9f}, {1.9f, -1.5f, 1.9f}, {1.9f, -1.5f, -1.9f}, {-1.9f, -1.5f, -1.9f}}});
+        model.quad(
+            model.material(chalk(glm::vec3(0.5f))),
+            {{{-1.9f, -1.5f, 1.9f}, {1.9f, -1.5f, 1.9f}, {1.9f, -1.5f, -1.9f}, {-1.9f, -1.5f, -1.9f}}});
     }
-    model.light(fog.light, lamp_place());
+    model.light(fog.light, lamp_place(fog.lamp_z));
     const World& world = model.build();
     view::View view = small_view({0, 0, 6}, 0.6, Size);
     view.max_bounces = 4;
@@ -188,8 +191,9 @@ void run_fog(const FogScene& fog) {
             errors[way] += relmse(foggy_picture(world, view, Ways[way], 16, seconds[way]), truth);
         }
     }
-    std::printf("%-22s relMSE %.4g -> %.4g, time %.2f x; at equal time %.3f x\n", fog.name, errors[0] / FogRounds,
-                errors[1] / FogRounds, seconds[1] / seconds[0], errors[1] / errors[0] * seconds[1] / seconds[0]);
+    std::printf("%-22s relMSE %.4g -> %.4g, time %.2f x; at equal time %.3f x\n", fog.name,
+                errors[0] / FogRounds, errors[1] / FogRounds, seconds[1] / seconds[0],
+                errors[1] / errors[0] * seconds[1] / seconds[0]);
     std::fflush(stdout);
 }
 
@@ -199,19 +203,19 @@ void run_fogs() {
                             .inner_cone_angle = 0.2f,
                             .outer_cone_angle = 0.4f};
     const scene::Light point{.kind = scene::LightKind::Point, .intensity = glm::vec3(3.0f)};
-    const scene::Light sphere{.kind = scene::LightKind::Sphere, .intensity = glm::vec3(30.0f), .radius = 0.1f};
-    const scene::Light quad{.kind = scene::LightKind::Quad, .intensity = glm::vec3(20.0f), .size = {0.4f, 0.4f}};
+    const scene::Light sphere{
+        .kind = scene::LightKind::Sphere, .intensity = glm::vec3(30.0f), .radius = 0.1f};
+    const scene::Light quad{
+        .kind = scene::LightKind::Quad, .intensity = glm::vec3(20.0f), .size = {0.4f, 0.4f}};
     const scene::Light sun{.kind = scene::LightKind::Directional, .intensity = glm::vec3(1.0f)};
-    for (const FogScene& fog : {FogScene{"spot, thin fog", 0.05f, spot, false},
-                                FogScene{"spot, thin fog, floor", 0.05f, spot, true},
-                                FogScene{"spot, fog, floor", 0.4f, spot, true},
-                                FogScene{"spot, dense fog", 4.0f, spot, false},
-                                FogScene{"spot, very dense fog", 40.0f, spot, false},
-                                FogScene{"point, fog, floor", 0.4f, point, true},
-                                FogScene{"point, dense fog", 4.0f, point, false},
-                                FogScene{"sphere, fog, floor", 0.4f, sphere, true},
-                                FogScene{"quad, fog, floor", 0.4f, quad, true},
-                                FogScene{"sun, fog, floor", 0.4f, sun, true}}) {
+    for (const FogScene& fog :
+         {FogScene{"spot, thin fog", 0.05f, spot, false},
+          FogScene{"spot, thin fog, floor", 0.05f, spot, true},
+          FogScene{"spot, fog, floor", 0.4f, spot, true}, FogScene{"spot, dense fog", 4.0f, spot, false, 1.5},
+          FogScene{"point, fog, floor", 0.4f, point, true},
+          FogScene{"point, dense fog", 4.0f, point, false, 1.5},
+          FogScene{"sphere, fog, floor", 0.4f, sphere, true}, FogScene{"quad, fog, floor", 0.4f, quad, true},
+          FogScene{"sun, fog, floor", 0.4f, sun, true}}) {
         run_fog(fog);
     }
 }

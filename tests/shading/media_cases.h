@@ -56,13 +56,14 @@ inline LegShares shares_of(IN(Case) c, IN(Inputs) x) {
     leg.is_on = c.context.scene.tree_light_count > 0u;
     leg.is_aside = x.b % 2u == 0u;
     leg.span = span_of(x);
-    leg.distance = x.u.x * leg.span.length;
+    leg.distance = x.u.x * leg.span.extent;
     leg.pdf = x.pdf;
     leg.density = x.metallic;
     LightSample light = no_light();
     light.emitter = int(x.a % TriangleEmitters);
     light.chance = 0.3f;
-    return leg_shares(c.context.scene, StrategyBoth + (x.c % 2u) * StrategyEquiangularOnly, leg, light, c.receiver);
+    return leg_shares(c.context.scene, StrategyBoth + (x.c % 2u) * StrategyEquiangularOnly, leg, light,
+                      c.receiver);
 }
 inline BoxRay through_box(IN(Case) c, IN(Inputs) x) {
     const BoxRay ray = box_ray(c.instance, body_of(c, x), c.instance.translation + c.instance.linear * x.wo,
@@ -107,7 +108,8 @@ inline uvec4 gone_through(IN(Case) c, IN(Inputs) x) {
     Hit hit = c.hit;
     hit.instance = hit.instance % 4u;
     go_through(in_media(c).scene, course, inside, hit, c.ray, 0.0f);
-    come_through(in_media(c).scene, course, inside, x.d % 3u == 0u && !is_open(in_media(c).scene, hit.instance), hit);
+    come_through(in_media(c).scene, course, inside,
+                 x.d % 3u == 0u && !is_open(in_media(c).scene, hit.instance), hit);
     return uvec4(inside.x, inside.y, course.skip.instance, course.enters ? 1u : 0u);
 }
 // Light that is found behind open bodies, and the path that goes on then.

@@ -77,7 +77,8 @@ inline Case make_case(IN(World) world, IN(Inputs) x) {
     made.lit = made.context.scene.instances.items[x.instance ^ 1u];
     made.light = made.context.scene.lights.items[x.d % LightCount];
     made.emitter = made.context.scene.emitters.items[x.d % TriangleEmitters];
-    made.receiver = Receiver(x.wo, x.c % 3u == 0u ? vec3(0.0f) : x.n, x.c % 5u == 0u ? 4.0f * x.wi : vec3(0.0f));
+    made.receiver =
+        Receiver(x.wo, x.c % 3u == 0u ? vec3(0.0f) : x.n, x.c % 5u == 0u ? 4.0f * x.wi : vec3(0.0f));
     made.surface = make_surface(made.context.scene, made.hit, x.n, x.c % 2u == 0u ? 0.0f : x.metallic,
                                 made.context.time);
     made.wo = to_local(made.surface, -x.n);

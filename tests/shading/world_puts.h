@@ -218,7 +218,7 @@ inline void put(INOUT(Outputs) y, IN(Leg) leg) {
     put(y, vec3(leg.density, leg.aside_density, 1.0f));
 }
 inline void put(INOUT(Outputs) y, IN(SpanView) seen) {
-    put(y, vec3(seen.near, seen.length, 1.0f));
+    put(y, vec3(seen.near, seen.extent, 1.0f));
     put(y, vec3(seen.foot, seen.height, 1.0f));
     put(y, 1.0f + seen.angle);
 }

@@ -427,7 +427,8 @@ TEST(HoledMedia, AreEnteredThroughTheirHoles) {
         }
         // From within, one wall is left.
         const Mean within = mean_of(world, from_above(1.0), blends ? 4096 : 4, red);
-        EXPECT_NEAR(within.value, 3.0 * double(1.0f - alpha) * std::exp(-0.4), 4.5 * within.standard_error + 1e-5);
+        EXPECT_NEAR(within.value, 3.0 * double(1.0f - alpha) * std::exp(-0.4),
+                    4.5 * within.standard_error + 1e-5);
     }
 }
 

@@ -121,7 +121,8 @@ TEST(ShadowCatcher, IsTransparentBeforeATransparentBackground) {
     });
 }
 
-// Half of E3, twice: the share of an even sky's light on a plane that a slab of an optical depth lets through.
+// Half of E3, twice: the share of an even sky's light on a plane that a slab of an optical depth lets
+// through.
 double light_through_slab(double depth) {
     constexpr int Steps = 20000;
     double sum = 0.0;
@@ -132,8 +133,8 @@ double light_through_slab(double depth) {
     return sum;
 }
 
-// A layer of fog dims the background behind the catcher as it would dim a ground there, and casts its own shadow;
-// what it takes away is covered.
+// A layer of fog dims the background behind the catcher as it would dim a ground there, and casts its own
+// shadow; what it takes away is covered.
 TEST(ShadowCatcher, IsDimmedByFogBeforeIt) {
     for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted}) {
         for (const float depth : {0.0f, 0.3f, 1.0f}) {
@@ -147,10 +148,13 @@ TEST(ShadowCatcher, IsDimmedByFogBeforeIt) {
             view.renderer = renderer;
             const double passed = std::exp(-double(depth)) * light_through_slab(double(depth));
             const Mean light = mean_of(world, view, 1024, red);
-            EXPECT_NEAR(light.value, passed * double(Shown.x) * double(Shown.w), 4.5 * light.standard_error + 1e-5);
+            EXPECT_NEAR(light.value, passed * double(Shown.x) * double(Shown.w),
+                        4.5 * light.standard_error + 1e-5);
             EXPECT_LE(light.standard_error, 0.003 * light.value + 1e-9);
-            const Mean alpha = mean_of(world, view, 1024, [](const PathSample& s) { return double(s.alpha); });
-            EXPECT_NEAR(alpha.value, 1.0 - (1.0 - double(Shown.w)) * passed, 4.5 * alpha.standard_error + 1e-5);
+            const Mean alpha =
+                mean_of(world, view, 1024, [](const PathSample& s) { return double(s.alpha); });
+            EXPECT_NEAR(alpha.value, 1.0 - (1.0 - double(Shown.w)) * passed,
+                        4.5 * alpha.standard_error + 1e-5);
         }
     }
 }
