@@ -117,6 +117,15 @@ inline LegLight no_leg_light() {
     return LegLight(false, false, Span(vec3(0.0f), vec3(0.0f), 0.0f), no_emitter(), 0.0f, 0.0f, 0.0f);
 }
 
+// For the place that free flight has found, which it does with `density`.
+inline LegLight at_own_place(IN(LegLight) leg, float distance, float density) {
+    LegLight own = leg;
+    own.is_aside = false;
+    own.distance = distance;
+    own.density = density;
+    return own;
+}
+
 // Light is welcome all along.
 inline Receiver receiver_along(IN(Span) span) {
     return Receiver(span.start, vec3(0.0f), span.extent * span.direction);

@@ -144,7 +144,9 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
             if (lit) leg_light = light_leg(context, path, ray, course, length, kind);
             leg = leg_of(context, path, ray, course, arrives && !connection.distant ? 1.0f : length, kind,
                          leg_light.is_aside ? leg_light.distance : -1.0f);
-            leg_light.is_aside = leg_light.is_aside && largest(leg.aside) > 0.0f;
+            if (!(leg_light.is_aside && largest(leg.aside) > 0.0f)) {
+                leg_light = at_own_place(leg_light, leg.distance, leg.density);
+            }
         }
         const bool is_aside = scatters && leg_light.is_aside;
         if (!connects && lit && !is_aside) {
@@ -167,10 +169,8 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
             }
         } else {
             if (is_aside) {
-                held = Held(true, is_hit, hit, leg, leg_light, course, path.throughput, path.vertex);
-                held.light.is_aside = false;
-                held.light.density = leg.density;
-                held.light.distance = leg.distance;
+                held = Held(true, is_hit, hit, leg, at_own_place(leg_light, leg.distance, leg.density),
+                            course, path.throughput, path.vertex);
                 leg_light.density = leg.aside_density;
                 path.vertex = aside_vertex(path.vertex, course.number);
                 path.throughput *= leg.aside / leg_light.pdf;
@@ -230,8 +230,9 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                                       channel_of(path.numbers));
                     }
                     if (!in_medium) leg_light = no_leg_light();
-                    if (lit)
+                    if (lit) {
                         goes_on = leave_vertex(context, path, ray, stage, surface, leg_light, connection);
+                    }
                     if (is_aside) {
                         path.throughput = held.throughput;
                         path.vertex = held.vertex;
