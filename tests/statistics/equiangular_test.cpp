@@ -124,7 +124,7 @@ TEST(Equiangular, LightInTexturedFogIsFoundAlikeInAllWays) {
         model.box(NoMaterial, {-2, -2, -2}, {2, 2, 2});
         model.filled_with_nothing();
         model.light({.kind = scene::LightKind::Point, .intensity = vec3(1.0f)}, at({0.7, 2.9, 0.2}));
-        expect_agreement(model, 256, of_the_middle(0));
+        expect_agreement(model, 320, of_the_middle(0));
     }
 }
 
@@ -207,10 +207,12 @@ struct Pass {
 Mean seen_past(const Pass& pass, Strategy strategy, std::uint64_t spp, view::Renderer renderer) {
     Model model;
     model.filled_with({.scattering = vec3(pass.depth / 4.0f)});
-    model.box(NoMaterial, {-1e3f, -1e3f, -2}, {1e3f, 1e3f, 2});
+    // With its front at 0, where places are told apart that are less than a free flight from each other.
+    model.box(NoMaterial, {-1e3f, -1e3f, -4}, {1e3f, 1e3f, 0});
     model.filled_with_nothing();
-    model.light({.kind = scene::LightKind::Point, .intensity = vec3(1.0f)}, at({pass.height, 0, pass.foot}));
-    view::View view = small_view({0, 0, 5}, 1e-12, 4);
+    model.light({.kind = scene::LightKind::Point, .intensity = vec3(1.0f)},
+                at({pass.height, 0, pass.foot - 2.0}));
+    view::View view = small_view({0, 0, 3}, 1e-12, 4);
     view.max_bounces = 0;
     view.renderer = renderer;
     return seen_with(model.build(), view, strategy, spp);
@@ -227,6 +229,8 @@ TEST(EquiangularNumerics, SeeALightBesideTheRayAsTheSumAlongItSays) {
         ASSERT_GT(expected, 0.0);
         for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted}) {
             for (const Strategy strategy : {Strategy::Both, Strategy::EquiangularOnly}) {
+                // Next to no place lies in the front of what is next to opaque.
+                if (strategy != Strategy::Both && pass.depth > 100.0f) continue;
                 const Mean seen = seen_past(pass, strategy, 4096, renderer);
                 EXPECT_NEAR(seen.value, expected, 4.5 * seen.standard_error + 1e-4 * expected)
                     << pass.depth << " " << pass.height << " " << pass.foot << " "
