@@ -201,7 +201,8 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                         scattering_place(course.start + along * ray.direction, ray.direction, leg.anisotropy,
                                          context.scene.instances.items[path.inside.x].object, context.time);
                 } else {
-                    surface = make_surface(context.scene, hit, ray.direction, path.cone.width, context.time);
+                    surface = make_surface(context.scene, hit, ray.direction, path.cone.width, path.inside,
+                                           context.time);
                 }
                 tell_hit(context, surface, path.throughput);
                 const bool on_the_way = is_aside || (leg.scatters && stage == StageBranch);
