@@ -17,6 +17,8 @@ enum class Strategy : std::uint32_t {
     Both = shading::StrategyBoth,
     LightsOnly = shading::StrategyLightsOnly,
     BsdfOnly = shading::StrategyBsdfOnly,
+    FlightOnly = shading::StrategyFlightOnly,
+    EquiangularOnly = shading::StrategyEquiangularOnly,
 };
 
 // Traces the samples of one view (mediator/shading/trace.h), with Embree's rays. Stateless between samples:

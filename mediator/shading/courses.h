@@ -30,18 +30,45 @@ inline uint leg_kind(IN(Path) path, uint stage, bool passes, uint max_scattering
     return stage == StagePath && path.vertex < max_scatterings ? LegMayScatter : LegPasses;
 }
 
-// From where it begins to `end`, in lengths of the ray's direction.
+// Random numbers of a place aside are those of a vertex that no path has.
+inline uint aside_vertex(uint vertex, uint leg) {
+    return vertex + 0x18000000u + (leg & 15u) * 0x00400000u;
+}
+
+// Whether light is looked for at a place aside of a leg to `end`, and where.
+WITH_CONTEXT inline LegLight light_leg(IN(Context) context, IN(Path) path, IN(Ray) ray, IN(Course) course,
+                                       float end, uint kind) {
+    LegLight leg = no_leg_light();
+    if ((context.scene.features & FeatureScattering) == 0u || kind == LegPasses) return leg;
+    if (context.scene.tree_light_count == 0u || path.inside.x == NoInstance || !is_finite(end)) return leg;
+    if (context.view.strategy == StrategyFlightOnly) return leg;
+    const int body = context.scene.instances.items[path.inside.x].body;
+    if (!(largest(context.scene.bodies.items[body].scattering) > 0.0f)) return leg;
+    Path aside = path;
+    aside.vertex = aside_vertex(path.vertex, course.number);
+    leg.is_on = true;
+    leg.span = Span(course.start, ray.direction, greater_of(end - course.begun, 0.0f));
+    leg.chosen = choose_emitter(context.scene, receiver_along(leg.span), pair_at(aside, PairLightChoice));
+    const SpanView seen = seen_from(context.scene, leg.span, leg.chosen.index);
+    leg.distance = equiangular_distance(seen, pair_at(aside, PairBsdfDirection).x);
+    leg.pdf = equiangular_pdf(seen, leg.distance);
+    leg.is_aside = leg.pdf > 0.0f;
+    return leg;
+}
+
+// From where it begins to `end`, in lengths of the ray's direction. `aside`: a place of it that is asked for.
 WITH_CONTEXT inline Leg leg_of(IN(Context) context, IN(Path) path, IN(Ray) ray, IN(Course) course, float end,
-                               uint kind) {
+                               uint kind, float aside) {
     if ((context.scene.features & FeatureMedia) == 0u || path.inside.x == NoInstance) return clear_leg();
     const float size = vector_length(ray.direction);
     const uint pair = leg_pair(path.vertex, course.number);
     vec2 u = vec2(0.0f);
     if (kind != LegPasses) u = sample_pair(path.numbers, pair);
     const float place = unit_float(hash_combine(path.numbers.seed, pair ^ path.numbers.index));
+    LegQuestion question = ask_leg(kind, path.throughput, u, place);
+    question.aside = aside;
     return leg_through(context.scene, path.inside, course.start, ray.direction / size,
-                       greater_of(end - course.begun, 0.0f) * size, ask_leg(kind, path.throughput, u, place),
-                       context.time);
+                       greater_of(end - course.begun, 0.0f) * size, question, context.time);
 }
 
 // A boundary without a surface: the same ray goes on, and passes it by. Surfaces that lie in the boundary are
@@ -64,11 +91,29 @@ inline void go_through(IN(Scene) scene, INOUT(Course) course, INOUT(uvec4) insid
     course.skip = Skip(NoInstance, hit.distance + tolerance, 0.0f);
 }
 
-// Once it is known what the ray meets next.
-inline void come_through(IN(Scene) scene, IN(Course) course, INOUT(uvec4) inside, bool is_hit, IN(Hit) hit) {
+// Once it is known what the ray meets next, and whether that is a surface.
+inline void come_through(IN(Scene) scene, IN(Course) course, INOUT(uvec4) inside, bool meets_surface,
+                         IN(Hit) hit) {
     if (course.skip.instance == NoInstance) return;
-    const bool is_at_surface = is_hit && hit.distance <= course.skip.far && !is_open(scene, hit.instance);
-    if (!is_at_surface) inside = crossed(scene, inside, course.skip.instance, course.enters);
+    if (!meets_surface || hit.distance > course.skip.far)
+        inside = crossed(scene, inside, course.skip.instance, course.enters);
+}
+
+// What is known of a ray while light of a place aside of its leg is looked for.
+struct Held {
+    bool is_on;
+    bool is_hit;
+    Hit hit;
+    Leg leg;
+    LegLight light;
+    Course course;
+    vec3 throughput;
+    uint vertex;
+};
+
+inline Held hold_nothing() {
+    return Held(false, false, Hit(NoInstance, 0u, vec2(0.0f), 0.0f), clear_leg(), no_leg_light(),
+                new_course(vec3(0.0f)), vec3(0.0f), 0u);
 }
 
 // The path waits with its next ray until the light has arrived or not.

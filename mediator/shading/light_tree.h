@@ -14,7 +14,16 @@ SHADING_BEGIN
 struct Receiver {
     vec3 position;
     vec3 normal;
+    vec3 way;  // to its other end, where it is a straight way through a medium; else 0
 };
+
+// The place of it that is nearest to another.
+inline vec3 nearest_place(IN(Receiver) receiver, vec3 to) {
+    const float way2 = dot(receiver.way, receiver.way);
+    if (!(way2 > 0.0f)) return receiver.position;
+    const float share = dot(to - receiver.position, receiver.way) / way2;
+    return receiver.position + clamp(share, 0.0f, 1.0f) * receiver.way;
+}
 
 // What is turned away counts as if it shone with this share. Where as much light is turned away as comes, one
 // choice in 1024 is lost to it.
@@ -31,12 +40,17 @@ inline float cosine_beyond(float cosine, float cosine_of_cone) {
 // The light that may be expected of a node, in units of the tree's power / (the tree's size)^2. The cosines
 // are the most favourable that a point of the ball may have, or some more: they are 0 where all of the ball
 // is turned away, or below the receiver's horizon. From 1000 sizes on all emitters are about as far away.
+// A way expects what arrives on the mean, from a node that shines evenly.
 inline constexpr float LeastDistance2 = 1e-36f, MostDistance2 = 1e6f;
 inline float expected_light(IN(LightNode) node, IN(Receiver) receiver, float scale) {
-    const vec3 way = (node.middle - receiver.position) * scale;
+    const vec3 way = (node.middle - nearest_place(receiver, node.middle)) * scale;
     const float distance2 = lesser_of(greater_of(dot(way, way), LeastDistance2), MostDistance2);
     const float inverse = 1.0f / sqrt(distance2);
     const float radius = node.radius * scale;
+    if (dot(receiver.way, receiver.way) > 0.0f) {
+        const float nearest = greater_of(sqrt(distance2), radius);
+        return node.power / (nearest * (nearest + vector_length(receiver.way) * scale));
+    }
     const float sine_of_ball = radius * inverse;
     const float cosine_axis = -dot(node.axis, way) * inverse;
     const bool two_sided = (node.link & LightTwoSided) != 0u;
@@ -78,8 +92,12 @@ inline ChildShares child_shares(IN(Scene) scene, uint link, IN(Receiver) receive
 
 struct ChosenEmitter {
     uint index;
-    float probability;
+    float probability;  // 0: none is chosen
 };
+
+inline ChosenEmitter no_emitter() {
+    return ChosenEmitter(0u, 0.0f);
+}
 
 // A random number decides until its bits run short: 24 of them, of which a decision needs some more than its
 // share. Then the second goes on, and then a hash of both.

@@ -20,10 +20,12 @@ struct LightSample {
     bool delta;      // cannot be hit by chance: the pdf is of the choice alone
     bool distant;    // infinitely far
     vec3 target;     // where a shadow ray ends, if not; off the light's own surface
+    int emitter;     // index, of the light tree's
+    float chance;    // of its choice
 };
 
 inline LightSample no_light() {
-    return LightSample(vec3(0.0f), vec3(0.0f), vec3(0.0f), 0.0f, false, false, vec3(0.0f));
+    return LightSample(vec3(0.0f), vec3(0.0f), vec3(0.0f), 0.0f, false, false, vec3(0.0f), -1, 1.0f);
 }
 
 // glTF's falloff between the cones (KHR_lights_punctual).
@@ -164,37 +166,49 @@ inline bool is_seen(IN(Scene) scene, IN(LightSource) light, uint layers) {
 // Light is welcome from both sides where it goes through; a place in a medium has no normal.
 inline Receiver receiver_at(IN(Surface) surface) {
     const bool through = (surface.bsdf.lobes & FeatureRoughGlass) != 0u;
-    return Receiver(surface.position, through ? vec3(0.0f) : surface.geometric_normal);
+    return Receiver(surface.position, through ? vec3(0.0f) : surface.geometric_normal, vec3(0.0f));
 }
 
 inline LightSample sample_chosen(IN(Scene) scene, uint layers, IN(Surface) surface, IN(Emitter) emitter,
                                  IN(LightSource) light, float probability, vec2 u) {
     if (!is_seen(scene, light, layers)) return no_light();
-    return sample_emitter(scene, emitter, light_at(scene, light, surface.time),
-                          scene.tree_probability * probability, surface, u);
+    return sample_emitter(scene, emitter, light_at(scene, light, surface.time), probability, surface, u);
 }
 
-inline LightSample sample_tree(IN(Scene) scene, uint layers, IN(Surface) surface, vec2 choice, vec2 u) {
-    const ChosenEmitter chosen = choose_emitter(scene, receiver_at(surface), choice);
+inline LightSample sample_tree(IN(Scene) scene, uint layers, IN(Surface) surface, IN(ChosenEmitter) chosen,
+                               vec2 u) {
     const Emitter emitter = scene.emitters.items[chosen.index];
-    return sample_chosen(scene, layers, surface, emitter, scene.lights.items[emitter.light],
-                         chosen.probability, u);
+    LightSample found = sample_chosen(scene, layers, surface, emitter, scene.lights.items[emitter.light],
+                                      chosen.probability, u);
+    found.emitter = int(chosen.index);
+    found.chance = chosen.probability;
+    return found;
 }
 
 // Of a light in none of the layers comes nothing: who chose it has lost the sample, so that the choice is the
 // same for all views. With a share p of the choice hidden, the light found has 1 / (1 - p) times the
 // variance.
-inline LightSample sample_light(IN(Scene) scene, uint layers, IN(Surface) surface, vec2 choice, vec2 u) {
-    const uint distant_count = scene.light_count - scene.tree_light_count;
-    if (distant_count == 0u) {
+// `given`: an emitter that has been chosen already, if one has.
+inline LightSample sample_light(IN(Scene) scene, uint layers, IN(Surface) surface, IN(ChosenEmitter) given,
+                                vec2 choice, vec2 u) {
+    ChosenEmitter emitter = given;
+    if (!(given.probability > 0.0f)) {
         if (scene.light_count == 0u) return no_light();
-        return sample_tree(scene, layers, surface, choice, u);
+        const uint distant_count = scene.light_count - scene.tree_light_count;
+        vec2 rest = choice;
+        if (distant_count > 0u) {
+            const Choice chosen = choose(scene.sums, scene.light_sums, distant_count + 1u, choice.x);
+            if (chosen.index > 0u) {
+                const uint index = scene.tree_light_count + chosen.index - 1u;
+                if (!is_seen(scene, scene.lights.items[index], layers)) return no_light();
+                return sample_distant(scene, light_at(scene, scene.lights.items[index], surface.time), u);
+            }
+            rest.x = chosen.rest;
+        }
+        emitter = choose_emitter(scene, receiver_at(surface), rest);
+        emitter.probability *= scene.tree_probability;
     }
-    const Choice chosen = choose(scene.sums, scene.light_sums, distant_count + 1u, choice.x);
-    if (chosen.index == 0u) return sample_tree(scene, layers, surface, vec2(chosen.rest, choice.y), u);
-    const uint index = scene.tree_light_count + chosen.index - 1u;
-    if (!is_seen(scene, scene.lights.items[index], layers)) return no_light();
-    return sample_distant(scene, light_at(scene, scene.lights.items[index], surface.time), u);
+    return sample_tree(scene, layers, surface, emitter, u);
 }
 
 // 1 / the square root of the area of the triangle that was hit, of this emitter.

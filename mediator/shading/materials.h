@@ -66,8 +66,10 @@ inline bool alpha_stops(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, u
 
 // Whether a surface with alpha stops a ray. Mask: by the cutoff. Blend: by a hash of the ray's seed and the
 // triangle, so that the answer does not depend on the order in which triangles are visited; on average a
-// share alpha of rays stops.
+// share alpha of rays stops. The boundary of a body is met in any case, since whoever goes through comes into
+// the body or out of it: whether there is a surface as well, passes_boundary says.
 inline bool stops_at(IN(Scene) scene, uint instance, uint triangle, vec2 b, uint seed) {
+    if ((scene.features & FeatureMedia) != 0u && scene.instances.items[instance].body >= 0) return true;
     return alpha_stops(scene, scene.materials.items[scene.instances.items[instance].material],
                        scene.meshes.items[scene.instances.items[instance].mesh], instance, triangle, b, seed);
 }

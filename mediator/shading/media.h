@@ -25,6 +25,7 @@ struct LegQuestion {
     uint channel;  // chosen by them
     vec2 u;        // how far; the second are further digits of the first
     float place;   // where emission is looked up
+    float aside;   // a place that is asked for besides (equiangular.h), in metres; less than 0: none
 };
 
 struct Leg {
@@ -34,10 +35,13 @@ struct Leg {
     float distance;  // of that place
     bool scatters;
     float anisotropy;
+    float density;        // per metre, with which it is scattered there
+    vec3 aside;           // share of the light from the other place that is asked for, per metre
+    float aside_density;  // with which the path is scattered there
 };
 
 inline Leg clear_leg() {
-    return Leg(vec3(1.0f), vec3(0.0f), vec3(0.0f), 0.0f, false, 0.0f);
+    return Leg(vec3(1.0f), vec3(0.0f), vec3(0.0f), 0.0f, false, 0.0f, 0.0f, vec3(0.0f), 0.0f);
 }
 
 inline float channel_value(vec3 v, uint channel) {
@@ -118,15 +122,21 @@ inline Leg leg_through_even(IN(Body) body, float length, IN(LegQuestion) questio
     if (question.kind == LegPasses) return leg;
     const float rate = channel_value(extinction, question.channel);
     const float all = channel_value(whole, question.channel);
+    if (question.aside >= 0.0f) {
+        const vec3 there = extinction * question.aside;
+        leg.aside = body.scattering * exponentials(-there);
+        leg.aside_density = scattering_densities(question, extinction, there, whole);
+    }
     const float depth = scattering_depth(question.kind, question.u, all);
     if (!(depth < all)) return leg;
     leg.scatters = true;
     leg.distance = lesser_of(depth / rate, length);
     const vec3 depths = extinction * leg.distance;
     // Over the largest rate, so that products stay in range.
-    const float scale = 1.0f / largest(extinction);
-    leg.scattered = scattered_share(body.scattering * scale, depths,
-                                    scattering_densities(question, extinction * scale, depths, whole));
+    const float most = largest(extinction), scale = 1.0f / most;
+    const float density = scattering_densities(question, extinction * scale, depths, whole);
+    leg.scattered = scattered_share(body.scattering * scale, depths, density);
+    leg.density = density * most;
     return leg;
 }
 
@@ -196,7 +206,7 @@ inline Leg leg_through_cells(IN(Scene) scene, IN(Body) body, IN(BoxRay) ray, flo
         vec3 depth = vec3(0.0f);
         float near = 0.0f;
         KEEP_LOOP
-        for (uint cell = 1u; near < length && !(leg.scatters && !emits); ++cell) {
+        for (uint cell = 1u; near < length && !(leg.scatters && !emits && near > question.aside); ++cell) {
             const float next = cell < MaxCells ? next_cell(scene, body, ray, near) : length;
             const float far = lesser_of(next, length);
             const vec3 rate = mean_extinction(scene, body, ray, near, far);
@@ -207,17 +217,28 @@ inline Leg leg_through_cells(IN(Scene) scene, IN(Body) body, IN(BoxRay) ray, flo
                                cell_emission(scene, body, ray, near, far, rate, choice);
             }
             const vec3 after = depth + rate * (far - near);
-            if (pass == 1u && !leg.scatters && channel_value(after, question.channel) > wanted) {
+            const bool scatters_here =
+                pass == 1u && !leg.scatters && channel_value(after, question.channel) > wanted;
+            const bool is_asked =
+                pass == 1u && question.aside >= near && (question.aside < far || !(far < length));
+            KEEP_LOOP
+            for (uint place = scatters_here ? 0u : 1u; place < (is_asked ? 2u : 1u); ++place) {
                 const float rest = wanted - channel_value(depth, question.channel);
                 const float part =
-                    clamp(rest / channel_value(rate, question.channel), 0.0f, far - near);
-                leg.scatters = true;
-                leg.distance = near + part;
-                const vec3 there =
-                    depth + part * mean_extinction(scene, body, ray, near, leg.distance);
-                leg.scattered = scattered_share(
-                    coefficients_at(scene, body, ray, leg.distance).scattering, there,
-                    scattering_densities(question, rate, depth + part * rate, whole));
+                    place == 1u ? lesser_of(question.aside, far) - near
+                                : clamp(rest / channel_value(rate, question.channel), 0.0f, far - near);
+                const vec3 there = depth + part * mean_extinction(scene, body, ray, near, near + part);
+                const vec3 scattering = coefficients_at(scene, body, ray, near + part).scattering;
+                const float density = scattering_densities(question, rate, depth + part * rate, whole);
+                if (place == 1u) {
+                    leg.aside = scattering * exponentials(-there);
+                    leg.aside_density = density;
+                } else {
+                    leg.scatters = true;
+                    leg.distance = near + part;
+                    leg.scattered = scattered_share(scattering, there, density);
+                    leg.density = density;
+                }
             }
             depth = after;
             near = far;
@@ -233,6 +254,7 @@ inline Leg leg_in_body(IN(Scene) scene, IN(Body) body, uint instance, vec3 origi
     LegQuestion question = asked;
     const bool scatters = (scene.features & FeatureScattering) != 0u && largest(body.scattering) > 0.0f;
     if (!scatters) question.kind = LegPasses;
+    if (question.kind == LegPasses) question.aside = -1.0f;
     if ((scene.features & FeatureMediaTextures) != 0u && body.textured != 0u) {
         const BoxRay ray = box_ray(instance_at(scene, scene.instances.items[instance], time), body, origin,
                                    direction);
@@ -256,7 +278,7 @@ inline Leg leg_through(IN(Scene) scene, uvec4 inside, vec3 origin, vec3 directio
 }
 
 inline LegQuestion what_passes() {
-    return LegQuestion(LegPasses, vec3(1.0f / 3.0f), 0u, vec2(0.0f), 0.0f);
+    return LegQuestion(LegPasses, vec3(1.0f / 3.0f), 0u, vec2(0.0f), 0.0f, -1.0f);
 }
 
 inline vec3 transmittance(IN(Scene) scene, uvec4 inside, vec3 origin, vec3 direction, float length,

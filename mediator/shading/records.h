@@ -332,6 +332,8 @@ inline constexpr uint ClassIndirect = 0u, ClassCaustics = 1u, ClassDiffuse = 2u,
 inline constexpr uint RuleDemodulated = 0u, RuleConnections = 1u;
 // How light is found; the estimates agree in expectation. Only tests choose other than both.
 inline constexpr uint StrategyBoth = 0u, StrategyLightsOnly = 1u, StrategyBsdfOnly = 2u;
+// Of places in media where light is looked for, that of both ways (equiangular.h).
+inline constexpr uint StrategyFlightOnly = 3u, StrategyEquiangularOnly = 4u;
 inline constexpr uint CameraPinhole = 0u, CameraOrthographic = 1u, CameraLens = 2u, CameraGaussian = 4u;
 // What a sample has to keep besides its light.
 inline constexpr uint KeepsDiffuse = 1u, KeepsConnections = 2u, KeepsRange = 4u;

@@ -37,7 +37,7 @@ WITH_CONTEXT inline void add_shape(IN(Context) context, INOUT(Path) path, IN(Ray
     connect_light(path.found, context.view, path.probability * light.intensity);
     float other = 0.0f;
     if (path.bsdf_pdf > 0.0f) {
-        const Receiver receiver = Receiver(path.last_position, path.last_normal);
+        const Receiver receiver = Receiver(path.last_position, path.last_normal, vec3(0.0f));
         other = context.scene.tree_probability * leaf_probability(context.scene, emitter.node, receiver) *
                 hit.pdf;
     }

@@ -6,9 +6,10 @@
 // Surfaces that show nothing but the shadows on them (Lardinoije 3), within their mask: where that lets rays
 // through (stops_at) they are not there. A camera ray that meets one goes on in a direction by chance. Where
 // that one leaves the scene, the background is seen as if nothing were there; else the light that comes from
-// what it meets. So it is shadows from light of all around that are caught, none of single lights. For paths
-// that come from elsewhere, catchers are not there after perfect speculars, and shine like the background
-// after anything else.
+// what it meets. So it is shadows from light of all around that are caught, none of single lights. Fog before
+// the catcher dims the background as it would dim a ground there, and fog around it casts its shadow; what
+// lies behind the catcher is not seen, of fog neither. For paths that come from elsewhere, catchers are not
+// there after perfect speculars, and shine like the background after anything else.
 SHADING_BEGIN
 
 inline bool catches(IN(Scene) scene, IN(Surface) surface) {
@@ -39,9 +40,8 @@ WITH_CONTEXT inline void leave_scene(IN(Context) context, INOUT(Path) path, IN(R
     add_suns(context, path, ray);
 }
 
-// What a camera ray has come to that was caught.
+// What a camera ray has come to that was caught. It carries what media have left on both ways.
 WITH_CONTEXT inline void show_background(IN(Context) context, INOUT(Path) path, IN(Ray) camera_ray) {
-    path.throughput = vec3(1.0f);
     path.bsdf_pdf = 0.0f;
     path.way = direct_way();
     path.found.alpha = 0.0f;

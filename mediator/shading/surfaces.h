@@ -313,6 +313,17 @@ inline Boundary boundary_at(IN(Scene) scene, IN(Hit) hit, vec3 direction, float 
                        mesh_at(scene, scene.meshes.items[instance.mesh], time), hit, direction);
 }
 
+// Whether a ray goes through what it hit as if there were no surface: a body's boundary that has none, or
+// none at this place by its alpha (alpha_stops).
+inline bool passes_boundary(IN(Scene) scene, IN(Hit) hit, uint seed) {
+    if ((scene.features & FeatureOpenMedia) == 0u || !has_body(scene, hit.instance)) return false;
+    if (is_open(scene, hit.instance)) return true;
+    if ((scene.features & FeatureAlpha) == 0u) return false;
+    return !alpha_stops(scene, scene.materials.items[scene.instances.items[hit.instance].material],
+                        scene.meshes.items[scene.instances.items[hit.instance].mesh], hit.instance,
+                        hit.triangle, hit.barycentric, seed);
+}
+
 // `direction`: of the ray that hit, unit length; `width`: of the path there (cones.h); `inside`: what bodies
 // it comes through.
 inline Surface make_surface(IN(Scene) scene, IN(Hit) hit, vec3 direction, float width, uvec4 inside,

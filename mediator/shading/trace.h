@@ -42,7 +42,8 @@ inline bool survives(INOUT(Path) path, uint nothing_certain_from, float choice) 
 
 // From a hit to the next ray; false: there is none.
 WITH_CONTEXT inline bool leave_vertex(IN(Context) context, INOUT(Path) path, INOUT(Ray) ray,
-                                      INOUT(uint) stage, IN(Surface) surface, INOUT(Connection) connection) {
+                                      INOUT(uint) stage, IN(Surface) surface, IN(LegLight) leg,
+                                      INOUT(Connection) connection) {
     add_emission(context, path, ray, surface);
     if (stage == StageGather) return false;
     Lobe lobe = rough_lobe(path);
@@ -53,16 +54,17 @@ WITH_CONTEXT inline bool leave_vertex(IN(Context) context, INOUT(Path) path, INO
         if (!(surface.rough_share > 0.0f)) return false;
         path.probability *= lobe_chances(surface).rough;
     }
-    if (lobe.kind == LobeRough && path.way.scatterings == 0u) {
+    if (lobe.kind == LobeRough && path.way.scatterings == 0u && !leg.is_aside) {
         path.found.albedo += surface.albedo * surface.rough_share * path.throughput;
         if (!is_in_medium(surface)) path.found.normal += path.probability * surface.frame[2];
     }
     if (!surface.scatters) return false;
-    if (stage == StagePath && path.vertex >= context.view.max_scatterings) return false;
+    if (stage == StagePath && !leg.is_aside && path.vertex >= context.view.max_scatterings) return false;
     vec3 direction = vec3(0.0f);
     if (lobe.kind == LobeRough) {
         const vec3 wo = to_local(surface, -ray.direction);
-        add_lights(context, path, surface, wo, connection);
+        add_lights(context, path, surface, wo, leg, connection);
+        if (leg.is_aside) return true;
         if (!scatter(context.scene.energy, context.view, path, surface, wo, lobe, direction)) return false;
     } else {
         direction = pass_on(context, path, surface, lobe);
@@ -91,6 +93,7 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
         has_specular_trees(context) && context.view.renderer != RendererPathTracing && !covers;
     const bool wants_range = has_specular_trees(context) && keeps(context.view, KeepsRange);
     const bool opens = (context.scene.features & FeatureOpenMedia) != 0u;
+    const bool scatters = (context.scene.features & FeatureScattering) != 0u;
     tell_camera(context, ray);
     const Ray camera = ray;
     bool is_caught = false;  // by a shadow catcher, and has met nothing since
@@ -102,38 +105,57 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
     uint stage = whitted ? StageBranch : StagePath;
     Connection connection = no_connection();
     Course course = new_course(ray.origin);
+    Held held = hold_nothing();
     bool first = true;  // nothing has been met
     bool passes = false;
     while (true) {
         const bool connects = opens && connection.is_open;
         // The tree of a path is followed, after the path itself, for its range alone.
         const bool lit = !covers && (whitted || stage == StagePath);
-        path.rays += 1u;
+        const bool resumes = scatters && held.is_on && !connects;
+        const uint seed = connects ? connection.seed : closest_seed(path);
         Hit hit;
         bool is_hit = false;
-        if (path.rays == 1u && seen.is_known) {
-            hit = seen.hit;
-            is_hit = hit.instance != NoInstance;
+        if (resumes) {
+            hit = held.hit;
+            is_hit = held.is_hit;
         } else {
-            const uint seed = connects ? connection.seed : closest_seed(path);
-            is_hit = trace_closest(context, ray, seed, course.skip, hit);
+            path.rays += 1u;
+            if (path.rays == 1u && seen.is_known) {
+                hit = seen.hit;
+                is_hit = hit.instance != NoInstance;
+            } else {
+                is_hit = trace_closest(context, ray, seed, course.skip, hit);
+            }
         }
-        if (opens) come_through(context.scene, course, path.inside, is_hit, hit);
+        const bool is_boundary = opens && is_hit && passes_boundary(context.scene, hit, seed);
+        if (opens && !resumes) come_through(context.scene, course, path.inside, is_hit && !is_boundary, hit);
         const float length = is_hit ? hit.distance : infinity();
         const bool arrives = connects && (connection.distant ? !is_hit : !(length < 1.0f));
         Leg leg = clear_leg();
-        if (connects || lit) {
+        LegLight leg_light = no_leg_light();
+        if (resumes) {
+            leg = held.leg;
+            leg_light = held.light;
+            held.is_on = false;
+        } else if (connects || lit) {
             const uint kind =
                 connects ? LegPasses : leg_kind(path, stage, passes, context.view.max_scatterings);
-            leg = leg_of(context, path, ray, course, arrives && !connection.distant ? 1.0f : length, kind);
+            if (lit) leg_light = light_leg(context, path, ray, course, length, kind);
+            leg = leg_of(context, path, ray, course, arrives && !connection.distant ? 1.0f : length, kind,
+                         leg_light.is_aside ? leg_light.distance : -1.0f);
+            if (!(leg_light.is_aside && largest(leg.aside) > 0.0f)) {
+                leg_light = at_own_place(leg_light, leg.distance, leg.density);
+            }
         }
-        if (!connects && lit) {
+        const bool is_aside = scatters && leg_light.is_aside;
+        if (!connects && lit && !is_aside) {
             if (!is_caught && !passes) add_shapes(context, path, ray, course.begun, length);
             if (largest(leg.emitted) > 0.0f && !passes) {
                 add_light(path.found, context.view, path.throughput * leg.emitted, path.way);
             }
         }
-        const bool goes_through = is_hit && !arrives && !leg.scatters && is_open(context.scene, hit.instance);
+        const bool goes_through = is_boundary && !arrives && !leg.scatters && !is_aside;
         const Course before = course;
         if (goes_through) go_through(context.scene, course, path.inside, hit, ray, context.time);
         bool goes_on = goes_through;
@@ -143,9 +165,16 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
             if (!goes_through) {
                 goes_on = go_on_with_path(connection, path, ray);
                 course = new_course(ray.origin);
+                if (scatters && held.is_on) course = held.course;
             }
         } else {
-            if (leg.scatters) {
+            if (is_aside) {
+                held = Held(true, is_hit, hit, leg, at_own_place(leg_light, leg.distance, leg.density),
+                            course, path.throughput, path.vertex);
+                leg_light.density = leg.aside_density;
+                path.vertex = aside_vertex(path.vertex, course.number);
+                path.throughput *= leg.aside / leg_light.pdf;
+            } else if (leg.scatters) {
                 if (stage == StageBranch) {
                     push_rest(open, branch, path, ray, course, first);
                     path.vertex += MediumVertex;
@@ -155,27 +184,28 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                 path.throughput *= leg.passed;
                 if (stage == StageBranch) branch.weight = path.throughput;
             }
-            passes = false;
-            const float distance = leg.scatters ? course.begun + leg.distance : length;
+            const bool in_medium = is_aside || leg.scatters;
+            const float along = is_aside ? leg_light.distance : leg.distance;
+            if (!is_aside) passes = false;
+            const float distance = in_medium ? course.begun + along : length;
             if (goes_through) {
                 path.cone.width += path.cone.spread * (distance - before.begun);
             } else if (is_hit && covers) {
                 show_object(path.found, context.scene.instances.items[hit.instance].object,
                             depth_along(context.view, ray, distance));
-            } else if (is_hit || leg.scatters) {
-                path.cone.width += path.cone.spread * (distance - course.begun);
+            } else if (is_hit || in_medium) {
+                if (!is_aside) path.cone.width += path.cone.spread * (distance - course.begun);
                 Surface surface;
-                if (leg.scatters) {
-                    surface = scattering_place(course.start + leg.distance * ray.direction, ray.direction,
-                                               leg.anisotropy,
-                                               context.scene.instances.items[path.inside.x].object,
-                                               context.time);
+                if (in_medium) {
+                    surface =
+                        scattering_place(course.start + along * ray.direction, ray.direction, leg.anisotropy,
+                                         context.scene.instances.items[path.inside.x].object, context.time);
                 } else {
                     surface = make_surface(context.scene, hit, ray.direction, path.cone.width, path.inside,
                                            context.time);
                 }
                 tell_hit(context, surface, path.throughput);
-                const bool on_the_way = leg.scatters && stage == StageBranch;
+                const bool on_the_way = is_aside || (leg.scatters && stage == StageBranch);
                 if (first && !on_the_way) {
                     path.found.depth =
                         depth_along(view_at(context.scene.features, context.view, context.time), ray,
@@ -194,19 +224,27 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                 } else if (catches_path) {
                     goes_on = pass_catcher(context, path, ray, surface);
                 } else {
-                    is_caught = false;
-                    if (!leg.scatters && (stage == StageBranch || (first && wants_range))) {
+                    if (!is_aside) is_caught = false;
+                    if (!in_medium && (stage == StageBranch || (first && wants_range))) {
                         if (wants_range) path.found.range += range_at(branch, surface);
                         push_children(open, context.scene, branch, path.cone, path.inside, surface,
                                       channel_of(path.numbers));
                     }
-                    if (lit) goes_on = leave_vertex(context, path, ray, stage, surface, connection);
+                    if (!in_medium) leg_light = no_leg_light();
+                    if (lit) {
+                        goes_on = leave_vertex(context, path, ray, stage, surface, leg_light, connection);
+                    }
+                    if (is_aside) {
+                        path.throughput = held.throughput;
+                        path.vertex = held.vertex;
+                        goes_on = true;
+                    }
                     if (opens && connection.is_open) {
                         goes_on = look_for_light(connection, path, ray, goes_on);
                     }
                 }
-                course = new_course(ray.origin);
-                first = false;
+                if (!is_aside || connection.is_open) course = new_course(ray.origin);
+                if (!is_aside) first = false;
             } else {
                 tell_miss(context);
                 if (is_caught) {

@@ -1,7 +1,7 @@
 #ifndef TESSERA_MEDIATOR_SHADING_TRANSPORT_H
 #define TESSERA_MEDIATOR_SHADING_TRANSPORT_H
 
-#include "mediator/shading/lights.h"
+#include "mediator/shading/equiangular.h"
 #include "mediator/shading/media.h"
 #include "mediator/shading/paths.h"
 
@@ -87,8 +87,8 @@ inline vec3 diffuse_share(IN(BsdfValue) bsdf) {
 // `other`.
 inline float weight_by_chance(IN(View) view, IN(Path) path, float other) {
     if (!(path.bsdf_pdf > 0.0f)) return 1.0f;
-    if (view.strategy == StrategyBoth) return power_heuristic(path.bsdf_pdf, other);
-    return view.strategy == StrategyLightsOnly && other > 0.0f ? 0.0f : 1.0f;
+    if (view.strategy == StrategyLightsOnly) return other > 0.0f ? 0.0f : 1.0f;
+    return view.strategy == StrategyBsdfOnly ? 1.0f : power_heuristic(path.bsdf_pdf, other);
 }
 
 // What perfect speculars of CommonSurfaceShader see besides the sky (Schwenk 5.A.3): a map like that of the
@@ -118,7 +118,8 @@ WITH_CONTEXT inline void add_emission(IN(Context) context, INOUT(Path) path, IN(
     connect_light(path.found, context.view, path.probability * surface.emission);
     float other = 0.0f;
     if (path.bsdf_pdf > 0.0f)
-        other = mesh_light_pdf(context.scene, surface, Receiver(path.last_position, path.last_normal));
+        other = mesh_light_pdf(context.scene, surface,
+                               Receiver(path.last_position, path.last_normal, vec3(0.0f)));
     const float weight = weight_by_chance(context.view, path, other);
     add_light(path.found, context.view, path.throughput * surface.emission * weight, path.way);
     tell_emission(context, surface.emission, ray.direction);
@@ -150,13 +151,19 @@ WITH_CONTEXT inline void receive_light(IN(Context) context, INOUT(PathSample) fo
     tell_light(context, direction, received.light);
 }
 
-// What is asked for and may arrive: `connection` is open where it has to be looked for.
+// Light of a place aside that has a smaller share of what is found there is looked for less often.
+inline constexpr float WorthAConnection = 0.125f;
+
+// What is asked for and may arrive: `connection` is open where it has to be looked for. `leg`: of a place in
+// a medium.
 WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Surface) surface, vec3 wo,
-                                    INOUT(Connection) connection) {
+                                    IN(LegLight) leg, INOUT(Connection) connection) {
     if (context.scene.light_count == 0u) return;
     const vec2 choice = pair_at(path, PairLightChoice);
     const vec2 u = pair_at(path, PairLightPoint);
-    const LightSample light = sample_light(context.scene, context.view.layers, surface, choice, u);
+    ChosenEmitter given = no_emitter();
+    if (leg.is_aside) given = leg.chosen;
+    const LightSample light = sample_light(context.scene, context.view.layers, surface, given, choice, u);
     if (!(light.pdf > 0.0f) || !(largest(light.radiance) > 0.0f)) return;
     if (context.view.strategy == StrategyBsdfOnly && !light.delta) return;
     const vec3 wi = to_local(surface, light.direction);
@@ -164,7 +171,23 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
     const BsdfValue bsdf = evaluate_bsdf(context.scene.energy, surface.bsdf, wo, wi);
     if (!(largest(bsdf.value) > 0.0f)) return;
     const bool alone = light.delta || context.view.strategy == StrategyLightsOnly;
-    const float weight = alone ? 1.0f : power_heuristic(light.pdf, bsdf.pdf);
+    float weight = 1.0f, density = light.pdf;
+    if ((context.scene.features & FeatureScattering) != 0u && leg.is_on) {
+        const LegShares shares =
+            leg_shares(context.scene, context.view.strategy, leg, light, receiver_at(surface));
+        weight = shares.share;
+        if (leg.is_aside) {
+            // What the power heuristic compares is what is found from the path's own place.
+            density *= shares.other_chance / light.chance;
+            const float worth = weight / WorthAConnection;
+            if (worth < 1.0f) {
+                if (!(pair_at(path, PairLobeAndRoulette).y < worth)) return;
+                weight = WorthAConnection;
+            }
+        }
+        if (!(weight > 0.0f)) return;
+    }
+    if (!alone) weight *= power_heuristic(density, bsdf.pdf);
     const vec3 origin = leaving(surface, light.direction).origin;
     const bool is_open = (context.scene.features & FeatureOpenMedia) != 0u;
     Connection asked = no_connection();
@@ -178,7 +201,7 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
         if (trace_occluded(context, origin, segment, far, asked.seed)) return;
     }
     asked.light = path.throughput * bsdf.value * light.radiance * (weight / light.pdf);
-    asked.intensity = path.probability * light.intensity;
+    if (!leg.is_aside) asked.intensity = path.probability * light.intensity;
     asked.way = Way(path.way.scatterings + 1u, false, path.way.diffuse_share);
     if (keeps(context.view, KeepsDiffuse) && path.way.scatterings == 0u) {
         asked.way.diffuse_share = diffuse_share(bsdf);

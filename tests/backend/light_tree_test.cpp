@@ -144,7 +144,7 @@ INSTANTIATE_TEST_SUITE_P(Emitters, LightTrees,
 // 24 bits of one number are too few to choose among thousands; all the same each gets its share.
 TEST(LightTree, ChoicesComeAsOftenAsTheirProbabilitiesSay) {
     const Tree tree(some_leaves(300, 1.0, Kind::All, 9));
-    const Receiver receiver{{0.3f, 0.4f, 0.5f}, {0.0f, 0.0f, 1.0f}};
+    const Receiver receiver{{0.3f, 0.4f, 0.5f}, {0.0f, 0.0f, 1.0f}, {}};
     constexpr std::uint32_t Samples = 1u << 20;
     std::vector<double> counts(tree.emitters.size());
     const shading::Sampler numbers{0, 99};
@@ -174,7 +174,7 @@ TEST(LightTree, WhatIsNearAndFacesTheReceiverIsLikelier) {
     LightLeaf near{.low = {0, 0, 1}, .high = {0, 0, 1}, .axis = {0, 0, -1}, .reach = 0.5 * pi, .power = 1.0};
     LightLeaf other = near;
     other.emitter = 1;
-    const Receiver receiver{{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
+    const Receiver receiver{{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f}, {}};
     const auto odds = [&] {
         const Tree tree({near, other});
         return shading::leaf_probability(tree.scene, tree.emitters[0].node, receiver) /

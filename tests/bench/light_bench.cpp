@@ -1,11 +1,13 @@
-// Many lights: what the light tree gains over uniform choice, and what it costs.
-//   tessera_light_bench
+// Many lights: what the light tree gains over uniform choice, and what it costs. Light in fog: what places
+// that are chosen by the angle from a light gain over free flight alone.
+//   tessera_light_bench [fog]
 // 10,000 glowing triangles of 0.1 m over a ground of 100 m, of all orientations, one-sided, with powers over
 // two orders of magnitude. Uniform choice is the same tree with equal expectations, so its time is not its
 // own: it is given the time of a scene in which one of the triangles glows and the others are black.
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <string_view>
 
 #include "mediator/backend/tables/light_tree.h"
 #include "mediator/base/random.h"
@@ -19,7 +21,9 @@ using bench::median;
 using bench::picture;
 using bench::time_of;
 
+
 constexpr std::uint32_t Emitters = 10000, Size = 64, Spp = 64, ReferenceSpp = 1024, Rounds = 9;
+constexpr std::uint32_t FogReferenceSpp = 256, FogRounds = 5;
 
 // The first `glowing` glow; the very first lies above what is seen and shines down.
 void add_lamps(Model& model, std::uint32_t glowing) {
@@ -102,6 +106,91 @@ void run() {
                 sum_of(plain) / sum_of(truth));
 }
 
+// ---- fog ----
+
+struct FogScene {
+    const char* name;
+    float scattering;
+    scene::Light light;
+    bool with_floor;
+    double lamp_z = 0.0;  // the fog's front is at 2 m
+};
+
+glm::dmat4 lamp_place(double z) {
+    return glm::translate(glm::dmat4(1.0), glm::dvec3(0, 1.8, z)) *
+           glm::rotate(glm::dmat4(1.0), -1.3, {1, 0, 0});
+}
+
+std::vector<double> foggy_picture(const World& world, const view::View& view, Strategy strategy,
+                                  std::uint64_t spp, double& seconds) {
+    const PathTracer tracer(world.tables(), world.scene(), view, strategy);
+    std::vector<double> pixels(Size * Size);
+    std::uint64_t rays = 0;
+    const double start = cpu_seconds();
+    for (std::uint64_t sample = 0; sample < spp; ++sample) {
+        for (std::uint32_t i = 0; i < Size * Size; ++i) {
+            pixels[i] += red(tracer.trace(i % Size, i / Size, sample, rays)) / static_cast<double>(spp);
+        }
+    }
+    seconds += cpu_seconds() - start;
+    return pixels;
+}
+
+// Errors and times of both in turn; the truth is the mean of many of both.
+void run_fog(const FogScene& fog) {
+    Model model;
+    model.filled_with(
+        {.absorption = glm::vec3(0.02f), .scattering = glm::vec3(fog.scattering), .anisotropy = 0.3f});
+    model.box(ObjectId{}, {-2, -2, -2}, {2, 2, 2});
+    model.filled_with_nothing();
+    if (fog.with_floor) {
+        model.quad(
+            model.material(chalk(glm::vec3(0.5f))),
+            {{{-1.9f, -1.5f, 1.9f}, {1.9f, -1.5f, 1.9f}, {1.9f, -1.5f, -1.9f}, {-1.9f, -1.5f, -1.9f}}});
+    }
+    model.light(fog.light, lamp_place(fog.lamp_z));
+    const World& world = model.build();
+    view::View view = small_view({0, 0, 6}, 0.6, Size);
+    view.max_bounces = 4;
+    double seconds[2] = {0, 0}, errors[2] = {0, 0}, unused = 0;
+    constexpr Strategy Ways[2] = {Strategy::FlightOnly, Strategy::Both};
+    view.seed = 99;
+    const std::vector<double> truth = foggy_picture(world, view, Strategy::Both, FogReferenceSpp, unused);
+    for (std::uint32_t round = 0; round < FogRounds; ++round) {
+        view.seed = round;
+        for (int way = 0; way < 2; ++way) {
+            errors[way] += relmse(foggy_picture(world, view, Ways[way], 16, seconds[way]), truth);
+        }
+    }
+    std::printf("%-22s relMSE %.4g -> %.4g, time %.2f x; at equal time %.3f x\n", fog.name,
+                errors[0] / FogRounds, errors[1] / FogRounds, seconds[1] / seconds[0],
+                errors[1] / errors[0] * seconds[1] / seconds[0]);
+    std::fflush(stdout);
+}
+
+void run_fogs() {
+    const scene::Light spot{.kind = scene::LightKind::Spot,
+                            .intensity = glm::vec3(10.0f),
+                            .inner_cone_angle = 0.2f,
+                            .outer_cone_angle = 0.4f};
+    const scene::Light point{.kind = scene::LightKind::Point, .intensity = glm::vec3(3.0f)};
+    const scene::Light sphere{
+        .kind = scene::LightKind::Sphere, .intensity = glm::vec3(30.0f), .radius = 0.1f};
+    const scene::Light quad{
+        .kind = scene::LightKind::Quad, .intensity = glm::vec3(20.0f), .size = {0.4f, 0.4f}};
+    const scene::Light sun{.kind = scene::LightKind::Directional, .intensity = glm::vec3(1.0f)};
+    for (const FogScene& fog :
+         {FogScene{"spot, thin fog", 0.05f, spot, false},
+          FogScene{"spot, thin fog, floor", 0.05f, spot, true},
+          FogScene{"spot, fog, floor", 0.4f, spot, true}, FogScene{"spot, dense fog", 4.0f, spot, false, 1.5},
+          FogScene{"point, fog, floor", 0.4f, point, true},
+          FogScene{"point, dense fog", 4.0f, point, false, 1.5},
+          FogScene{"sphere, fog, floor", 0.4f, sphere, true}, FogScene{"quad, fog, floor", 0.4f, quad, true},
+          FogScene{"sun, fog, floor", 0.4f, sun, true}}) {
+        run_fog(fog);
+    }
+}
+
 // How long trees take to be made.
 void run_builds() {
     for (const std::uint32_t count : {10000u, 1000000u}) {
@@ -130,7 +219,9 @@ void run_builds() {
 }  // namespace
 }  // namespace tessera::embree
 
-int main() {
+int main(int count, char** arguments) {
+    tessera::embree::run_fogs();
+    if (count > 1 && std::string_view(arguments[1]) == "fog") return 0;
     tessera::embree::run_builds();
     tessera::embree::run();
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <fstream>
 #include <set>
 
 #include "tests/process/real_cluster.h"
@@ -83,6 +84,41 @@ TEST(RealProcesses, ANodeKilledInTheMiddleChangesNothing) {
     EXPECT_EQ(result["film_hash"].get<std::string>(), expected_hash_of_slow_frame(cluster));
     EXPECT_GT(result["units"]["reissued"].get<int>(), 0) << "the killed node held units";
     EXPECT_GT(result["units"]["lost"].get<int>(), 0);
+}
+
+// A spot light in fog over a floor: rays go through boundaries, and paths are scattered on their way.
+std::string foggy_scene(const TemporaryFolder& folder) {
+    const std::string path = folder / "fog.x3d";
+    std::ofstream(path) << R"(<X3D version='3.3'><Scene>
+<Viewpoint position='0 1 6'/>
+<Shape><Appearance><CommonVolumeShader absorptionFactor='0.02 0.02 0.02' scatteringFactor='0.3 0.35 0.4'/></Appearance>
+<Box size='5 4 5'/></Shape>
+<Transform translation='0 -1.5 0'><Shape><Appearance><Material diffuseColor='0.6 0.5 0.4'/></Appearance>
+<Box size='4 0.1 4'/></Shape></Transform>
+<SpotLight location='0 1.8 0' direction='0.2 -1 0.1' intensity='20' cutOffAngle='0.6' beamWidth='0.3'/>
+</Scene></X3D>)";
+    return path;
+}
+
+TEST(RealProcesses, ANodeKilledInTheMiddleOfAFogChangesNothing) {
+    const std::vector<std::string> frame{"--size", "160x120", "--spp", "128", "--seed", "5"};
+    RealCluster cluster;
+    const ChildProcess a = cluster.start_node("a"), b = cluster.start_node("b");
+    const std::string scene = foggy_scene(cluster.folder());
+    ChildProcess render = cluster.start_render(
+        "frame", scene, frame + std::vector<std::string>{"--wait-nodes", "2:60", "--json"});
+    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_hand(status, "b") > 0; }))
+        << render.err();
+    b.signal(SIGKILL);
+    ASSERT_EQ(render.wait(std::chrono::minutes(3)).value_or(-1), 0) << render.err();
+    const json result = json::parse(render.out());
+    EXPECT_GT(result["units"]["lost"].get<int>(), 0) << "the killed node held units";
+    EXPECT_GT(result["units"]["reissued"].get<int>(), 0);
+    const json one = render_embedded(cluster.folder(), "one", scene, frame);
+    EXPECT_EQ(result["film_hash"], one["film_hash"]);
+    const json other = render_embedded(cluster.folder(), "other", scene,
+                                       {"--size", "160x120", "--spp", "128", "--seed", "6"});
+    EXPECT_NE(other["film_hash"], one["film_hash"]) << "there is nothing to be seen";
 }
 
 TEST(RealProcesses, ANodeThatJoinsInTheMiddleHelps) {

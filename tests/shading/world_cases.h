@@ -77,7 +77,8 @@ inline Case make_case(IN(World) world, IN(Inputs) x) {
     made.lit = made.context.scene.instances.items[x.instance ^ 1u];
     made.light = made.context.scene.lights.items[x.d % LightCount];
     made.emitter = made.context.scene.emitters.items[x.d % TriangleEmitters];
-    made.receiver = Receiver(x.wo, x.c % 3u == 0u ? vec3(0.0f) : x.n);
+    made.receiver =
+        Receiver(x.wo, x.c % 3u == 0u ? vec3(0.0f) : x.n, x.c % 5u == 0u ? 4.0f * x.wi : vec3(0.0f));
     made.surface = make_surface(made.context.scene, made.hit, x.n, x.c % 2u == 0u ? 0.0f : x.metallic, nowhere(),
                                 made.context.time);
     made.wo = to_local(made.surface, -x.n);
@@ -157,6 +158,10 @@ inline PointWithError clip_of(IN(Case) c, vec3 from_eye) {
     const RasterCell cell = RasterCell(vec2(0.25f, -0.125f), vec2(-0.5f, 0.75f), 0u, 0u, 512u, 0u);
     const vec4 clip = raster_clip(c.context.view, cell, from_eye);
     return PointWithError(vec3(clip.x, clip.y, clip.w), vec3(clip.z));
+}
+inline ChosenEmitter given_emitter(IN(Case) c, IN(Inputs) x) {
+    if (c.context.scene.tree_light_count == 0u || x.a % 3u != 0u) return no_emitter();
+    return ChosenEmitter(x.b % TriangleEmitters, 0.3f);
 }
 inline LightSample on_lit_mesh(IN(Case) c, vec2 u) {
     return sample_mesh_light(c.context.scene, c.emitter, 0.5f, c.lit,
@@ -276,7 +281,7 @@ inline Path with_suns(IN(Case) c) {
 inline Path with_lights(IN(Case) c) {
     Path path = c.path;
     Connection connection = no_connection();
-    add_lights(c.context, path, c.surface, c.wo, connection);
+    add_lights(c.context, path, c.surface, c.wo, no_leg_light(), connection);
     return path;
 }
 

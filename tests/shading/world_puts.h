@@ -121,6 +121,8 @@ inline void put(INOUT(Outputs) y, IN(LightSample) light) {
     put(y, light.delta);
     put(y, light.distant);
     put(y, light.target);
+    put(y, light.emitter);
+    put(y, light.chance);
 }
 inline void put(INOUT(Outputs) y, IN(Way) way) {
     put(y, way.scatterings);
@@ -212,6 +214,25 @@ inline void put(INOUT(Outputs) y, IN(Leg) leg) {
     put(y, vec3(leg.distance, 1.0f, 0.0f));
     put(y, leg.scatters);
     put(y, leg.anisotropy);
+    put(y, leg.aside);
+    put(y, vec3(leg.density, leg.aside_density, 1.0f));
+}
+inline void put(INOUT(Outputs) y, IN(SpanView) seen) {
+    put(y, vec3(seen.near, seen.extent, 1.0f));
+    put(y, vec3(seen.foot, seen.height, 1.0f));
+    put(y, 1.0f + seen.angle);
+}
+inline void put(INOUT(Outputs) y, IN(LegLight) leg) {
+    put(y, leg.is_on);
+    put(y, leg.is_aside);
+    put(y, leg.chosen.index);
+    put(y, leg.chosen.probability);
+    put(y, vec3(leg.distance, 1.0f, 0.0f));
+    put(y, leg.pdf);
+}
+inline void put(INOUT(Outputs) y, IN(LegShares) shares) {
+    put(y, 1.0f + shares.share);
+    put(y, shares.other_chance);
 }
 inline void put(INOUT(Outputs) y, IN(Connection) connection) {
     put(y, connection.is_open);

@@ -397,6 +397,57 @@ TEST(Media, LightGoesOnInTheFogThatStandsOnTheFloor) {
     EXPECT_LE(goes_on.value, 0.8 * std::exp(-1.0));  // at least a metre of fog on both ways
 }
 
+// ---- holes in a boundary ----
+
+// A black wall of which chance leaves half open, around a fog.
+void add_holed_fog(Model& model, float absorption, float alpha, scene::AlphaMode mode) {
+    model.filled_with({.absorption = vec3(absorption)});
+    model.box(model.material({.base_color = {0, 0, 0, alpha},
+                              .alpha_mode = mode,
+                              .double_sided = true,
+                              .index_of_refraction = 1.0f}),
+              {-50, -50, 0}, {50, 50, 2});
+    model.filled_with_nothing();
+}
+
+// Whoever comes in through a hole is inside.
+TEST(HoledMedia, AreEnteredThroughTheirHoles) {
+    for (const bool blends : {true, false}) {
+        Model model;
+        const float alpha = blends ? 0.5f : 0.0f;
+        add_holed_fog(model, 0.4f, alpha, blends ? scene::AlphaMode::Blend : scene::AlphaMode::Mask);
+        model.sky(vec3(3.0f));
+        const World& world = model.build();
+        EXPECT_TRUE(model.problems.empty());
+        const double both_walls = double(1.0f - alpha) * double(1.0f - alpha);
+        for (const view::View& view : {from_above(), whitted(from_above())}) {
+            const Mean seen = mean_of(world, view, blends ? 4096 : 4, red);
+            EXPECT_NEAR(seen.value, 3.0 * both_walls * std::exp(-0.8), 4.5 * seen.standard_error + 1e-5);
+            EXPECT_LE(seen.standard_error, 0.003 * seen.value);
+        }
+        // From within, one wall is left.
+        const Mean within = mean_of(world, from_above(1.0), blends ? 4096 : 4, red);
+        EXPECT_NEAR(within.value, 3.0 * double(1.0f - alpha) * std::exp(-0.4),
+                    4.5 * within.standard_error + 1e-5);
+    }
+}
+
+// And so is light on its way to a floor below.
+TEST(HoledMedia, DimLightThatComesThroughTheirHoles) {
+    for (const scene::LightKind kind : {scene::LightKind::Directional, scene::LightKind::Point}) {
+        Model model;
+        add_holed_fog(model, 0.4f, 0.5f, scene::AlphaMode::Blend);
+        model.floor(model.material(chalk(vec3(0.5f))), 10.0f, -2.0f);
+        model.light({.kind = kind, .intensity = vec3(kind == scene::LightKind::Point ? 36.0f : 1.0f)},
+                    glm::translate(glm::dmat4(1.0), glm::dvec3(0, 0, 4)));
+        view::View view = from_above(-1.0);
+        view.max_bounces = 0;
+        const Mean seen = mean_of(model.build(), view, 4096, red);
+        EXPECT_NEAR(seen.value, 0.5 / M_PI * 0.25 * std::exp(-0.8), 4.5 * seen.standard_error + 1e-6);
+        EXPECT_LE(seen.standard_error, 0.003 * seen.value);
+    }
+}
+
 // Seen against nothing, a fog covers as much as it takes away.
 TEST(Media, CoverTransparentBackgrounds) {
     for (const float scattering : {0.0f, 0.5f}) {

@@ -121,6 +121,68 @@ TEST(ShadowCatcher, IsTransparentBeforeATransparentBackground) {
     });
 }
 
+// Half of E3, twice: the share of an even sky's light on a plane that a slab of an optical depth lets
+// through.
+double light_through_slab(double depth) {
+    constexpr int Steps = 20000;
+    double sum = 0.0;
+    for (int i = 0; i < Steps; ++i) {
+        const double cosine = (i + 0.5) / Steps;
+        sum += 2.0 * cosine * std::exp(-depth / cosine) / Steps;
+    }
+    return sum;
+}
+
+// A layer of fog dims the background behind the catcher as it would dim a ground there, and casts its own
+// shadow; what it takes away is covered.
+TEST(ShadowCatcher, IsDimmedByFogBeforeIt) {
+    for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted}) {
+        for (const float depth : {0.0f, 0.3f, 1.0f}) {
+            Model model;
+            model.floor(model.material(catcher(1.0f)), 1e4f, 0.0f);
+            model.filled_with({.absorption = glm::vec3(depth)});
+            model.box(ObjectId{}, {-1e4f, -1e4f, 0.5f}, {1e4f, 1e4f, 1.5f});
+            model.sky(background(scene::VisibleBackground::Color));
+            const World& world = model.build();
+            view::View view = small_view({0.0, 0.0, 3.0}, 1e-3);
+            view.renderer = renderer;
+            const double passed = std::exp(-double(depth)) * light_through_slab(double(depth));
+            const Mean light = mean_of(world, view, 1024, red);
+            EXPECT_NEAR(light.value, passed * double(Shown.x) * double(Shown.w),
+                        4.5 * light.standard_error + 1e-5);
+            EXPECT_LE(light.standard_error, 0.003 * light.value + 1e-9);
+            const Mean alpha =
+                mean_of(world, view, 1024, [](const PathSample& s) { return double(s.alpha); });
+            EXPECT_NEAR(alpha.value, 1.0 - (1.0 - double(Shown.w)) * passed,
+                        4.5 * alpha.standard_error + 1e-5);
+        }
+    }
+}
+
+// Beside the eye alone, where it casts no shadow on what is seen: and fog below the ground is not there.
+TEST(ShadowCatcher, IsDimmedByFogAroundTheEyeAlone) {
+    Model model;
+    model.floor(model.material(catcher(1.0f)), 1e4f, 0.0f);
+    model.filled_with({.absorption = glm::vec3(0.5f)});
+    model.box(ObjectId{}, {-1e-3f, -1e-3f, 2.0f}, {1e-3f, 1e-3f, 4.0f});
+    model.box(ObjectId{}, {-1e3f, -1e3f, -2.0f}, {1e3f, 1e3f, -1.0f});
+    model.sky(background(scene::VisibleBackground::Color));
+    const Mean light = mean_of(model.build(), small_view({0.0, 0.0, 3.0}, 1e-6), 256, red);
+    EXPECT_NEAR(light.value, std::exp(-0.5) * double(Shown.x) * double(Shown.w), 1e-5);
+}
+
+// Fog that only scatters, in a world that shines alike from everywhere: neither of both is seen.
+TEST(ShadowCatcher, IsInvisibleInAFurnaceOfFog) {
+    Model model;
+    model.floor(model.material(catcher(1.0f)), 1e3f, 0.0f);
+    model.filled_with({.scattering = glm::vec3(0.7f), .anisotropy = 0.3f});
+    model.box(ObjectId{}, {-1, -1, 0.2f}, {1, 1, 1.2f});
+    model.sky(glm::vec3(1.0f));
+    const Mean light = mean_of(model.build(), small_view({0.0, 0.0, 3.0}, 0.5), 64, red);
+    EXPECT_NEAR(light.value, 1.0, 4.5 * light.standard_error + 1e-4);
+    EXPECT_LE(light.standard_error, 0.003);
+}
+
 // Lights that are no geometry hide nothing of the sky, and their shadows are not caught: neither are they.
 TEST(ShadowCatcher, CatchesNoLightsThatAreNoGeometry) {
     Ground ground(1.0f);

@@ -134,6 +134,7 @@ void add_bodies(SceneTables& tables, const scene::Scene& scene, const Lowered& l
     ObjectId last;
     int index = -1;
     std::uint32_t features = 0;
+    bool has_holes = false;
     for (std::size_t i = 0; i < tables.instances.size(); ++i) {
         const ObjectId geometry = lowered.instances[i].geometry;
         if (i == 0 || geometry != last) {
@@ -147,9 +148,14 @@ void add_bodies(SceneTables& tables, const scene::Scene& scene, const Lowered& l
             }
         }
         tables.instances[i].body = index;
-        if (index >= 0 && tables.bodies.back().open != 0) tables.instances[i].alpha_tested = 1;
+        if (index < 0) continue;
+        const shading::Material& material = tables.materials[tables.instances[i].material];
+        has_holes = has_holes || material.alpha_mode != shading::AlphaOpaque;
+        if (tables.bodies.back().open != 0) tables.instances[i].alpha_tested = 1;
     }
     if (glass_nests(tables, lowered, meshes)) features |= shading::FeatureMedia | shading::FeatureNestedGlass;
+    // Rays that go through a hole in a surface come into the body, as through one that has none.
+    if (features != 0 && has_holes) features |= shading::FeatureOpenMedia;
     tables.scene.features |= features;
     if (features != 0) return;
     tables.bodies.clear();
