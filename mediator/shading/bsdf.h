@@ -171,20 +171,18 @@ inline float passes_layers(FloatArray table, IN(Bsdf) bsdf, vec3 wi) {
 // out: it leaves along the surface, where no other lobe would look for it.
 inline constexpr float LeastLate = 1e-3f;
 
-SELDOM inline vec3 filmed_facets(ThinFilm film, float dielectric, float metal, vec3 f0, vec3 tint,
-                                 float cosine, vec3 plain) {
-    const FilmLight light = film_light(film, cosine);
-    const vec3 filmed =
-        dielectric * filmed_dielectric(film, light, f0) + metal * film_reflectances(light, tint);
-    return plain + film.strength * (filmed - plain);
+SELDOM inline vec3 filmed_facets(IN(Bsdf) bsdf, float cosine, vec3 plain) {
+    const FilmLight light = film_light(bsdf.glass.film, cosine);
+    const vec3 filmed = bsdf.dielectric * filmed_dielectric(bsdf.glass.film, light, bsdf.glass.f0) +
+                        bsdf.metal * film_reflectances(light, bsdf.glass.tint);
+    return plain + bsdf.glass.film.strength * (filmed - plain);
 }
 
 // Reflectance of the facets, to light under this angle.
 inline vec3 specular_fresnel(IN(Bsdf) bsdf, float cosine) {
     const vec3 plain = bsdf.f0 + (bsdf.f90 - bsdf.f0) * schlick_weight(cosine);
     if ((bsdf.lobes & FeatureIridescence) == 0u) return plain;
-    return filmed_facets(bsdf.glass.film, bsdf.dielectric, bsdf.metal, bsdf.glass.f0, bsdf.glass.tint, cosine,
-                         plain);
+    return filmed_facets(bsdf, cosine, plain);
 }
 
 // late_reflectance: what the lobe's late light adds to what is reflected to wo, as luminance.

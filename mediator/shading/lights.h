@@ -122,7 +122,11 @@ inline LightSample sample_mesh_light(IN(Scene) scene, IN(Emitter) emitter, float
 
 inline LightSample sample_instance_light(IN(Scene) scene, IN(Emitter) emitter, float probability,
                                          IN(Instance) instance, IN(Surface) surface, vec2 u) {
-    return sample_mesh_light(scene, emitter, probability, instance_at(scene, instance, surface.time),
+    Instance moved;
+    KEPT(Instance) here = stands_still(scene, instance.motion)
+                              ? instance
+                              : (moved = moved_instance(scene, instance, surface.time));
+    return sample_mesh_light(scene, emitter, probability, here,
                              mesh_at(scene, scene.meshes.items[instance.mesh], surface.time),
                              scene.materials.items[instance.material], surface, u);
 }
@@ -170,8 +174,11 @@ inline Receiver receiver_at(IN(Surface) surface) {
 inline LightSample sample_chosen(IN(Scene) scene, uint layers, IN(Surface) surface, IN(Emitter) emitter,
                                  IN(LightSource) light, float probability, vec2 u) {
     if (!is_seen(scene, light, layers)) return no_light();
-    return sample_emitter(scene, emitter, light_at(scene, light, surface.time),
-                          scene.tree_probability * probability, surface, u);
+    LightSource moved;
+    KEPT(LightSource) here = stands_still(scene, light.motion)
+                                 ? light
+                                 : (moved = moved_light(scene, light, surface.time));
+    return sample_emitter(scene, emitter, here, scene.tree_probability * probability, surface, u);
 }
 
 inline LightSample sample_tree(IN(Scene) scene, uint layers, IN(Surface) surface, vec2 choice, vec2 u) {

@@ -29,9 +29,9 @@ inline bool is_boundary(float eta) {
 }
 
 // `cosine`: in air.
-SELDOM inline vec3 filmed_boundary(ThinFilm film, vec3 f0, float cosine, vec3 plain) {
-    const vec3 filmed = filmed_dielectric(film, film_light(film, cosine), f0);
-    return plain + film.strength * (filmed - plain);
+SELDOM inline vec3 filmed_boundary(IN(RoughGlass) glass, float cosine, vec3 plain) {
+    const vec3 filmed = filmed_dielectric(glass.film, film_light(glass.film, cosine), glass.f0);
+    return plain + glass.film.strength * (filmed - plain);
 }
 
 // Fresnel's equations between other ends. Total reflection is total.
@@ -46,8 +46,7 @@ inline vec3 bent_fresnel(IN(RoughGlass) glass, float cosine) {
     if (!(glass.film.strength > 0.0f)) return plain;
     // What goes back into the glass is, without loss, the same share as that of light on the other end of
     // the refracted way.
-    return filmed_boundary(glass.film, glass.f0,
-                           eta < 1.0f ? sqrt(refracted_cosine2(cosine, sine2, eta)) : cosine, plain);
+    return filmed_boundary(glass, eta < 1.0f ? sqrt(refracted_cosine2(cosine, sine2, eta)) : cosine, plain);
 }
 
 // Probability of reflection among the two ways.

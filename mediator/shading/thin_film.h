@@ -47,8 +47,7 @@ inline vec3 film_colors(vec4 bands) {
 // Beyond this way down and up, in nanometres, nothing is left of the interference but its mean, 0.
 inline constexpr float LongestPath = 1e5f;
 
-// By value, like all that is SELDOM here: what is lent out has to lie in memory, with all around it.
-SELDOM inline FilmLight film_light(ThinFilm film, float cos_out) {
+SELDOM inline FilmLight film_light(IN(ThinFilm) film, float cos_out) {
     const float amplitude = (film.index - 1.0f) / (film.index + 1.0f);
     const float inside = sqrt(refracted_cosine2(cos_out, (1.0f - cos_out) * (1.0f + cos_out), film.index));
     const float path = lesser_of(2.0f * film.index * film.thickness * inside, LongestPath);
@@ -90,7 +89,7 @@ inline vec3 film_reflectances(IN(FilmLight) light, vec3 f0) {
 }
 
 // Of a dielectric with this f0, KHR_materials_specular included.
-inline vec3 filmed_dielectric(ThinFilm film, IN(FilmLight) light, vec3 f0) {
+inline vec3 filmed_dielectric(IN(ThinFilm) film, IN(FilmLight) light, vec3 f0) {
     if (!(film.specular > 0.0f)) return vec3(0.0f);
     return film.specular * film_reflectances(light, f0 / film.specular);
 }
@@ -103,7 +102,7 @@ struct FilmMean {
     float f0, f90;
 };
 
-SELDOM inline FilmMean film_mean(ThinFilm film, vec3 dielectric_f0, vec3 metal_f0) {
+SELDOM inline FilmMean film_mean(IN(ThinFilm) film, vec3 dielectric_f0, vec3 metal_f0) {
     const uint steps = 8u;
     FilmMean result = FilmMean(vec3(0.0f), vec3(0.0f), 0.0f, film.specular);
     KEEP_LOOP

@@ -141,7 +141,10 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
         bool goes_on = goes_through;
         if (connects) {
             if (!is_clear) connection.light *= leg.passed;
-            if (arrives) receive_light(context, path.found, connection, unit_vector(ray.direction));
+            if (arrives) {
+                receive_light(context, path.found, connection.light, connection.intensity, connection.way,
+                              unit_vector(ray.direction));
+            }
             if (!goes_through) {
                 goes_on = go_on_with_path(connection, path, ray);
                 course = new_course(ray.origin);
