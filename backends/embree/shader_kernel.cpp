@@ -1,3 +1,4 @@
+// X3D: its surface, lights with a shape and what takes part in a photograph.
 #define SHADING_KERNEL shader
 #define SHADING_FEATURES \
     (PLAIN_FEATURES | shading::FeatureShader | shading::FeatureShapedLights | shading::FeatureShadowCatcher)
