@@ -1,4 +1,4 @@
-// X3D: its surface, lights with a shape and what takes part in a photograph.
+// X3D's surface, by lights with a shape or in a photograph as well.
 #define SHADING_KERNEL shader
 #define SHADING_FEATURES \
     (PLAIN_FEATURES | shading::FeatureShader | shading::FeatureShapedLights | shading::FeatureShadowCatcher)

@@ -177,7 +177,7 @@ inline LightSample sample_chosen(IN(Scene) scene, uint layers, IN(Surface) surfa
     LightSource moved;
     KEPT(LightSource) here = stands_still(scene, light.motion)
                                  ? light
-                                 : (moved = moved_light(scene, light, surface.time));
+                                 : (moved = moved_source(scene, light, surface.time));
     return sample_emitter(scene, emitter, here, scene.tree_probability * probability, surface, u);
 }
 

@@ -147,7 +147,7 @@ inline float inverse_root_area_of(IN(Scene) scene, IN(Emitter) emitter, IN(Insta
 }
 
 // A light that is no mesh: its place, and the directions of one that has some.
-inline LightSource moved_light(IN(Scene) scene, IN(LightSource) light, float time) {
+inline LightSource moved_source(IN(Scene) scene, IN(LightSource) light, float time) {
     const Motion motion = scene.motions.items[light.motion];
     const Place place = place_at(scene.places, motion.first_place, motion.steps, time);
     LightSource moved = light;
@@ -160,7 +160,7 @@ inline LightSource moved_light(IN(Scene) scene, IN(LightSource) light, float tim
 
 inline LightSource light_at(IN(Scene) scene, IN(LightSource) light, float time) {
     if (stands_still(scene, light.motion)) return light;
-    return moved_light(scene, light, time);
+    return moved_source(scene, light, time);
 }
 
 SHADING_END

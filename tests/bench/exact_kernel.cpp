@@ -11,7 +11,7 @@
 #define FEATURES_attenuation shading::FeatureMedia
 #define FEATURES_fog (shading::FeatureMedia | shading::FeatureOpenMedia | shading::FeatureScattering)
 #define FEATURES_motion shading::FeatureMotion
-#define FEATURES_shader (shading::FeatureShader | shading::FeatureAlpha)
+#define FEATURES_shader shading::FeatureShader
 #define FEATURES_catcher (shading::FeatureShadowCatcher | shading::FeatureAlpha)
 #define FEATURES_shaped_lights (shading::FeatureShapedLights | shading::FeaturePlacedLights)
 #define FEATURES_OF(scene) FEATURES_##scene
