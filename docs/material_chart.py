@@ -3,7 +3,8 @@
 
 material_chart.py FOLDER writes materials-1.gltf, ... and surface-shaders-1.x3d, ..., of four rows each, and prints
 a line for each: its name and its number of rows. docs/make_pictures.sh renders them. A row is a line in ROWS or
-SHADER_ROWS: eight materials from left to right. The cameras look at all rows of a scene.
+SHADER_ROWS: eight materials from left to right, or pairs of one and another one inside of it. The cameras look at
+all rows of a scene.
 """
 
 import base64
@@ -64,7 +65,10 @@ ROWS = [
     ("iridescence of bubbles, index of the film 1.1 to 1.6",
      [glass(iridescence={"iridescenceFactor": 1, "iridescenceIor": 1.1 + 0.5 * s, "iridescenceThicknessMaximum": 500})
       for s in STEPS]),
+    ("bodies of index 1 to 2.4 inside of glass of index 1.5",
+     [(glass(thicknessFactor=1), glass(ior=1 + 1.4 * s, thicknessFactor=1)) for s in STEPS]),
 ]
+INNER = 0.65  # radius of a body inside of another one
 
 
 def sphere(rings=48, sectors=96):
@@ -170,9 +174,12 @@ def write_gltf(path, rows):
         nodes.append({"mesh": len(meshes) - 1})
     for row, (name, looks) in enumerate(rows):
         for column, look in enumerate(looks):
-            materials.append({"name": f"{name}: {column}", **look})
-            meshes.append({"primitives": [{"attributes": attributes, "indices": order, "material": len(materials) - 1}]})
-            nodes.append({"mesh": len(meshes) - 1, "translation": place(row, column, len(rows))})
+            for depth, body in enumerate(look if isinstance(look, tuple) else (look,)):
+                materials.append({"name": f"{name}: {column}", **body})
+                meshes.append({"primitives": [{"attributes": attributes, "indices": order,
+                                               "material": len(materials) - 1}]})
+                nodes.append({"mesh": len(meshes) - 1, "translation": place(row, column, len(rows)),
+                              "scale": [INNER ** depth] * 3})
     fov = 0.35
     nodes.append({"camera": 0, "translation": [0, 0, eye(len(rows), fov)]})
     used = sorted({name for material in materials for name in material.get("extensions", {})})

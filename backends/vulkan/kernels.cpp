@@ -1,6 +1,7 @@
 #include "backends/vulkan/kernels.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "backends/vulkan/device/device.h"
 #include "backends/vulkan/job.h"
@@ -28,6 +29,12 @@ std::span<const std::uint32_t> code_of(const KernelKind& kind) {
     return texels ? shaders::trace_texels_comp() : shaders::trace_comp();
 }
 
+Kernel made(Device& device, PipelineSettings settings) {
+    return std::async(std::launch::async, [&device, settings = std::move(settings)] {
+        return ComputePipeline(device, settings);
+    });
+}
+
 }  // namespace
 
 // 64 is a multiple of every subgroup there is, and small enough for kernels with many registers.
@@ -37,31 +44,30 @@ Kernels::Kernels(Device& device)
 // Made for exactly what the scene has: without textures and kinds of lights that it lacks, the shared code
 // loads half as much, which lavapipe does lane by lane (1.1 to 1.25 times the samples). An edit that brings a
 // scene its first light of a kind waits for the driver once.
-const ComputePipeline& Kernels::find(KernelKind kind) {
+Kernel Kernels::find(KernelKind kind) {
     const std::scoped_lock lock(mutex_);
-    std::unique_ptr<ComputePipeline>& kernel = made_[kind];
-    if (!kernel) {
+    Kernel& kernel = made_[kind];
+    if (!kernel.valid()) {
         PipelineSettings settings{.name = kind.rasterised ? "shading" : "path tracing",
                                   .code = code_of(kind),
                                   .constants = {{0, group_size_}, {1, kind.features}},
                                   .push_bytes = sizeof(Job)};
         if (kind.traversal == Traversal::Texels)
             settings.bindings = {{.index = 0, .kind = Binding::Kind::Texels}};
-        kernel = std::make_unique<ComputePipeline>(device_, settings);
+        kernel = made(device_, std::move(settings));
     }
-    return *kernel;
+    return kernel;
 }
 
-const ComputePipeline& Kernels::merging() {
+Kernel Kernels::merging() {
     const std::scoped_lock lock(mutex_);
-    if (!merging_) {
-        merging_ =
-            std::make_unique<ComputePipeline>(device_, PipelineSettings{.name = "merging of samples",
-                                                                        .code = shaders::merge_comp(),
-                                                                        .constants = {{0, group_size_}},
-                                                                        .push_bytes = sizeof(MergeJob)});
+    if (!merging_.valid()) {
+        merging_ = made(device_, {.name = "merging of samples",
+                                  .code = shaders::merge_comp(),
+                                  .constants = {{0, group_size_}},
+                                  .push_bytes = sizeof(MergeJob)});
     }
-    return *merging_;
+    return merging_;
 }
 
 }  // namespace tessera::vulkan

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <future>
 #include <map>
-#include <memory>
 #include <mutex>
 
 #include "backends/vulkan/device/pipeline.h"
@@ -19,22 +19,27 @@ struct KernelKind {
     friend auto operator<=>(const KernelKind&, const KernelKind&) = default;
 };
 
-// The kernels that were asked for so far. Thread-safe.
+// A kernel that is made, or was: drivers take seconds for a large one, so whoever needs it waits for it as
+// long as he likes. get() throws what the making threw.
+using Kernel = std::shared_future<ComputePipeline>;
+
+// The kernels that were asked for so far, each made by a thread of its own. Thread-safe. Its end waits for
+// what is being made.
 class Kernels final {
   public:
     explicit Kernels(Device& device);
 
     // Invocations of a workgroup.
     std::uint32_t group_size() const { return group_size_; }
-    const ComputePipeline& find(KernelKind kind);  // traces samples
-    const ComputePipeline& merging();              // merges them into blocks
+    Kernel find(KernelKind kind);  // traces samples
+    Kernel merging();              // merges them into blocks
 
   private:
     Device& device_;
     std::uint32_t group_size_;
     std::mutex mutex_;  // protects:
-    std::map<KernelKind, std::unique_ptr<ComputePipeline>> made_;
-    std::unique_ptr<ComputePipeline> merging_;
+    std::map<KernelKind, Kernel> made_;
+    Kernel merging_;
 };
 
 }  // namespace tessera::vulkan

@@ -29,6 +29,14 @@ void make_room(Device& device, Buffer& buffer, std::uint64_t bytes, MemoryKind k
     if (buffer.size() < bytes) buffer = Buffer(device, bytes, kind);
 }
 
+// False: stopped before the kernel was made.
+bool ready(const Kernel& kernel, const std::stop_token& stop) {
+    while (kernel.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready) {
+        if (stop.stop_requested()) return false;
+    }
+    return true;
+}
+
 // What the next dispatch takes: the largest block that may be merged on the device, if any.
 std::optional<frame::SampleBlock> next_block(std::uint64_t sample, std::uint64_t end, std::uint64_t most) {
     if (most < 2 || end - sample < 2) return std::nullopt;
@@ -62,10 +70,10 @@ class UnitRun {
         const bool trees = view.renderer == shading::RendererWhitted ||
                            view.renderer == shading::RendererRaster ||
                            (view.keeps & shading::KeepsRange) != 0;
-        kernel_ = &kernels_.find({.features = with.features,
-                                  .specular_trees = trees,
-                                  .rasterised = with.raster != nullptr,
-                                  .traversal = scene_.traversal()});
+        kernel_ = kernels_.find({.features = with.features,
+                                 .specular_trees = trees,
+                                 .rasterised = with.raster != nullptr,
+                                 .traversal = scene_.traversal()});
         if (with.raster != nullptr) {
             raster_.emplace(device_, *with.raster, scene_, view, view_.address(), unit.tile);
         }
@@ -74,10 +82,14 @@ class UnitRun {
             const std::vector<MergeColumn> columns = merge_columns(channels);
             column_count_ = static_cast<std::uint32_t>(columns.size());
             columns_ = make_buffer(device_, columns);
+            merging_ = kernels_.merging();
         }
     }
 
     backend::RenderResult finish(const std::stop_token& stop) {
+        if (!ready(kernel_, stop) || (merges_ && !ready(merging_, stop))) {
+            return film_.take(backend::RenderStatus::Stopped);
+        }
         std::array<Batch, 2> batches;
         for (Batch& batch : batches) send(batch);
         for (std::size_t turn = 0; batches[turn].items > 0; turn = 1 - turn) {
@@ -137,7 +149,7 @@ class UnitRun {
     }
 
     Pass traced(const Buffer& values, std::uint32_t items) const {
-        Pass pass{.pipeline = kernel_,
+        Pass pass{.pipeline = &kernel_.get(),
                   .arguments = Job{.scene = scene_.record(),
                                    .view = view_.address(),
                                    .pool = scene_.pool().address(),
@@ -159,7 +171,7 @@ class UnitRun {
     }
 
     Pass merged(const Batch& batch) const {
-        return {.pipeline = &kernels_.merging(),
+        return {.pipeline = &merging_.get(),
                 .arguments = MergeJob{.columns = columns_.address(),
                                       .values = batch.scratch.address(),
                                       .planes = batch.merged.address(),
@@ -201,7 +213,7 @@ class UnitRun {
     Buffer camera_places_, view_, columns_;
     std::uint32_t column_count_ = 0;
     bool merges_ = false;
-    const ComputePipeline* kernel_ = nullptr;
+    Kernel kernel_, merging_;
     UnitFilm film_;
     std::optional<RasterRun> raster_;
 };

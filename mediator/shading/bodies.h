@@ -4,8 +4,8 @@
 #include "mediator/shading/rays.h"
 
 // Which bodies a place is in: instances by priority, that which fills it first (Schmidt and Budge 2002);
-// NoInstance: no more. What light crosses tells, by the side of the surface that it comes to; so a surface that
-// is met twice at an edge counts once, and one that was missed is forgotten at the next.
+// NoInstance: no more. What light crosses tells, by the side of the surface that it comes to; so a surface
+// that is met twice at an edge counts once, and one that was missed is forgotten at the next.
 SHADING_BEGIN
 
 inline uvec4 nowhere() {
@@ -51,6 +51,33 @@ inline uvec4 entered(IN(Scene) scene, uvec4 inside, uint instance) {
 inline uvec4 crossed(IN(Scene) scene, uvec4 inside, uint instance, bool enters) {
     if (enters) return entered(scene, inside, instance);
     return left(inside, instance);
+}
+
+inline bool is_among(uvec4 inside, uint instance) {
+    return inside.x == instance || inside.y == instance || inside.z == instance || inside.w == instance;
+}
+
+// Of the body that fills a place and has an index of refraction of its own, or of air.
+inline float index_in(IN(Scene) scene, uvec4 inside) {
+    KEEP_LOOP
+    for (int i = 0; i < int(MaxBodies); ++i) {
+        const uint instance = inside[i];
+        if (instance == NoInstance) return 1.0f;
+        const float index = scene.bodies.items[scene.instances.items[instance].body].index;
+        if (!(index < 0.0f)) return index;
+    }
+    return 1.0f;
+}
+
+// What a body's index of refraction is relative to what is on the other side of its boundary; 0: without
+// bound. Where the boundary lies in a body that goes before, there is no difference, and it does nothing to
+// light (Schmidt and Budge 2002).
+inline float nested_index(IN(Scene) scene, uvec4 inside, uint instance, bool enters) {
+    const bool is_within = !enters && is_among(inside, instance);
+    const uvec4 within = is_within ? inside : entered(scene, inside, instance);
+    const float inner = index_in(scene, within), outer = index_in(scene, left(inside, instance));
+    if (inner == outer) return 1.0f;
+    return outer > 0.0f ? inner / outer : 0.0f;
 }
 
 SHADING_END

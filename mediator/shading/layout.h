@@ -129,7 +129,7 @@ static_assert(offsetof(Instance, layers) == 104);
 static_assert(offsetof(Instance, motion) == 108);
 static_assert(offsetof(Instance, body) == 112);
 
-static_assert(sizeof(Body) == 172);
+static_assert(sizeof(Body) == 176);
 static_assert(offsetof(Body, absorption) == 0);
 static_assert(offsetof(Body, priority) == 12);
 static_assert(offsetof(Body, scattering) == 16);
@@ -139,7 +139,8 @@ static_assert(offsetof(Body, open) == 44);
 static_assert(offsetof(Body, low) == 48);
 static_assert(offsetof(Body, textured) == 60);
 static_assert(offsetof(Body, inverse_size) == 64);
-static_assert(offsetof(Body, textures) == 76);
+static_assert(offsetof(Body, index) == 76);
+static_assert(offsetof(Body, textures) == 80);
 
 static_assert(sizeof(LightSource) == 108);
 static_assert(offsetof(LightSource, kind) == 0);

@@ -71,12 +71,12 @@ inline void add_extras(INOUT(Look) look, IN(Scene) scene, uint index, IN(Mesh) m
 }
 
 // `front`: of the face that is seen. Bodies are solid unless their walls are thin: behind the front is glass,
-// behind the back is air. Index 0 stands for infinity.
+// behind the back is what it is in. `n`: the material's index of refraction relative to that; 0 stands for
+// infinity.
 inline Look look_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uvec3 corners, vec2 b,
-                    float footprint, vec3 base_color, bool front) {
+                    float footprint, vec3 base_color, bool front, float n) {
     const vec4 texel =
         texel_or_white(scene, material.metallic_roughness_texture, mesh, corners, b, footprint);
-    const float n = material.index_of_refraction;
     const float eta = front || n == 0.0f || material.thin != 0u ? n : 1.0f / n;
     Look look = plain_look(base_color, material.metallic * texel.z, material.roughness * texel.y,
                            material.transmission, n, eta);

@@ -190,6 +190,7 @@ struct Body {
     vec3 low;          // of the box
     uint textured;     // whether any of the textures is there
     vec3 inverse_size;
+    float index;  // of refraction; 0: without bound; -1: that of what is around it
     TextureUse textures[BodyTextureCount];
 };
 inline constexpr uint MaxBodies = 4u;  // that a place is in at once; those of the least priority are forgotten
@@ -277,6 +278,8 @@ inline constexpr uint FeatureShader = 0x800000u;
 // Bodies that do something to light; some have no surface; some scatter; some have textures.
 inline constexpr uint FeatureMedia = 0x1000000u, FeatureOpenMedia = 0x10000000u,
                       FeatureScattering = 0x20000000u, FeatureMediaTextures = 0x40000000u;
+// Of bodies that are glass, some may lie in others.
+inline constexpr uint FeatureNestedGlass = 0x80000000u;
 
 ARRAY_OF(Texture, TextureArray, 8);
 ARRAY_OF(Material, MaterialArray, 4);

@@ -23,8 +23,8 @@ struct Surface {
     float rough_share;  // of the material that is no perfect specular
     uint object;        // id
     uint triangle;
-    int light;   // index, if it is one
-    float time;  // of the path
+    int light;        // index, if it is one
+    float time;       // of the path
     int environment;  // of perfect speculars: index of the shader that has one; -1 = none
     bool scatters;
     uint body;    // instance of the body whose boundary it is; NoInstance = of none
@@ -180,7 +180,7 @@ inline void set_shader_specular(INOUT(Surface) surface, IN(Scene) scene, IN(Shad
 
 inline void set_scattering(INOUT(Surface) surface, IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
                            IN(Material) material, uvec3 corners, vec2 b, float footprint, vec3 face,
-                           vec3 direction) {
+                           vec3 direction, uvec4 inside) {
     const bool front = dot(face, direction) < 0.0f;
     if (has_shader(scene, material)) {
         const uint shader = uint(material.shader);
@@ -191,7 +191,11 @@ inline void set_scattering(INOUT(Surface) surface, IN(Scene) scene, IN(Instance)
         if (largest(scene.shaders.items[shader].environment) > 0.0f) surface.environment = material.shader;
         return;
     }
-    Look look = look_at(scene, material, mesh, corners, b, footprint, surface.albedo, front);
+    float n = material.index_of_refraction;
+    if ((scene.features & FeatureNestedGlass) != 0u && surface.body != NoInstance && material.thin == 0u) {
+        n = nested_index(scene, inside, surface.body, surface.enters);
+    }
+    Look look = look_at(scene, material, mesh, corners, b, footprint, surface.albedo, front, n);
     if ((look.lobes & FeatureCoat) != 0u) {
         const MaterialExtras extras = scene.extras.items[material.extras];
         const vec3 mapped =
@@ -207,7 +211,7 @@ inline void set_scattering(INOUT(Surface) surface, IN(Scene) scene, IN(Instance)
 }
 
 inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
-                          IN(Hit) hit, vec3 direction, float width) {
+                          IN(Hit) hit, vec3 direction, float width, uvec4 inside) {
     Surface surface;
     const uvec3 corners = mesh.triangles.items[hit.triangle];
     const vec2 b = hit.barycentric;
@@ -240,18 +244,19 @@ inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     surface.rough_share = 1.0f;
     surface.specular = no_specular();
     surface.environment = -1;
-    set_scattering(surface, scene, instance, mesh, material, corners, b, footprint, face, direction);
+    set_scattering(surface, scene, instance, mesh, material, corners, b, footprint, face, direction, inside);
     return surface;
 }
 
 inline Surface surface_on(IN(Scene) scene, IN(Instance) instance, IN(Hit) hit, vec3 direction, float width,
-                          float time) {
+                          uvec4 inside, float time) {
     Instance moved;
     KEPT(Instance) here = stands_still(scene, instance.motion)
                               ? instance
                               : (moved = moved_instance(scene, instance, time));
-    Surface surface = surface_of(scene, here, mesh_at(scene, scene.meshes.items[instance.mesh], time),
-                                 scene.materials.items[instance.material], hit, direction, width);
+    Surface surface =
+        surface_of(scene, here, mesh_at(scene, scene.meshes.items[instance.mesh], time),
+                   scene.materials.items[instance.material], hit, direction, width, inside);
     surface.time = time;
     return surface;
 }
@@ -295,7 +300,8 @@ struct Boundary {
     bool enters;
 };
 
-inline Boundary boundary_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Hit) hit, vec3 direction) {
+inline Boundary boundary_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Hit) hit,
+                            vec3 direction) {
     const Triangle triangle = triangle_of(mesh, mesh.triangles.items[hit.triangle]);
     const PointWithError point = point_on(instance, triangle, hit.barycentric);
     const vec3 face = face_normal(instance, triangle, vec3(0.0f, 0.0f, 1.0f));
@@ -311,9 +317,11 @@ inline Boundary boundary_at(IN(Scene) scene, IN(Hit) hit, vec3 direction, float 
                        mesh_at(scene, scene.meshes.items[instance.mesh], time), hit, direction);
 }
 
-// `direction`: of the ray that hit, unit length; `width`: of the path there (cones.h).
-inline Surface make_surface(IN(Scene) scene, IN(Hit) hit, vec3 direction, float width, float time) {
-    return surface_on(scene, scene.instances.items[hit.instance], hit, direction, width, time);
+// `direction`: of the ray that hit, unit length; `width`: of the path there (cones.h); `inside`: what bodies
+// it comes through.
+inline Surface make_surface(IN(Scene) scene, IN(Hit) hit, vec3 direction, float width, uvec4 inside,
+                            float time) {
+    return surface_on(scene, scene.instances.items[hit.instance], hit, direction, width, inside, time);
 }
 
 SHADING_END

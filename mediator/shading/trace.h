@@ -169,13 +169,14 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                             depth_along(context.view, ray, distance));
             } else if (is_hit || leg.scatters) {
                 path.cone.width += path.cone.spread * (distance - course.begun);
-                // At once: a surface is large, and a copy of it would cost more than all else here.
+                // At once: a surface is large, and to copy it takes longer than to skip all that it does not have.
                 const Surface surface =
                     leg.scatters
                         ? scattering_place(course.start + leg.distance * ray.direction, ray.direction,
                                            leg.anisotropy,
                                            context.scene.instances.items[path.inside.x].object, context.time)
-                        : make_surface(context.scene, hit, ray.direction, path.cone.width, context.time);
+                        : make_surface(context.scene, hit, ray.direction, path.cone.width, path.inside,
+                                       context.time);
                 tell_hit(context, surface, path.throughput);
                 const bool on_the_way = leg.scatters && stage == StageBranch;
                 if (first && !on_the_way) {

@@ -14,7 +14,7 @@ using test::moved;
 using test::SceneBuilder;
 using test::transform;
 
-constexpr ObjectId Mesh{2}, Lamp{3}, Glow{4}, Near{5}, Far{6}, Lit{7}, Sun{8};
+constexpr ObjectId Mesh{2}, Lamp{3}, Glow{4}, Near{5}, Far{6}, Lit{7}, Sun{8}, Glass{9};
 
 struct MovesTest : testing::Test {
     MovesTest() {
@@ -89,6 +89,21 @@ TEST_F(MovesTest, LightFromInfinitelyFarGrowsWithTheScene) {
     EXPECT_EQ(move(Near, moved(3, 0, 0)), TablesStep::Moved);   // inside, where the lamp is the rim now
     EXPECT_EQ(move(Near, moved(3, 0, 0.5)), TablesStep::Made);  // beyond the rim
     EXPECT_EQ(move(Far, moved(8, 0, 0)), TablesStep::Made);
+}
+
+// Bodies of glass know of each other as soon as one may lie in another.
+TEST_F(MovesTest, GlassThatComesIntoGlassIsNoted) {
+    const auto nests = [&] { return (tables.scene.features & shading::FeatureNestedGlass) != 0; };
+    edit({Create{Glass, scene::Material{.transmission = 1.0f, .thickness = 1.0f}},
+          SceneBuilder::update<scene::Geometry>(Mesh, scene::Geometry::Field::Material,
+                                                scene::Geometry{.material = Glass})});
+    EXPECT_FALSE(nests());
+    EXPECT_EQ(move(Near, moved(2, 0, 0)), TablesStep::Moved);
+    EXPECT_EQ(move(Near, moved(8.5, 0, 0)), TablesStep::Made);
+    EXPECT_TRUE(nests());
+    EXPECT_EQ(move(Near, moved(8.4, 0, 0)), TablesStep::Moved);
+    EXPECT_EQ(move(Near, moved(8.4, 0, 0.1)), TablesStep::Made);
+    EXPECT_FALSE(nests());
 }
 
 TEST_F(MovesTest, WhatMovesInTheShutterHasPlacesOfItsOwn) {

@@ -230,13 +230,14 @@ TEST_P(BackendContract, AStopLeavesTheWholeAlignedBlocksOfAPrefix) {
     const std::uint64_t first = std::uint64_t{1} << 20;
     const SampleBlock endless{first, 20};
     std::size_t with_blocks = 0;
-    for (int attempt = 0; attempt < 8; ++attempt) {
+    // On and on until there are blocks: a first one may wait for its kernel.
+    for (int attempt = 0; attempt < 8 || (with_blocks == 0 && attempt < 15); ++attempt) {
         std::stop_source stop;
         RenderResult result;
         std::chrono::steady_clock::time_point asked;
         {
             const std::jthread stopper([&] {
-                std::this_thread::sleep_for(std::chrono::milliseconds(5 + 10 * attempt));
+                std::this_thread::sleep_for(std::chrono::milliseconds(5 << attempt));
                 asked = std::chrono::steady_clock::now();
                 stop.request_stop();
             });

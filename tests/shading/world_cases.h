@@ -78,7 +78,7 @@ inline Case make_case(IN(World) world, IN(Inputs) x) {
     made.light = made.context.scene.lights.items[x.d % LightCount];
     made.emitter = made.context.scene.emitters.items[x.d % TriangleEmitters];
     made.receiver = Receiver(x.wo, x.c % 3u == 0u ? vec3(0.0f) : x.n);
-    made.surface = make_surface(made.context.scene, made.hit, x.n, x.c % 2u == 0u ? 0.0f : x.metallic,
+    made.surface = make_surface(made.context.scene, made.hit, x.n, x.c % 2u == 0u ? 0.0f : x.metallic, nowhere(),
                                 made.context.time);
     made.wo = to_local(made.surface, -x.n);
     made.path = path_in(x);
@@ -182,7 +182,7 @@ inline float covered_area(IN(Case) c, float cosine, float width) {
 inline Surface with_scattering(IN(Case) c) {
     Surface surface = c.surface;
     set_scattering(surface, c.context.scene, c.instance, c.mesh, c.material, c.corners, c.hit.barycentric,
-                   0.25f, c.surface.geometric_normal, c.ray.direction);
+                   0.25f, c.surface.geometric_normal, c.ray.direction, nowhere());
     return surface;
 }
 inline Surface coated(IN(Case) c, IN(Inputs) x) {

@@ -96,7 +96,7 @@ class Merging : public VulkanTest {
         const Buffer table = make_buffer(device(), columns), from = make_buffer(device(), values);
         const Buffer to = make_buffer(device(), std::vector<std::uint32_t>(planes * pixels + 1));
         const auto count = static_cast<std::uint32_t>(columns.size());
-        run(device(), {.pipeline = &kernels_->merging(),
+        run(device(), {.pipeline = &kernels_->merging().get(),
                        .arguments = MergeJob{.columns = table.address(),
                                              .values = from.address(),
                                              .planes = to.address(),

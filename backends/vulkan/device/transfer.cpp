@@ -45,6 +45,21 @@ void upload_bytes(Device& device, const Buffer& buffer, std::span<const std::byt
     for (const Submission& last : in_use) last.wait();
 }
 
+void fill_new_bytes(Device& device, const Buffer& buffer, std::span<const std::byte> bytes) {
+    if (buffer.mapped().empty() && bytes.size() > HalfBytes) return upload_bytes(device, buffer, bytes);
+    check_range(buffer, 0, bytes.size());
+    if (bytes.empty()) return;
+    device.count_upload(bytes.size());
+    if (!buffer.mapped().empty()) {
+        std::memcpy(buffer.mapped().data(), bytes.data(), bytes.size());
+        return;
+    }
+    const Buffer staging(device, bytes.size(), MemoryKind::Upload);
+    std::memcpy(staging.mapped().data(), bytes.data(), bytes.size());
+    const std::array<Step, 2> steps{Copy{&staging, &buffer, 0, 0, bytes.size()}, Publish{}};
+    device.queue().submit(steps);
+}
+
 void download_bytes(Device& device, const Buffer& buffer, std::span<std::byte> bytes, std::uint64_t offset) {
     check_range(buffer, offset, bytes.size());
     const std::uint64_t step = buffer.mapped().empty() ? HalfBytes : bytes.size();

@@ -1,12 +1,14 @@
 // Bodies of media, and those that the eye is in.
+#include "mediator/backend/tables/bodies.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/matrix.hpp>
+#include <glm/vector_relational.hpp>
 #include <limits>
 #include <optional>
 
-#include "mediator/backend/tables/bodies.h"
 #include "mediator/backend/tables/parts.h"
 #include "mediator/shading/bodies.h"
 #include "mediator/shading/phase.h"
@@ -22,6 +24,8 @@ vec3 coefficient(const vec3& value) {
     return glm::min(value, vec3(shading::MostCoefficient));
 }
 
+constexpr float OfWhatIsAround = -1.0f;
+
 shading::Body body_of(const scene::Medium& medium, const Indices& textures) {
     shading::Body body{};
     body.absorption = coefficient(medium.absorption);
@@ -29,6 +33,7 @@ shading::Body body_of(const scene::Medium& medium, const Indices& textures) {
     body.emission = coefficient(medium.emission);
     body.anisotropy = std::clamp(medium.anisotropy, -shading::MaxAnisotropy, shading::MaxAnisotropy);
     body.priority = medium.priority;
+    body.index = OfWhatIsAround;
     body.textures[shading::BodyAbsorption] = make_use(medium.absorption_texture, textures);
     body.textures[shading::BodyScattering] = make_use(medium.scattering_texture, textures);
     body.textures[shading::BodyEmission] = make_use(medium.emission_texture, textures);
@@ -42,8 +47,7 @@ shading::Body body_of(const scene::Material& material) {
     for (shading::TextureUse& use : body.textures) use = make_use({}, {});
     if (!(material.attenuation_distance > 0.0f)) return body;
     for (int c = 0; c < 3; ++c) {
-        const float left =
-            std::clamp(material.attenuation_color[c], std::numeric_limits<float>::min(), 1.0f);
+        const float left = std::clamp(material.attenuation_color[c], std::numeric_limits<float>::min(), 1.0f);
         body.absorption[c] = -std::log(left) / material.attenuation_distance;
     }
     body.absorption = coefficient(body.absorption);
@@ -51,7 +55,8 @@ shading::Body body_of(const scene::Material& material) {
 }
 
 // What a geometry is filled with. Glass with a body keeps out what is around it, even if it is clear.
-std::optional<shading::Body> find_body(const scene::Scene& scene, const Mesh& mesh, const Indices& textures) {
+std::optional<shading::Body> find_body(const scene::Scene& scene, const Mesh& mesh,
+                                       const shading::Material& drawn, const Indices& textures) {
     if (mesh.placeholder) return std::nullopt;
     std::optional<shading::Body> body;
     if (const auto* medium = scene.find_as<scene::Medium>(mesh.source.medium)) {
@@ -61,9 +66,11 @@ std::optional<shading::Body> find_body(const scene::Scene& scene, const Mesh& me
         if (material->transmission > 0.0f && material->thickness > 0.0f) body = body_of(*material);
     }
     if (!body) return body;
+    body->index = is_solid_glass(drawn) ? drawn.index_of_refraction : OfWhatIsAround;
     const vec3 size = mesh.high - mesh.low;
     body->low = mesh.low;
-    for (int axis = 0; axis < 3; ++axis) body->inverse_size[axis] = size[axis] > 0.0f ? 1.0f / size[axis] : 0.0f;
+    for (int axis = 0; axis < 3; ++axis)
+        body->inverse_size[axis] = size[axis] > 0.0f ? 1.0f / size[axis] : 0.0f;
     body->textured =
         std::ranges::any_of(body->textures, [](const auto& use) { return use.texture >= 0; }) ? 1u : 0u;
     return body;
@@ -81,8 +88,8 @@ std::uint32_t features_of(const shading::Body& body) {
            flag(body.textured != 0, shading::FeatureMediaTextures);
 }
 
-// How far from a point, in its own space, a mesh's surface lies in a direction; nothing where the point is not
-// inside: what the ray meets first is a front, or nothing.
+// How far from a point, in its own space, a mesh's surface lies in a direction; nothing where the point is
+// not inside: what the ray meets first is a front, or nothing.
 std::optional<double> way_out(const SceneTables& tables, const shading::Instance& instance,
                               const glm::dvec3& eye, const glm::dvec3& direction) {
     const auto index = static_cast<std::size_t>(instance.mesh);
@@ -131,7 +138,8 @@ void add_bodies(SceneTables& tables, const scene::Scene& scene, const Lowered& l
         const ObjectId geometry = lowered.instances[i].geometry;
         if (i == 0 || geometry != last) {
             last = geometry;
-            const auto body = find_body(scene, *meshes.find(geometry), textures);
+            const auto body = find_body(scene, *meshes.find(geometry),
+                                        tables.materials[tables.instances[i].material], textures);
             index = body ? static_cast<int>(tables.bodies.size()) : -1;
             if (body) {
                 tables.bodies.push_back(*body);
@@ -141,10 +149,34 @@ void add_bodies(SceneTables& tables, const scene::Scene& scene, const Lowered& l
         tables.instances[i].body = index;
         if (index >= 0 && tables.bodies.back().open != 0) tables.instances[i].alpha_tested = 1;
     }
+    if (glass_nests(tables, lowered, meshes)) features |= shading::FeatureMedia | shading::FeatureNestedGlass;
     tables.scene.features |= features;
     if (features != 0) return;
     tables.bodies.clear();
     for (shading::Instance& instance : tables.instances) instance.body = -1;
+}
+
+bool is_solid_glass(const shading::Material& material) {
+    return material.shader < 0 && material.transmission > 0.0f && material.thin == 0;
+}
+
+bool glass_nests(const SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes) {
+    std::vector<Bounds> glass;
+    for (std::size_t i = 0; i < tables.instances.size(); ++i) {
+        if (!is_solid_glass(tables.materials[tables.instances[i].material])) continue;
+        glass.push_back(bounds_of(tables, tables.instances[i], *meshes.find(lowered.instances[i].geometry)));
+    }
+    std::ranges::sort(glass, {}, [](const Bounds& one) { return one.low.x; });
+    // Thousands on end in one plane would take long to tell apart: they are taken for nested.
+    std::size_t left_to_ask = 100 * glass.size() + 1000;
+    for (auto one = glass.begin(); one != glass.end(); ++one) {
+        for (auto other = one + 1; other != glass.end() && other->low.x <= one->high.x; ++other) {
+            const bool overlap = glm::all(glm::lessThanEqual(other->low, one->high)) &&
+                                 glm::all(glm::lessThanEqual(one->low, other->high));
+            if (overlap || left_to_ask-- == 0) return true;
+        }
+    }
+    return false;
 }
 
 glm::uvec4 bodies_around(const SceneTables& tables, const shading::View& view) {

@@ -43,14 +43,22 @@ bool is_plain(const SceneTables& tables, const shading::Instance& instance, cons
 
 }  // namespace
 
+Bounds bounds_of(const SceneTables& tables, const shading::Instance& instance, const Mesh& mesh) {
+    Bounds bounds;
+    if (!(mesh.low.x <= mesh.high.x)) return bounds;
+    for (const shading::Place& step : places_of(tables, instance)) {
+        add_box(bounds, mesh, step.linear, step.translation);
+    }
+    return bounds;
+}
+
 Bounds bounds_of(const SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes) {
     Bounds bounds;
     for (std::size_t i = 0; i < tables.instances.size(); ++i) {
-        const Mesh& mesh = *meshes.find(lowered.instances[i].geometry);
-        if (!(mesh.low.x <= mesh.high.x)) continue;
-        for (const shading::Place& step : places_of(tables, tables.instances[i])) {
-            add_box(bounds, mesh, step.linear, step.translation);
-        }
+        const Bounds own =
+            bounds_of(tables, tables.instances[i], *meshes.find(lowered.instances[i].geometry));
+        bounds.low = glm::min(bounds.low, own.low);
+        bounds.high = glm::max(bounds.high, own.high);
     }
     return bounds;
 }
@@ -67,20 +75,24 @@ TablesStep update_tables(SceneTables& tables, const scene::Scene& scene, const L
         return is_plain(tables, tables.instances[i], lowered.instances[i]);
     };
     if (moves_only(delta) && std::ranges::all_of(delta.moved_instances, can_move)) {
-        bool same_bounds = true;
+        bool same_bounds = true, has_glass = false;
         for (const std::uint32_t i : delta.moved_instances) {
             const Mesh& mesh = *meshes.find(lowered.instances[i].geometry);
             shading::Instance& instance = tables.instances[i];
+            has_glass = has_glass || is_solid_glass(tables.materials[instance.material]);
             same_bounds = same_bounds && is_inside(tables.bounds, mesh, instance);
             place(instance, lowered.instances[i].world_from_object, tables.render_origin);
             same_bounds = same_bounds && is_inside(tables.bounds, mesh, instance);
         }
-        if (same_bounds) return TablesStep::Moved;
+        const bool nested = (tables.scene.features & shading::FeatureNestedGlass) != 0;
+        const bool same_nesting = !has_glass || nested == glass_nests(tables, lowered, meshes);
+        if (same_bounds && same_nesting) return TablesStep::Moved;
         // Lights that are infinitely far are chosen by how large the scene is.
         const double radius = radius_of(tables.bounds);
         tables.bounds = bounds_of(tables, lowered, meshes);
         const bool has_distant = tables.scene.light_count > tables.scene.tree_light_count;
-        if (!has_distant || radius_of(tables.bounds) == radius) return TablesStep::Moved;
+        const bool same_lights = !has_distant || radius_of(tables.bounds) == radius;
+        if (same_lights && same_nesting) return TablesStep::Moved;
     }
     tables = make_tables(scene, lowered, meshes, blobs, pyramids);
     return TablesStep::Made;

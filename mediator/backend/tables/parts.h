@@ -15,6 +15,8 @@ using Indices = std::map<ObjectId, std::uint32_t>;  // of objects in their table
 Indices add_textures(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
                      const MeshCatalog& meshes, const scene::BlobStore& blobs, TexturePyramids& pyramids);
 shading::TextureUse make_use(const scene::TextureSlot& slot, const Indices& textures);
+// Glass that is a body, with an index of refraction of its own.
+bool is_solid_glass(const shading::Material& material);
 shading::Material make_material(const scene::Material& material, const Indices& textures);
 
 // Appends what only CommonSurfaceShader has, and returns the rest.
@@ -29,6 +31,8 @@ void add_instances(SceneTables& tables, const Lowered& lowered, const MeshCatalo
 // Gives an instance its place, relative to the render origin.
 void place(shading::Instance& instance, const glm::dmat4& world_from_object, const glm::dvec3& origin);
 
+// Of an instance, at any time.
+Bounds bounds_of(const SceneTables& tables, const shading::Instance& instance, const Mesh& mesh);
 // Of all that can be hit, at any time; how far that reaches, for the power of what shines on all of it.
 Bounds bounds_of(const SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes);
 double radius_of(const Bounds& bounds);
@@ -45,6 +49,9 @@ void add_mesh_steps(SceneTables& tables, const Mesh& source, shading::Mesh& mesh
 // Instances of a material that catches shadows: they stop rays where their mask says so, and do not shine.
 void mark_shadow_catchers(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
                           const MeshCatalog& meshes);
+
+// Whether bodies of glass may lie in each other: their bounds overlap.
+bool glass_nests(const SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes);
 
 // What instances are filled with, if anything placed is filled with what can be seen.
 void add_bodies(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
