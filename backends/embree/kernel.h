@@ -16,9 +16,12 @@ struct Kernel {
                                  std::uint32_t x, std::uint32_t y, std::uint64_t sample, std::uint64_t& rays);
 };
 
-// Plain: no extras of materials, lights with a shape or motion. Coated: and coats. Shader: and
-// CommonSurfaceShader, spheres, quads and shadow catchers. Full: all there is.
-extern const Kernel PlainKernel, CoatedKernel, ShaderKernel, FullKernel;
+// Plain: what is in most scenes. The next have that and one thing that is seldom, with what goes with it:
+// Lights spheres, quads and shadow catchers; Coated layers over surfaces and anisotropy; Glass rough glass and
+// glass whose colour grows with its thickness; Film iridescence; Shader CommonSurfaceShader and what Lights
+// has; Moving motion; Foggy media with and without a surface. Full: all there is, for whatever mixes them.
+extern const Kernel PlainKernel, LightsKernel, CoatedKernel, GlassKernel, FilmKernel, ShaderKernel,
+    MovingKernel, FoggyKernel, FullKernel;
 
 // The first of them that has all of these.
 const Kernel& kernel_for(std::uint32_t features);

@@ -2,7 +2,10 @@
 
 // A kernel: included by the one source that says which features it has (SHADING_FEATURES), and its name
 // (SHADING_KERNEL).
-// What most scenes are made of, and what costs others next to nothing.
+
+// What most scenes have a part of. Textures, normal maps, alpha and layers are asked for where a material, a
+// mesh or a ray is looked at in any case; mirrors and clear glass are in every other scene; and of lights all but
+// those with a shape, which rays have to look for on their way. None costs what can be measured where it is not.
 #define PLAIN_FEATURES                                                                          \
     (shading::FeatureTextures | shading::FeatureNormalMaps | shading::FeatureAlpha |            \
      shading::FeatureSpecular | shading::FeaturePlacedLights | shading::FeatureMeshLights |     \

@@ -87,6 +87,16 @@ inline float depth_along(IN(View) view, IN(Ray) ray, float distance) {
     return distance * dot(ray.direction, view.forward);
 }
 
+// The same where the camera may move. Others are not to pay for a view of their own.
+SELDOM inline Ray moving_camera_ray(IN(View) view, float time, uint x, uint y, vec2 u, vec2 lens) {
+    View moved = view_at(FeatureCameraMotion, view, time);
+    return camera_ray(moved, x, y, u, lens);
+}
+SELDOM inline float moving_depth_along(IN(View) view, float time, vec3 direction, float distance) {
+    View moved = view_at(FeatureCameraMotion, view, time);
+    return depth_along(moved, Ray(moved.eye, direction), distance);
+}
+
 SHADING_END
 
 #endif

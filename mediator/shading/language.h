@@ -19,6 +19,7 @@
 //   compiler takes all numbers to be finite. PRECISE before a local variable forbids contraction in what is
 //   assigned to it, where bits matter (C++ is compiled so everywhere).
 // - KEEP_LOOP before a loop asks a shader's compiler not to unroll it.
+// - KEPT(T) before a local name for one of two things that lie elsewhere: in C++ no copy of it.
 // - SELDOM before a function that few scenes call keeps it out of the way of those around it, in C++.
 // - GENERIC(T) before a function with a parameter of a type T that the includer brings: a template in C++; in
 //   GLSL T is a struct that is known before.
@@ -73,6 +74,7 @@
 #define INOUT(T) T&
 #define PRECISE
 #define KEEP_LOOP
+#define KEPT(T) const T&
 #define SELDOM [[gnu::cold, gnu::noinline]]
 #define WITH_CONTEXT template <class Context>
 #define GENERIC(T) template <class T>
@@ -148,6 +150,7 @@ struct FeatureBits {
 #define INOUT(T) inout T
 #define PRECISE precise
 #define KEEP_LOOP [[dont_unroll]]
+#define KEPT(T) T
 #define SELDOM
 #define WITH_CONTEXT
 #define GENERIC(T)

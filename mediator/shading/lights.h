@@ -124,7 +124,11 @@ inline LightSample sample_mesh_light(IN(Scene) scene, IN(Emitter) emitter, float
 
 inline LightSample sample_instance_light(IN(Scene) scene, IN(Emitter) emitter, float probability,
                                          IN(Instance) instance, IN(Surface) surface, vec2 u) {
-    return sample_mesh_light(scene, emitter, probability, instance_at(scene, instance, surface.time),
+    Instance moved;
+    KEPT(Instance) here = stands_still(scene, instance.motion)
+                              ? instance
+                              : (moved = moved_instance(scene, instance, surface.time));
+    return sample_mesh_light(scene, emitter, probability, here,
                              mesh_at(scene, scene.meshes.items[instance.mesh], surface.time),
                              scene.materials.items[instance.material], surface, u);
 }
@@ -172,7 +176,15 @@ inline Receiver receiver_at(IN(Surface) surface) {
 inline LightSample sample_chosen(IN(Scene) scene, uint layers, IN(Surface) surface, IN(Emitter) emitter,
                                  IN(LightSource) light, float probability, vec2 u) {
     if (!is_seen(scene, light, layers)) return no_light();
+<<<<<<< HEAD
     return sample_emitter(scene, emitter, light_at(scene, light, surface.time), probability, surface, u);
+=======
+    LightSource moved;
+    KEPT(LightSource) here = stands_still(scene, light.motion)
+                                 ? light
+                                 : (moved = moved_source(scene, light, surface.time));
+    return sample_emitter(scene, emitter, here, scene.tree_probability * probability, surface, u);
+>>>>>>> 27d31631be6a77ab52bf8daf439f7448114c22ff
 }
 
 inline LightSample sample_tree(IN(Scene) scene, uint layers, IN(Surface) surface, IN(ChosenEmitter) chosen,

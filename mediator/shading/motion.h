@@ -57,8 +57,11 @@ inline mat3 turns_normals(IN(mat3) linear) {
     return mat3(side * across, side * cross(z, x), side * cross(x, y));
 }
 
-inline Instance instance_at(IN(Scene) scene, IN(Instance) instance, float time) {
-    if ((scene.features & FeatureMotion) == 0u || instance.motion < 0) return instance;
+inline bool stands_still(IN(Scene) scene, int motion) {
+    return (scene.features & FeatureMotion) == 0u || motion < 0;
+}
+
+inline Instance moved_instance(IN(Scene) scene, IN(Instance) instance, float time) {
     const Motion motion = scene.motions.items[instance.motion];
     const Place place = place_at(scene.places, motion.first_place, motion.steps, time);
     Instance moved = instance;
@@ -66,6 +69,11 @@ inline Instance instance_at(IN(Scene) scene, IN(Instance) instance, float time) 
     moved.translation = place.translation;
     moved.normals = turns_normals(place.linear);
     return moved;
+}
+
+inline Instance instance_at(IN(Scene) scene, IN(Instance) instance, float time) {
+    if (stands_still(scene, instance.motion)) return instance;
+    return moved_instance(scene, instance, time);
 }
 
 // Where nothing moves, it does not bend: compilers see it.
@@ -139,8 +147,7 @@ inline float inverse_root_area_of(IN(Scene) scene, IN(Emitter) emitter, IN(Insta
 }
 
 // A light that is no mesh: its place, and the directions of one that has some.
-inline LightSource light_at(IN(Scene) scene, IN(LightSource) light, float time) {
-    if ((scene.features & FeatureMotion) == 0u || light.motion < 0) return light;
+inline LightSource moved_source(IN(Scene) scene, IN(LightSource) light, float time) {
     const Motion motion = scene.motions.items[light.motion];
     const Place place = place_at(scene.places, motion.first_place, motion.steps, time);
     LightSource moved = light;
@@ -149,6 +156,11 @@ inline LightSource light_at(IN(Scene) scene, IN(LightSource) light, float time) 
     moved.edge_u = direction_of(cross(moved.direction, place.linear[1]), light.edge_u);
     moved.edge_v = cross(moved.direction, moved.edge_u);
     return moved;
+}
+
+inline LightSource light_at(IN(Scene) scene, IN(LightSource) light, float time) {
+    if (stands_still(scene, light.motion)) return light;
+    return moved_source(scene, light, time);
 }
 
 SHADING_END

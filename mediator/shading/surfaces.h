@@ -250,9 +250,13 @@ inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
 
 inline Surface surface_on(IN(Scene) scene, IN(Instance) instance, IN(Hit) hit, vec3 direction, float width,
                           uvec4 inside, float time) {
-    Surface surface = surface_of(scene, instance_at(scene, instance, time),
-                                 mesh_at(scene, scene.meshes.items[instance.mesh], time),
-                                 scene.materials.items[instance.material], hit, direction, width, inside);
+    Instance moved;
+    KEPT(Instance) here = stands_still(scene, instance.motion)
+                              ? instance
+                              : (moved = moved_instance(scene, instance, time));
+    Surface surface =
+        surface_of(scene, here, mesh_at(scene, scene.meshes.items[instance.mesh], time),
+                   scene.materials.items[instance.material], hit, direction, width, inside);
     surface.time = time;
     return surface;
 }

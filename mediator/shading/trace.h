@@ -92,13 +92,14 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
     const bool whitted =
         has_specular_trees(context) && context.view.renderer != RendererPathTracing && !covers;
     const bool wants_range = has_specular_trees(context) && keeps(context.view, KeepsRange);
+    const bool has_media = (context.scene.features & FeatureMedia) != 0u;
     const bool opens = (context.scene.features & FeatureOpenMedia) != 0u;
     const bool scatters = (context.scene.features & FeatureScattering) != 0u;
     tell_camera(context, ray);
     const Ray camera = ray;
     bool is_caught = false;  // by a shadow catcher, and has met nothing since
     path.cone = camera_cone(context.view, ray, path.numbers.index);
-    if ((context.scene.features & FeatureMedia) != 0u) path.inside = context.view.inside;
+    if (has_media) path.inside = context.view.inside;
     Branch branch = root_branch(ray, path.cone);
     BranchStack open;
     open.count = 0u;
@@ -133,12 +134,17 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
         const float length = is_hit ? hit.distance : infinity();
         const bool arrives = connects && (connection.distant ? !is_hit : !(length < 1.0f));
         Leg leg = clear_leg();
+<<<<<<< HEAD
         LegLight leg_light = no_leg_light();
         if (resumes) {
             leg = held.leg;
             leg_light = held.light;
             held.is_on = false;
         } else if (connects || lit) {
+=======
+        const bool is_clear = !has_media || path.inside.x == NoInstance;
+        if (!is_clear && (connects || lit)) {
+>>>>>>> 27d31631be6a77ab52bf8daf439f7448114c22ff
             const uint kind =
                 connects ? LegPasses : leg_kind(path, stage, passes, context.view.max_scatterings);
             if (lit) leg_light = light_leg(context, path, ray, course, length, kind);
@@ -151,17 +157,25 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
         const bool is_aside = scatters && leg_light.is_aside;
         if (!connects && lit && !is_aside) {
             if (!is_caught && !passes) add_shapes(context, path, ray, course.begun, length);
-            if (largest(leg.emitted) > 0.0f && !passes) {
+            if (!is_clear && largest(leg.emitted) > 0.0f && !passes) {
                 add_light(path.found, context.view, path.throughput * leg.emitted, path.way);
             }
         }
+<<<<<<< HEAD
         const bool goes_through = is_boundary && !arrives && !leg.scatters && !is_aside;
         const Course before = course;
+=======
+        const bool goes_through = is_hit && !arrives && !leg.scatters && is_open(context.scene, hit.instance);
+        const float before = course.begun;
+>>>>>>> 27d31631be6a77ab52bf8daf439f7448114c22ff
         if (goes_through) go_through(context.scene, course, path.inside, hit, ray, context.time);
         bool goes_on = goes_through;
         if (connects) {
-            connection.light *= leg.passed;
-            if (arrives) receive_light(context, path.found, connection, unit_vector(ray.direction));
+            if (!is_clear) connection.light *= leg.passed;
+            if (arrives) {
+                receive_light(context, path.found, connection.light, connection.intensity, connection.way,
+                              unit_vector(ray.direction));
+            }
             if (!goes_through) {
                 goes_on = go_on_with_path(connection, path, ray);
                 course = new_course(ray.origin);
@@ -181,7 +195,7 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                 }
                 path.throughput *= leg.scattered;
             } else {
-                path.throughput *= leg.passed;
+                if (!is_clear) path.throughput *= leg.passed;
                 if (stage == StageBranch) branch.weight = path.throughput;
             }
             const bool in_medium = is_aside || leg.scatters;
@@ -189,10 +203,11 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
             if (!is_aside) passes = false;
             const float distance = in_medium ? course.begun + along : length;
             if (goes_through) {
-                path.cone.width += path.cone.spread * (distance - before.begun);
+                path.cone.width += path.cone.spread * (distance - before);
             } else if (is_hit && covers) {
                 show_object(path.found, context.scene.instances.items[hit.instance].object,
                             depth_along(context.view, ray, distance));
+<<<<<<< HEAD
             } else if (is_hit || in_medium) {
                 if (!is_aside) path.cone.width += path.cone.spread * (distance - course.begun);
                 Surface surface;
@@ -204,12 +219,25 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                     surface = make_surface(context.scene, hit, ray.direction, path.cone.width, path.inside,
                                            context.time);
                 }
+=======
+            } else if (is_hit || leg.scatters) {
+                path.cone.width += path.cone.spread * (distance - course.begun);
+                // At once: a surface is large, and to copy it takes longer than to skip all that it does not have.
+                const Surface surface =
+                    leg.scatters
+                        ? scattering_place(course.start + leg.distance * ray.direction, ray.direction,
+                                           leg.anisotropy,
+                                           context.scene.instances.items[path.inside.x].object, context.time)
+                        : make_surface(context.scene, hit, ray.direction, path.cone.width, path.inside,
+                                       context.time);
+>>>>>>> 27d31631be6a77ab52bf8daf439f7448114c22ff
                 tell_hit(context, surface, path.throughput);
                 const bool on_the_way = is_aside || (leg.scatters && stage == StageBranch);
                 if (first && !on_the_way) {
+                    const bool moves = (context.scene.features & FeatureCameraMotion) != 0u;
                     path.found.depth =
-                        depth_along(view_at(context.scene.features, context.view, context.time), ray,
-                                    distance);
+                        moves ? moving_depth_along(context.view, context.time, ray.direction, distance)
+                              : depth_along(context.view, ray, distance);
                     path.found.object = surface.object;
                     path.found.alpha = 1.0f;
                 }
@@ -243,8 +271,13 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                         goes_on = look_for_light(connection, path, ray, goes_on);
                     }
                 }
+<<<<<<< HEAD
                 if (!is_aside || connection.is_open) course = new_course(ray.origin);
                 if (!is_aside) first = false;
+=======
+                if (has_media) course = new_course(ray.origin);
+                first = false;
+>>>>>>> 27d31631be6a77ab52bf8daf439f7448114c22ff
             } else {
                 tell_miss(context);
                 if (is_caught) {
@@ -273,8 +306,10 @@ WITH_CONTEXT inline Path trace_sample(IN(Context) context, uint x, uint y, uint6
     const Path path = start_path(make_sampler(x, y, context.view.seed, index));
     const vec2 lens =
         (context.view.camera & CameraLens) != 0u ? sample_pair(path.numbers, LensPair) : vec2(0.5f);
-    View view = view_at(context.scene.features, context.view, context.time);
-    const Ray ray = camera_ray(view, x, y, sample_pair(path.numbers, CameraPair), lens);
+    const vec2 u = sample_pair(path.numbers, CameraPair);
+    const bool moves = (context.scene.features & FeatureCameraMotion) != 0u;
+    const Ray ray = moves ? moving_camera_ray(context.view, context.time, x, y, u, lens)
+                          : camera_ray(context.view, x, y, u, lens);
     FirstHit unknown;
     unknown.is_known = false;
     return trace_from(context, path, ray, unknown);

@@ -144,11 +144,11 @@ inline Connection no_connection() {
                       Ray(vec3(0.0f), vec3(0.0f)), false, nowhere());
 }
 
-WITH_CONTEXT inline void receive_light(IN(Context) context, INOUT(PathSample) found, IN(Connection) received,
-                                       vec3 direction) {
-    add_light(found, context.view, received.light, received.way);
-    connect_light(found, context.view, received.intensity);
-    tell_light(context, direction, received.light);
+WITH_CONTEXT inline void receive_light(IN(Context) context, INOUT(PathSample) found, vec3 light,
+                                       vec3 intensity, IN(Way) way, vec3 direction) {
+    add_light(found, context.view, light, way);
+    connect_light(found, context.view, intensity);
+    tell_light(context, direction, light);
 }
 
 // Light of a place aside that has a smaller share of what is found there is looked for less often.
@@ -190,35 +190,38 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
     if (!alone) weight *= power_heuristic(density, bsdf.pdf);
     const vec3 origin = leaving(surface, light.direction).origin;
     const bool is_open = (context.scene.features & FeatureOpenMedia) != 0u;
-    Connection asked = no_connection();
-    asked.distant = light.distant;
-    asked.seed = shadow_seed(path);
+    const uint seed = shadow_seed(path);
     // Of a ray to a light alone the direction has any length.
     const vec3 segment = light.distant ? light.direction : light.target - origin;
     if (!is_open) {
         const float far = light.distant ? infinity() : 1.0f;
         path.rays += 1u;
-        if (trace_occluded(context, origin, segment, far, asked.seed)) return;
+        if (trace_occluded(context, origin, segment, far, seed)) return;
     }
+<<<<<<< HEAD
     asked.light = path.throughput * bsdf.value * light.radiance * (weight / light.pdf);
     if (!leg.is_aside) asked.intensity = path.probability * light.intensity;
     asked.way = Way(path.way.scatterings + 1u, false, path.way.diffuse_share);
+=======
+    vec3 arriving = path.throughput * bsdf.value * light.radiance * (weight / light.pdf);
+    const vec3 intensity = path.probability * light.intensity;
+    Way way = Way(path.way.scatterings + 1u, false, path.way.diffuse_share);
+>>>>>>> 27d31631be6a77ab52bf8daf439f7448114c22ff
     if (keeps(context.view, KeepsDiffuse) && path.way.scatterings == 0u) {
-        asked.way.diffuse_share = diffuse_share(bsdf);
+        way.diffuse_share = diffuse_share(bsdf);
     }
     const uvec4 inside = inside_after(context.scene, path.inside, surface, light.direction);
     if (is_open) {
-        connection = asked;
-        connection.is_open = true;
-        connection.resume = Ray(origin, segment);  // until the path's own next is known (look_for_light)
-        connection.inside = inside;
+        // The ray is the light's until the path's own next is known (look_for_light).
+        connection = Connection(true, arriving, intensity, light.distant, way, seed, Ray(origin, segment),
+                                false, inside);
         return;
     }
-    if ((context.scene.features & FeatureMedia) != 0u && !asked.distant) {
+    if ((context.scene.features & FeatureMedia) != 0u && !light.distant) {
         const float length = vector_length(segment);
-        asked.light *= transmittance(context.scene, inside, origin, light.direction, length, context.time);
+        arriving *= transmittance(context.scene, inside, origin, light.direction, length, context.time);
     }
-    receive_light(context, path.found, asked, light.direction);
+    receive_light(context, path.found, arriving, intensity, way, light.direction);
 }
 
 // The rough group for certain: all there is, or the others are followed on their own.

@@ -21,7 +21,6 @@ using bench::median;
 using bench::picture;
 using bench::time_of;
 
-
 constexpr std::uint32_t Emitters = 10000, Size = 64, Spp = 64, ReferenceSpp = 1024, Rounds = 9;
 constexpr std::uint32_t FogReferenceSpp = 256, FogRounds = 5;
 

@@ -7,7 +7,9 @@
 namespace tessera::embree {
 namespace {
 
-const std::vector<const Kernel*> Kernels{&PlainKernel, &CoatedKernel, &ShaderKernel, &FullKernel};
+const std::vector<const Kernel*> Kernels{&PlainKernel,  &LightsKernel, &CoatedKernel,
+                                         &GlassKernel,  &FilmKernel,   &ShaderKernel,
+                                         &MovingKernel, &FoggyKernel,  &FullKernel};
 
 // Speculars, colours, alpha, lights of most kinds, a sky.
 void add_plain(Model& model) {
@@ -33,13 +35,55 @@ void add_coat(Model& model) {
                  {0.2, 0.9, 0}, 0.4, Normals::Smooth);
 }
 
-void add_shader(Model& model) {
+void add_sheen(Model& model) {
+    add_coat(model);
+    model.sphere(model.material({.roughness = 0.6f, .sheen_color = glm::vec3(0.5f), .sheen_roughness = 0.4f}),
+                 {-0.2, 0.9, 0.3}, 0.3, Normals::Smooth);
+}
+
+void add_frosted(Model& model) {
     add_plain(model);
-    model.sphere(model.shader({.specular = glm::vec3(0.3f), .reflection = glm::vec3(0.2f)}), {0.2, 0.9, 0},
-                 0.4, Normals::Smooth);
+    scene::Material frosted = glass(1.3f);
+    frosted.roughness = 0.4f;
+    frosted.attenuation_color = {0.5f, 0.8f, 0.9f};
+    frosted.attenuation_distance = 0.3f;
+    model.sphere(model.material(frosted), {-1.2, -0.9, 0.3}, 0.3, Normals::Smooth);
+}
+
+void add_film(Model& model) {
+    add_plain(model);
+    model.sphere(model.material({.roughness = 0.4f, .iridescence = 0.7f}), {0.2, 0.9, 0}, 0.4,
+                 Normals::Smooth);
+    scene::Material bubble = glass(1.3f);
+    bubble.iridescence = 1.0f;
+    model.sphere(model.material(bubble), {-1.2, -0.9, 0.3}, 0.3, Normals::Smooth);
+}
+
+void add_moving(Model& model) {
+    add_plain(model);
+    model.moves({glm::translate(glm::dmat4(1.0), {0.3, 0.0, 0.0})});
+    model.sphere(model.material(chalk(glm::vec3(0.9f))), {1.2, -0.9, 0.3}, 0.3);
+}
+
+void add_fog(Model& model) {
+    add_plain(model);
+    model.filled_with({.absorption = glm::vec3(0.1f), .scattering = glm::vec3(0.2f)});
+    model.box(ObjectId{}, {-2.5f, -2.5f, -0.9f}, {2.5f, 2.5f, 2.5f});
+    model.filled_with_nothing();
+}
+
+void add_lights(Model& model) {
+    add_plain(model);
     model.light({.kind = scene::LightKind::Sphere, .radius = 0.2f},
                 glm::translate(glm::dmat4(1.0), {-1.5, 1.0, 1.0}));
+    model.light({.kind = scene::LightKind::Quad}, glm::translate(glm::dmat4(1.0), {1.5, 1.0, 1.0}));
     model.floor(model.material({.shadow_catcher = true}), 6.0f, -1.5f);
+}
+
+void add_shader(Model& model) {
+    add_lights(model);
+    model.sphere(model.shader({.specular = glm::vec3(0.3f), .reflection = glm::vec3(0.2f)}), {0.2, 0.9, 0},
+                 0.4, Normals::Smooth);
 }
 
 void add_all(Model& model) {
@@ -113,12 +157,16 @@ TEST_P(KernelsTest, AllThatMayBeTakenFindTheSameBits) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, KernelsTest,
-                         testing::Values(KernelCase{"Plain", add_plain, &PlainKernel},
-                                         KernelCase{"Coat", add_coat, &CoatedKernel},
-                                         KernelCase{"Shader", add_shader, &ShaderKernel},
-                                         KernelCase{"All", add_all, &FullKernel}),
-                         [](const auto& kernel) { return std::string(kernel.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, KernelsTest,
+    testing::Values(KernelCase{"Plain", add_plain, &PlainKernel}, KernelCase{"Coat", add_coat, &CoatedKernel},
+                    KernelCase{"Lights", add_lights, &LightsKernel},
+                    KernelCase{"Sheen", add_sheen, &CoatedKernel},
+                    KernelCase{"Glass", add_frosted, &GlassKernel}, KernelCase{"Film", add_film, &FilmKernel},
+                    KernelCase{"Shader", add_shader, &ShaderKernel},
+                    KernelCase{"Moving", add_moving, &MovingKernel},
+                    KernelCase{"Foggy", add_fog, &FoggyKernel}, KernelCase{"All", add_all, &FullKernel}),
+    [](const auto& kernel) { return std::string(kernel.param.name); });
 
 TEST(Kernels, HaveWhatTheyAreChosenForAndComeBeforeThoseWithMore) {
     for (std::uint32_t bit = 0; bit < 32; ++bit) {

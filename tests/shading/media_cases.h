@@ -122,7 +122,8 @@ inline Step connected(IN(Case) c, IN(Inputs) x) {
     connection.resume = Ray(x.wi, x.n);
     connection.inside = uvec4(x.a % 7u, NoInstance, NoInstance, NoInstance);
     step.goes_on = look_for_light(connection, step.path, step.ray, x.c % 2u == 0u);
-    receive_light(c.context, step.path.found, connection, step.ray.direction);
+    receive_light(c.context, step.path.found, connection.light, connection.intensity, connection.way,
+                  step.ray.direction);
     if (x.d % 2u == 0u) step.goes_on = go_on_with_path(connection, step.path, step.ray);
     return step;
 }

@@ -145,11 +145,14 @@ inline float area_at(IN(Case) c, float time) {
     }
     return 0.0f;
 }
-inline Ray moved_eye(IN(Case) c, float time) {
+inline View moving_view(IN(Case) c) {
     View view = c.context.view;
     view.camera_places = c.context.scene.places;
     view.camera_steps = 3u;
-    View moved = view_at(FeatureCameraMotion, view, time);
+    return view;
+}
+inline Ray moved_eye(IN(Case) c, float time) {
+    View moved = view_at(FeatureCameraMotion, moving_view(c), time);
     return Ray(moved.eye, moved.forward);
 }
 
