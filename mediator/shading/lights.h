@@ -176,15 +176,11 @@ inline Receiver receiver_at(IN(Surface) surface) {
 inline LightSample sample_chosen(IN(Scene) scene, uint layers, IN(Surface) surface, IN(Emitter) emitter,
                                  IN(LightSource) light, float probability, vec2 u) {
     if (!is_seen(scene, light, layers)) return no_light();
-<<<<<<< HEAD
-    return sample_emitter(scene, emitter, light_at(scene, light, surface.time), probability, surface, u);
-=======
     LightSource moved;
     KEPT(LightSource) here = stands_still(scene, light.motion)
                                  ? light
                                  : (moved = moved_source(scene, light, surface.time));
-    return sample_emitter(scene, emitter, here, scene.tree_probability * probability, surface, u);
->>>>>>> 27d31631be6a77ab52bf8daf439f7448114c22ff
+    return sample_emitter(scene, emitter, here, probability, surface, u);
 }
 
 inline LightSample sample_tree(IN(Scene) scene, uint layers, IN(Surface) surface, IN(ChosenEmitter) chosen,

@@ -134,17 +134,13 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
         const float length = is_hit ? hit.distance : infinity();
         const bool arrives = connects && (connection.distant ? !is_hit : !(length < 1.0f));
         Leg leg = clear_leg();
-<<<<<<< HEAD
+        const bool is_clear = !has_media || path.inside.x == NoInstance;
         LegLight leg_light = no_leg_light();
         if (resumes) {
             leg = held.leg;
             leg_light = held.light;
             held.is_on = false;
-        } else if (connects || lit) {
-=======
-        const bool is_clear = !has_media || path.inside.x == NoInstance;
-        if (!is_clear && (connects || lit)) {
->>>>>>> 27d31631be6a77ab52bf8daf439f7448114c22ff
+        } else if (!is_clear && (connects || lit)) {
             const uint kind =
                 connects ? LegPasses : leg_kind(path, stage, passes, context.view.max_scatterings);
             if (lit) leg_light = light_leg(context, path, ray, course, length, kind);
@@ -161,13 +157,8 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                 add_light(path.found, context.view, path.throughput * leg.emitted, path.way);
             }
         }
-<<<<<<< HEAD
         const bool goes_through = is_boundary && !arrives && !leg.scatters && !is_aside;
-        const Course before = course;
-=======
-        const bool goes_through = is_hit && !arrives && !leg.scatters && is_open(context.scene, hit.instance);
         const float before = course.begun;
->>>>>>> 27d31631be6a77ab52bf8daf439f7448114c22ff
         if (goes_through) go_through(context.scene, course, path.inside, hit, ray, context.time);
         bool goes_on = goes_through;
         if (connects) {
@@ -207,30 +198,16 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
             } else if (is_hit && covers) {
                 show_object(path.found, context.scene.instances.items[hit.instance].object,
                             depth_along(context.view, ray, distance));
-<<<<<<< HEAD
             } else if (is_hit || in_medium) {
                 if (!is_aside) path.cone.width += path.cone.spread * (distance - course.begun);
-                Surface surface;
-                if (in_medium) {
-                    surface =
-                        scattering_place(course.start + along * ray.direction, ray.direction, leg.anisotropy,
-                                         context.scene.instances.items[path.inside.x].object, context.time);
-                } else {
-                    surface = make_surface(context.scene, hit, ray.direction, path.cone.width, path.inside,
-                                           context.time);
-                }
-=======
-            } else if (is_hit || leg.scatters) {
-                path.cone.width += path.cone.spread * (distance - course.begun);
-                // At once: a surface is large, and to copy it takes longer than to skip all that it does not have.
+                // At once: a surface is large, and to copy it takes longer than to skip all that it does not
+                // have.
                 const Surface surface =
-                    leg.scatters
-                        ? scattering_place(course.start + leg.distance * ray.direction, ray.direction,
-                                           leg.anisotropy,
+                    in_medium
+                        ? scattering_place(course.start + along * ray.direction, ray.direction, leg.anisotropy,
                                            context.scene.instances.items[path.inside.x].object, context.time)
                         : make_surface(context.scene, hit, ray.direction, path.cone.width, path.inside,
                                        context.time);
->>>>>>> 27d31631be6a77ab52bf8daf439f7448114c22ff
                 tell_hit(context, surface, path.throughput);
                 const bool on_the_way = is_aside || (leg.scatters && stage == StageBranch);
                 if (first && !on_the_way) {
@@ -271,13 +248,8 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                         goes_on = look_for_light(connection, path, ray, goes_on);
                     }
                 }
-<<<<<<< HEAD
-                if (!is_aside || connection.is_open) course = new_course(ray.origin);
+                if (has_media && (!is_aside || connection.is_open)) course = new_course(ray.origin);
                 if (!is_aside) first = false;
-=======
-                if (has_media) course = new_course(ray.origin);
-                first = false;
->>>>>>> 27d31631be6a77ab52bf8daf439f7448114c22ff
             } else {
                 tell_miss(context);
                 if (is_caught) {

@@ -198,15 +198,9 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
         path.rays += 1u;
         if (trace_occluded(context, origin, segment, far, seed)) return;
     }
-<<<<<<< HEAD
-    asked.light = path.throughput * bsdf.value * light.radiance * (weight / light.pdf);
-    if (!leg.is_aside) asked.intensity = path.probability * light.intensity;
-    asked.way = Way(path.way.scatterings + 1u, false, path.way.diffuse_share);
-=======
     vec3 arriving = path.throughput * bsdf.value * light.radiance * (weight / light.pdf);
-    const vec3 intensity = path.probability * light.intensity;
+    const vec3 intensity = leg.is_aside ? vec3(0.0f) : path.probability * light.intensity;
     Way way = Way(path.way.scatterings + 1u, false, path.way.diffuse_share);
->>>>>>> 27d31631be6a77ab52bf8daf439f7448114c22ff
     if (keeps(context.view, KeepsDiffuse) && path.way.scatterings == 0u) {
         way.diffuse_share = diffuse_share(bsdf);
     }
