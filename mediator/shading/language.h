@@ -54,7 +54,8 @@
 #include <glm/vec4.hpp>
 
 // A source that defines SHADING_KERNEL, a name, before it includes any shared file has all of their functions
-// for itself, compiled for scenes with no other features than SHADING_FEATURES. Records are everyone's.
+// for itself, compiled for scenes with no other features than SHADING_FEATURES; with SHADING_HAS_ALL_FEATURES
+// for those that have them all. Records are everyone's.
 #define RECORDS_BEGIN namespace tessera::shading {
 #define RECORDS_END }
 #ifdef SHADING_KERNEL

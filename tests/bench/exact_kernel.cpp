@@ -17,6 +17,7 @@
 #define FEATURES_OF(scene) FEATURES_##scene
 #define FEATURES(scene) FEATURES_OF(scene)
 #define SHADING_FEATURES (ORDINARY_FEATURES | FEATURES(SHADING_KERNEL))
+#define SHADING_HAS_ALL_FEATURES
 #include "backends/embree/kernel_text.h"
 #include "tests/bench/exact_kernels.h"
 

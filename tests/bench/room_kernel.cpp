@@ -1,3 +1,4 @@
+#define SHADING_HAS_ALL_FEATURES
 #define SHADING_KERNEL room
 #define SHADING_FEATURES (shading::FeatureTextures | shading::FeatureMeshLights | shading::FeatureLightTree)
 #include "backends/embree/kernel_text.h"

@@ -1,3 +1,4 @@
+#define SHADING_HAS_ALL_FEATURES
 #define SHADING_KERNEL studio
 #define SHADING_FEATURES \
     (shading::FeatureMeshLights | shading::FeatureCoat | shading::FeatureExtras | shading::FeatureLightTree)
