@@ -375,14 +375,18 @@ RECORDS_END
 
 SHADING_BEGIN
 
-// What a kernel was not compiled for is not there: the compiler sees it. What it was compiled for is in most
-// scenes not there either, and is kept out of the way of what is.
+// What most scenes have some of.
+inline constexpr uint CommonFeatures = FeatureTextures | FeatureSpecular | FeatureMeshLights | FeatureEnvironment |
+                                       FeatureLightTree;
+
+// What a kernel was not compiled for is not there: the compiler sees it. What it was compiled for and is not
+// common is kept out of the way of what is.
 constexpr uint operator&(FeatureBits features, uint asked) {
     const uint found = features.bits & (asked & SHADING_FEATURES);
 #ifdef SHADING_HAS_ALL_FEATURES
     return found;
 #else
-    return uint(__builtin_expect(found, 0));
+    return (asked & CommonFeatures) != 0u ? found : uint(__builtin_expect(found, 0));
 #endif
 }
 
