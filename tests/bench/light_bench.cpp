@@ -1,6 +1,6 @@
 // Many lights: what the light tree gains over uniform choice, and what it costs. Light in fog: what places
 // that are chosen by the angle from a light gain over free flight alone.
-//   tessera_light_bench [fog]
+//   tessera_light_bench [fog|trees]
 // 10,000 glowing triangles of 0.1 m over a ground of 100 m, of all orientations, one-sided, with powers over
 // two orders of magnitude. Uniform choice is the same tree with equal expectations, so its time is not its
 // own: it is given the time of a scene in which one of the triangles glows and the others are black.
@@ -219,8 +219,9 @@ void run_builds() {
 }  // namespace tessera::embree
 
 int main(int count, char** arguments) {
-    tessera::embree::run_fogs();
-    if (count > 1 && std::string_view(arguments[1]) == "fog") return 0;
+    const std::string_view part = count > 1 ? arguments[1] : "";
+    if (part != "trees") tessera::embree::run_fogs();
+    if (part == "fog") return 0;
     tessera::embree::run_builds();
     tessera::embree::run();
 }
