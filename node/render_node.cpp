@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <thread>
 
+#include "mediator/base/task_thread.h"
 #include "mediator/scene/validate.h"
 #include "mediator/wire/envelope.h"
 #include "node/blob_cache.h"
 #include "node/outbox.h"
-#include "mediator/base/task_thread.h"
 #include "node/worker_pool.h"
 
 namespace tessera::node {
@@ -200,7 +200,7 @@ class RenderNode::Loop {
     Outbox outbox_;
     TaskThread builder_;
     TaskThread cache_thread_;  // the disk's: no build waits for what is being saved
-    WorkerPool workers_;  // ends first: a build waits for what is being rendered
+    WorkerPool workers_;       // ends first: a build waits for what is being rendered
 };
 
 RenderNode::RenderNode(std::unique_ptr<net::Channel> channel, std::unique_ptr<backend::Backend> backend,

@@ -18,8 +18,8 @@ TraceContext start(const Rays& rays, std::uint32_t seed) {
 
 }  // namespace
 
-bool trace_closest(const Rays& rays, const shading::Ray& ray, std::uint32_t seed,
-                   const shading::Skip& skip, shading::Hit& hit) {
+bool trace_closest(const Rays& rays, const shading::Ray& ray, std::uint32_t seed, const shading::Skip& skip,
+                   shading::Hit& hit) {
     TraceContext started = start(rays, seed);
     started.skip = skip;
     RTCRayHit query;

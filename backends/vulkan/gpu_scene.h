@@ -37,8 +37,8 @@ class GpuScene final {
     BlobBuffers blobs_;
     BvhPool bvh_;
     std::optional<PlainPool> plain_;
-    DeviceTable textures_, materials_, extras_, shaders_, meshes_, mesh_steps_, places_, motions_, bodies_, instances_, lights_,
-        emitters_, light_nodes_, sums_, srgb_, energy_, scene_, bounds_;
+    DeviceTable textures_, materials_, extras_, shaders_, meshes_, mesh_steps_, places_, motions_, bodies_,
+        instances_, lights_, emitters_, light_nodes_, sums_, srgb_, energy_, scene_, bounds_;
     std::uint32_t features_ = 0, instance_count_ = 0;
 };
 

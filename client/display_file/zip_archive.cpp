@@ -34,8 +34,8 @@ Expected<ZipArchive> ZipArchive::open(std::span<const std::byte> bytes, const st
     zip_error_t error;
     zip_error_init(&error);
     zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
-    std::unique_ptr<zip, Closer> archive(
-        source != nullptr ? zip_open_from_source(source, ZIP_RDONLY, &error) : nullptr);
+    std::unique_ptr<zip, Closer> archive(source != nullptr ? zip_open_from_source(source, ZIP_RDONLY, &error)
+                                                           : nullptr);
     const std::string why = zip_error_strerror(&error);
     zip_error_fini(&error);
     if (!archive) {

@@ -9,7 +9,6 @@
 #include <memory>
 #include <optional>
 
-#include "mediator/view/placed_cameras.h"
 #include "client/live_session.h"
 #include "client/tools/cluster_options.h"
 #include "client/tools/interrupts.h"
@@ -19,6 +18,7 @@
 #include "master/filter/catalog.h"
 #include "mediator/filter/choice.h"
 #include "mediator/picture/tone_map.h"
+#include "mediator/view/placed_cameras.h"
 
 namespace tessera::tools {
 

@@ -7,8 +7,8 @@
 #include "master/filter/fdf.h"
 #include "master/filter/gauss.h"
 #include "master/filter/guided.h"
-#include "master/filter/nlm.h"
 #include "master/filter/nfor.h"
+#include "master/filter/nlm.h"
 #include "master/filter/none.h"
 #include "master/filter/pixel.h"
 #include "master/filter/psvgf.h"
@@ -18,17 +18,8 @@ namespace tessera::filter {
 
 std::span<const FilterEntry> catalog() {
     static const std::array Table{
-        none_entry(),
-        pixel_entry(),
-        fdf_entry(),
-        psvgf_entry(),
-        gauss_entry(),
-        bilateral_entry(),
-        eaw_entry(),
-        nlm_entry(),
-        guided_entry(),
-        statmc_entry(),
-        nfor_entry(),
+        none_entry(), pixel_entry(), fdf_entry(),    psvgf_entry(),  gauss_entry(), bilateral_entry(),
+        eaw_entry(),  nlm_entry(),   guided_entry(), statmc_entry(), nfor_entry(),
     };
     return Table;
 }

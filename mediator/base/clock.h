@@ -19,6 +19,8 @@ class SteadyClock final : public Clock {
     TimePoint now() const override { return std::chrono::steady_clock::now(); }
 };
 
-inline double seconds(Duration duration) { return std::chrono::duration<double>(duration).count(); }
+inline double seconds(Duration duration) {
+    return std::chrono::duration<double>(duration).count();
+}
 
 }  // namespace tessera

@@ -14,7 +14,7 @@ enum class ErrorCode {
     Refused,       // the peer or a rule says no
     Io,            // the operating system failed to read or write
     OutOfMemory,
-    Internal,      // a broken promise of our own
+    Internal,  // a broken promise of our own
 };
 
 // Cannot go on here. The message is a lower-case phrase that names object, cause and remedy.

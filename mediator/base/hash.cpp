@@ -42,7 +42,8 @@ Blake2b::Blake2b() : state_(std::make_unique<State>()) {
 Blake2b::~Blake2b() = default;
 
 void Blake2b::update(std::span<const std::byte> data) {
-    crypto_generichash_update(&state_->blake, reinterpret_cast<const unsigned char*>(data.data()), data.size());
+    crypto_generichash_update(&state_->blake, reinterpret_cast<const unsigned char*>(data.data()),
+                              data.size());
 }
 
 Hash256 Blake2b::finish() {
@@ -65,7 +66,9 @@ Hash128 truncated(const Hash256& hash) {
     return result;
 }
 
-std::string to_hex(const Hash256& hash) { return hex(hash.bytes); }
+std::string to_hex(const Hash256& hash) {
+    return hex(hash.bytes);
+}
 
 std::string to_hex(const Hash128& hash) {
     std::array<std::byte, 16> bytes{};

@@ -15,7 +15,7 @@ struct Id {
     friend constexpr auto operator<=>(Id, Id) = default;
 };
 
-using ObjectId = Id<struct ObjectTag>;    // below 2^32, so that it fits a film plane
+using ObjectId = Id<struct ObjectTag>;  // below 2^32, so that it fits a film plane
 using ViewId = Id<struct ViewTag>;
 using UnitId = Id<struct UnitTag>;
 using NodeId = Id<struct NodeTag>;
@@ -34,5 +34,7 @@ struct Version {
 
 template <class Tag>
 struct std::hash<tessera::Id<Tag>> {
-    std::size_t operator()(tessera::Id<Tag> id) const noexcept { return std::hash<std::uint64_t>{}(id.value); }
+    std::size_t operator()(tessera::Id<Tag> id) const noexcept {
+        return std::hash<std::uint64_t>{}(id.value);
+    }
 };

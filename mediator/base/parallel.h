@@ -11,9 +11,7 @@ namespace tessera {
 // Runs body(i) for i in [0, count) in the given arena; the arena is always passed in, never global.
 template <class Body>
 void parallel_for(tbb::task_arena& arena, std::size_t count, const Body& body) {
-    arena.execute([&] {
-        tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { body(i); });
-    });
+    arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { body(i); }); });
 }
 
 }  // namespace tessera

@@ -19,7 +19,9 @@ class CounterRandom {
 
     constexpr std::uint64_t bits() { return mix(key_ + 0x9e3779b97f4a7c15ull * ++counter_); }
     constexpr double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }  // [0, 1)
-    constexpr std::uint64_t below(std::uint64_t n) { return bits() % n; }  // n far below 2^64: bias < n / 2^64
+    constexpr std::uint64_t below(std::uint64_t n) {
+        return bits() % n;
+    }  // n far below 2^64: bias < n / 2^64
 
   private:
     std::uint64_t key_;

@@ -12,7 +12,8 @@ class BlockStack {
   public:
     void push(FilmTile block);
     std::vector<FilmTile> take();  // ascending; leaves the stack empty
-    FilmTile recycled(Rect rect, SampleBlock block, ChannelSet channels);  // a tile to fill, from spent memory
+    FilmTile recycled(Rect rect, SampleBlock block,
+                      ChannelSet channels);  // a tile to fill, from spent memory
 
   private:
     std::vector<FilmTile> blocks_;

@@ -16,7 +16,9 @@ struct SampleBlock {
     constexpr std::uint64_t count() const { return std::uint64_t{1} << level; }
     constexpr std::uint64_t end() const { return first + count(); }
     constexpr bool is_aligned() const { return level < 48 && first % count() == 0; }
-    constexpr bool contains(const SampleBlock& other) const { return first <= other.first && other.end() <= end(); }
+    constexpr bool contains(const SampleBlock& other) const {
+        return first <= other.first && other.end() <= end();
+    }
     constexpr SampleBlock sibling() const { return {first ^ count(), level}; }
     constexpr SampleBlock parent() const { return {first & ~count(), level + 1}; }
     friend constexpr auto operator<=>(const SampleBlock&, const SampleBlock&) = default;

@@ -76,15 +76,16 @@ WITH_CONTEXT inline Leg leg_of(IN(Context) context, IN(Path) path, IN(Ray) ray, 
 inline void go_through(IN(Scene) scene, INOUT(Course) course, INOUT(uvec4) inside, IN(Hit) hit, IN(Ray) ray,
                        float time) {
     const Boundary boundary = boundary_at(scene, hit, ray.direction, time);
-    const float tolerance = 2.0f * dot(abs(boundary.normal), boundary.error) /
-                                abs(dot(boundary.normal, ray.direction)) +
-                            rounding_bound(16.0f) * hit.distance;
+    const float tolerance =
+        2.0f * dot(abs(boundary.normal), boundary.error) / abs(dot(boundary.normal, ray.direction)) +
+        rounding_bound(16.0f) * hit.distance;
     const bool at_another = course.skip.instance != NoInstance && hit.distance <= course.skip.far;
     course.begun = hit.distance;
     course.start = boundary.position;
     course.number += 1u;
     course.enters = boundary.enters;
-    course.skip = Skip(hit.instance, greater_of(hit.distance - tolerance, NearestHit), hit.distance + tolerance);
+    course.skip =
+        Skip(hit.instance, greater_of(hit.distance - tolerance, NearestHit), hit.distance + tolerance);
     if (!at_another) return;
     // Two that lie in each other would be met in turn for ever.
     inside = crossed(scene, inside, hit.instance, boundary.enters);

@@ -125,9 +125,9 @@ inline LightSample sample_mesh_light(IN(Scene) scene, IN(Emitter) emitter, float
 inline LightSample sample_instance_light(IN(Scene) scene, IN(Emitter) emitter, float probability,
                                          IN(Instance) instance, IN(Surface) surface, vec2 u) {
     Instance moved;
-    KEPT(Instance) here = stands_still(scene, instance.motion)
-                              ? instance
-                              : (moved = moved_instance(scene, instance, surface.time));
+    const bool still = stands_still(scene, instance.motion);
+    if (!still) moved = moved_instance(scene, instance, surface.time);
+    KEPT(Instance) here = still ? instance : moved;
     return sample_mesh_light(scene, emitter, probability, here,
                              mesh_at(scene, scene.meshes.items[instance.mesh], surface.time),
                              scene.materials.items[instance.material], surface, u);
@@ -177,9 +177,9 @@ inline LightSample sample_chosen(IN(Scene) scene, uint layers, IN(Surface) surfa
                                  IN(LightSource) light, float probability, vec2 u) {
     if (!is_seen(scene, light, layers)) return no_light();
     LightSource moved;
-    KEPT(LightSource) here = stands_still(scene, light.motion)
-                                 ? light
-                                 : (moved = moved_source(scene, light, surface.time));
+    const bool still = stands_still(scene, light.motion);
+    if (!still) moved = moved_source(scene, light, surface.time);
+    KEPT(LightSource) here = still ? light : moved;
     return sample_emitter(scene, emitter, here, probability, surface, u);
 }
 

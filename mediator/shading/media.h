@@ -56,9 +56,7 @@ inline vec3 exponentials(vec3 x) {
 inline float absorbed_share(float x) {
     if (x > 0.25f) return 1.0f - exponential(-x);
     const float p = 1.0f - x * (1.0f / 6.0f) * (1.0f - x * (1.0f / 7.0f));
-    return x * (1.0f - 0.5f * x *
-                           (1.0f - x * (1.0f / 3.0f) *
-                                       (1.0f - 0.25f * x * (1.0f - 0.2f * x * p))));
+    return x * (1.0f - 0.5f * x * (1.0f - x * (1.0f / 3.0f) * (1.0f - 0.25f * x * (1.0f - 0.2f * x * p))));
 }
 
 // -log(1 - v) for v in [0, 1): the optical depth at which a share v is gone. By the area tangent where it is
@@ -181,8 +179,7 @@ inline vec3 cell_emission(IN(Scene) scene, IN(Body) body, IN(BoxRay) ray, float 
     const float place = thin ? near + choice * (far - near) : near + depth / grey_rate;
     const float density =
         thin ? 1.0f / (far - near) : grey_rate * scattering_density(LegScatters, depth, whole);
-    const vec3 passed =
-        exponentials(-mean_extinction(scene, body, ray, near, place) * (place - near));
+    const vec3 passed = exponentials(-mean_extinction(scene, body, ray, near, place) * (place - near));
     const vec3 texel = body_texel(scene, body, BodyEmission, ray.origin + place * ray.direction);
     return body.emission * texel * passed / density;
 }
@@ -213,8 +210,8 @@ inline Leg leg_through_cells(IN(Scene) scene, IN(Body) body, IN(BoxRay) ray, flo
             if (pass == 1u && emits) {
                 float choice = question.place + float(cell) * GoldenShare;
                 choice -= floor(choice);
-                leg.emitted += exponentials(-depth) *
-                               cell_emission(scene, body, ray, near, far, rate, choice);
+                leg.emitted +=
+                    exponentials(-depth) * cell_emission(scene, body, ray, near, far, rate, choice);
             }
             const vec3 after = depth + rate * (far - near);
             const bool scatters_here =
@@ -256,8 +253,8 @@ inline Leg leg_in_body(IN(Scene) scene, IN(Body) body, uint instance, vec3 origi
     if (!scatters) question.kind = LegPasses;
     if (question.kind == LegPasses) question.aside = -1.0f;
     if ((scene.features & FeatureMediaTextures) != 0u && body.textured != 0u) {
-        const BoxRay ray = box_ray(instance_at(scene, scene.instances.items[instance], time), body, origin,
-                                   direction);
+        const BoxRay ray =
+            box_ray(instance_at(scene, scene.instances.items[instance], time), body, origin, direction);
         return leg_through_cells(scene, body, ray, length, question);
     }
     return leg_through_even(body, length, question);
@@ -271,8 +268,8 @@ inline Leg leg_through(IN(Scene) scene, uvec4 inside, vec3 origin, vec3 directio
         return clear_leg();
     }
     const int index = scene.instances.items[inside.x].body;
-    Leg leg = leg_in_body(scene, scene.bodies.items[index], inside.x, origin, direction, length, question,
-                          time);
+    Leg leg =
+        leg_in_body(scene, scene.bodies.items[index], inside.x, origin, direction, length, question, time);
     leg.anisotropy = scene.bodies.items[index].anisotropy;
     return leg;
 }

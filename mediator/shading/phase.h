@@ -24,8 +24,7 @@ inline vec3 sample_phase(float g, vec2 u) {
     const float a = abs(g);
     const float width = 1.0f - a + 2.0f * a * u.x;
     const float ratio = (1.0f - a) * (1.0f + a) / width;
-    const float versine =
-        lesser_of((1.0f - a) * (1.0f - u.x) * (ratio + (1.0f - a)) / width, 2.0f);
+    const float versine = lesser_of((1.0f - a) * (1.0f - u.x) * (ratio + (1.0f - a)) / width, 2.0f);
     const float across = sqrt(versine * (2.0f - versine));
     const float along = 1.0f - versine;
     const float angle = 2.0f * Pi * u.y;

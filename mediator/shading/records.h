@@ -193,7 +193,8 @@ struct Body {
     float index;  // of refraction; 0: without bound; -1: that of what is around it
     TextureUse textures[BodyTextureCount];
 };
-inline constexpr uint MaxBodies = 4u;  // that a place is in at once; those of the least priority are forgotten
+// That a place is in at once; those of the least priority are forgotten.
+inline constexpr uint MaxBodies = 4u;
 
 inline constexpr uint LightPoint = 0u, LightSpot = 1u, LightDirectional = 2u, LightMesh = 3u,
                       LightEnvironment = 4u, LightSphere = 5u, LightQuad = 6u;
@@ -376,8 +377,8 @@ RECORDS_END
 SHADING_BEGIN
 
 // What most scenes have some of.
-inline constexpr uint CommonFeatures = FeatureTextures | FeatureSpecular | FeatureMeshLights | FeatureEnvironment |
-                                       FeatureLightTree;
+inline constexpr uint CommonFeatures =
+    FeatureTextures | FeatureSpecular | FeatureMeshLights | FeatureEnvironment | FeatureLightTree;
 
 // What a kernel was not compiled for is not there: the compiler sees it. What it was compiled for and is not
 // common is kept out of the way of what is.

@@ -28,8 +28,8 @@ inline uint next_light_node(IN(Scene) scene, uint at) {
     return 0u;
 }
 
-WITH_CONTEXT inline void add_shape(IN(Context) context, INOUT(Path) path, IN(Ray) ray, float near,
-                                   float far, IN(Emitter) emitter, IN(LightSource) light) {
+WITH_CONTEXT inline void add_shape(IN(Context) context, INOUT(Path) path, IN(Ray) ray, float near, float far,
+                                   IN(Emitter) emitter, IN(LightSource) light) {
     if (!is_seen(context.scene, light, context.view.layers)) return;
     const ShapeHit hit =
         light.kind == LightSphere ? hit_sphere(light, ray) : hit_quad(light, emitter.inverse_root_area, ray);

@@ -31,8 +31,8 @@ struct BranchStack {
 };
 
 inline Branch root_branch(IN(Ray) camera_ray, IN(Cone) cone) {
-    return Branch(camera_ray, cone, vec3(1.0f), 1.0f, 0u, 0u, Chain(false, -1), nowhere(), new_course(camera_ray.origin), false,
-                  true);
+    return Branch(camera_ray, cone, vec3(1.0f), 1.0f, 0u, 0u, Chain(false, -1), nowhere(),
+                  new_course(camera_ray.origin), false, true);
 }
 
 // `cone`, `inside`: the parent's where it meets the surface; `channel`: that is followed where they part.

@@ -251,12 +251,11 @@ inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
 inline Surface surface_on(IN(Scene) scene, IN(Instance) instance, IN(Hit) hit, vec3 direction, float width,
                           uvec4 inside, float time) {
     Instance moved;
-    KEPT(Instance) here = stands_still(scene, instance.motion)
-                              ? instance
-                              : (moved = moved_instance(scene, instance, time));
-    Surface surface =
-        surface_of(scene, here, mesh_at(scene, scene.meshes.items[instance.mesh], time),
-                   scene.materials.items[instance.material], hit, direction, width, inside);
+    const bool still = stands_still(scene, instance.motion);
+    if (!still) moved = moved_instance(scene, instance, time);
+    KEPT(Instance) here = still ? instance : moved;
+    Surface surface = surface_of(scene, here, mesh_at(scene, scene.meshes.items[instance.mesh], time),
+                                 scene.materials.items[instance.material], hit, direction, width, inside);
     surface.time = time;
     return surface;
 }

@@ -203,11 +203,11 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(
                 // At once: a surface is large, and to copy it takes longer than to skip all that it does not
                 // have.
                 const Surface surface =
-                    in_medium
-                        ? scattering_place(course.start + along * ray.direction, ray.direction, leg.anisotropy,
-                                           context.scene.instances.items[path.inside.x].object, context.time)
-                        : make_surface(context.scene, hit, ray.direction, path.cone.width, path.inside,
-                                       context.time);
+                    in_medium ? scattering_place(
+                                    course.start + along * ray.direction, ray.direction, leg.anisotropy,
+                                    context.scene.instances.items[path.inside.x].object, context.time)
+                              : make_surface(context.scene, hit, ray.direction, path.cone.width, path.inside,
+                                             context.time);
                 tell_hit(context, surface, path.throughput);
                 const bool on_the_way = is_aside || (leg.scatters && stage == StageBranch);
                 if (first && !on_the_way) {

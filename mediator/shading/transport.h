@@ -140,8 +140,8 @@ struct Connection {
 };
 
 inline Connection no_connection() {
-    return Connection(false, vec3(0.0f), vec3(0.0f), false, direct_way(), 0u,
-                      Ray(vec3(0.0f), vec3(0.0f)), false, nowhere());
+    return Connection(false, vec3(0.0f), vec3(0.0f), false, direct_way(), 0u, Ray(vec3(0.0f), vec3(0.0f)),
+                      false, nowhere());
 }
 
 WITH_CONTEXT inline void receive_light(IN(Context) context, INOUT(PathSample) found, vec3 light,

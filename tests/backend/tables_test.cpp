@@ -194,7 +194,8 @@ TEST(Tables, TexturesAreSeenAsWideAsAPathIs) {
     const auto seen = [&](float width) {
         const shading::Hit hit{
             .instance = 0, .triangle = 0, .barycentric = {8.0f / 64, 8.5f / 64}, .distance = 1.0f};
-        return shading::make_surface(scene, hit, {0.0f, 0.0f, -1.0f}, width, shading::nowhere(), 0.0f).albedo.x;
+        return shading::make_surface(scene, hit, {0.0f, 0.0f, -1.0f}, width, shading::nowhere(), 0.0f)
+            .albedo.x;
     };
     const float point = seen(0.0f);
     EXPECT_TRUE(std::abs(point - 0.5f) > 0.49f) << point;

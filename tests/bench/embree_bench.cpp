@@ -62,7 +62,8 @@ std::vector<RTCRayHit> bounce_rays() {
         const glm::vec3 direction(query.ray.dir_x, query.ray.dir_y, query.ray.dir_z);
         const shading::Hit hit{
             query.hit.instID[0], query.hit.primID, {query.hit.u, query.hit.v}, query.ray.tfar};
-        const shading::Surface surface = shading::make_surface(scene, hit, direction, 0.0f, shading::nowhere(), 0.0f);
+        const shading::Surface surface =
+            shading::make_surface(scene, hit, direction, 0.0f, shading::nowhere(), 0.0f);
         const glm::vec2 u = shading::sample_pair({index, shading::hash_u32(index)}, 0);
         ++index;
         const glm::vec3 out = shading::to_world(surface, shading::sample_cosine_hemisphere(u));

@@ -1,6 +1,8 @@
 #define SHADING_HAS_ALL_FEATURES
 #define SHADING_KERNEL still
-#define SHADING_FEATURES (shading::FeatureTextures | shading::FeatureSpecular | shading::FeatureEnvironment | shading::FeatureEnvironmentMap)
+#define SHADING_FEATURES                                                                 \
+    (shading::FeatureTextures | shading::FeatureSpecular | shading::FeatureEnvironment | \
+     shading::FeatureEnvironmentMap)
 #include "backends/embree/kernel_text.h"
 #include "tests/bench/exact_kernels.h"
 namespace tessera::embree {

@@ -60,8 +60,8 @@ void views([[maybe_unused]] const Case& c, [[maybe_unused]] const Inputs& x, std
 }
 
 using List = void(const Case& c, const Inputs& x, std::size_t count, Outputs* y);
-constexpr List* Lists[FunctionListCount] = {numbers, lobes,    textures, surfaces, lights, found,
-                                            steps,   branches, samples,  shaders,  views,  looks, media};
+constexpr List* Lists[FunctionListCount] = {numbers,  lobes,   textures, surfaces, lights, found, steps,
+                                            branches, samples, shaders,  views,    looks,  media};
 
 }  // namespace
 }  // namespace shading

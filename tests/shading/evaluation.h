@@ -6,10 +6,9 @@
 namespace tessera {
 
 // The lists in functions/, by number; shading.comp and CMakeLists.txt count the same.
-inline constexpr const char* FunctionLists[] = {"numbers", "lobes",   "textures", "surfaces",
-                                                "lights",  "found",   "steps",    "branches",
-                                                "samples", "shaders", "views",    "looks",
-                                                "media"};
+inline constexpr const char* FunctionLists[] = {"numbers", "lobes", "textures", "surfaces", "lights",
+                                                "found",   "steps", "branches", "samples",  "shaders",
+                                                "views",   "looks", "media"};
 inline constexpr std::uint32_t FunctionListCount = 13;
 
 // Results of all functions of a list: from shading::World and `count` shading::Inputs to shading::Outputs,

@@ -10,8 +10,8 @@ SHADING_BEGIN
 inline Context in_media(IN(Case) c) {
     Context context = c.context;
     if (context.scene.features != 0u) {
-        context.scene.features = context.scene.features | FeatureMedia | FeatureOpenMedia | FeatureScattering |
-                                 FeatureMediaTextures;
+        context.scene.features = context.scene.features | FeatureMedia | FeatureOpenMedia |
+                                 FeatureScattering | FeatureMediaTextures;
     }
     return context;
 }

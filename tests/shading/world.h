@@ -10,7 +10,8 @@ ARRAY_OF(View, ViewArray, 8);
 
 // Scenes and views that functions are tried in (make_world in world_maker.h).
 inline constexpr uint SceneCount = 2u, ViewCount = 16u, LightCount = 8u, TreeLightCount = 6u,
-                      TriangleEmitters = 20u, LightNodes = 36u, TextureCount = 8u, ShaderCount = 4u, BodyCount = 4u;
+                      TriangleEmitters = 20u, LightNodes = 36u, TextureCount = 8u, ShaderCount = 4u,
+                      BodyCount = 4u;
 struct World {
     SceneArray scenes;  // the second has no lights and no map
     ViewArray views;
@@ -45,8 +46,7 @@ inline Hit hit_by(IN(Scene) scene, uint bits) {
 inline bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, IN(Skip) skip, OUT(Hit) hit) {
     const uint bits = hash_u32(seed);
     hit = hit_by(context.scene, bits);
-    return is_ray(ray.origin, ray.direction) && (bits & 7u) != 0u &&
-           !skips(skip, hit.instance, hit.distance);
+    return is_ray(ray.origin, ray.direction) && (bits & 7u) != 0u && !skips(skip, hit.instance, hit.distance);
 }
 
 inline bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed) {

@@ -79,14 +79,14 @@ inline Case make_case(IN(World) world, IN(Inputs) x) {
     made.emitter = made.context.scene.emitters.items[x.d % TriangleEmitters];
     made.receiver =
         Receiver(x.wo, x.c % 3u == 0u ? vec3(0.0f) : x.n, x.c % 5u == 0u ? 4.0f * x.wi : vec3(0.0f));
-    made.surface = make_surface(made.context.scene, made.hit, x.n, x.c % 2u == 0u ? 0.0f : x.metallic, nowhere(),
-                                made.context.time);
+    made.surface = make_surface(made.context.scene, made.hit, x.n, x.c % 2u == 0u ? 0.0f : x.metallic,
+                                nowhere(), made.context.time);
     made.wo = to_local(made.surface, -x.n);
     made.path = path_in(x);
     made.way = Way(x.d % 4u, x.d % 5u == 0u, x.light);
     made.branch = Branch(made.ray, Cone(x.metallic, x.transmission), x.color, x.transmission, x.c % 64u,
-                         x.c % (MaxSpecularDepth + 1u), made.path.chain, nowhere(), new_course(made.ray.origin),
-                         false, x.c % 3u == 0u);
+                         x.c % (MaxSpecularDepth + 1u), made.path.chain, nowhere(),
+                         new_course(made.ray.origin), false, x.c % 3u == 0u);
     return made;
 }
 

@@ -261,7 +261,9 @@ std::vector<Body> make_bodies(Generator& random) {
                           .low = vec3(-1.0f),
                           .textured = i < 2u ? 1u : 0u,
                           .inverse_size = vec3(0.5f),
-                          .index = i == 0u ? -1.0f : i == 3u ? 0.0f : random.between(1.0f, 2.0f),
+                          .index = i == 0u   ? -1.0f
+                                   : i == 3u ? 0.0f
+                                             : random.between(1.0f, 2.0f),
                           .textures = {use_of(i < 2u ? 1 : -1, random), use_of(i == 1u ? 4 : -1, random),
                                        use_of(i == 0u ? 2 : -1, random)}});
     }

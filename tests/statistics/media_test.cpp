@@ -120,9 +120,9 @@ double seen_of(const Slab& slab, bool from_above) {
 }
 
 TEST(Media, ScatterOnceInASlabAsTheClosedFormSays) {
-    for (const Slab slab : {Slab{0.3f, 0.7f, 0.0f, 1.0f}, Slab{0.0f, 2.0f, 0.6f, 0.7f},
-                            Slab{1.0f, 0.2f, -0.5f, 2.0f}, Slab{0.0f, 1e-6f, 0.3f, 1.0f},
-                            Slab{0.0f, 1e6f, 0.0f, 1.0f}}) {
+    for (const Slab slab :
+         {Slab{0.3f, 0.7f, 0.0f, 1.0f}, Slab{0.0f, 2.0f, 0.6f, 0.7f}, Slab{1.0f, 0.2f, -0.5f, 2.0f},
+          Slab{0.0f, 1e-6f, 0.3f, 1.0f}, Slab{0.0f, 1e6f, 0.0f, 1.0f}}) {
         Model model;
         model.filled_with({.absorption = vec3(slab.absorption),
                            .scattering = vec3(slab.scattering),
@@ -135,8 +135,7 @@ TEST(Media, ScatterOnceInASlabAsTheClosedFormSays) {
         for (const bool above : {true, false}) {
             const double expected = seen_of(slab, above);
             if (expected < 1e-20) continue;
-            view::View view =
-                above ? from_above() : small_view({0, 0, -10}, 1e-4, 16, up);
+            view::View view = above ? from_above() : small_view({0, 0, -10}, 1e-4, 16, up);
             view.max_bounces = 0;
             const Mean once = mean_of(world, whitted(view), 64, red);
             EXPECT_NEAR(once.value, expected, 4.5 * once.standard_error + 2e-5 * expected);
@@ -180,7 +179,8 @@ TEST(Media, ScatterOftenAsChandrasekharsHalfSpaceDoes) {
             const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), std::acos(cosine), glm::dvec3(1, 0, 0));
             const glm::dvec3 eye = glm::dvec3(turn * glm::dvec4(0, 0, 5, 1));
             const Mean mean = mean_of(world, small_view(eye, 1e-4, 16, turn), 512, red);
-            const double expected = 1.0 - chandrasekhar_h(double(albedo), cosine) * std::sqrt(1.0 - double(albedo));
+            const double expected =
+                1.0 - chandrasekhar_h(double(albedo), cosine) * std::sqrt(1.0 - double(albedo));
             EXPECT_NEAR(mean.value, expected, 4.5 * mean.standard_error + 2e-4) << albedo << " " << cosine;
             EXPECT_LE(mean.standard_error, 0.003 * expected + 0.001);
         }
@@ -262,8 +262,7 @@ void expect_agreement(Model& model) {
 }
 
 void add_fog(Model& model, float absorption = 0.1f, float scattering = 0.6f) {
-    model.filled_with(
-        {.absorption = vec3(absorption), .scattering = vec3(scattering), .anisotropy = 0.4f});
+    model.filled_with({.absorption = vec3(absorption), .scattering = vec3(scattering), .anisotropy = 0.4f});
     model.box(NoMaterial, {-2, -2, -2}, {2, 2, 2});
     model.filled_with_nothing();
 }
@@ -324,7 +323,8 @@ TEST(NestedMedia, TheEyeMayBeInSeveral) {
     Model model;
     float size = 1.0f;
     double expected = 0.0;
-    for (int i = 0; i < 6; ++i) {  // more than are kept: the innermost count most, and are the last to be lost
+    for (int i = 0; i < 6;
+         ++i) {  // more than are kept: the innermost count most, and are the last to be lost
         model.filled_with({.absorption = vec3(0.1f * float(i + 1)), .priority = 6 - i});
         model.box(NoMaterial, vec3(-size), vec3(size));
         expected += 0.1 * (i + 1) * (i < 4 ? (i == 0 ? 1.0 : 0.5 * double(size)) : 0.0);
@@ -368,7 +368,10 @@ TEST(Media, FogMayStandOnTheFloor) {
             model.filled_with({.absorption = vec3(0.5f)});
             model.box(NoMaterial, {-30, -30, height}, {30, 30, height + 1.0f});
             model.filled_with_nothing();
-            model.floor(model.material({.base_color = {0, 0, 0, 1}, .emission = vec3(2.0f), .index_of_refraction = 1.0f}), 100.0f, height);
+            model.floor(
+                model.material(
+                    {.base_color = {0, 0, 0, 1}, .emission = vec3(2.0f), .index_of_refraction = 1.0f}),
+                100.0f, height);
             const World& world = model.build();
             const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), angle, glm::dvec3(1, 0, 0));
             const glm::dvec3 eye = glm::dvec3(turn * glm::dvec4(0, 0, 3, 1)) + glm::dvec3(0.01, 0.02, height);
@@ -459,7 +462,8 @@ TEST(Media, CoverTransparentBackgrounds) {
         view::View view = from_above();
         view.transparent_background = true;
         for (const view::View& looked : {view, whitted(view)}) {
-            const Mean alpha = mean_of(world, looked, 256, [](const PathSample& s) { return double(s.alpha); });
+            const Mean alpha =
+                mean_of(world, looked, 256, [](const PathSample& s) { return double(s.alpha); });
             EXPECT_NEAR(alpha.value, -std::expm1(-2.0 * (0.3 + double(scattering))),
                         4.5 * alpha.standard_error + 1e-6);
         }

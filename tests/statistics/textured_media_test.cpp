@@ -78,7 +78,8 @@ double depth_along(const Lattice& lattice, bool filters, const glm::dvec3& from,
     for (int i = 0; i < Steps; ++i) {
         const glm::dvec3 world = glm::mix(from, to, (i + 0.5) / Steps);
         const glm::dvec3 p = 0.5 * (back * world / glm::dvec3(Half) + 1.0);
-        if (glm::any(glm::lessThan(p, glm::dvec3(0))) || glm::any(glm::greaterThan(p, glm::dvec3(1)))) continue;
+        if (glm::any(glm::lessThan(p, glm::dvec3(0))) || glm::any(glm::greaterThan(p, glm::dvec3(1))))
+            continue;
         sum += filters ? lattice.filtered(p) : lattice.nearest(p);
     }
     return sum / Steps * glm::length(to - from);
@@ -89,16 +90,16 @@ TEST(TexturedMedia, AbsorbAsTheSumAlongTheRay) {
     for (const bool filters : {true, false}) {
         Model model;
         model.framed_by(Turned);
-        model.filled_with({.absorption = vec3(0.5f),
-                           .absorption_texture = add_texture(
-                               model, lattice,
-                               filters ? scene::TextureFilter::Linear : scene::TextureFilter::Nearest)});
+        model.filled_with(
+            {.absorption = vec3(0.5f),
+             .absorption_texture = add_texture(
+                 model, lattice, filters ? scene::TextureFilter::Linear : scene::TextureFilter::Nearest)});
         model.box(NoMaterial, -Half, Half);
         model.sky(vec3(1.0f));
         const World& world = model.build();
         EXPECT_TRUE(model.problems.empty());
-        for (const glm::dvec3 eye : {glm::dvec3(0, 0, 10), glm::dvec3(0.5, -0.8, 10), glm::dvec3(-1.1, 0.3, 10),
-                                     glm::dvec3(0.2, 0.1, 0.3)}) {
+        for (const glm::dvec3 eye : {glm::dvec3(0, 0, 10), glm::dvec3(0.5, -0.8, 10),
+                                     glm::dvec3(-1.1, 0.3, 10), glm::dvec3(0.2, 0.1, 0.3)}) {
             const Mean seen = mean_of(world, small_view(eye, 1e-6), 1, red);
             const double depth = 0.5 * depth_along(lattice, filters, eye, eye - glm::dvec3(0, 0, 20));
             EXPECT_GT(depth, 0.05);
@@ -132,18 +133,17 @@ TEST(TexturedMedia, WhatOnlyScattersIsInvisible) {
     for (std::size_t i = 0; i < lattice.values.size(); i += 3) lattice.values[i] = 0.0f;
     for (const bool filters : {true, false}) {
         Model model;
-        model.filled_with({.scattering = vec3(4.0f),
-                           .scattering_texture = add_texture(
-                               model, lattice,
-                               filters ? scene::TextureFilter::Linear : scene::TextureFilter::Nearest),
-                           .anisotropy = 0.3f});
+        model.filled_with(
+            {.scattering = vec3(4.0f),
+             .scattering_texture = add_texture(
+                 model, lattice, filters ? scene::TextureFilter::Linear : scene::TextureFilter::Nearest),
+             .anisotropy = 0.3f});
         model.box(NoMaterial, -Half, Half);
         model.sky(vec3(1.0f));
         const World& world = model.build();
         for (int c = 0; c < 3; ++c) {
-            const Mean mean = mean_of(world, small_view({0, 0, 10}, 0.5), 64, [&](const PathSample& s) {
-                return double(radiance_of(s)[c]);
-            });
+            const Mean mean = mean_of(world, small_view({0, 0, 10}, 0.5), 64,
+                                      [&](const PathSample& s) { return double(radiance_of(s)[c]); });
             EXPECT_NEAR(mean.value, 1.0, 4.5 * mean.standard_error + 1e-4) << filters << " " << c;
             EXPECT_LE(mean.standard_error, 0.02);
         }
@@ -173,7 +173,8 @@ TEST(TexturedMedia, ScatterOnceInBothRenderers) {
 
 // NaN and negative texels are no extinction; infinite ones let nothing through.
 TEST(TexturedMedia, TakeWhatIsNoNumberForNothing) {
-    constexpr float Nan = std::numeric_limits<float>::quiet_NaN(), Inf = std::numeric_limits<float>::infinity();
+    constexpr float Nan = std::numeric_limits<float>::quiet_NaN(),
+                    Inf = std::numeric_limits<float>::infinity();
     for (const float value : {Nan, -1.0f, -Inf, Inf}) {
         Model model;
         const Lattice lattice{1, 1, 3, {value, value, value}};

@@ -45,8 +45,7 @@ inline bool meets(IN(Instance) instance, IN(Triangle) t, vec3 origin, vec3 direc
     const vec3 other = cross(offset, edge1);
     const float v = dot(direction, other) / determinant;
     const float distance = dot(edge2, other) / determinant;
-    if (u < 0.0f || v < 0.0f || u + v > 1.0f || !(distance > near) || distance >= hit.distance)
-        return false;
+    if (u < 0.0f || v < 0.0f || u + v > 1.0f || !(distance > near) || distance >= hit.distance) return false;
     hit.barycentric = vec2(u, v);
     hit.distance = distance;
     return true;
@@ -57,8 +56,8 @@ inline bool trace_instance(IN(Context) context, uint index, IN(Instance) instanc
     bool found = false;
     for (uint i = 0u; i < mesh.triangle_count; ++i) {
         Hit hit = nearest;
-        if (!meets(instance, triangle_of(mesh, mesh.triangles.items[i]), origin, direction, skip.near,
-                   hit)) continue;
+        if (!meets(instance, triangle_of(mesh, mesh.triangles.items[i]), origin, direction, skip.near, hit))
+            continue;
         if (skips(skip, index, hit.distance)) continue;
         if (instance.alpha_tested != 0u && !stops_at(context.scene, index, i, hit.barycentric, seed))
             continue;
@@ -70,8 +69,8 @@ inline bool trace_instance(IN(Context) context, uint index, IN(Instance) instanc
     return found;
 }
 
-inline bool trace_all(IN(Context) context, vec3 origin, vec3 direction, float far, uint seed,
-                      IN(Skip) skip, OUT(Hit) hit) {
+inline bool trace_all(IN(Context) context, vec3 origin, vec3 direction, float far, uint seed, IN(Skip) skip,
+                      OUT(Hit) hit) {
     bool found = false;
     hit = Hit(0u, 0u, vec2(0.0f), far);
     for (uint i = 0u; i < context.scene.instance_count; ++i) {
@@ -84,8 +83,7 @@ inline bool trace_all(IN(Context) context, vec3 origin, vec3 direction, float fa
     return found;
 }
 
-inline bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, IN(Skip) skip,
-                          OUT(Hit) hit) {
+inline bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, IN(Skip) skip, OUT(Hit) hit) {
     return trace_all(context, ray.origin, ray.direction, infinity(), seed, skip, hit);
 }
 

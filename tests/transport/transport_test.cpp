@@ -117,7 +117,8 @@ void alpha_and_colors(SceneModel& model) {
 
 // Fog, with and without a floor in its boundary; smoke in slices; a body of glass; what glows.
 void media(SceneModel& model) {
-    model.filled_with({.absorption = glm::vec3(0.02f), .scattering = glm::vec3(0.1f, 0.15f, 0.2f), .anisotropy = 0.5f});
+    model.filled_with(
+        {.absorption = glm::vec3(0.02f), .scattering = glm::vec3(0.1f, 0.15f, 0.2f), .anisotropy = 0.5f});
     model.box({}, {-3, 0, -3}, {3, 3, 6});
     CounterRandom random(8);
     std::vector<std::uint32_t> texels;
@@ -129,7 +130,10 @@ void media(SceneModel& model) {
                        .scattering_texture = smoke,
                        .priority = 1});
     model.box({}, {-1.5f, 0.2f, -1}, {0, 1.5f, 0.5f});
-    model.filled_with({.emission = {1.0f, 0.5f, 0.2f}, .emission_texture = smoke, .absorption = glm::vec3(0.7f), .priority = 1});
+    model.filled_with({.emission = {1.0f, 0.5f, 0.2f},
+                       .emission_texture = smoke,
+                       .absorption = glm::vec3(0.7f),
+                       .priority = 1});
     model.box({}, {-0.5f, 1.7f, -0.5f}, {0.5f, 2.2f, 0.5f});
     model.filled_with_nothing();
     scene::Material body = test::glass(1.4f);
@@ -165,12 +169,10 @@ class TransportOnDevice : public VulkanTest, public testing::WithParamInterface<
         const Buffer view_record = make_buffer(device(), std::vector{view});
         constexpr std::uint32_t Count = Size * Size * SamplesPerPixel;
         const Buffer results(device(), Count * shading::MaxSampleValues * sizeof(float));
-        const ComputePipeline kernel(
-            device(),
-            {.name = "transport",
-             .code = shaders::transport_comp(),
-             .constants = {{0, backend::features_for(tables, view)}},
-             .push_bytes = sizeof(Arguments)});
+        const ComputePipeline kernel(device(), {.name = "transport",
+                                                .code = shaders::transport_comp(),
+                                                .constants = {{0, backend::features_for(tables, view)}},
+                                                .push_bytes = sizeof(Arguments)});
         run(device(), {.pipeline = &kernel,
                        .arguments = Arguments{record.address(), view_record.address(), results.address()},
                        .groups = {Count / 64},

@@ -68,7 +68,8 @@ RaySets ray_sets(const BenchScene& scene, std::shared_ptr<scene::BlobStore> blob
     std::vector<shading::Surface> seen;
     for (std::size_t i = 0; i < hits.size(); ++i) {
         if (hits[i].instance == shading::NoInstance) continue;
-        seen.push_back(shading::make_surface(host.scene(), hits[i], sets.primary[i].direction, 0.0f, shading::nowhere(), 0.0f));
+        seen.push_back(shading::make_surface(host.scene(), hits[i], sets.primary[i].direction, 0.0f,
+                                             shading::nowhere(), 0.0f));
     }
     CounterRandom random(9);
     for (const shading::Surface& at : seen) {

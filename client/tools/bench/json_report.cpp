@@ -132,9 +132,12 @@ std::string as_json(const BenchResults& results) {
                           {"sizes", sizes},
                           {"camera_path", path_json(scene.path)}});
     }
-    const Json object{{"software", results.software}, {"backend", results.backend},
-                      {"threads", results.threads},   {"seconds", results.seconds},
-                      {"filters", filters},           {"scenes", scenes},
+    const Json object{{"software", results.software},
+                      {"backend", results.backend},
+                      {"threads", results.threads},
+                      {"seconds", results.seconds},
+                      {"filters", filters},
+                      {"scenes", scenes},
                       {"speed", results.speed.scene.empty() ? Json(nullptr) : speed_json(results.speed)},
                       {"notes", results.notes}};
     return object.dump(1);

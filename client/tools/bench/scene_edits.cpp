@@ -47,7 +47,7 @@ ObjectId place_of(scene::Scene& scene, const backend::Instance& instance) {
     Root root = *scene.find_as<Root>(scene::RootId);
     std::replace(root.children.begin(), root.children.end(), instance.geometry, place);
     carry_out(scene, {scene::Create{place, Transform{.children = {instance.geometry}}},
-                  update<Root>(scene::RootId, Root::Field::Children, root)});
+                      update<Root>(scene::RootId, Root::Field::Children, root)});
     return place;
 }
 
