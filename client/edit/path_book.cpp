@@ -2,8 +2,8 @@
 
 #include <charconv>
 
-#include "client/cli/cli.h"
 #include "client/edit/script_error.h"
+#include "mediator/base/nearest.h"
 
 namespace tessera::edit {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 using scene::ObjectKind;
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
-    const auto best = cli::nearest(word, candidates);
+    const auto best = nearest(word, candidates);
     return best ? "; did you mean '" + *best + "'?" : "";
 }
 

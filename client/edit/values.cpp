@@ -2,10 +2,10 @@
 
 #include <charconv>
 
-#include "client/cli/cli.h"
 #include "client/edit/path_book.h"
 #include "client/edit/script_error.h"
 #include "client/edit/value_reader.h"
+#include "mediator/base/nearest.h"
 #include "mediator/scene/fields.h"
 
 namespace tessera::edit {
@@ -162,7 +162,7 @@ unsigned read_field(ObjectKind kind, const Word& name) {
     if (const auto field = find_field(kind, name.text())) return *field;
     std::string all;
     for (const std::string& one : field_names(kind)) all += (all.empty() ? "" : ", ") + one;
-    const auto best = cli::nearest(name.text(), field_names(kind));
+    const auto best = nearest(name.text(), field_names(kind));
     throw ScriptError(name.column(), "a " + std::string(scene::name(kind)) + " has no field '" + name.text() +
                                          "'" +
                                          (best ? "; did you mean '" + *best + "'?" : ": it has " + all));

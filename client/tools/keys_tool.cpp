@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "mediator/base/nearest.h"
 #include "mediator/net/keys.h"
 
 namespace tessera::tools {
@@ -78,7 +79,7 @@ int run_keys(const KeysOptions& options, std::ostream& out) {
             return complain(Name, exit_code(error.code()), error.what());
         }
     }
-    const auto meant = cli::nearest(options.action, names);
+    const auto meant = nearest(options.action, names);
     return complain(Name, cli::ExitUsage,
                     "there is no action " + quoted(options.action) +
                         (meant ? "; did you mean " + quoted(*meant) + "?" : ": create, add, list, revoke"));

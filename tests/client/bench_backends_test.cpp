@@ -3,10 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "client/tools/bench/backends_bench.h"
-#include "client/tools/bench/backends_report.h"
-#include "client/tools/bench/scene_edits.h"
 #include "mediator/backend/catalog.h"
+#include "tests/bench/backends/backends_bench.h"
+#include "tests/bench/backends/backends_report.h"
+#include "tests/bench/backends/scene_edits.h"
 
 namespace tessera::tools::bench {
 namespace {

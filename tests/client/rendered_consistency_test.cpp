@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
-#include "client/tools/bench/plan.h"
-#include "client/tools/bench/run_bench.h"
 #include "master/filter/catalog.h"
+#include "tests/bench/filters/plan.h"
+#include "tests/bench/filters/run_bench.h"
 
 namespace tessera::tools::bench {
 namespace {

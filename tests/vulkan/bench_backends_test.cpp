@@ -2,10 +2,10 @@
 // the same things.
 #include <gtest/gtest.h>
 
-#include "client/tools/bench/backends_bench.h"
-#include "client/tools/bench/bare_rays.h"
-#include "client/tools/bench/scene_edits.h"
 #include "mediator/shading/bvh_trace.h"
+#include "tests/bench/backends/backends_bench.h"
+#include "tests/bench/backends/bare_rays.h"
+#include "tests/bench/backends/scene_edits.h"
 
 namespace tessera::tools::bench {
 namespace {

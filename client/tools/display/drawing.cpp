@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdio>
 
-#include "client/tools/bench/svg_plot.h"
+#include "client/tools/markup.h"
 #include "mediator/display/pixel_font.h"
 
 namespace tessera::tools {
@@ -47,7 +47,7 @@ std::string as_svg(const Drawing& drawing) {
                    "text-anchor=\"middle\" stroke=\"#ffffff\" stroke-width=\"3\" stroke-opacity=\"0.7\" "
                    "paint-order=\"stroke\" fill=\"",
                    words.middle.x, words.middle.y + 0.35 * size, size) +
-               color_text(words.color) + "\">" + bench::escaped(words.text) + "</text>\n";
+               color_text(words.color) + "\">" + escaped(words.text) + "</text>\n";
     }
     return svg + "</svg>\n";
 }
