@@ -5,8 +5,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "master/session_log.h"
-#include "master/transaction_text.h"
+#include "master/scene/session_log.h"
+#include "master/scene/transaction_text.h"
 
 namespace tessera::tools {
 

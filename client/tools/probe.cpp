@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "client/tools/view_options.h"
-#include "master/scene_authority.h"
+#include "master/scene/scene_authority.h"
 #include "mediator/backend/catalog.h"
 
 namespace tessera::tools {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "master/filter/catalog.h"
-#include "master/job.h"
+#include "master/render/job.h"
 #include "mediator/display/frustum.h"
 #include "mediator/display/validate.h"
 #include "mediator/filter/choice.h"

@@ -35,12 +35,15 @@ ARROWS = {
     "node/config.h": KIT + LINK + ["mediator/program"],
     "node/config.cpp": KIT + LINK + ["mediator/program"],
     "node/main.cpp": KIT + LINK + ["mediator/program"],
-    "master": CORE + LINK + ["mediator/picture"],
-    "master/live": CORE + LINK + ["master"],
-    "master/display": CORE + LINK + ["master", "mediator/picture"],
-    "master/schedule": CORE + ["mediator/wire"],
+    # The rooms of the master, each of which knows those above it: view, passes, units, film, picture, delivery.
     "master/filter": KIT + ["master/filter"],
-    "master/compose": CORE + ["master/filter"],
+    "master/peers": CORE + LINK,
+    "master/scene": CORE + LINK + ["master/peers"],
+    "master/render/schedule": CORE + ["mediator/wire", "master/peers"],
+    "master/render/compose": CORE + ["master/filter"],
+    "master/render": CORE + LINK + ["mediator/picture", "master/filter", "master/peers", "master/render"],
+    "master/display": CORE + LINK + ["master/filter", "master/peers", "master/scene", "master/render"],
+    "master": CORE + LINK + ["master/peers", "master/scene", "master/render", "master/display"],
     "master/config.h": CORE + LINK + ["mediator/program"],
     "master/config.cpp": CORE + LINK + ["mediator/program"],
     "master/main.cpp": CORE + LINK + ["mediator/picture", "mediator/program"],
@@ -120,9 +123,6 @@ def may_include(path, included):
     for allowed in ARROWS[rule]:
         if allowed == "" or target == allowed or target.startswith(allowed + "/"):
             return None
-    # A folder may use what lies below it only when it is one target with it.
-    if own == "master" and target in ("master/display", "master/live", "master/schedule", "master/filter"):
-        return None
     return f"is not allowed for {rule}"
 
 

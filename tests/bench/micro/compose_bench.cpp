@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "master/compose/layers.h"
+#include "master/render/compose/layers.h"
 #include "mediator/base/parallel.h"
 #include "mediator/base/random.h"
 

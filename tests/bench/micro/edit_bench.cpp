@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "master/scene_authority.h"
+#include "master/scene/scene_authority.h"
 #include "mediator/scene/fields.h"
 
 namespace {
