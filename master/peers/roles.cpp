@@ -11,8 +11,8 @@ constexpr unsigned bit(Role role) {
 }
 constexpr unsigned Nobody = 0;
 constexpr unsigned Nodes = bit(Role::Node) | bit(Role::Operator);
-constexpr unsigned Editors = bit(Role::Editor) | bit(Role::Operator);
-constexpr unsigned Clients = bit(Role::Viewer) | Editors;
+constexpr unsigned EditorRoles = bit(Role::Editor) | bit(Role::Operator);
+constexpr unsigned Clients = bit(Role::Viewer) | EditorRoles;
 constexpr unsigned Everybody = Clients | Nodes;
 
 struct SendersOf {
@@ -26,17 +26,17 @@ struct SendersOf {
     unsigned operator()(const wire::SceneRefused&) const { return Nodes; }
     unsigned operator()(const wire::UnitReleased&) const { return Nodes; }
     unsigned operator()(const wire::Notice&) const { return Nodes; }
-    unsigned operator()(const wire::OpenScene&) const { return Editors; }
-    unsigned operator()(const wire::SubmitEdit&) const { return Editors; }
-    unsigned operator()(const wire::SubmitEditByBlob&) const { return Editors; }
-    unsigned operator()(const wire::StartJob&) const { return Editors; }
-    unsigned operator()(const wire::StopJob&) const { return Editors; }
+    unsigned operator()(const wire::OpenScene&) const { return EditorRoles; }
+    unsigned operator()(const wire::SubmitEdit&) const { return EditorRoles; }
+    unsigned operator()(const wire::SubmitEditByBlob&) const { return EditorRoles; }
+    unsigned operator()(const wire::StartJob&) const { return EditorRoles; }
+    unsigned operator()(const wire::StopJob&) const { return EditorRoles; }
     unsigned operator()(const wire::StatusRequest&) const { return Clients; }
-    unsigned operator()(const wire::SetFilter&) const { return Editors; }
+    unsigned operator()(const wire::SetFilter&) const { return EditorRoles; }
     unsigned operator()(const wire::JoinScene&) const { return Clients; }
-    unsigned operator()(const wire::CloseScene&) const { return Editors; }
+    unsigned operator()(const wire::CloseScene&) const { return EditorRoles; }
     unsigned operator()(const wire::ReadScene&) const { return Clients; }
-    unsigned operator()(const wire::LockObjects&) const { return Editors; }
+    unsigned operator()(const wire::LockObjects&) const { return EditorRoles; }
     unsigned operator()(const wire::SetPresence&) const { return Clients; }
     unsigned operator()(const wire::ReadPeople&) const { return Clients; }
     unsigned operator()(const wire::ReadHistory&) const { return Clients; }
@@ -46,10 +46,10 @@ struct SendersOf {
     unsigned operator()(const wire::FrameTaken&) const { return Clients; }
     unsigned operator()(const wire::Pick&) const { return Clients; }
     unsigned operator()(const wire::ReadTrace&) const { return Clients; }
-    unsigned operator()(const wire::OpenDisplay&) const { return Editors; }
-    unsigned operator()(const wire::CloseDisplay&) const { return Editors; }
-    unsigned operator()(const wire::AdjustDisplay&) const { return Editors; }
-    unsigned operator()(const wire::MoveHead&) const { return Editors; }
+    unsigned operator()(const wire::OpenDisplay&) const { return EditorRoles; }
+    unsigned operator()(const wire::CloseDisplay&) const { return EditorRoles; }
+    unsigned operator()(const wire::AdjustDisplay&) const { return EditorRoles; }
+    unsigned operator()(const wire::MoveHead&) const { return EditorRoles; }
     unsigned operator()(const wire::JoinOutput&) const { return Clients; }
     unsigned operator()(const wire::OutputReady&) const { return Clients; }
     // What only a master says.
@@ -83,8 +83,8 @@ struct SendersOf {
     // bulk
     unsigned operator()(const wire::BulkHello&) const { return Everybody; }
     unsigned operator()(const wire::BlobRequest&) const { return Nodes | Clients; }
-    unsigned operator()(const wire::BlobChunk&) const { return Editors; }
-    unsigned operator()(const wire::BlobAbsent&) const { return Editors; }
+    unsigned operator()(const wire::BlobChunk&) const { return EditorRoles; }
+    unsigned operator()(const wire::BlobAbsent&) const { return EditorRoles; }
     unsigned operator()(const wire::FilmPart&) const { return Nodes; }
     unsigned operator()(const wire::FrameTile&) const { return Nobody; }
     unsigned operator()(const wire::PictureChunk&) const { return Nobody; }
