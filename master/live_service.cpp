@@ -1,6 +1,7 @@
 #include "master/live_service.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "mediator/wire/envelope.h"
 

@@ -1,6 +1,7 @@
 #include "master/render/film_merger.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "mediator/wire/envelope.h"
 

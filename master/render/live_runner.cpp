@@ -1,6 +1,7 @@
 #include "master/render/live_runner.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "master/peers/suitable_nodes.h"
 #include "master/render/job.h"
