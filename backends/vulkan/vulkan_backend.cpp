@@ -10,6 +10,7 @@
 #include "backends/vulkan/world.h"
 #include "mediator/backend/tables/bodies.h"
 #include "mediator/backend/tables/view_record.h"
+#include "mediator/frame/render_revision.h"
 
 namespace tessera::vulkan {
 
@@ -35,7 +36,7 @@ class VulkanBackend final : public Backend {
                          .preferred_tile = info.kind == DeviceKind::Cpu ? 32u : 128u,
                          .concurrent_units = 2,  // one merges while the other one's samples are traced
                          .deterministic = true,
-                         .kind = "vulkan " + info.name + ", " + info.driver};
+                         .kind = frame::with_render_revision("vulkan " + info.name + ", " + info.driver)};
     }
     ~VulkanBackend() override { world_.move_to(nullptr); }
 

@@ -27,7 +27,8 @@ struct Capabilities {
     std::uint32_t preferred_tile = 32;   // pixels, edge of a square
     std::uint32_t concurrent_units = 1;  // render() calls worth running at a time
     bool deterministic = true;
-    std::string kind;  // back-end, build and instruction set or device: equal kinds give equal bits
+    std::string
+        kind;  // back-end, build, instruction set or device, render revision: equal kinds give equal bits
 };
 
 struct EditReport {
