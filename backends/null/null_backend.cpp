@@ -75,8 +75,10 @@ class NullBackend final : public Backend {
         explicit Edit(NullBackend& backend) : backend_(backend), lock_(backend.mutex_) {}
         ~Edit() override { backend_.shadow_.rollback(); }  // what was committed stays
 
-        Expected<void> apply(const scene::ChangeList& changes) override {
-            return backend_.shadow_.apply(changes);
+        const scene::Scene& scene() const override { return backend_.shadow_.scene(); }
+        using EditScope::apply;
+        Expected<void> apply(const scene::ChangeList& changes, const scene::Scene& after) override {
+            return backend_.shadow_.apply(changes, after);
         }
 
         Expected<EditReport> commit() override {
