@@ -77,7 +77,7 @@ std::string components(const V& value, const char* separator = " ") {
 template <class V>
 std::string text_of(const V& value, const WritePath& write_path) {
     if constexpr (std::is_same_v<V, std::string>) {
-        return quoted(value);
+        return in_quotes(value);
     } else if constexpr (std::is_same_v<V, bool>) {
         return value ? "true" : "false";
     } else if constexpr (std::is_arithmetic_v<V>) {

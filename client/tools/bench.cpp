@@ -22,7 +22,7 @@ int start_bench(char** argv) {
     execv(path.c_str(), argv);
     if (errno == ENOENT) {
         return complain("bench", cli::ExitUnavailable,
-                        "'" + path + "' is not there; deploy/setup.sh release tessera-bench builds it");
+                        "'" + path + "' is not there; deploy/setup.sh bench tessera-bench builds it");
     }
     return complain("bench", cli::ExitUnavailable, "cannot start '" + path + "': " + std::strerror(errno));
 }

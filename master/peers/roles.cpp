@@ -4,15 +4,15 @@ namespace tessera::master {
 
 namespace {
 
-using enum net::Role;
+using net::Role;
 
-constexpr unsigned bit(net::Role role) {
+constexpr unsigned bit(Role role) {
     return 1u << static_cast<unsigned>(role);
 }
 constexpr unsigned Nobody = 0;
-constexpr unsigned Nodes = bit(Node) | bit(Operator);
-constexpr unsigned Editors = bit(Editor) | bit(Operator);
-constexpr unsigned Clients = bit(Viewer) | Editors;
+constexpr unsigned Nodes = bit(Role::Node) | bit(Role::Operator);
+constexpr unsigned Editors = bit(Role::Editor) | bit(Role::Operator);
+constexpr unsigned Clients = bit(Role::Viewer) | Editors;
 constexpr unsigned Everybody = Clients | Nodes;
 
 struct SendersOf {

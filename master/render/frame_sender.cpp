@@ -6,7 +6,7 @@
 namespace tessera::master {
 
 namespace {
-constexpr std::size_t PictureChunk = std::size_t{1} << 20;
+constexpr std::size_t FrameChunkBytes = std::size_t{1} << 20;
 }
 
 void FrameSender::watch(SessionId session, std::uint64_t number, ViewId view, const Wish& wish) {
@@ -156,8 +156,8 @@ void FrameSender::send(std::uint64_t frame, Making&& making, const Reconstructed
         header.view = key.second;
         outbox_.bulk(*session->bulk, header);
         const std::span<const std::byte> picture(*made.picture.bytes);
-        for (std::size_t offset = 0; offset < picture.size(); offset += PictureChunk) {
-            const auto piece = picture.subspan(offset, std::min(PictureChunk, picture.size() - offset));
+        for (std::size_t offset = 0; offset < picture.size(); offset += FrameChunkBytes) {
+            const auto piece = picture.subspan(offset, std::min(FrameChunkBytes, picture.size() - offset));
             outbox_.bulk(*session->bulk, wire::PictureChunk{.job = JobId{frame},
                                                             .total = picture.size(),
                                                             .offset = offset,

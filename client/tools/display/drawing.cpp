@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdio>
 
+#include "client/tools/formatted.h"
 #include "client/tools/markup.h"
 #include "mediator/display/pixel_font.h"
 
@@ -11,13 +12,6 @@ namespace tessera::tools {
 namespace {
 
 using glm::dvec2;
-
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-    char text[200];
-    std::snprintf(text, sizeof text, format, values...);
-    return text;
-}
 
 std::string color_text(const Rgb& color) {
     return formatted("#%02x%02x%02x", color[0], color[1], color[2]);

@@ -13,12 +13,12 @@ namespace tessera::tools::bench {
 
 namespace {
 
-constexpr const char* Name = "bench backends";
+constexpr const char* BackendsName = "bench backends";
 
 int run(const BackendsOptions& options) {
     const Interrupts interrupts;  // before anything that starts threads
     const auto plan = understand(options, tessera::bench::contenders());
-    if (!plan) return complain(Name, cli::ExitUsage, plan.error().what());
+    if (!plan) return complain(BackendsName, cli::ExitUsage, plan.error().what());
     std::optional<BackendsResults> results;
     {
         ProgressLine line;
@@ -32,7 +32,8 @@ int run(const BackendsOptions& options) {
         results = run_backends(*plan, progress, show, interrupts.token());
     }
     if (!results)
-        return complain(Name, ExitInterrupted, "interrupted in the middle of a scene; no file is written");
+        return complain(BackendsName, ExitInterrupted,
+                        "interrupted in the middle of a scene; no file is written");
     if (!plan->output.empty()) {
         picture::write_atomically(plan->output.string(), plan->output.extension() == ".csv"
                                                              ? as_csv(*results)
@@ -75,11 +76,11 @@ Command backends_command(cli::CommandLine& bench) {
         {"tessera bench backends --scenes cornell,balls:1000000",
          "tessera bench backends --scenes room.glb --size 640x360 --repeat 9 -o backends.csv",
          "tessera bench backends --device nvidia --rays 4000000 --size 1280x720 --scenes balls:1000000"});
-    return {Name, [options](std::string_view) {
+    return {BackendsName, [options](std::string_view) {
                 try {
                     return run(*options);
                 } catch (const Error& error) {
-                    return complain(Name, exit_code(error.code()), error.what());
+                    return complain(BackendsName, exit_code(error.code()), error.what());
                 }
             }};
 }

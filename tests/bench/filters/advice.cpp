@@ -6,16 +6,11 @@
 #include <map>
 #include <set>
 
+#include "client/tools/formatted.h"
+
 namespace tessera::tools::bench {
 
 namespace {
-
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-    char text[400];
-    std::snprintf(text, sizeof text, format, values...);
-    return text;
-}
 
 std::string listed(const std::vector<std::string>& words) {
     std::string text;

@@ -15,12 +15,12 @@ namespace tessera::tools::bench {
 
 namespace {
 
-constexpr const char* Name = "bench filters";
+constexpr const char* FiltersName = "bench filters";
 
 int run_filters(const BenchOptions& options) {
     const Interrupts interrupts;  // before anything that starts threads
     const auto plan = understand(options, filter::catalog());
-    if (!plan) return complain(Name, cli::ExitUsage, plan.error().what());
+    if (!plan) return complain(FiltersName, cli::ExitUsage, plan.error().what());
     BenchFiles files(plan->output);  // a folder that cannot be written says so before the work
     std::optional<BenchResults> results;
     {
@@ -31,7 +31,8 @@ int run_filters(const BenchOptions& options) {
              .warn = [](const std::string& text) { std::cerr << "tessera bench: " << text << "\n"; }},
             interrupts.token());
     }
-    if (!results) return complain(Name, ExitInterrupted, "interrupted; the references so far are kept");
+    if (!results)
+        return complain(FiltersName, ExitInterrupted, "interrupted; the references so far are kept");
     const std::vector<std::string> written = files.write(*results);
     if (options.json) {
         std::cout << as_json(*results) << "\n";
@@ -71,11 +72,11 @@ Command filters_command(cli::CommandLine& bench) {
     filters.examples(
         {"tessera bench filters --quick", "tessera bench filters -o bench",
          "tessera bench filters --scenes cornell,grids --filters gauss:sigma=1,gauss:sigma=4 --spp 4,16"});
-    return {Name, [options](std::string_view) {
+    return {FiltersName, [options](std::string_view) {
                 try {
                     return run_filters(*options);
                 } catch (const Error& error) {
-                    return complain(Name, exit_code(error.code()), error.what());
+                    return complain(FiltersName, exit_code(error.code()), error.what());
                 }
             }};
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "client/tools/formatted.h"
 #include "client/tools/markup.h"
 #include "tests/bench/filters/advice.h"
 #include "tests/bench/filters/svg_plot.h"
@@ -11,13 +12,6 @@
 namespace tessera::tools::bench {
 
 namespace {
-
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-    char text[300];
-    std::snprintf(text, sizeof text, format, values...);
-    return text;
-}
 
 std::string cell(const std::string& text, const char* style = "") {
     return (*style ? "<td class=\"" + std::string(style) + "\">" : "<td>") + text + "</td>";

@@ -14,15 +14,15 @@ Json estimate(const Estimate& value) {
 }
 
 // null: the error is below what the references can resolve.
-Json ratio(const Ratio& value) {
+Json ratio_json(const Ratio& value) {
     if (value.value == 0.0) return nullptr;
     return {{"value", value.value}, {"measured", value.is_measured}};
 }
 
 Json worth(const Worth& value) {
     return {{"relmse_over_unfiltered", value.to_unfiltered},
-            {"equal_error_sample_ratio", ratio(value.equal_error)},
-            {"equal_time_error_ratio", ratio(value.equal_time)}};
+            {"equal_error_sample_ratio", ratio_json(value.equal_error)},
+            {"equal_time_error_ratio", ratio_json(value.equal_time)}};
 }
 
 Json passes_json(const FilterTime& time) {

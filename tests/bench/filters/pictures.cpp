@@ -26,7 +26,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using client::PictureEncoding;
 
-struct Options {
+struct PicturesOptions {
     ViewOptions view;
     std::string budget = "800ms", filter = "fdf", format = "png";
     std::uint64_t requests = 100, compared = 5, reference_spp = 512;
@@ -58,7 +58,7 @@ frame::Image linear(const client::Picture& picture) {
 
 class PicturesBench {
   public:
-    explicit PicturesBench(const Options& options) : options_(options) {}
+    explicit PicturesBench(const PicturesOptions& options) : options_(options) {}
 
     int run() {
         const auto plan = understand(options_.view);
@@ -214,7 +214,7 @@ class PicturesBench {
     }
 
     Interrupts interrupts_;  // before anything that starts threads
-    const Options& options_;
+    const PicturesOptions& options_;
     SteadyClock clock_;
     ProgressLine line_;
     std::shared_ptr<scene::BlobStore> blobs_ = std::make_shared<scene::BlobStore>();
@@ -229,7 +229,7 @@ class PicturesBench {
 }  // namespace
 
 Command pictures_command(cli::CommandLine& bench) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<PicturesOptions>();
     cli::CommandLine& line =
         bench.command("pictures", "Picture requests with a time budget: how many are on time, and how good.");
     options->view.size = "400x400";

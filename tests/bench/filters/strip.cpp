@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "client/tools/canvas.h"
+#include "client/tools/formatted.h"
 #include "mediator/display/pixel_font.h"
 #include "mediator/picture/png_writer.h"
 
@@ -37,13 +38,6 @@ double gain(const SceneResult& scene) {
         if (row->trimmed.to_unfiltered > 0.0) sum -= std::log(row->trimmed.to_unfiltered);
     }
     return rows.empty() ? -1e9 : sum / static_cast<double>(rows.size());
-}
-
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-    char text[200];
-    std::snprintf(text, sizeof text, format, values...);
-    return text;
 }
 
 }  // namespace

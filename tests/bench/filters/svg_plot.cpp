@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "client/tools/formatted.h"
 #include "client/tools/markup.h"
 
 namespace tessera::tools::bench {
@@ -12,13 +13,6 @@ namespace tessera::tools::bench {
 namespace {
 
 constexpr double Width = 520, Height = 340, Left = 62, Right = 12, Top = 30, Bottom = 44;
-
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-    char text[400];
-    std::snprintf(text, sizeof text, format, values...);
-    return text;
-}
 
 bool is_drawn(const std::pair<double, double>& point) {
     return std::isfinite(point.first) && std::isfinite(point.second) && point.first > 0.0 &&

@@ -13,10 +13,10 @@ namespace tessera::tools::bench {
 
 namespace {
 
-constexpr const char* Name = "bench displays";
-constexpr double Mebibyte = 1048576.0;
+constexpr const char* DisplaysName = "bench displays";
+constexpr double MiB = 1048576.0;
 
-struct Options {
+struct DisplaysCommandOptions {
     DisplaysOptions displays;
     bool json = false, no_wall = false;
 };
@@ -39,7 +39,7 @@ void print_table(const DisplaysResults& results) {
     if (results.wall.pixels > 0) {
         std::printf("stereo wall of %.1f megapixels: one frame in %.2f s, %.0f MiB at most on the master\n",
                     1e-6 * double(results.wall.pixels), results.wall.seconds,
-                    double(results.wall.master_peak_bytes) / Mebibyte);
+                    double(results.wall.master_peak_bytes) / MiB);
     }
 }
 
@@ -70,19 +70,20 @@ nlohmann::ordered_json as_json(const DisplaysResults& results) {
               {"master_peak_bytes", results.wall.master_peak_bytes}}}};
 }
 
-int run(Options options) {
+int run(DisplaysCommandOptions options) {
     const Interrupts interrupts;  // before anything that starts threads
     options.displays.wall = !options.no_wall;
     if (options.displays.nodes == 0 || options.displays.columns == 0 || options.displays.rows == 0 ||
         options.displays.columns * options.displays.rows > 64)
-        return complain(Name, cli::ExitUsage, "--nodes at least 1, --columns x --rows within 1 and 64");
+        return complain(DisplaysName, cli::ExitUsage,
+                        "--nodes at least 1, --columns x --rows within 1 and 64");
     DisplaysResults results;
     {
         ProgressLine line;
         results = run_displays(
             options.displays, [&](const std::string& text) { line.show(text); }, interrupts.token());
     }
-    if (interrupts.token().stop_requested()) return complain(Name, ExitInterrupted, "interrupted");
+    if (interrupts.token().stop_requested()) return complain(DisplaysName, ExitInterrupted, "interrupted");
     if (options.json) {
         std::cout << as_json(results).dump(2) << std::endl;
     } else {
@@ -94,7 +95,7 @@ int run(Options options) {
 }  // namespace
 
 Command displays_command(cli::CommandLine& bench) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<DisplaysCommandOptions>();
     cli::CommandLine& line = bench.command(
         "displays",
         "How often a wall of output processes shows a new frame together, what the lock costs and how much "
@@ -110,11 +111,11 @@ Command displays_command(cli::CommandLine& bench) {
     line.flag("--json", "print one JSON object instead of the table", options->json);
     line.examples(
         {"tessera bench displays", "tessera bench displays --columns 3 --rows 2 --seconds 5 --no-wall"});
-    return {Name, [options](std::string_view) {
+    return {DisplaysName, [options](std::string_view) {
                 try {
                     return run(*options);
                 } catch (const Error& error) {
-                    return complain(Name, exit_code(error.code()), error.what());
+                    return complain(DisplaysName, exit_code(error.code()), error.what());
                 }
             }};
 }

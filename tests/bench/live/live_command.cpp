@@ -14,10 +14,10 @@ namespace tessera::tools::bench {
 
 namespace {
 
-constexpr const char* Name = "bench live";
+constexpr const char* LiveName = "bench live";
 constexpr double Mebibyte = 1048576.0;
 
-struct Options {
+struct LiveCommandOptions {
     LiveOptions live{.scene = "tests/scenes/studio-1.glb"};
     std::string size = "1280x720";
     bool json = false;
@@ -79,21 +79,21 @@ nlohmann::ordered_json as_json(const LiveResults& results) {
               {"replicas_agree", results.replicas_agree}}}};
 }
 
-int run(Options options) {
+int run(LiveCommandOptions options) {
     const Interrupts interrupts;  // before anything that starts threads
     const auto size = parse_size(options.size);
-    if (!size) return complain(Name, cli::ExitUsage, std::string("--size: ") + size.error().what());
+    if (!size) return complain(LiveName, cli::ExitUsage, std::string("--size: ") + size.error().what());
     options.live.width = size->width;
     options.live.height = size->height;
     if (options.live.nodes == 0 || options.live.editors == 0 || options.live.rate == 0)
-        return complain(Name, cli::ExitUsage, "--nodes, --editors and --rate must be at least 1");
+        return complain(LiveName, cli::ExitUsage, "--nodes, --editors and --rate must be at least 1");
     LiveResults results;
     {
         ProgressLine line;
         results = run_live(
             options.live, [&](const std::string& text) { line.show(text); }, interrupts.token());
     }
-    if (interrupts.token().stop_requested()) return complain(Name, ExitInterrupted, "interrupted");
+    if (interrupts.token().stop_requested()) return complain(LiveName, ExitInterrupted, "interrupted");
     if (options.json) {
         std::cout << as_json(results).dump(2) << std::endl;
     } else {
@@ -105,7 +105,7 @@ int run(Options options) {
 }  // namespace
 
 Command live_command(cli::CommandLine& bench) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<LiveCommandOptions>();
     cli::CommandLine& line = bench.command(
         "live",
         "How soon edits of a live scene are seen, and what many of them cost. Starts a master and nodes as "
@@ -122,11 +122,11 @@ Command live_command(cli::CommandLine& bench) {
     line.examples({"tessera bench live",
                    "tessera bench live --nodes 1 --size 640x360 --edits 30 --seconds 10",
                    "tessera bench live --scene room.glb --json > live.json"});
-    return {Name, [options](std::string_view) {
+    return {LiveName, [options](std::string_view) {
                 try {
                     return run(*options);
                 } catch (const Error& error) {
-                    return complain(Name, exit_code(error.code()), error.what());
+                    return complain(LiveName, exit_code(error.code()), error.what());
                 }
             }};
 }

@@ -1,11 +1,12 @@
 #include "tests/bench/micro/bench_bed.h"
 
 #include "client/import/import.h"
+#include "tests/support/folders.h"
 
 namespace tessera::bench {
 
 Bed::Bed(const std::string& file, std::uint32_t size) {
-    auto imported = import::import_scene(std::string(TESSERA_SCENES) + "/" + file, {});
+    auto imported = import::import_scene((test::scenes_folder() / file).string(), {});
     if (!imported) throw imported.error();
     for (const auto& blob : imported->blobs) blobs->insert(blob);
     scene::Scene scene;
