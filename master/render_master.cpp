@@ -224,6 +224,11 @@ void RenderMaster::hello(const net::Message& message, wire::Hello hello, TimePoi
                       ": install the same version of Tessera on both");
     }
     const bool is_node = hello.peer == wire::PeerKind::Node;
+    if (is_node && hello.render_revision != frame::RenderRevision) {
+        return refuse("this master merges film of render revision " + std::to_string(frame::RenderRevision) +
+                      ", yours is of revision " + std::to_string(hello.render_revision) +
+                      ": install the same version of Tessera on both");
+    }
     if (NodeRecord* node = is_node ? nodes_.by_token(hello.resume_token) : nullptr;
         node && node->user == message.user) {
         node->control = message.peer;

@@ -17,15 +17,6 @@ double since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-frame::Image interleaved(const filter::Planes& planes) {
-    frame::Image image(planes.width(), planes.height(), planes.components());
-    for (std::uint32_t c = 0; c < planes.components(); ++c) {
-        const auto plane = planes.plane(c);
-        for (std::size_t i = 0; i < plane.size(); ++i) image.values[i * planes.components() + c] = plane[i];
-    }
-    return image;
-}
-
 std::vector<std::byte> encode(const filter::Planes& picture, wire::PictureEncoding encoding) {
     switch (encoding) {
         case wire::PictureEncoding::Png:
@@ -68,21 +59,21 @@ Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& 
     summary.filter = filter::to_text(*choice);
     try {
         const auto started = Clock::now();
-        const filter::Inputs inputs = filter::make_inputs(films.film, view, films.later);
-        filter::Filter& filter = instance(*choice, inputs.width, inputs.height);
+        filter::resolve_inputs(films.film, view, films.later, inputs_);
+        filter::Filter& filter = instance(*choice, inputs_.width, inputs_.height);
         filter.reset();
-        const filter::Report report = filter.run(inputs, choice->values, output_, {arena_, {}});
+        const filter::Report report = filter.run(inputs_, choice->values, output_, {arena_, {}});
         const filter::Planes* picture = &output_.picture;
         if (films.features != nullptr) {
-            const filter::Inputs full = filter::make_inputs(*films.features, view);
-            filter::upsample(output_.picture, inputs, full, upsampled_, {arena_, {}});
+            filter::resolve_inputs(*films.features, view, nullptr, full_inputs_);
+            filter::upsample(output_.picture, inputs_, full_inputs_, upsampled_, {arena_, {}});
             picture = &upsampled_;
         }
         summary.seconds_filter = since(started);
         for (const filter::Pass& pass : report.passes) {
             summary.passes.push_back({std::string(pass.name), seconds(pass.time), pass.bytes_per_pixel});
         }
-        summary.notes = report.notes;
+        summary.notes.assign(report.notes.begin(), report.notes.end());
         const auto filtered = Clock::now();
         result.bytes = std::make_shared<const std::vector<std::byte>>(encode(*picture, encoding));
         summary.seconds_encode = since(filtered);
@@ -100,10 +91,10 @@ Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& 
 const filter::Planes& Reconstructor::filtered(const frame::FilmTile& film, const view::View& view) {
     const auto choice = filter::parse_choice(view.filter, filter::catalog());
     if (!choice) throw choice.error();
-    const filter::Inputs inputs = filter::make_inputs(film, view);
-    filter::Filter& filter = instance(*choice, inputs.width, inputs.height);
+    filter::resolve_inputs(film, view, nullptr, inputs_);
+    filter::Filter& filter = instance(*choice, inputs_.width, inputs_.height);
     filter.reset();
-    filter.run(inputs, choice->values, output_, {arena_, {}});
+    filter.run(inputs_, choice->values, output_, {arena_, {}});
     return output_.picture;
 }
 

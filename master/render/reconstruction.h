@@ -48,6 +48,7 @@ class Reconstructor {
 
     tbb::task_arena arena_;
     Instance instance_;
+    filter::Inputs inputs_, full_inputs_;  // kept for their memory
     filter::Output output_;
     filter::Planes upsampled_;
 };

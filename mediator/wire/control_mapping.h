@@ -39,6 +39,7 @@ void map(const Io& io, typename Io::template Ref<Hello> s, proto::Hello& p) {
     io(s.reproducible, p, &P::reproducible, &P::set_reproducible);
     io(s.resume_token, p, &P::resume_token, &P::set_resume_token);
     map_renderers(io, s.renderers, p, &P::renderers, &P::set_renderers);
+    io(s.render_revision, p, &P::render_revision, &P::set_render_revision);
 }
 
 template <class Io>

@@ -119,6 +119,7 @@ std::vector<std::byte> encode(const CheckpointState& state) {
         map(io, view, to);
         to.set_blocks(view.blocks.size());
     }
+    message.set_render_revision(state.render_revision);
     return serialised(message);
 }
 
@@ -138,6 +139,7 @@ Expected<CheckpointState> decode_checkpoint(std::span<const std::byte> bytes) {
         io.messages(state.editors, message.mutable_editors(), MaxRecorded);
         io.messages(state.views, message.mutable_views(), MaxRecorded);
         for (const proto::JournalView& view : message.views()) state.block_counts.push_back(view.blocks());
+        state.render_revision = message.render_revision();
         check(state);
         return state;
     } catch (const Error& error) {

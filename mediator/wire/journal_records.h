@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mediator/frame/film_tile.h"
+#include "mediator/frame/render_revision.h"
 #include "mediator/scene/change_list.h"
 #include "mediator/view/view.h"
 
@@ -98,7 +99,8 @@ struct CheckpointState {
     std::vector<RecordedObjectWriters> objects;
     std::vector<RecordedTransaction> transactions;  // oldest first
     std::vector<RecordedEditor> editors;
-    std::vector<SavedView> views;  // encoded without their blocks
+    std::vector<SavedView> views;                           // encoded without their blocks
+    std::uint32_t render_revision = frame::RenderRevision;  // of the blocks; 0: of before there were any
     std::vector<std::uint64_t> block_counts;
 };
 

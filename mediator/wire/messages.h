@@ -9,6 +9,7 @@
 #include "mediator/base/hash.h"
 #include "mediator/base/ids.h"
 #include "mediator/frame/film_tile.h"
+#include "mediator/frame/render_revision.h"
 #include "mediator/scene/change_list.h"
 #include "mediator/view/view.h"
 #include "mediator/view/work_unit.h"
@@ -36,7 +37,8 @@ struct Hello {
     view::RendererSet renderers = view::TracingRenderers;
     std::uint32_t preferred_tile = 32;
     std::uint32_t concurrent_units = 1;
-    bool reproducible = false;  // pinned to AVX2 (design 1.6)
+    bool reproducible = false;                              // pinned to AVX2 (design 1.6)
+    std::uint32_t render_revision = frame::RenderRevision;  // of its film; 0: of before there were any
     // of a peer that reconnects: what it held in the same epoch, so that it is taken for the same
     std::uint64_t resume_token = 0;
 };
