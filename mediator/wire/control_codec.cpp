@@ -1,6 +1,7 @@
 #include <utility>
 
 #include "mediator/wire/control_mapping.h"
+#include "mediator/wire/entry_codec.h"
 #include "mediator/wire/envelope.h"
 
 namespace tessera::wire {
@@ -217,20 +218,6 @@ ControlMessage alternative(std::size_t index, std::index_sequence<I...>) {
     return message;
 }
 
-template <class Structure, class Message>
-Expected<Structure> decoded(std::span<const std::byte> bytes) {
-    Message message;
-    if (!parsed(message, bytes))
-        return failure(ErrorCode::InvalidInput, "malformed message: not this protocol");
-    try {
-        Structure structure;
-        read(message, structure);
-        return structure;
-    } catch (const Error& error) {
-        return tl::unexpected(error);
-    }
-}
-
 }  // namespace
 
 std::vector<std::byte> encode(const ControlMessage& message) {
@@ -264,23 +251,19 @@ Expected<ControlMessage> decode_control(std::span<const std::byte> bytes) {
 }
 
 std::vector<std::byte> encode(const scene::ChangeList& changes) {
-    proto::ChangeList message;
-    write(changes, message);
-    return serialized(message);
+    return to_bytes(changes);
 }
 
 Expected<scene::ChangeList> decode_change_list(std::span<const std::byte> bytes) {
-    return decoded<scene::ChangeList, proto::ChangeList>(bytes);
+    return from_bytes<scene::ChangeList>(bytes);
 }
 
 std::vector<std::byte> encode(const scene::Edit& edit) {
-    proto::Edit message;
-    write(edit, message);
-    return serialized(message);
+    return to_bytes(edit);
 }
 
 Expected<scene::Edit> decode_edit(std::span<const std::byte> bytes) {
-    return decoded<scene::Edit, proto::Edit>(bytes);
+    return from_bytes<scene::Edit>(bytes);
 }
 
 }  // namespace tessera::wire
