@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <random>
 
-#include "master/roles.h"
+#include "master/peers/roles.h"
 #include "mediator/wire/envelope.h"
 
 namespace tessera::master {

@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "master/job_runner.h"
-#include "master/live/live_service.h"
-#include "master/node_table.h"
-#include "master/outbox.h"
-#include "master/scene_authority.h"
-#include "master/scene_distributor.h"
+#include "master/live_service.h"
+#include "master/peers/node_table.h"
+#include "master/peers/outbox.h"
+#include "master/peers/session_table.h"
+#include "master/render/job_runner.h"
+#include "master/scene/scene_authority.h"
+#include "master/scene/scene_distributor.h"
 #include "master/session_service.h"
-#include "master/session_table.h"
 #include "mediator/base/clock.h"
 #include "mediator/net/channel.h"
 

@@ -2,10 +2,10 @@
 
 #include <functional>
 
-#include "master/job_runner.h"
-#include "master/live/live_service.h"
-#include "master/scene_authority.h"
-#include "master/session_table.h"
+#include "master/live_service.h"
+#include "master/peers/session_table.h"
+#include "master/render/job_runner.h"
+#include "master/scene/scene_authority.h"
 
 namespace tessera::master {
 

@@ -1,8 +1,8 @@
 #include "client/edit/commands.h"
 
-#include "client/cli/cli.h"
 #include "client/edit/script_error.h"
 #include "client/edit/verbs.h"
+#include "mediator/base/nearest.h"
 
 namespace tessera::edit {
 namespace {
@@ -281,7 +281,7 @@ const Command& read_command(const Word& word) {
     if (const Command* command = find_command(word.text())) return *command;
     std::vector<std::string> names;
     for (const Command& command : commands()) names.emplace_back(command.name);
-    const auto best = cli::nearest(word.text(), names);
+    const auto best = nearest(word.text(), names);
     throw ScriptError(word.column(), "there is no command '" + word.text() + "'" +
                                          (best ? "; did you mean '" + *best + "'?" : ": see 'help'"));
 }

@@ -7,7 +7,7 @@
 #include "client/tools/pictures.h"
 #include "client/tools/view_attributes.h"
 #include "master/filter/catalog.h"
-#include "master/reconstruction.h"
+#include "master/render/reconstruction.h"
 
 namespace tessera::tools {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "master/filter/catalog.h"
-#include "master/job.h"
+#include "master/render/job.h"
 #include "mediator/display/frustum.h"
 #include "mediator/display/validate.h"
 #include "mediator/filter/choice.h"
@@ -15,7 +15,7 @@ using wire::OutputState;
 
 namespace {
 
-constexpr std::size_t PictureChunk = std::size_t{1} << 20;
+constexpr std::size_t OutputChunkBytes = std::size_t{1} << 20;
 
 // Of a choice of layers to show, bit i: layer i.
 std::string layer_problem(const display::Display& display, std::uint32_t shown) {
@@ -298,9 +298,9 @@ void DisplayService::send(std::size_t index) {
                                   .samples = output.samples_least,
                                   .total = picture.bytes->size()};
         const std::span<const std::byte> bytes(*picture.bytes);
-        for (; piece.offset < bytes.size(); piece.offset += PictureChunk) {
+        for (; piece.offset < bytes.size(); piece.offset += OutputChunkBytes) {
             const auto part =
-                bytes.subspan(piece.offset, std::min(PictureChunk, bytes.size() - piece.offset));
+                bytes.subspan(piece.offset, std::min(OutputChunkBytes, bytes.size() - piece.offset));
             piece.data.assign(part.begin(), part.end());
             outbox_.bulk(*session->bulk, piece);
         }

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "master/display/frame_lock.h"
-#include "master/live/live_runner.h"
-#include "master/scene_authority.h"
-#include "master/session_table.h"
+#include "master/peers/session_table.h"
+#include "master/render/live_runner.h"
+#include "master/scene/scene_authority.h"
 #include "mediator/display/display.h"
 #include "mediator/view/placed_cameras.h"
 

@@ -1,6 +1,6 @@
 // What the nodes render for a display, and the pictures that are made of it.
 #include "master/display/display_service.h"
-#include "master/job.h"
+#include "master/render/job.h"
 #include "mediator/display/frustum.h"
 
 namespace tessera::master {

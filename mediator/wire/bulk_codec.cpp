@@ -286,7 +286,7 @@ struct Decoder {
 };
 
 template <std::size_t... I>
-BulkMessage alternative(std::size_t index, std::index_sequence<I...>) {
+BulkMessage bulk_alternative(std::size_t index, std::index_sequence<I...>) {
     BulkMessage message;
     ((index == I ? (void)message.emplace<I>() : (void)0), ...);
     return message;
@@ -330,7 +330,8 @@ std::optional<ViewId> film_view(std::span<const std::byte> bytes) {
 Expected<BulkMessage> decode_bulk(std::span<const std::byte> bytes) {
     const auto kind = bulk_kind(bytes);
     if (!kind) return failure(ErrorCode::InvalidInput, "malformed message: not a bulk message");
-    BulkMessage message = alternative(*kind, std::make_index_sequence<std::variant_size_v<BulkMessage>>{});
+    BulkMessage message =
+        bulk_alternative(*kind, std::make_index_sequence<std::variant_size_v<BulkMessage>>{});
     try {
         ByteReader in(bytes.subspan(8));
         std::visit(Decoder{in}, message);

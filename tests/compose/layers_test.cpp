@@ -1,5 +1,5 @@
 // Pictures laid over each other by depth and alpha.
-#include "master/compose/layers.h"
+#include "master/render/compose/layers.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "master/compose/layers.h"
+#include "master/render/compose/layers.h"
 
 namespace tessera::test {
 

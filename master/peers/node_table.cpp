@@ -1,0 +1,103 @@
+#include "master/peers/node_table.h"
+
+#include <algorithm>
+
+namespace tessera::master {
+
+NodeCapacity NodeRecord::capacity() const {
+    const auto on_the_way = static_cast<std::uint32_t>(pending.size());
+    return {.node = id,
+            .workers = std::max(1u, hello.concurrent_units),
+            .free_places = state.free_places > on_the_way ? state.free_places - on_the_way : 0,
+            .in_hand = static_cast<std::uint32_t>(state.in_hand.size()) + on_the_way};
+}
+
+std::optional<wire::OpenView> NodeRecord::opening(const view::View& view) {
+    std::uint64_t& revision = views[view.id];
+    if (revision == view.revision) return std::nullopt;
+    revision = view.revision;
+    view::View opened = view;
+    opened.filter.clear();  // the master's affair
+    return wire::OpenView{std::move(opened)};
+}
+
+NodeRecord& NodeTable::add(NodeId id, std::uint64_t token, net::PeerId control, std::string user,
+                           wire::Hello hello, TimePoint now) {
+    NodeRecord record{.id = id,
+                      .token = token,
+                      .control = control,
+                      .bulk = {},
+                      .user = std::move(user),
+                      .hello = std::move(hello),
+                      .liveness = net::Liveness(liveness_, now)};
+    record.last_progress_at = now;
+    return nodes_.insert_or_assign(id, std::move(record)).first->second;
+}
+
+NodeRecord* NodeTable::find(NodeId id) {
+    const auto place = nodes_.find(id);
+    return place == nodes_.end() ? nullptr : &place->second;
+}
+
+NodeRecord* NodeTable::by_control(net::PeerId peer) {
+    const auto place =
+        std::find_if(nodes_.begin(), nodes_.end(), [&](auto& entry) { return entry.second.control == peer; });
+    return place == nodes_.end() ? nullptr : &place->second;
+}
+
+NodeRecord* NodeTable::by_bulk(net::PeerId peer) {
+    const auto place =
+        std::find_if(nodes_.begin(), nodes_.end(), [&](auto& entry) { return entry.second.bulk == peer; });
+    return place == nodes_.end() ? nullptr : &place->second;
+}
+
+NodeRecord* NodeTable::by_token(std::uint64_t token) {
+    const auto place =
+        std::find_if(nodes_.begin(), nodes_.end(), [&](auto& entry) { return entry.second.token == token; });
+    return place == nodes_.end() ? nullptr : &place->second;
+}
+
+void NodeTable::heartbeat(NodeRecord& node, const wire::Heartbeat& heartbeat, TimePoint now) {
+    node.state = heartbeat;
+    node.heartbeat_at = now;
+    node.leaving = node.leaving || heartbeat.phase == wire::NodePhase::Leaving;
+    std::erase_if(node.pending,
+                  [&](const auto& work) { return work.second <= heartbeat.last_work_sequence; });
+    const auto round_trip =
+        node.clock.heartbeat(heartbeat.sent_at, heartbeat.echo_sent_at, heartbeat.echo_delay, now);
+    if (round_trip) node.round_trip_seconds = seconds(*round_trip);
+    const bool works =
+        heartbeat.phase == wire::NodePhase::Rendering || heartbeat.phase == wire::NodePhase::Building;
+    if (!works || heartbeat.progress != node.last_progress) {
+        node.last_progress = heartbeat.progress;
+        node.last_progress_at = now;
+    }
+    node.stuck = works && now - node.last_progress_at > stuck_.allowance;
+}
+
+std::vector<NodeId> NodeTable::dead(TimePoint now) const {
+    std::vector<NodeId> dead;
+    for (const auto& [id, node] : nodes_) {
+        if (node.liveness.dead(now)) dead.push_back(id);
+    }
+    return dead;
+}
+
+std::vector<UnitId> NodeTable::overdue(NodeRecord& node, const std::vector<UnitId>& held, TimePoint now,
+                                       Duration patience) {
+    std::map<UnitId, TimePoint> silent;
+    std::vector<UnitId> overdue;
+    for (const UnitId unit : held) {
+        const auto& in_hand = node.state.in_hand;
+        if (node.pending.contains(unit) || std::find(in_hand.begin(), in_hand.end(), unit) != in_hand.end())
+            continue;
+        const auto known = node.silent.find(unit);
+        const TimePoint since = known == node.silent.end() ? now : known->second;
+        silent.emplace(unit, since);
+        if (now - since > patience) overdue.push_back(unit);
+    }
+    node.silent = std::move(silent);
+    return overdue;
+}
+
+}  // namespace tessera::master

@@ -1,0 +1,62 @@
+#include "master/peers/suitable_nodes.h"
+
+namespace tessera::master {
+
+namespace {
+
+// "no node has the renderer raster: ...; ", or nothing when one has.
+std::string missing_renderer(const NodeTable& nodes, view::Renderer renderer) {
+    for (const auto& [id, node] : nodes.all()) {
+        if (node.hello.renderers.contains(renderer)) return {};
+    }
+    if (renderer != view::Renderer::Raster) return {};
+    return "no node has the renderer raster: start one with --backend vulkan; ";
+}
+
+// "the back-ends of 2 nodes do not give alpha, range; ", or nothing when channels are not the trouble.
+std::string missing_channels(const NodeTable& nodes, frame::ChannelSet channels) {
+    std::uint32_t lacking = 0, missing = 0;
+    for (const auto& [id, node] : nodes.all()) {
+        const std::uint32_t lacks = channels.bits() & ~node.hello.channels.bits();
+        lacking += lacks != 0 ? 1 : 0;
+        missing |= lacks;
+    }
+    if (lacking == 0) return {};
+    std::string names;
+    for (const frame::ChannelInfo& entry : frame::channel_table()) {
+        if (!frame::ChannelSet::from_bits(missing).contains(entry.channel)) continue;
+        names += (names.empty() ? "" : ", ") + std::string(entry.name);
+    }
+    return "the back-ends of " + std::to_string(lacking) + " nodes do not give " + names + "; ";
+}
+
+// "the scene does not fit into 2 nodes (node-1: why); ", or nothing when memory is not the trouble.
+std::string missing_room(const NodeTable& nodes, Version version) {
+    std::uint32_t full = 0;
+    std::string first;
+    for (const auto& [id, node] : nodes.all()) {
+        if (node.refused != version) continue;
+        if (full++ == 0) first = node.hello.name + ": " + node.refusal;
+    }
+    if (full == 0) return {};
+    return "the scene does not fit into " + std::to_string(full) + " nodes (" + first + "); ";
+}
+
+}  // namespace
+
+bool suits(const NodeRecord& node, const view::View& view, Version version) {
+    const bool has_channels = (view.channels.bits() & ~node.hello.channels.bits()) == 0;
+    return !node.leaving && !node.stuck && node.bulk && has_channels && node.refused != version &&
+           node.hello.renderers.contains(view.renderer);
+}
+
+bool ready(const NodeRecord& node, const view::View& view, Version version) {
+    return suits(node, view, version) && node.reported == version && node.state.version == version;
+}
+
+std::string obstacles(const NodeTable& nodes, const view::View& view, Version version) {
+    return missing_renderer(nodes, view.renderer) + missing_channels(nodes, view.channels) +
+           missing_room(nodes, version);
+}
+
+}  // namespace tessera::master

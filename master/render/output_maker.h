@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "master/render/reconstruction.h"
+#include "mediator/frame/film_tile.h"
+#include "mediator/view/view.h"
+#include "mediator/wire/messages.h"
+
+namespace tessera::master {
+
+// How light becomes what a device can show, the same for all outputs of a display.
+struct Look {
+    double exposure = 0.0;  // stops
+    double white = 0.0;  // the smallest luminance that becomes white (after exposure); 0 = 1, without a curve
+    friend bool operator==(const Look&, const Look&) = default;
+};
+
+// The pictures of one output for one frame: its eyes, each of one or more layers.
+struct OutputOrder {
+    struct EyePicture {
+        std::vector<view::View> layers;  // whose films; from the back to the front where depths are the same
+        view::CameraPose in_display;     // told with the picture
+    };
+    std::uint64_t frame = 0;
+    std::size_t output = 0;
+    std::vector<EyePicture> eyes;
+    wire::PictureEncoding encoding = wire::PictureEncoding::Bytes;  // or Half
+    Look look;
+    bool stereo_difference = false;  // of two eyes whose films have depth
+};
+struct MadeOutput {
+    OutputOrder order;
+    struct Picture {
+        std::uint32_t width = 0, height = 0;
+        std::shared_ptr<const std::vector<std::byte>> bytes;  // empty when it failed
+    };
+    std::vector<Picture> eyes;
+    std::uint64_t samples_least = 0;
+    double stereo_difference = 0.0;
+    std::string error;
+};
+
+// Films in the order of the eyes and their layers; those of several layers have depth. Each view is filtered
+// for itself: nothing of one eye or output reaches another. What fails is told in `error`.
+MadeOutput make_output(OutputOrder order, const std::vector<frame::FilmTile>& films,
+                       Reconstructor& reconstructor);
+
+}  // namespace tessera::master

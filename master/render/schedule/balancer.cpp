@@ -1,0 +1,28 @@
+#include "master/render/schedule/balancer.h"
+
+#include <algorithm>
+
+namespace tessera::master {
+
+void Balancer::measured(NodeId node, std::uint64_t samples, Duration busy) {
+    const double time = seconds(busy);
+    if (samples == 0 || time <= 0.0) return;
+    const double rate = static_cast<double>(samples) / time;
+    const auto [place, fresh] = rates_.try_emplace(node, rate);
+    if (!fresh) place->second += settings_.smoothing * (rate - place->second);
+}
+
+double Balancer::rate(NodeId node) const {
+    const auto place = rates_.find(node);
+    return place == rates_.end() ? 0.0 : place->second;
+}
+
+std::uint64_t Balancer::unit_samples(NodeId node, std::uint64_t remaining, std::uint32_t workers) const {
+    const double measured_rate = rate(node);
+    const double wanted =
+        measured_rate > 0.0 ? measured_rate * settings_.unit_seconds : settings_.first_samples;
+    const double fair = static_cast<double>(remaining) / (2.0 * std::max(workers, 1u));
+    return static_cast<std::uint64_t>(std::max(1.0, std::min(wanted, fair)));
+}
+
+}  // namespace tessera::master

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <condition_variable>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "master/scene/authority_state.h"
+
+namespace tessera::master {
+
+// What a checkpoint is made of. To take it costs the loop a copy of the scene's map; encoding and writing are
+// the writer's.
+struct CheckpointJob {
+    std::uint64_t number = 0;  // Journal::start_segment(), called right before the state was taken
+    std::string title;
+    AuthorityState authority;  // SceneAuthority::save()
+    std::vector<wire::SavedView> views;
+};
+
+struct CheckpointResult {
+    std::uint64_t number = 0, byte_size = 0;
+    double seconds = 0;
+    std::string problem;  // empty = it is on the disk, and what it makes needless is gone
+};
+
+// Writes checkpoints into a session folder, one at a time, on a thread of its own.
+class CheckpointWriter {
+  public:
+    explicit CheckpointWriter(std::filesystem::path folder);
+    ~CheckpointWriter();  // waits for the one being written
+    CheckpointWriter(const CheckpointWriter&) = delete;
+    CheckpointWriter& operator=(const CheckpointWriter&) = delete;
+
+    bool busy() const;
+    void start(CheckpointJob job);                  // not while busy
+    void wait();                                    // until not busy
+    std::optional<CheckpointResult> take_result();  // of the one that ended last, once
+
+  private:
+    void run(const std::stop_token& stop);
+    CheckpointResult write(CheckpointJob job) const;
+
+    const std::filesystem::path folder_;
+    mutable std::mutex mutex_;  // protects the three below
+    std::optional<CheckpointJob> job_;
+    std::optional<CheckpointResult> result_;
+    bool busy_ = false;
+    std::condition_variable_any changed_;
+    std::jthread thread_;
+};
+
+}  // namespace tessera::master

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "master/scene/journal_file.h"
+#include "mediator/base/clock.h"
+
+namespace tessera::master {
+
+// Forces files to the disk on a thread of its own, at most once an interval: what was written before the last
+// one outlives a loss of power.
+class DiskSync {
+  public:
+    explicit DiskSync(Duration interval);
+    ~DiskSync();  // once more, now
+    DiskSync(const DiskSync&) = delete;
+    DiskSync& operator=(const DiskSync&) = delete;
+
+    void soon(const FilePtr& file);  // in the order of these calls
+    std::string problem() const;     // the first that went wrong; empty = none
+
+  private:
+    void run(const std::stop_token& stop);
+
+    const Duration interval_;
+    mutable std::mutex mutex_;  // protects the two below
+    std::vector<FilePtr> dirty_;
+    std::string problem_;
+    std::condition_variable_any wake_;
+    std::jthread thread_;
+};
+
+}  // namespace tessera::master

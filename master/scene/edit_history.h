@@ -1,0 +1,36 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+
+#include "master/scene/transaction.h"
+
+namespace tessera::master {
+
+// The latest transactions, those that can still be undone. Pure.
+class EditHistory {
+  public:
+    static constexpr std::size_t Length = 256;
+
+    std::uint64_t last() const { return last_; }  // number of the youngest ever; 0 = none
+    Transaction& add(Transaction transaction);    // gets the next number; the oldest may go
+    Transaction* find(std::uint64_t number);      // null: never was, or is too old
+    const Transaction* find(std::uint64_t number) const;
+
+    // This editor's youngest that is no undo and is in force; its youngest undo that is. 0 = none.
+    std::uint64_t latest_to_undo(std::uint64_t editor) const;
+    std::uint64_t latest_to_redo(std::uint64_t editor) const;
+    // `by` takes back `target`: that is no longer in force, what it had taken back is again, and so on.
+    void mark_undone(Transaction& target, std::uint64_t by);
+
+    const Transaction* remover(ObjectId id) const;  // the youngest that removed the object
+    const std::deque<Transaction>& all() const { return transactions_; }  // oldest first
+    void clear() { transactions_.clear(); }                               // numbers go on
+    void restore(std::uint64_t last, std::deque<Transaction> transactions);
+
+  private:
+    std::uint64_t last_ = 0;
+    std::deque<Transaction> transactions_;
+};
+
+}  // namespace tessera::master

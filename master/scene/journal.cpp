@@ -1,0 +1,93 @@
+#include "master/scene/journal.h"
+
+#include <fcntl.h>
+
+#include "mediator/scene/blob_file.h"
+#include "mediator/scene/scene.h"
+#include "mediator/wire/journal_codec.h"
+
+namespace tessera::master {
+
+Journal::Journal(const std::filesystem::path& folder, std::shared_ptr<const scene::BlobStore> blobs,
+                 std::uint64_t segment, Duration sync_interval)
+    : folder_(folder),
+      blobs_(std::move(blobs)),
+      number_(segment),
+      segment_(journal_path(folder, segment), segment),
+      sync_(sync_interval) {
+    sync_.soon(segment_.file());
+    sync_folder(folder_);
+}
+
+void Journal::sync_folder(const std::filesystem::path& folder) {
+    const auto file =
+        std::make_shared<FileHandle>(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (file->descriptor() >= 0) sync_.soon(file);
+}
+
+Expected<void> Journal::append(const wire::JournalRecord& record) {
+    if (const std::string problem = sync_.problem(); !problem.empty())
+        return failure(ErrorCode::Io, problem + "; start the master again with another --session");
+    std::vector<std::byte> bytes;
+    try {
+        bytes = wire::encode(record);
+    } catch (const Error& error) {
+        return tl::unexpected(error);
+    }
+    if (auto appended = segment_.append(bytes); !appended) return appended;
+    sync_.soon(segment_.file());
+    return {};
+}
+
+Expected<void> Journal::keep_blobs(const std::vector<scene::Entry>& entries) {
+    bool wrote = false;
+    for (const scene::Entry& entry : entries) {
+        for (const scene::BlobRef& reference : scene::referenced_blobs(entry)) {
+            if (kept_.contains(reference.hash)) continue;
+            const scene::BlobPtr blob = blobs_->find(reference.hash);
+            if (!blob) {
+                return failure(ErrorCode::NotFound,
+                               "blob " + to_hex(reference.hash) + " is not here any more: send it again");
+            }
+            const std::filesystem::path folder = blobs_path(folder_);
+            if (auto written = scene::write_blob(folder, *blob); !written) return written;
+            const auto file = std::make_shared<FileHandle>(
+                ::open(scene::blob_path(folder, reference).c_str(), O_RDONLY | O_CLOEXEC));
+            if (file->descriptor() >= 0) sync_.soon(file);
+            kept_.insert(reference.hash);
+            wrote = true;
+        }
+    }
+    if (wrote) sync_folder(blobs_path(folder_));
+    return {};
+}
+
+Expected<void> Journal::joined(const wire::RecordedEditor& editor) {
+    return append(editor);
+}
+
+Expected<void> Journal::edited(const RecordedEdit& edit) {
+    if (auto kept = keep_blobs(edit.entries); !kept) return kept;
+    return append(edit);
+}
+
+void Journal::cleared() {
+    (void)append(wire::RecordedClose{});  // unwritten: a restart finds the scene as it was
+    kept_.clear();
+}
+
+Expected<void> Journal::opened(const std::string& title) {
+    return append(wire::RecordedTitle{title});
+}
+
+std::uint64_t Journal::start_segment() {
+    JournalFile next(journal_path(folder_, number_ + 1), number_ + 1);
+    earlier_bytes_ += segment_.byte_size();
+    segment_ = std::move(next);
+    ++number_;
+    sync_.soon(segment_.file());
+    sync_folder(folder_);
+    return number_;
+}
+
+}  // namespace tessera::master

@@ -1,0 +1,177 @@
+#include "master/scene/recovery.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "master/scene/checkpoint_file.h"
+#include "mediator/scene/blob_file.h"
+#include "mediator/wire/journal_codec.h"
+
+namespace tessera::master {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class Recoverer {
+  public:
+    Recoverer(const fs::path& folder, SceneAuthority& authority, scene::BlobStore& blobs)
+        : folder_(folder), authority_(authority), blobs_(blobs), files_(session_files(folder)) {}
+
+    Recovery run() {
+        if (files_.journals.empty() && files_.checkpoints.empty()) return {};
+        recovery_.found = true;
+        const std::uint64_t first = use_checkpoint();
+        std::uint64_t expected = first;
+        recovery_.next_segment = first;
+        bool usable = true;
+        for (const std::uint64_t number : files_.journals) {
+            if (number < first) continue;
+            if (usable && number != expected) {
+                note(journal_path(folder_, expected).string() + " is missing: what follows cannot be used");
+                usable = false;
+            }
+            usable = usable ? replay(number) : set_aside(journal_path(folder_, number));
+            expected = number + 1;
+        }
+        authority_.start_epoch();
+        load_blobs();
+        note(std::to_string(recovery_.edits) + " edits were done again from the journal");
+        return std::move(recovery_);
+    }
+
+  private:
+    void note(std::string text) { recovery_.notes.push_back(std::move(text)); }
+
+    // Returns the first segment after it.
+    std::uint64_t use_checkpoint() {
+        std::vector<fs::path> bad;
+        for (auto number = files_.checkpoints.rbegin(); number != files_.checkpoints.rend(); ++number) {
+            const fs::path path = checkpoint_path(folder_, *number);
+            auto state = read_checkpoint(path, *number);
+            if (state) {
+                recovery_.title = state->title;
+                recovery_.views = std::move(state->views);
+                auto authority = restored(std::move(*state));
+                if (authority) {
+                    authority_.restore(std::move(*authority));
+                    for (const fs::path& other : bad) set_aside(other);
+                    note("checkpoint '" + path.string() + "' was used");
+                    return *number;
+                }
+                state =
+                    failure(ErrorCode::InvalidInput, "'" + path.string() + "': " + authority.error().what());
+            }
+            note("checkpoint " + std::string(state.error().what()) + "; the one before it is used");
+            bad.push_back(path);
+        }
+        const bool whole = !files_.journals.empty() && files_.journals.front() == 1;
+        if (!whole) {
+            throw Error(ErrorCode::InvalidInput,
+                        "no checkpoint in '" + folder_.string() +
+                            "' is good, and the journal from before is gone: move the folder away to start "
+                            "anew");
+        }
+        for (const fs::path& other : bad) set_aside(other);
+        recovery_.title.clear();
+        recovery_.views.clear();
+        return 1;
+    }
+
+    // False: what follows is of no use.
+    bool replay(std::uint64_t number) {
+        const fs::path path = journal_path(folder_, number);
+        const JournalScan scan = read_journal(path, number, [&](std::span<const std::byte> bytes) {
+            const auto record = wire::decode_journal_record(bytes);
+            return record ? use(*record) : Expected<void>(tl::unexpected(record.error()));
+        });
+        if (scan.end == JournalEnd::Complete || scan.records != 0) recovery_.next_segment = number + 1;
+        if (scan.end == JournalEnd::Complete) return true;
+        const bool last = number == files_.journals.back();
+        if (scan.end == JournalEnd::Torn && last) {
+            note("journal " + scan.text + ": what its master was writing when it died is cut off");
+        } else {
+            note("journal " + scan.text + ": everything from there on is lost");
+        }
+        cut(path, scan);
+        return false;
+    }
+
+    Expected<void> use(const wire::JournalRecord& record) {
+        if (auto replayed = authority_.replay(record); !replayed) return replayed;
+        if (const auto* title = std::get_if<wire::RecordedTitle>(&record)) recovery_.title = title->title;
+        if (const auto* edit = std::get_if<RecordedEdit>(&record))
+            recovery_.edits += edit->editor != 0 ? 1 : 0;
+        if (std::holds_alternative<wire::RecordedClose>(record)) {
+            recovery_.title.clear();
+            recovery_.views.clear();
+        }
+        return {};
+    }
+
+    void cut(const fs::path& path, const JournalScan& scan) {
+        if (scan.records == 0) {
+            set_aside(path);
+            return;
+        }
+        const fs::path tail = path.string() + ".tail-" + std::to_string(scan.offset);
+        std::ifstream in(path, std::ios::binary);
+        in.seekg(static_cast<std::streamoff>(scan.offset));
+        std::ofstream out(tail, std::ios::binary);
+        out << in.rdbuf();
+        if (!out.flush() || ::truncate(path.c_str(), static_cast<off_t>(scan.offset)) != 0) {
+            throw Error(ErrorCode::Io, "cannot cut the damaged end off '" + path.string() +
+                                           "': check the folder, its rights and the free space");
+        }
+        force_to_disk(path);
+    }
+
+    bool set_aside(const fs::path& path) {
+        std::error_code error;
+        fs::rename(path, path.string() + ".damaged", error);
+        if (error) {
+            throw Error(ErrorCode::Io, "cannot set '" + path.string() + "' aside: " + error.message());
+        }
+        note("'" + path.string() + "' is kept as .damaged");
+        return false;
+    }
+
+    void load_blobs() {
+        std::vector<scene::BlobRef> wanted = scene::referenced_blobs(authority_.scene());
+        for (const Transaction& transaction : authority_.save().history) {
+            for (const auto& [id, change] : transaction.changes.all()) {
+                for (const auto& object : {change.object.before, change.object.after}) {
+                    if (!object) continue;
+                    for (const scene::BlobRef& blob : scene::referenced_blobs(*object))
+                        wanted.push_back(blob);
+                }
+            }
+        }
+        std::sort(wanted.begin(), wanted.end());
+        wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+        for (const scene::BlobRef& blob : wanted) {
+            if (scene::BlobPtr found = scene::read_blob(blobs_path(folder_), blob)) {
+                blobs_.insert(std::move(found));
+            } else {
+                note("blob '" + scene::blob_path(blobs_path(folder_), blob).string() +
+                     "' is missing or damaged: send the objects that need it again");
+            }
+        }
+    }
+
+    fs::path folder_;
+    SceneAuthority& authority_;
+    scene::BlobStore& blobs_;
+    SessionFiles files_;
+    Recovery recovery_;
+};
+
+}  // namespace
+
+Recovery recover(const SessionFolder& folder, SceneAuthority& authority, scene::BlobStore& blobs) {
+    return Recoverer(folder.path(), authority, blobs).run();
+}
+
+}  // namespace tessera::master

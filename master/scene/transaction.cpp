@@ -1,0 +1,160 @@
+#include "master/scene/transaction.h"
+
+#include <atomic>
+
+#include "mediator/scene/fields.h"
+#include "mediator/scene/referrers.h"
+
+namespace tessera::master {
+
+namespace {
+
+// Before `shared` is changed: a copy of its own where another thread may still read it.
+template <class T>
+void own(std::shared_ptr<T>& shared) {
+    if (!shared) {
+        shared = std::make_shared<T>();
+    } else if (shared.use_count() > 1) {
+        shared = std::make_shared<T>(*shared);
+    } else {
+        std::atomic_thread_fence(std::memory_order_acquire);  // after the reads of whoever let go last
+    }
+}
+
+template <class Visit>
+void for_each_bit(scene::FieldMask mask, const Visit& visit) {
+    for (std::uint32_t field = 0; mask != 0; ++field, mask >>= 1) {
+        if (mask & 1u) visit(field);
+    }
+}
+
+scene::FieldMask children_mask(const scene::ObjectChange& change) {
+    return change.is_update() ? change.mask & scene::children_field(kind(*change.after)) : 0;
+}
+
+// What the object was like before both: what the first wrote is as it was before that, all else as it was
+// before the second.
+std::shared_ptr<const scene::Object> earliest(const scene::ObjectChange& first,
+                                              const scene::ObjectChange& second) {
+    const bool nothing_new = (second.mask & ~first.mask) == 0 && second.is_update();
+    if (!first.before || nothing_new || first.before->index() != second.before->index()) return first.before;
+    auto merged = std::make_shared<scene::Object>(*second.before);
+    assign(*merged, *first.before, first.mask);
+    return merged;
+}
+
+void record_writers(TransactionChange& change, const scene::ObjectChange& step, const WriterPtr& author,
+                    WriterTable& writers) {
+    if (!step.is_update()) {
+        for (auto& [field, writer] : writers.take(step.id)) change.writers_before.try_emplace(field, writer);
+        return;
+    }
+    for_each_bit(step.mask, [&](std::uint32_t field) {
+        change.writers_before.try_emplace(field, writers.of(step.id, field));
+        writers.set(step.id, field, author);
+    });
+}
+
+}  // namespace
+
+TransactionChanges::Map& TransactionChanges::to_change() {
+    own(changes_);
+    return *changes_;
+}
+
+WriterPtr WriterTable::of(ObjectId id, std::uint32_t field) const {
+    const ObjectWriters& object = of(id);
+    const auto place = object.find(field);
+    return place == object.end() ? nullptr : place->second;
+}
+
+const ObjectWriters& WriterTable::of(ObjectId id) const {
+    static const ObjectWriters None;
+    const auto place = writers_.find(id);
+    return place == writers_.end() ? None : *place->second;
+}
+
+void WriterTable::set(ObjectId id, std::uint32_t field, const WriterPtr& writer) {
+    const auto place = writer ? writers_.try_emplace(id).first : writers_.find(id);
+    if (place == writers_.end()) return;
+    own(place->second);
+    if (writer) {
+        (*place->second)[field] = writer;
+        return;
+    }
+    place->second->erase(field);
+    if (place->second->empty()) writers_.erase(place);
+}
+
+void WriterTable::set(ObjectId id, const ObjectWriters& writers) {
+    for (const auto& [field, writer] : writers) set(id, field, writer);
+}
+
+ObjectWriters WriterTable::take(ObjectId id) {
+    auto node = writers_.extract(id);
+    return node ? *node.mapped() : ObjectWriters();
+}
+
+bool can_extend(const Transaction& transaction, const std::vector<scene::ObjectChange>& changes,
+                const WriterTable& writers) {
+    for (const scene::ObjectChange& step : changes) {
+        const auto place = transaction.changes.all().find(step.id);
+        if (place == transaction.changes.all().end()) continue;
+        const scene::ObjectChange& so_far = place->second.object;
+        if (!so_far.after || !step.before || so_far.after->index() != step.before->index()) return false;
+        if (!so_far.is_update()) continue;
+        bool ours = true;
+        for_each_bit(children_mask(so_far) & step.mask, [&](std::uint32_t field) {
+            const WriterPtr writer = writers.of(step.id, field);
+            ours = ours && writer && writer->transaction == transaction.number;
+        });
+        if (!ours) return false;
+    }
+    return true;
+}
+
+void extend(Transaction& transaction, const std::vector<scene::ObjectChange>& changes, WriterTable& writers) {
+    TransactionChanges::Map& all = transaction.changes.to_change();
+    for (const scene::ObjectChange& step : changes) {
+        const auto [place, fresh] = all.try_emplace(step.id);
+        TransactionChange& change = place->second;
+        record_writers(change, step, transaction.author, writers);
+        if (fresh) {
+            change.object = step;
+            continue;
+        }
+        change.object.before = earliest(change.object, step);
+        change.object.after = step.after;
+        change.object.mask |= step.mask;
+        if (!change.object.before && !change.object.after) all.erase(place);
+    }
+}
+
+void record_undo(Transaction& undo, const std::vector<scene::ObjectChange>& changes,
+                 const std::map<ObjectId, ObjectWriters>& brought_back, const scene::Scene& scene,
+                 WriterTable& writers) {
+    TransactionChanges::Map& all = undo.changes.to_change();
+    for (const scene::ObjectChange& step : changes) {
+        TransactionChange& change = all[step.id];
+        change.object = step;
+        if (!step.is_update()) change.writers_before = writers.take(step.id);
+    }
+    for (const auto& [id, fields] : brought_back) {
+        const auto [place, fresh] = all.try_emplace(id);
+        TransactionChange& change = place->second;
+        if (fresh) {
+            const auto& same = scene.objects().at(id);
+            change.object = {.id = id, .before = same, .after = same};
+        }
+        for (const auto& [field, writer] : fields) {
+            if (change.object.is_update()) {
+                change.object.mask |= scene::field_bit(field);
+                change.writers_before[field] = writers.of(id, field);
+            }
+            writers.set(id, field, writer);
+        }
+        change.writers_after = fields;
+    }
+}
+
+}  // namespace tessera::master

@@ -1,0 +1,46 @@
+// Frames that nobody can render are refused with the reason.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "master/render/job.h"
+
+namespace tessera::master {
+namespace {
+
+wire::StartJob request_with(const view::CameraPose& camera) {
+    wire::StartJob request;
+    request.view.camera = camera;
+    request.view.channels = {frame::Channel::Radiance};
+    request.spp = 1;
+    return request;
+}
+
+bool is_refused_for(const view::CameraPose& camera, const std::string& part) {
+    return problem_of(request_with(camera)).find(part) != std::string::npos;
+}
+
+TEST(RequestProblem, CamerasThatCanSee) {
+    EXPECT_EQ(problem_of(request_with({})), "");
+    EXPECT_EQ(problem_of(request_with({.lens_radius = 0.1, .focus_distance = 2.0})), "");
+    EXPECT_EQ(problem_of(request_with({.focus_distance = 0.0})), "") << "a pinhole has no focus";
+    EXPECT_EQ(problem_of(request_with({.left = -1e6, .projection = scene::Projection::Orthographic})), "");
+}
+
+TEST(RequestProblem, CamerasThatCannot) {
+    constexpr double NaN = std::numeric_limits<double>::quiet_NaN(),
+                     Infinity = std::numeric_limits<double>::infinity();
+    for (const double radius : {-1.0, NaN, Infinity, 1e7})
+        EXPECT_TRUE(is_refused_for({.lens_radius = radius}, "the lens' radius")) << radius;
+    for (const double focus : {-1.0, 0.0, 1e-9, NaN, Infinity})
+        EXPECT_TRUE(is_refused_for({.lens_radius = 0.1, .focus_distance = focus}, "focus distance")) << focus;
+    const std::vector<glm::dmat4> most(scene::MaxMotion, glm::dmat4(1.0));
+    EXPECT_EQ(problem_of(request_with({.motion = most})), "");
+    EXPECT_TRUE(is_refused_for({.motion = std::vector(scene::MaxMotion + 1, glm::dmat4(1.0))}, "steps"));
+    EXPECT_TRUE(is_refused_for({.motion = {glm::dmat4(NaN)}}, "not finite"));
+    EXPECT_TRUE(is_refused_for({.right = -2.0}, "empty frustum"));
+    EXPECT_TRUE(is_refused_for({.right = 1e16, .projection = scene::Projection::Orthographic}, "wider than"));
+}
+
+}  // namespace
+}  // namespace tessera::master
