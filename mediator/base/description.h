@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -43,6 +44,12 @@ struct Limit {
 
 // A note: the number has 8 bytes on the wire (fixed64), as keys and hashes do, which are seldom small.
 struct FullWidth {};
+
+// A note: an enumerator beyond this one is not decoded here, though the enumeration has it.
+template <class E>
+struct UpTo {
+    E last;
+};
 
 // A member that is computed: `get(const T&)` gives the value that is described, `set(T&, value)` takes it.
 template <class Get, class Set>
@@ -104,6 +111,55 @@ inline constexpr std::size_t row_count = std::tuple_size_v<std::remove_const_t<d
 template <Described T, std::size_t I>
 inline constexpr const auto& row_of = std::get<I>(rows_of<T>);
 
+// The value of the I-th row: a reference to the member, or what is computed.
+template <std::size_t I, Described T>
+constexpr decltype(auto) row_value(const T& object) {
+    constexpr const auto& row = row_of<T, I>;
+    if constexpr (is_computed<std::remove_cvref_t<decltype(row)>>) {
+        return row.access.get(object);
+    } else {
+        return row.of(object);
+    }
+}
+template <Described T, std::size_t I>
+using RowValue = std::remove_cvref_t<decltype(row_value<I>(std::declval<const T&>()))>;
+
+// Calls fill(V&) with the member of the I-th row, or with a new value that is then set.
+template <std::size_t I, Described T, class Fill>
+constexpr void set_row(T& object, const Fill& fill) {
+    constexpr const auto& row = row_of<T, I>;
+    if constexpr (is_computed<std::remove_cvref_t<decltype(row)>>) {
+        RowValue<T, I> value{};
+        fill(value);
+        row.access.set(object, std::move(value));
+    } else {
+        fill(row.of(object));
+    }
+}
+
+// Whether a decoded value of the I-th row is within its UpTo, if it has one.
+template <std::size_t I, Described T>
+constexpr bool within(const RowValue<T, I>& value) {
+    constexpr const auto& row = row_of<T, I>;
+    if constexpr (std::remove_cvref_t<decltype(row)>::template has<UpTo<RowValue<T, I>>>) {
+        return value <= row.template note<UpTo<RowValue<T, I>>>().last;
+    } else {
+        return true;
+    }
+}
+
+// Null, or why no decoded value may be like this one.
+template <Described T>
+constexpr const char* why_malformed(const T& value) {
+    if constexpr (requires {
+                      { value.malformed() } -> std::same_as<const char*>;
+                  }) {
+        return value.malformed();
+    } else {
+        return nullptr;
+    }
+}
+
 // Calls visit(std::integral_constant<std::size_t, I>) for every row, in order.
 template <Described T, class Visit>
 constexpr void for_each_row(Visit&& visit) {
@@ -142,5 +198,19 @@ struct Alternative {
     unsigned number;
     std::string_view name;
 };
+
+template <class T>
+concept Oneof = requires(const T* value) {
+    alternatives(value);
+};
+
+template <Oneof T>
+inline constexpr auto alternatives_of = alternatives(static_cast<const T*>(nullptr));
+
+// Calls visit(const Alternative<A>&) for each.
+template <Oneof T, class Visit>
+constexpr void for_each_alternative(const Visit& visit) {
+    std::apply([&](const auto&... alternative) { (visit(alternative), ...); }, alternatives_of<T>);
+}
 
 }  // namespace tessera

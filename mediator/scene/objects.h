@@ -23,6 +23,7 @@ namespace tessera::scene {
 
 // Fields of an object of any kind: bit i is the i-th.
 using FieldMask = std::uint64_t;
+inline constexpr std::size_t MaxFields = 64;
 
 // The mask of one field.
 constexpr FieldMask field_bit(unsigned field) {

@@ -216,14 +216,7 @@ struct RowTraits {
             return DefaultLimit.entries;
         }
     }
-    static decltype(auto) get(const T& value) {
-        if constexpr (is_computed<RowType>) {
-            return row.access.get(value);
-        } else {
-            return row.of(value);
-        }
-    }
-    using Value = std::remove_cvref_t<decltype(get(std::declval<const T&>()))>;
+    using Value = RowValue<T, I>;
     static constexpr std::uint32_t tag = make_tag(row.number, wire_type<Value>(full_width));
 };
 
@@ -236,13 +229,10 @@ template <Described T, std::size_t I>
 void read_row(FormatReader& in, T& value) {
     using Traits = RowTraits<T, I>;
     in.enter(Traits::row.name);
-    if constexpr (is_computed<typename Traits::RowType>) {
-        typename Traits::Value part{};
+    set_row<I>(value, [&](auto& part) {
         read_field<Traits::full_width>(in, part, Traits::limit());
-        Traits::row.access.set(value, std::move(part));
-    } else {
-        read_field<Traits::full_width>(in, Traits::row.of(value), Traits::limit());
-    }
+        if (!within<I, T>(part)) in.fail("an enumerator is not for here");
+    });
 }
 
 template <Described T, std::size_t I>
@@ -265,7 +255,7 @@ void write_rows(FormatWriter& out, const T& value, RowMask mask) {
     for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
         using Traits = detail::RowTraits<T, I>;
         if (!detail::in_mask<I>(mask)) return;
-        detail::write_field<Traits::row.number, Traits::full_width>(out, Traits::get(value));
+        detail::write_field<Traits::row.number, Traits::full_width>(out, row_value<I>(value));
     });
 }
 
@@ -291,30 +281,13 @@ void read_rows(FormatReader& in, T& value, RowMask mask) {
         in.skip(tag);
         tag = in.tag();
     }
-    if constexpr (requires {
-                      { value.malformed() } -> std::same_as<const char*>;
-                  }) {
-        if (const char* what = value.malformed()) in.fail(what);
-    }
+    if (const char* what = why_malformed(value)) in.fail(what);
 }
-
-namespace detail {
-
-template <Oneof T>
-inline constexpr auto alternatives_of = alternatives(static_cast<const T*>(nullptr));
-
-// Calls visit(the alternative's row) for each.
-template <Oneof T, class Visit>
-void for_each_alternative(const Visit& visit) {
-    std::apply([&](const auto&... alternative) { (visit(alternative), ...); }, alternatives_of<T>);
-}
-
-}  // namespace detail
 
 // The alternative that there is, with the rows whose bits are in the mask.
-template <detail::Oneof T>
+template <Oneof T>
 void write_oneof(FormatWriter& out, const T& value, RowMask mask = AllRows) {
-    detail::for_each_alternative<T>([&]<class A>(const Alternative<A>& alternative) {
+    for_each_alternative<T>([&]<class A>(const Alternative<A>& alternative) {
         const auto* held = std::get_if<A>(&value);
         if (held == nullptr) return;
         const std::size_t start = out.begin(make_tag(alternative.number, WireType::Length));
@@ -324,12 +297,12 @@ void write_oneof(FormatWriter& out, const T& value, RowMask mask = AllRows) {
 }
 
 // The last one that comes counts.
-template <detail::Oneof T>
+template <Oneof T>
 void read_oneof(FormatReader& in, T& value, RowMask mask = AllRows) {
     bool found = false;
     while (const std::uint32_t tag = in.tag()) {
         bool taken = false;
-        detail::for_each_alternative<T>([&]<class A>(const Alternative<A>& alternative) {
+        for_each_alternative<T>([&]<class A>(const Alternative<A>& alternative) {
             if (tag != make_tag(alternative.number, WireType::Length)) return;
             in.enter(alternative.name);
             FormatReader content(in.block(), in);
@@ -346,7 +319,7 @@ template <detail::Message T>
 void write_content(FormatWriter& out, const T& value) {
     if constexpr (detail::Custom<T>) {
         CustomCodec<T>::write(out, value);
-    } else if constexpr (detail::Oneof<T>) {
+    } else if constexpr (Oneof<T>) {
         write_oneof(out, value);
     } else {
         write_rows(out, value);
@@ -357,7 +330,7 @@ template <detail::Message T>
 void read_content(FormatReader& in, T& value) {
     if constexpr (detail::Custom<T>) {
         CustomCodec<T>::read(in, value);
-    } else if constexpr (detail::Oneof<T>) {
+    } else if constexpr (Oneof<T>) {
         read_oneof(in, value);
     } else {
         read_rows(in, value);

@@ -52,10 +52,6 @@ concept Custom = requires(FormatWriter& out, FormatReader& in, T& value) {
     CustomCodec<T>::read(in, value);
 };
 template <class T>
-concept Oneof = !Custom<T> && requires(const T* value) {
-    alternatives(value);
-};
-template <class T>
 concept Message = Described<T> || Oneof<T> || Custom<T>;
 
 // Numbers in a row, a fixed count of them: what glm's types are.

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "mediator/base/random.h"
+#include "mediator/scene/change_list.h"
+#include "mediator/scene/fields.h"
 #include "mediator/wire/codec.h"
+#include "mediator/wire/journal_records.h"
 
 // Values of described structures: any, by chance. tests/wire only.
 namespace tessera::wire::test {
@@ -11,25 +14,36 @@ namespace tessera::wire::test {
 template <class T>
 void fill(T& value, CounterRandom& random);
 
+// Templates of many types: kept small, for they are compiled for all of them.
 template <Described T>
-void fill_rows(T& value, CounterRandom& random) {
+[[gnu::noinline]] void fill_rows(T& value, CounterRandom& random) {
     for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
-        using Traits = detail::RowTraits<T, I>;
-        if constexpr (is_computed<typename Traits::RowType>) {
-            typename Traits::Value part{};
-            fill(part, random);
-            Traits::row.access.set(value, part);
-        } else {
-            fill(Traits::row.of(value), random);
-        }
+        set_row<I>(value, [&](auto& part) {
+            do {
+                fill(part, random);
+            } while (!within<I, T>(part));
+        });
     });
-    // Rows whose values have to agree are as they are by default.
-    if constexpr (requires { value.malformed(); }) {
-        if constexpr (requires {
-                          { value.malformed() } -> std::same_as<const char*>;
-                      }) {
-            if (value.malformed()) value = T{};
-        }
+    if constexpr (std::is_same_v<T, RecordedChange>) {
+        if (value.before) value.mask &= scene::all_fields(*value.before);
+        if (value.after) value.mask &= scene::all_fields(*value.after);
+    }
+    if (why_malformed(value) != nullptr) value = T{};  // members have to agree: as they do by default
+}
+
+inline void fill_entry(scene::Entry& entry, CounterRandom& random) {
+    const ObjectId id{random.below(1000)};
+    scene::Object object;
+    fill(object, random);
+    switch (random.below(3)) {
+        case 0:
+            entry = scene::Create{id, object};
+            break;
+        case 1:
+            entry = scene::Update{id, random.below(~0ull) & scene::all_fields(object), object};
+            break;
+        default:
+            entry = scene::Remove{id};
     }
 }
 
@@ -64,12 +78,14 @@ void fill(T& value, CounterRandom& random) {
     } else if constexpr (detail::is_optional<T>) {
         value.reset();
         if (random.below(2) == 0) fill(value.emplace(), random);
+    } else if constexpr (std::is_same_v<T, scene::Entry>) {
+        fill_entry(value, random);
     } else if constexpr (Described<T>) {
         fill_rows(value, random);
     } else {
-        static_assert(detail::Oneof<T>);
+        static_assert(Oneof<T>);
         std::uint64_t left = random.below(std::variant_size_v<T>);
-        detail::for_each_alternative<T>([&]<class A>(const Alternative<A>&) {
+        for_each_alternative<T>([&]<class A>(const Alternative<A>&) {
             if (left-- == 0) fill(value.template emplace<A>(), random);
         });
     }

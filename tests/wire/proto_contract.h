@@ -82,10 +82,10 @@ void expect_same_message(const google::protobuf::Descriptor& proto) {
         EXPECT_EQ(static_cast<int>(row_count<T>), proto.field_count()) << proto.full_name();
         for_each_row<T>(
             [&]<std::size_t I>(std::integral_constant<std::size_t, I>) { expect_same_field<T, I>(proto); });
-    } else if constexpr (detail::Oneof<T>) {
+    } else if constexpr (Oneof<T>) {
         ASSERT_EQ(proto.oneof_decl_count(), 1) << proto.full_name();
         EXPECT_EQ(proto.oneof_decl(0)->field_count(), static_cast<int>(std::variant_size_v<T>));
-        detail::for_each_alternative<T>([&]<class A>(const Alternative<A>& alternative) {
+        for_each_alternative<T>([&]<class A>(const Alternative<A>& alternative) {
             const Field* field = proto.FindFieldByNumber(static_cast<int>(alternative.number));
             ASSERT_NE(field, nullptr) << proto.full_name() << " lacks " << alternative.name;
             EXPECT_EQ(field->name(), alternative.name);
@@ -96,44 +96,45 @@ void expect_same_message(const google::protobuf::Descriptor& proto) {
     }
 }
 
-// Any value, written by the codec, is read by libprotobuf without a byte left over, and what libprotobuf writes of it is
-// the same value to the codec.
-template <class T, class Proto>
-void expect_same_bytes(std::uint64_t seed) {
-    CounterRandom random(seed);
-    for (int run = 0; run < 50; ++run) {
+// In a message and all below it.
+inline int unknown_fields(const ProtoMessage& message) {
+    const auto* reflection = message.GetReflection();
+    int count = reflection->GetUnknownFields(message).field_count();
+    std::vector<const Field*> set;
+    reflection->ListFields(message, &set);
+    for (const Field* field : set) {
+        if (field->type() != Field::TYPE_MESSAGE) continue;
+        if (!field->is_repeated()) count += unknown_fields(reflection->GetMessage(message, field));
+        for (int i = 0; field->is_repeated() && i < reflection->FieldSize(message, field); ++i)
+            count += unknown_fields(reflection->GetRepeatedMessage(message, field, i));
+    }
+    return count;
+}
+
+// Any value, written by encode(), is read by libprotobuf without a byte left over, and what libprotobuf writes of it is
+// the same value to decode().
+template <class T, class Proto, class Encode, class Decode>
+void expect_same_bytes(int runs, const Encode& encode, const Decode& decode) {
+    CounterRandom random(7);
+    for (int run = 0; run < runs; ++run) {
         T value{};
         fill(value, random);
-        const std::vector<std::byte> bytes = to_bytes(value);
+        const std::vector<std::byte> bytes = encode(value);
         Proto message;
         ASSERT_TRUE(message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())));
-        std::vector<const Field*> fields;
-        const auto unknown = [](const auto& self, const ProtoMessage& in) -> std::size_t {
-            const auto* reflection = in.GetReflection();
-            std::size_t count = static_cast<std::size_t>(reflection->GetUnknownFields(in).field_count());
-            std::vector<const Field*> set;
-            reflection->ListFields(in, &set);
-            for (const Field* field : set) {
-                if (field->type() != Field::TYPE_MESSAGE) continue;
-                if (!field->is_repeated()) count += self(self, reflection->GetMessage(in, field));
-                for (int i = 0; field->is_repeated() && i < reflection->FieldSize(in, field); ++i)
-                    count += self(self, reflection->GetRepeatedMessage(in, field, i));
-            }
-            return count;
-        };
-        EXPECT_EQ(unknown(unknown, message), 0u) << message.GetTypeName();
+        EXPECT_EQ(unknown_fields(message), 0) << message.GetTypeName();
         std::string back;
         ASSERT_TRUE(message.SerializeToString(&back));
-        const auto decoded = wire::from_bytes<T>(std::as_bytes(std::span(back)));
+        const auto decoded = decode(std::as_bytes(std::span(back)));
         ASSERT_TRUE(decoded) << message.GetTypeName() << ": " << decoded.error().what();
-        EXPECT_EQ(to_bytes(*decoded), bytes) << message.GetTypeName();
+        EXPECT_EQ(encode(*decoded), bytes) << message.GetTypeName();
     }
 }
 
-template <class T, class Proto>
-void expect_contract() {
+template <class T, class Proto, class Encode, class Decode>
+void expect_contract(int runs, const Encode& encode, const Decode& decode) {
     expect_same_message<T>(*Proto::descriptor());
-    expect_same_bytes<T, Proto>(7);
+    expect_same_bytes<T, Proto>(runs, encode, decode);
 }
 
 }  // namespace tessera::wire::test
