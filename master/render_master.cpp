@@ -151,9 +151,8 @@ void RenderMaster::control(net::Message& message, TimePoint now) {
 }
 
 void RenderMaster::bulk(net::Message& message, TimePoint now) {
-    const auto kind = wire::bulk_kind(message.bytes);
-    if (!kind) return drop(message, "not a bulk message");
-    if (*kind == wire::BulkMessage(wire::FilmPart{}).index()) {
+    if (!wire::is_bulk(message.bytes)) return drop(message, "not a bulk message");
+    if (const auto view = wire::film_view(message.bytes)) {
         NodeRecord* node = nodes_.by_bulk(message.peer);
         if (!allowed(message.role, wire::BulkMessage(wire::FilmPart{})) || !node ||
             node->user != message.user) {
@@ -161,8 +160,7 @@ void RenderMaster::bulk(net::Message& message, TimePoint now) {
         }
         outbox_.bytes.film += message.bytes.size();
         node->liveness.heard(now);
-        if (wire::film_view(message.bytes) >= FirstLiveView)
-            return live_runner_.film(message.peer, std::move(message.bytes));
+        if (*view >= FirstLiveView) return live_runner_.film(message.peer, std::move(message.bytes));
         return jobs_.film(message.peer, std::move(message.bytes));
     }
     auto decoded = wire::decode_bulk(message.bytes);
