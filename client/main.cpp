@@ -3,8 +3,7 @@
 #include <iostream>
 #include <vector>
 
-#include "client/cli/cli.h"
-#include "client/tools/bench/bench_command.h"
+#include "client/tools/bench.h"
 #include "client/tools/compare.h"
 #include "client/tools/display/display_command.h"
 #include "client/tools/doctor.h"
@@ -18,9 +17,11 @@
 #include "client/tools/set_filter.h"
 #include "client/tools/status.h"
 #include "client/tools/watch.h"
+#include "mediator/program/command_line.h"
 
 int main(int argc, char** argv) {
     using namespace tessera;
+    if (tools::names_bench(argc, argv)) return tools::start_bench(argv);
     cli::CommandLine line(
         "tessera", "Tessera, a distributed path tracer: one master owns scene and picture, nodes render.");
     const std::vector<tools::Command> commands{

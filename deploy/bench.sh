@@ -1,9 +1,17 @@
 #!/usr/bin/env bash
-# Sets up, builds and runs the benchmarks, one after the other; each figure stands next to the limit that bounds it.
 # Usage: deploy/bench.sh [Google Benchmark options]
+#
+# Sets up, builds and runs the benchmarks, one after the other; each figure stands next to the limit that bounds it.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-deploy/setup.sh release
+case ${1:-} in
+-h | --help)
+    . deploy/progress.sh
+    help_of deploy/bench.sh
+    exit
+    ;;
+esac
+deploy/setup.sh bench
 for bench in film embree filter compose display; do
     echo "== $bench"
     "build/release/bin/tessera_${bench}_bench" "$@"

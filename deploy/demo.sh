@@ -1,21 +1,28 @@
 #!/usr/bin/env bash
+# Usage: deploy/demo.sh [options of `tessera render`] | --live [--once] | --wall
+#
 # Sets up and does the main job: a master, an Embree node and a Vulkan node as processes of their own (TCP on
 # loopback, CURVE keys made for this run) render a glTF scene by tiles and cooperative samples into out/demo.exr and out/demo.png.
 # Arguments go to the render, as in: deploy/demo.sh --spp 16
-# With --live: a tour of live editing instead (deploy/tour.sh); --live --once ends after it.
-# With --wall: a stereo wall of six projectors instead, without one being there (deploy/wall.sh).
+#   --live  a tour of live editing instead (deploy/tour.sh); with --once it ends after it
+#   --wall  a stereo wall of six projectors instead, without one being there (deploy/wall.sh)
+# Only what is run is built.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-deploy/setup.sh release
-if [ "${1:-}" = --live ]; then
+case ${1:-} in
+-h | --help)
+    . deploy/progress.sh
+    help_of deploy/demo.sh
+    exit
+    ;;
+--live | --wall)
+    script=deploy/tour.sh
+    [ "$1" = --live ] || script=deploy/wall.sh
     shift
-    exec deploy/tour.sh "$@"
-fi
-
-if [ "${1:-}" = --wall ]; then
-    shift
-    exec deploy/wall.sh "$@"
-fi
+    exec "$script" "$@"
+    ;;
+esac
+deploy/setup.sh release tessera tessera-master tessera-node
 
 bin=build/release/bin
 folder=$(mktemp -d)

@@ -1,17 +1,39 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that are missing, then configures and builds the preset (default: release).
-# A second run installs and builds nothing. Usage: deploy/setup.sh [PRESET]
+# Usage: deploy/setup.sh [PRESET [TARGET...]]
+#
+# Installs the Debian packages that are missing, then configures the preset (default: release) and builds the targets
+# (default: all that its options choose). A second run installs and builds nothing.
+#
+# Presets: release (everything once, quickly: sources are compiled in batches), dev (each source on its own: less to compile
+# after a change), bench (release with the benchmarks), debug, asan, tsan. CMakePresets.json has them.
+#
+# TESSERA_BUILD_JOBS: how many compilers run at a time (default: one for each core).
+# TESSERA_PACKAGES: files that list packages (default: deploy/packages.txt).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+# shellcheck source=deploy/progress.sh
+. deploy/progress.sh
+case ${1:-} in
+-h | --help)
+    help_of deploy/setup.sh
+    exit
+    ;;
+-*)
+    echo "setup: there is no option $1; see --help" >&2
+    exit 64
+    ;;
+esac
 preset=${1:-release}
+[ "$#" -eq 0 ] || shift
 
 missing_packages() {
-    local package
+    local package lists
+    read -ra lists <<<"${TESSERA_PACKAGES:-deploy/packages.txt}"
     while read -r package; do
         if ! dpkg-query -W -f='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed; then
             printf '%s\n' "$package"
         fi
-    done < <(sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' deploy/packages.txt)
+    done < <(cat "${lists[@]}" | sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d')
 }
 
 as_root() {
@@ -25,31 +47,25 @@ as_root() {
     fi
 }
 
-# Silent unless it fails.
-quietly() {
-    local log
-    log=$(mktemp)
-    if ! "$@" >"$log" 2>&1; then
-        cat "$log" >&2
-        rm -f "$log"
-        echo "setup: failed: $*" >&2
-        exit 1
-    fi
-    rm -f "$log"
-}
-
 if ! command -v dpkg-query >/dev/null; then
     echo "setup: this is no Debian: install what deploy/packages.txt lists in your system's way" >&2
     exit 1
 fi
 mapfile -t missing < <(missing_packages)
 if [ "${#missing[@]}" -gt 0 ]; then
-    echo "setup: installing ${#missing[@]} packages"
+    progress "packages  reading the lists"
     quietly as_root apt-get -qq update
-    quietly as_root env DEBIAN_FRONTEND=noninteractive \
-        apt-get -qq install -y --no-install-recommends "${missing[@]}"
+    # One by one would take longer; in groups there is something to see.
+    group=8
+    for ((first = 0; first < ${#missing[@]}; first += group)); do
+        progress "packages  $first of ${#missing[@]} installed"
+        quietly as_root env DEBIAN_FRONTEND=noninteractive \
+            apt-get -qq install -y --no-install-recommends "${missing[@]:first:group}"
+    done
+    progress_done "installed ${#missing[@]} packages"
 fi
 
+progress "configuring"
 # Configuring tells of a Python library that Imath's package names and nobody here needs; only errors matter.
 quietly cmake --preset "$preset"
-cmake --build --preset "$preset" --parallel "${TESSERA_BUILD_JOBS:-$(nproc)}"
+build "$preset" "$@"

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# Usage: deploy/demo.sh --live [--once]
+#
 # The tour of deploy/demo.sh --live: a master that keeps its session on disk, two nodes, edits from the command line and from
 # Python side by side, undo, the loss of a node, the death of the master. Its pictures go to out/tour/. Afterwards the cluster
 # stays, to be joined, until Ctrl-C; with --once it ends.
@@ -9,12 +11,18 @@ once=
 for argument in "$@"; do
     case $argument in
     --once) once=yes ;;
+    -h | --help)
+        . deploy/progress.sh
+        help_of deploy/tour.sh
+        exit
+        ;;
     *)
         echo "demo: --live knows only --once, not '$argument'" >&2
         exit 64
         ;;
     esac
 done
+deploy/setup.sh release tessera tessera-master tessera-node tessera_python
 
 bin=build/release/bin
 folder=$(mktemp -d)

@@ -1,13 +1,23 @@
 #!/usr/bin/env bash
+# Usage: deploy/demo.sh --wall
+#
 # The wall of deploy/demo.sh --wall: a master, two nodes, and six headless output processes, one for each projector of
 # deploy/wall.toml (3 x 2, keystoned, overlapping, both eyes), all in step. What each projector shows, and what people in
 # front of the screen see of it, goes to out/wall/.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+case ${1:-} in
+-h | --help)
+    . deploy/progress.sh
+    help_of deploy/wall.sh
+    exit
+    ;;
+esac
 if [ "$#" -gt 0 ]; then
     echo "demo: --wall takes no options, not '$1'" >&2
     exit 64
 fi
+deploy/setup.sh release tessera tessera-master tessera-node tessera-display
 
 bin=build/release/bin
 folder=$(mktemp -d)

@@ -2,7 +2,7 @@
 
 #include <ostream>
 
-#include "client/cli/cli.h"
+#include "mediator/program/command_line.h"
 
 namespace tessera::master {
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "client/cli/log.h"
 #include "mediator/net/liveness.h"
+#include "mediator/program/log.h"
 
 namespace tessera::master {
 

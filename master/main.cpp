@@ -4,11 +4,11 @@
 #include <iostream>
 #include <thread>
 
-#include "client/cli/cli.h"
 #include "master/config.h"
 #include "master/render_master.h"
 #include "mediator/base/freed_memory.h"
 #include "mediator/net/zmq_channel.h"
+#include "mediator/program/command_line.h"
 
 namespace {
 

@@ -149,9 +149,8 @@ void RenderMaster::control(net::Message& message, TimePoint now) {
 }
 
 void RenderMaster::bulk(net::Message& message, TimePoint now) {
-    const auto kind = wire::bulk_kind(message.bytes);
-    if (!kind) return drop(message, "not a bulk message");
-    if (*kind == wire::BulkMessage(wire::FilmPart{}).index()) {
+    if (!wire::is_bulk(message.bytes)) return drop(message, "not a bulk message");
+    if (wire::is_film(message.bytes)) {
         NodeRecord* node = nodes_.by_bulk(message.peer);
         if (!allowed(message.role, wire::BulkMessage(wire::FilmPart{})) || !node ||
             node->user != message.user) {
@@ -220,6 +219,11 @@ void RenderMaster::hello(const net::Message& message, wire::Hello hello, TimePoi
                       ": install the same version of Tessera on both");
     }
     const bool is_node = hello.peer == wire::PeerKind::Node;
+    if (is_node && hello.render_revision != frame::RenderRevision) {
+        return refuse("this master merges film of render revision " + std::to_string(frame::RenderRevision) +
+                      ", yours is of revision " + std::to_string(hello.render_revision) +
+                      ": install the same version of Tessera on both");
+    }
     if (NodeRecord* node = is_node ? nodes_.by_token(hello.resume_token) : nullptr;
         node && node->user == message.user) {
         node->control = message.peer;

@@ -7,8 +7,8 @@
 #include <ostream>
 #include <utility>
 
-#include "client/cli/cli.h"
 #include "mediator/backend/catalog.h"
+#include "mediator/program/command_line.h"
 
 namespace tessera::node {
 

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "client/cli/log.h"
 #include "mediator/base/clock.h"
 #include "mediator/base/error.h"
+#include "mediator/program/log.h"
 
 namespace tessera::node {
 

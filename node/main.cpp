@@ -4,10 +4,10 @@
 #include <iostream>
 #include <thread>
 
-#include "client/cli/cli.h"
 #include "mediator/backend/catalog.h"
 #include "mediator/base/freed_memory.h"
 #include "mediator/net/zmq_channel.h"
+#include "mediator/program/command_line.h"
 #include "node/config.h"
 #include "node/render_node.h"
 

@@ -77,8 +77,10 @@ class EmbreeBackend final : public Backend {
       public:
         explicit Edit(EmbreeBackend& backend) : backend_(backend), lock_(backend.mutex_) {}
         ~Edit() override { backend_.world_.rollback(); }  // what was committed stays
-        Expected<void> apply(const scene::ChangeList& changes) override {
-            return backend_.world_.apply(changes);
+        const scene::Scene& scene() const override { return backend_.world_.content(); }
+        using EditScope::apply;
+        Expected<void> apply(const scene::ChangeList& changes, const scene::Scene& after) override {
+            return backend_.world_.apply(changes, after);
         }
         Expected<EditReport> commit() override { return backend_.world_.commit(); }
 

@@ -11,6 +11,7 @@
 #include "mediator/backend/shadow_scene.h"
 #include "mediator/frame/block_stack.h"
 #include "mediator/frame/merge.h"
+#include "mediator/frame/render_revision.h"
 
 namespace tessera::null_backend {
 
@@ -28,7 +29,7 @@ class NullBackend final : public Backend {
         const std::uint32_t cores = std::max(1u, std::thread::hardware_concurrency());
         return {.channels = AllChannels,
                 .concurrent_units = settings_.threads ? settings_.threads : cores,
-                .kind = "null-1"};
+                .kind = frame::with_render_revision("null-1")};
     }
 
     Version version() const override {
@@ -74,8 +75,10 @@ class NullBackend final : public Backend {
         explicit Edit(NullBackend& backend) : backend_(backend), lock_(backend.mutex_) {}
         ~Edit() override { backend_.shadow_.rollback(); }  // what was committed stays
 
-        Expected<void> apply(const scene::ChangeList& changes) override {
-            return backend_.shadow_.apply(changes);
+        const scene::Scene& scene() const override { return backend_.shadow_.scene(); }
+        using EditScope::apply;
+        Expected<void> apply(const scene::ChangeList& changes, const scene::Scene& after) override {
+            return backend_.shadow_.apply(changes, after);
         }
 
         Expected<EditReport> commit() override {

@@ -7,7 +7,6 @@
 #include <thread>
 #include <utility>
 
-#include "client/cli/cli.h"
 #include "client/display/output_player.h"
 #include "client/display/picture_files.h"
 #include "client/display/shared_memory.h"
@@ -17,6 +16,7 @@
 #include "client/tools/interrupts.h"
 #include "client/tools/this_machine.h"
 #include "mediator/base/freed_memory.h"
+#include "mediator/program/command_line.h"
 
 namespace {
 

@@ -6,11 +6,11 @@
 #include <glm/geometric.hpp>
 #include <set>
 
-#include "client/cli/cli.h"
 #include "client/display_file/output_keys.h"
 #include "client/display_file/output_reader.h"
 #include "client/display_file/overlaps.h"
 #include "client/display_file/screens.h"
+#include "mediator/base/nearest.h"
 #include "mediator/display/validate.h"
 
 namespace tessera::display_file {
@@ -121,7 +121,7 @@ void adjust(Section section, std::vector<ReadOutput>& outputs) {
     if (found == outputs.end()) {
         std::vector<std::string> names;
         for (const ReadOutput& read : outputs) names.push_back(read.output.name);
-        const auto meant = cli::nearest(*name, names);
+        const auto meant = nearest(*name, names);
         section.refuse("output",
                        "there is no such output" + (meant ? "; did you mean '" + *meant + "'?" : ""));
     }

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t MostText = std::size_t{16} << 20;
 constexpr std::size_t MostRegions = 64;
-constexpr float Nothing = std::numeric_limits<float>::quiet_NaN();
+constexpr float NoPoint = std::numeric_limits<float>::quiet_NaN();
 
 class Reader {
   public:
@@ -184,7 +184,7 @@ class Reader {
             // Tools write 0, 0, 0 where a pixel is seen nowhere.
             const bool is_nowhere = point[0] == 0.0f && point[1] == 0.0f && point[2] == 0.0f;
             for (int axis = 0; axis < 3; ++axis)
-                point[axis] = is_nowhere ? Nothing : static_cast<float>(unit * double{point[axis]});
+                point[axis] = is_nowhere ? NoPoint : static_cast<float>(unit * double{point[axis]});
         }
         const std::string origin = xml_.text_in(of, "originOf3DData");
         if (origin == "centerOfMass" || origin == "floorCenter")

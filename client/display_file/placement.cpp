@@ -1,8 +1,8 @@
 #include "client/display_file/placement.h"
 
-#include "client/cli/cli.h"
 #include "client/display_file/output_keys.h"
 #include "client/display_file/screens.h"
+#include "mediator/base/nearest.h"
 #include "mediator/display/projector.h"
 
 namespace tessera::display_file {
@@ -27,7 +27,7 @@ void find_screen(Section& section, const ReadContext& context, double aspect_rat
         if (found == context.screens.end()) {
             std::vector<std::string> names;
             for (const auto& [name, screen] : context.screens) names.push_back(name);
-            const auto meant = cli::nearest(geometry.screen, names);
+            const auto meant = nearest(geometry.screen, names);
             section.refuse("screen", "there is no [[screen]] '" + geometry.screen + "'" +
                                          (meant ? "; did you mean '" + *meant + "'?" : ""));
         }

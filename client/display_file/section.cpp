@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <glm/geometric.hpp>
 
-#include "client/cli/cli.h"
+#include "mediator/base/nearest.h"
 #include "mediator/display/display.h"
 
 namespace tessera::display_file {
@@ -140,7 +140,7 @@ std::optional<std::size_t> Section::choice(const std::string& key, std::span<con
     if (found != words.end()) return std::size_t(found - words.begin());
     std::string all;
     for (const std::string_view choice : words) all += (all.empty() ? "" : ", ") + std::string(choice);
-    const auto meant = cli::nearest(*word, {words.begin(), words.end()});
+    const auto meant = nearest(*word, {words.begin(), words.end()});
     refuse(key, "'" + key + "' is '" + *word + "', none of " + all +
                     (meant ? "; did you mean '" + *meant + "'?" : ""));
 }
@@ -177,7 +177,7 @@ void Section::knows(std::initializer_list<const char*> keys) {
 void Section::refuse_unknown() const {
     for (const auto& [key, value] : value_->table) {
         if (std::ranges::find(known_, key) != known_.end()) continue;
-        const auto meant = cli::nearest(key, known_);
+        const auto meant = nearest(key, known_);
         std::string all;
         for (const std::string& known : known_) all += (all.empty() ? "" : ", ") + known;
         refuse(key, "there is no key '" + key + "'" +

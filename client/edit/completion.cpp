@@ -187,8 +187,8 @@ class Completer {
             const bool fits =
                 std::find(endings.begin(), endings.end(), entries->path().extension()) != endings.end();
             // Quotes change the start of the word: what was typed need not be a prefix of it any more.
-            if (is_folder) found_.push_back(unclosed(edit::quoted(name + "/")));
-            if (!is_folder && fits) found_.push_back(edit::quoted(name) + " ");
+            if (is_folder) found_.push_back(unclosed(in_quotes(name + "/")));
+            if (!is_folder && fits) found_.push_back(in_quotes(name) + " ");
             if (found_.size() >= MostCandidates) return;
         }
     }

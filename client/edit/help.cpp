@@ -1,11 +1,11 @@
 #include "client/edit/help.h"
 
-#include "client/cli/cli.h"
 #include "client/edit/commands.h"
 #include "client/edit/path_book.h"
 #include "client/edit/script_error.h"
 #include "client/edit/values.h"
 #include "client/edit/verbs.h"
+#include "mediator/base/nearest.h"
 
 namespace tessera::edit {
 namespace {
@@ -129,7 +129,7 @@ void show_help(Rehearsal& rehearsal, const Arguments& arguments, std::size_t) {
         std::vector<std::string> candidates = help_topics();
         for (const Command& command : commands()) candidates.emplace_back(command.name);
         candidates.insert(candidates.end(), kind_words().begin(), kind_words().end());
-        const auto best = cli::nearest(topic, candidates);
+        const auto best = nearest(topic, candidates);
         throw ScriptError(arguments[0].column(),
                           "there is no help about '" + topic + "'" +
                               (best ? "; did you mean '" + *best + "'?" : ": see 'help'"));

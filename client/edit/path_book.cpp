@@ -2,8 +2,8 @@
 
 #include <charconv>
 
-#include "client/cli/cli.h"
 #include "client/edit/script_error.h"
+#include "mediator/base/nearest.h"
 
 namespace tessera::edit {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 using scene::ObjectKind;
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
-    const auto best = cli::nearest(word, candidates);
+    const auto best = nearest(word, candidates);
     return best ? "; did you mean '" + *best + "'?" : "";
 }
 
@@ -71,7 +71,7 @@ std::string PathBook::full_path(const scene::Scene& scene, ObjectId id) const {
     const scene::Object* object = scene.find(id);
     if (object == nullptr) return "@" + std::to_string(id.value) + " (not there)";
     const std::string& name = scene::name(*object);
-    return std::string(kind_word(scene::kind(*object))) + "/" + (name.empty() ? "" : quoted(name)) + "@" +
+    return std::string(kind_word(scene::kind(*object))) + "/" + (name.empty() ? "" : in_quotes(name)) + "@" +
            std::to_string(id.value);
 }
 
@@ -81,7 +81,7 @@ std::string PathBook::path(const scene::Scene& scene, ObjectId id) const {
     const auto& names = names_[object->index()];
     const auto place = names.find(scene::name(*object));
     if (place == names.end() || place->second.size() != 1) return full_path(scene, id);
-    return std::string(kind_word(scene::kind(*object))) + "/" + quoted(scene::name(*object));
+    return std::string(kind_word(scene::kind(*object))) + "/" + in_quotes(scene::name(*object));
 }
 
 ObjectId PathBook::read(const scene::Scene& scene, const Word& word) const {

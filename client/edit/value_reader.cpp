@@ -3,8 +3,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "client/cli/cli.h"
 #include "client/edit/script_error.h"
+#include "mediator/base/nearest.h"
 
 namespace tessera::edit {
 
@@ -112,7 +112,7 @@ std::size_t ValueReader::choice(const std::vector<std::string>& names) {
     for (std::size_t i = 0; i < names.size(); ++i) {
         if (word.text() == names[i]) return i;
     }
-    const auto best = cli::nearest(word.text(), names);
+    const auto best = nearest(word.text(), names);
     throw ScriptError(word.column(), "'" + word.text() + "' is none of " + form_ +
                                          (best ? "; did you mean '" + *best + "'?" : ""));
 }

@@ -2,10 +2,10 @@
 
 #include <charconv>
 
-#include "client/cli/cli.h"
 #include "client/edit/path_book.h"
 #include "client/edit/script_error.h"
 #include "client/edit/value_reader.h"
+#include "mediator/base/nearest.h"
 #include "mediator/scene/fields.h"
 
 namespace tessera::edit {
@@ -77,7 +77,7 @@ std::string components(const V& value, const char* separator = " ") {
 template <class V>
 std::string text_of(const V& value, const WritePath& write_path) {
     if constexpr (std::is_same_v<V, std::string>) {
-        return quoted(value);
+        return in_quotes(value);
     } else if constexpr (std::is_same_v<V, bool>) {
         return value ? "true" : "false";
     } else if constexpr (std::is_arithmetic_v<V>) {
@@ -162,7 +162,7 @@ unsigned read_field(ObjectKind kind, const Word& name) {
     if (const auto field = find_field(kind, name.text())) return *field;
     std::string all;
     for (const std::string& one : field_names(kind)) all += (all.empty() ? "" : ", ") + one;
-    const auto best = cli::nearest(name.text(), field_names(kind));
+    const auto best = nearest(name.text(), field_names(kind));
     throw ScriptError(name.column(), "a " + std::string(scene::name(kind)) + " has no field '" + name.text() +
                                          "'" +
                                          (best ? "; did you mean '" + *best + "'?" : ": it has " + all));

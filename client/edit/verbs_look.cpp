@@ -85,7 +85,8 @@ std::string shown(const std::string& title, const std::vector<ShownField>& field
         if (!fields[i].is_committed) {
             text += "   # not committed";
         } else if (writer != writers.end()) {
-            text += "   # " + quoted(writer->name) + ", transaction " + std::to_string(writer->transaction);
+            text +=
+                "   # " + in_quotes(writer->name) + ", transaction " + std::to_string(writer->transaction);
         }
         text += "\n";
     }

@@ -35,7 +35,7 @@ std::string clock_text(std::int64_t nanoseconds) {
 std::string log_text(const std::vector<HistoryLine>& lines) {
     std::string text;
     for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
-        text += std::to_string(line->number) + "  " + clock_text(line->time) + "  " + quoted(line->name) +
+        text += std::to_string(line->number) + "  " + clock_text(line->time) + "  " + in_quotes(line->name) +
                 "  " + line->text;
         if (line->undoes != 0) text += "  (undoes " + std::to_string(line->undoes) + ")";
         if (line->undone_by != 0) text += "  (undone by " + std::to_string(line->undone_by) + ")";
@@ -102,7 +102,7 @@ void show_people(Rehearsal& rehearsal, const Arguments&, std::size_t) {
         const PathBook book(target.scene());
         std::string text;
         for (const Person& person : *people) {
-            text += quoted(person.name) + (person.user.empty() ? "" : " (" + person.user + ")") +
+            text += in_quotes(person.name) + (person.user.empty() ? "" : " (" + person.user + ")") +
                     (person.editor ? ", editor" : ", viewer");
             if (!person.text.empty()) text += ": " + person.text;
             for (std::size_t i = 0; i < person.locked.size(); ++i) {

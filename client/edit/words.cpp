@@ -164,7 +164,7 @@ std::vector<Word> split(std::string_view line) {
     return std::move(split.words);
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
     if (!text.empty() && std::all_of(text.begin(), text.end(), is_plain)) return std::string(text);
     constexpr std::string_view Digits = "0123456789abcdef";
     std::string result = "\"";

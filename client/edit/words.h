@@ -47,7 +47,7 @@ SplitLine split_tolerantly(std::string_view line);
 std::vector<Word> split(std::string_view line);  // throws ScriptError
 
 // As one word of a line; plain where it can be.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 // True when `text` fits the pattern: * any characters, ? one.
 bool matches(std::string_view pattern, std::string_view text);

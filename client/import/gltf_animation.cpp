@@ -9,13 +9,10 @@
 
 #include "client/import/gltf_accessor.h"
 #include "client/import/gltf_bending.h"
+#include "client/import/reject.h"
 
 namespace tessera::import {
 namespace {
-
-[[noreturn]] void reject(const std::string& cause) {
-    throw Error(ErrorCode::InvalidInput, cause);
-}
 
 std::string name_of(const tinygltf::Model& model, std::size_t animation) {
     const std::string& name = model.animations[animation].name;

@@ -6,12 +6,10 @@
 #include <cmath>
 #include <string>
 
+#include "client/import/reject.h"
+
 namespace tessera::import {
 namespace {
-
-[[noreturn]] void reject(const std::string& cause) {
-    throw Error(ErrorCode::InvalidInput, cause);
-}
 
 std::string numbered(const char* name, std::size_t number) {
     return name + std::to_string(number);

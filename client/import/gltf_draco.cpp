@@ -9,7 +9,7 @@
 namespace tessera::import {
 namespace {
 
-[[noreturn]] void reject(const std::string& cause) {
+[[noreturn]] void reject_draco(const std::string& cause) {
     throw Error(ErrorCode::InvalidInput, "its Draco data " + cause);
 }
 
@@ -18,20 +18,20 @@ std::vector<Vector> converted(const draco::Mesh& mesh, const std::map<std::strin
                               const std::string& name) {
     const auto found = ids.find(name);
     if (found == ids.end()) return {};
-    if (found->second < 0) reject("has no attribute " + name);
+    if (found->second < 0) reject_draco("has no attribute " + name);
     const draco::PointAttribute* attribute =
         mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(found->second));
-    if (!attribute) reject("has no attribute " + name);
+    if (!attribute) reject_draco("has no attribute " + name);
     const int given = attribute->num_components();
     if (given != Vector::length() && !(given == 3 && Vector::length() == 4)) {
-        reject("has " + std::to_string(given) + " components in " + name);
+        reject_draco("has " + std::to_string(given) + " components in " + name);
     }
     std::vector<Vector> values(mesh.num_points(), Vector(1));  // alpha of a colour without one
     for (std::uint32_t i = 0; i < mesh.num_points(); ++i) {
         const draco::AttributeValueIndex index = attribute->mapped_index(draco::PointIndex(i));
         if (index.value() >= attribute->size() ||
             !attribute->ConvertValue<Number>(index, static_cast<std::int8_t>(given), &values[i][0])) {
-            reject("lacks a value of " + name);
+            reject_draco("lacks a value of " + name);
         }
     }
     return values;
@@ -47,7 +47,7 @@ std::vector<JointSet> joint_sets(const draco::Mesh& mesh, const std::map<std::st
     std::vector<JointSet> sets;
     for (std::size_t i = 0; ids.contains("JOINTS_" + std::to_string(i)); ++i) {
         const std::string number = std::to_string(i);
-        if (!ids.contains("WEIGHTS_" + number)) reject("lacks WEIGHTS_" + number);
+        if (!ids.contains("WEIGHTS_" + number)) reject_draco("lacks WEIGHTS_" + number);
         sets.push_back({converted<std::uint16_t, glm::u16vec4>(mesh, ids, "JOINTS_" + number),
                         values_of<glm::vec4>(mesh, ids, "WEIGHTS_" + number)});
     }
@@ -62,10 +62,10 @@ DracoMesh decode_draco(std::span<const unsigned char> bytes,
     buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     draco::Decoder decoder;
     auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-    if (!decoded.ok()) reject("cannot be decoded (" + decoded.status().error_msg_string() + ")");
+    if (!decoded.ok()) reject_draco("cannot be decoded (" + decoded.status().error_msg_string() + ")");
     const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
     if (mesh->num_points() > MaxElements || mesh->num_faces() > MaxElements / 3)
-        reject("claims too many elements");
+        reject_draco("claims too many elements");
 
     DracoMesh decoded_mesh;
     MeshData& result = decoded_mesh.mesh;

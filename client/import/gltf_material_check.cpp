@@ -19,8 +19,8 @@ struct Range {
     double lowest = 0.0, highest = 1.0;
 };
 constexpr Range Unit{};
-constexpr Range NotNegative{0.0, 1e12};
-constexpr Range Positive{1e-12, 1e12};
+constexpr Range FromZero{0.0, 1e12};
+constexpr Range AboveZero{1e-12, 1e12};
 constexpr Range Any{-1e6, 1e6};  // beyond, texture coordinates have no digits left
 constexpr Range Index{1.0, 100.0};
 constexpr Range Scale{-1e3, 1e3};
@@ -42,14 +42,14 @@ constexpr Rule OfMaterials[] = {
     {"pbrMetallicRoughness/metallicRoughnessTexture", Type::Texture},
     {"normalTexture", Type::Texture},
     {"occlusionTexture", Type::Texture},
-    {"emissiveFactor", Type::Color, NotNegative},
+    {"emissiveFactor", Type::Color, FromZero},
     {"emissiveTexture", Type::Texture},
     {"alphaMode", Type::AlphaMode},
-    {"alphaCutoff", Type::Number, NotNegative},
+    {"alphaCutoff", Type::Number, FromZero},
     {"doubleSided", Type::Flag},
     {"extensions", Type::Object},
     {"extensions/KHR_materials_emissive_strength", Type::Object},
-    {"extensions/KHR_materials_emissive_strength/emissiveStrength", Type::Number, NotNegative},
+    {"extensions/KHR_materials_emissive_strength/emissiveStrength", Type::Number, FromZero},
     {"extensions/KHR_materials_unlit", Type::Object},
     {"extensions/KHR_materials_ior", Type::Object},
     {"extensions/KHR_materials_ior/ior", Type::Number, Index},
@@ -57,13 +57,13 @@ constexpr Rule OfMaterials[] = {
     {"extensions/KHR_materials_transmission/transmissionFactor", Type::Number, Unit},
     {"extensions/KHR_materials_transmission/transmissionTexture", Type::Texture},
     {"extensions/KHR_materials_volume", Type::Object},
-    {"extensions/KHR_materials_volume/thicknessFactor", Type::Number, NotNegative},
-    {"extensions/KHR_materials_volume/attenuationDistance", Type::Number, Positive},
+    {"extensions/KHR_materials_volume/thicknessFactor", Type::Number, FromZero},
+    {"extensions/KHR_materials_volume/attenuationDistance", Type::Number, AboveZero},
     {"extensions/KHR_materials_volume/attenuationColor", Type::Color, Unit},
     {"extensions/KHR_materials_specular", Type::Object},
     {"extensions/KHR_materials_specular/specularFactor", Type::Number, Unit},
     {"extensions/KHR_materials_specular/specularTexture", Type::Texture},
-    {"extensions/KHR_materials_specular/specularColorFactor", Type::Color, NotNegative},
+    {"extensions/KHR_materials_specular/specularColorFactor", Type::Color, FromZero},
     {"extensions/KHR_materials_specular/specularColorTexture", Type::Texture},
     {"extensions/KHR_materials_clearcoat", Type::Object},
     {"extensions/KHR_materials_clearcoat/clearcoatFactor", Type::Number, Unit},
@@ -84,8 +84,8 @@ constexpr Rule OfMaterials[] = {
     {"extensions/KHR_materials_iridescence/iridescenceFactor", Type::Number, Unit},
     {"extensions/KHR_materials_iridescence/iridescenceTexture", Type::Texture},
     {"extensions/KHR_materials_iridescence/iridescenceIor", Type::Number, Index},
-    {"extensions/KHR_materials_iridescence/iridescenceThicknessMinimum", Type::Number, NotNegative},
-    {"extensions/KHR_materials_iridescence/iridescenceThicknessMaximum", Type::Number, NotNegative},
+    {"extensions/KHR_materials_iridescence/iridescenceThicknessMinimum", Type::Number, FromZero},
+    {"extensions/KHR_materials_iridescence/iridescenceThicknessMaximum", Type::Number, FromZero},
     {"extensions/KHR_materials_iridescence/iridescenceThicknessTexture", Type::Texture},
 };
 

@@ -12,7 +12,7 @@
 namespace tessera::import {
 namespace {
 
-constexpr double Brightest = 1e12;
+constexpr double MaxEmission = 1e12;
 
 // Numbers of a material were checked when its text was read (check_gltf_materials).
 float number(double value) {
@@ -190,7 +190,7 @@ GltfMaterial GltfMaterials::make(const tinygltf::Material& source, const std::st
     for (int i = 0; i < 3; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const double factor = source.emissiveFactor.size() == 3 ? source.emissiveFactor[k] : 0.0;
-        material.emission[i] = number(std::min(factor * strength, Brightest));
+        material.emission[i] = number(std::min(factor * strength, MaxEmission));
     }
     if (material.emission != glm::vec3(0.0f)) {
         material.emission_texture = slots.slot(source.emissiveTexture, TextureUse::Color);

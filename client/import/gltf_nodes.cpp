@@ -13,7 +13,7 @@ namespace tessera::import {
 namespace {
 
 constexpr const char* Instancing = "EXT_mesh_gpu_instancing";
-constexpr const char* Lights = "KHR_lights_punctual";
+constexpr const char* LightsExtension = "KHR_lights_punctual";
 
 std::string display_name(const tinygltf::Model& model, int node) {
     const std::string& name = model.nodes[static_cast<std::size_t>(node)].name;
@@ -21,7 +21,7 @@ std::string display_name(const tinygltf::Model& model, int node) {
 }
 
 bool has_only_a_mesh(const tinygltf::Node& node) {
-    return node.camera == -1 && !node.extensions.contains(Lights);
+    return node.camera == -1 && !node.extensions.contains(LightsExtension);
 }
 
 template <class T>
@@ -233,7 +233,7 @@ std::vector<glm::dmat4> GltfNodes::instance_matrices(const tinygltf::Node& node)
 
 void GltfNodes::add_light(const tinygltf::Node& node, const std::string& name,
                           std::vector<ObjectId>& children) {
-    const auto extension = node.extensions.find(Lights);
+    const auto extension = node.extensions.find(LightsExtension);
     if (extension == node.extensions.end()) return;
     const int index = index_member(extension->second, "light");
     if (index < 0 || static_cast<std::size_t>(index) >= model_.lights.size()) {

@@ -14,7 +14,7 @@
 namespace tessera::import {
 namespace {
 
-struct Range {
+struct TextRange {
     std::size_t begin = 0, end = 0;
     bool empty() const { return begin == end; }
 };
@@ -30,16 +30,16 @@ struct Edit {
 // JSON of them.
 struct Scan {
     std::vector<Edit> edits;
-    Range materials;  // the array at the top, brackets included
+    TextRange materials;  // the array at the top, brackets included
 };
 
 // One open array or object.
 struct Level {
     bool is_object = false;
-    Range key;                   // the last string, a key once a colon follows
-    bool has_key = false;        // a value for `key` is expected
-    Range indices_key, indices;  // "indices": <number>, both as they stand
-    std::size_t attributes = 0;  // just behind the brace of "attributes": {
+    TextRange key;                   // the last string, a key once a colon follows
+    bool has_key = false;            // a value for `key` is expected
+    TextRange indices_key, indices;  // "indices": <number>, both as they stand
+    std::size_t attributes = 0;      // just behind the brace of "attributes": {
 };
 
 constexpr bool is_space(char c) {
@@ -87,7 +87,9 @@ class Scanner {
 
   private:
     bool in_materials() const { return materials_level_ != 0; }
-    std::string_view text(Range range) const { return json_.substr(range.begin, range.end - range.begin); }
+    std::string_view text(TextRange range) const {
+        return json_.substr(range.begin, range.end - range.begin);
+    }
 
     void string() {
         const std::size_t begin = ++at_;

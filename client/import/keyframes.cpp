@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <string>
 
+#include "client/import/reject.h"
 #include "mediator/base/error.h"
 
 namespace tessera::import {
@@ -14,18 +15,14 @@ namespace {
 constexpr float Largest = 1e15f;       // as the scene's own bound on translations
 constexpr double ShortestTurn = 1e-9;  // of a quaternion: below, its direction is rounding
 
-[[noreturn]] void reject(const std::string& cause) {
-    throw Error(ErrorCode::InvalidInput, cause);
-}
-
 // Where a time lies: between key and key + 1, by `part` of the way.
-struct Span {
+struct KeySpan {
     std::size_t key = 0;
     double part = 0.0;
     double seconds = 0.0;  // from key to key
 };
 
-Span locate(const KeyTrack& track, double seconds) {
+KeySpan locate(const KeyTrack& track, double seconds) {
     const auto& times = track.times;
     if (!(seconds > times.front())) return {};
     if (seconds >= times.back()) return {.key = times.size() - 1};
@@ -77,7 +74,7 @@ void check_rotation(const KeyTrack& track) {
 }
 
 void sample(const KeyTrack& track, double seconds, std::span<double> value) {
-    const Span at = locate(track, seconds);
+    const KeySpan at = locate(track, seconds);
     const float* here = part_of(track, at.key, Part::Value);
     if (at.part == 0.0 || track.interpolation == Interpolation::Step) {
         std::copy_n(here, track.width, value.begin());
@@ -101,7 +98,7 @@ void sample(const KeyTrack& track, double seconds, std::span<double> value) {
 }
 
 glm::dvec4 sample_rotation(const KeyTrack& track, double seconds) {
-    const Span at = locate(track, seconds);
+    const KeySpan at = locate(track, seconds);
     const glm::dvec4 here = glm::normalize(quaternion(part_of(track, at.key, Part::Value)));
     if (at.part == 0.0 || track.interpolation == Interpolation::Step) return here;
     if (track.interpolation == Interpolation::CubicSpline) {

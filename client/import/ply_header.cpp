@@ -56,7 +56,7 @@ std::optional<PlyProperty> property_of(const std::vector<std::string_view>& word
     return property;
 }
 
-tl::unexpected<Error> damaged(const std::string& cause) {
+tl::unexpected<Error> incomplete(const std::string& cause) {
     return failure(ErrorCode::InvalidInput, "it is no complete PLY (" + cause + "): copy or export it again");
 }
 
@@ -69,7 +69,7 @@ std::size_t byte_size(PlyType type) {
 
 Expected<PlyHeader> read_ply_header(std::string_view file) {
     if (!file.starts_with("ply\n") && !file.starts_with("ply\r\n"))
-        return damaged("it does not begin with 'ply'");
+        return incomplete("it does not begin with 'ply'");
     PlyHeader header;
     bool has_format = false;
     for (std::size_t at = file.find('\n') + 1; at < file.size();) {
@@ -79,7 +79,7 @@ Expected<PlyHeader> read_ply_header(std::string_view file) {
         at = std::min(end + 1, file.size());
         if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
         if (words[0] == "end_header") {
-            if (!has_format) return damaged("its header lacks the format");
+            if (!has_format) return incomplete("its header lacks the format");
             header.byte_size = at;
             return header;
         }
@@ -94,16 +94,16 @@ Expected<PlyHeader> read_ply_header(std::string_view file) {
             const char* last = words[2].data() + words[2].size();
             const auto [stop, error] = std::from_chars(words[2].data(), last, element.count);
             if (error != std::errc() || stop != last || element.count > file.size()) {
-                return damaged("its header claims elements that the file cannot hold");
+                return incomplete("its header claims elements that the file cannot hold");
             }
             header.elements.push_back(std::move(element));
         } else if (property && !header.elements.empty()) {
             header.elements.back().properties.push_back(*property);
         } else if (words[0] == "format" || words[0] == "element" || words[0] == "property") {
-            return damaged("its header has the line '" + std::string(line.substr(0, 60)) + "'");
+            return incomplete("its header has the line '" + std::string(line.substr(0, 60)) + "'");
         }
     }
-    return damaged("its header has no end");
+    return incomplete("its header has no end");
 }
 
 }  // namespace tessera::import

@@ -13,7 +13,7 @@
 namespace tessera::import {
 namespace {
 
-[[noreturn]] void reject(const std::string& cause) {
+[[noreturn]] void reject_ply(const std::string& cause) {
     throw Error(ErrorCode::InvalidInput, "it is no complete PLY (" + cause + "): copy or export it again");
 }
 
@@ -28,19 +28,19 @@ class PlyData {
   private:
     double next_word() {
         const std::size_t begin = rest_.find_first_not_of(" \t\r\n");
-        if (begin == rest_.npos) reject("its data ends too early");
+        if (begin == rest_.npos) reject_ply("its data ends too early");
         rest_.remove_prefix(begin);
         double value = 0.0;
         const auto [stop, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
         if (error == std::errc::result_out_of_range) value = std::numeric_limits<double>::infinity();
-        if (error == std::errc::invalid_argument) reject("its data has a word that is no number");
+        if (error == std::errc::invalid_argument) reject_ply("its data has a word that is no number");
         rest_.remove_prefix(static_cast<std::size_t>(stop - rest_.data()));
         return value;
     }
 
     double next_binary(PlyType type) {
         const std::size_t size = byte_size(type);
-        if (rest_.size() < size) reject("its data ends too early");
+        if (rest_.size() < size) reject_ply("its data ends too early");
         char bytes[8] = {};
         const bool turned = encoding_ == PlyEncoding::BigEndian;
         for (std::size_t i = 0; i < size; ++i) bytes[turned ? size - 1 - i : i] = rest_[i];
@@ -102,7 +102,7 @@ double color_value(double value, PlyType type, bool is_alpha) {
 std::vector<double> read_list(PlyData& data, const PlyProperty& property) {
     const double count = data.next(property.count_type);
     if (!(count >= 0.0 && count <= static_cast<double>(data.bytes_left()) && count == std::floor(count))) {
-        reject("a list claims more than there is");
+        reject_ply("a list claims more than there is");
     }
     std::vector<double> values(static_cast<std::size_t>(count));
     for (double& value : values) value = data.next(property.type);
@@ -122,7 +122,7 @@ void read_vertices(PlyData& data, const PlyElement& element, MeshData& mesh) {
     for (const PlyProperty& property : element.properties) {
         if (const int slot = slot_of(property.name); slot >= 0 && !property.is_list) has[slot] = true;
     }
-    if (!(has[0] && has[1] && has[2])) reject("its vertices lack x, y or z");
+    if (!(has[0] && has[1] && has[2])) reject_ply("its vertices lack x, y or z");
     for (std::uint64_t i = 0; i < element.count; ++i) {
         float value[12] = {0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1};
         for (const PlyProperty& property : element.properties) {

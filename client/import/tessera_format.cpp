@@ -12,7 +12,7 @@
 namespace tessera::import {
 namespace {
 
-[[noreturn]] void damaged(const std::string& cause) {
+[[noreturn]] void reject_tessera(const std::string& cause) {
     throw Error(ErrorCode::InvalidInput, "it is damaged (" + cause + "): copy or save it again");
 }
 
@@ -21,7 +21,7 @@ class Cursor {
   public:
     explicit Cursor(std::span<const std::byte> bytes) : rest_(bytes) {}
     std::span<const std::byte> take(std::uint64_t count) {
-        if (count > rest_.size()) damaged("it announces more than it holds");
+        if (count > rest_.size()) reject_tessera("it announces more than it holds");
         const auto taken = rest_.first(static_cast<std::size_t>(count));
         rest_ = rest_.subspan(taken.size());
         return taken;
@@ -46,22 +46,22 @@ Hash256 hash_of(std::span<const std::byte> bytes) {
 
 std::vector<scene::BlobPtr> read_blobs(Cursor& cursor, std::uint32_t count,
                                        const std::vector<scene::BlobRef>& wanted) {
-    if (count != wanted.size()) damaged("it does not hold the blobs that its scene refers to");
+    if (count != wanted.size()) reject_tessera("it does not hold the blobs that its scene refers to");
     std::vector<scene::BlobPtr> blobs;
     for (const scene::BlobRef& reference : wanted) {
         const Hash256 hash = hash_of(cursor.take(sizeof(Hash256::bytes)));
         const auto byte_size = cursor.number<std::uint64_t>();
         if (hash != reference.hash || byte_size != reference.byte_size) {
-            damaged("it does not hold the blobs that its scene refers to");
+            reject_tessera("it does not hold the blobs that its scene refers to");
         }
         blobs.push_back(std::make_shared<const scene::Blob>(cursor.take(byte_size)));
-        if (blobs.back()->hash() != hash) damaged("a blob has another hash than it should");
+        if (blobs.back()->hash() != hash) reject_tessera("a blob has another hash than it should");
     }
     return blobs;
 }
 
 void check(const std::vector<scene::Problem>& problems) {
-    if (!problems.empty()) damaged(problems.front().message);
+    if (!problems.empty()) reject_tessera(problems.front().message);
 }
 
 TesseraFile read(std::span<const std::byte> bytes) {
@@ -75,22 +75,23 @@ TesseraFile read(std::span<const std::byte> bytes) {
                                                  ": read it with the software that wrote it");
     }
     constexpr std::size_t HashBytes = sizeof(Hash256::bytes);
-    if (bytes.size() < TesseraHeaderBytes + HashBytes) damaged("it ends too early");
+    if (bytes.size() < TesseraHeaderBytes + HashBytes) reject_tessera("it ends too early");
     const auto content = bytes.first(bytes.size() - HashBytes);
-    if (blake2b(content) != hash_of(bytes.last(HashBytes))) damaged("its checksum does not fit its content");
+    if (blake2b(content) != hash_of(bytes.last(HashBytes)))
+        reject_tessera("its checksum does not fit its content");
 
     Cursor cursor(content.subspan(TesseraMagic.size() + sizeof(std::uint32_t)));
     const auto blob_count = cursor.number<std::uint32_t>();
     const auto list_size = cursor.number<std::uint64_t>();
     auto snapshot = wire::decode_change_list(cursor.take(list_size));
-    if (!snapshot) damaged(snapshot.error().what());
-    if (!snapshot->is_snapshot()) damaged("its change list is no snapshot");
+    if (!snapshot) reject_tessera(snapshot.error().what());
+    if (!snapshot->is_snapshot()) reject_tessera("its change list is no snapshot");
     scene::Scene scene;
-    if (const auto applied = scene.apply(*snapshot); !applied) damaged(applied.error().what());
+    if (const auto applied = scene.apply(*snapshot); !applied) reject_tessera(applied.error().what());
     check(scene::validate(scene));
 
     TesseraFile file{std::move(*snapshot), read_blobs(cursor, blob_count, scene::referenced_blobs(scene))};
-    if (!cursor.at_end()) damaged("bytes are left over");
+    if (!cursor.at_end()) reject_tessera("bytes are left over");
     scene::BlobStore store;
     for (const scene::BlobPtr& blob : file.blobs) store.insert(blob);
     for (const auto& [id, object] : scene.objects()) check(scene::validate_blobs(id, *object, store));

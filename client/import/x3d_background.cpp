@@ -10,7 +10,7 @@
 namespace tessera::import {
 namespace {
 
-constexpr std::uint32_t Rows = 256, Columns = 4;
+constexpr std::uint32_t SkyRows = 256, SkyColumns = 4;
 constexpr double Pi = std::numbers::pi;
 
 // Colours at angles: the first at 0, the others where the file says.
@@ -71,19 +71,19 @@ scene::Background read_background(X3dDocument& document, pugi::xml_node node, Sc
         return background;
     }
     std::vector<glm::vec3> texels;
-    for (std::uint32_t row = 0; row < Rows; ++row) {
-        const double from_zenith = Pi * (row + 0.5) / Rows, from_nadir = Pi - from_zenith;
+    for (std::uint32_t row = 0; row < SkyRows; ++row) {
+        const double from_zenith = Pi * (row + 0.5) / SkyRows, from_nadir = Pi - from_zenith;
         // The ground reaches up to its last angle; a single colour is the half below the horizon.
         const double reach = ground.empty() ? 0.0 : ground.colors.size() == 1 ? Pi / 2 : ground.end();
         const glm::vec3 color = from_nadir < reach ? ground.at(from_nadir)
                                 : sky.empty()      ? glm::vec3(0.0f)
                                                    : sky.at(from_zenith);
-        texels.insert(texels.end(), Columns, color);
+        texels.insert(texels.end(), SkyColumns, color);
     }
     scene::Texture map;
     map.name = background.name.empty() ? "sky" : background.name;
-    map.width = Columns;
-    map.height = Rows;
+    map.width = SkyColumns;
+    map.height = SkyRows;
     map.format = scene::TexelFormat::RgbFloat;
     map.wrap_t = scene::Wrap::Clamp;
     map.texels = builder.blob(texels);

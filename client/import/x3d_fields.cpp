@@ -11,7 +11,7 @@
 namespace tessera::import {
 namespace {
 
-constexpr double Farthest = 1e18;  // squares of it still fit a float
+constexpr double FarthestX3d = 1e18;  // squares of it still fit a float
 
 bool separates(char c) {
     return c == ' ' || c == ',' || c == '\n' || c == '\t' || c == '\r';
@@ -37,7 +37,7 @@ void each_number(std::string_view text, const Take& take) {
         Number number{};
         const auto [last, error] = std::from_chars(word.data() + sign, word.data() + word.size(), number);
         if (error != std::errc{} || last != word.data() + word.size() ||
-            !(std::abs(static_cast<double>(number)) <= Farthest)) {
+            !(std::abs(static_cast<double>(number)) <= FarthestX3d)) {
             throw Error(ErrorCode::InvalidInput, shown(word) + " is no number that can be used");
         }
         if (++count > MaxElements) throw Error(ErrorCode::InvalidInput, "there are more than 2^28 numbers");

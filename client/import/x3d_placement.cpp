@@ -9,7 +9,6 @@
 namespace tessera::import {
 namespace {
 
-constexpr double Pi = std::numbers::pi;
 constexpr X3dRange Scene{-1e15, 1e15};  // beyond, double transforms lose the centimetre
 
 glm::dmat4 translated(const glm::dvec3& by) {
@@ -46,7 +45,8 @@ PlacedLight shining(const X3dFields& fields, scene::LightKind kind) {
     placed.light.kind = kind;
     // X3D says 0 to 1, but brighter lights are common and mean what they say.
     const double intensity = fields.flag("on", true) ? fields.number("intensity", 1.0, NotNegative) : 0.0;
-    placed.light.intensity = glm::vec3(Pi * intensity * fields.vector("color", glm::dvec3(1.0), NotNegative));
+    placed.light.intensity =
+        glm::vec3(std::numbers::pi * intensity * fields.vector("color", glm::dvec3(1.0), NotNegative));
     return placed;
 }
 
@@ -73,9 +73,9 @@ PlacedLight point_light(const X3dFields& fields) {
 
 PlacedLight spot_light(const X3dFields& fields) {
     PlacedLight placed = shining(fields, scene::LightKind::Spot);
-    constexpr X3dRange Angles{1e-6, Pi / 2 + 1e-6};
-    const double outer = fields.number("cutOffAngle", Pi / 2, Angles);
-    const double inner = std::min(fields.number("beamWidth", Pi / 4, Angles), outer);
+    constexpr X3dRange Angles{1e-6, std::numbers::pi / 2 + 1e-6};
+    const double outer = fields.number("cutOffAngle", std::numbers::pi / 2, Angles);
+    const double inner = std::min(fields.number("beamWidth", std::numbers::pi / 4, Angles), outer);
     placed.light.outer_cone_angle = static_cast<float>(outer);
     placed.light.inner_cone_angle = static_cast<float>(inner);
     placed.parent_from_light = located(fields) * looking_along(fields, "direction", {0, 0, -1});
@@ -90,7 +90,8 @@ PlacedLight directional_light(const X3dFields& fields) {
 
 PlacedViewpoint viewpoint_of(const X3dFields& fields) {
     PlacedViewpoint placed;
-    placed.camera.vertical_fov = fields.number("fieldOfView", Pi / 4, {1e-6, Pi - 1e-6});
+    placed.camera.vertical_fov =
+        fields.number("fieldOfView", std::numbers::pi / 4, {1e-6, std::numbers::pi - 1e-6});
     placed.parent_from_camera =
         translated(fields.vector("position", glm::dvec3(0, 0, 10), Scene)) * rotation(fields, "orientation");
     return placed;

@@ -11,7 +11,6 @@ namespace tessera::import {
 namespace {
 
 constexpr std::uint32_t Sides = 72, Rings = 36;
-constexpr double Pi = std::numbers::pi;
 
 std::uint32_t add_vertex(MeshData& mesh, const glm::dvec3& position, const glm::dvec3& normal,
                          const glm::dvec2& tex_coord) {
@@ -27,7 +26,7 @@ void add_quad(MeshData& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c,
 
 // Around y from the back (-z) counter-clockwise as seen from above: the way of X3D's textures.
 glm::dvec3 around(double s) {
-    return {-std::sin(2.0 * Pi * s), 0.0, -std::cos(2.0 * Pi * s)};
+    return {-std::sin(2.0 * std::numbers::pi * s), 0.0, -std::cos(2.0 * std::numbers::pi * s)};
 }
 
 MeshData box(const glm::dvec3& size) {
@@ -55,9 +54,9 @@ MeshData sphere(double radius) {
         for (std::uint32_t side = 0; side <= Sides; ++side) {
             const double s = static_cast<double>(side) / Sides;
             // Exactly the pole, and the seam exactly closed.
-            const double sine = ring == 0 || ring == Rings ? 0.0 : std::sin(Pi * t);
-            const glm::dvec3 normal =
-                sine * around(side == Sides ? 0.0 : s) + glm::dvec3(0.0, -std::cos(Pi * t), 0.0);
+            const double sine = ring == 0 || ring == Rings ? 0.0 : std::sin(std::numbers::pi * t);
+            const glm::dvec3 normal = sine * around(side == Sides ? 0.0 : s) +
+                                      glm::dvec3(0.0, -std::cos(std::numbers::pi * t), 0.0);
             add_vertex(mesh, radius * normal, normal, {s, t});
         }
     }

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "client/cli/cli.h"
 #include "client/session.h"
+#include "mediator/program/command_line.h"
 
 namespace tessera::tools {
 

@@ -4,12 +4,12 @@
 #include <string>
 #include <string_view>
 
-#include "client/cli/cli.h"
 #include "mediator/base/error.h"
+#include "mediator/program/command_line.h"
 
 namespace tessera::tools {
 
-// Exit codes that every command shares; those of wrong options and absent clusters are in client/cli/cli.h.
+// Exit codes that every command shares; those of wrong options and absent clusters are in mediator/program/command_line.h.
 inline constexpr int ExitComparison = 1;
 inline constexpr int ExitBadInput = 2;
 inline constexpr int ExitInternal = 70;

@@ -16,7 +16,7 @@ namespace tessera::tools {
 
 namespace {
 
-constexpr const char* Name = "compare";
+constexpr const char* CompareName = "compare";
 
 struct Value {
     const char* name;
@@ -90,7 +90,7 @@ int run_compare(const CompareOptions& options, std::ostream& out) {
 
 Command compare_command(cli::CommandLine& program) {
     const auto options = std::make_shared<CompareOptions>();
-    cli::CommandLine& line = program.command(Name, "how far a picture is from a reference");
+    cli::CommandLine& line = program.command(CompareName, "how far a picture is from a reference");
     line.positional("picture", "OpenEXR file", options->picture);
     line.positional("reference", "OpenEXR file of the same size", options->reference);
     line.option("--layer", "layer to compare, as albedo or raw (default: R G B)", options->layer);
@@ -98,11 +98,11 @@ Command compare_command(cli::CommandLine& program) {
     line.option("--max-relmse", "exit with 1 when relmse is larger", options->max_relmse);
     line.examples({"tessera compare out.exr reference.exr",
                    "tessera compare out.exr reference.exr --layer high_variance --max-relmse 0.01"});
-    return {Name, [options](std::string_view) {
+    return {CompareName, [options](std::string_view) {
                 try {
                     return run_compare(*options, std::cout);
                 } catch (const Error& error) {
-                    return complain(Name, exit_code(error.code()), error.what());
+                    return complain(CompareName, exit_code(error.code()), error.what());
                 }
             }};
 }

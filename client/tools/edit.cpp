@@ -16,7 +16,7 @@ namespace tessera::tools {
 
 namespace {
 
-constexpr const char* Name = "edit";
+constexpr const char* EditName = "edit";
 
 struct EditOptions {
     std::optional<std::string> script;
@@ -25,7 +25,8 @@ struct EditOptions {
 };
 
 int report(const Error& error) {
-    return complain(Name, error.code() == ErrorCode::InvalidInput ? ExitBadScript : exit_code(error.code()),
+    return complain(EditName,
+                    error.code() == ErrorCode::InvalidInput ? ExitBadScript : exit_code(error.code()),
                     error.what());
 }
 
@@ -86,7 +87,7 @@ int run_prompt(edit::EditTarget& target) {
 
 int run(const EditOptions& options, const ConnectScene& connect) {
     if (options.script && !options.commands.empty()) {
-        return complain(Name, cli::ExitUsage, "a script and -c do not go together: choose one");
+        return complain(EditName, cli::ExitUsage, "a script and -c do not go together: choose one");
     }
     const bool is_typed = !options.script && options.commands.empty() && ::isatty(STDIN_FILENO) != 0;
     const std::string name = !options.commands.empty() ? "-c" : options.script.value_or("-");
@@ -94,13 +95,13 @@ int run(const EditOptions& options, const ConnectScene& connect) {
         std::string text = joined(options.commands);
         if (!is_typed && options.commands.empty()) {
             auto script = read_script(name);
-            if (!script) return complain(Name, exit_code(script.error().code()), script.error().what());
+            if (!script) return complain(EditName, exit_code(script.error().code()), script.error().what());
             text = std::move(*script);
         }
         const std::unique_ptr<edit::EditTarget> target = connect(options.address);
         return is_typed ? run_prompt(*target) : run_script(*target, name, text);
     } catch (const Error& error) {
-        return complain(Name, exit_code(error.code()), error.what());
+        return complain(EditName, exit_code(error.code()), error.what());
     }
 }
 
@@ -109,7 +110,7 @@ int run(const EditOptions& options, const ConnectScene& connect) {
 Command edit_command(cli::CommandLine& program, ConnectScene connect) {
     const auto options = std::make_shared<EditOptions>();
     cli::CommandLine& command = program.command(
-        Name, "Edit a live scene: by a script, single commands, or at a prompt ('help' there).");
+        EditName, "Edit a live scene: by a script, single commands, or at a prompt ('help' there).");
     command.optional_positional("SCRIPT", "file with one command a line, - for a pipe; without one a prompt",
                                 options->script);
     command.option("-c",
@@ -126,7 +127,7 @@ Command edit_command(cli::CommandLine& program, ConnectScene connect) {
                       "tessera edit tour.txt --master tcp://127.0.0.1:7420",
                       "tessera edit --master tcp://127.0.0.1:7420 -c 'load room.glb' -c 'save copy.tessera'",
                       "tessera edit --master tcp://127.0.0.1:7420 -c 'help all'"});
-    return {Name,
+    return {EditName,
             [options, connect = std::move(connect)](std::string_view) { return run(*options, connect); }};
 }
 

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "client/cli/cli.h"
 #include "client/tools/this_machine.h"
 #include "mediator/backend/catalog.h"
+#include "mediator/program/command_line.h"
 
 namespace tessera::tools {
 

@@ -5,21 +5,22 @@
 #include <memory>
 #include <vector>
 
+#include "mediator/base/nearest.h"
 #include "mediator/net/keys.h"
 
 namespace tessera::tools {
 
 namespace {
 
-constexpr const char* Name = "keys";
+constexpr const char* KeysName = "keys";
 
-std::string quoted(const std::string& text) {
+std::string in_quotes(const std::string& text) {
     return "'" + text + "'";
 }
 
 int create(const KeysOptions& options, std::ostream& out) {
     net::KeyDirectory(options.folder).create();
-    out << "made keys in " << quoted(options.folder)
+    out << "made keys in " << in_quotes(options.folder)
         << ": the master's, and one each for viewer, editor, node "
         << "and operator.\n"
         << "On this machine give --keys " << options.folder << " to every program. For another machine:\n"
@@ -28,11 +29,11 @@ int create(const KeysOptions& options, std::ostream& out) {
 }
 
 int add(const KeysOptions& options, std::ostream& out) {
-    if (options.role.empty()) return complain(Name, cli::ExitUsage, "add needs --role ROLE");
-    if (options.export_file.empty()) return complain(Name, cli::ExitUsage, "add needs --export FILE");
+    if (options.role.empty()) return complain(KeysName, cli::ExitUsage, "add needs --role ROLE");
+    if (options.export_file.empty()) return complain(KeysName, cli::ExitUsage, "add needs --export FILE");
     net::KeyDirectory(options.folder).add(options.name, net::role_named(options.role), options.export_file);
-    out << "added " << quoted(options.name) << " as " << options.role << ". Carry "
-        << quoted(options.export_file)
+    out << "added " << in_quotes(options.name) << " as " << options.role << ". Carry "
+        << in_quotes(options.export_file)
         << " to the other machine over a safe way, give it to --keys there, and "
         << "send SIGHUP to a running tessera-master.\n";
     return 0;
@@ -50,7 +51,7 @@ int list(const KeysOptions& options, std::ostream& out) {
 
 int revoke(const KeysOptions& options, std::ostream& out) {
     net::KeyDirectory(options.folder).revoke(options.name);
-    out << "revoked " << quoted(options.name) << ". Send SIGHUP to a running tessera-master.\n";
+    out << "revoked " << in_quotes(options.name) << ". Send SIGHUP to a running tessera-master.\n";
     return 0;
 }
 
@@ -69,24 +70,25 @@ int run_keys(const KeysOptions& options, std::ostream& out) {
         names.push_back(action.name);
         if (options.action != action.name) continue;
         if (action.takes_name == options.name.empty()) {
-            return complain(Name, cli::ExitUsage,
+            return complain(KeysName, cli::ExitUsage,
                             options.action + (action.takes_name ? " needs a NAME" : " takes no NAME"));
         }
         try {
             return action.run(options, out);
         } catch (const Error& error) {
-            return complain(Name, exit_code(error.code()), error.what());
+            return complain(KeysName, exit_code(error.code()), error.what());
         }
     }
-    const auto meant = cli::nearest(options.action, names);
-    return complain(Name, cli::ExitUsage,
-                    "there is no action " + quoted(options.action) +
-                        (meant ? "; did you mean " + quoted(*meant) + "?" : ": create, add, list, revoke"));
+    const auto meant = nearest(options.action, names);
+    return complain(
+        KeysName, cli::ExitUsage,
+        "there is no action " + in_quotes(options.action) +
+            (meant ? "; did you mean " + in_quotes(*meant) + "?" : ": create, add, list, revoke"));
 }
 
 Command keys_command(cli::CommandLine& program) {
     const auto options = std::make_shared<KeysOptions>();
-    cli::CommandLine& command = program.command(Name, "Make and keep the CURVE keys of a cluster.");
+    cli::CommandLine& command = program.command(KeysName, "Make and keep the CURVE keys of a cluster.");
     command.positional("DIR", "folder of keys, on the master's machine", options->folder);
     command.option("ACTION", "create, add, list or revoke", options->action);
     command.option("NAME", "of the key to add or revoke", options->name);
@@ -96,7 +98,7 @@ Command keys_command(cli::CommandLine& program) {
     command.examples({"tessera keys ~/.tessera", "tessera keys ~/.tessera list",
                       "tessera keys ~/.tessera add render-2 --role node --export render-2.key",
                       "tessera keys ~/.tessera revoke render-2"});
-    return {Name, [options](std::string_view) { return run_keys(*options, std::cout); }};
+    return {KeysName, [options](std::string_view) { return run_keys(*options, std::cout); }};
 }
 
 }  // namespace tessera::tools

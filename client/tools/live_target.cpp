@@ -26,7 +26,7 @@ auto guarded(const Call& call) -> Expected<decltype(call())> {
     }
 }
 
-std::string joined(const std::vector<std::string>& texts) {
+std::string joined_problems(const std::vector<std::string>& texts) {
     std::string all;
     for (const std::string& text : texts) all += (all.empty() ? "" : "; ") + text;
     return all;
@@ -119,7 +119,7 @@ class LiveTarget final : public edit::EditTarget {
 
   private:
     Expected<std::string> taken_back(const client::EditResult& result) {
-        if (!result.accepted) return failure(ErrorCode::Refused, joined(result.problems));
+        if (!result.accepted) return failure(ErrorCode::Refused, joined_problems(result.problems));
         return guarded([&] {
             session_->refresh();
             const auto history = session_->history(1);

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* Name = "log";
+constexpr const char* LogName = "log";
 constexpr std::size_t MaxText = 200;
 
 struct LogOptions {
@@ -70,18 +70,18 @@ int run(const LogOptions& options) {
 
 Command log_command(cli::CommandLine& program) {
     const auto options = std::make_shared<LogOptions>();
-    cli::CommandLine& line =
-        program.command(Name, "Who did what to a session's scene, and when: number, time, key, name, what.");
+    cli::CommandLine& line = program.command(
+        LogName, "Who did what to a session's scene, and when: number, time, key, name, what.");
     line.positional("FOLDER", "of the session, as tessera-master --session has it", options->folder);
     line.option("--object", "only what touched it: materials/red, or its number", options->object);
     line.option("--last", "only so many of the youngest", options->last);
     line.flag("--json", "print one JSON array", options->json);
     line.examples({"tessera log room.session", "tessera log room.session --object materials/red --last 10"});
-    return {Name, [options](std::string_view) {
+    return {LogName, [options](std::string_view) {
                 try {
                     return run(*options);
                 } catch (const Error& error) {
-                    return complain(Name, exit_code(error.code()), error.what());
+                    return complain(LogName, exit_code(error.code()), error.what());
                 }
             }};
 }

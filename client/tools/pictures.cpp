@@ -8,11 +8,11 @@
 #include <set>
 #include <span>
 
-#include "client/cli/cli.h"
 #include "client/tools/view_attributes.h"
 #include "mediator/frame/resolve.h"
 #include "mediator/picture/atomic_file.h"
 #include "mediator/picture/picture_encoder.h"
+#include "mediator/program/command_line.h"
 
 namespace tessera::tools {
 

@@ -13,7 +13,7 @@ namespace tessera::tools {
 
 namespace {
 
-constexpr const char* Name = "probe";
+constexpr const char* ProbeName = "probe";
 constexpr SessionId OnlySession{1};
 
 struct ProbeOptions {
@@ -51,15 +51,15 @@ scene::ChangeList authority_snapshot(ViewPlan& plan, const std::shared_ptr<scene
 
 int run(const ProbeOptions& options) {
     auto plan = understand(options.view);
-    if (!plan) return complain(Name, cli::ExitUsage, plan.error().what());
+    if (!plan) return complain(ProbeName, cli::ExitUsage, plan.error().what());
     const auto pixel = parse_pixel(options.pixel, plan->size);
-    if (!pixel) return complain(Name, cli::ExitUsage, std::string("--pixel: ") + pixel.error().what());
+    if (!pixel) return complain(ProbeName, cli::ExitUsage, std::string("--pixel: ") + pixel.error().what());
     try {
         const auto blobs = std::make_shared<scene::BlobStore>();
         const backend::BackendEntry& entry =
             options.backend ? backend::find_backend(*options.backend) : backend::catalog().front();
         if (const auto fine = backend::check_device(entry, options.device); !fine) {
-            return complain(Name, cli::ExitUsage, fine.error().what());
+            return complain(ProbeName, cli::ExitUsage, fine.error().what());
         }
         const auto backend =
             entry.make({.isa = options.reproducible ? "avx2" : "", .device = options.device, .blobs = blobs});
@@ -77,7 +77,7 @@ int run(const ProbeOptions& options) {
         }
         return 0;
     } catch (const Error& error) {
-        return complain(Name, exit_code(error.code()), error.what());
+        return complain(ProbeName, exit_code(error.code()), error.what());
     }
 }
 
@@ -85,7 +85,8 @@ int run(const ProbeOptions& options) {
 
 Command probe_command(cli::CommandLine& program) {
     const auto options = std::make_shared<ProbeOptions>();
-    cli::CommandLine& command = program.command(Name, "Replay one sample of one pixel and print its path.");
+    cli::CommandLine& command =
+        program.command(ProbeName, "Replay one sample of one pixel and print its path.");
     options->view.add_to(command);
     command.option("--pixel", "X,Y from the top left", options->pixel);
     command.option("--sample", "number of the sample from 0", options->sample);
@@ -97,7 +98,7 @@ Command probe_command(cli::CommandLine& program) {
     command.required("--pixel");
     command.examples({"tessera probe room.glb --pixel 320,180 --sample 7",
                       "tessera probe still.glb --env studio.exr --size 640x360 --pixel 10,20 --sample 0"});
-    return {Name, [options](std::string_view) { return run(*options); }};
+    return {ProbeName, [options](std::string_view) { return run(*options); }};
 }
 
 }  // namespace tessera::tools

@@ -6,16 +6,11 @@
 #include <cmath>
 #include <cstdio>
 
+#include "client/tools/formatted.h"
+
 namespace tessera::tools {
 
 namespace {
-
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-    char text[160];
-    std::snprintf(text, sizeof text, format, values...);
-    return text;
-}
 
 std::string time_left(double left) {
     const auto whole = static_cast<unsigned long>(std::ceil(left));

@@ -8,6 +8,7 @@
 #include "client/tools/pictures.h"
 #include "master/filter/catalog.h"
 #include "mediator/backend/catalog.h"
+#include "mediator/base/nearest.h"
 #include "mediator/filter/choice.h"
 
 namespace tessera::tools {
@@ -48,7 +49,7 @@ Expected<EmbeddedSettings> embedded_settings(const RenderOptions& options) {
     EmbeddedSettings settings{.backend = options.backend.value_or(backend_names().front())};
     const auto names = backend_names();
     if (std::find(names.begin(), names.end(), settings.backend) == names.end()) {
-        const auto near = cli::nearest(settings.backend, names);
+        const auto near = nearest(settings.backend, names);
         return wrong("--backend: there is no '" + settings.backend + "'" +
                      (near ? "; did you mean '" + *near + "'?" : "; see tessera doctor"));
     }

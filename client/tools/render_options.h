@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "client/cli/log.h"
 #include "client/job.h"
 #include "client/session.h"
 #include "client/tools/coverage.h"
 #include "client/tools/embedded_cluster.h"
 #include "client/tools/view_options.h"
 #include "mediator/picture/film_exr.h"
+#include "mediator/program/log.h"
 
 namespace tessera::tools {
 

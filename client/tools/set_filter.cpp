@@ -10,14 +10,14 @@ namespace tessera::tools {
 
 namespace {
 
-constexpr const char* Name = "set-filter";
+constexpr const char* SetFilterName = "set-filter";
 
-struct Options {
+struct SetFilterOptions {
     client::Address address;
     std::string filter;
 };
 
-int run(const Options& options) {
+int run(const SetFilterOptions& options) {
     try {
         const SteadyClock clock;
         const auto session = client::connect(options.address, std::make_shared<scene::BlobStore>(), clock,
@@ -25,22 +25,22 @@ int run(const Options& options) {
         std::cout << session->set_filter(options.filter) << std::endl;
         return 0;
     } catch (const Error& error) {
-        return complain(Name, exit_code(error.code()), error.what());
+        return complain(SetFilterName, exit_code(error.code()), error.what());
     }
 }
 
 }  // namespace
 
 Command set_filter_command(cli::CommandLine& program) {
-    const auto options = std::make_shared<Options>();
-    cli::CommandLine& line =
-        program.command(Name, "Give the frame that a cluster is rendering another filter, or other values.");
+    const auto options = std::make_shared<SetFilterOptions>();
+    cli::CommandLine& line = program.command(
+        SetFilterName, "Give the frame that a cluster is rendering another filter, or other values.");
     line.positional("FILTER", "NAME[:key=value,...]; tessera filters lists them", options->filter);
     add_cluster_options(line, options->address);
     line.required("--master");
     line.examples({"tessera set-filter fdf --master tcp://render-1:7420 --keys ~/.tessera",
                    "tessera set-filter pixel:t=0.002 --master tcp://127.0.0.1:7420"});
-    return {Name, [options](std::string_view) { return run(*options); }};
+    return {SetFilterName, [options](std::string_view) { return run(*options); }};
 }
 
 }  // namespace tessera::tools

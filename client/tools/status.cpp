@@ -16,7 +16,7 @@ namespace tessera::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr const char* Name = "status";
+constexpr const char* StatusName = "status";
 
 struct StatusOptions {
     client::Address address{.endpoint = "tcp://127.0.0.1:7420"};
@@ -168,7 +168,7 @@ int run(const StatusOptions& options) {
         }
         return 0;
     } catch (const Error& error) {
-        return complain(Name, exit_code(error.code()), error.what());
+        return complain(StatusName, exit_code(error.code()), error.what());
     }
 }
 
@@ -176,7 +176,8 @@ int run(const StatusOptions& options) {
 
 Command status_command(cli::CommandLine& program) {
     const auto options = std::make_shared<StatusOptions>();
-    cli::CommandLine& command = program.command(Name, "Show a cluster's nodes, versions, units and rates.");
+    cli::CommandLine& command =
+        program.command(StatusName, "Show a cluster's nodes, versions, units and rates.");
     add_cluster_options(command, options->address);
     command.flag("--json", "print one JSON object", options->json);
     command.option("--chrome-trace",
@@ -184,7 +185,7 @@ Command status_command(cli::CommandLine& program) {
                    options->chrome_trace);
     command.examples({"tessera status --master tcp://render-1:7420 --keys ~/.tessera",
                       "tessera status --master tcp://127.0.0.1:7420 --json"});
-    return {Name, [options](std::string_view) { return run(*options); }};
+    return {StatusName, [options](std::string_view) { return run(*options); }};
 }
 
 }  // namespace tessera::tools

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "client/tools/view_attributes.h"
+#include "mediator/base/nearest.h"
 
 namespace tessera::tools {
 
@@ -181,7 +182,7 @@ Expected<import::CameraInfo> choose_camera(const std::vector<import::CameraInfo>
     const bool is_number = !choice->empty() && choice->find_first_not_of("0123456789") == std::string::npos;
     if (is_number && choice->size() < 9 && std::stoul(*choice) < cameras.size())
         return cameras[std::stoul(*choice)];
-    const auto near = cli::nearest(*choice, names);
+    const auto near = nearest(*choice, names);
     return failure(ErrorCode::InvalidInput, "--camera: the scene has no camera '" + *choice + "'" +
                                                 (near ? "; did you mean '" + *near + "'" : "") +
                                                 "; it has: " + list);

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "client/cli/cli.h"
 #include "client/import/configure.h"
 #include "client/import/import.h"
 #include "client/tools/values.h"
+#include "mediator/program/command_line.h"
 #include "mediator/view/view.h"
 
 namespace tessera::tools {

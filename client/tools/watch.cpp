@@ -24,10 +24,10 @@ namespace tessera::tools {
 
 namespace {
 
-constexpr const char* Name = "watch";
+constexpr const char* WatchName = "watch";
 constexpr std::uint64_t View = 1;
 
-struct Options {
+struct WatchOptions {
     client::Address address{.endpoint = "tcp://127.0.0.1:7420"};
     std::string title, name = "watch", view, camera, filter;
     std::optional<std::string> size, output, time;
@@ -58,24 +58,24 @@ frame::Image image_of(const client::Frame& frame, std::uint32_t width, std::uint
 // One run of the command: joins, watches until the end, shows.
 class Watch {
   public:
-    explicit Watch(const Options& options) : options_(options) {}
+    explicit Watch(const WatchOptions& options) : options_(options) {}
 
     int run() {
         to_terminal_ = !options_.output && is_terminal();
         if (!options_.output && !to_terminal_)
-            return complain(Name, cli::ExitUsage,
+            return complain(WatchName, cli::ExitUsage,
                             "nowhere to show the frames: standard output is no terminal; add -o FILE");
         if (options_.output && !picture_format(*options_.output))
-            return complain(Name, cli::ExitUsage, "-o: end the name with .exr, .png or .jpg");
+            return complain(WatchName, cli::ExitUsage, "-o: end the name with .exr, .png or .jpg");
         if (!options_.filter.empty()) {
             const auto choice = filter::parse_choice(options_.filter, filter::catalog());
-            if (!choice) return complain(Name, cli::ExitUsage, choice.error().what());
+            if (!choice) return complain(WatchName, cli::ExitUsage, choice.error().what());
         }
         std::optional<Duration> limit;
         if (options_.time) {
             const auto parsed = parse_duration(*options_.time);
             if (!parsed)
-                return complain(Name, cli::ExitUsage, std::string("--time: ") + parsed.error().what());
+                return complain(WatchName, cli::ExitUsage, std::string("--time: ") + parsed.error().what());
             limit = *parsed;
         }
         if (const auto code = choose_size()) return *code;
@@ -89,7 +89,7 @@ class Watch {
             interrupts_.token());
         if (std::holds_alternative<client::Stopped>(joined)) return ExitInterrupted;
         if (const auto* busy = std::get_if<client::Busy>(&joined))
-            return complain(Name, cli::ExitTryLater, busy->reason);
+            return complain(WatchName, cli::ExitTryLater, busy->reason);
         open_view();
         return watch(limit ? clock_.now() + *limit : TimePoint::max());
     }
@@ -100,7 +100,7 @@ class Watch {
         size_ = to_terminal_ ? Size{terminal.columns, 2 * (terminal.rows - 1)} : Size{1280, 720};
         if (!options_.size) return std::nullopt;
         const auto size = parse_size(*options_.size);
-        if (!size) return complain(Name, cli::ExitUsage, std::string("--size: ") + size.error().what());
+        if (!size) return complain(WatchName, cli::ExitUsage, std::string("--size: ") + size.error().what());
         size_ = *size;
         return std::nullopt;
     }
@@ -148,7 +148,7 @@ class Watch {
         }
         if (interrupts_.token().stop_requested()) return options_.once ? ExitInterrupted : 0;
         return options_.once
-                   ? complain(Name, cli::ExitTryLater, "the time is over before the frame was complete")
+                   ? complain(WatchName, cli::ExitTryLater, "the time is over before the frame was complete")
                    : 0;
     }
 
@@ -174,27 +174,27 @@ class Watch {
     }
 
     Interrupts interrupts_;  // before anything that starts threads
-    Options options_;
+    WatchOptions options_;
     SteadyClock clock_;
     Size size_;
     bool to_terminal_ = false, told_ = false;
     std::unique_ptr<client::LiveSession> session_;
 };
 
-int run(const Options& options) {
+int run(const WatchOptions& options) {
     try {
         return Watch(options).run();
     } catch (const Error& error) {
-        return complain(Name, exit_code(error.code()), error.what());
+        return complain(WatchName, exit_code(error.code()), error.what());
     }
 }
 
 }  // namespace
 
 Command watch_command(cli::CommandLine& program) {
-    const auto options = std::make_shared<Options>();
-    cli::CommandLine& line =
-        program.command(Name, "Watch a live scene: in the terminal, or in a picture file that is kept new.");
+    const auto options = std::make_shared<WatchOptions>();
+    cli::CommandLine& line = program.command(
+        WatchName, "Watch a live scene: in the terminal, or in a picture file that is kept new.");
     add_cluster_options(line, options->address);
     line.option("--name", "how others see this client", options->name);
     line.option("--scene", "title of the live scene, if this starts it", options->title);
@@ -212,7 +212,7 @@ Command watch_command(cli::CommandLine& program) {
     line.examples({"tessera watch --master tcp://render-1:7420 --keys ~/.tessera",
                    "tessera watch --master tcp://127.0.0.1:7420 -o now.png --once --spp 64 --filter fdf",
                    "tessera watch --master tcp://127.0.0.1:7420 --view ann/1"});
-    return {Name, [options](std::string_view) { return run(*options); }};
+    return {WatchName, [options](std::string_view) { return run(*options); }};
 }
 
 }  // namespace tessera::tools

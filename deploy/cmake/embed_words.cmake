@@ -15,11 +15,11 @@ std::span<const std::uint32_t> ${SYMBOL}();
 file(WRITE ${BASE}.cpp "#include \"${INCLUDE}\"
 
 namespace tessera::vulkan::shaders {
-namespace {
-constexpr std::uint32_t Words[] = {
+std::span<const std::uint32_t> ${SYMBOL}() {
+static constexpr std::uint32_t Words[] = {
 ${words}
 };
+return Words;
 }
-std::span<const std::uint32_t> ${SYMBOL}() { return Words; }
 }
 ")

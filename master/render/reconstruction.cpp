@@ -17,15 +17,6 @@ double since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-frame::Image interleaved(const filter::Planes& planes) {
-    frame::Image image(planes.width(), planes.height(), planes.components());
-    for (std::uint32_t c = 0; c < planes.components(); ++c) {
-        const auto plane = planes.plane(c);
-        for (std::size_t i = 0; i < plane.size(); ++i) image.values[i * planes.components() + c] = plane[i];
-    }
-    return image;
-}
-
 std::vector<std::byte> encode(const filter::Planes& picture, wire::PictureEncoding encoding) {
     switch (encoding) {
         case wire::PictureEncoding::Png:
@@ -49,6 +40,7 @@ std::vector<std::byte> encode(const filter::Planes& picture, wire::PictureEncodi
 filter::Filter& Reconstructor::instance(const filter::Choice& choice, const view::View& view, Version version,
                                         filter::Inputs& inputs) {
     Instance& instance = instances_[view.id];
+    inputs.changes = {};
     const std::string name(choice.entry->description.name);
     if (!instance.filter || instance.name != name || instance.width != inputs.width ||
         instance.height != inputs.height) {
@@ -81,20 +73,20 @@ Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& 
     summary.filter = filter::to_text(*choice);
     try {
         const auto started = Clock::now();
-        filter::Inputs inputs = filter::make_inputs(films.film, view, films.later);
-        filter::Filter& filter = instance(*choice, view, version, inputs);
-        const filter::Report report = filter.run(inputs, choice->values, output_, {arena_, {}});
+        filter::resolve_inputs(films.film, view, films.later, inputs_);
+        filter::Filter& filter = instance(*choice, view, version, inputs_);
+        const filter::Report report = filter.run(inputs_, choice->values, output_, {arena_, {}});
         const filter::Planes* picture = &output_.picture;
         if (films.features != nullptr) {
-            const filter::Inputs full = filter::make_inputs(*films.features, view);
-            filter::upsample(output_.picture, inputs, full, upsampled_, {arena_, {}});
+            filter::resolve_inputs(*films.features, view, nullptr, full_inputs_);
+            filter::upsample(output_.picture, inputs_, full_inputs_, upsampled_, {arena_, {}});
             picture = &upsampled_;
         }
         summary.seconds_filter = since(started);
         for (const filter::Pass& pass : report.passes) {
             summary.passes.push_back({std::string(pass.name), seconds(pass.time), pass.bytes_per_pixel});
         }
-        summary.notes = report.notes;
+        summary.notes.assign(report.notes.begin(), report.notes.end());
         const auto filtered = Clock::now();
         result.bytes = std::make_shared<const std::vector<std::byte>>(encode(*picture, encoding));
         summary.seconds_encode = since(filtered);
@@ -113,8 +105,8 @@ const filter::Planes& Reconstructor::filtered(const frame::FilmTile& film, const
                                               Version version) {
     const auto choice = filter::parse_choice(view.filter, filter::catalog());
     if (!choice) throw choice.error();
-    filter::Inputs inputs = filter::make_inputs(film, view);
-    instance(*choice, view, version, inputs).run(inputs, choice->values, output_, {arena_, {}});
+    filter::resolve_inputs(film, view, nullptr, inputs_);
+    instance(*choice, view, version, inputs_).run(inputs_, choice->values, output_, {arena_, {}});
     return output_.picture;
 }
 

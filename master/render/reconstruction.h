@@ -59,6 +59,7 @@ class Reconstructor {
 
     tbb::task_arena arena_;
     std::map<ViewId, Instance> instances_;
+    filter::Inputs inputs_, full_inputs_;  // kept for their memory
     filter::Output output_;
     filter::Planes upsampled_;
 };

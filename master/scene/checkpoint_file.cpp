@@ -16,7 +16,7 @@ namespace tessera::master {
 
 namespace {
 
-constexpr std::array<char, 8> Magic{'T', 'S', 'C', 'H', 'E', 'C', 'K', '1'};
+constexpr std::array<char, 8> CheckpointMagic{'T', 'S', 'C', 'H', 'E', 'C', 'K', '1'};
 constexpr std::size_t HashBytes = 32;
 
 Error cannot_write(const std::filesystem::path& path) {
@@ -97,23 +97,23 @@ std::vector<std::byte> contents(const std::filesystem::path& path) {
 }
 
 wire::CheckpointState parse(std::span<const std::byte> file, std::uint64_t number) {
-    need(file.size() > Magic.size() + HashBytes, "it ends too early");
-    need(std::memcmp(file.data(), Magic.data(), Magic.size()) == 0,
+    need(file.size() > CheckpointMagic.size() + HashBytes, "it ends too early");
+    need(std::memcmp(file.data(), CheckpointMagic.data(), CheckpointMagic.size()) == 0,
          "it is no checkpoint, or one of another version of Tessera");
     const auto body = file.first(file.size() - HashBytes);
     const Hash256 hash = blake2b(body);
     need(std::memcmp(hash.bytes.data(), file.data() + body.size(), HashBytes) == 0,
          "its checksum is wrong: it is torn or damaged");
     Input in(body);
-    in.take(Magic.size());
+    in.take(CheckpointMagic.size());
     need(in.number() == number, "it is another checkpoint than its name says");
     auto state = wire::decode_checkpoint(in.take(in.number()));
     if (!state) throw state.error();
-    for (std::size_t i = 0; i < state->views.size(); ++i) {
-        for (std::uint64_t block = 0; block < state->block_counts[i]; ++block) {
+    for (wire::SavedView& view : state->views) {
+        for (; view.block_count > 0; --view.block_count) {
             auto film = wire::decode_film(in.take(in.number()));
             if (!film) throw film.error();
-            state->views[i].blocks.push_back(std::move(*film));
+            view.blocks.push_back(std::move(*film));
         }
     }
     need(in.at_end(), "something follows its last block");
@@ -128,7 +128,7 @@ std::uint64_t write_checkpoint(const std::filesystem::path& path, std::uint64_t 
     std::uint64_t size = 0;
     try {
         Output out(unfinished);
-        out.put(Magic);
+        out.put(CheckpointMagic);
         out.put(number);
         const std::vector<std::byte> bytes = wire::encode(state);
         out.put(std::uint64_t{bytes.size()});

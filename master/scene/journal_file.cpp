@@ -14,7 +14,7 @@ namespace tessera::master {
 
 namespace {
 
-constexpr std::array<char, 8> Magic{'T', 'S', 'J', 'O', 'U', 'R', 'N', '1'};
+constexpr std::array<char, 8> JournalMagic{'T', 'S', 'J', 'O', 'U', 'R', 'N', '1'};
 constexpr std::size_t HeaderBytes = 16, LengthBytes = 4, ChecksumBytes = 16;
 constexpr std::size_t RecordHead = LengthBytes + ChecksumBytes;
 
@@ -32,7 +32,7 @@ void put(std::vector<std::byte>& bytes, const T& value) {
 
 std::vector<std::byte> header(std::uint64_t number) {
     std::vector<std::byte> bytes;
-    put(bytes, Magic);
+    put(bytes, JournalMagic);
     put(bytes, number);
     return bytes;
 }
@@ -45,7 +45,7 @@ std::vector<std::byte> checksum(std::span<const std::byte> chain, std::span<cons
     return {full.bytes.begin(), full.bytes.begin() + ChecksumBytes};
 }
 
-std::vector<std::byte> contents(const std::filesystem::path& path) {
+std::vector<std::byte> journal_bytes(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     if (!file) throw cannot("read", path);
     std::vector<std::byte> bytes(static_cast<std::size_t>(file.tellg()));
@@ -110,7 +110,7 @@ Expected<void> JournalFile::append(std::span<const std::byte> payload) {
 
 JournalScan read_journal(const std::filesystem::path& path, std::uint64_t number,
                          const std::function<Expected<void>(std::span<const std::byte>)>& take) {
-    const std::vector<std::byte> file = contents(path);
+    const std::vector<std::byte> file = journal_bytes(path);
     JournalScan scan{.byte_size = file.size()};
     const auto stop = [&](JournalEnd end, const std::string& cause) {
         scan.end = end;

@@ -5,14 +5,14 @@
 namespace tessera::master {
 
 namespace {
-constexpr std::size_t MaxProblems = 20;
+constexpr std::size_t MaxLockProblems = 20;
 }
 
 std::vector<std::string> ObjectLocks::lock(SessionId session, const std::string& name,
                                            const std::vector<ObjectId>& objects, const scene::Scene& scene) {
     std::vector<std::string> problems;
     for (const ObjectId id : objects) {
-        if (problems.size() == MaxProblems) break;
+        if (problems.size() == MaxLockProblems) break;
         const scene::Object* object = scene.find(id);
         if (object == nullptr) {
             problems.push_back("object " + std::to_string(id.value) +

@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* Journal = "journal-";
-constexpr const char* Checkpoint = "checkpoint-";
+constexpr const char* JournalPrefix = "journal-";
+constexpr const char* CheckpointPrefix = "checkpoint-";
 
 Error cannot_use(const fs::path& path, const std::string& reason) {
     return Error(ErrorCode::Io, "cannot use the session folder '" + path.string() + "': " + reason +
@@ -41,11 +41,11 @@ std::optional<std::uint64_t> number_in(const std::string& name, const std::strin
 }  // namespace
 
 fs::path journal_path(const fs::path& folder, std::uint64_t number) {
-    return numbered(folder, Journal, number);
+    return numbered(folder, JournalPrefix, number);
 }
 
 fs::path checkpoint_path(const fs::path& folder, std::uint64_t number) {
-    return numbered(folder, Checkpoint, number);
+    return numbered(folder, CheckpointPrefix, number);
 }
 
 fs::path blobs_path(const fs::path& folder) {
@@ -57,8 +57,8 @@ SessionFiles session_files(const fs::path& folder) {
     std::error_code error;
     for (fs::directory_iterator place(folder, error), end; !error && place != end; place.increment(error)) {
         const std::string name = place->path().filename().string();
-        if (const auto number = number_in(name, Journal)) files.journals.push_back(*number);
-        if (const auto number = number_in(name, Checkpoint)) files.checkpoints.push_back(*number);
+        if (const auto number = number_in(name, JournalPrefix)) files.journals.push_back(*number);
+        if (const auto number = number_in(name, CheckpointPrefix)) files.checkpoints.push_back(*number);
     }
     if (error) {
         throw Error(ErrorCode::Io,

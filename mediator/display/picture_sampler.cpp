@@ -48,14 +48,14 @@ void store_planar(__m128 (&pixels)[4], __m128 mask, PlanarRow out, std::size_t a
 }
 
 // Of each of eight places: the first of its four pixels, and the ways from there to the others.
-struct Places {
+struct SamplePack {
     alignas(32) std::array<std::int32_t, PackSize> pixels;
     alignas(32) std::array<float, PackSize> across, down;
 };
 
 template <class Pairs>
-void sample(const HalfPicture& picture, const Places& places, std::size_t below, __m256 mask, PlanarRow out,
-            std::size_t at) {
+void sample(const HalfPicture& picture, const SamplePack& places, std::size_t below, __m256 mask,
+            PlanarRow out, std::size_t at) {
     for (std::size_t half = 0; half < PackSize; half += 4) {
         __m128 values[4];
         for (std::size_t k = 0; k < 4; ++k) {
@@ -89,7 +89,7 @@ void sample_scaled(const HalfPicture& picture, const float* x, const float* y, c
     const __m256 scale_x = _mm256_set1_ps(scaling.x), scale_y = _mm256_set1_ps(scaling.y),
                  offset = _mm256_set1_ps(scaling.offset);
     const std::size_t below = picture.height > 1 ? std::size_t{3} * picture.width : 0;
-    Places places;
+    SamplePack places;
     for (std::size_t i = 0; i < count; i += PackSize) {
         const __m256 there_x = _mm256_add_ps(_mm256_mul_ps(_mm256_loadu_ps(x + i), scale_x), offset);
         const __m256 there_y = _mm256_add_ps(_mm256_mul_ps(_mm256_loadu_ps(y + i), scale_y), offset);

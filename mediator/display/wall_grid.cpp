@@ -9,7 +9,7 @@ namespace tessera::display {
 namespace {
 
 // From the lower end of the axis. `bezel` as a part of the whole.
-struct Axis {
+struct GridAxis {
     std::uint32_t count, pixels, overlap;
     double bezel;
 
@@ -22,7 +22,8 @@ struct Axis {
     }
 };
 
-Axis axis(std::uint32_t count, std::uint32_t pixels, std::uint32_t overlap, double bezel, const char* name) {
+GridAxis axis(std::uint32_t count, std::uint32_t pixels, std::uint32_t overlap, double bezel,
+              const char* name) {
     const std::string direction(name);
     if (overlap > 0 && bezel > 0.0) {
         throw Error(ErrorCode::InvalidInput,
@@ -41,10 +42,10 @@ Axis axis(std::uint32_t count, std::uint32_t pixels, std::uint32_t overlap, doub
 }  // namespace
 
 std::vector<Part> parts(const Wall& wall, const WallGrid& grid) {
-    const Axis across = axis(grid.columns, grid.width, grid.overlap_across,
-                             grid.bezel_across / glm::length(wall.across), "across");
-    const Axis upward = axis(grid.rows, grid.height, grid.overlap_upward,
-                             grid.bezel_upward / glm::length(wall.upward), "upward");
+    const GridAxis across = axis(grid.columns, grid.width, grid.overlap_across,
+                                 grid.bezel_across / glm::length(wall.across), "across");
+    const GridAxis upward = axis(grid.rows, grid.height, grid.overlap_upward,
+                                 grid.bezel_upward / glm::length(wall.upward), "upward");
     std::vector<Part> parts;
     for (std::uint32_t row = 0; row < grid.rows; ++row) {
         const auto [bottom, top] = upward.ends(grid.rows - 1 - row);

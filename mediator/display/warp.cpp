@@ -10,7 +10,7 @@ namespace tessera::display {
 
 namespace {
 
-constexpr float Nowhere = std::numeric_limits<float>::quiet_NaN();
+constexpr float NoSource = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace
 
@@ -20,8 +20,8 @@ Warp::Warp(const DeviceGrid& points, const Output& output)
       stride_(padded(output.width)),
       margin_u_(0.5 / output.view_width),
       margin_v_(0.5 / output.view_height),
-      u_(stride_ * output.height, Nowhere),
-      v_(stride_ * output.height, Nowhere),
+      u_(stride_ * output.height, NoSource),
+      v_(stride_ * output.height, NoSource),
       is_made_(output.height, 0) {}
 
 void Warp::set_frustum(const view::CameraPose& in_display) {
@@ -57,8 +57,8 @@ void Warp::make_row(std::size_t y, std::span<float> space) {
         // What is not a number is not there.
         const bool is_there =
             depth > 0.0 && std::abs(at_u - in_u) <= margin_u_ && std::abs(at_v - in_v) <= margin_v_;
-        u[x] = is_there ? static_cast<float>(in_u) : Nowhere;
-        v[x] = is_there ? static_cast<float>(in_v) : Nowhere;
+        u[x] = is_there ? static_cast<float>(in_u) : NoSource;
+        v[x] = is_there ? static_cast<float>(in_v) : NoSource;
     }
 }
 

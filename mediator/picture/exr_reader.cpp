@@ -18,7 +18,7 @@ namespace tessera::picture {
 
 namespace {
 
-Error damaged(const std::string& reason) {
+Error unreadable(const std::string& reason) {
     return Error(ErrorCode::InvalidInput, reason);
 }
 
@@ -50,7 +50,7 @@ std::vector<std::string> channels_of(const Imf::ChannelList& channels, const std
         if (name.layer == layer) components.push_back(name.component);
     }
     if (components.empty()) {
-        throw damaged(
+        throw unreadable(
             (layer.empty() ? "it has no channels without a layer" : "it has no layer '" + layer + "'") +
             ": it has " + layers_in(channels));
     }
@@ -63,7 +63,8 @@ std::vector<std::string> channels_of(const Imf::ChannelList& channels, const std
         components = triple;
         break;
     }
-    if (components.size() > 4) throw damaged("layer '" + layer + "' has more than four components: split it");
+    if (components.size() > 4)
+        throw unreadable("layer '" + layer + "' has more than four components: split it");
     for (std::string& component : components) component.insert(0, layer.empty() ? "" : layer + ".");
     return components;
 }

@@ -29,12 +29,12 @@ double target_luminance() {
     return (-b + std::sqrt(b * b - 4.0 * a * c)) / (2.0 * a);
 }
 
-double usable(float value) {
+double finite_positive(float value) {
     return value > 0.0f ? std::min(value, std::numeric_limits<float>::max()) : 0.0f;
 }
 
 double component(const frame::Image& image, std::size_t pixel, std::size_t c) {
-    return usable(image.pixel(pixel)[image.components == 1 ? 0 : c]);
+    return finite_positive(image.pixel(pixel)[image.components == 1 ? 0 : c]);
 }
 
 template <class Curve>

@@ -18,17 +18,17 @@ namespace {
 
 using Rgbe = std::array<std::uint8_t, 4>;
 
-Error damaged(const std::string& reason) {
+Error damaged_hdr(const std::string& reason) {
     return Error(ErrorCode::InvalidInput, reason + ": write it again");
 }
 
 // Reads forward and never past the end.
-class Reader {
+class HdrBytes {
   public:
-    explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+    explicit HdrBytes(std::span<const std::byte> bytes) : bytes_(bytes) {}
     std::size_t left() const { return bytes_.size() - next_; }
     std::uint8_t byte() {
-        if (left() == 0) throw damaged("it ends in the middle of its pixels");
+        if (left() == 0) throw damaged_hdr("it ends in the middle of its pixels");
         return static_cast<std::uint8_t>(bytes_[next_++]);
     }
     Rgbe four() { return {byte(), byte(), byte(), byte()}; }
@@ -41,7 +41,7 @@ class Reader {
             if (letter == '\n') return text;
             text += letter;
         }
-        throw damaged("its header has no end");
+        throw damaged_hdr("its header has no end");
     }
 
   private:
@@ -59,20 +59,20 @@ std::int64_t number(std::string_view text) {
     return error == std::errc() && end == text.data() + text.size() ? value : 0;
 }
 
-Size read_header(Reader& reader) {
+Size read_header(HdrBytes& reader) {
     const std::string magic = reader.left() > 2 ? reader.line() : "";
-    if (magic != "#?RADIANCE" && magic != "#?RGBE") throw damaged("it is not a Radiance picture");
+    if (magic != "#?RADIANCE" && magic != "#?RGBE") throw damaged_hdr("it is not a Radiance picture");
     bool rgbe = false;
     for (std::string line = reader.line(); !line.empty(); line = reader.line())
         rgbe = rgbe || line == "FORMAT=32-bit_rle_rgbe";
-    if (!rgbe) throw damaged("its format is not 32-bit_rle_rgbe");
+    if (!rgbe) throw damaged_hdr("its format is not 32-bit_rle_rgbe");
     const std::string line = reader.line();
     const std::size_t x = line.find(" +X ");
     if (line.rfind("-Y ", 0) != 0 || x == std::string::npos)
-        throw damaged("its rows do not run from the top");
+        throw damaged_hdr("its rows do not run from the top");
     const Size size{number(std::string_view(line).substr(x + 4)),
                     number(std::string_view(line).substr(3, x - 3))};
-    if (size.width < 1 || size.height < 1) throw damaged("its size is not two positive numbers");
+    if (size.width < 1 || size.height < 1) throw damaged_hdr("its size is not two positive numbers");
     if (size.width > MaxPicturePixels || size.height > MaxPicturePixels ||
         size.width * size.height > MaxPicturePixels) {
         throw Error(ErrorCode::InvalidInput, "it claims " + std::to_string(size.width) + " x " +
@@ -82,17 +82,17 @@ Size read_header(Reader& reader) {
     }
     // No form spends fewer than four bytes on a row.
     if (4 * size.height > static_cast<std::int64_t>(reader.left()))
-        throw damaged("it is shorter than its size claims");
+        throw damaged_hdr("it is shorter than its size claims");
     return size;
 }
 
 // The four components one after another, each as runs and plain stretches.
-void read_components(Reader& reader, std::span<Rgbe> row) {
+void read_components(HdrBytes& reader, std::span<Rgbe> row) {
     for (std::size_t component = 0; component < 4; ++component) {
         for (std::size_t x = 0; x < row.size();) {
             const std::uint8_t code = reader.byte();
             const std::size_t count = code > 128 ? code - 128u : code;
-            if (count == 0 || count > row.size() - x) throw damaged("a run does not fit into its row");
+            if (count == 0 || count > row.size() - x) throw damaged_hdr("a run does not fit into its row");
             const std::uint8_t repeated = code > 128 ? reader.byte() : std::uint8_t{0};
             for (const std::size_t end = x + count; x < end; ++x)
                 row[x][component] = code > 128 ? repeated : reader.byte();
@@ -101,7 +101,7 @@ void read_components(Reader& reader, std::span<Rgbe> row) {
 }
 
 // Whole pixels; (1, 1, 1, n) repeats the one before, and after another such it stands for 256 times as many.
-void read_pixels(Reader& reader, std::span<Rgbe> row) {
+void read_pixels(HdrBytes& reader, std::span<Rgbe> row) {
     unsigned shift = 0;
     for (std::size_t x = 0; x < row.size();) {
         const Rgbe pixel = reader.four();
@@ -111,18 +111,18 @@ void read_pixels(Reader& reader, std::span<Rgbe> row) {
             continue;
         }
         const std::size_t count = shift > 16 ? row.size() + 1 : std::size_t{pixel[3]} << shift;
-        if (x == 0 || count > row.size() - x) throw damaged("a run does not fit into its row");
+        if (x == 0 || count > row.size() - x) throw damaged_hdr("a run does not fit into its row");
         for (const std::size_t end = x + count; x < end; ++x) row[x] = row[x - 1];
         shift += 8;
     }
 }
 
-void read_row(Reader& reader, std::span<Rgbe> row) {
+void read_row(HdrBytes& reader, std::span<Rgbe> row) {
     if (row.size() < 8 || row.size() > 0x7fff) return read_pixels(reader, row);
     const Rgbe start = reader.four();
     if (start[0] == 2 && start[1] == 2 && start[2] < 128) {
         if (start[2] * 256u + start[3] != row.size())
-            throw damaged("a row has another width than the picture");
+            throw damaged_hdr("a row has another width than the picture");
         return read_components(reader, row);
     }
     reader.back(start.size());
@@ -137,7 +137,7 @@ void decode(const Rgbe& pixel, std::span<float> rgb) {
 }  // namespace
 
 frame::Image decode_hdr(std::span<const std::byte> bytes) {
-    Reader reader(bytes);
+    HdrBytes reader(bytes);
     const Size size = read_header(reader);
     frame::Image image(static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height), 3);
     std::vector<Rgbe> row(image.width);

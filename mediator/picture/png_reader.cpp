@@ -36,18 +36,18 @@ struct Failure {
 void say_nothing(png_structp, png_const_charp) {}
 
 // One at a time: what libpng jumps out of holds nothing that would have to be destroyed.
-class Reader {
+class PngReader {
   public:
-    explicit Reader(Source& source)
+    explicit PngReader(Source& source)
         : png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &failure_, fail, say_nothing)),
           info_(png_ != nullptr ? png_create_info_struct(png_) : nullptr) {
         if (info_ == nullptr) throw Error(ErrorCode::OutOfMemory, "no memory to read a PNG");
         png_set_read_fn(png_, &source, read_bytes);
         png_set_user_limits(png_, MostPixels, MostPixels);
     }
-    ~Reader() { png_destroy_read_struct(&png_, &info_, nullptr); }
-    Reader(const Reader&) = delete;
-    Reader& operator=(const Reader&) = delete;
+    ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+    PngReader(const PngReader&) = delete;
+    PngReader& operator=(const PngReader&) = delete;
 
     bool read_header() {
         if (setjmp(png_jmpbuf(png_)) != 0) return false;
@@ -82,7 +82,7 @@ Expected<frame::Image> read_png(std::span<const std::byte> bytes) {
     if (bytes.size() < 8 || png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, 8) != 0)
         return failure(ErrorCode::InvalidInput, "it is not a PNG picture");
     Source source{bytes};
-    Reader reader(source);
+    PngReader reader(source);
     const auto damaged = [&] {
         return failure(ErrorCode::InvalidInput, "the PNG picture is damaged: " + reader.message());
     };

@@ -3,10 +3,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "client/tools/bench/backends_bench.h"
-#include "client/tools/bench/backends_report.h"
-#include "client/tools/bench/scene_edits.h"
 #include "mediator/backend/catalog.h"
+#include "tests/bench/backends/backends_bench.h"
+#include "tests/bench/backends/backends_report.h"
+#include "tests/bench/backends/scene_edits.h"
+#include "tests/support/folders.h"
 
 namespace tessera::tools::bench {
 namespace {
@@ -39,7 +40,7 @@ TEST(BenchBackendsPlan, ADeviceIsForThoseThatChooseOne) {
 // Also where the mesh lies below a transform already.
 TEST(BenchBackendsEdits, AreARefitAndAMove) {
     for (const char* name : {"cornell", "room-1"}) {
-        const EditedScene scene = with_edits(load_scene(name, TESSERA_SCENES).value());
+        const EditedScene scene = with_edits(load_scene(name, test::scenes_folder()).value());
         EXPECT_GT(scene.triangles, 10u);
         const auto renderer = backend::find_backend("embree").make({.threads = 1, .blobs = scene.blobs});
         const auto edit = [&](const scene::ChangeList& changes) {

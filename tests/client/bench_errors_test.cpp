@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "client/tools/bench/curve.h"
-#include "client/tools/bench/errors.h"
 #include "mediator/base/error.h"
 #include "mediator/base/random.h"
+#include "tests/bench/filters/curve.h"
+#include "tests/bench/filters/errors.h"
 
 namespace tessera::tools::bench {
 namespace {

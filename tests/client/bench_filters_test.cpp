@@ -7,15 +7,15 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "client/tools/bench/advice.h"
-#include "client/tools/bench/bench_files.h"
-#include "client/tools/bench/html_report.h"
-#include "client/tools/bench/json_report.h"
-#include "client/tools/bench/plan.h"
-#include "client/tools/bench/references.h"
-#include "client/tools/bench/run_bench.h"
-#include "client/tools/bench/speed.h"
 #include "master/filter/catalog.h"
+#include "tests/bench/filters/advice.h"
+#include "tests/bench/filters/bench_files.h"
+#include "tests/bench/filters/html_report.h"
+#include "tests/bench/filters/json_report.h"
+#include "tests/bench/filters/plan.h"
+#include "tests/bench/filters/references.h"
+#include "tests/bench/filters/run_bench.h"
+#include "tests/bench/filters/speed.h"
 
 namespace tessera::tools::bench {
 namespace {

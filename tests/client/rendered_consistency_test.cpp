@@ -3,9 +3,10 @@
 
 #include <filesystem>
 
-#include "client/tools/bench/plan.h"
-#include "client/tools/bench/run_bench.h"
 #include "master/filter/catalog.h"
+#include "tests/bench/filters/plan.h"
+#include "tests/bench/filters/run_bench.h"
+#include "tests/support/folders.h"
 
 namespace tessera::tools::bench {
 namespace {
@@ -17,7 +18,7 @@ TEST(RenderedConsistency, NeverFivePercentWorseThanNoFilterInRenderedRooms) {
         fs::temp_directory_path() / ("tessera-rendered-consistency-" + std::to_string(::getpid()));
     BenchOptions options;
     options.output = folder.string();
-    options.assets = TESSERA_SCENES;
+    options.assets = test::scenes_folder();
     options.scenes = "cornell,room-1";
     options.filters = "pixel,fdf,psvgf,statmc,nfor,gauss:sigma=4";
     options.spp = "4,16,64,256";

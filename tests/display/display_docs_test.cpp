@@ -5,13 +5,14 @@
 #include <iterator>
 
 #include "client/display_file/display_file.h"
+#include "tests/support/folders.h"
 
 namespace tessera::display_file {
 
 namespace {
 
 std::vector<std::string> examples() {
-    std::ifstream file(TESSERA_DOCS "/displays.md");
+    std::ifstream file(test::source_folder() / "docs/displays.md");
     const std::string text(std::istreambuf_iterator<char>(file), {});
     std::vector<std::string> found;
     const std::string begin = "```toml\n", end = "```\n";

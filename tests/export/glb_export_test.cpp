@@ -7,6 +7,7 @@
 #include "tests/export/rich_scene.h"
 #include "tests/import/inspect.h"
 #include "tests/import/scene_file.h"
+#include "tests/support/folders.h"
 
 // A .glb comes back through the importer as the same picture: arrays and transforms to the bit (JSON numbers
 // are written so that they read back), materials to the bit but for emission and light (a factor times a
@@ -111,7 +112,7 @@ Imported through_glb(const scene::Scene& scene, const scene::BlobStore& blobs, N
 class GlbOfFile : public testing::TestWithParam<const char*> {};
 
 TEST_P(GlbOfFile, ComesBackTheSame) {
-    const import::ImportedScene imported = import::loaded(std::filesystem::path(TESSERA_SCENES) / GetParam());
+    const import::ImportedScene imported = import::loaded(test::scenes_folder() / GetParam());
     scene::BlobStore blobs;
     for (const scene::BlobPtr& blob : imported.blobs) blobs.insert(blob);
     Notices notices;

@@ -4,11 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "tests/import/inspect.h"
+#include "tests/support/folders.h"
 
 namespace tessera::import {
 namespace {
-
-const std::filesystem::path Scenes = TESSERA_SCENES;
 
 std::string material_of(const ImportedScene& scene, const std::string& part) {
     std::map<ObjectId, std::string> names;
@@ -33,7 +32,7 @@ std::string material_of(const ImportedScene& scene, const std::string& part) {
 }
 
 TEST(Configure, PaintsAPartWithAMaterialOfTheFile) {
-    ImportedScene scene = loaded(Scenes / "still.glb");
+    ImportedScene scene = loaded(test::scenes_folder() / "still.glb");
     std::string part;
     for (const scene::Create& entry : scene.objects) {
         const auto* geometry = std::get_if<scene::Geometry>(&entry.object);
@@ -47,7 +46,7 @@ TEST(Configure, PaintsAPartWithAMaterialOfTheFile) {
 }
 
 TEST(Configure, HiddenPartsAreNoLongerPlaced) {
-    ImportedScene scene = loaded(Scenes / "still.glb");
+    ImportedScene scene = loaded(test::scenes_folder() / "still.glb");
     std::string part;
     for (const scene::Create& entry : scene.objects) {
         const auto* transform = std::get_if<scene::Transform>(&entry.object);
@@ -60,7 +59,7 @@ TEST(Configure, HiddenPartsAreNoLongerPlaced) {
 }
 
 TEST(Configure, UnknownNamesAreErrorsThatTellWhatThereIs) {
-    ImportedScene scene = loaded(Scenes / "still.glb");
+    ImportedScene scene = loaded(test::scenes_folder() / "still.glb");
     const auto message = [&](const Configuration& configuration) {
         const auto done = configure(scene, configuration);
         return done ? std::string("accepted") : std::string(done.error().what());

@@ -4,15 +4,14 @@
 #include "mediator/base/random.h"
 #include "tests/import/inspect.h"
 #include "tests/import/scene_file.h"
+#include "tests/support/folders.h"
 
 // The scenes and environments that come with the project.
 namespace tessera::import {
 namespace {
 
-const std::filesystem::path Scenes = TESSERA_SCENES;
-
 TEST(Scenes, TheRoom) {
-    const ImportedScene scene = loaded(Scenes / "room-1.glb");
+    const ImportedScene scene = loaded(test::scenes_folder() / "room-1.glb");
     expect_sound(scene);
     expect_valid(scene);
     EXPECT_NEAR(static_cast<double>(scene.counts.triangles), 79e3, 1e3);
@@ -27,7 +26,7 @@ TEST(Scenes, TheRoom) {
 }
 
 TEST(Scenes, TheStudio) {
-    const ImportedScene scene = loaded(Scenes / "studio-1.glb");
+    const ImportedScene scene = loaded(test::scenes_folder() / "studio-1.glb");
     expect_sound(scene);
     expect_valid(scene);
     EXPECT_NEAR(static_cast<double>(scene.counts.triangles), 25e3, 1e3);
@@ -38,16 +37,16 @@ TEST(Scenes, TheStudio) {
 
 TEST(Scenes, TheStillLifeIsLitByWhatTheUserBrings) {
     ImportOptions options;
-    const ImportedScene dark = loaded(Scenes / "still.glb");
+    const ImportedScene dark = loaded(test::scenes_folder() / "still.glb");
     expect_sound(dark);
     expect_valid(dark);
     EXPECT_NEAR(static_cast<double>(dark.counts.triangles), 9e3, 1e3);
     EXPECT_TRUE(has_notice(dark, "soft sky"));
 
     for (const char* name : {"env-studio.exr", "env-sunset.exr", "env-night.exr"}) {
-        options.environment = Scenes / name;
+        options.environment = test::scenes_folder() / name;
         options.environment_strength = 2.0f;
-        const ImportedScene scene = loaded(Scenes / "still.glb", options);
+        const ImportedScene scene = loaded(test::scenes_folder() / "still.glb", options);
         expect_sound(scene);
         expect_valid(scene);
         EXPECT_FALSE(has_notice(scene, "soft sky"));
@@ -68,8 +67,8 @@ TEST(Scenes, TheStillLifeIsLitByWhatTheUserBrings) {
 
 TEST(Scenes, AnEnvironmentThatIsNoPictureIsAnErrorThatNamesIt) {
     ImportOptions options;
-    options.environment = Scenes / "still.glb";
-    const auto refused = import_scene(Scenes / "still.glb", options);
+    options.environment = test::scenes_folder() / "still.glb";
+    const auto refused = import_scene(test::scenes_folder() / "still.glb", options);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code(), ErrorCode::InvalidInput);
     EXPECT_THAT(refused.error().what(), testing::HasSubstr("environment"));
@@ -81,7 +80,7 @@ TEST(Scenes, ARadiancePictureIsAnEnvironmentToo) {
     std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n";
     for (int i = 0; i < 8; ++i) hdr += "\x80\x40\x20\x82";  // 2^(130 - 136) * (128, 64, 32)
     options.environment = folder.write("sky.hdr", hdr);
-    const ImportedScene scene = loaded(Scenes / "still.glb", options);
+    const ImportedScene scene = loaded(test::scenes_folder() / "still.glb", options);
     expect_sound(scene);
     const auto& map = object<scene::Texture>(scene, all<scene::Background>(scene)[0]->environment);
     EXPECT_EQ(map.width, 4u);
@@ -90,14 +89,14 @@ TEST(Scenes, ARadiancePictureIsAnEnvironmentToo) {
 }
 
 TEST(Scenes, DamagedEnvironmentsAreErrorsOrMaps) {
-    std::ifstream stream(Scenes / "env-studio.exr", std::ios::binary);
+    std::ifstream stream(test::scenes_folder() / "env-studio.exr", std::ios::binary);
     const std::string whole((std::istreambuf_iterator<char>(stream)), {});
     ASSERT_GT(whole.size(), 1000u);
     const TestFolder folder;
     ImportOptions options;
     const auto survives = [&](const std::string& bytes) {
         options.environment = folder.write("sky.exr", bytes);
-        const auto scene = import_scene(Scenes / "still.glb", options);
+        const auto scene = import_scene(test::scenes_folder() / "still.glb", options);
         if (!scene) {
             EXPECT_THAT(scene.error().what(), testing::HasSubstr("sky.exr"));
             EXPECT_EQ(scene.error().code(), ErrorCode::InvalidInput);

@@ -8,8 +8,9 @@
 #include <sstream>
 #include <vector>
 
-#include "client/cli/cli.h"
 #include "mediator/backend/catalog.h"
+#include "mediator/base/nearest.h"
+#include "mediator/program/command_line.h"
 
 namespace tessera::node {
 namespace {
@@ -142,9 +143,9 @@ TEST(Durations, AreWrittenWithTheirUnit) {
 }
 
 TEST(Nearest, IsNearOrNothing) {
-    EXPECT_EQ(cli::nearest("rende", {"render", "probe"}), "render");
-    EXPECT_EQ(cli::nearest("xyzzy", {"render", "probe"}), std::nullopt);
-    EXPECT_EQ(cli::nearest("", {}), std::nullopt);
+    EXPECT_EQ(nearest("rende", {"render", "probe"}), "render");
+    EXPECT_EQ(nearest("xyzzy", {"render", "probe"}), std::nullopt);
+    EXPECT_EQ(nearest("", {}), std::nullopt);
 }
 
 }  // namespace

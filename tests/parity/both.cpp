@@ -1,11 +1,12 @@
 #include "tests/parity/both.h"
 
 #include "mediator/backend/catalog.h"
+#include "tests/support/folders.h"
 
 namespace tessera::test {
 
 tools::bench::BenchScene bench_scene(const std::string& name) {
-    auto scene = tools::bench::load_scene(name, TESSERA_SCENES);
+    auto scene = tools::bench::load_scene(name, test::scenes_folder());
     if (!scene) throw scene.error();
     return std::move(*scene);
 }

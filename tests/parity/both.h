@@ -3,9 +3,9 @@
 #include <memory>
 #include <string>
 
-#include "client/tools/bench/scenes.h"
 #include "mediator/backend/backend.h"
 #include "mediator/frame/film_tile.h"
+#include "tests/bench/scenes/scenes.h"
 
 namespace tessera::test {
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "backends/embree/world.h"
-#include "client/tools/bench/scenes.h"
 #include "mediator/frame/film_tile.h"
+#include "tests/bench/scenes/scenes.h"
 
 namespace tessera::test {
 

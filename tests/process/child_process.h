@@ -1,6 +1,7 @@
 #pragma once
 
 #include "client/tools/child_process.h"
+#include "tests/support/folders.h"
 
 namespace tessera::test {
 
@@ -8,7 +9,7 @@ namespace tessera::test {
 struct ChildProcess : tools::ChildProcess {
     ChildProcess(const std::filesystem::path& folder, const std::string& label, const std::string& program,
                  const std::vector<std::string>& arguments)
-        : tools::ChildProcess(folder, label, std::filesystem::path(TESSERA_BIN) / program, arguments) {}
+        : tools::ChildProcess(folder, label, test::programs_folder() / program, arguments) {}
 };
 
 using tools::free_loopback_endpoint;

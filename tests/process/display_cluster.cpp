@@ -11,6 +11,7 @@
 
 #include "mediator/picture/png_reader.h"
 #include "mediator/scene/fields.h"
+#include "tests/support/folders.h"
 
 namespace tessera::test {
 
@@ -31,7 +32,7 @@ ChildProcess start_with(const std::vector<std::string>& variables, const Tempora
                         const std::string& label, const std::string& program,
                         const std::vector<std::string>& arguments) {
     std::vector<std::string> words = variables;
-    words.push_back((std::filesystem::path(TESSERA_BIN) / program).string());
+    words.push_back((test::programs_folder() / program).string());
     words.insert(words.end(), arguments.begin(), arguments.end());
     return ChildProcess(folder.path(), label, "/usr/bin/env", words);
 }

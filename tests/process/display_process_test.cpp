@@ -12,6 +12,7 @@
 #include "client/live_session.h"
 #include "mediator/display/frustum.h"
 #include "tests/process/real_cluster.h"
+#include "tests/support/folders.h"
 
 namespace tessera::test {
 namespace {
@@ -219,9 +220,9 @@ TEST_F(DisplayProcess, FollowsATrackedHead) {
 TEST_F(DisplayProcess, FollowsAHeadFromPython) {
     auto node = cluster.start_node("n1", {"--backend", "null"});
     ASSERT_NO_FATAL_FAILURE(show());
-    const std::string source = std::string(TESSERA_SCENES) + "/../..";
+    const std::string source = test::source_folder().string();
     ChildProcess walk(cluster.folder().path(), "walk", "/usr/bin/env",
-                      {std::string("PYTHONPATH=") + TESSERA_BIN + "/../python", "PYTHONDONTWRITEBYTECODE=1",
+                      {"PYTHONPATH=" + test::python_package().string(), "PYTHONDONTWRITEBYTECODE=1",
                        TESSERA_PYTHON, source + "/tests/python/run_block.py", source + "/docs/displays.md",
                        cluster.endpoint(), cluster.keys(), cluster.folder().path()});
     const std::size_t before = frames.size();

@@ -4,6 +4,8 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include "tests/support/folders.h"
+
 namespace tessera::test {
 
 namespace {
@@ -29,7 +31,7 @@ TemporaryFolder::~TemporaryFolder() {
 }
 
 std::string scene_file(const std::string& name) {
-    return std::string(TESSERA_SCENES) + "/" + name;
+    return (test::scenes_folder() / name).string();
 }
 
 RealCluster::RealCluster(std::vector<std::string> master_options, Session session)

@@ -35,7 +35,7 @@ class Case:
     name: str
     scene: str
     options: list[str]
-    output: str = "exr"  # "png" compares the pixels of the picture, too
+    pixels: bool = False  # compares the pixels of a PNG, too
     kill_a_node: bool = False
 
 
@@ -59,7 +59,7 @@ def cases(filters: list[str]) -> list[Case]:
     listed.append(Case("odd count", "room-1.glb", sized(96, 54, 11)))
     listed.append(Case("transparent", "still.glb", environment + ["--transparent"] + sized(96, 54, 8)))
     for name in filters:
-        listed.append(Case(f"filter {name}", "room-1.glb", ["--filter", name] + sized(96, 54, 8), output="png"))
+        listed.append(Case(f"filter {name}", "room-1.glb", ["--filter", name] + sized(96, 54, 8), pixels=True))
     listed.append(Case("node killed", "room-1.glb", sized(320, 180, 64), kill_a_node=True))
     return listed
 
@@ -92,10 +92,15 @@ def finished(words: list[str]) -> str:
     return result.stdout
 
 
-def outcome(report: dict, output: pathlib.Path) -> Outcome:
+def outputs(case: Case, folder: pathlib.Path) -> list[str]:
+    return ["-o", str(folder / "out.exr"), *(["-o", str(folder / "out.png")] if case.pixels else [])]
+
+
+def outcome(report: dict, case: Case, folder: pathlib.Path) -> Outcome:
     kinds = sorted({node["kind"] for node in report["nodes"]})
-    pixels = pixels_of(output.read_bytes()) if output.suffix == ".png" else ""
-    return Outcome("+".join(kinds), report["film_hash"], pixels)
+    if not report["film_hash"]:
+        raise RuntimeError(f"{case.name}: the report has no film hash")
+    return Outcome("+".join(kinds), report["film_hash"], pixels_of((folder / "out.png").read_bytes()) if case.pixels else "")
 
 
 @dataclass
@@ -142,10 +147,9 @@ class Cluster:
 
 def render_with_a_death(programs: pathlib.Path, case: Case, folder: pathlib.Path) -> Outcome:
     """One of two nodes is killed as soon as it has work."""
-    output = folder / f"out.{case.output}"
     with Cluster(programs, folder) as cluster:
         words = [str(programs / "tessera"), "render", str(SCENES / case.scene), "--master", cluster.endpoint, "--keys",
-                 cluster.keys(), "--wait-nodes", "2:60", "-o", str(output), "--json", *case.options]
+                 cluster.keys(), "--wait-nodes", "2:60", *outputs(case, folder), "--json", *case.options]
         render = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         cluster.children.append(render)
         until = time.monotonic() + PATIENCE
@@ -159,7 +163,7 @@ def render_with_a_death(programs: pathlib.Path, case: Case, folder: pathlib.Path
         report = json.loads(out)
     if report["units"]["reissued"] == 0:
         print("     (node b had finished all that it held)")
-    return outcome(report, output)
+    return outcome(report, case, folder)
 
 
 def render(programs: pathlib.Path, case: Case) -> Outcome:
@@ -167,9 +171,9 @@ def render(programs: pathlib.Path, case: Case) -> Outcome:
         folder = pathlib.Path(name)
         if case.kill_a_node:
             return render_with_a_death(programs, case, folder)
-        output = folder / f"out.{case.output}"
-        words = [str(programs / "tessera"), "render", str(SCENES / case.scene), "-o", str(output), "--json", *case.options]
-        return outcome(json.loads(finished(words)), output)
+        words = [str(programs / "tessera"), "render", str(SCENES / case.scene), *outputs(case, folder), "--json",
+                 *case.options]
+        return outcome(json.loads(finished(words)), case, folder)
 
 
 def compare_builds(programs: list[pathlib.Path], chosen: list[Case]) -> int:

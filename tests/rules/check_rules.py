@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the include arrows, file sizes and a few conventions that the README promises.
+"""Checks the include arrows, the sizes of files and functions and a few conventions that the README promises.
 
 Usage: check_rules.py ROOT. Prints one line per violation and exits 1 if there is any.
 """
@@ -7,6 +7,8 @@ Usage: check_rules.py ROOT. Prints one line per violation and exits 1 if there i
 import os
 import re
 import sys
+
+from functions import check_functions
 
 CORE = ["mediator/base", "mediator/scene", "mediator/view", "mediator/frame", "mediator/filter", "mediator/display"]
 KIT = CORE + ["mediator/backend", "mediator/shading"]
@@ -25,15 +27,16 @@ ARROWS = {
     "mediator/backend": KIT,
     "mediator/picture": CORE,
     "mediator/net": CORE,
+    "mediator/program": ["mediator/base"],
     "mediator/wire": CORE + ["proto"],
     "backends": KIT + ["backends"],
     "backends/null": KIT,
     "backends/embree": KIT,
     "backends/vulkan": KIT + ["backends/vulkan"],
     "node": KIT + LINK,
-    "node/config.h": KIT + LINK + ["client/cli"],
-    "node/config.cpp": KIT + LINK + ["client/cli"],
-    "node/main.cpp": KIT + LINK + ["client/cli"],
+    "node/config.h": KIT + LINK + ["mediator/program"],
+    "node/config.cpp": KIT + LINK + ["mediator/program"],
+    "node/main.cpp": KIT + LINK + ["mediator/program"],
     # The rooms of the master, each of which knows those above it: view, passes, units, film, picture, delivery.
     "master/filter": KIT + ["master/filter"],
     "master/peers": CORE + LINK,
@@ -43,24 +46,22 @@ ARROWS = {
     "master/render": CORE + LINK + ["mediator/picture", "master/filter", "master/peers", "master/render"],
     "master/display": CORE + LINK + ["master/filter", "master/peers", "master/scene", "master/render"],
     "master": CORE + LINK + ["master/peers", "master/scene", "master/render", "master/display"],
-    "master/config.h": CORE + LINK + ["client/cli"],
-    "master/config.cpp": CORE + LINK + ["client/cli"],
-    "master/main.cpp": CORE + LINK + ["mediator/picture", "client/cli"],
+    "master/config.h": CORE + LINK + ["mediator/program"],
+    "master/config.cpp": CORE + LINK + ["mediator/program"],
+    "master/main.cpp": CORE + LINK + ["mediator/picture", "mediator/program"],
     "client": CORE + LINK + ["client/import", "mediator/picture"],
     "client/session.h": CORE + ["client/import", "mediator/picture"],
     "client/import": CORE + ["mediator/picture", "mediator/wire"],
     "client/export": CORE + ["client/import", "mediator/picture", "mediator/wire"],
-    "client/edit": CORE + ["client/import", "client/export", "client/cli"],
-    "client/cli": ["mediator/base"],
-    "client/display_file": CORE + ["mediator/picture", "client/cli"],
+    "client/edit": CORE + ["client/import", "client/export"],
+    "client/display_file": CORE + ["mediator/picture"],
     "client/main.cpp": [""],
     "client/tools": [""],
     "client/display": [""],
-    "client/web": [""],
     "tests": [""],
 }
 
-PROGRAMS = ["client/cli/", "client/display/", "client/tools/", "client/main.cpp", "master/main.cpp", "node/main.cpp"]
+PROGRAMS = ["mediator/program/", "client/display/", "client/tools/", "client/main.cpp", "master/main.cpp", "node/main.cpp"]
 EVERYWHERE = r"\.(h|cpp)$"
 SOURCES = r"\.cpp$"
 
@@ -112,6 +113,8 @@ def rule_for(path):
 def may_include(path, included):
     if "/" not in included or included.split("/")[0] not in TOP_FOLDERS:
         return "is not written from the repository root"
+    if included.startswith("tests/") and not path.startswith("tests/"):
+        return "belongs to the tests"
     rule = rule_for(path)
     if rule is None:
         return f"has no rule in tests/rules for {os.path.dirname(path)}"
@@ -177,6 +180,7 @@ def check_file(path, text):
     limit = TEST_LIMIT if path.startswith("tests/") else LIMIT
     if path.endswith(MEASURED) and len(lines) > limit:
         yield f"{path}: {len(lines)} lines, more than {limit}: it holds more than one idea"
+    yield from check_functions(path, text)
     if path.endswith(CODE):
         yield from check_code(path, lines)
     if path.endswith(("CMakeLists.txt", ".cmake")):

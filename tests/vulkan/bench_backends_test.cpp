@@ -2,10 +2,11 @@
 // the same things.
 #include <gtest/gtest.h>
 
-#include "client/tools/bench/backends_bench.h"
-#include "client/tools/bench/bare_rays.h"
-#include "client/tools/bench/scene_edits.h"
 #include "mediator/shading/bvh_trace.h"
+#include "tests/bench/backends/backends_bench.h"
+#include "tests/bench/backends/bare_rays.h"
+#include "tests/bench/backends/scene_edits.h"
+#include "tests/support/folders.h"
 
 namespace tessera::tools::bench {
 namespace {
@@ -29,7 +30,7 @@ TEST(BenchBackends, MeasuresEverythingOfEveryBackEnd) {
 }
 
 TEST(BenchBackends, AllCastersFindTheSame) {
-    const EditedScene scene = with_edits(load_scene("cornell-spheres", TESSERA_SCENES).value());
+    const EditedScene scene = with_edits(load_scene("cornell-spheres", test::scenes_folder()).value());
     std::vector<std::vector<shading::Hit>> closest, any;
     RaySets sets;
     for (const auto& contender : tessera::bench::contenders()) {

@@ -8,7 +8,7 @@ namespace tessera::vulkan {
 
 namespace {
 
-constexpr double LargestCoordinate = 1.8e18;
+constexpr double LargestPlacedCoordinate = 1.8e18;
 constexpr double UnitRoundoff = 0x1p-24;
 
 struct Rows {
@@ -72,7 +72,8 @@ Box box_at(const Box& mesh, const shading::Place& placed, double roundings) {
     for (int axis = 0; axis < 3; ++axis) {
         box.low[axis] = outward(low[axis] - margin[axis], -INFINITY);
         box.high[axis] = outward(high[axis] + margin[axis], INFINITY);
-        if (!(box.low[axis] > -LargestCoordinate && box.high[axis] < LargestCoordinate)) return {};
+        if (!(box.low[axis] > -LargestPlacedCoordinate && box.high[axis] < LargestPlacedCoordinate))
+            return {};
     }
     return box;
 }

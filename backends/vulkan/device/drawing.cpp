@@ -12,7 +12,7 @@ namespace tessera::vulkan {
 
 namespace {
 
-constexpr VkShaderStageFlags Stages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+constexpr VkShaderStageFlags DrawingStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 
 void check_area(const Image* image, Image::Kind kind, const Rect& area, const std::string& step) {
     require(image != nullptr && image->get() != VK_NULL_HANDLE, step + " without an image");
@@ -90,11 +90,11 @@ void record_draws(VkCommandBuffer commands, const DrawList& list) {
     vkCmdSetScissor(commands, 0, 1, &scissor);
     const VkPipelineLayout layout = list.pipeline->layout();
     if (list.arguments.size() > 0) {
-        vkCmdPushConstants(commands, layout, Stages, 0, list.arguments.size(), list.arguments.data());
+        vkCmdPushConstants(commands, layout, DrawingStages, 0, list.arguments.size(), list.arguments.data());
     }
     constexpr std::uint32_t Stride = sizeof(VkDrawIndirectCommand);
     for (std::uint32_t first = 0; first < list.count; first += list.per_call) {
-        vkCmdPushConstants(commands, layout, Stages, list.arguments.size(), sizeof first, &first);
+        vkCmdPushConstants(commands, layout, DrawingStages, list.arguments.size(), sizeof first, &first);
         vkCmdDrawIndirect(commands, list.draws->get(), std::uint64_t{first} * Stride,
                           std::min(list.per_call, list.count - first), Stride);
         if (list.count - first <= list.per_call) break;  // the sum may not fit

@@ -12,7 +12,7 @@ namespace tessera::tools {
 
 namespace {
 
-constexpr const char* Name = "display adjust";
+constexpr const char* AdjustName = "display adjust";
 
 struct AdjustOptions {
     client::Address address;
@@ -43,12 +43,13 @@ int run(const AdjustOptions& options) {
     if (!options.pattern.empty()) change.pattern = options.pattern == "on";
     if (options.layers) {
         const auto layers = parse_layers(*options.layers);
-        if (!layers) return complain(Name, cli::ExitUsage, layers.error().what());
+        if (!layers) return complain(AdjustName, cli::ExitUsage, layers.error().what());
         change.shown_layers = *layers;
     }
     if (!change.eye_separation && !change.zero_parallax && !change.exposure && !change.pattern &&
         !change.shown_layers)
-        return complain(Name, cli::ExitUsage, "nothing to adjust: give one of its options, as --exposure 1");
+        return complain(AdjustName, cli::ExitUsage,
+                        "nothing to adjust: give one of its options, as --exposure 1");
     const SteadyClock clock;
     const DisplayMember member = join_display(options.address, "tessera display adjust", clock);
     member.session->adjust_display(change);
@@ -76,11 +77,11 @@ Command adjust_display_command(cli::CommandLine& display) {
         {"tessera display adjust --eye-separation 0.06 --zero-parallax 2.5 --master "
          "tcp://render-1:7420 --keys ~/.tessera",
          "tessera display adjust --pattern on --master tcp://127.0.0.1:7420"});
-    return {Name, [options](std::string_view) {
+    return {AdjustName, [options](std::string_view) {
                 try {
                     return run(*options);
                 } catch (const Error& error) {
-                    return complain(Name, exit_code(error.code()), error.what());
+                    return complain(AdjustName, exit_code(error.code()), error.what());
                 }
             }};
 }

@@ -12,7 +12,7 @@ namespace tessera::tools {
 
 namespace {
 
-constexpr const char* Name = "display audience";
+constexpr const char* AudienceName = "display audience";
 
 struct AudienceCommandOptions {
     std::string file, pictures, output;
@@ -70,11 +70,11 @@ Command audience_command(cli::CommandLine& display) {
     line.option("--black", "light of a device that is sent black, as a part of its white",
                 options->audience.black);
     line.examples({"tessera display audience wall.toml --pictures out -o wall.png"});
-    return {Name, [options](std::string_view) {
+    return {AudienceName, [options](std::string_view) {
                 try {
                     return run(*options);
                 } catch (const Error& error) {
-                    return complain(Name, exit_code(error.code()), error.what());
+                    return complain(AudienceName, exit_code(error.code()), error.what());
                 }
             }};
 }

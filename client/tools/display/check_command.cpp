@@ -15,7 +15,7 @@ namespace tessera::tools {
 
 namespace {
 
-constexpr const char* Name = "display check";
+constexpr const char* CheckName = "display check";
 
 struct CheckOptions {
     std::string file;
@@ -35,7 +35,7 @@ void write_plan(const Drawing& drawing, const std::string& path) {
 int run(const CheckOptions& options) {
     for (const std::string& path : options.plans) {
         if (!path.ends_with(".svg") && !path.ends_with(".png"))
-            return complain(Name, cli::ExitUsage,
+            return complain(CheckName, cli::ExitUsage,
                             "'" + path + "' is no .svg or .png: plans are drawn as these");
     }
     scene::BlobStore blobs;
@@ -56,11 +56,11 @@ Command check_display_command(cli::CommandLine& display) {
     line.positional("FILE", "the display, as TOML: docs/displays.md", options->file);
     line.option("-o,--output", "draw a plan of it: .svg or .png (repeatable)", options->plans);
     line.examples({"tessera display check wall.toml", "tessera display check wall.toml -o plan.png"});
-    return {Name, [options](std::string_view) {
+    return {CheckName, [options](std::string_view) {
                 try {
                     return run(*options);
                 } catch (const Error& error) {
-                    return complain(Name, exit_code(error.code()), error.what());
+                    return complain(CheckName, exit_code(error.code()), error.what());
                 }
             }};
 }

@@ -10,7 +10,7 @@ namespace tessera::tools {
 
 namespace {
 
-constexpr const char* Name = "display close";
+constexpr const char* CloseName = "display close";
 
 int run(const client::Address& address) {
     const SteadyClock clock;
@@ -29,11 +29,11 @@ Command close_display_command(cli::CommandLine& display) {
     add_cluster_options(line, *address);
     line.required("--master");
     line.examples({"tessera display close --master tcp://render-1:7420 --keys ~/.tessera"});
-    return {Name, [address](std::string_view) {
+    return {CloseName, [address](std::string_view) {
                 try {
                     return run(*address);
                 } catch (const Error& error) {
-                    return complain(Name, exit_code(error.code()), error.what());
+                    return complain(CloseName, exit_code(error.code()), error.what());
                 }
             }};
 }

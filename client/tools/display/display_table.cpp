@@ -4,18 +4,12 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "client/tools/formatted.h"
 #include "mediator/display/frustum.h"
 
 namespace tessera::tools {
 
 namespace {
-
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-    char text[400];
-    std::snprintf(text, sizeof text, format, values...);
-    return text;
-}
 
 std::string size_text(std::uint32_t width, std::uint32_t height) {
     return std::to_string(width) + "x" + std::to_string(height);

@@ -3,7 +3,8 @@
 #include <array>
 #include <cstdio>
 
-#include "client/tools/bench/svg_plot.h"
+#include "client/tools/formatted.h"
+#include "client/tools/markup.h"
 #include "mediator/display/pixel_font.h"
 
 namespace tessera::tools {
@@ -11,13 +12,6 @@ namespace tessera::tools {
 namespace {
 
 using glm::dvec2;
-
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-    char text[200];
-    std::snprintf(text, sizeof text, format, values...);
-    return text;
-}
 
 std::string color_text(const Rgb& color) {
     return formatted("#%02x%02x%02x", color[0], color[1], color[2]);
@@ -47,7 +41,7 @@ std::string as_svg(const Drawing& drawing) {
                    "text-anchor=\"middle\" stroke=\"#ffffff\" stroke-width=\"3\" stroke-opacity=\"0.7\" "
                    "paint-order=\"stroke\" fill=\"",
                    words.middle.x, words.middle.y + 0.35 * size, size) +
-               color_text(words.color) + "\">" + bench::escaped(words.text) + "</text>\n";
+               color_text(words.color) + "\">" + escaped(words.text) + "</text>\n";
     }
     return svg + "</svg>\n";
 }

@@ -12,7 +12,7 @@ namespace tessera::tools {
 
 namespace {
 
-constexpr const char* Name = "display import";
+constexpr const char* ImportName = "display import";
 
 int run(const std::string& archive, const std::string& output) {
     const auto mpcdi = display_file::load_mpcdi(archive);
@@ -43,11 +43,11 @@ Command import_command(cli::CommandLine& display) {
     line.option("-o,--output", "display file to write; its files go beside it", options->output);
     line.required("--output");
     line.examples({"tessera display import wall.mpcdi -o wall.toml"});
-    return {Name, [options](std::string_view) {
+    return {ImportName, [options](std::string_view) {
                 try {
                     return run(options->archive, options->output);
                 } catch (const Error& error) {
-                    return complain(Name, exit_code(error.code()), error.what());
+                    return complain(ImportName, exit_code(error.code()), error.what());
                 }
             }};
 }

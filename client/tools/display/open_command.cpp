@@ -16,7 +16,7 @@ namespace tessera::tools {
 
 namespace {
 
-constexpr const char* Name = "display open";
+constexpr const char* OpenName = "display open";
 
 struct OpenOptions {
     std::string file, title = "scene";
@@ -25,7 +25,7 @@ struct OpenOptions {
 };
 
 // As one word of a shell.
-std::string quoted(const std::string& word) {
+std::string shell_quoted(const std::string& word) {
     const auto is_plain = [](unsigned char c) {
         return std::isalnum(c) != 0 ||
                std::string_view("-_./:~@%+=,").find(char(c)) != std::string_view::npos;
@@ -41,7 +41,7 @@ std::string start_lines(const display::Display& display, const client::Address& 
     std::string text;
     for (const display::Output& output : display.outputs) {
         text += "  tessera-display --master " + address.endpoint;
-        if (!address.keys.empty()) text += " --keys " + quoted(address.keys);
+        if (!address.keys.empty()) text += " --keys " + shell_quoted(address.keys);
         text += " --output " + output.name + "\n";
     }
     return text;
@@ -63,7 +63,7 @@ int run(const OpenOptions& options) {
         interrupts.token());
     if (std::holds_alternative<client::Stopped>(joined)) return ExitInterrupted;
     if (const auto* busy = std::get_if<client::Busy>(&joined))
-        return complain(Name, cli::ExitTryLater, busy->reason);
+        return complain(OpenName, cli::ExitTryLater, busy->reason);
     session->open_display(display);
     std::cout << "display '" << display.name << "' is open in front of '"
               << std::get<client::Joined>(joined).title << "'. Its outputs, each where its screen is:\n"
@@ -87,11 +87,11 @@ Command open_display_command(cli::CommandLine& display) {
     line.option("--scene", "title of the live scene, if this starts it", options->title);
     line.flag("--no-wait", "exit with 75 when a batch has the cluster, instead of waiting", options->no_wait);
     line.examples({"tessera display open wall.toml --master tcp://render-1:7420 --keys ~/.tessera"});
-    return {Name, [options](std::string_view) {
+    return {OpenName, [options](std::string_view) {
                 try {
                     return run(*options);
                 } catch (const Error& error) {
-                    return complain(Name, exit_code(error.code()), error.what());
+                    return complain(OpenName, exit_code(error.code()), error.what());
                 }
             }};
 }

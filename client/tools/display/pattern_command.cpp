@@ -13,7 +13,7 @@ namespace tessera::tools {
 
 namespace {
 
-constexpr const char* Name = "display pattern";
+constexpr const char* PatternName = "display pattern";
 
 struct PatternOptions {
     std::string file, folder;
@@ -67,11 +67,11 @@ Command pattern_command(cli::CommandLine& display) {
     line.required("--output");
     line.flag("--raw", "without warp, soft edges and colour: the device's own pixels", options->raw);
     line.examples({"tessera display pattern wall.toml -o pattern"});
-    return {Name, [options](std::string_view) {
+    return {PatternName, [options](std::string_view) {
                 try {
                     return run(*options);
                 } catch (const Error& error) {
-                    return complain(Name, exit_code(error.code()), error.what());
+                    return complain(PatternName, exit_code(error.code()), error.what());
                 }
             }};
 }

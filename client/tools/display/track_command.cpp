@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr const char* Name = "display track";
+constexpr const char* TrackName = "display track";
 constexpr Duration Interval = std::chrono::nanoseconds(1s) / 240;  // between two heads, at least
 constexpr Duration LookAgain = 100ms;                              // for the end, and for the master's
 
@@ -74,7 +74,8 @@ class Tracking {
 
 int run(const TrackOptions& options) {
     if (options.port > 65535)
-        return complain(Name, cli::ExitUsage, "--udp: a port is within 1 and 65535, or 0 for a free one");
+        return complain(TrackName, cli::ExitUsage,
+                        "--udp: a port is within 1 and 65535, or 0 for a free one");
     Tracking(options).run();
     return 0;
 }
@@ -97,11 +98,11 @@ Command track_command(cli::CommandLine& display) {
     line.examples({"tessera display track --udp 7500 --master tcp://127.0.0.1:7420",
                    "tessera display track --udp 7500 --bind 10.0.9.1 --master tcp://render-1:7420 --keys "
                    "~/.tessera"});
-    return {Name, [options](std::string_view) {
+    return {TrackName, [options](std::string_view) {
                 try {
                     return run(*options);
                 } catch (const Error& error) {
-                    return complain(Name, exit_code(error.code()), error.what());
+                    return complain(TrackName, exit_code(error.code()), error.what());
                 }
             }};
 }

@@ -16,7 +16,7 @@ namespace {
 using std::numbers::pi;
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 
-struct Bounds {
+struct LightBounds {
     glm::dvec3 low{Infinity}, high{-Infinity};
 
     void add(const glm::dvec3& l, const glm::dvec3& h) {
@@ -31,7 +31,7 @@ struct Bounds {
 
 // Emitters in short.
 struct Group {
-    Bounds bounds;
+    LightBounds bounds;
     glm::dvec3 axis{0.0};
     double spread = 0.0, reach = 0.0, power = 0.0;
     bool two_sided = false, shaped = false;
@@ -87,7 +87,7 @@ Group joined(Group a, const Group& b) {
 
 // Leaves that fall into one part of the axis along which a group is cut.
 struct Bin {
-    Bounds bounds;
+    LightBounds bounds;
     double power = 0.0;
     glm::dvec3 facing{0.0};  // sum of power times axis
     std::uint32_t count = 0;
@@ -193,7 +193,7 @@ class Builder {
     // Orders the leaves so that those of the first child come first, and returns where the second's begin.
     // Where cuts by cost lead too deep, in halves.
     std::uint32_t cut(std::uint32_t begin, std::uint32_t end, std::uint32_t depth) {
-        Bounds places;
+        LightBounds places;
         for (std::uint32_t i = begin; i < end; ++i) places.add(place_of(order_[i]), place_of(order_[i]));
         const glm::dvec3 size = places.high - places.low;
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+namespace tessera::tools {
+
+// Text as printf makes it, of at most 400 characters.
+template <class... Values>
+std::string formatted(const char* format, Values... values) {
+    char text[400];
+    std::snprintf(text, sizeof text, format, values...);
+    return text;
+}
+
+}  // namespace tessera::tools

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+#include <stop_token>
+
+#include "tests/bench/backends/backends_plan.h"
+#include "tests/bench/backends/backends_results.h"
+#include "tests/bench/filters/scene_bench.h"
+
+namespace tessera::tools::bench {
+
+// Everything that is measured of all entrants, who take turns; each scene is shown when it is done. Nothing
+// when it was stopped. Throws Error.
+std::optional<BackendsResults> run_backends(const BackendsPlan& plan, const BenchProgress& progress,
+                                            const std::function<void(const BackendsScene&)>& show,
+                                            const std::stop_token& stop);
+
+}  // namespace tessera::tools::bench

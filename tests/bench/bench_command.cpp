@@ -1,0 +1,25 @@
+#include "tests/bench/bench_command.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "tests/bench/backends/backends_command.h"
+#include "tests/bench/filters/filters_command.h"
+#include "tests/bench/filters/pictures.h"
+#include "tests/bench/live/displays_command.h"
+#include "tests/bench/live/live_command.h"
+
+namespace tessera::tools::bench {
+
+Command bench_command(cli::CommandLine& program) {
+    cli::CommandLine& line = program.command(
+        "bench", "Measure speed against error, back-ends beside each other, edits and displays.");
+    const std::vector<Command> commands{backends_command(line), displays_command(line), filters_command(line),
+                                        live_command(line), pictures_command(line)};
+    return {"bench", [commands](std::string_view chosen) {
+                const auto command = std::ranges::find(commands, chosen, &Command::name);
+                return command->run(chosen);
+            }};
+}
+
+}  // namespace tessera::tools::bench

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <map>
+
+#include "tests/bench/filters/plan.h"
+#include "tests/bench/filters/sampler.h"
+
+namespace tessera::tools::bench {
+
+// The filters that one film serves: of one path class, with all channels that any of them reads. Films of
+// different groups have the same samples.
+struct FilmGroup {
+    view::PathClass path_class = view::PathClass::Indirect;
+    frame::ChannelSet channels;
+    std::vector<std::size_t> filters;  // indices into the plan's
+};
+
+std::vector<FilmGroup> film_groups(const std::vector<filter::Choice>& filters);
+
+// Seconds per sample of a view that has these channels, by a small film of its own; each kind once.
+class SamplingCost {
+  public:
+    SamplingCost(const Sampler& sampler, Size size) : sampler_(sampler), size_(size) {}
+    double of(frame::ChannelSet channels, view::PathClass path_class, const std::stop_token& stop);
+
+  private:
+    const Sampler& sampler_;
+    Size size_;
+    std::map<std::pair<std::uint32_t, view::PathClass>, double> known_;
+};
+
+}  // namespace tessera::tools::bench

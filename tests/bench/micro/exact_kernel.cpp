@@ -1,0 +1,28 @@
+// One of the kernels of seldom_scenes.h: SHADING_KERNEL, the build's, is the name of its scene.
+#define ORDINARY_FEATURES                                                               \
+    (shading::FeatureTextures | shading::FeatureSpecular | shading::FeatureMeshLights | \
+     shading::FeatureLightTree | shading::FeatureEnvironment)
+#define FEATURES_none 0u
+#define FEATURES_coat (shading::FeatureExtras | shading::FeatureCoat)
+#define FEATURES_sheen (shading::FeatureExtras | shading::FeatureSheen)
+#define FEATURES_anisotropy shading::FeatureExtras
+#define FEATURES_rough_glass shading::FeatureRoughGlass
+#define FEATURES_film (shading::FeatureExtras | shading::FeatureIridescence)
+#define FEATURES_attenuation shading::FeatureMedia
+#define FEATURES_fog (shading::FeatureMedia | shading::FeatureOpenMedia | shading::FeatureScattering)
+#define FEATURES_motion shading::FeatureMotion
+#define FEATURES_shader shading::FeatureShader
+#define FEATURES_catcher (shading::FeatureShadowCatcher | shading::FeatureAlpha)
+#define FEATURES_shaped_lights (shading::FeatureShapedLights | shading::FeaturePlacedLights)
+#define FEATURES_OF(scene) FEATURES_##scene
+#define FEATURES(scene) FEATURES_OF(scene)
+#define SHADING_FEATURES (ORDINARY_FEATURES | FEATURES(SHADING_KERNEL))
+#define SHADING_HAS_ALL_FEATURES
+#include "backends/embree/kernel_text.h"
+#include "tests/bench/micro/exact_kernels.h"
+
+namespace tessera::embree {
+
+const Kernel exact::SHADING_KERNEL{SHADING_FEATURES, trace};
+
+}  // namespace tessera::embree

@@ -1,0 +1,187 @@
+#include "tests/bench/scenes/built_in_scenes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <span>
+
+#include "mediator/base/random.h"
+#include "tests/bench/scenes/shapes.h"
+
+namespace tessera::tools::bench {
+
+namespace {
+
+class Builder {
+  public:
+    ObjectId material(scene::Material value) {
+        value.double_sided = true;
+        return add(std::move(value));
+    }
+    ObjectId diffuse(glm::vec3 color) {
+        // Index of refraction 1: no interface, so nothing but the diffuse lobe.
+        return material({.base_color = glm::vec4(color, 1.0f), .index_of_refraction = 1.0f});
+    }
+    ObjectId light(float radiance) {
+        return material({.base_color = glm::vec4(0.0f, 0.0f, 0.0f, 1.0f),
+                         .emission = glm::vec3(radiance),
+                         .index_of_refraction = 1.0f});
+    }
+    ObjectId mirror() {
+        return material({.base_color = glm::vec4(0.95f), .metallic = 1.0f, .roughness = 0.0f});
+    }
+    ObjectId glass() {
+        return material({.base_color = glm::vec4(1.0f),
+                         .roughness = 0.0f,
+                         .index_of_refraction = 1.5f,
+                         .transmission = 1.0f,
+                         .thickness = 1.0f});
+    }
+
+    void place(const std::string& name, const Mesh& mesh, ObjectId material) {
+        scene::Geometry geometry{.name = name, .material = material};
+        geometry.positions = blob(mesh.positions);
+        if (!mesh.normals.empty()) geometry.normals = blob(mesh.normals);
+        geometry.indices = blob(mesh.indices);
+        root_.children.push_back(add(std::move(geometry)));
+    }
+
+    BenchScene finish(BenchScene scene, glm::dvec3 eye, glm::dvec3 target, double vertical_fov) {
+        const glm::dvec3 z = glm::normalize(eye - target);
+        const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(0.0, 1.0, 0.0), z));
+        scene.camera = {.name = "camera",
+                        .world_from_camera = {glm::dvec4(x, 0.0), glm::dvec4(glm::cross(z, x), 0.0),
+                                              glm::dvec4(z, 0.0), glm::dvec4(eye, 1.0)},
+                        .camera = {.vertical_fov = vertical_fov}};
+        root_.background = add(scene::Background{.name = "dark"});
+        entries_.push_back(scene::Create{scene::RootId, root_});
+        if (auto made = scene.content.apply_entries(entries_); !made) throw made.error();
+        scene.content.set_version({1, 1});
+        scene.blobs = std::move(blobs_);
+        return scene;
+    }
+
+  private:
+    ObjectId add(scene::Object object) {
+        const ObjectId id{next_id_++};
+        entries_.push_back(scene::Create{id, std::move(object)});
+        return id;
+    }
+    template <class T>
+    scene::BlobRef blob(const std::vector<T>& values) {
+        blobs_.push_back(std::make_shared<scene::Blob>(std::as_bytes(std::span(values))));
+        return scene::reference(*blobs_.back());
+    }
+
+    std::uint64_t next_id_ = 2;
+    scene::Root root_{.name = "root"};
+    std::vector<scene::Entry> entries_;
+    std::vector<scene::BlobPtr> blobs_;
+};
+
+// From (-1, 0, -1) to (1, 2, 1), open towards +z, where the camera stands.
+void add_cornell_walls(Builder& builder) {
+    const ObjectId white = builder.diffuse({0.73f, 0.73f, 0.73f});
+    Mesh walls = quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1});
+    append(walls, quad({-1, 2, -1}, {1, 2, -1}, {1, 2, 1}, {-1, 2, 1}));
+    append(walls, quad({-1, 0, -1}, {1, 0, -1}, {1, 2, -1}, {-1, 2, -1}));
+    builder.place("floor, ceiling and back", walls, white);
+    builder.place("left", quad({-1, 0, 1}, {-1, 0, -1}, {-1, 2, -1}, {-1, 2, 1}),
+                  builder.diffuse({0.65f, 0.05f, 0.05f}));
+    builder.place("right", quad({1, 0, -1}, {1, 0, 1}, {1, 2, 1}, {1, 2, -1}),
+                  builder.diffuse({0.12f, 0.45f, 0.15f}));
+    constexpr float Edge = 0.25f, Height = 1.99f;
+    builder.place(
+        "light",
+        quad({-Edge, Height, -Edge}, {Edge, Height, -Edge}, {Edge, Height, Edge}, {-Edge, Height, Edge}),
+        builder.light(15.0f));
+}
+
+BenchScene cornell() {
+    Builder builder;
+    add_cornell_walls(builder);
+    Mesh blocks = block({-0.33f, 0.0f, -0.30f}, {0.6f, 1.2f, 0.6f}, 0.3f);
+    append(blocks, block({0.36f, 0.0f, 0.35f}, {0.6f, 0.6f, 0.6f}, -0.3f));
+    builder.place("blocks", blocks, builder.diffuse({0.73f, 0.73f, 0.73f}));
+    return builder.finish({.name = "cornell", .kind = "diffuse surfaces", .summary = "Cornell box"},
+                          {0.0, 1.0, 3.9}, {0.0, 1.0, 0.0}, 0.66);
+}
+
+BenchScene cornell_spheres() {
+    Builder builder;
+    add_cornell_walls(builder);
+    builder.place("mirror", sphere({-0.42f, 0.45f, -0.30f}, 0.45f, 48), builder.mirror());
+    builder.place("glass", sphere({0.45f, 0.40f, 0.30f}, 0.40f, 48), builder.glass());
+    return builder.finish({.name = "cornell-spheres",
+                           .kind = "mirror and glass",
+                           .summary = "Cornell box with a mirror and a glass sphere"},
+                          {0.0, 1.0, 3.9}, {0.0, 1.0, 0.0}, 0.66);
+}
+
+BenchScene caustics() {
+    Builder builder;
+    builder.place("plane", quad({-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}),
+                  builder.diffuse({0.6f, 0.58f, 0.55f}));
+    builder.place("ball", sphere({0.0f, 0.6f, 0.0f}, 0.6f, 64), builder.glass());
+    constexpr float Edge = 0.35f;
+    const glm::vec3 at(0.9f, 2.6f, -0.9f);
+    builder.place("light",
+                  quad(at + glm::vec3(-Edge, 0, -Edge), at + glm::vec3(Edge, 0, -Edge),
+                       at + glm::vec3(Edge, 0, Edge), at + glm::vec3(-Edge, 0, Edge)),
+                  builder.light(20.0f));
+    return builder.finish(
+        {.name = "caustics", .kind = "caustics", .summary = "glass sphere on a plane under a small light"},
+        {0.0, 1.9, 3.6}, {-0.1, 0.35, 0.0}, 0.66);
+}
+
+BenchScene grids() {
+    Builder builder;
+    builder.place("plane", quad({-3, 0, 3}, {3, 0, 3}, {3, 0, -3}, {-3, 0, -3}),
+                  builder.diffuse({0.7f, 0.7f, 0.7f}));
+    Mesh layers = grid(0.4f, 2.4f, 8, 0.08f);
+    append(layers, grid(1.5f, 2.0f, 5, 0.12f));
+    builder.place("grids", layers, builder.diffuse({0.5f, 0.25f, 0.12f}));
+    constexpr float Sigma = 0.5f, Height = 4.0f;
+    builder.place("light",
+                  quad({-Sigma, Height, -Sigma}, {Sigma, Height, -Sigma}, {Sigma, Height, Sigma},
+                       {-Sigma, Height, Sigma}),
+                  builder.light(12.0f));
+    return builder.finish({.name = "grids",
+                           .kind = "soft shadows",
+                           .summary = "two layers of bars under a square light, direct light only",
+                           .max_bounces = 0},
+                          {2.6, 3.1, 3.4}, {0.0, 0.35, 0.0}, 0.66);
+}
+
+}  // namespace
+
+BenchScene balls(std::uint32_t triangles) {
+    constexpr std::uint32_t Count = 50;
+    // A sphere of r rings has 4 r (r - 1) triangles.
+    const auto rings = static_cast<std::uint32_t>(std::sqrt(std::max(triangles, 1000u) / Count / 4.0) + 1.0);
+    Builder builder;
+    add_cornell_walls(builder);
+    CounterRandom random(7);
+    const auto between = [&](float low, float high) {
+        return low + (high - low) * static_cast<float>(random.uniform());
+    };
+    Mesh all;
+    for (std::uint32_t i = 0; i < Count; ++i) {
+        const float radius = between(0.05f, 0.2f), x = between(-0.8f, 0.8f);
+        const float y = between(0.2f, 1.7f), z = between(-0.8f, 0.8f);
+        append(all, sphere({x, y, z}, radius, rings));
+    }
+    builder.place("balls", all, builder.diffuse({0.6f, 0.6f, 0.65f}));
+    return builder.finish({.name = "balls:" + std::to_string(triangles),
+                           .kind = "many triangles",
+                           .summary = std::to_string(all.indices.size() / 3) + " triangles in a box"},
+                          {0.0, 1.0, 3.9}, {0.0, 1.0, 0.0}, 0.66);
+}
+
+const std::vector<BuiltIn>& built_in_scenes() {
+    static const std::vector<BuiltIn> scenes{
+        {"cornell", cornell}, {"cornell-spheres", cornell_spheres}, {"caustics", caustics}, {"grids", grids}};
+    return scenes;
+}
+
+}  // namespace tessera::tools::bench
