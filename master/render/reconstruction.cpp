@@ -37,17 +37,31 @@ std::vector<std::byte> encode(const filter::Planes& picture, wire::PictureEncodi
 
 }  // namespace
 
-filter::Filter& Reconstructor::instance(const filter::Choice& choice, std::uint32_t width,
-                                        std::uint32_t height) {
+filter::Filter& Reconstructor::instance(const filter::Choice& choice, const view::View& view, Version version,
+                                        filter::Inputs& inputs) {
+    Instance& instance = instances_[view.id];
+    inputs.changes = {};
     const std::string name(choice.entry->description.name);
-    if (!instance_.filter || instance_.name != name || instance_.width != width ||
-        instance_.height != height) {
-        instance_ = {name, width, height, choice.entry->make(width, height)};
+    if (!instance.filter || instance.name != name || instance.width != inputs.width ||
+        instance.height != inputs.height) {
+        instance = {name, inputs.width, inputs.height, choice.entry->make(inputs.width, inputs.height)};
+    } else {
+        // What of the scene has changed is not known here: anything may have, unless the film went on.
+        const bool restarted = instance.revision != view.revision;
+        const bool other_scene = restarted && instance.version != version;
+        inputs.changes = {
+            .film_restarted = restarted, .lights_or_materials = other_scene, .geometry = other_scene};
     }
-    return *instance_.filter;
+    instance.revision = view.revision;
+    instance.version = version;
+    return *instance.filter;
 }
 
-Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& view,
+void Reconstructor::forget(ViewId first, ViewId last) {
+    instances_.erase(instances_.lower_bound(first), instances_.lower_bound(last));
+}
+
+Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& view, Version version,
                                           wire::PictureEncoding encoding) {
     Reconstruction result{.bytes = std::make_shared<const std::vector<std::byte>>()};
     wire::PictureSummary& summary = result.summary;
@@ -60,8 +74,7 @@ Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& 
     try {
         const auto started = Clock::now();
         filter::resolve_inputs(films.film, view, films.later, inputs_);
-        filter::Filter& filter = instance(*choice, inputs_.width, inputs_.height);
-        filter.reset();
+        filter::Filter& filter = instance(*choice, view, version, inputs_);
         const filter::Report report = filter.run(inputs_, choice->values, output_, {arena_, {}});
         const filter::Planes* picture = &output_.picture;
         if (films.features != nullptr) {
@@ -88,18 +101,19 @@ Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& 
     return result;
 }
 
-const filter::Planes& Reconstructor::filtered(const frame::FilmTile& film, const view::View& view) {
+const filter::Planes& Reconstructor::filtered(const frame::FilmTile& film, const view::View& view,
+                                              Version version) {
     const auto choice = filter::parse_choice(view.filter, filter::catalog());
     if (!choice) throw choice.error();
     filter::resolve_inputs(film, view, nullptr, inputs_);
-    filter::Filter& filter = instance(*choice, inputs_.width, inputs_.height);
-    filter.reset();
-    filter.run(inputs_, choice->values, output_, {arena_, {}});
+    instance(*choice, view, version, inputs_).run(inputs_, choice->values, output_, {arena_, {}});
     return output_.picture;
 }
 
-double Reconstructor::rehearse(const view::View& view, wire::PictureEncoding encoding, std::uint32_t width,
+double Reconstructor::rehearse(const view::View& asked, wire::PictureEncoding encoding, std::uint32_t width,
                                std::uint32_t height) {
+    view::View view = asked;
+    view.id = {};  // no picture of the view
     const Rect rect{0, 0, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
     frame::FilmTile film(rect, {0, 2}, view.channels);
     std::fill(film.counts.begin(), film.counts.end(), 4u);
@@ -109,8 +123,10 @@ double Reconstructor::rehearse(const view::View& view, wire::PictureEncoding enc
         value = static_cast<float>(state >> 8) * 0x1p-24f;
     }
     const auto started = Clock::now();
-    reconstruct({.film = film}, view, encoding);
-    return since(started);
+    reconstruct({.film = film}, view, {}, encoding);
+    const double seconds = since(started);
+    instances_.erase(view.id);
+    return seconds;
 }
 
 }  // namespace tessera::master

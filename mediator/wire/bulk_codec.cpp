@@ -198,10 +198,8 @@ bool is_bulk(std::span<const std::byte> bytes) {
     return number_of(bytes).has_value();
 }
 
-std::optional<ViewId> film_view(std::span<const std::byte> bytes) {
-    if (number_of(bytes) != table::Bulk::number(FilmPart{}) || bytes.size() < 24) return std::nullopt;
-    ByteReader in(bytes.subspan(16));  // after magic, number and unit
-    return ViewId{in.get<std::uint64_t>()};
+bool is_film(std::span<const std::byte> bytes) {
+    return number_of(bytes) == table::Bulk::number(FilmPart{});
 }
 
 Expected<BulkMessage> decode_bulk(std::span<const std::byte> bytes) {

@@ -21,8 +21,8 @@ std::vector<std::byte> encode(const BulkMessage& message);
 Expected<BulkMessage> decode_bulk(std::span<const std::byte> bytes);
 // Whether these bytes say that they are a bulk message, by their header alone.
 bool is_bulk(std::span<const std::byte> bytes);
-// The view that a film message says it is of; none when it is no film. Lets a loop pass film on without decoding it.
-std::optional<ViewId> film_view(std::span<const std::byte> bytes);
+// Whether they say that they are film of a node; lets a loop pass film on without decoding it.
+bool is_film(std::span<const std::byte> bytes);
 
 // Content of blobs that hold scene changes.
 std::vector<std::byte> encode(const scene::ChangeList& changes);

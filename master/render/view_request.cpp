@@ -1,4 +1,4 @@
-#include "master/render/job.h"
+#include "master/render/view_request.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,7 +47,7 @@ std::string problem_of(const view::CameraPose& camera) {
 
 }  // namespace
 
-std::string problem_of(const wire::StartJob& request) {
+std::string problem_of(const ViewRequest& request) {
     const view::View& view = request.view;
     if (view.width == 0 || view.height == 0 || view.width > MaxEdge || view.height > MaxEdge) {
         return "picture size " + std::to_string(view.width) + "x" + std::to_string(view.height) +
@@ -63,21 +63,20 @@ std::string problem_of(const wire::StartJob& request) {
     if (!(view.pixel_filter.radius > 0.0f) || view.pixel_filter.radius > 16.0f) {
         return "the pixel filter's radius is not between 0 and 16 pixels";
     }
-    if (request.spp == 0 || request.spp > MaxSamplesPerPixel)
-        return "samples per pixel are not between 1 and 2^31";
+    const StopRule& stop = request.stop;
+    if (stop.spp == 0 || stop.spp > MaxSamplesPerPixel) return "samples per pixel are not between 1 and 2^31";
     const auto filter = filter::parse_choice(view.filter, filter::catalog());
     if (!filter) return filter.error().what();
-    if (request.picture == wire::PictureEncoding::None && !request.film) {
+    const bool has_picture = request.picture != wire::PictureEncoding::None;
+    if (request.frames == ViewRequest::Frames::Last && !has_picture && !request.film) {
         return "neither a picture nor the film is asked for: ask for one of them";
     }
-    if (request.budget < Duration::zero()) return "the time budget is negative";
-    if (request.budget > Duration::zero() && request.picture == wire::PictureEncoding::None) {
-        return "a time budget is for a picture: ask for one";
-    }
-    if (request.adapts_size && (request.film || request.budget == Duration::zero())) {
+    if (stop.budget < Duration::zero()) return "the time budget is negative";
+    if (stop.has_budget() && !has_picture) return "a time budget is for a picture: ask for one";
+    if (stop.adapts_size && (request.film || !stop.has_budget())) {
         return "only a picture with a time budget and without its film can adapt its size";
     }
-    if (request.time_limit < Duration::zero()) return "the time limit is negative";
+    if (stop.time_limit < Duration::zero()) return "the time limit is negative";
     return {};
 }
 
@@ -119,18 +118,17 @@ view::View scaled_view(const view::View& view, std::uint32_t scale) {
     return small;
 }
 
-std::string way_of(const wire::StartJob& request) {
+std::string way_of(const ViewRequest& request) {
     return request.view.filter + " as " + std::to_string(static_cast<int>(request.picture)) +
            " of channels " + std::to_string(request.view.channels.bits());
 }
 
-std::uint32_t choose_tile_edge(const wire::StartJob& request) {
+std::uint32_t choose_tile_edge(const view::View& view, std::uint32_t asked) {
     constexpr std::uint32_t Large = 64, Small = 32, EnoughTiles = 64;
     constexpr std::uint32_t Drawn = 128;  // each tile's samples draw all that stands in it
-    const view::View& view = request.view;
-    std::uint32_t edge = request.tile;
+    std::uint32_t edge = asked;
     if (edge == 0) edge = view.window.pixel_count() >= EnoughTiles * Large * Large ? Large : Small;
-    if (request.tile == 0 && view.renderer == view::Renderer::Raster) edge = Drawn;
+    if (asked == 0 && view.renderer == view::Renderer::Raster) edge = Drawn;
     const std::size_t bytes_per_pixel = 4 * (view.channels.plane_count() + 1);
     const auto limit =
         static_cast<std::uint32_t>(std::sqrt(double(net::BulkLimit - 4096) / double(bytes_per_pixel)));

@@ -1,9 +1,8 @@
-// What is under a pixel: one sample of a view that sees nothing but the pixel's middle.
+#include "master/render/picks.h"
+
 #include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
-
-#include "master/render/live_runner.h"
 
 namespace tessera::master {
 
@@ -17,25 +16,29 @@ constexpr double PickWidth = 1e-6;
 
 }  // namespace
 
-void LiveRunner::pick(SessionId session, const wire::Pick& request, Version version, TimePoint) {
-    PickTask task{.session = session, .request = request, .version = version, .pass = {}};
-    const auto watched = frames_.watched(session, request.number);
-    if (!watched) return refuse_pick(task, "this client has no view " + std::to_string(request.number));
-    const view::View& seen = views_.at(*watched).view;
-    if (request.x >= seen.width || request.y >= seen.height) {
-        return refuse_pick(task, "pixel " + std::to_string(request.x) + "," + std::to_string(request.y) +
-                                     " is outside the view of " + std::to_string(seen.width) + "x" +
-                                     std::to_string(seen.height));
+void Picks::pick(SessionId session, const wire::Pick& request, const view::View* seen, Version version) {
+    Task task{.session = session, .request = request, .version = version, .pass = {}};
+    if (seen == nullptr) return refuse(task, "this client has no view " + std::to_string(request.number));
+    if (request.x >= seen->width || request.y >= seen->height) {
+        return refuse(task, "pixel " + std::to_string(request.x) + "," + std::to_string(request.y) +
+                                " is outside the view of " + std::to_string(seen->width) + "x" +
+                                std::to_string(seen->height));
     }
     constexpr std::size_t MaxPicks = 64;
-    if (picks_.size() >= MaxPicks) return refuse_pick(task, "too many picks wait: try again later");
+    if (tasks_.size() >= MaxPicks) return refuse(task, "too many picks wait: try again later");
+    aim(task, *seen);
+    passes_.begin(task.pass, {.window = task.pass.view.window, .tile = 1, .spp = 1}, {version}, std::nullopt);
+    tasks_.push_back(std::move(task));
+}
+
+void Picks::aim(Task& task, const view::View& seen) const {
     const view::CameraPose& camera = seen.camera;
     const double width = (camera.right - camera.left) / seen.width;
     const double height = (camera.top - camera.bottom) / seen.height;
-    const double x = camera.left + (request.x + 0.5) * width, y = camera.top - (request.y + 0.5) * height;
+    const double x = camera.left + (task.request.x + 0.5) * width;
+    const double y = camera.top - (task.request.y + 0.5) * height;
     view::View& view = task.pass.view;
-    view.id = ViewId{next_view_};
-    next_view_ += MaxPasses;
+    view.id = ids_.take();
     view.camera = camera;
     view.camera.lens_radius = 0.0;
     view.camera.left = x - 0.5 * PickWidth * width;
@@ -52,26 +55,62 @@ void LiveRunner::pick(SessionId session, const wire::Pick& request, Version vers
     task.along_axis = glm::length(along);
     task.eye = glm::dvec3(camera.world_from_camera * glm::dvec4(is_parallel ? at : glm::dvec3(0.0), 1.0));
     task.direction = glm::normalize(glm::dmat3(camera.world_from_camera) * along);
-    begin_pass(task.pass, version);
-    picks_.push_back(std::move(task));
 }
 
-void LiveRunner::refuse_pick(const PickTask& task, const std::string& problem) {
+void Picks::session_left(SessionId session) {
+    std::erase_if(tasks_, [&](const Task& task) {
+        if (task.session != session) return false;
+        passes_.end(task.pass.view.id);
+        return true;
+    });
+}
+
+void Picks::close_all() {
+    for (const Task& task : tasks_) passes_.end(task.pass.view.id);
+    tasks_.clear();
+}
+
+void Picks::follow(Version version) {
+    for (Task& task : tasks_) {
+        task.version = version;
+        passes_.dispatcher.follow(task.pass.view.id, version);
+    }
+}
+
+void Picks::deal(std::vector<NodeCapacity>& capacities, TimePoint now) {
+    for (const Task& task : tasks_) passes_.dispatcher.deal(task.pass.view.id, capacities, now);
+}
+
+void Picks::tick() {
+    for (Task& task : tasks_) {
+        const Scheduler* pass = passes_.dispatcher.find(task.pass.view.id);
+        if (pass == nullptr || !pass->complete() || task.copied) continue;
+        passes_.film.copy(task.pass.view.id);
+        task.copied = true;
+    }
+}
+
+bool Picks::take(const FilmBlocks& film) {
+    const auto task = std::find_if(tasks_.begin(), tasks_.end(), [&](const Task& candidate) {
+        return candidate.pass.view.id == film.view;
+    });
+    if (task == tasks_.end()) return false;
+    if (!film.blocks.empty()) {
+        answer(*task, film.blocks.front());
+        passes_.end(film.view);
+        tasks_.erase(task);
+    }
+    return true;
+}
+
+void Picks::refuse(const Task& task, const std::string& problem) {
     if (const SessionRecord* session = sessions_.find(task.session))
         outbox_.control(
             session->control,
             wire::Picked{.request = task.request.request, .version = task.version, .problem = problem});
 }
 
-void LiveRunner::take(FilmBlocks&& film) {
-    for (PickTask& task : picks_) {
-        if (task.pass.view.id != film.view || film.blocks.empty()) continue;
-        answer(task, film.blocks.front());
-        end(task.pass);
-    }
-}
-
-void LiveRunner::answer(PickTask& task, const frame::FilmTile& film) {
+void Picks::answer(const Task& task, const frame::FilmTile& film) {
     wire::Picked picked{.request = task.request.request, .version = task.version};
     const float depth = film.plane(film.channels.first_plane(frame::Channel::Depth))[0];
     if (std::isfinite(depth)) {

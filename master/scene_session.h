@@ -1,33 +1,54 @@
 #pragma once
 
-#include <functional>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "master/display/display_service.h"
-#include "master/live_journal.h"
+#include "master/peers/node_table.h"
 #include "master/peers/session_table.h"
-#include "master/render/live_runner.h"
+#include "master/render/views.h"
 #include "master/scene/edit_trace.h"
 #include "master/scene/scene_authority.h"
+#include "master/scene/scene_distributor.h"
+#include "master/scene/session_journal.h"
 
 namespace tessera::master {
 
-// The live scene: who is in it, what they ask, and when their edits become a version. Told of messages by the
-// render master.
+// What a scene session shares with all others of its master.
+struct MasterServices {
+    std::shared_ptr<scene::BlobStore> blobs;
+    NodeTable& nodes;
+    SessionTable& sessions;
+    Outbox& outbox;
+    RenderServices render;
+    EventSink events;
+};
+
+// All that belongs to one scene: its content and history, the nodes' copies, its views, its display, its files
+// on disk, who is in it and what they ask, and when their edits become a version. Told of messages by the
+// render master; what happens below comes up as values that are taken in tick().
 //
 // Edits are taken and answered at once. A version is published at once when no first picture is on its way
 // and the last version is 16 ms old, else as soon as both are so.
-class LiveService {
+class SceneSession {
   public:
-    // `publish` hands a change list to all nodes.
-    LiveService(SceneAuthority& authority, std::shared_ptr<scene::BlobStore> blobs, SessionTable& sessions,
-                LiveRunner& runner, DisplayService& display, Outbox& outbox, EventSink events,
-                std::function<void(const scene::ChangeList&, TimePoint)> publish);
+    SceneSession(std::uint64_t epoch, const ViewSettings& settings, const MasterServices& services);
 
-    // From now on edits are recorded in it. What it recovered is open again. Must outlive its use.
-    void record_to(LiveJournal& journal, TimePoint now);
+    // From now on edits are recorded in the folder. What it recovers is open again. Throws Error when it cannot
+    // be used.
+    void record_to(const std::filesystem::path& folder, Duration checkpoint_interval, TimePoint now);
+
+    SceneAuthority& authority() { return authority_; }
+    const SceneAuthority& authority() const { return authority_; }
+    SceneDistributor& distributor() { return distributor_; }
+    const SceneDistributor& distributor() const { return distributor_; }
+    Views& views() { return views_; }
+    const Views& views() const { return views_; }
+    DisplayService& display() { return display_; }
+    const DisplayService& display() const { return display_; }
 
     bool is_open() const { return open_; }
     bool is_member(SessionId session) const { return members_.contains(session); }
@@ -39,8 +60,10 @@ class LiveService {
     void join(SessionRecord& session, const wire::JoinScene& request, TimePoint now);
     // Everybody is out, the scene is empty, the stage is free again.
     void close(TimePoint now);
-    void left(SessionId session, LiveRunner::Departure departure, TimePoint now);
+    void left(SessionId session, Views::Departure departure, TimePoint now);
 
+    // To the nodes and everything that looks at the scene.
+    void publish(const scene::ChangeList& changes, TimePoint now);
     // A member's edit was answered.
     void edited(const SessionRecord& session, const scene::Edit& edit, const EditAnswer& answer,
                 std::uint64_t message_bytes, TimePoint now);
@@ -64,6 +87,8 @@ class LiveService {
 
     wire::Trace trace(const wire::ReadTrace& request) const;
 
+    // What the rendering threads brought forth; what is another scene's is left alone.
+    void take(RenderOutput& output, TimePoint now);
     void tick(TimePoint now);
     TimePoint next_event(TimePoint now) const;
     wire::LiveStatus status() const;
@@ -88,22 +113,20 @@ class LiveService {
     void done(const SessionRecord& session, std::uint64_t request, std::string problem);
     void follow_display(TimePoint now);
     void publish_if_due(TimePoint now);
-    void publish(const scene::ChangeList& changes, TimePoint now);
+    void keep_journal(TimePoint now);
 
-    SceneAuthority& authority_;
-    std::shared_ptr<scene::BlobStore> blobs_;
-    SessionTable& sessions_;
-    LiveRunner& runner_;
-    DisplayService& display_;
-    LiveJournal* journal_ = nullptr;
-    Outbox& outbox_;
-    EventSink events_;
-    std::function<void(const scene::ChangeList&, TimePoint)> publish_;
+    MasterServices services_;
+    SceneAuthority authority_;
+    SceneDistributor distributor_;
+    Views views_;
+    DisplayService display_;
+    std::optional<SessionJournal> journal_;
     bool open_ = false;
     std::string title_;
     std::map<SessionId, Member> members_;
     std::vector<WaitingRead> reads_;
     TimePoint published_at_{};
+    std::uint64_t progress_being_saved_ = 0;
     wire::LiveStatus counts_;
     EditTraceLog traces_;
 };
