@@ -187,12 +187,12 @@ TEST_P(Layers, AProbeSeesWhatTheViewSees) {
     EXPECT_NE(story(1), story(3));
 }
 
-std::vector<std::string> names() {
+std::vector<std::string> layered_backends() {
     std::vector<std::string> result;
     for (const BackendEntry& entry : catalog()) result.push_back(entry.name);
     return result;
 }
-INSTANTIATE_TEST_SUITE_P(Catalog, Layers, testing::ValuesIn(names()),
+INSTANTIATE_TEST_SUITE_P(Catalog, Layers, testing::ValuesIn(layered_backends()),
                          [](const auto& entry) { return entry.param; });
 
 }  // namespace

@@ -114,13 +114,13 @@ TEST_P(EditedBackend, RendersTheSameBitsAsOneThatWasBuiltAnew) {
     }
 }
 
-std::vector<std::string> names() {
+std::vector<std::string> edited_backends() {
     std::vector<std::string> result;
     for (const BackendEntry& entry : catalog()) result.push_back(entry.name);
     return result;
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalog, EditedBackend, testing::ValuesIn(names()),
+INSTANTIATE_TEST_SUITE_P(Catalog, EditedBackend, testing::ValuesIn(edited_backends()),
                          [](const auto& entry) { return entry.param; });
 
 }  // namespace

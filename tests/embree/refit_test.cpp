@@ -85,20 +85,20 @@ std::vector<PathSample> picture(const Sea& sea) {
     return samples;
 }
 
-bool same_bits(const std::vector<PathSample>& a, const std::vector<PathSample>& b) {
+bool same_refitted_bits(const std::vector<PathSample>& a, const std::vector<PathSample>& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(PathSample)) == 0;
 }
 
 TEST(Refit, ShowsWhatARebuiltMeshShows) {
     Sea refitted(scene::MotionHint::Animated), rebuilt(scene::MotionHint::Unflagged);
     std::vector<PathSample> before = picture(rebuilt);
-    EXPECT_TRUE(same_bits(picture(refitted), before));
+    EXPECT_TRUE(same_refitted_bits(picture(refitted), before));
     for (const double phase : {0.4, 3.0}) {
         EXPECT_EQ(refitted.deform(phase).refitted, 1u);
         EXPECT_EQ(rebuilt.deform(phase).rebuilt, 1u);
         const std::vector<PathSample> now = picture(rebuilt);
-        EXPECT_TRUE(same_bits(picture(refitted), now)) << phase;
-        EXPECT_FALSE(same_bits(now, before));
+        EXPECT_TRUE(same_refitted_bits(picture(refitted), now)) << phase;
+        EXPECT_FALSE(same_refitted_bits(now, before));
         before = now;
     }
 }

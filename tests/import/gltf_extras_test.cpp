@@ -5,7 +5,7 @@
 namespace tessera::import {
 namespace {
 
-ImportedScene load(const SceneFile& file) {
+ImportedScene load_extras(const SceneFile& file) {
     const TestFolder folder;
     ImportedScene scene = loaded(folder.write("scene.glb", file.glb()));
     expect_sound(scene);
@@ -26,7 +26,7 @@ SceneFile with_light(const std::string& extras) {
 }
 
 TEST(GltfExtras, OfAnotherTypeOrOutOfRangeAreToldAndTheRestIsTaken) {
-    const ImportedScene scene = load(with_light(
+    const ImportedScene scene = load_extras(with_light(
         R"({"tessera_light":{"kind":"quad","radius":-1,"size":[1],"angle":"wide","outer_cone_angle":1e40,"glow":1,"heat":2}})"));
     const auto& light = named<scene::Light>(scene, "lamp");
     EXPECT_EQ(light.kind, scene::LightKind::Quad);
@@ -44,10 +44,10 @@ TEST(GltfExtras, OfAnotherTypeOrOutOfRangeAreToldAndTheRestIsTaken) {
 
 TEST(GltfExtras, ThatAreNoObjectsAreOfSomebodyElse) {
     for (const char* extras : {"{}", "null", "7", R"("tessera_light")", R"({"tessera_light":[1,2]})"}) {
-        const ImportedScene scene = load(with_light(extras));
+        const ImportedScene scene = load_extras(with_light(extras));
         EXPECT_EQ(named<scene::Light>(scene, "lamp").kind, scene::LightKind::Point) << extras;
     }
-    const ImportedScene scene = load(with_light(R"({"tessera_light":{"kind":"tube"}})"));
+    const ImportedScene scene = load_extras(with_light(R"({"tessera_light":{"kind":"tube"}})"));
     EXPECT_EQ(named<scene::Light>(scene, "lamp").kind, scene::LightKind::Point);
     EXPECT_TRUE(has_notice(scene, "its kind cannot be used"));
 }
@@ -62,7 +62,7 @@ TEST(GltfExtras, OfBodiesMayBeMissing) {
         file.add("nodes", R"({"mesh":0})");
         file.add("scenes", R"({"nodes":[0]})");
         if (*media) file.set("extras", media);
-        const ImportedScene scene = load(file);
+        const ImportedScene scene = load_extras(file);
         EXPECT_TRUE(has_notice(scene, "medium 3 is missing: bodies of it are empty")) << media;
         EXPECT_TRUE(all<scene::Geometry>(scene).at(0)->material) << "its surface is there";
     }
@@ -81,7 +81,7 @@ TEST(GltfExtras, OfATextureDepthThatDoesNotFitMakeOneSlice) {
         file.add("nodes", R"({"mesh":1})");
         file.add("scenes", R"({"nodes":[1]})");
         file.set("scene", "1");
-        const ImportedScene scene = load(file);
+        const ImportedScene scene = load_extras(file);
         EXPECT_TRUE(has_notice(scene, "its height is no multiple of its tessera_depth")) << depth;
         const auto& texture = *all<scene::Texture>(scene).at(0);
         EXPECT_EQ(glm::uvec3(texture.width, texture.height, texture.depth), glm::uvec3(4, 4, 1));

@@ -17,7 +17,7 @@ void append(std::string& to, T value, bool big_endian) {
     to += big_endian ? std::string(bytes.rbegin(), bytes.rend()) : bytes;
 }
 
-std::string error_of(const std::string& ply) {
+std::string ply_error(const std::string& ply) {
     const TestFolder folder;
     const auto scene = import_scene(folder.write("shape.ply", ply));
     EXPECT_FALSE(scene);
@@ -79,20 +79,20 @@ TEST(Ply, ReadsBinaryOfEitherByteOrder) {
 TEST(Ply, DamageIsOneClearError) {
     const std::string begin = "ply\nformat ascii 1.0\n";
     const std::string points = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
-    EXPECT_THAT(error_of(""), HasSubstr("does not begin"));
-    EXPECT_THAT(error_of(begin), HasSubstr("no end"));
-    EXPECT_THAT(error_of(begin + "element vertex 99999999999\nend_header\n"), HasSubstr("cannot hold"));
-    EXPECT_THAT(error_of(begin + "element vertex -1\nend_header\n"), HasSubstr("cannot hold"));
-    EXPECT_THAT(error_of(begin + "property float x\nend_header\n"), HasSubstr("property float x"));
-    EXPECT_THAT(error_of(begin + "element face 0\nproperty list float int vertex_indices\nend_header\n"),
+    EXPECT_THAT(ply_error(""), HasSubstr("does not begin"));
+    EXPECT_THAT(ply_error(begin), HasSubstr("no end"));
+    EXPECT_THAT(ply_error(begin + "element vertex 99999999999\nend_header\n"), HasSubstr("cannot hold"));
+    EXPECT_THAT(ply_error(begin + "element vertex -1\nend_header\n"), HasSubstr("cannot hold"));
+    EXPECT_THAT(ply_error(begin + "property float x\nend_header\n"), HasSubstr("property float x"));
+    EXPECT_THAT(ply_error(begin + "element face 0\nproperty list float int vertex_indices\nend_header\n"),
                 HasSubstr("list float"));
-    EXPECT_THAT(error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0\n"),
+    EXPECT_THAT(ply_error("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0\n"),
                 HasSubstr("lack x, y or z"));
-    EXPECT_THAT(error_of("ply\nend_header\n"), HasSubstr("lacks the format"));
-    EXPECT_THAT(error_of(begin + Vertices + Faces + points), HasSubstr("too early"));
-    EXPECT_THAT(error_of(begin + Vertices + Faces + points + "9000 0 1 2\n"), HasSubstr("claims more"));
-    EXPECT_THAT(error_of(begin + Vertices + Faces + points + "3 0 one 2\n"), HasSubstr("no number"));
-    EXPECT_THAT(error_of(begin + Vertices + "end_header\n" + points), HasSubstr("only points"));
+    EXPECT_THAT(ply_error("ply\nend_header\n"), HasSubstr("lacks the format"));
+    EXPECT_THAT(ply_error(begin + Vertices + Faces + points), HasSubstr("too early"));
+    EXPECT_THAT(ply_error(begin + Vertices + Faces + points + "9000 0 1 2\n"), HasSubstr("claims more"));
+    EXPECT_THAT(ply_error(begin + Vertices + Faces + points + "3 0 one 2\n"), HasSubstr("no number"));
+    EXPECT_THAT(ply_error(begin + Vertices + "end_header\n" + points), HasSubstr("only points"));
 }
 
 TEST(Ply, WrongIndicesAndPositionsAreAPlaceholder) {

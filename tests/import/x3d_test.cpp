@@ -8,7 +8,6 @@
 namespace tessera::import {
 namespace {
 
-constexpr double Pi = std::numbers::pi;
 using testing::ElementsAre;
 
 void expect_near(const glm::dvec3& a, const glm::dvec3& b, double error = 1e-9) {
@@ -110,12 +109,14 @@ TEST(X3d, LightsAndTheirDefaults) {
     const ImportedScene point = read_x3d(box + "<PointLight DEF='p'/>");
     const scene::Light& light = named<scene::Light>(point, "p");
     EXPECT_EQ(light.kind, scene::LightKind::Point);
-    EXPECT_EQ(light.intensity, glm::vec3(static_cast<float>(Pi)));
+    EXPECT_EQ(light.intensity, glm::vec3(static_cast<float>(std::numbers::pi)));
     EXPECT_EQ(parent_of_first<scene::Light>(point).matrix, glm::dmat4(1.0));
 
     const ImportedScene spot = read_x3d(box + "<SpotLight DEF='s'/>");
-    EXPECT_FLOAT_EQ(named<scene::Light>(spot, "s").outer_cone_angle, static_cast<float>(Pi / 2));
-    EXPECT_FLOAT_EQ(named<scene::Light>(spot, "s").inner_cone_angle, static_cast<float>(Pi / 4));
+    EXPECT_FLOAT_EQ(named<scene::Light>(spot, "s").outer_cone_angle,
+                    static_cast<float>(std::numbers::pi / 2));
+    EXPECT_FLOAT_EQ(named<scene::Light>(spot, "s").inner_cone_angle,
+                    static_cast<float>(std::numbers::pi / 4));
     EXPECT_EQ(read_x3d(box + "<DirectionalLight/>").counts.lights, 1u);
     EXPECT_EQ(read_x3d(box + "<DirectionalLight on='false'/>").counts.lights, 0u);
 }
@@ -128,8 +129,8 @@ TEST(X3d, LightsShineWhereTheySay) {
     const scene::Light& light = named<scene::Light>(scene, "s");
     EXPECT_FLOAT_EQ(light.outer_cone_angle, 0.5f);
     EXPECT_FLOAT_EQ(light.inner_cone_angle, 0.5f) << "no wider than the outer angle";
-    EXPECT_FLOAT_EQ(light.intensity.x, static_cast<float>(2 * Pi));
-    EXPECT_FLOAT_EQ(light.intensity.y, static_cast<float>(Pi));
+    EXPECT_FLOAT_EQ(light.intensity.x, static_cast<float>(2 * std::numbers::pi));
+    EXPECT_FLOAT_EQ(light.intensity.y, static_cast<float>(std::numbers::pi));
     const glm::dmat4 matrix = parent_of_first<scene::Light>(scene).matrix;
     expect_near(moved(matrix, {0, 0, 0}), {1, 2, 3});
     expect_near(moved(matrix, {0, 0, -1}), {1, 1, 3});
@@ -138,7 +139,7 @@ TEST(X3d, LightsShineWhereTheySay) {
 TEST(X3d, Viewpoints) {
     const ImportedScene plain = read_x3d("<Shape><Box/></Shape><Viewpoint/>");
     ASSERT_EQ(plain.cameras.size(), 1u);
-    EXPECT_DOUBLE_EQ(plain.cameras[0].camera.vertical_fov, Pi / 4);
+    EXPECT_DOUBLE_EQ(plain.cameras[0].camera.vertical_fov, std::numbers::pi / 4);
     expect_near(moved(plain.cameras[0].world_from_camera, {0, 0, -1}), {0, 0, 9});
 
     const ImportedScene placed = read_x3d(
@@ -182,14 +183,14 @@ TEST(X3d, BackgroundOfBandsIsAMap) {
     const scene::Texture& map = object<scene::Texture>(scene, background.environment);
     const auto texels = values<glm::vec3>(scene, map.texels);
     const auto at = [&](double angle) {  // from the zenith
-        return texels.at(static_cast<std::size_t>(angle / Pi * map.height) * map.width);
+        return texels.at(static_cast<std::size_t>(angle / std::numbers::pi * map.height) * map.width);
     };
-    const double row = Pi / map.height;
+    const double row = std::numbers::pi / map.height;
     expect_near(at(0.0), {1, 0, 0}, row);
-    expect_near(at(Pi / 4), {0.5, 0.5, 0}, row);
-    expect_near(at(Pi / 2 + 0.1), {0, 1, 0}, row);
-    expect_near(at(0.76 * Pi), {0, 0, 0.96}, 2 * row);
-    expect_near(at(Pi - 0.5 * row), {0, 0, 0}, row);
+    expect_near(at(std::numbers::pi / 4), {0.5, 0.5, 0}, row);
+    expect_near(at(std::numbers::pi / 2 + 0.1), {0, 1, 0}, row);
+    expect_near(at(0.76 * std::numbers::pi), {0, 0, 0.96}, 2 * row);
+    expect_near(at(std::numbers::pi - 0.5 * row), {0, 0, 0}, row);
 }
 
 TEST(X3d, NodesThatAreNotReadAreCountedByKind) {

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <fstream>
+#include <functional>
 
 #include "mediator/net/key_file.h"
 #include "mediator/net/secret_file.h"
@@ -13,9 +14,9 @@ namespace tessera::net {
 
 namespace {
 
-class Keys : public testing::Test {
+class KeyFiles : public testing::Test {
   protected:
-    Keys() : keys_(folder_ / "keys") { keys_.create(); }
+    KeyFiles() : keys_(folder_ / "keys") { keys_.create(); }
 
     static mode_t mode(const std::filesystem::path& path) {
         struct stat status {};
@@ -39,7 +40,7 @@ std::pair<ErrorCode, std::string> error_of(const Call& call) {
     return {ErrorCode::Internal, ""};
 }
 
-TEST_F(Keys, CreateMakesAMasterAndOnePairPerRole) {
+TEST_F(KeyFiles, CreateMakesAMasterAndOnePairPerRole) {
     const std::vector<AllowedKey> allowed = keys_.allowed();
     ASSERT_EQ(allowed.size(), 4u);
     for (const AllowedKey& key : allowed) {
@@ -53,13 +54,13 @@ TEST_F(Keys, CreateMakesAMasterAndOnePairPerRole) {
     EXPECT_EQ(mode(folder_ / "keys"), 0700u);
 }
 
-TEST_F(Keys, CreateNeverReplacesAMaster) {
+TEST_F(KeyFiles, CreateNeverReplacesAMaster) {
     const KeyPair before = keys_.master();
     EXPECT_EQ(error_of([&] { keys_.create(); }).first, ErrorCode::Refused);
     EXPECT_EQ(keys_.master().secret_key, before.secret_key);
 }
 
-TEST_F(Keys, CreateLeavesTheModeOfAFolderThatWasThere) {
+TEST_F(KeyFiles, CreateLeavesTheModeOfAFolderThatWasThere) {
     const auto place = folder_ / "shared";
     std::filesystem::create_directory(place);
     ASSERT_EQ(chmod(place.c_str(), 0755), 0);
@@ -67,7 +68,7 @@ TEST_F(Keys, CreateLeavesTheModeOfAFolderThatWasThere) {
     EXPECT_EQ(mode(place), 0755u);
 }
 
-TEST_F(Keys, SecretsThatOthersMayReadAreRefusedWithTheRemedy) {
+TEST_F(KeyFiles, SecretsThatOthersMayReadAreRefusedWithTheRemedy) {
     keys_.add("far", Role::Node, folder_ / "far.key");
     struct Case {
         std::filesystem::path file;
@@ -89,7 +90,7 @@ TEST_F(Keys, SecretsThatOthersMayReadAreRefusedWithTheRemedy) {
     }
 }
 
-TEST_F(Keys, AnExportHoldsOnePairAndTheMastersPublicKeyOnly) {
+TEST_F(KeyFiles, AnExportHoldsOnePairAndTheMastersPublicKeyOnly) {
     keys_.add("render-2", Role::Node, folder_ / "render-2.key");
     EXPECT_EQ(mode(folder_ / "render-2.key"), 0600u);
     const ClientKeys far = KeyDirectory(folder_ / "render-2.key").client("any name");
@@ -102,7 +103,7 @@ TEST_F(Keys, AnExportHoldsOnePairAndTheMastersPublicKeyOnly) {
     EXPECT_EQ(error_of([&] { KeyDirectory(folder_ / "render-2.key").master(); }).first, ErrorCode::NotFound);
 }
 
-TEST_F(Keys, AddRefusesWhatWouldOverwriteOrMislead) {
+TEST_F(KeyFiles, AddRefusesWhatWouldOverwriteOrMislead) {
     keys_.add("a", Role::Viewer, folder_ / "a.key");
     const auto before = keys_.allowed().size();
     const auto add = [&](const std::string& name, Role role, const std::string& file) {
@@ -120,7 +121,7 @@ TEST_F(Keys, AddRefusesWhatWouldOverwriteOrMislead) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "b.key"));
 }
 
-TEST_F(Keys, RevokeTakesTheKeyOffTheListAndItsLocalPairAway) {
+TEST_F(KeyFiles, RevokeTakesTheKeyOffTheListAndItsLocalPairAway) {
     keys_.revoke("node");
     for (const AllowedKey& key : keys_.allowed()) EXPECT_NE(key.name, "node");
     EXPECT_EQ(error_of([&] { keys_.client("node"); }).first, ErrorCode::NotFound);
@@ -129,13 +130,13 @@ TEST_F(Keys, RevokeTakesTheKeyOffTheListAndItsLocalPairAway) {
     EXPECT_NO_THROW(keys_.master());
 }
 
-TEST_F(Keys, NamesNeverLeadOutOfTheFolder) {
+TEST_F(KeyFiles, NamesNeverLeadOutOfTheFolder) {
     for (const char* name : {"../keys/node", "/etc/passwd", "..", ""}) {
         EXPECT_EQ(error_of([&] { keys_.client(name); }).first, ErrorCode::InvalidInput) << name;
     }
 }
 
-TEST_F(Keys, PairsThatDoNotBelongTogetherAreTold) {
+TEST_F(KeyFiles, PairsThatDoNotBelongTogetherAreTold) {
     std::filesystem::copy_file(folder_ / "keys/viewer.public", folder_ / "keys/node.public",
                                std::filesystem::copy_options::overwrite_existing);
     const auto [code, text] = error_of([&] { keys_.client("node"); });
@@ -143,14 +144,14 @@ TEST_F(Keys, PairsThatDoNotBelongTogetherAreTold) {
     EXPECT_NE(text.find("node.secret"), std::string::npos);
 }
 
-TEST_F(Keys, MissingFoldersSayHowToMakeThem) {
+TEST_F(KeyFiles, MissingFoldersSayHowToMakeThem) {
     const auto [code, text] = error_of([&] { KeyDirectory(folder_ / "nowhere").client("node"); });
     EXPECT_EQ(code, ErrorCode::NotFound);
     EXPECT_NE(text.find("tessera keys"), std::string::npos);
     EXPECT_EQ(error_of([&] { KeyDirectory(folder_ / "nowhere").allowed(); }).first, ErrorCode::NotFound);
 }
 
-TEST_F(Keys, AllowedListsThatAreWrongNameTheLine) {
+TEST_F(KeyFiles, AllowedListsThatAreWrongNameTheLine) {
     const std::string a = make_key_pair().public_key, b = make_key_pair().public_key;
     const auto parse = [&](const std::string& text) { return parse_allowed("list", text); };
     EXPECT_EQ(parse("# comment\n\n  \na viewer " + a + "\nb node " + b + " \n").size(), 2u);
@@ -164,7 +165,7 @@ TEST_F(Keys, AllowedListsThatAreWrongNameTheLine) {
     }
 }
 
-TEST_F(Keys, EveryTruncationOfAnExportIsRefusedOrWhole) {
+TEST_F(KeyFiles, EveryTruncationOfAnExportIsRefusedOrWhole) {
     const KeyExport exported{
         .name = "x", .role = Role::Editor, .keys = {make_key_pair(), keys_.master().public_key}};
     const std::string text = export_text(exported);
@@ -180,7 +181,7 @@ TEST_F(Keys, EveryTruncationOfAnExportIsRefusedOrWhole) {
     EXPECT_EQ(parse_export("file", text).keys.own.secret_key, exported.keys.own.secret_key);
 }
 
-TEST_F(Keys, ABitFlippedInAnOwnKeyIsNoticed) {
+TEST_F(KeyFiles, ABitFlippedInAnOwnKeyIsNoticed) {
     const KeyExport exported{
         .name = "x", .role = Role::Node, .keys = {make_key_pair(), keys_.master().public_key}};
     const std::string text = export_text(exported);
@@ -194,7 +195,7 @@ TEST_F(Keys, ABitFlippedInAnOwnKeyIsNoticed) {
     }
 }
 
-TEST_F(Keys, HugeFilesAreNotRead) {
+TEST_F(KeyFiles, HugeFilesAreNotRead) {
     const auto file = folder_ / "huge.key";
     write_text(file, "", Visibility::Owner);
     std::filesystem::resize_file(file, std::uintmax_t{1} << 40);

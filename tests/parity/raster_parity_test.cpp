@@ -12,7 +12,7 @@
 namespace tessera::test {
 namespace {
 
-constexpr std::uint32_t Size = 64, Batches = 16, Level = 3;
+constexpr std::uint32_t RasterSize = 64, Batches = 16, Level = 3;
 
 // Means of batches of samples over the picture, of one component.
 struct BatchMeans {
@@ -35,7 +35,7 @@ std::array<BatchMeans, 3> means_of(const Renderer& renderer, const view::View& v
             frame::resolve(renderer.film(view, view.window, {batch << Level, Level}), channel);
         std::array<double, 3> sums{};
         for (std::size_t i = 0; i < image.values.size(); ++i) sums[i % 3] += image.values[i];
-        for (std::size_t c = 0; c < 3; ++c) means[c].add(sums[c] / (Size * Size));
+        for (std::size_t c = 0; c < 3; ++c) means[c].add(sums[c] / (RasterSize * RasterSize));
     }
     return means;
 }
@@ -47,7 +47,7 @@ class RasterParity : public testing::TestWithParam<const char*> {};
 TEST_P(RasterParity, HasTheMeanLightAndColoursOfRays) {
     const tools::bench::BenchScene scene = bench_scene(GetParam());
     const Renderer embree("embree", scene), vulkan("vulkan", scene);
-    view::View view = square_view(scene, Size);
+    view::View view = square_view(scene, RasterSize);
     for (const frame::Channel channel : {frame::Channel::Radiance, frame::Channel::Albedo}) {
         view.renderer = view::Renderer::Whitted;
         const auto traced = means_of(embree, view, channel);

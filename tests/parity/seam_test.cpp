@@ -12,7 +12,7 @@
 namespace tessera::test {
 namespace {
 
-constexpr std::int32_t Size = 256, Edge = 16;
+constexpr std::int32_t SeamSize = 256, Edge = 16;
 
 bool is_vulkans(std::int32_t x, std::int32_t y) {
     return (x / Edge + y / Edge) % 2 != 0;
@@ -23,12 +23,12 @@ enum class Source { Embree, Mixed };
 // Mixed: like a chessboard, fields of 16 x 16 pixels from either back-end.
 frame::Image picture_of(const std::string& name, Source source, frame::SampleBlock block) {
     const tools::bench::BenchScene scene = bench_scene(name);
-    view::View view = square_view(scene, Size);
+    view::View view = square_view(scene, SeamSize);
     view.channels = {frame::Channel::Radiance};
     const Renderer embree("embree", scene), vulkan("vulkan", scene);
     frame::FilmTile film(view.window, block, view.channels);
-    for (std::int32_t y = 0; y < Size; y += Edge) {
-        for (std::int32_t x = 0; x < Size; x += Edge) {
+    for (std::int32_t y = 0; y < SeamSize; y += Edge) {
+        for (std::int32_t x = 0; x < SeamSize; x += Edge) {
             const Renderer& renderer = source == Source::Mixed && is_vulkans(x, y) ? vulkan : embree;
             paste(film, renderer.film(view, {x, y, Edge, Edge}, block));
         }
@@ -37,7 +37,7 @@ frame::Image picture_of(const std::string& name, Source source, frame::SampleBlo
 }
 
 float brightness(const frame::Image& picture, std::int32_t x, std::int32_t y) {
-    const auto pixel = picture.pixel(static_cast<std::size_t>(y * Size + x));
+    const auto pixel = picture.pixel(static_cast<std::size_t>(y * SeamSize + x));
     return pixel[0] + pixel[1] + pixel[2];
 }
 
@@ -50,8 +50,8 @@ std::vector<double> contrasts(const frame::Image& picture, std::int32_t shift) {
         const double a = brightness(picture, x0, y0), b = brightness(picture, x1, y1);
         found.push_back(a + b > 0.0f ? sign * (a - b) / (a + b) : 0.0);
     };
-    for (std::int32_t border = Edge - shift; border < Size; border += Edge) {
-        for (std::int32_t i = 0; i < Size; ++i) {
+    for (std::int32_t border = Edge - shift; border < SeamSize; border += Edge) {
+        for (std::int32_t i = 0; i < SeamSize; ++i) {
             add(border - 1, i, border, i);
             add(i, border - 1, i, border);
         }
@@ -95,7 +95,7 @@ double noise_score(const frame::Image& picture, const frame::Image& control) {
 frame::Image hurt(frame::Image picture, float factor, float share, const frame::Image& other) {
     for (std::size_t i = 0; i < picture.pixel_count(); ++i) {
         const auto at = static_cast<std::int32_t>(i);
-        if (!is_vulkans(at % Size, at / Size)) continue;
+        if (!is_vulkans(at % SeamSize, at / SeamSize)) continue;
         for (std::size_t c = 0; c < 3; ++c) {
             float& value = picture.pixel(i)[c];
             value = factor * ((1.0f - share) * value + share * other.pixel(i)[c]);

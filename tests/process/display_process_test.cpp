@@ -19,7 +19,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::chrono::milliseconds Patience = 2min;
+constexpr std::chrono::milliseconds DisplayPatience = 2min;
 
 constexpr const char* Wall = R"([display]
 name = "wall"
@@ -63,7 +63,7 @@ struct DisplayProcess : testing::Test {
         words.insert(words.begin(), "display");
         ChildProcess process(cluster.folder().path(), "display" + std::to_string(calls++), "tessera",
                              with_cluster(std::move(words)));
-        const auto code = process.wait(Patience);
+        const auto code = process.wait(DisplayPatience);
         return {code.value_or(-1), process.out(), process.err()};
     }
     std::unique_ptr<client::LiveSession> member(const std::string& name) {
@@ -82,7 +82,7 @@ struct DisplayProcess : testing::Test {
     // Answers for the output until `done` says yes.
     template <class Done>
     void until(const Done& done) {
-        const auto deadline = std::chrono::steady_clock::now() + Patience;
+        const auto deadline = std::chrono::steady_clock::now() + DisplayPatience;
         while (!done()) {
             ASSERT_LT(std::chrono::steady_clock::now(), deadline)
                 << "it did not happen: " << cluster.master().err();
@@ -212,7 +212,7 @@ TEST_F(DisplayProcess, FollowsATrackedHead) {
     until([&] { return is_seen_from({.position = {0, 0, 0.5}}, 0.064); });
     EXPECT_TRUE(track.running());
     track.signal(SIGINT);
-    EXPECT_EQ(track.wait(Patience).value_or(-1), 0);
+    EXPECT_EQ(track.wait(DisplayPatience).value_or(-1), 0);
     expect_says(track.out(), "3 bad packets");
 }
 
@@ -227,7 +227,7 @@ TEST_F(DisplayProcess, FollowsAHeadFromPython) {
                        cluster.endpoint(), cluster.keys(), cluster.folder().path()});
     const std::size_t before = frames.size();
     until([&] { return !walk.running(); });
-    EXPECT_EQ(walk.wait(Patience).value_or(-1), 0) << walk.err();
+    EXPECT_EQ(walk.wait(DisplayPatience).value_or(-1), 0) << walk.err();
     until([&] { return is_seen_from({.position = {-0.5, 0, 0}}, 0.064); });
     EXPECT_GT(frames.size(), before + 2) << "the picture moves with the head";
 }

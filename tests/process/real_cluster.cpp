@@ -10,10 +10,10 @@ namespace tessera::test {
 
 namespace {
 
-constexpr std::chrono::minutes Patience(3);  // generous: the machine may be busy with other tests
+constexpr std::chrono::minutes ClusterPatience(3);  // generous: the machine may be busy with other tests
 
 nlohmann::json finished(ChildProcess process, const std::string& label) {
-    const auto exit = process.wait(Patience);
+    const auto exit = process.wait(ClusterPatience);
     EXPECT_EQ(exit.value_or(-1), 0) << label << ": " << process.err();
     return nlohmann::json::parse(process.out(), nullptr, false);
 }
@@ -37,7 +37,7 @@ std::string scene_file(const std::string& name) {
 RealCluster::RealCluster(std::vector<std::string> master_options, Session session)
     : endpoint_(free_loopback_endpoint()), master_options_(std::move(master_options)) {
     ChildProcess keys_tool(folder_.path(), "keys", "tessera", {"keys", keys()});
-    EXPECT_EQ(keys_tool.wait(Patience).value_or(-1), 0) << keys_tool.err();
+    EXPECT_EQ(keys_tool.wait(ClusterPatience).value_or(-1), 0) << keys_tool.err();
     if (session == Session::Kept) {
         master_options_.push_back("--session");
         master_options_.push_back(folder_ / "session");
@@ -47,7 +47,7 @@ RealCluster::RealCluster(std::vector<std::string> master_options, Session sessio
 
 void RealCluster::kill_master() {
     master_->signal(SIGKILL);
-    (void)master_->wait(Patience);
+    (void)master_->wait(ClusterPatience);
 }
 
 void RealCluster::start_master() {

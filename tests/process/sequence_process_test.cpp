@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::chrono::minutes Patience(3);
+constexpr std::chrono::minutes SequencePatience(3);
 
 std::string moving_scene(const import::TestFolder& folder) {
     return folder.write("moving.glb", import::moving_file().glb()).string();
@@ -40,7 +40,7 @@ TEST(SequenceProcess, FramesOfAClusterHaveTheBitsOfFramesAlone) {
     ChildProcess render = cluster.start_render("frame.%02d", scene,
                                                {"--size", "64x48", "--spp", "4", "--seed", "7", "--frames",
                                                 "1:4", "--fps", "2", "--wait-nodes", "2:60", "--json"});
-    ASSERT_EQ(render.wait(Patience).value_or(-1), 0) << render.err();
+    ASSERT_EQ(render.wait(SequencePatience).value_or(-1), 0) << render.err();
     const auto together = hashes(render.out());
     ASSERT_EQ(together.size(), 4u) << render.out();
     for (int frame = 1; frame <= 4; ++frame) {
@@ -70,11 +70,11 @@ TEST(SequenceProcess, AnInterruptedOneLeavesWholeFramesAndGoesOn) {
                                        "16",     "--frames",          "0:99",   "-o",      pattern,
                                        "--json"};
     ChildProcess render(folder.path(), "first", "tessera", arguments);
-    const auto deadline = std::chrono::steady_clock::now() + Patience;
+    const auto deadline = std::chrono::steady_clock::now() + SequencePatience;
     while (!std::filesystem::exists(folder / "frame.1.exr") && std::chrono::steady_clock::now() < deadline)
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     render.signal(SIGINT);
-    ASSERT_EQ(render.wait(Patience).value_or(-1), 130) << render.err();
+    ASSERT_EQ(render.wait(SequencePatience).value_or(-1), 130) << render.err();
     const auto there = hashes(render.out());
     EXPECT_NE(render.err().find("interrupted; the frames before it are there"), std::string::npos)
         << render.err();
@@ -90,7 +90,7 @@ TEST(SequenceProcess, AnInterruptedOneLeavesWholeFramesAndGoesOn) {
     arguments[7] = "0:" + std::to_string(next + 1);
     arguments.emplace_back("--skip-existing");
     ChildProcess rest(folder.path(), "rest", "tessera", arguments);
-    ASSERT_EQ(rest.wait(Patience).value_or(-1), 0) << rest.err();
+    ASSERT_EQ(rest.wait(SequencePatience).value_or(-1), 0) << rest.err();
     const auto added = hashes(rest.out());
     EXPECT_EQ(added.size(), 2u);
     EXPECT_TRUE(added.contains(next) && added.contains(next + 1)) << rest.out();
@@ -101,7 +101,7 @@ TEST(SequenceProcess, ASceneInWhichNothingMovesIsToldSo) {
     ChildProcess render(
         folder.path(), "still", "tessera",
         {"render", scene_file("still.glb"), "--frames", "0:3", "-o", folder / "still.%d.png"});
-    EXPECT_EQ(render.wait(Patience).value_or(-1), 2);
+    EXPECT_EQ(render.wait(SequencePatience).value_or(-1), 2);
     EXPECT_NE(render.err().find("no animation that can be played"), std::string::npos) << render.err();
 }
 

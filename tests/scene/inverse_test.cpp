@@ -8,7 +8,7 @@
 namespace tessera::scene {
 namespace {
 
-Scene with_root() {
+Scene rooted_scene() {
     Scene scene;
     EXPECT_TRUE(scene.apply_entries({Create{RootId, Root{}}}));
     return scene;
@@ -21,7 +21,7 @@ void index(ReferrerIndex& referrers, const std::vector<ObjectChange>& changes) {
 
 TEST(Inverse, TakesRandomEditsBackBitForBit) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
-        Scene scene = with_root();
+        Scene scene = rooted_scene();
         RandomEdits edits(seed, 100);
         std::vector<std::pair<Hash128, std::vector<Entry>>> way_back;
         for (int i = 0; i < 200; ++i) {
@@ -40,7 +40,7 @@ TEST(Inverse, TakesRandomEditsBackBitForBit) {
 }
 
 TEST(Inverse, BringsAnObjectBackThatBecameOneOfAnotherKind) {
-    Scene scene = with_root();
+    Scene scene = rooted_scene();
     ASSERT_TRUE(scene.apply_entries({Create{ObjectId{5}, Light{.name = "lamp"}}}));
     const Hash128 before = scene.state_hash();
     const auto changes =
@@ -53,7 +53,7 @@ TEST(Inverse, BringsAnObjectBackThatBecameOneOfAnotherKind) {
 }
 
 TEST(Inverse, HoldsOnlyTheFieldsItNeeds) {
-    Scene scene = with_root();
+    Scene scene = rooted_scene();
     ASSERT_TRUE(scene.apply_entries({Create{ObjectId{5}, Material{.name = "red", .roughness = 0.25f}}}));
     Material smooth;
     smooth.roughness = 0.5f;
@@ -72,7 +72,7 @@ TEST(Inverse, HoldsOnlyTheFieldsItNeeds) {
 TEST(ValidateChanges, AgreesWithTheCheckOfTheWholeScene) {
     int refused = 0;
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
-        Scene scene = with_root();
+        Scene scene = rooted_scene();
         ReferrerIndex referrers;
         RandomEdits edits(seed, 100);
         for (int i = 0; i < 150; ++i) {
@@ -97,7 +97,7 @@ TEST(ValidateChanges, AgreesWithTheCheckOfTheWholeScene) {
 }
 
 TEST(ValidateChanges, FindsCyclesOfLargeEditsToo) {
-    Scene scene = with_root();
+    Scene scene = rooted_scene();
     ReferrerIndex referrers;
     std::vector<Entry> chain;
     constexpr std::uint64_t Length = 1000, First = 100;
@@ -124,7 +124,7 @@ TEST(ValidateChanges, FindsCyclesOfLargeEditsToo) {
 }
 
 TEST(ReferrerIndex, ForgetsNothingAndKeepsNothing) {
-    Scene scene = with_root();
+    Scene scene = rooted_scene();
     ReferrerIndex referrers;
     RandomEdits edits(3, 100);
     for (int i = 0; i < 300; ++i) {

@@ -5,12 +5,12 @@
 namespace tessera::scene {
 namespace {
 
-constexpr ObjectId A{100}, B{101};
+constexpr ObjectId Lamp{100}, Other{101};
 
 struct SceneEditorTest : testing::Test {
     Scene base;
     void SetUp() override {
-        ASSERT_TRUE(base.apply_entries({Create{RootId, Root{}}, Create{A, Light{.name = "lamp"}}}));
+        ASSERT_TRUE(base.apply_entries({Create{RootId, Root{}}, Create{Lamp, Light{.name = "lamp"}}}));
     }
     static Light intense(float value) { return {.intensity = glm::vec3(value)}; }
     static constexpr Fields<Light> Intensity{Light::Field::Intensity};
@@ -18,7 +18,7 @@ struct SceneEditorTest : testing::Test {
 
 TEST_F(SceneEditorTest, ManyWritesOfAFieldAreOneEntry) {
     SceneEditor editor(base);
-    for (int i = 0; i < 10; ++i) editor.update(A, Intensity, intense(static_cast<float>(i + 2)));
+    for (int i = 0; i < 10; ++i) editor.update(Lamp, Intensity, intense(static_cast<float>(i + 2)));
     const auto entries = editor.take();
     ASSERT_EQ(entries.size(), 1u);
     const auto& update = std::get<Update>(entries[0]);
@@ -29,8 +29,8 @@ TEST_F(SceneEditorTest, ManyWritesOfAFieldAreOneEntry) {
 
 TEST_F(SceneEditorTest, CreateAndUpdateIsACreate) {
     SceneEditor editor(base);
-    editor.create(B, Light{});
-    editor.update(B, Intensity, intense(7.0f));
+    editor.create(Other, Light{});
+    editor.update(Other, Intensity, intense(7.0f));
     const auto entries = editor.take();
     ASSERT_EQ(entries.size(), 1u);
     EXPECT_EQ(std::get<Light>(std::get<Create>(entries[0]).object).intensity.x, 7.0f);
@@ -38,35 +38,35 @@ TEST_F(SceneEditorTest, CreateAndUpdateIsACreate) {
 
 TEST_F(SceneEditorTest, CreateAndRemoveIsNothing) {
     SceneEditor editor(base);
-    editor.create(B, Light{});
-    editor.remove(B);
+    editor.create(Other, Light{});
+    editor.remove(Other);
     EXPECT_TRUE(editor.take().empty());
 }
 
 TEST_F(SceneEditorTest, RemoveAndCreateOfTheSameKindIsWhatDiffers) {
     SceneEditor editor(base);
-    editor.remove(A);
-    editor.create(A, Light{.name = "lamp", .intensity = glm::vec3(9.0f)});
+    editor.remove(Lamp);
+    editor.create(Lamp, Light{.name = "lamp", .intensity = glm::vec3(9.0f)});
     const auto entries = editor.take();
     ASSERT_EQ(entries.size(), 1u);
     EXPECT_EQ(std::get<Update>(entries[0]).mask, Intensity.bits());
-    editor.remove(A);
-    editor.create(A, Camera{});
+    editor.remove(Lamp);
+    editor.create(Lamp, Camera{});
     EXPECT_EQ(editor.take().size(), 2u) << "another kind: it goes and comes";
 }
 
 TEST_F(SceneEditorTest, WritesThatChangeNothingVanish) {
     SceneEditor editor(base);
-    editor.update(A, Intensity, intense(1.0f));
+    editor.update(Lamp, Intensity, intense(1.0f));
     EXPECT_TRUE(editor.take().empty());
 }
 
 TEST_F(SceneEditorTest, RefusesWhatIsNotThereOrOfAnotherKind) {
     SceneEditor editor(base);
-    EXPECT_THROW(editor.remove(B), Error);
-    EXPECT_THROW(editor.create(A, Light{}), Error);
-    EXPECT_THROW(editor.update(A, Fields<Camera>(Camera::Field::VerticalFov), Camera{}), Error);
-    EXPECT_THROW(editor.update(B, Intensity, Light{}), Error);
+    EXPECT_THROW(editor.remove(Other), Error);
+    EXPECT_THROW(editor.create(Lamp, Light{}), Error);
+    EXPECT_THROW(editor.update(Lamp, Fields<Camera>(Camera::Field::VerticalFov), Camera{}), Error);
+    EXPECT_THROW(editor.update(Other, Intensity, Light{}), Error);
     EXPECT_TRUE(editor.take().empty());
 }
 

@@ -15,7 +15,7 @@ namespace {
 using glm::vec3;
 using shading::Span, shading::SpanView;
 
-constexpr ObjectId NoMaterial{};
+constexpr ObjectId FogAlone{};
 constexpr double MostError = 0.003;  // standard error of each mean, as a share of it
 
 Mean seen_with(const World& world, const view::View& view, Strategy strategy, std::uint64_t spp) {
@@ -53,9 +53,9 @@ view::View of_the_middle(std::uint32_t bounces) {
     return view;
 }
 
-void add_fog(Model& model) {
+void add_lamp_fog(Model& model) {
     model.filled_with({.absorption = vec3(0.1f), .scattering = vec3(0.4f, 0.7f, 0.2f), .anisotropy = 0.4f});
-    model.box(NoMaterial, {-2, -2, -2}, {2, 2, 2});
+    model.box(FogAlone, {-2, -2, -2}, {2, 2, 2});
     model.filled_with_nothing();
 }
 
@@ -71,7 +71,7 @@ glm::dmat4 from_above(const glm::dvec3& place) {
 TEST(Equiangular, APointLightIsFoundAlikeInAllWays) {
     for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted}) {
         Model model;
-        add_fog(model);
+        add_lamp_fog(model);
         model.floor(model.material(chalk(vec3(0.5f))), 1.5f, -1.0f);
         model.light({.kind = scene::LightKind::Point, .intensity = vec3(1.0f)}, at({0.8, 2.9, 0.4}));
         view::View view = of_the_middle(renderer == view::Renderer::Whitted ? 0 : 2);
@@ -82,7 +82,7 @@ TEST(Equiangular, APointLightIsFoundAlikeInAllWays) {
 
 TEST(Equiangular, ASpotLightIsFoundAlikeInAllWays) {
     Model model;
-    add_fog(model);
+    add_lamp_fog(model);
     model.light({.kind = scene::LightKind::Spot,
                  .intensity = vec3(20.0f),
                  .inner_cone_angle = 0.3f,
@@ -94,9 +94,9 @@ TEST(Equiangular, ASpotLightIsFoundAlikeInAllWays) {
 // In nested bodies, the inner one denser and coloured otherwise.
 TEST(Equiangular, LightInNestedFogIsFoundAlikeInAllWays) {
     Model model;
-    add_fog(model);
+    add_lamp_fog(model);
     model.filled_with({.scattering = vec3(1.5f, 0.2f, 3.0f), .anisotropy = -0.3f, .priority = 1});
-    model.sphere(NoMaterial, {0.2, -0.1, 0}, 0.8);
+    model.sphere(FogAlone, {0.2, -0.1, 0}, 0.8);
     model.filled_with_nothing();
     model.light({.kind = scene::LightKind::Point, .intensity = vec3(1.0f)}, at({0.7, 2.9, 0.2}));
     expect_agreement(model, 512, of_the_middle(1));
@@ -121,7 +121,7 @@ TEST(Equiangular, LightInTexturedFogIsFoundAlikeInAllWays) {
                                                          texels);
         model.filled_with(
             {.absorption = vec3(0.1f), .scattering = vec3(1.0f, 0.5f, 0.2f), .scattering_texture = texture});
-        model.box(NoMaterial, {-2, -2, -2}, {2, 2, 2});
+        model.box(FogAlone, {-2, -2, -2}, {2, 2, 2});
         model.filled_with_nothing();
         model.light({.kind = scene::LightKind::Point, .intensity = vec3(1.0f)}, at({0.7, 2.9, 0.2}));
         expect_agreement(model, 320, of_the_middle(0));
@@ -132,7 +132,7 @@ TEST(Equiangular, LightInTexturedFogIsFoundAlikeInAllWays) {
 TEST(Equiangular, LightsWithASizeAreFoundAlikeInAllWays) {
     for (const int kind : {0, 1, 2}) {
         Model model;
-        add_fog(model);
+        add_lamp_fog(model);
         if (kind == 0) {
             model.light({.kind = scene::LightKind::Sphere, .intensity = vec3(4.0f), .radius = 0.8f},
                         at({0.4, 2.2, 0}));
@@ -150,7 +150,7 @@ TEST(Equiangular, LightsWithASizeAreFoundAlikeInAllWays) {
 // Lights of which each leg chooses others, and some that are not in the tree.
 TEST(Equiangular, ManyLightsAreFoundAlikeInAllWays) {
     Model model;
-    add_fog(model);
+    add_lamp_fog(model);
     CounterRandom random(4);
     for (int i = 0; i < 40; ++i) {
         const auto number = [&] { return 1.8 * (2.0 * random.uniform() - 1.0); };
@@ -171,7 +171,7 @@ TEST(Equiangular, LightInAGlassOfFogIsFoundAlikeInAllWays) {
     model.filled_with({.scattering = vec3(1.0f)});
     model.sphere(model.material(glass(1.0f)), {0, 0, 0}, 1.5);
     model.filled_with({.absorption = vec3(1e-3f), .priority = 1});
-    model.sphere(NoMaterial, {0.1, 0.6, 0.2}, 0.6);
+    model.sphere(FogAlone, {0.1, 0.6, 0.2}, 0.6);
     model.filled_with_nothing();
     model.light({.kind = scene::LightKind::Point, .intensity = vec3(1.0f)}, at({0.1, 0.6, 0.2}));
     expect_agreement(model, 512, of_the_middle(1));
@@ -208,7 +208,7 @@ Mean seen_past(const Pass& pass, Strategy strategy, std::uint64_t spp, view::Ren
     Model model;
     model.filled_with({.scattering = vec3(pass.depth / 4.0f)});
     // With its front at 0, where places are told apart that are less than a free flight from each other.
-    model.box(NoMaterial, {-1e3f, -1e3f, -4}, {1e3f, 1e3f, 0});
+    model.box(FogAlone, {-1e3f, -1e3f, -4}, {1e3f, 1e3f, 0});
     model.filled_with_nothing();
     model.light({.kind = scene::LightKind::Point, .intensity = vec3(1.0f)},
                 at({pass.height, 0, pass.foot - 2.0}));

@@ -40,12 +40,13 @@ Estimate radiance(const Furnace& furnace, std::uint32_t max_bounces, Strategy st
 }
 
 // 18 tests at 4 standard errors: 0.1 % of fixed seeds would fail a right tracer.
-constexpr double Threshold = 4.0;
-constexpr double Rounding = 1e-5;  // float throughput over a few hundred vertices
+constexpr double FurnaceThreshold = 4.0;
+constexpr double FurnaceRounding = 1e-5;  // float throughput over a few hundred vertices
 
 void expect_value(const Estimate& estimate, double expected) {
     EXPECT_LE(estimate.standard_error, 0.003 * expected) << "too few samples to see 1 % of missing energy";
-    EXPECT_NEAR(estimate.mean, expected, Threshold * estimate.standard_error + Rounding * expected);
+    EXPECT_NEAR(estimate.mean, expected,
+                FurnaceThreshold * estimate.standard_error + FurnaceRounding * expected);
 }
 
 class WhiteFurnace : public testing::TestWithParam<float> {};

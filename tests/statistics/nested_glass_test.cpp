@@ -55,7 +55,7 @@ void expect_share(const World& world, const view::View& view, double share) {
     EXPECT_NEAR(mean.value, share, 4.5 * error + 1e-6);
 }
 
-view::View from_above(double height = 10.0) {
+view::View nested_from_above(double height = 10.0) {
     return small_view({0.01, 0.02, height}, 1e-4, 16);
 }
 
@@ -71,12 +71,12 @@ TEST(NestedGlass, LayersPassWhatTheirBoundariesLeave) {
         model.floor(model.material(black(1.0f)), 10.0f, -5.0f);
         const World& world = model.build();
         EXPECT_TRUE(model.problems.empty());
-        expect_share(world, from_above(), passed({1.0, outer, inner, outer, 1.0}));
+        expect_share(world, nested_from_above(), passed({1.0, outer, inner, outer, 1.0}));
         // The eye in the outer body, above the inner one; and in that.
-        expect_share(world, from_above(3.5),
+        expect_share(world, nested_from_above(3.5),
                      seen_between(passed({outer, inner, outer, 1.0}), passed({outer, 1.0})));
         const double half = passed({inner, outer, 1.0});
-        expect_share(world, from_above(2.0), seen_between(half, half));
+        expect_share(world, nested_from_above(2.0), seen_between(half, half));
     }
 }
 
@@ -91,11 +91,11 @@ TEST(NestedGlass, ThePriorityTellsWhoseBoundaryIsOne) {
         model.filled_with_nothing();
         model.floor(model.material(black(1.0f)), 10.0f, -5.0f);
         const World& world = model.build();
-        expect_share(world, from_above(), passed({1.0, 1.4, 1.9, 1.0}));
+        expect_share(world, nested_from_above(), passed({1.0, 1.4, 1.9, 1.0}));
         // In the overlap, between the boundary that is one and the lower body's or the upper body's.
         const double below = lower == 1 ? passed({1.4, 1.0}) : passed({1.9, 1.4, 1.0});
         const double above = lower == 1 ? passed({1.4, 1.9, 1.0}) : passed({1.9, 1.0});
-        expect_share(world, from_above(3.0), seen_between(below, above));
+        expect_share(world, nested_from_above(3.0), seen_between(below, above));
     }
 }
 
@@ -105,7 +105,7 @@ TEST(NestedGlass, OfEqualsTheLastGoesBefore) {
     model.box(model.material(glass(1.4f)), {-1, -1, 0}, {1, 1, 4});
     model.box(model.material(glass(1.9f)), {-0.5f, -0.5f, 2}, {0.5f, 0.5f, 6});
     model.floor(model.material(black(1.0f)), 10.0f, -5.0f);
-    expect_share(model.build(), from_above(), passed({1.0, 1.9, 1.4, 1.0}));
+    expect_share(model.build(), nested_from_above(), passed({1.0, 1.9, 1.4, 1.0}));
 }
 
 // A fog has no index: glass in it refracts as in what the fog is in.
@@ -117,7 +117,7 @@ TEST(NestedGlass, AFogHasNoIndexOfItsOwn) {
     model.filled_with_nothing();
     model.box(model.material(glass(1.2f)), {-0.5f, -0.5f, 2}, {0.5f, 0.5f, 4});
     model.floor(model.material(black(1.0f)), 10.0f, -5.0f);
-    expect_share(model.build(), from_above(), passed({1.0, 1.5, 1.2, 1.5, 1.0}));
+    expect_share(model.build(), nested_from_above(), passed({1.0, 1.5, 1.2, 1.5, 1.0}));
 }
 
 // Under an angle, from the outer body on the inner one's top; what is reflected ends at a black lid.
@@ -179,7 +179,7 @@ TEST(NestedGlass, AnIndexWithoutBoundReflectsAll) {
         model.box(model.material(glass(inner)), {-0.5f, -0.5f, 1}, {0.5f, 0.5f, 3});
         model.floor(model.material(black(1.0f)), 0.4f, 2.0f);
         model.floor(model.material(black(0.0f)), -0.4f, 3.9f);
-        expect_share(model.build(), from_above(3.5), 0.0);
+        expect_share(model.build(), nested_from_above(3.5), 0.0);
     }
 }
 

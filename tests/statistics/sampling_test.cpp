@@ -20,18 +20,18 @@ namespace {
 
 using namespace test;
 
-glm::vec2 pair(CounterRandom& random) {
+glm::vec2 uniform_pair(CounterRandom& random) {
     return {static_cast<float>(random.uniform()) * 0.99999994f,
             static_cast<float>(random.uniform()) * 0.99999994f};
 }
 
 TEST(Sampling, CosineHemisphere) {
-    expect_directions([](CounterRandom& r) { return sample_cosine_hemisphere(pair(r)); },
+    expect_directions([](CounterRandom& r) { return sample_cosine_hemisphere(uniform_pair(r)); },
                       [](const glm::vec3& w) { return std::max(0.0, double(w.z)) / DoublePi; });
 }
 
 TEST(Sampling, Sphere) {
-    expect_directions([](CounterRandom& r) { return sample_sphere(pair(r)); },
+    expect_directions([](CounterRandom& r) { return sample_sphere(uniform_pair(r)); },
                       [](const glm::vec3&) { return 1.0 / (4.0 * DoublePi); });
 }
 
@@ -40,7 +40,7 @@ TEST(Sampling, TriangleIsUniform) {
     constexpr int Edge = 10;
     std::vector<double> observed(Edge * Edge), expected(Edge * Edge);
     for (int i = 0; i < Samples; ++i) {
-        const glm::vec2 b = sample_triangle(pair(random));
+        const glm::vec2 b = sample_triangle(uniform_pair(random));
         ASSERT_TRUE(b.x >= 0.0f && b.y >= 0.0f && b.x + b.y <= 1.000001f);
         ++observed[static_cast<std::size_t>(std::min(9, int(b.x * Edge)) * Edge +
                                             std::min(9, int(b.y * Edge)))];
@@ -105,7 +105,7 @@ TEST(Sampling, EnvironmentMap) {
     backend::TexturePyramids pyramids;
     const auto tables = backend::make_tables(described, {}, backend::MeshCatalog(blobs), *blobs, pyramids);
     const Scene sky = backend::on_host(tables);
-    expect_directions([&](CounterRandom& r) { return sample_sky(sky, pair(r)); },
+    expect_directions([&](CounterRandom& r) { return sample_sky(sky, uniform_pair(r)); },
                       [&](const glm::vec3& w) { return double(sky_at(sky, w).pdf); });
 }
 
@@ -138,7 +138,7 @@ TEST_P(WideSurfaceModel, DrawsWhatItsDensitySays) {
     expected.push_back((1.0 - std::min(above, 1.0)) * Samples);
     for (int i = 0; i < Samples; ++i) {
         const float choice = static_cast<float>(random.uniform());
-        const glm::vec3 in = sample_bsdf(bsdf, out, choice, pair(random));
+        const glm::vec3 in = sample_bsdf(bsdf, out, choice, uniform_pair(random));
         ++observed[in.z > 0.0f ? cell(in) : observed.size() - 1];
     }
     expect_fit(observed, expected);
@@ -149,7 +149,8 @@ TEST_P(SurfaceModel, NeverReflectsMoreThanComesIn) {
     CounterRandom random(9);
     double sum = 0.0, squares = 0.0;
     for (int i = 0; i < Samples; ++i) {
-        const glm::vec3 in = sample_bsdf(bsdf, out, static_cast<float>(random.uniform()), pair(random));
+        const glm::vec3 in =
+            sample_bsdf(bsdf, out, static_cast<float>(random.uniform()), uniform_pair(random));
         const BsdfValue value = evaluate_bsdf(table, bsdf, out, in);
         const double weight = value.pdf > 0.0f ? double(value.value.x) / double(value.pdf) : 0.0;
         sum += weight;
@@ -166,7 +167,7 @@ TEST_P(SurfaceModel, NeverReflectsMoreThanComesIn) {
 TEST_P(SurfaceModel, IsReciprocal) {
     CounterRandom random(10);
     for (int i = 0; i < 1000; ++i) {
-        const glm::vec3 in = sample_cosine_hemisphere(pair(random));
+        const glm::vec3 in = sample_cosine_hemisphere(uniform_pair(random));
         if (!(in.z > 1e-3f)) continue;
         const Bsdf back = test::make_bsdf(look, {metallic, 1.0f - metallic}, in);
         const double there = evaluate_bsdf(table, bsdf, out, in).value.x / in.z;

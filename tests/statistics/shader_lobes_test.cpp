@@ -15,12 +15,12 @@ namespace {
 
 constexpr double Pi2 = 2.0 * std::numbers::pi;
 
-glm::vec2 pair(CounterRandom& random) {
+glm::vec2 shader_pair(CounterRandom& random) {
     return {static_cast<float>(random.uniform()) * 0.99999994f,
             static_cast<float>(random.uniform()) * 0.99999994f};
 }
 
-glm::vec3 towards(float cosine, float azimuth = 0.7f) {
+glm::vec3 shader_towards(float cosine, float azimuth = 0.7f) {
     const float sine = std::sqrt(1.0f - cosine * cosine);
     return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
 }
@@ -39,7 +39,7 @@ const glm::vec2 Exponents[] = {
 TEST(BlinnFacets, CoverTheSurfaceFromEverySide) {
     for (const glm::vec2 e : Exponents) {
         for (const float cosine : {1.0f, 0.5f, 0.05f}) {
-            const glm::vec3 out = towards(cosine);
+            const glm::vec3 out = shader_towards(cosine);
             double projected = 0.0, seen = 0.0;
             // Midpoints over azimuth and over a coordinate that follows the lobe's width.
             const int rings = 4000, sectors = 400;
@@ -84,13 +84,13 @@ TEST(ShaderLobes, DrawWhatTheirDensitySays) {
     for (const glm::vec2 e : {glm::vec2(0.0f), glm::vec2(30.0f), glm::vec2(50.0f, 3.0f)}) {
         for (const float cosine : {0.95f, 0.3f}) {
             for (const float diffuse : {0.0f, 0.5f}) {
-                const glm::vec3 out = towards(cosine);
+                const glm::vec3 out = shader_towards(cosine);
                 const ShaderLobes lobes = glossy(e, cosine, part, diffuse);
                 SCOPED_TRACE(testing::Message() << e.x << " " << e.y << " " << cosine << " " << diffuse);
                 test::expect_directions(
                     [&](CounterRandom& random) {
                         return sample_shader(lobes, out, static_cast<float>(random.uniform()) * 0.99999994f,
-                                             pair(random));
+                                             shader_pair(random));
                     },
                     [&](const glm::vec3& in) {
                         return in.z > 0.0f ? double(evaluate_shader(lobes, out, in).pdf) : 0.0;
@@ -109,7 +109,7 @@ TEST(ShaderLobes, NeverGiveBackMoreThanComesIn) {
             for (const float eta : {1.0f, 1.000001f, 1.5f, 1.0f / 1.5f, 0.0f}) {
                 for (const float blend : {0.0f, 0.5f, 1.0f}) {
                     const PerfectPart part{vec3(0.7f), vec3(1.0f), vec3(eta), blend};
-                    const glm::vec3 out = towards(cosine);
+                    const glm::vec3 out = shader_towards(cosine);
                     const ShaderLobes lobes = glossy(e, cosine, part, 0.3f);
                     const PerfectShares shares = perfect_shares(part, cosine);
                     const double perfect = double(shares.reflected.y + shares.refracted.y);
@@ -117,8 +117,9 @@ TEST(ShaderLobes, NeverGiveBackMoreThanComesIn) {
                     double sum = 0.0, squares = 0.0;
                     const int samples = 4000;
                     for (int i = 0; i < samples; ++i) {
-                        const glm::vec3 in = sample_shader(
-                            lobes, out, static_cast<float>(random.uniform()) * 0.99999994f, pair(random));
+                        const glm::vec3 in =
+                            sample_shader(lobes, out, static_cast<float>(random.uniform()) * 0.99999994f,
+                                          shader_pair(random));
                         if (!(in.z > 0.0f)) continue;
                         const BsdfValue value = evaluate_shader(lobes, out, in);
                         ASSERT_TRUE(std::isfinite(value.value.y) && value.value.y >= 0.0f);
@@ -144,12 +145,12 @@ TEST(ShaderLobes, NeverGiveBackMoreThanComesIn) {
 TEST(ShaderLobes, ASmoothGlossyLobeLosesNothing) {
     CounterRandom random(12);
     for (const float cosine : {1.0f, 0.5f, 0.2f}) {
-        const glm::vec3 out = towards(cosine);
+        const glm::vec3 out = shader_towards(cosine);
         const ShaderLobes lobes = glossy(vec2(65536.0f), cosine);
         double sum = 0.0;
         for (int i = 0; i < 20000; ++i) {
             const glm::vec3 in =
-                sample_shader(lobes, out, static_cast<float>(random.uniform()), pair(random));
+                sample_shader(lobes, out, static_cast<float>(random.uniform()), shader_pair(random));
             const BsdfValue value = in.z > 0.0f ? evaluate_shader(lobes, out, in) : BsdfValue{};
             sum += value.pdf > 0.0f ? double(value.value.y) / double(value.pdf) : 0.0;
         }
@@ -162,9 +163,9 @@ TEST(ShaderLobes, AreReciprocal) {
     const PerfectPart part{vec3(0.4f), vec3(0.3f), vec3(1.4f), 0.8f};
     for (const glm::vec2 e : Exponents) {
         for (int i = 0; i < 2000; ++i) {
-            const glm::vec3 a = sample_cosine_hemisphere(pair(random));
-            const glm::vec3 b = e.x > 1000.0f ? towards(a.z, std::atan2(-a.y, -a.x) + 0.01f)
-                                              : sample_cosine_hemisphere(pair(random));
+            const glm::vec3 a = sample_cosine_hemisphere(shader_pair(random));
+            const glm::vec3 b = e.x > 1000.0f ? shader_towards(a.z, std::atan2(-a.y, -a.x) + 0.01f)
+                                              : sample_cosine_hemisphere(shader_pair(random));
             if (!(a.z > 1e-2f) || !(b.z > 1e-2f)) continue;
             const double there =
                 double(evaluate_shader(glossy(e, a.z, part, 0.4f), a, b).value.y) / double(b.z);

@@ -13,7 +13,7 @@ using scene::SurfaceShader;
 using test::Tangents;
 
 using Corners = std::array<glm::vec3, 4>;
-const Corners Wall{{{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}}};
+const Corners MappedWall{{{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}}};
 
 constexpr double Step = 1.0 / 255.0;
 
@@ -28,7 +28,7 @@ Mean under_a_sky(SurfaceShader shader, scene::TextureSlot SurfaceShader::*slot) 
     Model model;
     shader.diffuse = glm::vec3(0.0f);
     shader.*slot = texel(model, {51, 51, 51, 255});
-    model.textured_quad(model.shader(shader), Wall, 1.0f);
+    model.textured_quad(model.shader(shader), MappedWall, 1.0f);
     model.sky(glm::vec3(1.0f));
     return mean_of(model.build(), small_view({0, 0, 1}, 0.1), 64, red);
 }
@@ -55,7 +55,7 @@ TEST(ShaderFactors, ShininessIsMultipliedByAlpha) {
         SurfaceShader shader{
             .diffuse = glm::vec3(0.0f), .specular = glm::vec3(1.0f), .shininess = glm::vec2(shininess)};
         shader.shininess_texture = texel(model, {0, 0, 0, alpha});
-        model.textured_quad(model.shader(shader), Wall, 1.0f);
+        model.textured_quad(model.shader(shader), MappedWall, 1.0f);
         model.point_light({1.0, 0.0, 4.0}, 1.0f);
         return mean_of(model.build(), small_view({0, 0, 4}, 0.01), 16, red).value;
     };
@@ -84,16 +84,17 @@ SurfaceShader mapped(Model& model, scene::NormalSpace space) {
 TEST(ShaderFrames, FollowTextureCoordinatesWhereThereAreNoTangents) {
     const double red = 408 * Step - 1, green = 1 - 204 * Step;
     Model plain;
-    plain.textured_quad(plain.shader(mapped(plain, scene::NormalSpace::Tangent)), Wall, 1.0f, Tangents::None);
+    plain.textured_quad(plain.shader(mapped(plain, scene::NormalSpace::Tangent)), MappedWall, 1.0f,
+                        Tangents::None);
     expect_normal(plain, {red, green, 1}, "plain");
     Model mirrored;
     mirrored.framed_by(glm::scale(glm::dmat4(1.0), {-1.0, 1.0, 1.0}));
-    mirrored.textured_quad(mirrored.shader(mapped(mirrored, scene::NormalSpace::Tangent)), Wall, 1.0f,
+    mirrored.textured_quad(mirrored.shader(mapped(mirrored, scene::NormalSpace::Tangent)), MappedWall, 1.0f,
                            Tangents::None);
     expect_normal(mirrored, {-red, green, 1}, "mirrored");
     Model turned;
     turned.framed_by(glm::scale(glm::dmat4(1.0), {-1.0, -1.0, 1.0}));
-    turned.textured_quad(turned.shader(mapped(turned, scene::NormalSpace::Tangent)), Wall, 1.0f,
+    turned.textured_quad(turned.shader(mapped(turned, scene::NormalSpace::Tangent)), MappedWall, 1.0f,
                          Tangents::None);
     expect_normal(turned, {-red, -green, 1}, "turned by half");
 }
@@ -103,11 +104,12 @@ TEST(ShaderFrames, ObjectSpaceIsTheObjects) {
     const double x = 408 * Step - 1, y = 204 * Step - 1;
     Model turned;
     turned.framed_by(glm::rotate(glm::dmat4(1.0), M_PI / 2, {0.0, 0.0, 1.0}));
-    turned.textured_quad(turned.shader(mapped(turned, scene::NormalSpace::Object)), Wall, 1.0f);
+    turned.textured_quad(turned.shader(mapped(turned, scene::NormalSpace::Object)), MappedWall, 1.0f);
     expect_normal(turned, {-y, x, 1}, "turned");
     Model stretched;
     stretched.framed_by(glm::scale(glm::dmat4(1.0), {2.0, 1.0, 1.0}));
-    stretched.textured_quad(stretched.shader(mapped(stretched, scene::NormalSpace::Object)), Wall, 1.0f);
+    stretched.textured_quad(stretched.shader(mapped(stretched, scene::NormalSpace::Object)), MappedWall,
+                            1.0f);
     expect_normal(stretched, {0.5 * x, y, 1}, "stretched");
 }
 
@@ -130,7 +132,7 @@ TEST(ShaderFrames, HeightsFollowTheTransformOfTheirTexture) {
     shader.height_texture.rotation = float(Angle);
     shader.height_texture.scale = glm::vec2(scale);
     shader.height_texture.offset = {-0.3f, 0.4f};
-    model.textured_quad(model.shader(shader), Wall, 1.0f);
+    model.textured_quad(model.shader(shader), MappedWall, 1.0f);
     // Per unit of the picture, and of the wall's 8 m: 8 steps of 0.1 and 4 of 0.3.
     const double c = std::cos(Angle), s = std::sin(Angle);
     const double along_u = scale.x * (0.8 * c - 1.2 * s), along_v = scale.y * (0.8 * s + 1.2 * c);

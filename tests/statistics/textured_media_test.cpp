@@ -14,7 +14,7 @@ namespace {
 using glm::vec3;
 using scene::Medium;
 
-constexpr ObjectId NoMaterial{};
+constexpr ObjectId MediumAlone{};
 
 // Values of a lattice, by slices from z = 0 on, rows from the top.
 struct Lattice {
@@ -94,7 +94,7 @@ TEST(TexturedMedia, AbsorbAsTheSumAlongTheRay) {
             {.absorption = vec3(0.5f),
              .absorption_texture = add_texture(
                  model, lattice, filters ? scene::TextureFilter::Linear : scene::TextureFilter::Nearest)});
-        model.box(NoMaterial, -Half, Half);
+        model.box(MediumAlone, -Half, Half);
         model.sky(vec3(1.0f));
         const World& world = model.build();
         EXPECT_TRUE(model.problems.empty());
@@ -114,7 +114,7 @@ TEST(TexturedMedia, EmitAlongTheWay) {
     model.filled_with({.emission = vec3(2.0f),
                        .emission_texture = add_texture(model, lattice, scene::TextureFilter::Linear),
                        .absorption = vec3(0.4f)});
-    model.box(NoMaterial, -Half, Half);
+    model.box(MediumAlone, -Half, Half);
     const Mean seen = mean_of(model.build(), small_view({0.2, 0.4, 10}, 1e-6), 64, red);
     constexpr int Steps = 20000;
     double expected = 0.0;
@@ -138,7 +138,7 @@ TEST(TexturedMedia, WhatOnlyScattersIsInvisible) {
              .scattering_texture = add_texture(
                  model, lattice, filters ? scene::TextureFilter::Linear : scene::TextureFilter::Nearest),
              .anisotropy = 0.3f});
-        model.box(NoMaterial, -Half, Half);
+        model.box(MediumAlone, -Half, Half);
         model.sky(vec3(1.0f));
         const World& world = model.build();
         for (int c = 0; c < 3; ++c) {
@@ -157,7 +157,7 @@ TEST(TexturedMedia, ScatterOnceInBothRenderers) {
     model.filled_with({.absorption = vec3(0.1f),
                        .scattering = vec3(1.0f),
                        .scattering_texture = add_texture(model, lattice, scene::TextureFilter::Linear)});
-    model.box(NoMaterial, -Half, Half);
+    model.box(MediumAlone, -Half, Half);
     model.light({.kind = scene::LightKind::Directional, .intensity = vec3(1.0f)},
                 glm::rotate(glm::dmat4(1.0), 1.0, glm::dvec3(1, 0, 0)));
     const World& world = model.build();
@@ -182,7 +182,7 @@ TEST(TexturedMedia, TakeWhatIsNoNumberForNothing) {
                            .absorption_texture = add_texture(model, lattice, scene::TextureFilter::Linear),
                            .scattering = vec3(1.0f),
                            .scattering_texture = add_texture(model, lattice, scene::TextureFilter::Linear)});
-        model.box(NoMaterial, vec3(-1), vec3(1));
+        model.box(MediumAlone, vec3(-1), vec3(1));
         model.sky(vec3(1.0f));
         const World& world = model.build();
         for_samples(world, small_view({0, 0, 5}, 0.2, 4), 16, [&](const PathSample& sample) {
