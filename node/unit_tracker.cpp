@@ -1,8 +1,8 @@
-// Units in, film out.
+#include "node/unit_tracker.h"
+
 #include <algorithm>
 
 #include "mediator/net/channel.h"
-#include "node/machine.h"
 
 namespace tessera::node {
 
@@ -30,54 +30,58 @@ std::optional<std::string> fault(const view::View& view, const backend::Capabili
 
 }  // namespace
 
-void NodeMachine::on(wire::OpenView& open, TimePoint) {
+UnitTracker::UnitTracker(std::uint32_t workers, const backend::Capabilities& capabilities,
+                         const SceneReplica& replica, Effects& effects)
+    : capabilities_(capabilities), replica_(replica), effects_(effects), queue_(workers) {}
+
+void UnitTracker::welcomed(std::uint64_t epoch) {
+    epoch_ = epoch;
+    queue_.restart_sequence();
+}
+
+void UnitTracker::open(const wire::OpenView& open) {
     if (const auto why = fault(open.view, capabilities_)) {
         const std::string text =
             "view " + std::to_string(open.view.id.value) + " cannot be rendered: " + *why;
-        send(wire::Notice{wire::Severity::Error, text});
-        return report(wire::Severity::Error, text);
+        effects_.send(wire::Notice{wire::Severity::Error, text});
+        return effects_.report(wire::Severity::Error, text);
     }
     const auto known = views_.find(open.view.id);
     if (known == views_.end() && views_.size() >= MaxViews) {
-        return report(wire::Severity::Error,
-                      "the master opened more than " + std::to_string(MaxViews) + " views; close some");
+        return effects_.report(wire::Severity::Error, "the master opened more than " +
+                                                          std::to_string(MaxViews) + " views; close some");
     }
     if (known != views_.end() && known->second.revision >= open.view.revision) return;  // older: a late one
     views_[open.view.id] = open.view;
     release_waiting(wire::ReleaseReason::Cancelled, "the view has a newer revision", open.view.id);
-    for (const view::WorkUnit& unit : queue_.rendering()) {
-        if (unit.view == open.view.id) stop(unit.id, wire::ReleaseReason::Cancelled);
-    }
+    stop_of(open.view.id);
 }
 
-void NodeMachine::on(wire::CloseView& close, TimePoint) {
+void UnitTracker::close(const wire::CloseView& close) {
     if (views_.erase(close.view) == 0) return;
     release_waiting(wire::ReleaseReason::Cancelled, "the view was closed", close.view);
-    for (const view::WorkUnit& unit : queue_.rendering()) {
-        if (unit.view == close.view) stop(unit.id, wire::ReleaseReason::Cancelled);
-    }
+    stop_of(close.view);
 }
 
-void NodeMachine::on(wire::Work& work, TimePoint) {
-    if (!welcomed_) return;
+void UnitTracker::work(const wire::Work& work, bool leaving) {
     switch (queue_.offer(work.sequence, work.unit)) {
         case WorkQueue::Verdict::Duplicate:
-            changed_ = true;  // the sequence number may be new
+            effects_.state_changed = true;  // the sequence number may be new
             return;
         case WorkQueue::Verdict::Full:
-            changed_ = true;
-            ++counters_.units_released;
-            return send(wire::UnitReleased{work.unit.id, wire::ReleaseReason::Cancelled, "no place is free"});
+            effects_.state_changed = true;
+            ++effects_.counters.units_released;
+            return effects_.send(
+                wire::UnitReleased{work.unit.id, wire::ReleaseReason::Cancelled, "no place is free"});
         case WorkQueue::Verdict::Taken:
-            changed_ = true;
+            effects_.state_changed = true;
             break;
     }
-    if (leaving_) return release(work.unit.id, wire::ReleaseReason::Leaving, "the node leaves");
-    if (const auto why = objection(work.unit)) return release(work.unit.id, why->first, why->second);
-    dispatch();
+    if (leaving) return release(work.unit.id, wire::ReleaseReason::Leaving, "the node leaves");
+    if (const auto why = objection(work.unit)) release(work.unit.id, why->first, why->second);
 }
 
-std::optional<std::pair<wire::ReleaseReason, std::string>> NodeMachine::objection(
+std::optional<std::pair<wire::ReleaseReason, std::string>> UnitTracker::objection(
     const view::WorkUnit& unit) const {
     using Objection = std::pair<wire::ReleaseReason, std::string>;
     const auto view = views_.find(unit.view);
@@ -106,7 +110,7 @@ std::optional<std::pair<wire::ReleaseReason, std::string>> NodeMachine::objectio
     return std::nullopt;
 }
 
-void NodeMachine::on(wire::CancelUnits& cancel, TimePoint) {
+void UnitTracker::cancel(const wire::CancelUnits& cancel) {
     for (const UnitId unit : cancel.units) {
         if (queue_.is_waiting(unit)) {
             release(unit, wire::ReleaseReason::Cancelled, "cancelled");
@@ -116,24 +120,54 @@ void NodeMachine::on(wire::CancelUnits& cancel, TimePoint) {
     }
 }
 
-void NodeMachine::release(UnitId unit, wire::ReleaseReason reason, std::string message) {
+void UnitTracker::release(UnitId unit, wire::ReleaseReason reason, std::string message) {
     queue_.release(unit);
-    changed_ = true;
-    ++counters_.units_released;
-    send(wire::UnitReleased{unit, reason, std::move(message)});
+    effects_.state_changed = true;
+    ++effects_.counters.units_released;
+    effects_.send(wire::UnitReleased{unit, reason, std::move(message)});
 }
 
-void NodeMachine::release_waiting(wire::ReleaseReason reason, const std::string& message, ViewId of_view) {
+void UnitTracker::release_waiting(wire::ReleaseReason reason, const std::string& message, ViewId of_view) {
     for (const view::WorkUnit& unit : queue_.waiting()) {
         if (!of_view || unit.view == of_view) release(unit.id, reason, message);
     }
 }
 
-void NodeMachine::stop(UnitId unit, wire::ReleaseReason reason) {
-    if (stopping_.try_emplace(unit, reason).second) actions_.emplace_back(StopUnit{unit});
+void UnitTracker::stop_of(ViewId view) {
+    for (const view::WorkUnit& unit : queue_.rendering()) {
+        if (unit.view == view) stop(unit.id, wire::ReleaseReason::Cancelled);
+    }
 }
 
-void NodeMachine::abandon_units() {
+void UnitTracker::stop_all() {
+    for (const view::WorkUnit& unit : queue_.rendering()) effects_.add(StopUnit{unit.id});
+}
+
+void UnitTracker::version_ends() {
+    for (const view::WorkUnit& unit : queue_.waiting()) {
+        if (unit.version == replica_.version()) {
+            release(unit.id, wire::ReleaseReason::OtherVersion, "the node goes on to another version");
+        }
+    }
+}
+
+void UnitTracker::judge_waiting() {
+    for (const view::WorkUnit& unit : queue_.waiting()) {
+        if (const auto why = objection(unit)) release(unit.id, why->first, why->second);
+    }
+}
+
+std::vector<UnitId> UnitTracker::in_hand() const {
+    std::vector<UnitId> units = queue_.in_hand();
+    std::erase_if(units, [&](UnitId unit) { return abandoned_.contains(unit); });
+    return units;
+}
+
+void UnitTracker::stop(UnitId unit, wire::ReleaseReason reason) {
+    if (stopping_.try_emplace(unit, reason).second) effects_.add(StopUnit{unit});
+}
+
+void UnitTracker::abandon() {
     for (const view::WorkUnit& unit : queue_.waiting()) queue_.release(unit.id);
     for (const view::WorkUnit& unit : queue_.rendering()) {
         abandoned_.insert(unit.id);
@@ -143,30 +177,31 @@ void NodeMachine::abandon_units() {
         if (!queue_.is_rendering(unit)) queue_.release(unit);
     }
     release_after_film_.clear();
-    units_sent_.clear();
-    actions_.emplace_back(DropFilm{});
+    sent_.clear();
+    views_.clear();
+    effects_.add(DropFilm{});
 }
 
-void NodeMachine::dispatch() {
-    if (leaving_ || left_ || replica_.is_building()) return;
+void UnitTracker::dispatch() {
+    if (replica_.is_building()) return;
     while (const auto unit = queue_.next(replica_.version())) {
-        actions_.emplace_back(Render{views_.at(unit->view), *unit});
+        effects_.add(Render{views_.at(unit->view), *unit});
     }
 }
 
-void NodeMachine::finished(UnitId id, UnitOutcome&& outcome, TimePoint) {
+void UnitTracker::finished(UnitId id, UnitOutcome&& outcome) {
     const std::optional<view::WorkUnit> unit = queue_.rendered(id);
-    if (!unit || left_) return;
-    changed_ = true;
+    if (!unit) return;
+    effects_.state_changed = true;
     for (const frame::FilmTile& block : outcome.result.blocks) {
-        counters_.samples += block.block.count() * block.pixel_count();
+        effects_.counters.samples += block.block.count() * block.pixel_count();
     }
     const auto stopped = stopping_.extract(id);
     if (abandoned_.erase(id) != 0) {
         queue_.release(id);
     } else if (!outcome.error.empty()) {
         release(id, wire::ReleaseReason::Failed, outcome.error);
-        report(wire::Severity::Error, outcome.error);
+        effects_.report(wire::Severity::Error, outcome.error);
     } else if (outcome.result.status == backend::RenderStatus::Refused) {
         release(id, wire::ReleaseReason::OtherVersion, "the back-end is at another version");
     } else {
@@ -183,10 +218,9 @@ void NodeMachine::finished(UnitId id, UnitOutcome&& outcome, TimePoint) {
             send_film(*unit, std::move(outcome));
         }
     }
-    dispatch();
 }
 
-void NodeMachine::send_film(const view::WorkUnit& unit, UnitOutcome&& outcome) {
+void UnitTracker::send_film(const view::WorkUnit& unit, UnitOutcome&& outcome) {
     SendFilm film{unit.id, {}};
     const auto parts = static_cast<std::uint16_t>(outcome.result.blocks.size());
     for (std::uint16_t part = 0; part < parts; ++part) {
@@ -201,19 +235,19 @@ void NodeMachine::send_film(const view::WorkUnit& unit, UnitOutcome&& outcome) {
                               .busy_ns = first ? static_cast<std::uint64_t>(outcome.busy.count()) : 0,
                               .film = std::move(outcome.result.blocks[part])});
     }
-    actions_.emplace_back(std::move(film));
+    effects_.add(std::move(film));
 }
 
-void NodeMachine::film_sent(UnitId unit) {
-    changed_ = true;
+void UnitTracker::film_sent(UnitId unit) {
+    effects_.state_changed = true;
     queue_.release(unit);
     if (const auto release = release_after_film_.extract(unit)) {
-        ++counters_.units_released;
-        return send(std::move(release.mapped()));
+        ++effects_.counters.units_released;
+        return effects_.send(std::move(release.mapped()));
     }
-    ++counters_.units_done;
-    units_sent_.push_back(unit);
-    if (units_sent_.size() > UnitsInGoodbye) units_sent_.pop_front();
+    ++effects_.counters.units_done;
+    sent_.push_back(unit);
+    if (sent_.size() > UnitsInGoodbye) sent_.pop_front();
 }
 
 }  // namespace tessera::node
