@@ -39,21 +39,21 @@ RenderMaster::RenderMaster(std::unique_ptr<net::Channel> channel, std::shared_pt
       events_(std::move(events)),
       started_(clock.now()),
       outbox_(*channel_),
-      authority_(settings.epoch != 0 ? settings.epoch : random_nonzero(), blobs_),
       nodes_(settings.liveness, settings.stuck),
-      distributor_(authority_, *blobs_, outbox_, events_),
-      jobs_(settings.jobs, nodes_, sessions_, outbox_, events_, [this] { channel_->wake(); }),
-      live_runner_(settings.live, nodes_, sessions_, outbox_, events_, [this] { channel_->wake(); }),
-      display_(authority_, sessions_, live_runner_, outbox_, events_),
-      live_(authority_, blobs_, sessions_, live_runner_, display_, outbox_, events_,
-            [this](const scene::ChangeList& changes, TimePoint now) { publish(changes, now); }),
-      service_(authority_, blobs_, sessions_, jobs_, live_, outbox_,
-               [this](const scene::ChangeList& changes, TimePoint now) { publish(changes, now); }) {
+      outputs_(*channel_),
+      film_(outputs_),
+      dispatcher_(settings.views.overdue_patience, clock, nodes_, outbox_, events_),
+      scene_(settings.epoch != 0 ? settings.epoch : random_nonzero(), settings.views,
+             {.blobs = blobs_,
+              .nodes = nodes_,
+              .sessions = sessions_,
+              .outbox = outbox_,
+              .render = {outputs_, film_, dispatcher_, view_ids_},
+              .events = events_}),
+      service_(blobs_, sessions_, scene_, outbox_) {
     if (settings.session_folder.empty()) return;
-    live_journal_.emplace(settings.session_folder, settings.checkpoint_interval, authority_, blobs_,
-                          live_runner_, events_);
-    live_.record_to(*live_journal_, started_);
-    if (live_.is_open()) sessions_.give_stage_to_live_scene();
+    scene_.record_to(settings.session_folder, settings.checkpoint_interval, started_);
+    if (scene_.is_open()) sessions_.give_stage_to_live_scene();
 }
 
 void RenderMaster::post(std::function<void(net::Channel&)> task) {
@@ -89,12 +89,11 @@ void RenderMaster::step(TimePoint now, std::stop_token stop) {
         posted.swap(posted_);
     }
     for (const auto& task : posted) task(*channel_);
-    jobs_.tick(now);
+    for (RenderOutput& output : outputs_.take()) scene_.take(output, now);
+    dispatcher_.collect_overdue(now);
     service_.tick(now);
-    live_.tick(now);
-    live_runner_.tick(now);
-    display_.tick(now);
-    distributor_.repair(nodes_, now, 3 * settings_.liveness.interval);
+    scene_.tick(now);
+    scene_.distributor().repair(nodes_, now, 3 * settings_.liveness.interval);
     heartbeats(now);
     outbox_.flush();
     drop_lost_peers(now);
@@ -103,8 +102,7 @@ void RenderMaster::step(TimePoint now, std::stop_token stop) {
 
 TimePoint RenderMaster::next_wake(TimePoint now) const {
     TimePoint next = now + settings_.liveness.interval / 4;
-    next = std::min({next, jobs_.next_event(now), live_.next_event(now), live_runner_.next_event(now),
-                     display_.next_event()});
+    next = std::min(next, scene_.next_event(now));
     if (outbox_.waiting()) next = std::min(next, now + std::chrono::milliseconds(1));
     return next;
 }
@@ -152,9 +150,8 @@ void RenderMaster::control(net::Message& message, TimePoint now) {
 }
 
 void RenderMaster::bulk(net::Message& message, TimePoint now) {
-    const auto kind = wire::bulk_kind(message.bytes);
-    if (!kind) return drop(message, "not a bulk message");
-    if (*kind == wire::BulkMessage(wire::FilmPart{}).index()) {
+    if (!wire::is_bulk(message.bytes)) return drop(message, "not a bulk message");
+    if (wire::is_film(message.bytes)) {
         NodeRecord* node = nodes_.by_bulk(message.peer);
         if (!allowed(message.role, wire::BulkMessage(wire::FilmPart{})) || !node ||
             node->user != message.user) {
@@ -162,9 +159,7 @@ void RenderMaster::bulk(net::Message& message, TimePoint now) {
         }
         outbox_.bytes.film += message.bytes.size();
         node->liveness.heard(now);
-        if (wire::film_view(message.bytes) >= FirstLiveView)
-            return live_runner_.film(message.peer, std::move(message.bytes));
-        return jobs_.film(message.peer, std::move(message.bytes));
+        return film_.push(message.peer, std::move(message.bytes));
     }
     auto decoded = wire::decode_bulk(message.bytes);
     if (!decoded) return drop(message, decoded.error().what());
@@ -209,7 +204,7 @@ void RenderMaster::welcome(net::PeerId peer, std::uint64_t number, std::uint64_t
     outbox_.control(
         peer, wire::Welcome{.peer_number = number,
                             .token = token,
-                            .epoch = authority_.version().epoch,
+                            .epoch = scene_.authority().version().epoch,
                             .heartbeat_interval = settings_.liveness.interval,
                             .missed_heartbeats = static_cast<std::uint32_t>(settings_.liveness.missed)});
 }
@@ -225,6 +220,11 @@ void RenderMaster::hello(const net::Message& message, wire::Hello hello, TimePoi
                       ": install the same version of Tessera on both");
     }
     const bool is_node = hello.peer == wire::PeerKind::Node;
+    if (is_node && hello.render_revision != frame::RenderRevision) {
+        return refuse("this master merges film of render revision " + std::to_string(frame::RenderRevision) +
+                      ", yours is of revision " + std::to_string(hello.render_revision) +
+                      ": install the same version of Tessera on both");
+    }
     if (NodeRecord* node = is_node ? nodes_.by_token(hello.resume_token) : nullptr;
         node && node->user == message.user) {
         node->control = message.peer;
@@ -235,20 +235,20 @@ void RenderMaster::hello(const net::Message& message, wire::Hello hello, TimePoi
         node->work_sequence = 0;
         node->liveness.restarted(now);
         welcome(message.peer, node->id.value, node->token);
-        return distributor_.joined(*node, now);
+        return scene_.distributor().joined(*node, now);
     }
     if (SessionRecord* session = is_node ? nullptr : sessions_.by_token(hello.resume_token);
         session && session->user == message.user) {
         session->control = message.peer;
         session->bulk.reset();
         session->liveness.restarted(now);
-        live_runner_.session_resumed(session->id);
+        scene_.views().session_resumed(session->id);
         return welcome(message.peer, session->id.value, session->token);
     }
     // A repeated hello of a known peer (its first one was answered, the answer got lost) starts it afresh.
     if (NodeRecord* node = nodes_.by_control(message.peer)) remove_node(node->id, "said hello again");
     if (SessionRecord* session = sessions_.by_control(message.peer))
-        remove_session(session->id, LiveRunner::Departure::Silence, now);
+        remove_session(session->id, Views::Departure::Silence, now);
     if (is_node ? nodes_.all().size() >= settings_.max_nodes
                 : sessions_.all().size() >= settings_.max_sessions) {
         return refuse("the master is full: try again later");
@@ -261,7 +261,7 @@ void RenderMaster::hello(const net::Message& message, wire::Hello hello, TimePoi
         NodeRecord& node =
             nodes_.add(NodeId{number}, token, message.peer, message.user, std::move(hello), now);
         welcome(message.peer, number, token);
-        return distributor_.joined(node, now);
+        return scene_.distributor().joined(node, now);
     }
     sessions_.add({.id = SessionId{number},
                    .token = token,
@@ -276,22 +276,18 @@ void RenderMaster::hello(const net::Message& message, wire::Hello hello, TimePoi
     welcome(message.peer, number, token);
 }
 
-void RenderMaster::publish(const scene::ChangeList& changes, TimePoint now) {
-    distributor_.published(nodes_, changes, now);
-}
-
 void RenderMaster::heartbeats(TimePoint now) {
     for (auto& [id, node] : nodes_.all()) {
         if (!node.liveness.heartbeat_due(now)) continue;
         node.liveness.sent_heartbeat(now);
         outbox_.control(node.control,
-                        heartbeat(now, node.state.sent_at, node.heartbeat_at, authority_.version()));
+                        heartbeat(now, node.state.sent_at, node.heartbeat_at, scene_.authority().version()));
     }
     for (auto& [id, session] : sessions_.all()) {
         if (!session.liveness.heartbeat_due(now)) continue;
         session.liveness.sent_heartbeat(now);
         outbox_.control(session.control, heartbeat(now, session.heartbeat_sent_at, session.heartbeat_at,
-                                                   authority_.version()));
+                                                   scene_.authority().version()));
     }
 }
 

@@ -8,13 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "master/live_service.h"
 #include "master/peers/node_table.h"
 #include "master/peers/outbox.h"
 #include "master/peers/session_table.h"
-#include "master/render/job_runner.h"
-#include "master/scene/scene_authority.h"
-#include "master/scene/scene_distributor.h"
+#include "master/scene_session.h"
 #include "master/session_service.h"
 #include "mediator/base/clock.h"
 #include "mediator/net/channel.h"
@@ -26,16 +23,15 @@ struct MasterSettings {
     std::string software = "tessera";
     net::LivenessSettings liveness;
     StuckSettings stuck;
-    JobSettings jobs;
-    LiveSettings live;
-    std::filesystem::path session_folder;  // of live scenes, on disk; empty = in memory alone
+    ViewSettings views;
+    std::filesystem::path session_folder;  // on disk; empty = in memory alone
     Duration checkpoint_interval = std::chrono::seconds(10);
     wire::BlobLimits blob_limits;
     std::size_t max_sessions = 256, max_nodes = 1024;
 };
 
 // The event loop: one thread that owns the channel, keeps heartbeats and hands messages to the parts. It
-// never renders and never merges (FilmMerger does, on a thread of its own).
+// never renders and never merges (FilmStore does, on a thread of its own).
 class RenderMaster {
   public:
     // Throws Error when the session folder cannot be used.
@@ -62,12 +58,11 @@ class RenderMaster {
     void from_member(SessionRecord& session, wire::ControlMessage& message, TimePoint now);
     void bulk_hello(const net::Message& message, const wire::BulkHello& hello);
     void remove_node(NodeId id, const std::string& why);
-    void remove_session(SessionId id, LiveRunner::Departure departure, TimePoint now);
+    void remove_session(SessionId id, Views::Departure departure, TimePoint now);
     void heartbeats(TimePoint now);
     void bury_the_dead(TimePoint now);
     void drop_lost_peers(TimePoint now);
     void drop(const net::Message& message, const std::string& why);
-    void publish(const scene::ChangeList& changes, TimePoint now);
     wire::StatusReply status(TimePoint now) const;
     TimePoint next_wake(TimePoint now) const;
     void say_goodbye();
@@ -80,15 +75,13 @@ class RenderMaster {
     TimePoint started_;
 
     Outbox outbox_;
-    SceneAuthority authority_;
     NodeTable nodes_;
     SessionTable sessions_;
-    SceneDistributor distributor_;
-    JobRunner jobs_;
-    LiveRunner live_runner_;
-    DisplayService display_;
-    std::optional<LiveJournal> live_journal_;
-    LiveService live_;
+    RenderOutputs outputs_;
+    FilmStore film_;
+    Dispatcher dispatcher_;
+    ViewIds view_ids_;
+    SceneSession scene_;
     SessionService service_;
     std::uint64_t next_number_ = 1;
     std::uint64_t dropped_messages_ = 0;

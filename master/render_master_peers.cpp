@@ -9,10 +9,10 @@ void RenderMaster::from_node(NodeRecord& node, wire::ControlMessage& message, Ti
     if (const auto* beat = std::get_if<wire::Heartbeat>(&message)) {
         nodes_.heartbeat(node, *beat, now);
     } else if (const auto* report = std::get_if<wire::VersionReport>(&message)) {
-        switch (distributor_.reported(node, *report, now)) {
+        switch (scene_.distributor().reported(node, *report, now)) {
             case SceneDistributor::Verdict::Good:
-                jobs_.scene_facts(*report);
-                live_.node_built(node, *report, now);
+                scene_.views().scene_facts({report->triangles, report->instances, report->lights});
+                scene_.node_built(node, *report, now);
                 for (const std::string& problem : report->problems)
                     events_({wire::Severity::Warning, problem});
                 break;
@@ -24,17 +24,16 @@ void RenderMaster::from_node(NodeRecord& node, wire::ControlMessage& message, Ti
                 return remove_node(node.id, "its scene differs");
         }
     } else if (const auto* resync = std::get_if<wire::Resync>(&message)) {
-        distributor_.resync(node, *resync, now);
+        scene_.distributor().resync(node, *resync, now);
     } else if (const auto* refused = std::get_if<wire::SceneRefused>(&message)) {
-        distributor_.refused(node, *refused);
+        scene_.distributor().refused(node, *refused);
     } else if (const auto* release = std::get_if<wire::UnitReleased>(&message)) {
-        if (live_runner_.holds(release->unit)) return live_runner_.released(node, *release, now);
-        jobs_.released(node, *release, now);
+        if (const auto failure = dispatcher_.released(node, *release, now))
+            scene_.views().unit_failed(*failure, now);
     } else if (const auto* notice = std::get_if<wire::Notice>(&message)) {
         events_({notice->severity, "node " + node.hello.name + ": " + notice->text});
     } else if (const auto* goodbye = std::get_if<wire::Goodbye>(&message)) {
-        jobs_.goodbye(node, *goodbye);
-        live_runner_.goodbye(node, *goodbye);
+        dispatcher_.goodbye(node, *goodbye);
         node.leaving = true;  // stays in the table until it falls silent, since film may be on its way
         events_({wire::Severity::Info, "node " + node.hello.name + " leaves: " + goodbye->reason});
     }
@@ -55,18 +54,18 @@ void RenderMaster::from_client(SessionRecord& session, wire::ControlMessage& mes
     } else if (auto* job = std::get_if<wire::StartJob>(&message)) {
         service_.start_job(session, std::move(*job), now);
     } else if (const auto* stop = std::get_if<wire::StopJob>(&message)) {
-        if (jobs_.session() == session.id) jobs_.stop(stop->job, now);
+        scene_.views().stop(session.id, stop->job.value, now);
     } else if (const auto* set = std::get_if<wire::SetFilter>(&message)) {
-        outbox_.control(session.control, jobs_.set_filter(set->filter, now));
+        outbox_.control(session.control, service_.set_filter(set->filter, now));
     } else if (std::holds_alternative<wire::StatusRequest>(message)) {
         outbox_.control(session.control, status(now));
     } else if (const auto* join = std::get_if<wire::JoinScene>(&message)) {
         service_.join_scene(session, *join, now);
     } else if (std::holds_alternative<wire::Goodbye>(message)) {
-        remove_session(session.id, LiveRunner::Departure::Goodbye, now);
+        remove_session(session.id, Views::Departure::Goodbye, now);
     } else if (const auto* traced = std::get_if<wire::ReadTrace>(&message)) {
-        outbox_.control(session.control, live_.trace(*traced));
-    } else if (live_.is_member(session.id)) {
+        outbox_.control(session.control, scene_.trace(*traced));
+    } else if (scene_.is_member(session.id)) {
         from_member(session, message, now);
     } else {
         outbox_.control(session.control, wire::Refusal{"this client is in no live scene: join one first"});
@@ -75,39 +74,39 @@ void RenderMaster::from_client(SessionRecord& session, wire::ControlMessage& mes
 
 void RenderMaster::from_member(SessionRecord& session, wire::ControlMessage& message, TimePoint now) {
     if (auto* open = std::get_if<wire::OpenLiveView>(&message)) {
-        live_.asked(session, std::move(*open), now);
+        scene_.asked(session, std::move(*open), now);
     } else if (const auto* close = std::get_if<wire::CloseLiveView>(&message)) {
-        live_runner_.close(session.id, close->number);
+        scene_.views().close(session.id, close->number);
     } else if (const auto* taken = std::get_if<wire::FrameTaken>(&message)) {
-        live_runner_.taken(session.id, *taken);
+        scene_.views().taken(session.id, *taken);
     } else if (const auto* pick = std::get_if<wire::Pick>(&message)) {
-        live_runner_.pick(session.id, *pick, authority_.version(), now);
+        scene_.views().pick(session.id, *pick, scene_.authority().version());
     } else if (const auto* read = std::get_if<wire::ReadScene>(&message)) {
-        live_.asked(session, *read);
+        scene_.asked(session, *read);
     } else if (const auto* lock = std::get_if<wire::LockObjects>(&message)) {
-        live_.asked(session, *lock);
+        scene_.asked(session, *lock);
     } else if (auto* presence = std::get_if<wire::SetPresence>(&message)) {
-        live_.asked(session, std::move(*presence), now);
+        scene_.asked(session, std::move(*presence), now);
     } else if (const auto* people = std::get_if<wire::ReadPeople>(&message)) {
-        live_.asked(session, *people, now);
+        scene_.asked(session, *people, now);
     } else if (const auto* history = std::get_if<wire::ReadHistory>(&message)) {
-        live_.asked(session, *history);
+        scene_.asked(session, *history);
     } else if (const auto* writers = std::get_if<wire::ReadWriters>(&message)) {
-        live_.asked(session, *writers);
+        scene_.asked(session, *writers);
     } else if (const auto* end = std::get_if<wire::CloseScene>(&message)) {
         service_.close_live_scene(session, *end, now);
     } else if (const auto* ready = std::get_if<wire::OutputReady>(&message)) {
-        display_.ready(session.id, *ready, now);
+        scene_.display().ready(session.id, *ready, now);
     } else if (const auto* head = std::get_if<wire::MoveHead>(&message)) {
-        display_.move_head(head->head);
+        scene_.display().move_head(head->head);
     } else if (const auto* output = std::get_if<wire::JoinOutput>(&message)) {
-        live_.asked(session, *output, now);
+        scene_.asked(session, *output, now);
     } else if (const auto* shown = std::get_if<wire::OpenDisplay>(&message)) {
         service_.open_display(session, *shown, now);
     } else if (const auto* hidden = std::get_if<wire::CloseDisplay>(&message)) {
-        live_.asked(session, *hidden);
+        scene_.asked(session, *hidden);
     } else if (const auto* adjusted = std::get_if<wire::AdjustDisplay>(&message)) {
-        live_.asked(session, *adjusted);
+        scene_.asked(session, *adjusted);
     }
 }
 
@@ -117,13 +116,12 @@ void RenderMaster::remove_node(NodeId id, const std::string& why) {
     if (!node->leaving) events_({wire::Severity::Warning, "node " + node->hello.name + " is gone: " + why});
     outbox_.forget(net::Link::Control, node->control);
     if (node->bulk) outbox_.forget(net::Link::Bulk, *node->bulk);
-    jobs_.node_gone(id);
-    live_runner_.node_gone(id);
-    live_.node_gone(id);
+    dispatcher_.node_gone(id);
+    scene_.node_gone(id);
     nodes_.remove(id);
 }
 
-void RenderMaster::remove_session(SessionId id, LiveRunner::Departure departure, TimePoint now) {
+void RenderMaster::remove_session(SessionId id, Views::Departure departure, TimePoint now) {
     const SessionRecord* session = sessions_.find(id);
     if (session == nullptr) return;
     outbox_.forget(net::Link::Control, session->control);
@@ -137,7 +135,7 @@ void RenderMaster::bury_the_dead(TimePoint now) {
     for (const auto& [id, session] : sessions_.all()) {
         if (session.liveness.dead(now)) silent.push_back(id);
     }
-    for (const SessionId id : silent) remove_session(id, LiveRunner::Departure::Silence, now);
+    for (const SessionId id : silent) remove_session(id, Views::Departure::Silence, now);
 }
 
 void RenderMaster::drop_lost_peers(TimePoint now) {
@@ -147,27 +145,25 @@ void RenderMaster::drop_lost_peers(TimePoint now) {
             remove_node(node->id, "its connection broke");
         } else if (SessionRecord* session =
                        is_control ? sessions_.by_control(peer) : sessions_.by_bulk(peer)) {
-            remove_session(session->id, LiveRunner::Departure::Silence, now);
+            remove_session(session->id, Views::Departure::Silence, now);
         }
     }
 }
 
 wire::StatusReply RenderMaster::status(TimePoint now) const {
-    wire::StatusReply reply{
-        .software = settings_.software,
-        .version = authority_.version(),
-        .uptime_seconds = seconds(now - started_),
-        .blobs = blobs_->count(),
-        .blob_bytes = blobs_->byte_size(),
-        .sessions = static_cast<std::uint32_t>(sessions_.all().size()),
-        .queued = static_cast<std::uint32_t>(sessions_.queue().size()),
-        .dropped_messages = dropped_messages_ + jobs_.malformed_film() + live_runner_.malformed_film(),
-        .units = jobs_.total_counts(),
-        .wire_bytes = outbox_.bytes,
-        .live = live_.status(),
-        .resyncs = distributor_.resyncs(),
-        .display = display_.status(now)};
-    add(reply.units, live_runner_.counts());
+    wire::StatusReply reply{.software = settings_.software,
+                            .version = scene_.authority().version(),
+                            .uptime_seconds = seconds(now - started_),
+                            .blobs = blobs_->count(),
+                            .blob_bytes = blobs_->byte_size(),
+                            .sessions = static_cast<std::uint32_t>(sessions_.all().size()),
+                            .queued = static_cast<std::uint32_t>(sessions_.queue().size()),
+                            .dropped_messages = dropped_messages_ + dispatcher_.malformed_film(),
+                            .units = dispatcher_.counts(),
+                            .wire_bytes = outbox_.bytes,
+                            .live = scene_.status(),
+                            .resyncs = scene_.distributor().resyncs(),
+                            .display = scene_.display().status(now)};
     for (const auto& [id, node] : nodes_.all()) {
         wire::NodeStatus entry{
             .summary = {.id = id,
@@ -179,8 +175,7 @@ wire::StatusReply RenderMaster::status(TimePoint now) const {
             .phase = node.state.phase,
             .version = node.state.version,
             .units_in_hand = static_cast<std::uint32_t>(node.state.in_hand.size()),
-            .samples_per_second = std::max(jobs_.balancer().rate(id), live_runner_.balancer().rate(id)) *
-                                  std::max(1u, node.hello.concurrent_units),
+            .samples_per_second = dispatcher_.rate(id) * std::max(1u, node.hello.concurrent_units),
             .round_trip_seconds = node.round_trip_seconds,
             .stuck = node.stuck};
         if (const auto clock = node.clock.offset(now)) {

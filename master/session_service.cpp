@@ -15,20 +15,9 @@ std::int64_t since_1970() {
 }
 }  // namespace
 
-SessionService::SessionService(SceneAuthority& authority, std::shared_ptr<scene::BlobStore> blobs,
-                               SessionTable& sessions, JobRunner& jobs, LiveService& live, Outbox& outbox,
-                               std::function<void(const scene::ChangeList&, TimePoint)> publish)
-    : authority_(authority),
-      blobs_(std::move(blobs)),
-      sessions_(sessions),
-      jobs_(jobs),
-      live_(live),
-      outbox_(outbox),
-      publish_(std::move(publish)) {}
-
 void SessionService::open_scene(SessionRecord& session, const wire::OpenScene& request, TimePoint now) {
     const bool would_wait = !sessions_.stage_is_free() || !sessions_.queue().empty();
-    if (live_.is_member(session.id)) {
+    if (scene_.is_member(session.id)) {
         outbox_.control(session.control, wire::Refusal{"this client is in a live scene: connect anew"});
         return;
     }
@@ -45,8 +34,8 @@ void SessionService::open_scene(SessionRecord& session, const wire::OpenScene& r
 }
 
 std::string SessionService::busy_text() const {
-    if (live_.is_open()) {
-        return "the cluster serves the live scene '" + live_.title() +
+    if (scene_.is_open()) {
+        return "the cluster serves the live scene '" + scene_.title() +
                "': wait in the queue without --no-wait, or close that scene with: tessera edit -c close";
     }
     return "the cluster is rendering another scene: try again later, or wait in the queue without --no-wait";
@@ -70,17 +59,17 @@ void SessionService::join_scene(SessionRecord& session, const wire::JoinScene& r
 
 void SessionService::let_in(SessionRecord& session, const wire::JoinScene& request, TimePoint now) {
     try {
-        live_.join(session, request, now);
+        scene_.join(session, request, now);
     } catch (const Error& error) {
-        if (!live_.is_open()) sessions_.end_live_scene();
+        if (!scene_.is_open()) sessions_.end_live_scene();
         outbox_.control(session.control, wire::Refusal{error.what()});
     }
 }
 
 void SessionService::close_live_scene(SessionRecord& session, const wire::CloseScene& request,
                                       TimePoint now) {
-    if (!live_.is_member(session.id)) return;
-    live_.close(now);
+    if (!scene_.is_member(session.id)) return;
+    scene_.close(now);
     sessions_.end_live_scene();
     outbox_.control(session.control, wire::RequestDone{request.request, true, {}});
     tick(now);
@@ -88,9 +77,9 @@ void SessionService::close_live_scene(SessionRecord& session, const wire::CloseS
 
 void SessionService::give_stage(SessionId id) {
     const SessionRecord& session = *sessions_.find(id);
-    const SceneAuthority::IdRange ids = authority_.lend_ids(id);
-    jobs_.scene_opened();
-    outbox_.control(session.control, wire::SceneOpened{authority_.version(), ids.first, ids.count});
+    const SceneAuthority::IdRange ids = scene_.authority().lend_ids(id);
+    scene_.views().charge_from(outbox_.bytes);
+    outbox_.control(session.control, wire::SceneOpened{scene_.authority().version(), ids.first, ids.count});
 }
 
 void SessionService::submit(SessionRecord& session, scene::Edit edit, std::uint64_t message_bytes,
@@ -117,7 +106,7 @@ void SessionService::refuse_edit(SessionRecord& session, std::string problem) {
     const std::uint64_t sequence = session.edits.empty() ? 0 : session.edits.front().edit.sequence;
     outbox_.control(session.control, wire::EditReply{.sequence = sequence,
                                                      .accepted = false,
-                                                     .version = authority_.version(),
+                                                     .version = scene_.authority().version(),
                                                      .problems = {std::move(problem)}});
 }
 
@@ -139,7 +128,7 @@ bool SessionService::blobs_are_here(SessionRecord& session, SessionRecord::Pendi
         pending.bytes += blob->bytes().size();
         pending.encoded.reset();
     }
-    const std::vector<scene::BlobRef> missing = authority_.missing_blobs(pending.edit);
+    const std::vector<scene::BlobRef> missing = scene_.authority().missing_blobs(pending.edit);
     for (const scene::BlobRef& blob : missing) want(blob);
     return missing.empty();
 }
@@ -147,7 +136,7 @@ bool SessionService::blobs_are_here(SessionRecord& session, SessionRecord::Pendi
 void SessionService::advance(SessionRecord& session, TimePoint now) {
     while (!session.edits.empty()) {
         SessionRecord::PendingEdit& pending = session.edits.front();
-        const bool is_live = live_.is_member(session.id);
+        const bool is_live = scene_.is_member(session.id);
         if (!is_live && sessions_.on_stage() != session.id) {
             refuse_edit(session, "this session has no scene open: open one first");
             session.edits.pop_front();
@@ -160,13 +149,13 @@ void SessionService::advance(SessionRecord& session, TimePoint now) {
             session.edits.pop_front();
             continue;
         }
-        const EditAnswer answer = authority_.submit(
+        const EditAnswer answer = scene_.authority().submit(
             pending.edit,
-            {is_live ? live_.name(session.id) : session.hello.name, session.user, since_1970()});
-        if (!is_live && authority_.has_unpublished()) {
-            if (auto changes = authority_.publish()) publish_(*changes, now);
+            {is_live ? scene_.name(session.id) : session.hello.name, session.user, since_1970()});
+        if (!is_live && scene_.authority().has_unpublished()) {
+            if (auto changes = scene_.authority().publish()) scene_.publish(*changes, now);
         }
-        if (is_live) live_.edited(session, pending.edit, answer, pending.bytes, now);
+        if (is_live) scene_.edited(session, pending.edit, answer, pending.bytes, now);
         outbox_.control(session.control, wire::EditReply{.sequence = pending.edit.sequence,
                                                          .accepted = answer.accepted,
                                                          .version = answer.version,
@@ -208,7 +197,7 @@ void SessionService::advance_display(SessionRecord& session, TimePoint now) {
             }
         }
         if (!complete) return;
-        problem = live_.open_display(description, std::move(content), now);
+        problem = scene_.open_display(description, std::move(content), now);
     } catch (const Error& error) {
         problem = error.what();
     }
@@ -242,30 +231,54 @@ void SessionService::absent(SessionRecord& session, const wire::BlobAbsent& abse
 }
 
 void SessionService::start_job(SessionRecord& session, wire::StartJob request, TimePoint now) {
-    std::string problem = problem_of(request);
+    const glm::dvec3 eye(request.view.camera.world_from_camera[3]);
+    const Delivery::Wish wish{request.picture, request.film, request.job};
+    ViewRequest wanted{.view = std::move(request.view),
+                       .stop = {.spp = request.spp,
+                                .time_limit = request.time_limit,
+                                .budget = request.budget,
+                                .adapts_size = request.adapts_size},
+                       .policy = request.policy,
+                       .reproducible = request.reproducible,
+                       .tile = request.tile,
+                       .min_nodes = std::max(1u, request.wait_nodes),
+                       .wait_limit = request.wait_limit,
+                       .frames = ViewRequest::Frames::Last,
+                       .picture = request.picture,
+                       .film = request.film};
+    std::string problem = problem_of(wanted);
     if (sessions_.on_stage() != session.id) problem = "this session has no scene open: open one first";
-    if (jobs_.busy()) problem = "a frame of this session is being rendered: wait for it or stop it";
-    if (!problem.empty()) {
-        outbox_.control(session.control, wire::JobDone{.job = request.job,
-                                                       .outcome = wire::JobOutcome::Failed,
-                                                       .message = std::move(problem),
-                                                       .version = authority_.version()});
-        return;
+    if (scene_.views().has_job())
+        problem = "a frame of this session is being rendered: wait for it or stop it";
+    if (problem.empty()) {
+        if (auto moved = scene_.authority().follow_camera(eye)) scene_.publish(*moved, now);
+        problem = scene_.views().open(
+            {.session = session.id, .name = session.hello.name, .user = session.user}, request.job.value,
+            std::move(wanted), wish, scene_.authority().version(), now);
     }
-    if (auto moved = authority_.follow_camera(glm::dvec3(request.view.camera.world_from_camera[3]))) {
-        publish_(*moved, now);
-    }
-    jobs_.start(session.id, std::move(request), authority_.version(), now);
+    if (problem.empty()) return;
+    outbox_.control(session.control, wire::JobDone{.job = request.job,
+                                                   .outcome = wire::JobOutcome::Failed,
+                                                   .message = std::move(problem),
+                                                   .version = scene_.authority().version()});
 }
 
-void SessionService::closed(SessionId id, LiveRunner::Departure departure, TimePoint now) {
-    live_.left(id, departure, now);
+wire::FilterSet SessionService::set_filter(const std::string& filter, TimePoint now) {
+    try {
+        return {.accepted = true, .text = scene_.views().set_filter(filter, now)};
+    } catch (const Error& error) {
+        return {.accepted = false, .text = error.what()};
+    }
+}
+
+void SessionService::closed(SessionId id, Views::Departure departure, TimePoint now) {
+    if (!scene_.is_member(id)) scene_.views().session_left(id, departure, now);
+    scene_.left(id, departure, now);
     const bool had_stage = sessions_.on_stage() == id;
     sessions_.remove(id);
-    authority_.forget(id);
+    scene_.authority().forget(id);
     if (!had_stage) return;
-    jobs_.abandon();
-    if (auto cleared = authority_.clear()) publish_(*cleared, now);
+    if (auto cleared = scene_.authority().clear()) scene_.publish(*cleared, now);
     tick(now);
 }
 

@@ -1,21 +1,16 @@
 #pragma once
 
-#include <functional>
-
-#include "master/live_service.h"
 #include "master/peers/session_table.h"
-#include "master/render/job_runner.h"
-#include "master/scene/scene_authority.h"
+#include "master/scene_session.h"
 
 namespace tessera::master {
 
 // Serves clients: the stage, edits with their blobs, jobs. Told of messages by the render master.
 class SessionService {
   public:
-    // `publish` hands a change list to all nodes.
-    SessionService(SceneAuthority& authority, std::shared_ptr<scene::BlobStore> blobs, SessionTable& sessions,
-                   JobRunner& jobs, LiveService& live, Outbox& outbox,
-                   std::function<void(const scene::ChangeList&, TimePoint)> publish);
+    SessionService(std::shared_ptr<scene::BlobStore> blobs, SessionTable& sessions, SceneSession& scene,
+                   Outbox& outbox)
+        : blobs_(std::move(blobs)), sessions_(sessions), scene_(scene), outbox_(outbox) {}
 
     void open_scene(SessionRecord& session, const wire::OpenScene& request, TimePoint now);
     void join_scene(SessionRecord& session, const wire::JoinScene& request, TimePoint now);
@@ -26,8 +21,9 @@ class SessionService {
     void chunk(SessionRecord& session, wire::BlobChunk&& chunk, TimePoint now);
     void absent(SessionRecord& session, const wire::BlobAbsent& absent, TimePoint now);
     void start_job(SessionRecord& session, wire::StartJob request, TimePoint now);
+    wire::FilterSet set_filter(const std::string& filter, TimePoint now);
     // Its batch scene and job go; of a live scene it is no longer a member.
-    void closed(SessionId session, LiveRunner::Departure departure, TimePoint now);
+    void closed(SessionId session, Views::Departure departure, TimePoint now);
 
     void tick(TimePoint now);  // who is next on the stage, chunks to ask for
 
@@ -40,13 +36,10 @@ class SessionService {
     void let_in(SessionRecord& session, const wire::JoinScene& request, TimePoint now);
     std::string busy_text() const;
 
-    SceneAuthority& authority_;
     std::shared_ptr<scene::BlobStore> blobs_;
     SessionTable& sessions_;
-    JobRunner& jobs_;
-    LiveService& live_;
+    SceneSession& scene_;
     Outbox& outbox_;
-    std::function<void(const scene::ChangeList&, TimePoint)> publish_;
 };
 
 }  // namespace tessera::master

@@ -1,4 +1,3 @@
-// Joining, keeping the link, leaving.
 #include "node/machine.h"
 
 #include <algorithm>
@@ -15,10 +14,9 @@ NodeMachine::NodeMachine(const NodeSettings& settings, const backend::Capabiliti
                          std::shared_ptr<scene::BlobStore> blobs, TimePoint now)
     : settings_(settings),
       capabilities_(capabilities),
-      blobs_(blobs),
-      replica_(blobs),
-      queue_(std::max(1u, settings.workers ? settings.workers : capabilities.concurrent_units)),
-      fetcher_(blobs, settings.blob_limits),
+      workers_(std::max(1u, settings.workers ? settings.workers : capabilities.concurrent_units)),
+      scene_(settings, std::move(blobs), effects_),
+      units_(workers_, capabilities, scene_.replica(), effects_),
       liveness_(settings.liveness, now),
       heartbeat_interval_(settings.liveness.interval) {
     say_hello(now);
@@ -26,20 +24,19 @@ NodeMachine::NodeMachine(const NodeSettings& settings, const backend::Capabiliti
 
 void NodeMachine::say_hello(TimePoint now) {
     hello_at_ = now;
-    send(wire::Hello{.peer = wire::PeerKind::Node,
-                     .name = settings_.name,
-                     .host = settings_.host,
-                     .software = settings_.software,
-                     .pid = settings_.pid,
-                     .backend = settings_.backend,
-                     .kind = capabilities_.kind,
-                     .channels = capabilities_.channels,
-                     .renderers = capabilities_.renderers,
-                     .preferred_tile = capabilities_.preferred_tile,
-                     .concurrent_units =
-                         std::max(1u, settings_.workers ? settings_.workers : capabilities_.concurrent_units),
-                     .reproducible = settings_.reproducible,
-                     .resume_token = token_});
+    effects_.send(wire::Hello{.peer = wire::PeerKind::Node,
+                              .name = settings_.name,
+                              .host = settings_.host,
+                              .software = settings_.software,
+                              .pid = settings_.pid,
+                              .backend = settings_.backend,
+                              .kind = capabilities_.kind,
+                              .channels = capabilities_.channels,
+                              .renderers = capabilities_.renderers,
+                              .preferred_tile = capabilities_.preferred_tile,
+                              .concurrent_units = workers_,
+                              .reproducible = settings_.reproducible,
+                              .resume_token = token_});
 }
 
 void NodeMachine::control(wire::ControlMessage&& message, TimePoint now) {
@@ -50,25 +47,15 @@ void NodeMachine::control(wire::ControlMessage&& message, TimePoint now) {
 
 void NodeMachine::malformed(const std::string& reason, TimePoint now) {
     liveness_.heard(now);
-    ++counters_.malformed_messages;
-    report(wire::Severity::Warning, "dropped a message of the master: " + reason);
+    effects_.malformed(reason);
 }
 
 void NodeMachine::on(wire::Welcome& welcome, TimePoint now) {
     const bool same_epoch = welcome.epoch == epoch_;
     if (same_epoch && welcome.peer_number < number_) return;  // an old answer: numbers only grow
     const bool same_identity = same_epoch && welcome.peer_number == number_;
-    if (!same_identity) {
-        abandon_units();
-        views_.clear();
-    }
-    if (!same_epoch) {
-        fetcher_.forget_all();
-        wanted_.clear();
-        failed_at_ = {};
-    }
-    replica_.start_epoch(welcome.epoch);
-    queue_.restart_sequence();
+    if (!same_identity) units_.abandon();
+    units_.welcomed(welcome.epoch);
     welcomed_ = true;
     number_ = welcome.peer_number;
     token_ = welcome.token;
@@ -78,14 +65,16 @@ void NodeMachine::on(wire::Welcome& welcome, TimePoint now) {
                                              std::chrono::minutes(1));
     liveness.missed = static_cast<int>(std::clamp<std::uint32_t>(welcome.missed_heartbeats, 1, 100));
     heartbeat_interval_ = liveness.interval;
+    scene_.welcomed(epoch_, heartbeat_interval_);
     liveness_ = net::Liveness(liveness, now);
     liveness_.heard(now);
     reconnect_at_.reset();
     master_sent_at_ = 0;
-    actions_.emplace_back(OpenBulk{token_});
+    effects_.add(OpenBulk{token_});
     heartbeat(now);
-    report(wire::Severity::Info, same_identity ? "back with the master as node " + std::to_string(number_)
-                                               : "joined the master as node " + std::to_string(number_));
+    effects_.report(wire::Severity::Info, same_identity
+                                              ? "back with the master as node " + std::to_string(number_)
+                                              : "joined the master as node " + std::to_string(number_));
     step_scene(now);
 }
 
@@ -97,7 +86,8 @@ void NodeMachine::on(wire::Unknown&, TimePoint now) {
     const bool answered_already = !welcomed_ && now - hello_at_ < heartbeat_interval_;
     if (answered_already) return;  // to what was sent before the hello
     welcomed_ = false;
-    actions_.emplace_back(HoldBulk{});
+    scene_.link_lost();
+    effects_.add(HoldBulk{});
     say_hello(now);
 }
 
@@ -114,47 +104,119 @@ void NodeMachine::on(wire::Goodbye& goodbye, TimePoint now) {
     lose_link(now, "the master left: " + goodbye.reason);
 }
 
+void NodeMachine::on(wire::Changes& changes, TimePoint now) {
+    scene_.changes(changes, now);
+    step_scene(now);
+}
+
+void NodeMachine::on(wire::ChangesByBlob& changes, TimePoint now) {
+    scene_.changes(changes, now);
+    step_scene(now);
+}
+
+void NodeMachine::on(wire::OpenView& open, TimePoint) {
+    units_.open(open);
+}
+
+void NodeMachine::on(wire::CloseView& close, TimePoint) {
+    units_.close(close);
+}
+
+void NodeMachine::on(wire::Work& work, TimePoint) {
+    if (!welcomed_) return;
+    units_.work(work, leaving_);
+    dispatch();
+}
+
+void NodeMachine::on(wire::CancelUnits& cancel, TimePoint) {
+    units_.cancel(cancel);
+}
+
+void NodeMachine::bulk(wire::BulkMessage&& message, TimePoint now) {
+    if (left_) return;
+    liveness_.heard(now);
+    if (auto* chunk = std::get_if<wire::BlobChunk>(&message)) {
+        if (scene_.chunk(std::move(*chunk), now)) step_scene(now);
+    } else if (const auto* absent = std::get_if<wire::BlobAbsent>(&message)) {
+        scene_.absent(*absent, now);
+    } else {
+        malformed("a bulk message that no master sends to a node", now);
+    }
+}
+
+void NodeMachine::looked_up(const std::vector<scene::BlobRef>& blobs, TimePoint now) {
+    scene_.looked_up(blobs);
+    step_scene(now);
+}
+
+void NodeMachine::step_scene(TimePoint now) {
+    if (left_ || leaving_) return;
+    if (scene_.advance(now)) units_.version_ends();
+    if (!scene_.failure().empty()) fail(scene_.failure());
+}
+
+void NodeMachine::built(BuildOutcome&& outcome, TimePoint now) {
+    if (left_) return;
+    if (scene_.built(std::move(outcome), now)) units_.judge_waiting();
+    if (!scene_.failure().empty()) return fail(scene_.failure());
+    step_scene(now);
+}
+
+void NodeMachine::finished(UnitId unit, UnitOutcome&& outcome, TimePoint) {
+    if (left_) return;
+    units_.finished(unit, std::move(outcome));
+    dispatch();
+}
+
+void NodeMachine::film_sent(UnitId unit) {
+    units_.film_sent(unit);
+}
+
+void NodeMachine::dispatch() {
+    if (!leaving_ && !left_) units_.dispatch();
+}
+
 void NodeMachine::lose_link(TimePoint now, const std::string& why) {
     if (leaving_) {
         left_ = true;
         return;
     }
     welcomed_ = false;
-    actions_.emplace_back(HoldBulk{});
+    scene_.link_lost();
+    effects_.add(HoldBulk{});
     const Duration backoff = liveness_.next_backoff();
     reconnect_at_ = now + backoff;
-    report(wire::Severity::Warning, why + "; trying again");
+    effects_.report(wire::Severity::Warning, why + "; trying again");
 }
 
 wire::NodePhase NodeMachine::phase() const {
     if (leaving_) return wire::NodePhase::Leaving;
-    if (replica_.is_building()) return wire::NodePhase::Building;
-    if (replica_.is_behind() || replica_.version().number == 0) return wire::NodePhase::Syncing;
-    return queue_.empty() ? wire::NodePhase::Idle : wire::NodePhase::Rendering;
+    const SceneReplica& replica = scene_.replica();
+    if (replica.is_building()) return wire::NodePhase::Building;
+    if (replica.is_behind() || replica.version().number == 0) return wire::NodePhase::Syncing;
+    return units_.empty() ? wire::NodePhase::Idle : wire::NodePhase::Rendering;
 }
 
 void NodeMachine::heartbeat(TimePoint now) {
-    changed_ = false;
+    effects_.state_changed = false;
     liveness_.sent_heartbeat(now);
-    std::vector<UnitId> in_hand = queue_.in_hand();
-    std::erase_if(in_hand, [&](UnitId unit) { return abandoned_.contains(unit); });
-    send(wire::Heartbeat{.sent_at = now.time_since_epoch().count(),
-                         .echo_sent_at = master_sent_at_,
-                         .echo_delay = master_sent_at_ ? (now - master_heard_at_).count() : 0,
-                         .phase = phase(),
-                         .progress = counters_.samples,
-                         .version = replica_.version(),
-                         .in_hand = std::move(in_hand),
-                         .free_places = leaving_ ? 0 : queue_.free_places(),
-                         .last_work_sequence = queue_.last_sequence()});
+    effects_.send(wire::Heartbeat{.sent_at = now.time_since_epoch().count(),
+                                  .echo_sent_at = master_sent_at_,
+                                  .echo_delay = master_sent_at_ ? (now - master_heard_at_).count() : 0,
+                                  .phase = phase(),
+                                  .progress = effects_.counters.samples,
+                                  .version = scene_.replica().version(),
+                                  .in_hand = units_.in_hand(),
+                                  .free_places = leaving_ ? 0 : units_.free_places(),
+                                  .last_work_sequence = units_.last_sequence()});
 }
 
 void NodeMachine::keep_link(TimePoint now) {
     if (reconnect_at_) {
         if (now < *reconnect_at_) return;
         reconnect_at_.reset();
-        ++counters_.reconnects;
-        actions_.emplace_back(Reconnect{});
+        ++effects_.counters.reconnects;
+        effects_.add(Reconnect{});
         liveness_.restarted(now);
         say_hello(now);
     } else if (liveness_.dead(now)) {
@@ -162,8 +224,8 @@ void NodeMachine::keep_link(TimePoint now) {
     } else if (welcomed_) {
         const bool due = liveness_.heartbeat_due(now);
         // A repeated token costs nothing and mends a lost one.
-        if (due) actions_.emplace_back(SendBulk{wire::BulkHello{token_}});
-        if (due || changed_) heartbeat(now);
+        if (due) effects_.add(SendBulk{wire::BulkHello{token_}});
+        if (due || effects_.state_changed) heartbeat(now);
     }
 }
 
@@ -172,11 +234,11 @@ void NodeMachine::tick(TimePoint now) {
     if (!leaving_) {
         step_scene(now);
         if (left_) return;
-        keep_fetching(now);
+        scene_.keep_fetching(now);
     }
     dispatch();
     keep_link(now);
-    if (leaving_ && queue_.empty()) leave_now(leave_reason_);
+    if (leaving_ && units_.empty()) leave_now(leave_reason_);
 }
 
 void NodeMachine::leave(const std::string& reason, TimePoint now) {
@@ -184,30 +246,28 @@ void NodeMachine::leave(const std::string& reason, TimePoint now) {
     leave_reason_ = reason;
     if (leaving_ || !welcomed_) return leave_now(reason);
     leaving_ = true;
-    report(wire::Severity::Info, "leaving: " + reason + "; finishing what is being rendered");
-    release_waiting(wire::ReleaseReason::Leaving, "the node leaves");
+    effects_.report(wire::Severity::Info, "leaving: " + reason + "; finishing what is being rendered");
+    units_.release_waiting(wire::ReleaseReason::Leaving, "the node leaves");
     heartbeat(now);
 }
 
 void NodeMachine::leave_now(const std::string& reason) {
-    for (const view::WorkUnit& unit : queue_.rendering()) actions_.emplace_back(StopUnit{unit.id});
+    units_.stop_all();
     if (token_ != 0) {
-        send(wire::Goodbye{.reason = reason, .units_sent = {units_sent_.begin(), units_sent_.end()}});
+        effects_.send(wire::Goodbye{.reason = reason, .units_sent = units_.latest_sent()});
     }
     leaving_ = left_ = true;
 }
 
 void NodeMachine::fail(const std::string& reason) {
     failure_text_ = reason;
-    report(wire::Severity::Error, reason);
+    effects_.report(wire::Severity::Error, reason);
     leave_now(reason);
 }
 
 TimePoint NodeMachine::next_event(TimePoint now) const {
     TimePoint next = reconnect_at_ ? *reconnect_at_ : liveness_.next_event();
-    if (snapshot_retry_at_) next = std::min(next, *snapshot_retry_at_);
-    if (absent_retry_at_) next = std::min(next, *absent_retry_at_);
-    if (!fetcher_.idle()) next = std::min(next, now + std::chrono::milliseconds(100));
+    if (const auto due = scene_.next_event(now)) next = std::min(next, *due);
     return std::clamp(next, now, now + Forever);
 }
 
@@ -215,8 +275,8 @@ NodeMachine::State NodeMachine::state() const {
     if (left_) return State::Left;
     if (leaving_) return State::Leaving;
     if (!welcomed_) return State::Joining;
-    if (replica_.version().number == 0) return State::Syncing;
-    return queue_.empty() ? State::Idle : State::Working;
+    if (scene_.replica().version().number == 0) return State::Syncing;
+    return units_.empty() ? State::Idle : State::Working;
 }
 
 const char* name(NodeMachine::State state) {

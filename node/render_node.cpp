@@ -21,15 +21,15 @@ constexpr Duration FlushLimit = std::chrono::seconds(1);
 BuildOutcome build(backend::Backend& backend, const scene::BlobStore& blobs,
                    const SceneReplica::Build& build) {
     BuildOutcome outcome;
-    for (const auto& [id, object] : build.unchecked) {
-        for (scene::Problem& problem : scene::validate_blobs(id, object, blobs)) {
+    for (const ObjectId id : build.unchecked) {
+        for (scene::Problem& problem : scene::validate_blobs(id, *build.scene().find(id), blobs)) {
             outcome.problems.push_back(std::move(problem.message));
         }
     }
     try {
         const std::unique_ptr<backend::EditScope> scope = backend.begin_edit();
-        for (const scene::ChangeList& list : build.lists) {
-            if (const Expected<void> applied = scope->apply(list); !applied) {
+        for (const SceneReplica::Step& step : build.steps) {
+            if (const Expected<void> applied = scope->apply(step.list, step.after); !applied) {
                 outcome.report = tl::unexpected(applied.error());
                 return outcome;
             }

@@ -98,7 +98,7 @@ Expected<void> SceneReplica::apply(scene::ChangeList list) {
         applied.objects.emplace_back(
             scene::id(entry), object ? scene::referenced_blobs(*object) : std::vector<scene::BlobRef>());
     }
-    applied.list = std::move(list);
+    applied.step = {std::move(list), scene_};
     applied_lists_.push_back(std::move(applied));
     return {};
 }
@@ -144,25 +144,23 @@ std::optional<SceneReplica::Build> SceneReplica::take_build() {
     std::set<ObjectId> touched;
     for (std::size_t count = buildable(); count > 0; --count) {
         Applied& applied = applied_lists_.front();
-        for (const scene::Entry& entry : applied.list.entries) {
+        for (const scene::Entry& entry : applied.step.list.entries) {
             if (!std::holds_alternative<scene::Remove>(entry)) touched.insert(scene::id(entry));
         }
-        build.to = applied.list.to;
-        build.state_hash = applied.list.state_hash;
-        build.lists.push_back(std::move(applied.list));
+        build.steps.push_back(std::move(applied.step));
         applied_lists_.pop_front();
     }
-    if (build.lists.empty()) return std::nullopt;
+    if (build.steps.empty()) return std::nullopt;
     for (const ObjectId id : touched) {
-        const scene::Object* object = scene_.find(id);
+        const scene::Object* object = build.scene().find(id);
         if (!object) continue;
         const std::vector<scene::BlobRef> blobs = scene::referenced_blobs(*object);
         const bool all_here =
             std::all_of(blobs.begin(), blobs.end(), [&](const auto& blob) { return here(blob); });
-        if (!blobs.empty() && all_here) build.unchecked.emplace_back(id, *object);
+        if (!blobs.empty() && all_here) build.unchecked.push_back(id);
     }
     building_ = true;
-    building_target_.emplace(build.to, build.state_hash);
+    building_target_.emplace(build.scene().version(), build.scene().state_hash());
     return build;
 }
 

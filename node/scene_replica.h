@@ -38,14 +38,16 @@ class SceneReplica {
     // What has to be fetched for the lists that are here, as they end: each once.
     std::vector<scene::BlobRef> missing() const;
 
-    // The lists that the back-end can be given now, handed out once; with the ids whose blobs were never
-    // looked into.
+    // The lists that the back-end can be given now, handed out once, each with the scene that it makes.
+    struct Step {
+        scene::ChangeList list;
+        scene::Scene after;
+    };
     struct Build {
-        std::vector<scene::ChangeList> lists;
-        std::vector<std::pair<ObjectId, scene::Object>>
-            unchecked;  // geometries and textures as they are at the end
-        Version to;
-        Hash128 state_hash;
+        std::vector<Step> steps;
+        std::vector<ObjectId> unchecked;  // geometries and textures whose blobs were never looked into
+        // Of the last step.
+        const scene::Scene& scene() const { return steps.back().after; }
     };
     std::optional<Build> take_build();
     bool is_building() const { return building_; }
@@ -70,7 +72,7 @@ class SceneReplica {
         std::variant<scene::ChangeList, scene::BlobRef> content;
     };
     struct Applied {
-        scene::ChangeList list;
+        Step step;
         // What the objects refer to that it touched, as it left them; nothing where it removed one.
         std::vector<std::pair<ObjectId, std::vector<scene::BlobRef>>> objects;
     };

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstring>
 
+#include "mediator/frame/render_revision.h"
+
 namespace tessera::embree {
 
 namespace {
@@ -76,8 +78,9 @@ DeviceHandle make_device(const backend::BackendSettings& settings) {
 }
 
 std::string kind_of(const backend::BackendSettings& settings) {
-    return std::string("embree-") + RTC_VERSION_STRING + "/" + instruction_set(settings.isa) + "/" +
-           cpu_vendor() + "/g++-" + std::to_string(__GNUC__) + "." + std::to_string(__GNUC_MINOR__);
+    return frame::with_render_revision(std::string("embree-") + RTC_VERSION_STRING + "/" +
+                                       instruction_set(settings.isa) + "/" + cpu_vendor() + "/g++-" +
+                                       std::to_string(__GNUC__) + "." + std::to_string(__GNUC_MINOR__));
 }
 
 void check(RTCDevice device, const std::string& what) {

@@ -24,7 +24,7 @@ using GeometryHandle = std::unique_ptr<RTCGeometryTy, Releaser<rtcReleaseGeometr
 // Throws Error when the CPU lacks the instruction set that was asked for.
 DeviceHandle make_device(const backend::BackendSettings& settings);
 
-// "embree-3.13.5/avx512/GenuineIntel/g++-12.2": what has to be equal for equal bits.
+// "embree-3.13.5/avx512/GenuineIntel/g++-12.2/r1": what has to be equal for equal bits.
 std::string kind_of(const backend::BackendSettings& settings);
 
 // Throws Error with Embree's reason if a call failed since the last check.

@@ -6,8 +6,8 @@
 
 #include "backends/embree/path_tracer.h"
 #include "backends/embree/world.h"
+#include "mediator/backend/sample_loop.h"
 #include "mediator/backend/story.h"
-#include "mediator/frame/block_stack.h"
 #include "mediator/frame/merge.h"
 #include "mediator/shading/sample_values.h"
 
@@ -45,18 +45,9 @@ class EmbreeBackend final : public Backend {
         const std::shared_lock lock(mutex_);
         if (unit.version != world_.version()) return {};
         const PathTracer tracer(world_.tables(), world_.scene(), view);
-        frame::BlockStack finished;
-        RenderResult result{.status = RenderStatus::Done};
-        for (std::uint64_t sample = unit.block.first; sample < unit.block.end(); ++sample) {
-            frame::FilmTile tile = finished.recycled(unit.tile, {sample, 0}, view.channels);
-            if (!fill(tile, tracer, result.rays, stop)) {
-                result.status = RenderStatus::Stopped;  // the sample in hand is not whole: dropped
-                break;
-            }
-            finished.push(std::move(tile));
-        }
-        result.blocks = finished.take();
-        return result;
+        return render_samples(unit, view.channels, [&](frame::FilmTile& tile, std::uint64_t& rays) {
+            return fill(tile, tracer, rays, stop);
+        });
     }
 
     std::vector<std::string> probe(const view::View& view, std::uint32_t x, std::uint32_t y,
@@ -77,8 +68,10 @@ class EmbreeBackend final : public Backend {
       public:
         explicit Edit(EmbreeBackend& backend) : backend_(backend), lock_(backend.mutex_) {}
         ~Edit() override { backend_.world_.rollback(); }  // what was committed stays
-        Expected<void> apply(const scene::ChangeList& changes) override {
-            return backend_.world_.apply(changes);
+        const scene::Scene& scene() const override { return backend_.world_.content(); }
+        using EditScope::apply;
+        Expected<void> apply(const scene::ChangeList& changes, const scene::Scene& after) override {
+            return backend_.world_.apply(changes, after);
         }
         Expected<EditReport> commit() override { return backend_.world_.commit(); }
 

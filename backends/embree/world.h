@@ -15,11 +15,14 @@ class World {
   public:
     World(RTCDevice device, std::shared_ptr<scene::BlobStore> blobs);
 
-    Expected<void> apply(const scene::ChangeList& changes) { return shadow_.apply(changes); }
+    Expected<void> apply(const scene::ChangeList& changes, const scene::Scene& after) {
+        return shadow_.apply(changes, after);
+    }
     void rollback() { shadow_.rollback(); }
     Expected<backend::EditReport> commit();
 
     Version version() const { return version_; }
+    const scene::Scene& content() const { return shadow_.scene(); }  // after all lists that were applied
     const backend::SceneTables& tables() const { return tables_; }
     RTCScene scene() const { return top_.get(); }
 

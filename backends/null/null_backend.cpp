@@ -8,9 +8,10 @@
 #include <thread>
 
 #include "backends/null/gradient.h"
+#include "mediator/backend/sample_loop.h"
 #include "mediator/backend/shadow_scene.h"
-#include "mediator/frame/block_stack.h"
 #include "mediator/frame/merge.h"
+#include "mediator/frame/render_revision.h"
 
 namespace tessera::null_backend {
 
@@ -28,7 +29,7 @@ class NullBackend final : public Backend {
         const std::uint32_t cores = std::max(1u, std::thread::hardware_concurrency());
         return {.channels = AllChannels,
                 .concurrent_units = settings_.threads ? settings_.threads : cores,
-                .kind = "null-1"};
+                .kind = frame::with_render_revision("null-1")};
     }
 
     Version version() const override {
@@ -43,19 +44,11 @@ class NullBackend final : public Backend {
         const std::shared_lock lock(mutex_);
         if (unit.version != shadow_.scene().version()) return {};
         const std::uint64_t key = view_key(content_, view);
-        frame::BlockStack finished;
-        RenderResult result{.status = RenderStatus::Done};
-        for (std::uint64_t sample = unit.block.first; sample < unit.block.end(); ++sample) {
-            frame::FilmTile tile = finished.recycled(unit.tile, {sample, 0}, view.channels);
-            if (!fill(tile, view, key, stop) || !spend_time(tile.pixel_count(), stop)) {
-                result.status = RenderStatus::Stopped;  // the sample in hand is not whole: dropped
-                break;
-            }
-            finished.push(std::move(tile));
-            result.rays += unit.tile.pixel_count();
-        }
-        result.blocks = finished.take();
-        return result;
+        return render_samples(unit, view.channels, [&](frame::FilmTile& tile, std::uint64_t& rays) {
+            if (!fill(tile, view, key, stop) || !spend_time(tile.pixel_count(), stop)) return false;
+            rays += tile.pixel_count();
+            return true;
+        });
     }
 
     std::vector<std::string> probe(const view::View& view, std::uint32_t x, std::uint32_t y,
@@ -74,8 +67,10 @@ class NullBackend final : public Backend {
         explicit Edit(NullBackend& backend) : backend_(backend), lock_(backend.mutex_) {}
         ~Edit() override { backend_.shadow_.rollback(); }  // what was committed stays
 
-        Expected<void> apply(const scene::ChangeList& changes) override {
-            return backend_.shadow_.apply(changes);
+        const scene::Scene& scene() const override { return backend_.shadow_.scene(); }
+        using EditScope::apply;
+        Expected<void> apply(const scene::ChangeList& changes, const scene::Scene& after) override {
+            return backend_.shadow_.apply(changes, after);
         }
 
         Expected<EditReport> commit() override {

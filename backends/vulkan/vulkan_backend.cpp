@@ -10,6 +10,7 @@
 #include "backends/vulkan/world.h"
 #include "mediator/backend/tables/bodies.h"
 #include "mediator/backend/tables/view_record.h"
+#include "mediator/frame/render_revision.h"
 
 namespace tessera::vulkan {
 
@@ -35,7 +36,7 @@ class VulkanBackend final : public Backend {
                          .preferred_tile = info.kind == DeviceKind::Cpu ? 32u : 128u,
                          .concurrent_units = 2,  // one merges while the other one's samples are traced
                          .deterministic = true,
-                         .kind = "vulkan " + info.name + ", " + info.driver};
+                         .kind = frame::with_render_revision("vulkan " + info.name + ", " + info.driver)};
     }
     ~VulkanBackend() override { world_.move_to(nullptr); }
 
@@ -83,8 +84,10 @@ class VulkanBackend final : public Backend {
       public:
         explicit Edit(VulkanBackend& backend) : backend_(backend), lock_(backend.mutex_) {}
         ~Edit() override { backend_.world_.rollback(); }  // what was committed stays
-        Expected<void> apply(const scene::ChangeList& changes) override {
-            return backend_.world_.apply(changes);
+        const scene::Scene& scene() const override { return backend_.world_.content(); }
+        using EditScope::apply;
+        Expected<void> apply(const scene::ChangeList& changes, const scene::Scene& after) override {
+            return backend_.world_.apply(changes, after);
         }
         Expected<EditReport> commit() override { return backend_.commit(); }
 

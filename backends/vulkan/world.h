@@ -24,13 +24,16 @@ class World final {
     // Whether the scene is on a device; only then may scene() and commit() be called.
     bool is_on_device() const { return scene_ != nullptr; }
 
-    Expected<void> apply(const scene::ChangeList& changes) { return shadow_.apply(changes); }
+    Expected<void> apply(const scene::ChangeList& changes, const scene::Scene& after) {
+        return shadow_.apply(changes, after);
+    }
     // To the last version that was committed.
     void rollback();
     // May be called again after DeviceLost, on another device.
     Expected<backend::EditReport> commit();
 
     Version version() const { return version_; }
+    const scene::Scene& content() const { return shadow_.scene(); }  // after all lists that were applied
     const backend::SceneTables& tables() const { return tables_; }
     const GpuScene& scene() const { return *scene_; }
 

@@ -102,15 +102,6 @@ Expected<void> check(const filter::Choice& choice, const picture::FilmFile& file
     return {};
 }
 
-frame::Image interleaved(const filter::Planes& planes) {
-    frame::Image image(planes.width(), planes.height(), planes.components());
-    for (std::uint32_t c = 0; c < planes.components(); ++c) {
-        const auto plane = planes.plane(c);
-        for (std::size_t i = 0; i < plane.size(); ++i) image.values[i * planes.components() + c] = plane[i];
-    }
-    return image;
-}
-
 void write(const FilterOptions& options, const picture::FilmFile& file, const filter::Output& output) {
     const frame::Image picture = interleaved(output.picture);
     if (picture_format(options.output) == PictureFormat::Exr) {
@@ -164,7 +155,7 @@ int run_filter(const FilterOptions& options) {
                           {"height", inputs.height},
                           {"seconds", total},
                           {"passes", passes},
-                          {"notes", report.notes}}
+                          {"notes", std::vector<std::string>(report.notes.begin(), report.notes.end())}}
                          .dump(2)
                   << "\n";
         return 0;
@@ -173,7 +164,7 @@ int run_filter(const FilterOptions& options) {
     std::snprintf(line, sizeof line, "%s: %ux%u pixels in %.1f ms\n", filter::to_text(*choice).c_str(),
                   inputs.width, inputs.height, total * 1e3);
     std::cout << line;
-    for (const std::string& note : report.notes) std::cout << note << "\n";
+    for (const std::string_view note : report.notes) std::cout << note << "\n";
     std::cout << "wrote " << options.output << "\n";
     return 0;
 }

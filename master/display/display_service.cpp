@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "master/filter/catalog.h"
-#include "master/render/job.h"
+#include "master/render/picture_chunks.h"
 #include "mediator/display/frustum.h"
 #include "mediator/display/validate.h"
 #include "mediator/filter/choice.h"
@@ -14,8 +14,6 @@ namespace tessera::master {
 using wire::OutputState;
 
 namespace {
-
-constexpr std::size_t OutputChunkBytes = std::size_t{1} << 20;
 
 // Of a choice of layers to show, bit i: layer i.
 std::string layer_problem(const display::Display& display, std::uint32_t shown) {
@@ -38,15 +36,13 @@ std::string first_problem(const display::Display& display) {
 
 }  // namespace
 
-DisplayService::DisplayService(SceneAuthority& authority, SessionTable& sessions, LiveRunner& runner,
+DisplayService::DisplayService(SceneAuthority& authority, SessionTable& sessions, Views& renderer,
                                Outbox& outbox, EventSink events)
     : authority_(authority),
       sessions_(sessions),
-      runner_(runner),
+      renderer_(renderer),
       outbox_(outbox),
-      events_(std::move(events)) {
-    runner_.on_output = [this](MadeOutput&& output, TimePoint now) { made(std::move(output), now); };
-}
+      events_(std::move(events)) {}
 
 std::string DisplayService::open(const scene::BlobPtr& description, std::vector<scene::BlobPtr> content,
                                  TimePoint now) {
@@ -77,10 +73,7 @@ std::string DisplayService::open(const scene::BlobPtr& description, std::vector<
     events_({wire::Severity::Info, "display '" + open_->display.name + "' is open: " + std::to_string(count) +
                                        (count == 1 ? " output" : " outputs")});
     tell_of_camera();
-    runner_.open_group({.views = [this] { return views(); },
-                        .can_take = [this] { return can_take(); },
-                        .take = [this](const GroupStage& stage, TimePoint when) { take(stage, when); }},
-                       open_->display.spp, open_->display.coarsest, authority_.version());
+    renderer_.group().open(open_->display.spp, open_->display.coarsest, authority_.version());
     for (std::size_t i = 0; i < count; ++i) {
         const auto shower = showers.extract(open_->display.outputs[i].name);
         if (shower.empty()) continue;
@@ -103,7 +96,7 @@ void DisplayService::close() {
 
 void DisplayService::forget() {
     events_({wire::Severity::Info, "display '" + open_->display.name + "' is closed"});
-    runner_.close_group();
+    renderer_.close_group();
     open_.reset();
 }
 
@@ -123,9 +116,9 @@ std::string DisplayService::adjust(const wire::AdjustDisplay& request) {
     display::Display alike = open_->display;
     alike.exposure = adjusted.exposure;
     if (alike != adjusted) {
-        runner_.group_changed();
+        renderer_.group().changed();
     } else if (open_->display.exposure != adjusted.exposure) {
-        runner_.take_group_again();  // other pictures of the same light
+        renderer_.group().take_again();  // other pictures of the same light
     }
     open_->display = std::move(adjusted);
     if (request.pattern && open_->pattern != *request.pattern) {
@@ -152,7 +145,7 @@ void DisplayService::move_head(const display::Head& head) {
         return;
     }
     open_->display.head = head;
-    runner_.group_changed();
+    renderer_.group().changed();
 }
 
 std::string DisplayService::join(const SessionRecord& session, const wire::JoinOutput& request,
@@ -221,7 +214,7 @@ void DisplayService::tell_of_camera() {
 bool DisplayService::scene_changed(const scene::ChangeList& changes) {
     if (!open_ || !open_->camera.follow(changes, authority_.scene())) return false;
     tell_of_camera();
-    runner_.group_changed();
+    renderer_.group().changed();
     return open_->camera.world_from_camera().has_value();
 }
 
@@ -298,9 +291,8 @@ void DisplayService::send(std::size_t index) {
                                   .samples = output.samples_least,
                                   .total = picture.bytes->size()};
         const std::span<const std::byte> bytes(*picture.bytes);
-        for (; piece.offset < bytes.size(); piece.offset += OutputChunkBytes) {
-            const auto part =
-                bytes.subspan(piece.offset, std::min(OutputChunkBytes, bytes.size() - piece.offset));
+        for (; piece.offset < bytes.size(); piece.offset += PictureChunkBytes) {
+            const auto part = next_chunk(bytes, piece.offset);
             piece.data.assign(part.begin(), part.end());
             outbox_.bulk(*session->bulk, piece);
         }
@@ -345,6 +337,9 @@ void DisplayService::tick(TimePoint now) {
             events_({wire::Severity::Warning,
                      "output '" + open_->display.outputs[i].name + "' is late: the others go on without it"});
     }
+    using enum LockstepGroup::Consumer;
+    while (const auto stage = renderer_.next_group_stage(can_take() ? Free : Busy, now)) take(*stage);
+    if (renderer_.group().is_restart_due()) renderer_.restart_group(views(), now);
 }
 
 TimePoint DisplayService::next_event() const {

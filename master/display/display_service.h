@@ -10,7 +10,7 @@
 
 #include "master/display/frame_lock.h"
 #include "master/peers/session_table.h"
-#include "master/render/live_runner.h"
+#include "master/render/views.h"
 #include "master/scene/scene_authority.h"
 #include "mediator/display/display.h"
 #include "mediator/view/placed_cameras.h"
@@ -18,11 +18,11 @@
 namespace tessera::master {
 
 // The display in front of the live scene: who shows which output, what each eye sees, and the frames on their
-// way to all outputs. The views go in lockstep (view_group.h); one frame is made while another is sent and
+// way to all outputs. The views go in lockstep (lockstep_group.h); one frame is made while another is sent and
 // presented (frame_lock.h). Told of messages by the render master.
 class DisplayService {
   public:
-    DisplayService(SceneAuthority& authority, SessionTable& sessions, LiveRunner& runner, Outbox& outbox,
+    DisplayService(SceneAuthority& authority, SessionTable& sessions, Views& renderer, Outbox& outbox,
                    EventSink events);
 
     // `content`: the description's blob and those that it refers to; kept as long as the display. "" or what
@@ -37,6 +37,8 @@ class DisplayService {
     std::string join(const SessionRecord& session, const wire::JoinOutput& request, TimePoint now);
     void ready(SessionId session, const wire::OutputReady& ready, TimePoint now);
     void left(SessionId session, TimePoint now);
+    // The pictures that make_output() was ordered to make.
+    void made(MadeOutput&& made, TimePoint now);
     // A version is published. True: the camera that carries the display is somewhere else, or there again.
     bool scene_changed(const scene::ChangeList& changes);
     // Nothing without a display, or a camera that carries it.
@@ -86,8 +88,7 @@ class DisplayService {
 
     std::vector<GroupView> views();
     bool can_take() const;
-    void take(const GroupStage& stage, TimePoint now);
-    void made(MadeOutput&& made, TimePoint now);
+    void take(const GroupStage& stage);
     void admit();  // who is able to take part and does not yet
     void send_waiting(TimePoint now);
     void send(std::size_t output);  // the latest frame
@@ -100,7 +101,7 @@ class DisplayService {
 
     SceneAuthority& authority_;
     SessionTable& sessions_;
-    LiveRunner& runner_;
+    Views& renderer_;
     Outbox& outbox_;
     EventSink events_;
     std::optional<Open> open_;

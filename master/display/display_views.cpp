@@ -1,6 +1,5 @@
 // What the nodes render for a display, and the pictures that are made of it.
 #include "master/display/display_service.h"
-#include "master/render/job.h"
 #include "mediator/display/frustum.h"
 
 namespace tessera::master {
@@ -69,7 +68,7 @@ bool DisplayService::can_take() const {
 }
 
 // By the plan that the stage's views were asked for: the display may have been adjusted since.
-void DisplayService::take(const GroupStage& stage, TimePoint) {
+void DisplayService::take(const GroupStage& stage) {
     const display::Display& display = open_->display;
     Frame& frame = open_->making.emplace_back(Frame{.number = next_frame_++, .version = stage.version});
     frame.missing = display.outputs.size();
@@ -77,7 +76,7 @@ void DisplayService::take(const GroupStage& stage, TimePoint) {
     auto view = stage.views.begin();
     for (std::size_t i = 0; i < display.outputs.size(); ++i) {
         const std::vector<PlannedEye>& eyes = open_->plan.at(i);
-        OutputOrder order{.frame = frame.number, .output = i, .eyes = {}};
+        OutputOrder order{.frame = frame.number, .output = i, .version = stage.version, .eyes = {}};
         order.encoding = display::takes_linear_light(display.outputs[i]) ? wire::PictureEncoding::Half
                                                                          : wire::PictureEncoding::Bytes;
         order.look = {display.exposure, display.white};
@@ -87,7 +86,7 @@ void DisplayService::take(const GroupStage& stage, TimePoint) {
             order.eyes.push_back({.layers = {view, end}, .in_display = eye.in_display});
             view = end;
         }
-        runner_.make_output(std::move(order));
+        renderer_.make_output(std::move(order));
     }
 }
 

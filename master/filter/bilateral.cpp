@@ -14,11 +14,6 @@ using frame::Channel;
 
 enum Parameters : std::size_t { Sigma, SigmaAlbedo, SigmaNormal, SigmaDepth, Demodulate };
 
-// What turns a difference into the square root of its exponent.
-float scale_of(double sigma) {
-    return static_cast<float>(1.0 / (std::sqrt(2.0) * sigma));
-}
-
 class Bilateral final : public Filter {
   public:
     Report run(const Inputs& inputs, const Values& values, Output& out, RunContext context) override {
@@ -56,8 +51,7 @@ class Bilateral final : public Filter {
         }
         return for_rows(context, picture.height(), [&](std::uint32_t y) {
             Sum sum(guides_, features_.color(), features_.known());
-            for (std::int64_t first = 0; first < std::int64_t{picture.width()}; first += Sum::Stretch) {
-                sum.begin(y, first);
+            sum_windows(sum, y, picture, [&] {
                 for (std::int64_t dy = -radius; dy <= radius; ++dy) {
                     const float across = kernel_[static_cast<std::size_t>(std::abs(dy))];
                     for (std::int64_t dx = -radius; dx <= radius; ++dx) {
@@ -65,8 +59,7 @@ class Bilateral final : public Filter {
                     }
                     sum.close_part();
                 }
-                sum.write(picture);
-            }
+            });
             features_.finish_row(picture, y);
         });
     }

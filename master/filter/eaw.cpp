@@ -19,10 +19,6 @@ constexpr std::uint32_t ColorGuides = 3, SurfaceGuides = 4;
 constexpr std::uint32_t Guides = ColorGuides + SurfaceGuides;
 constexpr std::array<float, 3> Spline{3.0f / 8.0f, 1.0f / 4.0f, 1.0f / 16.0f};  // by distance from the middle
 
-float scale_of(double sigma) {
-    return static_cast<float>(1.0 / (std::sqrt(2.0) * sigma));
-}
-
 // In order, so that bits do not depend on threads.
 float mean_luminance(const Features& features) {
     const Planes& color = features.color();
@@ -99,8 +95,7 @@ class Eaw final : public Filter {
         const std::int64_t step = std::int64_t{1} << level;
         return for_rows(context, to.height(), [&](std::uint32_t y) {
             Sum sum(guides_, from, features_.known());
-            for (std::int64_t first = 0; first < std::int64_t{to.width()}; first += Sum::Stretch) {
-                sum.begin(y, first);
+            sum_windows(sum, y, to, [&] {
                 for (std::int64_t dy = -2; dy <= 2; ++dy) {
                     const float across = Spline[static_cast<std::size_t>(std::abs(dy))];
                     for (std::int64_t dx = -2; dx <= 2; ++dx) {
@@ -109,8 +104,7 @@ class Eaw final : public Filter {
                     }
                 }
                 sum.close_part();
-                sum.write(to);
-            }
+            });
         });
     }
 

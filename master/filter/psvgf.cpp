@@ -74,14 +74,14 @@ class Psvgf final : public Filter {
         shape(out.picture, inputs, inputs.color_components());
         out.maps.clear();
         if (!has_all(inputs)) {
-            report.notes.emplace_back("channels that psvgf reads are missing: the picture is unfiltered");
+            report.notes.push_back("channels that psvgf reads are missing: the picture is unfiltered");
             reset();
             copy_colors(inputs, out.picture);
             return true;
         }
         merge(inputs.changes, pending_);
         if (coverage.samples == 0.0) {
-            report.notes.emplace_back("no samples yet: the picture before is shown");
+            report.notes.push_back("no samples yet: the picture before is shown");
             copy_colors(inputs, out.picture);
             if (known_ && shown_.components() == out.picture.components()) out.picture = shown_;
             return true;

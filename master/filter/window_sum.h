@@ -105,4 +105,19 @@ class WindowSum {
     std::array<std::array<float, Stretch>, Components + 1> sums_, part_;  // the last: weights
 };
 
+// Row y of `to`. add_taps(): the taps of the window, for one stretch of the row.
+template <class Sum, class AddTaps>
+void sum_windows(Sum& sum, std::uint32_t y, Planes& to, const AddTaps& add_taps) {
+    for (std::int64_t first = 0; first < std::int64_t{to.width()}; first += Sum::Stretch) {
+        sum.begin(y, first);
+        add_taps();
+        sum.write(to);
+    }
+}
+
+// What turns a difference into the square root of its exponent.
+inline float scale_of(double sigma) {
+    return static_cast<float>(1.0 / (std::sqrt(2.0) * sigma));
+}
+
 }  // namespace tessera::filter

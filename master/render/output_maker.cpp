@@ -100,7 +100,8 @@ LightPlanes light_of(const filter::Planes& picture) {
     return light;
 }
 
-LightPlanes light_of(const frame::FilmTile& film, const view::View& view, Reconstructor& reconstructor) {
+LightPlanes light_of(const frame::FilmTile& film, const view::View& view, Version version,
+                     Reconstructor& reconstructor) {
     LightPlanes light{static_cast<std::uint32_t>(film.rect.width),
                       static_cast<std::uint32_t>(film.rect.height)};
     if (is_plain(view)) {
@@ -109,7 +110,7 @@ LightPlanes light_of(const frame::FilmTile& film, const view::View& view, Recons
         light.counts = film.counts.data();
         return light;
     }
-    return light_of(reconstructor.filtered(film, view));
+    return light_of(reconstructor.filtered(film, view, version));
 }
 
 // What a light is copied to when more than one is needed at a time: r, g, b and, when there is one, alpha.
@@ -130,12 +131,12 @@ std::span<const float> depth_of(const frame::FilmTile& film) {
 }
 
 // Layers over each other; each was rendered without what the others show, before a transparent background.
-void lay_over(std::span<const view::View> views, std::span<const frame::FilmTile> films,
+void lay_over(std::span<const view::View> views, std::span<const frame::FilmTile> films, Version version,
               Reconstructor& reconstructor, filter::Planes& out) {
     std::vector<Copied> copies;
     std::vector<Layer> layers;
     for (std::size_t i = 0; i < views.size(); ++i)
-        copies.emplace_back(reconstructor.filtered(films[i], views[i]));
+        copies.emplace_back(reconstructor.filtered(films[i], views[i], version));
     for (std::size_t i = 0; i < views.size(); ++i) {
         const auto& planes = copies[i].planes;
         layers.push_back(
@@ -191,9 +192,9 @@ MadeOutput make_output(OutputOrder order, const std::vector<frame::FilmTile>& fi
             rest = rest.subspan(eye.layers.size());
             LightPlanes light;
             if (own.size() == 1) {
-                light = light_of(own.front(), eye.layers.front(), reconstructor);
+                light = light_of(own.front(), eye.layers.front(), made.order.version, reconstructor);
             } else {
-                lay_over(eye.layers, own, reconstructor, composed);
+                lay_over(eye.layers, own, made.order.version, reconstructor, composed);
                 light = light_of(composed);
             }
             made.eyes.push_back(encoded(light, tone, made.order.encoding, reconstructor.arena()));

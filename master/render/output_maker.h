@@ -27,6 +27,7 @@ struct OutputOrder {
     };
     std::uint64_t frame = 0;
     std::size_t output = 0;
+    Version version;  // of the scene that the films show
     std::vector<EyePicture> eyes;
     wire::PictureEncoding encoding = wire::PictureEncoding::Bytes;  // or Half
     Look look;

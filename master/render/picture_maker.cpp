@@ -7,36 +7,41 @@
 namespace tessera::master {
 
 void PictureMaker::make(PictureTask task) {
-    thread_.post([this, task = std::make_shared<PictureTask>(std::move(task))] { done_(made(*task)); });
+    thread_.post(
+        [this, task = std::make_shared<PictureTask>(std::move(task))] { outputs_.put(made(*task)); });
 }
 
 void PictureMaker::make(OutputOrder order, std::vector<frame::FilmTile> films) {
     thread_.post([this, order = std::move(order),
                   films = std::make_shared<std::vector<frame::FilmTile>>(std::move(films))] {
-        done_(make_output(order, *films, reconstructor_));
+        outputs_.put(make_output(order, *films, reconstructor_));
     });
 }
 
-void PictureMaker::rehearse(JobId job, const view::View& view, wire::PictureEncoding encoding) {
-    thread_.post([this, job, view, encoding] {
+void PictureMaker::rehearse(const view::View& view, wire::PictureEncoding encoding) {
+    thread_.post([this, view, encoding] {
         constexpr std::uint32_t Edge = 256;
         const auto width = std::min(static_cast<std::uint32_t>(view.window.width), Edge);
         const auto height = std::min(static_cast<std::uint32_t>(view.window.height), Edge);
         const double seconds = reconstructor_.rehearse(view, encoding, width, height);
-        done_(Rehearsed{job, std::uint64_t{width} * height, seconds});
+        outputs_.put(Rehearsed{view.id, std::uint64_t{width} * height, seconds});
     });
+}
+
+void PictureMaker::forget(ViewId first, ViewId last) {
+    thread_.post([this, first, last] { reconstructor_.forget(first, last); });
 }
 
 Reconstructed PictureMaker::made(const PictureTask& task) {
     const auto [least, most] = std::minmax_element(task.film.counts.begin(), task.film.counts.end());
-    Reconstructed made{.job = task.job, .picture = {}, .samples_least = *least, .samples_most = *most};
+    Reconstructed made{.frame = task.frame, .picture = {}, .samples_least = *least, .samples_most = *most};
     made.picture.bytes = std::make_shared<const std::vector<std::byte>>();
     if (task.hash_film) made.film_hash = frame::film_hash(task.film);
     if (task.encoding != wire::PictureEncoding::None) {
         made.picture = reconstructor_.reconstruct({.film = task.film,
                                                    .later = task.later ? &*task.later : nullptr,
                                                    .features = task.features.get()},
-                                                  task.view, task.encoding);
+                                                  task.view, task.version, task.encoding);
     }
     return made;
 }

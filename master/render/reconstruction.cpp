@@ -17,15 +17,6 @@ double since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-frame::Image interleaved(const filter::Planes& planes) {
-    frame::Image image(planes.width(), planes.height(), planes.components());
-    for (std::uint32_t c = 0; c < planes.components(); ++c) {
-        const auto plane = planes.plane(c);
-        for (std::size_t i = 0; i < plane.size(); ++i) image.values[i * planes.components() + c] = plane[i];
-    }
-    return image;
-}
-
 std::vector<std::byte> encode(const filter::Planes& picture, wire::PictureEncoding encoding) {
     switch (encoding) {
         case wire::PictureEncoding::Png:
@@ -46,17 +37,31 @@ std::vector<std::byte> encode(const filter::Planes& picture, wire::PictureEncodi
 
 }  // namespace
 
-filter::Filter& Reconstructor::instance(const filter::Choice& choice, std::uint32_t width,
-                                        std::uint32_t height) {
+filter::Filter& Reconstructor::instance(const filter::Choice& choice, const view::View& view, Version version,
+                                        filter::Inputs& inputs) {
+    Instance& instance = instances_[view.id];
+    inputs.changes = {};
     const std::string name(choice.entry->description.name);
-    if (!instance_.filter || instance_.name != name || instance_.width != width ||
-        instance_.height != height) {
-        instance_ = {name, width, height, choice.entry->make(width, height)};
+    if (!instance.filter || instance.name != name || instance.width != inputs.width ||
+        instance.height != inputs.height) {
+        instance = {name, inputs.width, inputs.height, choice.entry->make(inputs.width, inputs.height)};
+    } else {
+        // What of the scene has changed is not known here: anything may have, unless the film went on.
+        const bool restarted = instance.revision != view.revision;
+        const bool other_scene = restarted && instance.version != version;
+        inputs.changes = {
+            .film_restarted = restarted, .lights_or_materials = other_scene, .geometry = other_scene};
     }
-    return *instance_.filter;
+    instance.revision = view.revision;
+    instance.version = version;
+    return *instance.filter;
 }
 
-Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& view,
+void Reconstructor::forget(ViewId first, ViewId last) {
+    instances_.erase(instances_.lower_bound(first), instances_.lower_bound(last));
+}
+
+Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& view, Version version,
                                           wire::PictureEncoding encoding) {
     Reconstruction result{.bytes = std::make_shared<const std::vector<std::byte>>()};
     wire::PictureSummary& summary = result.summary;
@@ -68,21 +73,20 @@ Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& 
     summary.filter = filter::to_text(*choice);
     try {
         const auto started = Clock::now();
-        const filter::Inputs inputs = filter::make_inputs(films.film, view, films.later);
-        filter::Filter& filter = instance(*choice, inputs.width, inputs.height);
-        filter.reset();
-        const filter::Report report = filter.run(inputs, choice->values, output_, {arena_, {}});
+        filter::resolve_inputs(films.film, view, films.later, inputs_);
+        filter::Filter& filter = instance(*choice, view, version, inputs_);
+        const filter::Report report = filter.run(inputs_, choice->values, output_, {arena_, {}});
         const filter::Planes* picture = &output_.picture;
         if (films.features != nullptr) {
-            const filter::Inputs full = filter::make_inputs(*films.features, view);
-            filter::upsample(output_.picture, inputs, full, upsampled_, {arena_, {}});
+            filter::resolve_inputs(*films.features, view, nullptr, full_inputs_);
+            filter::upsample(output_.picture, inputs_, full_inputs_, upsampled_, {arena_, {}});
             picture = &upsampled_;
         }
         summary.seconds_filter = since(started);
         for (const filter::Pass& pass : report.passes) {
             summary.passes.push_back({std::string(pass.name), seconds(pass.time), pass.bytes_per_pixel});
         }
-        summary.notes = report.notes;
+        summary.notes.assign(report.notes.begin(), report.notes.end());
         const auto filtered = Clock::now();
         result.bytes = std::make_shared<const std::vector<std::byte>>(encode(*picture, encoding));
         summary.seconds_encode = since(filtered);
@@ -97,18 +101,19 @@ Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& 
     return result;
 }
 
-const filter::Planes& Reconstructor::filtered(const frame::FilmTile& film, const view::View& view) {
+const filter::Planes& Reconstructor::filtered(const frame::FilmTile& film, const view::View& view,
+                                              Version version) {
     const auto choice = filter::parse_choice(view.filter, filter::catalog());
     if (!choice) throw choice.error();
-    const filter::Inputs inputs = filter::make_inputs(film, view);
-    filter::Filter& filter = instance(*choice, inputs.width, inputs.height);
-    filter.reset();
-    filter.run(inputs, choice->values, output_, {arena_, {}});
+    filter::resolve_inputs(film, view, nullptr, inputs_);
+    instance(*choice, view, version, inputs_).run(inputs_, choice->values, output_, {arena_, {}});
     return output_.picture;
 }
 
-double Reconstructor::rehearse(const view::View& view, wire::PictureEncoding encoding, std::uint32_t width,
+double Reconstructor::rehearse(const view::View& asked, wire::PictureEncoding encoding, std::uint32_t width,
                                std::uint32_t height) {
+    view::View view = asked;
+    view.id = {};  // no picture of the view
     const Rect rect{0, 0, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
     frame::FilmTile film(rect, {0, 2}, view.channels);
     std::fill(film.counts.begin(), film.counts.end(), 4u);
@@ -118,8 +123,10 @@ double Reconstructor::rehearse(const view::View& view, wire::PictureEncoding enc
         value = static_cast<float>(state >> 8) * 0x1p-24f;
     }
     const auto started = Clock::now();
-    reconstruct({.film = film}, view, encoding);
-    return since(started);
+    reconstruct({.film = film}, view, {}, encoding);
+    const double seconds = since(started);
+    instances_.erase(view.id);
+    return seconds;
 }
 
 }  // namespace tessera::master

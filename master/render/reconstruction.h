@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 
@@ -24,30 +25,41 @@ struct Films {
         nullptr;  // of the full size, if `film` is smaller and is to be upsampled
 };
 
-// Filters whole films and encodes them; each picture for itself, without history. Keeps the memory of the
-// last filter as long as filter and size stay the same. One thread calls; the work runs on all cores.
+// Filters whole films and encodes them. Every view has a filter of its own, which keeps its history from one
+// picture of the view to the next and hears what has changed between them. One thread calls; the work runs on
+// all cores.
 class Reconstructor {
   public:
-    Reconstruction reconstruct(const Films& films, const view::View& view, wire::PictureEncoding encoding);
+    // Of view.id; `version`: of the scene that the film shows.
+    Reconstruction reconstruct(const Films& films, const view::View& view, Version version,
+                               wire::PictureEncoding encoding);
 
     // The filtered picture alone, in memory of this object until the next call. Throws Error.
-    const filter::Planes& filtered(const frame::FilmTile& film, const view::View& view);
+    const filter::Planes& filtered(const frame::FilmTile& film, const view::View& view, Version version);
     tbb::task_arena& arena() { return arena_; }
 
     // Seconds that the same takes on a made-up film of about `pixels`: for the first prediction.
     double rehearse(const view::View& view, wire::PictureEncoding encoding, std::uint32_t width,
                     std::uint32_t height);
 
+    void forget(ViewId first, ViewId last);  // the filters of the views [first, last)
+
   private:
+    // The filter of a view, and what it saw last.
     struct Instance {
         std::string name;
         std::uint32_t width = 0, height = 0;
         std::unique_ptr<filter::Filter> filter;
+        std::uint64_t revision = 0;
+        Version version;
     };
-    filter::Filter& instance(const filter::Choice& choice, std::uint32_t width, std::uint32_t height);
+    // Ready for the picture; tells `inputs` what has changed since the one before.
+    filter::Filter& instance(const filter::Choice& choice, const view::View& view, Version version,
+                             filter::Inputs& inputs);
 
     tbb::task_arena arena_;
-    Instance instance_;
+    std::map<ViewId, Instance> instances_;
+    filter::Inputs inputs_, full_inputs_;  // kept for their memory
     filter::Output output_;
     filter::Planes upsampled_;
 };

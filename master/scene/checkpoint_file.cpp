@@ -109,11 +109,11 @@ wire::CheckpointState parse(std::span<const std::byte> file, std::uint64_t numbe
     need(in.number() == number, "it is another checkpoint than its name says");
     auto state = wire::decode_checkpoint(in.take(in.number()));
     if (!state) throw state.error();
-    for (std::size_t i = 0; i < state->views.size(); ++i) {
-        for (std::uint64_t block = 0; block < state->block_counts[i]; ++block) {
+    for (wire::SavedView& view : state->views) {
+        for (; view.block_count > 0; --view.block_count) {
             auto film = wire::decode_film(in.take(in.number()));
             if (!film) throw film.error();
-            state->views[i].blocks.push_back(std::move(*film));
+            view.blocks.push_back(std::move(*film));
         }
     }
     need(in.at_end(), "something follows its last block");

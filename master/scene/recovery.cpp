@@ -54,6 +54,7 @@ class Recoverer {
             if (state) {
                 recovery_.title = state->title;
                 recovery_.views = std::move(state->views);
+                check_films(path, state->render_revision);
                 auto authority = restored(std::move(*state));
                 if (authority) {
                     authority_.restore(std::move(*authority));
@@ -78,6 +79,15 @@ class Recoverer {
         recovery_.title.clear();
         recovery_.views.clear();
         return 1;
+    }
+
+    // Views keep their cameras; film that nodes of today would not make begins anew.
+    void check_films(const fs::path& path, std::uint32_t revision) {
+        if (revision == frame::RenderRevision) return;
+        for (wire::SavedView& view : recovery_.views) view.blocks.clear();
+        note("checkpoint '" + path.string() + "' holds film of render revision " + std::to_string(revision) +
+             ", this master merges revision " + std::to_string(frame::RenderRevision) +
+             ": its views start anew");
     }
 
     // False: what follows is of no use.

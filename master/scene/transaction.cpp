@@ -143,7 +143,7 @@ void record_undo(Transaction& undo, const std::vector<scene::ObjectChange>& chan
         const auto [place, fresh] = all.try_emplace(id);
         TransactionChange& change = place->second;
         if (fresh) {
-            const auto& same = scene.objects().at(id);
+            const auto& same = scene.objects().find(id)->second;
             change.object = {.id = id, .before = same, .after = same};
         }
         for (const auto& [field, writer] : fields) {

@@ -12,7 +12,7 @@
 #include "mediator/base/error.h"
 #include "mediator/frame/film_tile.h"
 #include "mediator/scene/blob.h"
-#include "mediator/scene/change_list.h"
+#include "mediator/scene/scene.h"
 #include "mediator/view/view.h"
 #include "mediator/view/work_unit.h"
 
@@ -27,7 +27,8 @@ struct Capabilities {
     std::uint32_t preferred_tile = 32;   // pixels, edge of a square
     std::uint32_t concurrent_units = 1;  // render() calls worth running at a time
     bool deterministic = true;
-    std::string kind;  // back-end, build and instruction set or device: equal kinds give equal bits
+    std::string
+        kind;  // back-end, build, instruction set or device, render revision: equal kinds give equal bits
 };
 
 struct EditReport {
@@ -49,8 +50,12 @@ struct EditReport {
 class EditScope {
   public:
     virtual ~EditScope() = default;
-    // Any number of consecutive lists. All blobs they refer to are in the store. InvalidInput: wrong `from`.
-    virtual Expected<void> apply(const scene::ChangeList& changes) = 0;
+    // Any number of consecutive lists, each with the scene that it makes, of which the back-end keeps a copy (they
+    // share their objects). All blobs they refer to are in the store. InvalidInput: wrong `from`.
+    virtual Expected<void> apply(const scene::ChangeList& changes, const scene::Scene& after) = 0;
+    // The same for owners that keep no scene themselves. InvalidInput: what Scene::apply refuses, too.
+    Expected<void> apply(const scene::ChangeList& changes);
+    virtual const scene::Scene& scene() const = 0;  // after the lists so far
     // Brings device structures in step at the cheapest level that can hold each change; once. OutOfMemory:
     // the device has no room for it, and the last good version stays.
     virtual Expected<EditReport> commit() = 0;

@@ -2,6 +2,11 @@
 
 namespace tessera::backend {
 
+Expected<void> EditScope::apply(const scene::ChangeList& changes) {
+    const Expected<scene::Scene> after = scene::after(scene(), changes);
+    return after ? apply(changes, *after) : tl::unexpected(after.error());
+}
+
 void require_renderer(view::RendererSet offered, const view::View& view) {
     if (offered.contains(view.renderer)) return;
     const std::string name(view::renderer_name(view.renderer));

@@ -30,69 +30,45 @@ bool is_name_only(const Object& object, scene::FieldMask mask) {
     return std::visit([&]<class T>(const T&) { return names_only<T>(mask); }, object);
 }
 
-std::vector<scene::Entry> inverse(const std::vector<scene::Entry>& entries, const scene::Scene& before) {
-    std::vector<scene::Entry> result;
-    for (const scene::Entry& entry : entries) {
-        const ObjectId id = scene::id(entry);
-        const Object* old = before.find(id);
-        if (std::holds_alternative<scene::Create>(entry)) {
-            result.emplace_back(scene::Remove{id});
-        } else if (old && std::holds_alternative<scene::Update>(entry)) {
-            result.emplace_back(scene::Update{id, std::get<scene::Update>(entry).mask, *old});
-        } else if (old) {
-            result.emplace_back(scene::Create{id, *old});
-        }
-    }
-    return result;
-}
-
 }  // namespace
 
 Expected<void> ShadowScene::apply(const scene::ChangeList& changes) {
+    const Expected<scene::Scene> after = scene::after(scene_, changes);
+    return after ? apply(changes, *after) : tl::unexpected(after.error());
+}
+
+Expected<void> ShadowScene::apply(const scene::ChangeList& changes, const scene::Scene& after) {
+    if (changes.to != after.version() || !(changes.is_snapshot() || changes.from == scene_.version())) {
+        return failure(ErrorCode::InvalidInput,
+                       "a change list does not follow on the back-end's scene: give it a snapshot");
+    }
     const Touched touched = touch(changes);
     Undo undo;
-    undo.version = scene_.version();
     if (touched.structure || changes.is_snapshot()) {
-        if (Expected<void> done = apply_structure(changes, undo); !done) return done;
-    } else {
-        undo.inverse = inverse(changes.entries, scene_);
+        Expected<Lowered> lowered = lower(after);
+        if (!lowered) return tl::unexpected(lowered.error());
+        undo.lowered = std::exchange(lowered_, std::move(*lowered));
+        forget_index();
+    }
+    undo.scene = std::exchange(scene_, after);
+    if (!undo.lowered) {
         undo.moved_transforms = touched.moved_transforms;
-        if (Expected<void> done = scene_.apply(changes); !done) return done;
         if (move_below(touched.moved_transforms, moved_)) delta_.lights_changed = true;
     }
+    if (changes.is_snapshot()) replace_everything();
     record(touched);
     if (undo.lowered && !changes.is_snapshot()) record_relowering(*undo.lowered);
     undo_.push_back(std::move(undo));
     return {};
 }
 
-Expected<void> ShadowScene::apply_structure(const scene::ChangeList& changes, Undo& undo) {
-    if (changes.is_snapshot()) {
-        scene::Scene fresh;
-        if (Expected<void> done = fresh.apply(changes); !done) return done;
-        Expected<Lowered> lowered = lower(fresh);
-        if (!lowered) return tl::unexpected(lowered.error());
-        undo.scene = std::exchange(scene_, std::move(fresh));
-        undo.lowered = std::exchange(lowered_, std::move(*lowered));
-        delta_ = {};
-        delta_.everything = delta_.instances_changed = delta_.lights_changed = true;
-        delta_.background_changed = delta_.render_origin_changed = true;
-        for (auto* ids : {&created_geometries_, &removed_geometries_, &materials_, &textures_}) ids->clear();
-        changed_geometries_.clear();
-        moved_.clear();
-    } else {
-        undo.inverse = inverse(changes.entries, scene_);
-        if (Expected<void> done = scene_.apply(changes); !done) return done;
-        Expected<Lowered> lowered = lower(scene_);
-        if (!lowered) {
-            (void)scene_.apply_entries(undo.inverse);  // what was just there can be restored
-            scene_.set_version(undo.version);
-            return tl::unexpected(lowered.error());
-        }
-        undo.lowered = std::exchange(lowered_, std::move(*lowered));
-    }
-    forget_index();
-    return {};
+void ShadowScene::replace_everything() {
+    delta_ = {};
+    delta_.everything = delta_.instances_changed = delta_.lights_changed = true;
+    delta_.background_changed = delta_.render_origin_changed = true;
+    for (auto* ids : {&created_geometries_, &removed_geometries_, &materials_, &textures_}) ids->clear();
+    changed_geometries_.clear();
+    moved_.clear();
 }
 
 void ShadowScene::record(const Touched& touched) {
@@ -221,12 +197,7 @@ void ShadowScene::rollback() {
     while (!undo_.empty()) {
         Undo undo = std::move(undo_.back());
         undo_.pop_back();
-        if (undo.scene) {
-            scene_ = std::move(*undo.scene);
-        } else {
-            (void)scene_.apply_entries(undo.inverse);  // cannot fail: it leads to where we were
-            scene_.set_version(undo.version);
-        }
+        scene_ = std::move(undo.scene);
         if (undo.lowered) {
             lowered_ = std::move(*undo.lowered);
             forget_index();

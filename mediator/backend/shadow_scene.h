@@ -38,7 +38,10 @@ struct SceneDelta {
 // the instances below it.
 class ShadowScene {
   public:
-    // All of a list or nothing. InvalidInput: what Scene::apply refuses, and what lower() refuses.
+    // All of a list or nothing. `after`: the scene that the list makes, of which it keeps a copy and so shares the
+    // objects. InvalidInput: the list does not follow on what is here, or lower() refuses the scene.
+    Expected<void> apply(const scene::ChangeList& changes, const scene::Scene& after);
+    // For owners that keep no scene. InvalidInput: what Scene::apply refuses, too.
     Expected<void> apply(const scene::ChangeList& changes);
     // What changed since the last accept(), which makes it final: for a back-end whose device may refuse.
     SceneDelta pending() const;
@@ -63,18 +66,16 @@ class ShadowScene {
     };
     // The way back of one list.
     struct Undo {
-        Version version;
-        std::vector<scene::Entry> inverse;
+        scene::Scene scene;
         std::vector<ObjectId> moved_transforms;
-        std::optional<scene::Scene> scene;  // instead of the inverse, where everything was replaced
-        std::optional<Lowered> lowered;     // instead of the moves, where the structure changed
+        std::optional<Lowered> lowered;  // instead of the moves, where the structure changed
     };
 
     Touched touch(const scene::ChangeList& changes) const;
     static void touch_created(Touched& touched, ObjectId id, const scene::Object& object);
     void touch_updated(Touched& touched, const scene::Update& update) const;
     static void touch_removed(Touched& touched, ObjectId id, const scene::Object& object);
-    Expected<void> apply_structure(const scene::ChangeList& changes, Undo& undo);
+    void replace_everything();
     void record(const Touched& touched);
     void record_relowering(const Lowered& before);
     // Places what hangs below the transforms anew; true when lights are among it.

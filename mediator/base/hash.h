@@ -7,6 +7,9 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <tuple>
+
+#include "mediator/base/description.h"
 
 namespace tessera {
 
@@ -24,6 +27,10 @@ struct Hash128 {
     Hash128& operator+=(const Hash128& other);
     Hash128& operator-=(const Hash128& other);
     friend auto operator<=>(const Hash128&, const Hash128&) = default;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "high", &Hash128::high, FullWidth{}),
+                          row(2, "low", &Hash128::low, FullWidth{}));
+    }
 };
 
 // Streaming BLAKE2b (libsodium). One thread.

@@ -3,6 +3,7 @@
 #include <compare>
 #include <cstdint>
 #include <string_view>  // std::hash, at half of what <functional> costs
+#include <tuple>
 
 namespace tessera {
 
@@ -28,6 +29,9 @@ struct Version {
     std::uint64_t number = 0;
 
     friend constexpr auto operator<=>(const Version&, const Version&) = default;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "epoch", &Version::epoch), row(2, "number", &Version::number));
+    }
 };
 
 }  // namespace tessera

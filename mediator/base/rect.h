@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 
 namespace tessera {
 
@@ -20,6 +21,10 @@ struct Rect {
         return px >= x && px < right() && py >= y && py < bottom();
     }
     friend constexpr bool operator==(const Rect&, const Rect&) = default;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "x", &Rect::x), row(2, "y", &Rect::y), row(3, "width", &Rect::width),
+                          row(4, "height", &Rect::height));
+    }
 };
 
 constexpr Rect intersection(const Rect& a, const Rect& b) {

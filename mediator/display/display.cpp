@@ -7,6 +7,20 @@ bool takes_linear_light(const Output& output) {
     return mixes_eyes || !output.points.empty() || output.blend != Blend{} || output.color != Color{};
 }
 
+const char* Head::malformed() const {
+    const bool finite = glm::dot(position - position, position - position) == 0.0;
+    const double length = glm::length(wxyz());
+    return finite && length > 0.5 && length < 2.0
+               ? nullptr
+               : "a head is nowhere, or its orientation is no unit quaternion";
+}
+
+void Head::turn(const glm::dvec4& wxyz) {
+    const double length = glm::length(wxyz);
+    const glm::dvec4 unit = length > 0.5 && length < 2.0 ? wxyz / length : wxyz;
+    orientation = glm::dquat(unit.x, unit.y, unit.z, unit.w);
+}
+
 bool is_somewhere(const Head& head) {
     constexpr double Farthest = 1e6;
     for (int i = 0; i < 3; ++i) {

@@ -6,8 +6,11 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <vector>
 
+#include "mediator/base/description.h"
 #include "mediator/scene/blob.h"
 #include "mediator/view/view.h"
 
@@ -15,6 +18,10 @@
 // values. Display space: metres, right-handed, y up; origin and axes are those of the scene camera that
 // carries the display, so a wall two metres in front of it has z = -2.
 namespace tessera::display {
+
+// Beyond these a display is refused.
+inline constexpr std::size_t MaxOutputs = 64, MaxLayers = 4, MaxHull = 4096, MaxCurve = 4096;
+inline constexpr std::uint32_t MaxEdge = 16384;
 
 // How an output shows the two eyes.
 enum class Stereo : std::uint8_t {
@@ -28,9 +35,16 @@ enum class Stereo : std::uint8_t {
     AnaglyphPlain,   // red of the left eye, green and blue of the right
     AnaglyphDubois,  // least-squares red-cyan (Dubois 2001)
 };
+constexpr auto enumerators(Stereo) {
+    return std::to_array<std::string_view>({"mono", "left", "right", "separate", "side-by-side", "top-bottom",
+                                            "rows", "anaglyph-plain", "anaglyph"});
+}
 
 // How far the device is turned clockwise as it hangs, so its picture is turned the other way.
 enum class Turn : std::uint8_t { None, Quarter, Half, ThreeQuarters };
+constexpr auto enumerators(Turn) {
+    return std::to_array<std::string_view>({"none", "quarter", "half", "three-quarters"});
+}
 
 // Values over an output's picture, float32, row by row from the top left, bilinear in between.
 struct Grid {
@@ -38,11 +52,17 @@ struct Grid {
         Edges,   // node (i, j) lies at (i / (columns - 1), j / (rows - 1)) of the picture
         Centres  // at ((i + 0.5) / columns, (j + 0.5) / rows): one a pixel, for example
     };
+    friend constexpr auto enumerators(Nodes) { return std::to_array<std::string_view>({"edges", "centres"}); }
     std::uint32_t columns = 0, rows = 0, components = 1;
     Nodes nodes = Nodes::Edges;
     scene::BlobRef values;  // columns x rows x components
     bool empty() const { return values.empty(); }
     friend bool operator==(const Grid&, const Grid&) = default;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "columns", &Grid::columns), row(2, "rows", &Grid::rows),
+                          row(3, "components", &Grid::components), row(4, "nodes", &Grid::nodes),
+                          row(5, "values", &Grid::values));
+    }
 };
 
 // The flat plane that an output's view is rendered for. The picture is the bounding box, along `right` and
@@ -52,6 +72,10 @@ struct ViewPlane {
     glm::dvec3 right{1.0, 0.0, 0.0}, up{0.0, 1.0, 0.0};  // unit, orthogonal; eyes are where right x up points
     std::vector<glm::dvec3> hull;                        // of what is shown; a flat wall: its four corners
     friend bool operator==(const ViewPlane&, const ViewPlane&) = default;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "origin", &ViewPlane::origin), row(2, "right", &ViewPlane::right),
+                          row(3, "up", &ViewPlane::up), row(4, "hull", &ViewPlane::hull, Limit{MaxHull}));
+    }
 };
 
 // Where pictures of several projectors overlap. All in linear light.
@@ -65,6 +89,12 @@ struct Blend {
     // overlap than elsewhere; a pixel shows lift + (1 - lift) x value.
     Grid lift;
     friend bool operator==(const Blend&, const Blend&) = default;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "left", &Blend::left), row(2, "right", &Blend::right),
+                          row(3, "top", &Blend::top), row(4, "bottom", &Blend::bottom),
+                          row(5, "shape", &Blend::shape), row(6, "weights", &Blend::weights),
+                          row(7, "lift", &Blend::lift));
+    }
 };
 
 // From linear light to what the device is sent: matrix, gain, then curve or gamma.
@@ -74,6 +104,10 @@ struct Color {
     double gamma = 0.0;        // 0 = the curve of sRGB
     std::vector<float> curve;  // device value at linear 0 ... 1, evenly spaced; empty = gamma
     friend bool operator==(const Color&, const Color&) = default;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "matrix", &Color::matrix), row(2, "gain", &Color::gain),
+                          row(3, "gamma", &Color::gamma), row(4, "curve", &Color::curve, Limit{MaxCurve}));
+    }
 };
 
 struct Output {
@@ -89,6 +123,15 @@ struct Output {
     Blend blend;
     Color color;
     friend bool operator==(const Output&, const Output&) = default;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "name", &Output::name), row(2, "width", &Output::width),
+                          row(3, "height", &Output::height), row(4, "x", &Output::x), row(5, "y", &Output::y),
+                          row(6, "turn", &Output::turn), row(7, "stereo", &Output::stereo),
+                          row(8, "priority", &Output::priority), row(9, "plane", &Output::plane),
+                          row(10, "view_width", &Output::view_width),
+                          row(11, "view_height", &Output::view_height), row(12, "points", &Output::points),
+                          row(13, "blend", &Output::blend), row(14, "color", &Output::color));
+    }
 };
 
 // What is in the picture, composed by depth and alpha (Schwenk 5.3.2).
@@ -98,6 +141,10 @@ struct Layer {
     std::uint32_t layers = 0xffffffffu;  // of the scene's objects: those that it shows
     bool shown = true;
     friend bool operator==(const Layer&, const Layer&) = default;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "name", &Layer::name), row(2, "renderer", &Layer::renderer),
+                          row(3, "layers", &Layer::layers), row(4, "shown", &Layer::shown));
+    }
 };
 
 // The eyes of who looks, at rest or tracked.
@@ -105,6 +152,16 @@ struct Head {
     glm::dvec3 position{0.0};                    // between the eyes
     glm::dquat orientation{1.0, 0.0, 0.0, 0.0};  // (w, x, y, z), unit; identity looks along -z
     friend bool operator==(const Head&, const Head&) = default;
+    // The orientation is made a unit again when it is decoded, so no rounding adds up.
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "position", &Head::position),
+                          row(2, "orientation",
+                              Computed{[](const Head& head) { return head.wxyz(); },
+                                       [](Head& head, const glm::dvec4& wxyz) { head.turn(wxyz); }}));
+    }
+    const char* malformed() const;
+    glm::dvec4 wxyz() const { return {orientation.w, orientation.x, orientation.y, orientation.z}; }
+    void turn(const glm::dvec4& wxyz);  // that is about a unit quaternion; else malformed() says so
 };
 
 struct Display {
@@ -127,6 +184,18 @@ struct Display {
     std::vector<Layer> layers;       // none: one, of everything, path traced
     std::vector<Output> outputs;
     friend bool operator==(const Display&, const Display&) = default;
+    static constexpr auto describe(auto row) {
+        return std::tuple(
+            row(1, "name", &Display::name), row(2, "camera", &Display::camera),
+            row(3, "units_per_metre", &Display::units_per_metre), row(4, "head", &Display::head),
+            row(5, "eye_separation", &Display::eye_separation),
+            row(6, "zero_parallax", &Display::zero_parallax), row(7, "spp", &Display::spp),
+            row(8, "coarsest", &Display::coarsest), row(9, "max_bounces", &Display::max_bounces),
+            row(10, "rate", &Display::rate), row(11, "filter", &Display::filter),
+            row(12, "layers", &Display::layers, Limit{MaxLayers}),
+            row(13, "outputs", &Display::outputs, Limit{MaxOutputs}), row(14, "exposure", &Display::exposure),
+            row(15, "white", &Display::white), row(16, "stereo_difference", &Display::stereo_difference));
+    }
 };
 
 // Whether an output process works on linear light: it warps, blends or corrects colour. Else it is sent what
@@ -135,9 +204,5 @@ bool takes_linear_light(const Output& output);
 
 // Whether a head is where one can be: finite, within 1000 km of the display's origin.
 bool is_somewhere(const Head& head);
-
-// Beyond these a display is refused.
-inline constexpr std::size_t MaxOutputs = 64, MaxLayers = 4, MaxHull = 4096, MaxCurve = 4096;
-inline constexpr std::uint32_t MaxEdge = 16384;
 
 }  // namespace tessera::display

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mediator/base/clock.h"
+#include "mediator/base/in_place_list.h"
 #include "mediator/filter/inputs.h"
 
 // What a reconstruction owes the picture: statistics of samples in, one image out. It knows neither nodes nor
@@ -56,9 +57,10 @@ struct Pass {
     double bytes_per_pixel = 0.0;  // read and written, each plane once per sweep over it
 };
 struct Report {
-    std::vector<Pass> passes;
-    std::vector<std::string> notes;  // what a person should know, as a fallback that was taken
-    bool stopped = false;            // asked to: the picture means nothing
+    InPlaceList<Pass, 64> passes;
+    InPlaceList<std::string_view, 4>
+        notes;             // what a user should know, as a fallback that was taken; literals
+    bool stopped = false;  // asked to: the picture means nothing
 };
 
 struct RunContext {
@@ -66,7 +68,7 @@ struct RunContext {
     std::stop_token stop;
 };
 
-// Made for one size. `run` does not allocate once it has seen its inputs; one thread at a time.
+// Made for one size. `run` allocates nothing once it has seen its inputs; one thread at a time.
 class Filter {
   public:
     virtual ~Filter() = default;

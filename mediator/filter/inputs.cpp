@@ -11,22 +11,13 @@ namespace {
 
 using frame::Channel;
 
-Planes planar(const frame::Image& image) {
-    Planes planes(image.width, image.height, image.components);
-    for (std::uint32_t c = 0; c < image.components; ++c) {
-        const std::span<float> plane = planes.plane(c);
-        for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = image.values[i * image.components + c];
-    }
-    return planes;
-}
-
 // Even samples are a sum with a count of its own; the odd ones are what is left of the whole.
 void split_halves(const frame::FilmTile& film, Inputs& inputs) {
     const std::uint32_t even = film.channels.first_plane(Channel::EvenHalf);
     const std::uint32_t all = film.channels.first_plane(Channel::Radiance);
     for (int half = 0; half < 2; ++half) {
-        inputs.halves[half] = Planes(inputs.width, inputs.height, 3);
-        inputs.half_counts[half] = Planes(inputs.width, inputs.height, 1);
+        inputs.halves[half].resize(inputs.width, inputs.height, 3);
+        inputs.half_counts[half].resize(inputs.width, inputs.height, 1);
     }
     for (std::size_t i = 0; i < inputs.pixel_count(); ++i) {
         const float n = static_cast<float>(film.counts[i]);
@@ -41,6 +32,17 @@ void split_halves(const frame::FilmTile& film, Inputs& inputs) {
     }
 }
 
+void clear_channel(const frame::ChannelInfo& entry, Inputs& inputs) {
+    const auto index = static_cast<std::size_t>(entry.channel);
+    inputs.means[index].resize(0, 0, 0);
+    inputs.variances[index].resize(0, 0, 0);
+    if (entry.channel == Channel::ObjectIndex) inputs.object_ids.clear();
+    if (entry.channel == Channel::EvenHalf) {
+        for (Planes& half : inputs.halves) half.resize(0, 0, 0);
+        for (Planes& counts : inputs.half_counts) counts.resize(0, 0, 0);
+    }
+}
+
 void take_channel(const frame::FilmTile& film, const frame::ChannelInfo& entry, Inputs& inputs) {
     const auto index = static_cast<std::size_t>(entry.channel);
     if (entry.channel == Channel::ObjectIndex) {
@@ -49,31 +51,49 @@ void take_channel(const frame::FilmTile& film, const frame::ChannelInfo& entry, 
         for (std::size_t i = 0; i < ids.size(); ++i)
             inputs.object_ids[i] = std::bit_cast<std::uint32_t>(ids[i]);
     } else if (entry.channel == Channel::EvenHalf) {
-        if (film.channels.contains(Channel::Radiance)) split_halves(film, inputs);
+        if (film.channels.contains(Channel::Radiance)) {
+            split_halves(film, inputs);
+        } else {
+            clear_channel(entry, inputs);
+        }
     } else {
-        inputs.means[index] = planar(frame::resolve(film, entry.channel));
-        if (entry.rule == frame::MergeRule::Moments) {
-            inputs.variances[index] = planar(frame::resolve_variance_of_mean(film, entry.channel));
+        Planes& means = inputs.means[index];
+        Planes& variances = inputs.variances[index];
+        means.resize(inputs.width, inputs.height, entry.components);
+        const bool has_moments = entry.rule == frame::MergeRule::Moments;
+        if (has_moments) variances.resize(inputs.width, inputs.height, entry.components);
+        for (std::uint32_t c = 0; c < entry.components; ++c) {
+            frame::resolve(film, entry.channel, c, means.plane(c));
+            if (has_moments) frame::resolve_variance_of_mean(film, entry.channel, c, variances.plane(c));
         }
     }
 }
 
 }  // namespace
 
-Inputs make_inputs(const frame::FilmTile& film, const view::View& view, const frame::FilmTile* later) {
-    Inputs inputs;
+void resolve_inputs(const frame::FilmTile& film, const view::View& view, const frame::FilmTile* later,
+                    Inputs& inputs) {
     inputs.width = static_cast<std::uint32_t>(film.rect.width);
     inputs.height = static_cast<std::uint32_t>(film.rect.height);
     inputs.camera = view.camera;
     inputs.path_class = view.path_class;
-    inputs.counts = planar(frame::resolve_counts(film));
+    inputs.changes = {};
+    inputs.counts.resize(inputs.width, inputs.height, 1);
+    frame::resolve_counts(film, inputs.counts.plane(0));
     for (const frame::ChannelInfo& entry : frame::channel_table()) {
         if (film.channels.contains(entry.channel)) {
             take_channel(film, entry, inputs);
         } else if (later != nullptr && later->channels.contains(entry.channel)) {
             take_channel(*later, entry, inputs);
+        } else {
+            clear_channel(entry, inputs);
         }
     }
+}
+
+Inputs make_inputs(const frame::FilmTile& film, const view::View& view, const frame::FilmTile* later) {
+    Inputs inputs;
+    resolve_inputs(film, view, later, inputs);
     return inputs;
 }
 

@@ -51,8 +51,11 @@ struct Inputs {
     }
 };
 
-// Divides by n (frame::resolve); the film covers the window of the view.
+// Divides by n (frame::resolve); the film covers the window of the view. Whatever `inputs` were before, they are
+// those of the film afterwards; they allocate only where the film is larger or has other channels.
 // `later`: film of the same size that holds only some of the samples, for the channels that `film` lacks.
+void resolve_inputs(const frame::FilmTile& film, const view::View& view, const frame::FilmTile* later,
+                    Inputs& inputs);
 Inputs make_inputs(const frame::FilmTile& film, const view::View& view,
                    const frame::FilmTile* later = nullptr);
 

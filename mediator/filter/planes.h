@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "mediator/frame/image.h"
+
 namespace tessera::filter {
 
 // A picture as one array per component, each in raster order, so that a row of one component is contiguous
@@ -17,6 +19,13 @@ class Planes {
           components_(components),
           values_(std::size_t{width} * height * components) {}
 
+    // Of another size and with any values; keeps its memory where that suffices.
+    void resize(std::uint32_t width, std::uint32_t height, std::uint32_t components) {
+        width_ = width;
+        height_ = height;
+        components_ = components;
+        values_.resize(std::size_t{width} * height * components);
+    }
     std::uint32_t width() const { return width_; }
     std::uint32_t height() const { return height_; }
     std::uint32_t components() const { return components_; }
@@ -43,5 +52,8 @@ class Planes {
     std::uint32_t width_ = 0, height_ = 0, components_ = 0;
     std::vector<float> values_;
 };
+
+// For files, which keep the components of a pixel together.
+frame::Image interleaved(const Planes& planes);
 
 }  // namespace tessera::filter

@@ -12,23 +12,59 @@ Image blank(const FilmTile& film, std::uint32_t components) {
                  components);
 }
 
+// Every `stride`-th value from `first` on.
+struct Target {
+    float* first;
+    std::size_t stride;
+
+    // Numbers of objects are no floats: their bits are what counts.
+    void copy(std::size_t i, const float& value) const {
+        std::memcpy(first + i * stride, &value, sizeof value);
+    }
+};
+
+void write_values(const FilmTile& film, Channel channel, std::uint32_t component, Target to) {
+    const std::span<const float> plane = film.plane(film.channels.first_plane(channel) + component);
+    if (info(channel).rule == MergeRule::Sum) {
+        for (std::size_t i = 0; i < plane.size(); ++i) {
+            to.first[i * to.stride] =
+                film.counts[i] == 0 ? 0.0f : plane[i] / static_cast<float>(film.counts[i]);
+        }
+    } else {
+        for (std::size_t i = 0; i < plane.size(); ++i) to.copy(i, plane[i]);
+    }
+}
+
+// Of a channel of moments.
+void write_variances(const FilmTile& film, Channel channel, std::uint32_t component, Target to) {
+    const std::uint32_t first = film.channels.first_plane(channel) + info(channel).components;
+    const std::span<const float> m2 = film.plane(first + component);
+    for (std::size_t i = 0; i < m2.size(); ++i) {
+        const float n = static_cast<float>(film.counts[i]);
+        to.first[i * to.stride] = film.counts[i] < 2 ? 0.0f : m2[i] / (n - 1.0f) / n;
+    }
+}
+
 }  // namespace
 
+void resolve(const FilmTile& film, Channel channel, std::uint32_t component, std::span<float> plane) {
+    write_values(film, channel, component, {plane.data(), 1});
+}
+
+void resolve_variance_of_mean(const FilmTile& film, Channel channel, std::uint32_t component,
+                              std::span<float> plane) {
+    write_variances(film, channel, component, {plane.data(), 1});
+}
+
+void resolve_counts(const FilmTile& film, std::span<float> plane) {
+    for (std::size_t i = 0; i < film.counts.size(); ++i) plane[i] = static_cast<float>(film.counts[i]);
+}
+
 Image resolve(const FilmTile& film, Channel channel) {
-    const ChannelInfo& entry = info(channel);
-    const std::uint32_t first = film.channels.first_plane(channel);
-    Image image = blank(film, entry.components);
-    for (std::uint32_t c = 0; c < entry.components; ++c) {
-        const std::span<const float> plane = film.plane(first + c);
-        for (std::size_t i = 0; i < plane.size(); ++i) {
-            float& value = image.pixel(i)[c];
-            if (entry.rule == MergeRule::Sum) {
-                value = film.counts[i] == 0 ? 0.0f : plane[i] / static_cast<float>(film.counts[i]);
-            } else {
-                std::memcpy(&value, &plane[i], sizeof value);
-            }
-        }
-    }
+    const std::uint32_t components = info(channel).components;
+    Image image = blank(film, components);
+    for (std::uint32_t c = 0; c < components; ++c)
+        write_values(film, channel, c, {image.values.data() + c, components});
     return image;
 }
 
@@ -37,23 +73,17 @@ Image resolve_picture(const FilmTile& film) {
 }
 
 Image resolve_variance_of_mean(const FilmTile& film, Channel channel) {
-    const ChannelInfo& entry = info(channel);
-    Image image = blank(film, entry.components);
-    if (entry.rule != MergeRule::Moments) return image;
-    const std::uint32_t first = film.channels.first_plane(channel) + entry.components;
-    for (std::uint32_t c = 0; c < entry.components; ++c) {
-        const std::span<const float> m2 = film.plane(first + c);
-        for (std::size_t i = 0; i < m2.size(); ++i) {
-            const float n = static_cast<float>(film.counts[i]);
-            image.pixel(i)[c] = film.counts[i] < 2 ? 0.0f : m2[i] / (n - 1.0f) / n;
-        }
-    }
+    const std::uint32_t components = info(channel).components;
+    Image image = blank(film, components);
+    if (info(channel).rule != MergeRule::Moments) return image;
+    for (std::uint32_t c = 0; c < components; ++c)
+        write_variances(film, channel, c, {image.values.data() + c, components});
     return image;
 }
 
 Image resolve_counts(const FilmTile& film) {
     Image image = blank(film, 1);
-    for (std::size_t i = 0; i < film.counts.size(); ++i) image.values[i] = static_cast<float>(film.counts[i]);
+    resolve_counts(film, image.values);
     return image;
 }
 

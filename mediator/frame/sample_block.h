@@ -3,6 +3,7 @@
 #include <bit>
 #include <compare>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 namespace tessera::frame {
@@ -22,6 +23,12 @@ struct SampleBlock {
     constexpr SampleBlock sibling() const { return {first ^ count(), level}; }
     constexpr SampleBlock parent() const { return {first & ~count(), level + 1}; }
     friend constexpr auto operator<=>(const SampleBlock&, const SampleBlock&) = default;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "first", &SampleBlock::first), row(2, "level", &SampleBlock::level));
+    }
+    constexpr const char* malformed() const {
+        return is_aligned() ? nullptr : "a block of samples is not aligned";
+    }
 };
 
 // [first, end) as the fewest aligned blocks, ascending.

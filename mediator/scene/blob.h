@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "mediator/base/hash.h"
@@ -42,6 +43,9 @@ struct BlobRef {
 
     bool empty() const { return byte_size == 0; }
     friend auto operator<=>(const BlobRef&, const BlobRef&) = default;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "hash", &BlobRef::hash), row(2, "byte_size", &BlobRef::byte_size));
+    }
 };
 
 inline BlobRef reference(const Blob& blob) {

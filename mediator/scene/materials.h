@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <string>
+#include <string_view>
 #include <tuple>
 
 #include "mediator/base/ids.h"
@@ -21,9 +23,17 @@ struct TextureSlot {
     float rotation = 0.0f;
     std::uint32_t set = 0;  // which texture coordinates of a geometry: tex_coords or tex_coords_1
     friend bool operator==(const TextureSlot&, const TextureSlot&) = default;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "texture", &TextureSlot::texture), row(2, "offset", &TextureSlot::offset),
+                          row(3, "scale", &TextureSlot::scale), row(4, "rotation", &TextureSlot::rotation),
+                          row(5, "set", &TextureSlot::set));
+    }
 };
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
+constexpr auto enumerators(AlphaMode) {
+    return std::to_array<std::string_view>({"opaque", "mask", "blend"});
+}
 
 // glTF 2.0 metallic-roughness with the KHR_materials_* extensions that light can tell; names and meanings are
 // theirs.
@@ -136,11 +146,59 @@ struct Material {
             &Material::iridescence_thickness_maximum, &Material::iridescence_thickness_texture,
             &Material::shadow_catcher);
     }
+    static constexpr auto describe(auto row) {
+        return std::tuple(
+            row(1, "name", &Material::name), row(2, "base_color", &Material::base_color),
+            row(3, "base_color_texture", &Material::base_color_texture),
+            row(4, "metallic", &Material::metallic), row(5, "roughness", &Material::roughness),
+            row(6, "metallic_roughness_texture", &Material::metallic_roughness_texture),
+            row(7, "normal_texture", &Material::normal_texture),
+            row(8, "normal_scale", &Material::normal_scale), row(9, "emission", &Material::emission),
+            row(10, "emission_texture", &Material::emission_texture),
+            row(11, "alpha_mode", &Material::alpha_mode), row(12, "alpha_cutoff", &Material::alpha_cutoff),
+            row(13, "double_sided", &Material::double_sided), row(14, "unlit", &Material::unlit),
+            row(15, "index_of_refraction", &Material::index_of_refraction),
+            row(16, "transmission", &Material::transmission),
+            row(17, "transmission_texture", &Material::transmission_texture),
+            row(18, "thickness", &Material::thickness),
+            row(19, "attenuation_color", &Material::attenuation_color),
+            row(20, "attenuation_distance", &Material::attenuation_distance),
+            row(21, "specular", &Material::specular),
+            row(22, "specular_texture", &Material::specular_texture),
+            row(23, "specular_color", &Material::specular_color),
+            row(24, "specular_color_texture", &Material::specular_color_texture),
+            row(25, "clearcoat", &Material::clearcoat),
+            row(26, "clearcoat_texture", &Material::clearcoat_texture),
+            row(27, "clearcoat_roughness", &Material::clearcoat_roughness),
+            row(28, "clearcoat_roughness_texture", &Material::clearcoat_roughness_texture),
+            row(29, "clearcoat_normal_texture", &Material::clearcoat_normal_texture),
+            row(30, "clearcoat_normal_scale", &Material::clearcoat_normal_scale),
+            row(31, "sheen_color", &Material::sheen_color),
+            row(32, "sheen_color_texture", &Material::sheen_color_texture),
+            row(33, "sheen_roughness", &Material::sheen_roughness),
+            row(34, "sheen_roughness_texture", &Material::sheen_roughness_texture),
+            row(35, "anisotropy", &Material::anisotropy),
+            row(36, "anisotropy_rotation", &Material::anisotropy_rotation),
+            row(37, "anisotropy_texture", &Material::anisotropy_texture),
+            row(38, "iridescence", &Material::iridescence),
+            row(39, "iridescence_texture", &Material::iridescence_texture),
+            row(40, "iridescence_index_of_refraction", &Material::iridescence_index_of_refraction),
+            row(41, "iridescence_thickness_minimum", &Material::iridescence_thickness_minimum),
+            row(42, "iridescence_thickness_maximum", &Material::iridescence_thickness_maximum),
+            row(43, "iridescence_thickness_texture", &Material::iridescence_thickness_texture),
+            row(44, "shadow_catcher", &Material::shadow_catcher));
+    }
 };
 
 // How a normal map's texels are stored (unsigned normalised: 0 .. 1) and what they are relative to.
 enum class NormalFormat : std::uint8_t { Unorm, Snorm };
+constexpr auto enumerators(NormalFormat) {
+    return std::to_array<std::string_view>({"unorm", "snorm"});
+}
 enum class NormalSpace : std::uint8_t { Tangent, Object };
+constexpr auto enumerators(NormalSpace) {
+    return std::to_array<std::string_view>({"tangent", "object"});
+}
 
 // X3D's CommonSurfaceShader (Schwenk 5.A.3), with the defaults of the thesis.
 struct SurfaceShader {
@@ -221,6 +279,38 @@ struct SurfaceShader {
             &SurfaceShader::tangent_tex_coords, &SurfaceShader::binormal_tex_coords,
             &SurfaceShader::environment, &SurfaceShader::environment_texture);
     }
+    static constexpr auto describe(auto row) {
+        return std::tuple(
+            row(1, "name", &SurfaceShader::name), row(2, "emission", &SurfaceShader::emission),
+            row(3, "emission_texture", &SurfaceShader::emission_texture),
+            row(4, "ambient", &SurfaceShader::ambient),
+            row(5, "ambient_texture", &SurfaceShader::ambient_texture),
+            row(6, "diffuse", &SurfaceShader::diffuse),
+            row(7, "diffuse_texture", &SurfaceShader::diffuse_texture),
+            row(8, "specular", &SurfaceShader::specular),
+            row(9, "specular_texture", &SurfaceShader::specular_texture),
+            row(10, "shininess", &SurfaceShader::shininess),
+            row(11, "shininess_texture", &SurfaceShader::shininess_texture),
+            row(12, "alpha", &SurfaceShader::alpha), row(13, "alpha_texture", &SurfaceShader::alpha_texture),
+            row(14, "invert_alpha_texture", &SurfaceShader::invert_alpha_texture),
+            row(15, "normal_texture", &SurfaceShader::normal_texture),
+            row(16, "normal_format", &SurfaceShader::normal_format),
+            row(17, "normal_space", &SurfaceShader::normal_space),
+            row(18, "normal_scale", &SurfaceShader::normal_scale),
+            row(19, "normal_bias", &SurfaceShader::normal_bias),
+            row(20, "height_texture", &SurfaceShader::height_texture),
+            row(21, "height_scale", &SurfaceShader::height_scale),
+            row(22, "reflection", &SurfaceShader::reflection),
+            row(23, "reflection_texture", &SurfaceShader::reflection_texture),
+            row(24, "transmission", &SurfaceShader::transmission),
+            row(25, "transmission_texture", &SurfaceShader::transmission_texture),
+            row(26, "relative_index_of_refraction", &SurfaceShader::relative_index_of_refraction),
+            row(27, "fresnel_blend", &SurfaceShader::fresnel_blend),
+            row(28, "tangent_tex_coords", &SurfaceShader::tangent_tex_coords),
+            row(29, "binormal_tex_coords", &SurfaceShader::binormal_tex_coords),
+            row(30, "environment", &SurfaceShader::environment),
+            row(31, "environment_texture", &SurfaceShader::environment_texture));
+    }
 };
 
 // X3D's CommonVolumeShader (Schwenk 5.B.3): what the body of a closed geometry is filled with, per metre.
@@ -249,6 +339,15 @@ struct Medium {
         return std::tuple(&Medium::name, &Medium::emission, &Medium::emission_texture, &Medium::absorption,
                           &Medium::absorption_texture, &Medium::scattering, &Medium::scattering_texture,
                           &Medium::anisotropy, &Medium::priority);
+    }
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "name", &Medium::name), row(2, "emission", &Medium::emission),
+                          row(3, "emission_texture", &Medium::emission_texture),
+                          row(4, "absorption", &Medium::absorption),
+                          row(5, "absorption_texture", &Medium::absorption_texture),
+                          row(6, "scattering", &Medium::scattering),
+                          row(7, "scattering_texture", &Medium::scattering_texture),
+                          row(8, "anisotropy", &Medium::anisotropy), row(9, "priority", &Medium::priority));
     }
 };
 

@@ -1,14 +1,17 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <variant>
 #include <vector>
 
+#include "mediator/base/description.h"
 #include "mediator/base/ids.h"
 #include "mediator/scene/blob.h"
 #include "mediator/scene/materials.h"
@@ -20,6 +23,7 @@ namespace tessera::scene {
 
 // Fields of an object of any kind: bit i is the i-th.
 using FieldMask = std::uint64_t;
+inline constexpr std::size_t MaxFields = 64;
 
 // The mask of one field.
 constexpr FieldMask field_bit(unsigned field) {
@@ -29,9 +33,14 @@ constexpr FieldMask field_bit(unsigned field) {
 // How often a geometry is going to move (Schwenk 5.4.1): static is built for tracing, animated for updating,
 // unflagged starts as static and changes over at its first move.
 enum class MotionHint : std::uint8_t { Unflagged, Static, Animated };
+constexpr auto enumerators(MotionHint) {
+    return std::to_array<std::string_view>({"unflagged", "static", "animated"});
+}
 
 // Steps of motion that an object may have after its first.
 inline constexpr std::size_t MaxMotion = 15;
+// Beyond these a list is not decoded; validation takes far less motion and says so better.
+inline constexpr std::size_t MaxDecodedMotion = 256, MaxChildren = 16'000'000;
 
 // The graph's inner node. Children may be transforms, geometries, lights, cameras and attachments; shared
 // children are instances. No cycles. Layers (Schwenk F55) are for views to leave out: an object is in those
@@ -49,6 +58,12 @@ struct Transform {
     static constexpr auto fields() {
         return std::tuple(&Transform::name, &Transform::matrix, &Transform::children, &Transform::hint,
                           &Transform::layers, &Transform::motion);
+    }
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "name", &Transform::name), row(2, "matrix", &Transform::matrix),
+                          row(3, "children", &Transform::children, Limit{MaxChildren}),
+                          row(4, "hint", &Transform::hint), row(5, "layers", &Transform::layers),
+                          row(6, "motion", &Transform::motion, Limit{MaxDecodedMotion}));
     }
 };
 
@@ -89,11 +104,31 @@ struct Geometry {
                           &Geometry::tex_coords, &Geometry::colors, &Geometry::tex_coords_1,
                           &Geometry::medium, &Geometry::motion_positions, &Geometry::motion_normals);
     }
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "name", &Geometry::name), row(2, "material", &Geometry::material),
+                          row(3, "hint", &Geometry::hint), row(4, "indices", &Geometry::indices),
+                          row(5, "positions", &Geometry::positions), row(6, "normals", &Geometry::normals),
+                          row(7, "tangents", &Geometry::tangents),
+                          row(8, "tex_coords", &Geometry::tex_coords), row(9, "colors", &Geometry::colors),
+                          row(10, "tex_coords_1", &Geometry::tex_coords_1),
+                          row(11, "medium", &Geometry::medium),
+                          row(12, "motion_positions", &Geometry::motion_positions, Limit{MaxDecodedMotion}),
+                          row(13, "motion_normals", &Geometry::motion_normals, Limit{MaxDecodedMotion}));
+    }
 };
 
 enum class TexelFormat : std::uint8_t { Rgba8, Rgba8Srgb, RgbFloat };
+constexpr auto enumerators(TexelFormat) {
+    return std::to_array<std::string_view>({"rgba8", "rgba8_srgb", "rgb_float"});
+}
 enum class Wrap : std::uint8_t { Repeat, Mirror, Clamp };
+constexpr auto enumerators(Wrap) {
+    return std::to_array<std::string_view>({"repeat", "mirror", "clamp"});
+}
 enum class TextureFilter : std::uint8_t { Linear, Nearest };
+constexpr auto enumerators(TextureFilter) {
+    return std::to_array<std::string_view>({"linear", "nearest"});
+}
 
 // Decoded texels, rows from the top, slices of a volume one after the other (only media read more than the
 // first); decoding is the client's work, a node never parses image files.
@@ -111,9 +146,19 @@ struct Texture {
                           &Texture::wrap_s, &Texture::wrap_t, &Texture::filter, &Texture::texels,
                           &Texture::depth);
     }
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "name", &Texture::name), row(2, "width", &Texture::width),
+                          row(3, "height", &Texture::height), row(4, "format", &Texture::format),
+                          row(5, "wrap_s", &Texture::wrap_s), row(6, "wrap_t", &Texture::wrap_t),
+                          row(7, "filter", &Texture::filter), row(8, "texels", &Texture::texels),
+                          row(9, "depth", &Texture::depth));
+    }
 };
 
 enum class LightKind : std::uint8_t { Point, Spot, Directional, Sphere, Quad };
+constexpr auto enumerators(LightKind) {
+    return std::to_array<std::string_view>({"point", "spot", "directional", "sphere", "quad"});
+}
 
 // KHR_lights_punctual, in the frame of its parent transform: shines along -z; only its place and direction
 // count, not its scale. Intensity: W/sr as seen from afar (point, spot, sphere, quad), W/m2 (directional).
@@ -141,10 +186,23 @@ struct Light {
         return std::tuple(&Light::name, &Light::kind, &Light::intensity, &Light::inner_cone_angle,
                           &Light::outer_cone_angle, &Light::radius, &Light::size, &Light::angle);
     }
+    static constexpr auto describe(auto row) {
+        return std::tuple(
+            row(1, "name", &Light::name), row(2, "kind", &Light::kind),
+            row(3, "intensity", &Light::intensity), row(4, "inner_cone_angle", &Light::inner_cone_angle),
+            row(5, "outer_cone_angle", &Light::outer_cone_angle), row(6, "radius", &Light::radius),
+            row(7, "size", &Light::size), row(8, "angle", &Light::angle));
+    }
 };
 
 enum class Projection : std::uint8_t { Perspective, Orthographic };
+constexpr auto enumerators(Projection) {
+    return std::to_array<std::string_view>({"perspective", "orthographic"});
+}
 enum class Aperture : std::uint8_t { Uniform, Gaussian };  // how the light is spread over the lens
+constexpr auto enumerators(Aperture) {
+    return std::to_array<std::string_view>({"uniform", "gaussian"});
+}
 
 // In the frame of its parent transform: looks along -z, y up. A view takes its values; it is no node's
 // business.
@@ -172,10 +230,21 @@ struct Camera {
                           &Camera::orthographic_height, &Camera::lens_radius, &Camera::focus_distance,
                           &Camera::aperture);
     }
+    static constexpr auto describe(auto row) {
+        return std::tuple(
+            row(1, "name", &Camera::name), row(2, "vertical_fov", &Camera::vertical_fov),
+            row(3, "aspect_ratio", &Camera::aspect_ratio), row(4, "projection", &Camera::projection),
+            row(5, "orthographic_height", &Camera::orthographic_height),
+            row(6, "lens_radius", &Camera::lens_radius), row(7, "focus_distance", &Camera::focus_distance),
+            row(8, "aperture", &Camera::aperture));
+    }
 };
 
 // What camera rays see that hit nothing; all others see the environment.
 enum class VisibleBackground : std::uint8_t { Environment, Color };
+constexpr auto enumerators(VisibleBackground) {
+    return std::to_array<std::string_view>({"environment", "color"});
+}
 
 // Light from infinitely far: color + strength x environment. Latitude-longitude map, row 0 is +y, column
 // centre of the map is -z at rotation 0 (u grows to +x), turned about y.
@@ -193,6 +262,13 @@ struct Background {
                           &Background::strength, &Background::rotation, &Background::visible,
                           &Background::visible_color);
     }
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "name", &Background::name), row(2, "color", &Background::color),
+                          row(3, "environment", &Background::environment),
+                          row(4, "strength", &Background::strength),
+                          row(5, "rotation", &Background::rotation), row(6, "visible", &Background::visible),
+                          row(7, "visible_color", &Background::visible_color));
+    }
 };
 
 // Data that only some parts understand (Schwenk F54); everybody else carries it along.
@@ -202,6 +278,10 @@ struct Attachment {
     std::string key, value;
     static constexpr auto fields() {
         return std::tuple(&Attachment::name, &Attachment::key, &Attachment::value);
+    }
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "name", &Attachment::name), row(2, "key", &Attachment::key),
+                          row(3, "value", &Attachment::value));
     }
 };
 
@@ -215,6 +295,11 @@ struct Root {
     static constexpr auto fields() {
         return std::tuple(&Root::name, &Root::children, &Root::background, &Root::render_origin);
     }
+    static constexpr auto describe(auto row) {
+        return std::tuple(
+            row(1, "name", &Root::name), row(2, "children", &Root::children, Limit{MaxChildren}),
+            row(3, "background", &Root::background), row(4, "render_origin", &Root::render_origin));
+    }
 };
 
 inline constexpr ObjectId RootId{1};
@@ -222,6 +307,15 @@ inline constexpr std::uint32_t RootLayers = 1;  // layer 0
 
 using Object = std::variant<Root, Transform, Geometry, Material, Texture, Light, Camera, Background,
                             Attachment, SurfaceShader, Medium>;
+// Numbers of the oneof in proto/scene.proto.
+constexpr auto alternatives(const Object*) {
+    return std::tuple(Alternative<Root>{1, "root"}, Alternative<Transform>{2, "transform"},
+                      Alternative<Geometry>{3, "geometry"}, Alternative<Material>{4, "material"},
+                      Alternative<Texture>{5, "texture"}, Alternative<Light>{6, "light"},
+                      Alternative<Camera>{7, "camera"}, Alternative<Background>{8, "background"},
+                      Alternative<Attachment>{9, "attachment"},
+                      Alternative<SurfaceShader>{10, "surface_shader"}, Alternative<Medium>{11, "medium"});
+}
 enum class ObjectKind : std::uint8_t {
     Root,
     Transform,

@@ -91,7 +91,7 @@ Expected<void> Scene::apply_entries(const std::vector<Entry>& entries, Journal& 
 void Scene::undo(const Journal& journal, Hash128 state_hash) {
     for (auto entry = journal.rbegin(); entry != journal.rend(); ++entry) {
         if (entry->second) {
-            objects_[entry->first] = entry->second;
+            objects_.set(entry->first, entry->second);
         } else {
             objects_.erase(entry->first);
         }
@@ -106,7 +106,7 @@ Expected<void> Scene::apply_entry(const Entry& entry) {
         if (place != objects_.end())
             return tl::unexpected(broken(target, "is there already: it cannot be created"));
         state_hash_ += object_hash(target, create->object);
-        objects_.emplace(target, std::make_shared<const Object>(create->object));
+        objects_.set(target, std::make_shared<const Object>(create->object));
         return {};
     }
     if (place == objects_.end())
@@ -114,7 +114,7 @@ Expected<void> Scene::apply_entry(const Entry& entry) {
     state_hash_ -= object_hash(target, *place->second);
     const auto* update = std::get_if<Update>(&entry);
     if (update == nullptr) {
-        objects_.erase(place);
+        objects_.erase(target);
         return {};
     }
     if (update->fields.index() != place->second->index()) {
@@ -125,8 +125,14 @@ Expected<void> Scene::apply_entry(const Entry& entry) {
     Object changed = *place->second;
     assign(changed, update->fields, update->mask);
     state_hash_ += object_hash(target, changed);
-    place->second = std::make_shared<const Object>(std::move(changed));
+    objects_.set(target, std::make_shared<const Object>(std::move(changed)));
     return {};
+}
+
+Expected<Scene> after(const Scene& before, const ChangeList& changes) {
+    Scene scene = before;
+    if (Expected<void> applied = scene.apply(changes); !applied) return tl::unexpected(applied.error());
+    return scene;
 }
 
 ChangeList snapshot(const Scene& scene) {

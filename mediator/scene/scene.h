@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -8,11 +7,12 @@
 #include "mediator/base/error.h"
 #include "mediator/base/hash.h"
 #include "mediator/scene/change_list.h"
+#include "mediator/scene/object_map.h"
 
 namespace tessera::scene {
 
-// The state at one version: objects by id, in id order. Copies share objects, so the editor can write v+1
-// while readers hold v. Not synchronised: one writer, or many readers.
+// The state at one version: objects by id, in id order. A copy costs nothing, since both share what neither has
+// changed since; so the editor can write v+1 while readers hold v, each its own copy. One thread at a time.
 class Scene {
   public:
     Version version() const { return version_; }
@@ -23,7 +23,7 @@ class Scene {
         const Object* object = find(id);
         return object ? std::get_if<T>(object) : nullptr;
     }
-    const std::map<ObjectId, std::shared_ptr<const Object>>& objects() const { return objects_; }
+    const ObjectMap& objects() const { return objects_; }
 
     // Applies in full or not at all. Fails with InvalidInput when `from` is not this version (a snapshot
     // replaces everything), an id is missing or taken, a kind differs, or the resulting state hash is not the
@@ -44,8 +44,11 @@ class Scene {
 
     Version version_;
     Hash128 state_hash_;
-    std::map<ObjectId, std::shared_ptr<const Object>> objects_;
+    ObjectMap objects_;
 };
+
+// What a change list makes of a scene; fails as Scene::apply.
+Expected<Scene> after(const Scene& before, const ChangeList& changes);
 
 // The hash of one object at its id; the state hash is their sum.
 Hash128 object_hash(ObjectId id, const Object& object);

@@ -167,6 +167,22 @@ inline Hit bvh_meet(BvhItems pool, uint number, IN(BvhPlace) place, float near, 
     return met;
 }
 
+// The triangles that are left of a row, one after the other, until there is one whose alpha is to be asked for: true,
+// and it is the candidate.
+inline bool bvh_meet_row(BvhItems pool, uint first_triangle, INOUT(uint) triangles, IN(BvhPlace) place,
+                         float near, uint question, INOUT(Hit) hit, INOUT(Hit) candidate) {
+    bool asked = false;
+    while (triangles != 0u && !asked) {
+        const uint number = first_triangle + lowest_bit(triangles);
+        triangles &= triangles - 1u;
+        candidate = bvh_meet(pool, number, place, near, question, hit);
+        asked = (question & place.flags & BvhAlpha) != 0u &&
+                (candidate.instance != hit.instance || candidate.triangle != hit.triangle);
+        if (!asked) hit = candidate;
+    }
+    return asked;
+}
+
 // The closest hit with near < distance <= far, or any; distance = far where there is none. `top`: where the
 // top level's root is, in items. `layers`: instances in none of them are not there; AllLayers, as a constant,
 // costs nothing. `time`: of BvhMotion. Whoever includes this says what Context is and defines
@@ -175,12 +191,7 @@ inline Hit bvh_meet(BvhItems pool, uint number, IN(BvhPlace) place, float near, 
 WITH_CONTEXT
 inline Hit bvh_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float near, float far,
                      uint question, uint layers, float time, IN(Context) context, uint seed) {
-    Hit hit;
-    hit.distance = far;
-    hit.barycentric = vec2(0.0f, 0.0f);
-    hit.instance = NoInstance;
-    hit.triangle = 0u;
-
+    Hit hit = Hit(NoInstance, 0u, vec2(0.0f), far);
     uint stack_first[BvhStackSize];
     uint stack_list[BvhStackSize];
     stack_list[0] = BvhEnd;
@@ -190,7 +201,6 @@ inline Hit bvh_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float
     uint first = 0u, list = BvhRoot;  // children to visit
     uint triangles = 0u, first_triangle = 0u;
     Hit candidate = hit;
-    bool asked = false;
 
     // One loop, its parts one after the other: lanes that have come to triangles wait for those still among
     // nodes, and no longer; nested loops, another order or leaving the inner loop early were slower.
@@ -213,18 +223,9 @@ inline Hit bvh_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float
                 height -= height > 0u ? 1u : 0u;
             }
         }
-        while (triangles != 0u && !asked) {
-            const uint number = first_triangle + lowest_bit(triangles);
-            triangles &= triangles - 1u;
-            candidate = bvh_meet(pool, number, place, near, question, hit);
-            asked = (question & place.flags & BvhAlpha) != 0u &&
-                    (candidate.instance != hit.instance || candidate.triangle != hit.triangle);
-            if (!asked) hit = candidate;
-        }
-        if ((question & BvhAlpha) != 0u) {
-            if (asked && stops_ray(context, candidate, seed)) hit = candidate;
-            asked = false;
-        }
+        const bool asked =
+            bvh_meet_row(pool, first_triangle, triangles, place, near, question, hit, candidate);
+        if ((question & BvhAlpha) != 0u && asked && stops_ray(context, candidate, seed)) hit = candidate;
         if ((question & BvhAny) != 0u && hit.instance != NoInstance) {
             triangles = 0u;
             list = BvhEnd;

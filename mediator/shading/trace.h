@@ -1,10 +1,7 @@
 #ifndef TESSERA_MEDIATOR_SHADING_TRACE_H
 #define TESSERA_MEDIATOR_SHADING_TRACE_H
 
-#include "mediator/shading/camera.h"
-#include "mediator/shading/coverage.h"
-#include "mediator/shading/shadow_catcher.h"
-#include "mediator/shading/speculars.h"
+#include "mediator/shading/walk.h"
 
 // One sample, a pure function of (scene, view, pixel, index); of its context's time that is sample_time.
 //
@@ -15,8 +12,8 @@
 // both. The renderer Raster is Whitted from first hits that a rasteriser has found (raster.h). The renderer
 // Coverage finds the first hit alone.
 //
-// All rays but those to lights are asked for at one place and shaded at one place: a shader has all its
-// functions inlined, and what is written twice is compiled twice. The including side says whether its views
+// All rays but those to lights are traced at one place (meet_next) and shaded at one place (meet_vertex): a
+// shader has all its functions inlined, and what is written twice is compiled twice. The including side says whether its views
 // may ask for trees of perfect speculars (the renderer Whitted, or the range):
 //   bool has_specular_trees(IN(Context) context)
 SHADING_BEGIN
@@ -81,196 +78,160 @@ WITH_CONTEXT inline bool leave_vertex(IN(Context) context, INOUT(Path) path, INO
     return true;
 }
 
-// What the camera sees, where that is known before the sample is traced; its instance may be NoInstance.
-struct FirstHit {
-    bool is_known;
-    Hit hit;
-};
+// What the leg there adds to the sample, and leaves of the throughput.
+WITH_CONTEXT inline void gather_along(IN(Context) context, INOUT(Walk) walk, INOUT(Branch) branch,
+                                      INOUT(BranchStack) open, INOUT(Meeting) met) {
+    if (met.is_lit && met.event != MeetsLight && !walk.passes) {
+        if (!walk.is_caught) add_shapes(context, walk.path, walk.ray, walk.course.begun, met.end);
+        if (largest(met.leg.emitted) > 0.0f) {
+            add_light(walk.path.found, context.view, walk.path.throughput * met.leg.emitted, walk.path.way);
+        }
+    }
+    if (met.event == MeetsLight) {
+        walk.held = Held(true, met.is_hit, met.hit, met.leg,
+                         at_own_place(met.light, met.leg.distance, met.leg.density), walk.course,
+                         walk.path.throughput, walk.path.vertex);
+        met.light.density = met.leg.aside_density;
+        walk.path.vertex = aside_vertex(walk.path.vertex, walk.course.number);
+        walk.path.throughput *= met.leg.aside / met.light.pdf;
+    } else if (met.event == MeetsMedium) {
+        if (walk.stage == StageBranch) {
+            push_rest(open, branch, walk.path, walk.ray, walk.course, walk.is_first);
+            walk.path.vertex += MediumVertex;
+        }
+        walk.path.throughput *= met.leg.scattered;
+    } else {
+        walk.path.throughput *= met.leg.passed;
+        if (walk.stage == StageBranch) branch.weight = walk.path.throughput;
+    }
+    if (met.event != MeetsLight) walk.passes = false;
+}
 
-WITH_CONTEXT inline Path trace_from(IN(Context) context, Path path, Ray ray, IN(FirstHit) seen) {
-    const bool covers = context.view.renderer == RendererCoverage;
-    const bool whitted =
-        has_specular_trees(context) && context.view.renderer != RendererPathTracing && !covers;
+// The features of the sample that are those of the first surface.
+WITH_CONTEXT inline void show_first(IN(Context) context, INOUT(PathSample) found, IN(Surface) surface,
+                                    IN(Ray) ray, float distance) {
+    const bool moves = (context.scene.features & FeatureCameraMotion) != 0u;
+    found.depth = moves ? moving_depth_along(context.view, context.time, ray.direction, distance)
+                        : depth_along(context.view, ray, distance);
+    found.object = surface.object;
+    found.alpha = 1.0f;
+}
+
+// False: the path or branch ends.
+WITH_CONTEXT inline bool meet_catcher(IN(Context) context, INOUT(Walk) walk, IN(Surface) surface,
+                                      IN(Ray) camera) {
+    bool goes_on = false;
+    if (walk.is_caught) {
+        show_background(context, walk.path, camera);
+    } else if (walk.is_first) {
+        walk.is_caught = true;
+        walk.ray = caught(walk.path, surface);
+        if (walk.stage == StageBranch) walk.stage = StageGather;
+        goes_on = true;
+    } else {
+        goes_on = pass_catcher(context, walk.path, walk.ray, surface);
+    }
+    return goes_on;
+}
+
+// A surface that shows itself, or a place in a medium; false: the path or branch ends.
+WITH_CONTEXT inline bool meet_scatterer(IN(Context) context, INOUT(Walk) walk, IN(Branch) branch,
+                                        INOUT(BranchStack) open, IN(Surface) surface, IN(Meeting) met) {
     const bool wants_range = has_specular_trees(context) && keeps(context.view, KeepsRange);
+    const bool is_aside = met.event == MeetsLight;
+    LegLight light = no_leg_light();
+    if (met.event != MeetsSurface) light = met.light;
+    if (!is_aside) walk.is_caught = false;
+    if (met.event == MeetsSurface && (walk.stage == StageBranch || (walk.is_first && wants_range))) {
+        if (wants_range) walk.path.found.range += range_at(branch, surface);
+        push_children(open, context.scene, branch, walk.path.cone, walk.path.inside, surface,
+                      channel_of(walk.path.numbers));
+    }
+    bool goes_on = false;
+    if (met.is_lit) {
+        goes_on = leave_vertex(context, walk.path, walk.ray, walk.stage, surface, light, walk.connection);
+    }
+    if (is_aside) {
+        walk.path.throughput = walk.held.throughput;
+        walk.path.vertex = walk.held.vertex;
+        goes_on = true;
+    }
+    if ((context.scene.features & FeatureOpenMedia) != 0u && walk.connection.is_open) {
+        goes_on = look_for_light(walk.connection, walk.path, walk.ray, goes_on);
+    }
+    return goes_on;
+}
+
+// A vertex of the path, or of its connection to a light from a place of its leg; false: the path or branch ends.
+WITH_CONTEXT inline bool meet_vertex(IN(Context) context, INOUT(Walk) walk, IN(Branch) branch,
+                                     INOUT(BranchStack) open, IN(Meeting) met, IN(Ray) camera) {
+    const bool in_medium = met.event != MeetsSurface;
+    const bool is_aside = met.event == MeetsLight;
+    const float along = is_aside ? met.light.distance : met.leg.distance;
+    const float distance = in_medium ? walk.course.begun + along : met.end;
+    if (!is_aside) walk.path.cone.width += walk.path.cone.spread * (distance - walk.course.begun);
+    // At once: a surface is large, and to copy it takes longer than to skip all that it does not have.
+    const Surface surface =
+        in_medium ? scattering_place(walk.course.start + along * walk.ray.direction, walk.ray.direction,
+                                     met.leg.anisotropy,
+                                     context.scene.instances.items[walk.path.inside.x].object, context.time)
+                  : make_surface(context.scene, met.hit, walk.ray.direction, walk.path.cone.width,
+                                 walk.path.inside, context.time);
+    tell_hit(context, surface, walk.path.throughput);
+    const bool on_the_way = is_aside || (in_medium && walk.stage == StageBranch);
+    if (walk.is_first && !on_the_way) show_first(context, walk.path.found, surface, walk.ray, distance);
+    bool goes_on = false;
+    if (catches(context.scene, surface)) {
+        goes_on = meet_catcher(context, walk, surface, camera);
+    } else {
+        goes_on = meet_scatterer(context, walk, branch, open, surface, met);
+    }
     const bool has_media = (context.scene.features & FeatureMedia) != 0u;
-    const bool opens = (context.scene.features & FeatureOpenMedia) != 0u;
-    const bool scatters = (context.scene.features & FeatureScattering) != 0u;
-    tell_camera(context, ray);
-    const Ray camera = ray;
-    bool is_caught = false;  // by a shadow catcher, and has met nothing since
-    path.cone = camera_cone(context.view, ray, path.numbers.index);
-    if (has_media) path.inside = context.view.inside;
-    Branch branch = root_branch(ray, path.cone);
+    if (has_media && (!is_aside || walk.connection.is_open)) walk.course = new_course(walk.ray.origin);
+    if (!is_aside) walk.is_first = false;
+    return goes_on;
+}
+
+WITH_CONTEXT inline Path trace_from(IN(Context) context, IN(Path) start, IN(Ray) camera, IN(FirstHit) seen) {
+    tell_camera(context, camera);
+    Walk walk = begin_walk(context, start, camera);
+    Branch branch = root_branch(camera, walk.path.cone);
     BranchStack open;
     open.count = 0u;
-    uint stage = whitted ? StageBranch : StagePath;
-    Connection connection = no_connection();
-    Course course = new_course(ray.origin);
-    Held held = hold_nothing();
-    bool first = true;  // nothing has been met
-    bool passes = false;
     while (true) {
-        const bool connects = opens && connection.is_open;
-        // The tree of a path is followed, after the path itself, for its range alone.
-        const bool lit = !covers && (whitted || stage == StagePath);
-        const bool resumes = scatters && held.is_on && !connects;
-        const uint seed = connects ? connection.seed : closest_seed(path);
-        Hit hit;
-        bool is_hit = false;
-        if (resumes) {
-            hit = held.hit;
-            is_hit = held.is_hit;
+        Meeting met = meet_next(context, walk, seen);
+        if (met.purpose == RayConnects) {
+            walk.connection.light *= met.leg.passed;
         } else {
-            path.rays += 1u;
-            if (path.rays == 1u && seen.is_known) {
-                hit = seen.hit;
-                is_hit = hit.instance != NoInstance;
-            } else {
-                is_hit = trace_closest(context, ray, seed, course.skip, hit);
-            }
+            gather_along(context, walk, branch, open, met);
         }
-        const bool is_boundary = opens && is_hit && passes_boundary(context.scene, hit, seed);
-        if (opens && !resumes) come_through(context.scene, course, path.inside, is_hit && !is_boundary, hit);
-        const float length = is_hit ? hit.distance : infinity();
-        const bool arrives = connects && (connection.distant ? !is_hit : !(length < 1.0f));
-        Leg leg = clear_leg();
-        const bool is_clear = !has_media || path.inside.x == NoInstance;
-        LegLight leg_light = no_leg_light();
-        if (resumes) {
-            leg = held.leg;
-            leg_light = held.light;
-            held.is_on = false;
-        } else if (!is_clear && (connects || lit)) {
-            const uint kind =
-                connects ? LegPasses : leg_kind(path, stage, passes, context.view.max_scatterings);
-            if (lit) leg_light = light_leg(context, path, ray, course, length, kind);
-            leg = leg_of(context, path, ray, course, arrives && !connection.distant ? 1.0f : length, kind,
-                         leg_light.is_aside ? leg_light.distance : -1.0f);
-            if (!(leg_light.is_aside && largest(leg.aside) > 0.0f)) {
-                leg_light = at_own_place(leg_light, leg.distance, leg.density);
+        bool goes_on = false;
+        if (met.event == MeetsBoundary) {
+            if (met.purpose != RayConnects)
+                walk.path.cone.width += walk.path.cone.spread * (met.end - walk.course.begun);
+            go_through(context.scene, walk.course, walk.path.inside, met.hit, walk.ray, context.time);
+            goes_on = true;
+        } else if (met.purpose == RayConnects) {
+            goes_on = end_connection(context, walk, met);
+        } else if (met.event == MeetsNothing) {
+            tell_miss(context);
+            if (walk.is_caught) {
+                show_background(context, walk.path, camera);
+            } else if (met.is_lit) {
+                leave_scene(context, walk.path, walk.ray, walk.is_first);
             }
-        }
-        const bool is_aside = scatters && leg_light.is_aside;
-        if (!connects && lit && !is_aside) {
-            if (!is_caught && !passes) add_shapes(context, path, ray, course.begun, length);
-            if (!is_clear && largest(leg.emitted) > 0.0f && !passes) {
-                add_light(path.found, context.view, path.throughput * leg.emitted, path.way);
-            }
-        }
-        const bool goes_through = is_boundary && !arrives && !leg.scatters && !is_aside;
-        const float before = course.begun;
-        if (goes_through) go_through(context.scene, course, path.inside, hit, ray, context.time);
-        bool goes_on = goes_through;
-        if (connects) {
-            if (!is_clear) connection.light *= leg.passed;
-            if (arrives) {
-                receive_light(context, path.found, connection.light, connection.intensity, connection.way,
-                              unit_vector(ray.direction));
-            }
-            if (!goes_through) {
-                goes_on = go_on_with_path(connection, path, ray);
-                course = new_course(ray.origin);
-                if (scatters && held.is_on) course = held.course;
-            }
+            walk.is_first = false;
+        } else if (context.view.renderer == RendererCoverage) {
+            show_object(walk.path.found, context.scene.instances.items[met.hit.instance].object,
+                        depth_along(context.view, walk.ray, met.end));
         } else {
-            if (is_aside) {
-                held = Held(true, is_hit, hit, leg, at_own_place(leg_light, leg.distance, leg.density),
-                            course, path.throughput, path.vertex);
-                leg_light.density = leg.aside_density;
-                path.vertex = aside_vertex(path.vertex, course.number);
-                path.throughput *= leg.aside / leg_light.pdf;
-            } else if (leg.scatters) {
-                if (stage == StageBranch) {
-                    push_rest(open, branch, path, ray, course, first);
-                    path.vertex += MediumVertex;
-                }
-                path.throughput *= leg.scattered;
-            } else {
-                if (!is_clear) path.throughput *= leg.passed;
-                if (stage == StageBranch) branch.weight = path.throughput;
-            }
-            const bool in_medium = is_aside || leg.scatters;
-            const float along = is_aside ? leg_light.distance : leg.distance;
-            if (!is_aside) passes = false;
-            const float distance = in_medium ? course.begun + along : length;
-            if (goes_through) {
-                path.cone.width += path.cone.spread * (distance - before);
-            } else if (is_hit && covers) {
-                show_object(path.found, context.scene.instances.items[hit.instance].object,
-                            depth_along(context.view, ray, distance));
-            } else if (is_hit || in_medium) {
-                if (!is_aside) path.cone.width += path.cone.spread * (distance - course.begun);
-                // At once: a surface is large, and to copy it takes longer than to skip all that it does not
-                // have.
-                const Surface surface =
-                    in_medium ? scattering_place(
-                                    course.start + along * ray.direction, ray.direction, leg.anisotropy,
-                                    context.scene.instances.items[path.inside.x].object, context.time)
-                              : make_surface(context.scene, hit, ray.direction, path.cone.width, path.inside,
-                                             context.time);
-                tell_hit(context, surface, path.throughput);
-                const bool on_the_way = is_aside || (leg.scatters && stage == StageBranch);
-                if (first && !on_the_way) {
-                    const bool moves = (context.scene.features & FeatureCameraMotion) != 0u;
-                    path.found.depth =
-                        moves ? moving_depth_along(context.view, context.time, ray.direction, distance)
-                              : depth_along(context.view, ray, distance);
-                    path.found.object = surface.object;
-                    path.found.alpha = 1.0f;
-                }
-                const bool catches_path = catches(context.scene, surface);
-                if (catches_path && is_caught) {
-                    show_background(context, path, camera);
-                } else if (catches_path && first) {
-                    is_caught = true;
-                    goes_on = true;
-                    ray = caught(path, surface);
-                    if (stage == StageBranch) stage = StageGather;
-                } else if (catches_path) {
-                    goes_on = pass_catcher(context, path, ray, surface);
-                } else {
-                    if (!is_aside) is_caught = false;
-                    if (!in_medium && (stage == StageBranch || (first && wants_range))) {
-                        if (wants_range) path.found.range += range_at(branch, surface);
-                        push_children(open, context.scene, branch, path.cone, path.inside, surface,
-                                      channel_of(path.numbers));
-                    }
-                    if (!in_medium) leg_light = no_leg_light();
-                    if (lit) {
-                        goes_on = leave_vertex(context, path, ray, stage, surface, leg_light, connection);
-                    }
-                    if (is_aside) {
-                        path.throughput = held.throughput;
-                        path.vertex = held.vertex;
-                        goes_on = true;
-                    }
-                    if (opens && connection.is_open) {
-                        goes_on = look_for_light(connection, path, ray, goes_on);
-                    }
-                }
-                if (has_media && (!is_aside || connection.is_open)) course = new_course(ray.origin);
-                if (!is_aside) first = false;
-            } else {
-                tell_miss(context);
-                if (is_caught) {
-                    show_background(context, path, camera);
-                } else if (lit) {
-                    leave_scene(context, path, ray, first);
-                }
-                first = false;
-            }
+            goes_on = meet_vertex(context, walk, branch, open, met, camera);
         }
-        if (!goes_on) {
-            if (open.count == 0u) return path;
-            open.count -= 1u;
-            branch = open.branches[open.count];
-            enter_branch(path, branch);
-            ray = branch.ray;
-            passes = branch.passes;
-            first = branch.first;
-            course = branch.course;
-            stage = StageBranch;
-        }
+        if (goes_on) continue;
+        if (open.count == 0u) return walk.path;
+        open.count -= 1u;
+        branch = open.branches[open.count];
+        follow_branch(walk, branch);
     }
 }
 

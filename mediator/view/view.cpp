@@ -5,17 +5,7 @@
 namespace tessera::view {
 
 std::string_view renderer_name(Renderer renderer) {
-    switch (renderer) {
-        case Renderer::PathTracing:
-            return "path";
-        case Renderer::Whitted:
-            return "whitted";
-        case Renderer::Raster:
-            return "raster";
-        case Renderer::Coverage:
-            return "coverage";
-    }
-    return "unknown";
+    return enumerator_name(renderer);
 }
 
 CameraPose perspective(const glm::dmat4& world_from_camera, double vertical_fov, double aspect_ratio) {

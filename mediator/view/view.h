@@ -1,13 +1,17 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
 #include <initializer_list>
 #include <limits>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
+#include "mediator/base/description.h"
 #include "mediator/base/ids.h"
 #include "mediator/base/rect.h"
 #include "mediator/frame/channels.h"
@@ -28,6 +32,13 @@ struct CameraPose {
     // As scene::Transform::motion: world_from_camera at even steps of time, each element in a straight line.
     std::vector<glm::dmat4> motion;
 
+    glm::dvec4 edges() const { return {left, right, bottom, top}; }
+    void set_edges(const glm::dvec4& edges) {
+        left = edges.x;
+        right = edges.y;
+        bottom = edges.z;
+        top = edges.w;
+    }
     bool is_pinhole() const { return projection == scene::Projection::Perspective && !(lens_radius > 0.0); }
     friend bool operator==(const CameraPose&, const CameraPose&) = default;
 };
@@ -38,7 +49,13 @@ CameraPose perspective(const glm::dmat4& world_from_camera, double vertical_fov,
 CameraPose pose(const scene::Camera& camera, const glm::dmat4& world_from_camera, double aspect_ratio);
 
 enum class Eye : std::uint8_t { Mono, Left, Right };
+constexpr auto enumerators(Eye) {
+    return std::to_array<std::string_view>({"mono", "left", "right"});
+}
 enum class PixelFilterKind : std::uint8_t { Box, Gaussian, BlackmanHarris };
+constexpr auto enumerators(PixelFilterKind) {
+    return std::to_array<std::string_view>({"box", "gaussian", "blackman-harris"});
+}
 
 // Done by filter importance sampling: a sample counts for its own pixel alone. Radius in pixels: box 0.5;
 // gaussian 1.5 (sigma = radius / 3); Blackman-Harris 1.5.
@@ -56,6 +73,9 @@ enum class Renderer : std::uint8_t {
                // shutter is open find theirs by rays, as Whitted
     Coverage,  // what the camera sees first of which object, in a colour for each, unlit (Schwenk 5.4.3)
 };
+constexpr auto enumerators(Renderer) {
+    return std::to_array<std::string_view>({"path", "whitted", "raster", "coverage"});
+}
 
 // As --renderer has it: "path", "whitted", "raster", "coverage".
 std::string_view renderer_name(Renderer renderer);
@@ -93,6 +113,9 @@ enum class PathClass : std::uint8_t {
     All,
     None,
 };
+constexpr auto enumerators(PathClass) {
+    return std::to_array<std::string_view>({"indirect", "caustics", "diffuse", "all", "none"});
+}
 
 // What a sample adds to the shading feature, which was defined for paths that end at a light
 // (Lardinoije 4.2).
@@ -100,6 +123,9 @@ enum class FeatureRule : std::uint8_t {
     Demodulated,  // grey of the diffuse irradiance, and of all light of other lobes
     Connections,  // grey of the intensity of each light that next-event estimation or the path itself reaches
 };
+constexpr auto enumerators(FeatureRule) {
+    return std::to_array<std::string_view>({"demodulated", "connections"});
+}
 
 inline constexpr std::uint32_t UnlimitedBounces = std::numeric_limits<std::uint32_t>::max();
 
@@ -125,6 +151,38 @@ struct View {
     frame::ChannelSet channels;
     std::string filter;  // NAME[:key=value,...] of the reconstruction, done on the master; empty = none
     friend bool operator==(const View&, const View&) = default;
+    static constexpr auto describe(auto row) {
+        constexpr auto camera = [](auto member) {
+            return [member](auto& view) -> auto& {
+                return view.camera.*member;
+            };
+        };
+        constexpr auto pixels = [](auto member) {
+            return [member](auto& view) -> auto& {
+                return view.pixel_filter.*member;
+            };
+        };
+        constexpr Computed frustum{[](const View& view) { return view.camera.edges(); },
+                                   [](View& view, const glm::dvec4& edges) { view.camera.set_edges(edges); }};
+        constexpr Computed hidden{[](const View& view) { return ~view.layers; },
+                                  [](View& view, std::uint32_t layers) { view.layers = ~layers; }};
+        return std::tuple(
+            row(1, "id", &View::id), row(2, "revision", &View::revision),
+            row(3, "world_from_camera", camera(&CameraPose::world_from_camera)), row(4, "frustum", frustum),
+            row(5, "eye", &View::eye), row(6, "width", &View::width), row(7, "height", &View::height),
+            row(8, "window", &View::window), row(9, "seed", &View::seed),
+            row(10, "max_bounces", &View::max_bounces), row(11, "pixel_filter", pixels(&PixelFilter::kind)),
+            row(12, "filter_radius", pixels(&PixelFilter::radius)), row(13, "channels", &View::channels),
+            row(14, "renderer", &View::renderer), row(15, "path_class", &View::path_class),
+            row(16, "feature_rule", &View::feature_rule),
+            row(17, "transparent_background", &View::transparent_background),
+            row(18, "filter", &View::filter), row(19, "hidden_layers", hidden),
+            row(20, "projection", camera(&CameraPose::projection)),
+            row(21, "lens_radius", camera(&CameraPose::lens_radius)),
+            row(22, "focus_distance", camera(&CameraPose::focus_distance)),
+            row(23, "aperture", camera(&CameraPose::aperture)),
+            row(24, "camera_motion", camera(&CameraPose::motion), Limit{scene::MaxDecodedMotion}));
+    }
 };
 
 }  // namespace tessera::view

@@ -1,26 +1,25 @@
 #include <algorithm>
-#include <utility>
+#include <concepts>
 
+#include "mediator/display/display.h"
 #include "mediator/wire/byte_stream.h"
 #include "mediator/wire/envelope.h"
+#include "mediator/wire/field_types.h"
 
-// Every bulk message: magic, kind, then the fields in the order of the structure, then raw data.
-// Little-endian.
+// Every bulk message: magic, number, then the fields of its rows, then raw data. Little-endian; enumerations and truths
+// have 4 bytes.
 namespace tessera::wire {
 
 namespace {
 
-constexpr std::uint32_t Magic = 0x31525354;  // "TSR1"
-constexpr std::size_t MaxChunk = std::size_t{1} << 20;
+constexpr std::uint32_t Magic = 0x31525354;              // "TSR1"
 constexpr std::size_t MaxPixels = std::size_t{1} << 16;  // of a film tile: 256 x 256
 constexpr std::size_t HeaderRoom = 256;
 constexpr std::uint8_t UniformCounts = 1;  // one count for all pixels instead of a plane
 
-void put(ByteWriter& out, const Hash256& hash) {
-    out.put(hash.bytes);
-}
+using Data = std::vector<std::byte>;
 
-void put(ByteWriter& out, const frame::FilmTile& film) {
+void put_film(ByteWriter& out, const frame::FilmTile& film) {
     out.put(film.rect);
     out.put(film.block.first);
     out.put(film.block.level);
@@ -49,15 +48,15 @@ frame::FilmTile get_film(ByteReader& in) {
     constexpr std::int32_t MaxEdge = 65536;
     if (rect.empty() || rect.x < 0 || rect.y < 0 || rect.width > MaxEdge || rect.height > MaxEdge ||
         rect.x > MaxEdge || rect.y > MaxEdge || rect.pixel_count() > MaxPixels) {
-        malformed("the tile's size is absurd");
+        in.fail("the tile's size is absurd");
     }
-    if (channels.bits() != bits || channels.empty()) malformed("a channel is unknown");
-    if (block.level >= 32 || !block.is_aligned()) malformed("a block of samples is not aligned");
+    if (channels.bits() != bits || channels.empty()) in.fail("a channel is unknown");
+    if (block.level >= 32 || !block.is_aligned()) in.fail("a block of samples is not aligned");
     const bool uniform = in.get<std::uint8_t>() == UniformCounts;
     // The size is known before anything is allocated.
     const std::size_t pixels = rect.pixel_count();
     const std::size_t expected = (uniform ? 4 : 4 * pixels) + 4 * channels.plane_count() * pixels;
-    if (in.rest().size() != expected) malformed("the planes have another size than the header says");
+    if (in.rest().size() != expected) in.fail("the planes have another size than the header says");
     frame::FilmTile film(rect, block, channels);
     film.nonfinite_samples = nonfinite;
     if (uniform) {
@@ -70,15 +69,14 @@ frame::FilmTile get_film(ByteReader& in) {
 }
 
 // Non-finite moments, or more samples than a block can hold, would poison what they are merged with.
-void check_block(const frame::FilmTile& film) {
+const char* malformed_block(const frame::FilmTile& film) {
     const std::uint64_t limit = film.block.count();
     std::uint64_t accepted = 0;
     for (const std::uint32_t count : film.counts) {
-        if (count > limit) malformed("a pixel has more samples than its block");
+        if (count > limit) return "a pixel has more samples than its block";
         accepted += count;
     }
-    if (accepted + film.nonfinite_samples != limit * film.pixel_count())
-        malformed("the counts do not add up");
+    if (accepted + film.nonfinite_samples != limit * film.pixel_count()) return "the counts do not add up";
     for (const frame::ChannelInfo& info : frame::channel_table()) {
         if (!film.channels.contains(info.channel) || info.rule != frame::MergeRule::Moments) continue;
         const std::uint32_t first = film.channels.first_plane(info.channel);
@@ -86,255 +84,134 @@ void check_block(const frame::FilmTile& film) {
             for (const float mean : film.plane(first + plane)) {
                 if (!(mean >= -std::numeric_limits<float>::max() &&
                       mean <= std::numeric_limits<float>::max())) {
-                    malformed("a mean is not finite");
+                    return "a mean is not finite";
                 }
             }
         }
     }
+    return nullptr;
 }
 
-struct Encoder {
-    ByteWriter& out;
-    void operator()(const BulkHello& hello) const { out.put(hello.token); }
-    void operator()(const BlobRequest& request) const {
-        put(out, request.hash);
-        out.put(request.offset);
-    }
-    void operator()(const BlobChunk& chunk) const {
-        put(out, chunk.hash);
-        out.put(chunk.total);
-        out.put(chunk.offset);
-        out.put_all(std::span(chunk.data));
-    }
-    void operator()(const BlobAbsent& absent) const { put(out, absent.hash); }
-    void operator()(const FilmPart& part) const {
-        out.put(part.unit.value);
-        out.put(part.view.value);
-        out.put(part.revision);
-        out.put(part.version.epoch);
-        out.put(part.version.number);
-        out.put(part.part);
-        out.put(part.parts);
-        out.put(part.rays);
-        out.put(part.busy_ns);
-        put(out, part.film);
-    }
-    void operator()(const FrameTile& tile) const {
-        out.put(tile.job.value);
-        out.put(tile.index);
-        out.put(tile.count);
-        put(out, tile.film);
-    }
-    void operator()(const PictureChunk& chunk) const {
-        out.put(chunk.job.value);
-        out.put(chunk.total);
-        out.put(chunk.offset);
-        out.put_all(std::span(chunk.data));
-    }
-    void operator()(const LiveFrame& frame) const {
-        out.put(frame.view);
-        out.put(frame.frame);
-        out.put(frame.version.epoch);
-        out.put(frame.version.number);
-        out.put(frame.revision);
-        out.put(frame.scale);
-        out.put(frame.width);
-        out.put(frame.height);
-        out.put(frame.components);
-        out.put(static_cast<std::uint32_t>(frame.encoding));
-        out.put(frame.picture_bytes);
-        out.put(frame.film_tiles);
-        out.put(frame.complete ? std::uint32_t{1} : std::uint32_t{0});
-        out.put(frame.samples_least);
-        out.put(frame.samples_most);
-        out.put(frame.spp);
-        put(out, frame.film_hash);
-    }
-    void operator()(const OutputPicture& picture) const {
-        out.put(picture.frame);
-        out.put(static_cast<std::uint32_t>(picture.eye));
-        out.put(picture.eyes);
-        out.put(picture.version.epoch);
-        out.put(picture.version.number);
-        out.put(picture.camera.world_from_camera);
-        for (const double edge :
-             {picture.camera.left, picture.camera.right, picture.camera.bottom, picture.camera.top})
-            out.put(edge);
-        out.put(picture.width);
-        out.put(picture.height);
-        out.put(static_cast<std::uint32_t>(picture.encoding));
-        out.put(picture.samples);
-        out.put(picture.total);
-        out.put(picture.offset);
-        out.put_all(std::span(picture.data));
-    }
-};
+template <Described T>
+void put_rows(ByteWriter& out, const T& value);
+template <Described T>
+void get_rows(ByteReader& in, T& value);
 
-struct Decoder {
-    ByteReader& in;
-    void operator()(BulkHello& hello) const {
-        hello.token = in.get<std::uint64_t>();
-        in.expect_end();
+template <class T>
+void put(ByteWriter& out, const T& value) {
+    if constexpr (std::is_same_v<T, frame::FilmTile>) {
+        put_film(out, value);
+    } else if constexpr (std::is_same_v<T, Data>) {
+        out.put_all(std::span(value));
+    } else if constexpr (Described<T>) {
+        put_rows(out, value);
+    } else if constexpr (std::is_enum_v<T> || std::is_same_v<T, bool>) {
+        out.put(static_cast<std::uint32_t>(value));
+    } else {
+        out.put(value);
     }
-    void operator()(BlobRequest& request) const {
-        request.hash.bytes = in.get<decltype(request.hash.bytes)>();
-        request.offset = in.get<std::uint64_t>();
-        in.expect_end();
-    }
-    void operator()(BlobChunk& chunk) const {
-        chunk.hash.bytes = in.get<decltype(chunk.hash.bytes)>();
-        get_piece(chunk);
-    }
-    void operator()(BlobAbsent& absent) const {
-        absent.hash.bytes = in.get<decltype(absent.hash.bytes)>();
-        in.expect_end();
-    }
-    void operator()(FilmPart& part) const {
-        part.unit.value = in.get<std::uint64_t>();
-        part.view.value = in.get<std::uint64_t>();
-        part.revision = in.get<std::uint64_t>();
-        part.version.epoch = in.get<std::uint64_t>();
-        part.version.number = in.get<std::uint64_t>();
-        part.part = in.get<std::uint16_t>();
-        part.parts = in.get<std::uint16_t>();
-        part.rays = in.get<std::uint64_t>();
-        part.busy_ns = in.get<std::uint64_t>();
-        if (part.parts == 0 || part.part >= part.parts) malformed("a part is not one of its parts");
-        part.film = get_film(in);
-        check_block(part.film);
-    }
-    void operator()(FrameTile& tile) const {
-        tile.job.value = in.get<std::uint64_t>();
-        tile.index = in.get<std::uint32_t>();
-        tile.count = in.get<std::uint32_t>();
-        if (tile.index >= tile.count) malformed("a tile is not one of its frame");
-        tile.film = get_film(in);
-    }
-    void operator()(PictureChunk& chunk) const {
-        chunk.job.value = in.get<std::uint64_t>();
-        get_piece(chunk);
-    }
-    void operator()(LiveFrame& frame) const {
-        frame.view = in.get<std::uint64_t>();
-        frame.frame = in.get<std::uint64_t>();
-        frame.version.epoch = in.get<std::uint64_t>();
-        frame.version.number = in.get<std::uint64_t>();
-        frame.revision = in.get<std::uint64_t>();
-        frame.scale = in.get<std::uint32_t>();
-        frame.width = in.get<std::uint32_t>();
-        frame.height = in.get<std::uint32_t>();
-        frame.components = in.get<std::uint32_t>();
-        const auto encoding = in.get<std::uint32_t>();
-        if (encoding > static_cast<std::uint32_t>(PictureEncoding::Exr)) malformed("an encoding is unknown");
-        frame.encoding = static_cast<PictureEncoding>(encoding);
-        frame.picture_bytes = in.get<std::uint64_t>();
-        frame.film_tiles = in.get<std::uint32_t>();
-        frame.complete = in.get<std::uint32_t>() != 0;
-        frame.samples_least = in.get<std::uint64_t>();
-        frame.samples_most = in.get<std::uint64_t>();
-        frame.spp = in.get<std::uint64_t>();
-        frame.film_hash.bytes = in.get<decltype(frame.film_hash.bytes)>();
-        if (frame.scale == 0) malformed("a scale of 0");
-        in.expect_end();
-    }
-
-    void operator()(OutputPicture& picture) const {
-        picture.frame = in.get<std::uint64_t>();
-        const auto eye = in.get<std::uint32_t>();
-        if (eye > static_cast<std::uint32_t>(view::Eye::Right)) malformed("an eye is unknown");
-        picture.eye = static_cast<view::Eye>(eye);
-        picture.eyes = in.get<std::uint32_t>();
-        if (picture.eyes != 1 && picture.eyes != 2) malformed("a frame for another number of eyes");
-        picture.version.epoch = in.get<std::uint64_t>();
-        picture.version.number = in.get<std::uint64_t>();
-        picture.camera.world_from_camera = in.get<glm::dmat4>();
-        picture.camera.left = in.get<double>();
-        picture.camera.right = in.get<double>();
-        picture.camera.bottom = in.get<double>();
-        picture.camera.top = in.get<double>();
-        picture.width = in.get<std::uint32_t>();
-        picture.height = in.get<std::uint32_t>();
-        const auto encoding = in.get<std::uint32_t>();
-        if (encoding == static_cast<std::uint32_t>(PictureEncoding::Bytes)) {
-            picture.encoding = PictureEncoding::Bytes;
-        } else if (encoding == static_cast<std::uint32_t>(PictureEncoding::Half)) {
-            picture.encoding = PictureEncoding::Half;
-        } else {
-            malformed("an output's picture is neither bytes nor half floats");
-        }
-        picture.samples = in.get<std::uint64_t>();
-        get_piece(picture);
-        const std::uint64_t bytes_per_pixel = picture.encoding == PictureEncoding::Bytes ? 3 : 6;
-        if (picture.width == 0 || picture.height == 0 || picture.width > display::MaxEdge ||
-            picture.height > display::MaxEdge ||
-            picture.total != bytes_per_pixel * picture.width * picture.height)
-            malformed("an output's picture has another size than its header says");
-    }
-
-  private:
-    template <class Chunk>
-    void get_piece(Chunk& chunk) const {
-        chunk.total = in.get<std::uint64_t>();
-        chunk.offset = in.get<std::uint64_t>();
-        const auto rest = in.rest();
-        if (rest.size() > MaxChunk) malformed("a chunk is longer than 1 MiB");
-        if (chunk.offset > chunk.total || rest.size() > chunk.total - chunk.offset) {
-            malformed("a chunk reaches beyond its whole");
-        }
-        chunk.data.assign(rest.begin(), rest.end());
-    }
-};
-
-template <std::size_t... I>
-BulkMessage bulk_alternative(std::size_t index, std::index_sequence<I...>) {
-    BulkMessage message;
-    ((index == I ? (void)message.emplace<I>() : (void)0), ...);
-    return message;
 }
 
+template <class T>
+void get(ByteReader& in, T& value) {
+    if constexpr (std::is_same_v<T, frame::FilmTile>) {
+        value = get_film(in);
+    } else if constexpr (std::is_same_v<T, Data>) {
+        if (in.rest().size() > MaxChunk) in.fail("a chunk is longer than 1 MiB");
+        value.resize(in.rest().size());
+        in.fill(std::span(value));
+    } else if constexpr (Described<T>) {
+        get_rows(in, value);
+    } else if constexpr (std::is_same_v<T, bool>) {
+        value = in.get<std::uint32_t>() != 0;
+    } else if constexpr (std::is_enum_v<T>) {
+        const auto number = in.get<std::uint32_t>();
+        if (number >= enumerator_count<T>) in.fail("an enumerator is unknown");
+        value = static_cast<T>(number);
+    } else {
+        value = in.get<T>();
+    }
+}
+
+template <Described T>
+void put_rows(ByteWriter& out, const T& value) {
+    for_each_row<T>(
+        [&]<std::size_t I>(std::integral_constant<std::size_t, I>) { put(out, row_value<I>(value)); });
+}
+
+template <Described T>
+void get_rows(ByteReader& in, T& value) {
+    for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
+        set_row<I>(value, [&]<class V>(V& part) {
+            get(in, part);
+            if (!within<I, T>(part)) in.fail("an enumerator is not for here");
+        });
+    });
+    if (const char* what = why_malformed(value)) in.fail(what);
+}
+
+// Of what follows the header.
 std::size_t size_of_data(const BulkMessage& message) {
-    if (const auto* chunk = std::get_if<BlobChunk>(&message)) return chunk->data.size();
-    if (const auto* piece = std::get_if<PictureChunk>(&message)) return piece->data.size();
-    if (const auto* picture = std::get_if<OutputPicture>(&message)) return picture->data.size();
-    if (const auto* part = std::get_if<FilmPart>(&message)) return part->film.byte_size();
-    if (const auto* tile = std::get_if<FrameTile>(&message)) return tile->film.byte_size();
-    return 0;
+    return std::visit(
+        []<class M>(const M& value) -> std::size_t {
+            if constexpr (requires { value.data; }) return value.data.size();
+            if constexpr (requires { value.film; }) return value.film.byte_size();
+            return 0;
+        },
+        message);
+}
+
+std::optional<std::uint32_t> number_of(std::span<const std::byte> bytes) {
+    if (bytes.size() < 8) return std::nullopt;
+    ByteReader in(bytes);
+    const auto magic = in.get<std::uint32_t>();
+    const auto number = in.get<std::uint32_t>();
+    return magic == Magic && table::Bulk::has(number) ? std::optional(number) : std::nullopt;
 }
 
 }  // namespace
 
+const char* FilmPart::malformed() const {
+    return part < parts ? malformed_block(film) : "a part is not one of its parts";
+}
+
+const char* OutputPicture::malformed() const {
+    if (eyes != 1 && eyes != 2) return "a frame for another number of eyes";
+    if (encoding != PictureEncoding::Bytes && encoding != PictureEncoding::Half)
+        return "an output's picture is neither bytes nor half floats";
+    const std::uint64_t bytes_per_pixel = encoding == PictureEncoding::Bytes ? 3 : 6;
+    if (width == 0 || height == 0 || width > display::MaxEdge || height > display::MaxEdge ||
+        total != bytes_per_pixel * width * height)
+        return "an output's picture has another size than its header says";
+    return malformed_piece(total, offset, data.size());
+}
+
 std::vector<std::byte> encode(const BulkMessage& message) {
     ByteWriter out(HeaderRoom + size_of_data(message));
     out.put(Magic);
-    out.put(static_cast<std::uint32_t>(message.index()));
-    std::visit(Encoder{out}, message);
+    out.put(table::Bulk::number(message));
+    std::visit([&](const auto& value) { put_rows(out, value); }, message);
     return out.take();
 }
 
-std::optional<std::size_t> bulk_kind(std::span<const std::byte> bytes) {
-    if (bytes.size() < 8) return std::nullopt;
-    ByteReader in(bytes);
-    const auto magic = in.get<std::uint32_t>();
-    const auto kind = in.get<std::uint32_t>();
-    if (magic != Magic || kind >= std::variant_size_v<BulkMessage>) return std::nullopt;
-    return kind;
+bool is_bulk(std::span<const std::byte> bytes) {
+    return number_of(bytes).has_value();
 }
 
-std::optional<ViewId> film_view(std::span<const std::byte> bytes) {
-    const auto kind = bulk_kind(bytes);
-    if (!kind || *kind != BulkMessage(FilmPart{}).index() || bytes.size() < 24) return std::nullopt;
-    ByteReader in(bytes.subspan(16));  // after magic, kind and unit
-    return ViewId{in.get<std::uint64_t>()};
+bool is_film(std::span<const std::byte> bytes) {
+    return number_of(bytes) == table::Bulk::number(FilmPart{});
 }
 
 Expected<BulkMessage> decode_bulk(std::span<const std::byte> bytes) {
-    const auto kind = bulk_kind(bytes);
-    if (!kind) return failure(ErrorCode::InvalidInput, "malformed message: not a bulk message");
-    BulkMessage message =
-        bulk_alternative(*kind, std::make_index_sequence<std::variant_size_v<BulkMessage>>{});
+    const auto number = number_of(bytes);
+    if (!number) return failure(ErrorCode::InvalidInput, "malformed message: not a bulk message");
     try {
+        BulkMessage message;
         ByteReader in(bytes.subspan(8));
-        std::visit(Decoder{in}, message);
+        for_each_alternative<BulkMessage>([&]<class M>(const Alternative<M>& alternative) {
+            if (alternative.number == *number) get_rows(in, message.emplace<M>());
+        });
+        if (!in.rest().empty()) in.fail("bytes are left over");
         return message;
     } catch (const Error& error) {
         return tl::unexpected(error);

@@ -4,10 +4,11 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <vector>
 
-#include "mediator/wire/mapping.h"
+#include "mediator/base/error.h"
 
 // Private to wire/*.cpp: little-endian numbers one after another. The reader checks before it looks; it
 // throws Error{InvalidInput}.
@@ -41,13 +42,13 @@ class ByteReader {
     }
     template <class T>
     void fill(std::span<T> values) {
-        if (bytes_.size() < values.size_bytes()) malformed("it ends too early");
+        if (bytes_.size() < values.size_bytes()) fail("it ends too early");
         std::memcpy(values.data(), bytes_.data(), values.size_bytes());
         bytes_ = bytes_.subspan(values.size_bytes());
     }
     std::span<const std::byte> rest() const { return bytes_; }
-    void expect_end() const {
-        if (!bytes_.empty()) malformed("bytes are left over");
+    [[noreturn]] void fail(const char* what) const {
+        throw Error(ErrorCode::InvalidInput, std::string("malformed message: ") + what);
     }
 
   private:

@@ -1,6 +1,6 @@
 #include "mediator/wire/display_codec.h"
 
-#include "mediator/wire/display_mapping.h"
+#include "mediator/wire/codec.h"
 
 namespace tessera::wire {
 
@@ -9,25 +9,13 @@ constexpr std::size_t MaxDescription = std::size_t{16} << 20;
 }
 
 std::vector<std::byte> encode(const display::Display& display) {
-    proto::Display message;
-    map(Writer(), display, message);
-    std::vector<std::byte> bytes(message.ByteSizeLong());
-    message.SerializeToArray(bytes.data(), static_cast<int>(bytes.size()));
-    return bytes;
+    return to_bytes(display);
 }
 
 Expected<display::Display> decode_display(std::span<const std::byte> bytes) {
-    proto::Display message;
-    if (bytes.size() > MaxDescription ||
-        !message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())))
-        return failure(ErrorCode::InvalidInput, "malformed display: not a description of one");
-    try {
-        display::Display display;
-        map(Reader(), display, message);
-        return display;
-    } catch (const Error& error) {
-        return tl::unexpected(error);
-    }
+    if (bytes.size() > MaxDescription)
+        return failure(ErrorCode::InvalidInput, "malformed display: longer than 16 MiB");
+    return from_bytes<display::Display>(bytes);
 }
 
 }  // namespace tessera::wire

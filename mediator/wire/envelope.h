@@ -19,11 +19,10 @@ Expected<ControlMessage> decode_control(std::span<const std::byte> bytes);
 // Bytes of the bulk link.
 std::vector<std::byte> encode(const BulkMessage& message);
 Expected<BulkMessage> decode_bulk(std::span<const std::byte> bytes);
-// The alternative of BulkMessage that these bytes say they are, by their header alone; none when they are no
-// bulk message. Lets a loop pass film on without decoding it.
-std::optional<std::size_t> bulk_kind(std::span<const std::byte> bytes);
-// The view that a film message says it is of; none when it is no film.
-std::optional<ViewId> film_view(std::span<const std::byte> bytes);
+// Whether these bytes say that they are a bulk message, by their header alone.
+bool is_bulk(std::span<const std::byte> bytes);
+// Whether they say that they are film of a node; lets a loop pass film on without decoding it.
+bool is_film(std::span<const std::byte> bytes);
 
 // Content of blobs that hold scene changes.
 std::vector<std::byte> encode(const scene::ChangeList& changes);
@@ -31,7 +30,8 @@ Expected<scene::ChangeList> decode_change_list(std::span<const std::byte> bytes)
 std::vector<std::byte> encode(const scene::Edit& edit);
 Expected<scene::Edit> decode_edit(std::span<const std::byte> bytes);
 
-// True when the encoded message fits the control link (64 KiB); else send it as a blob.
+// Whether an encoded message fits the control link (64 KiB); else send its content as a blob.
+bool fits_control(std::span<const std::byte> encoded);
 bool fits_control(const ControlMessage& message);
 
 }  // namespace tessera::wire

@@ -1,18 +1,24 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <variant>
 #include <vector>
 
+#include "mediator/base/description.h"
 #include "mediator/frame/film_tile.h"
+#include "mediator/frame/render_revision.h"
 #include "mediator/scene/change_list.h"
 #include "mediator/view/view.h"
 
 // What a session folder holds, as plain values: see master/journal.h and master/checkpoint.h for what they
 // mean, journal_codec.h for the bytes.
 namespace tessera::wire {
+
+inline constexpr std::size_t MaxRecorded = 16'000'000;  // entries of a list that is decoded
 
 struct RecordedEditor {
     std::uint64_t number = 0;  // never given again
@@ -26,6 +32,19 @@ struct RecordedEditor {
     std::uint64_t transaction = 0;
     std::vector<std::string> notes;
     std::uint64_t gesture = 0, gesture_transaction = 0;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "number", &RecordedEditor::number), row(2, "user", &RecordedEditor::user),
+                          row(3, "key", &RecordedEditor::key, FullWidth{}),
+                          row(4, "first_id", &RecordedEditor::first_id),
+                          row(5, "id_count", &RecordedEditor::id_count),
+                          row(6, "last_sequence", &RecordedEditor::last_sequence),
+                          row(7, "accepted", &RecordedEditor::accepted),
+                          row(8, "problems", &RecordedEditor::problems, Limit{MaxRecorded}),
+                          row(9, "transaction", &RecordedEditor::transaction),
+                          row(10, "notes", &RecordedEditor::notes, Limit{MaxRecorded}),
+                          row(11, "gesture", &RecordedEditor::gesture),
+                          row(12, "gesture_transaction", &RecordedEditor::gesture_transaction));
+    }
 };
 
 // An accepted edit on its way to become a transaction: all that is needed to do it again after a restart.
@@ -39,27 +58,57 @@ struct RecordedEdit {
     std::uint64_t transaction = 0;      // that it is, or is part of
     Hash128 state_hash;                 // of the head with it
     std::string text;                   // what it does, for people
+    static constexpr auto describe(auto row) {
+        return std::tuple(
+            row(1, "editor", &RecordedEdit::editor), row(2, "sequence", &RecordedEdit::sequence),
+            row(3, "gesture", &RecordedEdit::gesture), row(4, "undo", &RecordedEdit::undo),
+            row(5, "name", &RecordedEdit::name), row(6, "user", &RecordedEdit::user),
+            row(7, "time", &RecordedEdit::time),
+            row(8, "entries", &RecordedEdit::entries, Limit{scene::MaxEntries}),
+            row(9, "transaction", &RecordedEdit::transaction),
+            row(10, "state_hash", &RecordedEdit::state_hash), row(11, "text", &RecordedEdit::text));
+    }
 };
 
 struct RecordedTitle {
     std::string title;
+    static constexpr auto describe(auto row) { return std::tuple(row(1, "title", &RecordedTitle::title)); }
 };
-struct RecordedClose {};  // back to the empty scene, nobody edits
+struct RecordedClose {  // back to the empty scene, nobody edits
+    static constexpr auto describe(auto) { return std::tuple(); }
+};
 
 using JournalRecord = std::variant<RecordedEditor, RecordedEdit, RecordedTitle, RecordedClose>;
+constexpr auto alternatives(const JournalRecord*) {
+    return std::tuple(Alternative<RecordedEditor>{1, "joined"}, Alternative<RecordedEdit>{2, "edit"},
+                      Alternative<RecordedTitle>{3, "title"}, Alternative<RecordedClose>{4, "closed"});
+}
 
 struct RecordedWriter {
     std::uint64_t transaction = 0;
     std::string name, user;
     std::int64_t time = 0;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "transaction", &RecordedWriter::transaction),
+                          row(2, "name", &RecordedWriter::name), row(3, "user", &RecordedWriter::user),
+                          row(4, "time", &RecordedWriter::time));
+    }
 };
 struct RecordedFieldWriter {
     std::uint32_t field = 0;
     std::uint64_t writer = 0;  // place in CheckpointState::writers, from 1; 0 = none
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "field", &RecordedFieldWriter::field),
+                          row(2, "writer", &RecordedFieldWriter::writer));
+    }
 };
 struct RecordedObjectWriters {
     ObjectId object;
     std::vector<RecordedFieldWriter> fields;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "object", &RecordedObjectWriters::object),
+                          row(2, "fields", &RecordedObjectWriters::fields, Limit{scene::MaxFields}));
+    }
 };
 struct RecordedChange {
     ObjectId object;
@@ -67,6 +116,25 @@ struct RecordedChange {
     std::optional<scene::Object> before,
         after;  // only the fields of the mask and the name, where both are there
     std::vector<RecordedFieldWriter> writers_before, writers_after;
+    // A state as it travels, an update or a creation, and back; a removal has no state.
+    std::optional<scene::Entry> entry(const std::optional<scene::Object>& state) const;
+    static std::optional<scene::Object> state(std::optional<scene::Entry>&& entry);
+    static constexpr auto describe(auto row) {
+        return std::tuple(
+            row(1, "object", &RecordedChange::object), row(2, "mask", &RecordedChange::mask),
+            row(3, "before",
+                Computed{[](const RecordedChange& change) { return change.entry(change.before); },
+                         [](RecordedChange& change, std::optional<scene::Entry>&& entry) {
+                             change.before = state(std::move(entry));
+                         }}),
+            row(4, "after",
+                Computed{[](const RecordedChange& change) { return change.entry(change.after); },
+                         [](RecordedChange& change, std::optional<scene::Entry>&& entry) {
+                             change.after = state(std::move(entry));
+                         }}),
+            row(5, "writers_before", &RecordedChange::writers_before, Limit{scene::MaxFields}),
+            row(6, "writers_after", &RecordedChange::writers_after, Limit{scene::MaxFields}));
+    }
 };
 struct RecordedTransaction {
     std::uint64_t number = 0, editor = 0;
@@ -77,6 +145,14 @@ struct RecordedTransaction {
     std::uint64_t undoes = 0, undone_by = 0;
     std::string text;
     std::vector<RecordedChange> changes;
+    static constexpr auto describe(auto row) {
+        using Self = RecordedTransaction;
+        return std::tuple(
+            row(1, "number", &Self::number), row(2, "editor", &Self::editor), row(3, "nature", &Self::nature),
+            row(4, "author", &Self::author), row(5, "gesture", &Self::gesture), row(6, "edits", &Self::edits),
+            row(7, "undoes", &Self::undoes), row(8, "undone_by", &Self::undone_by),
+            row(9, "text", &Self::text), row(10, "changes", &Self::changes, Limit{MaxRecorded}));
+    }
 };
 
 // A view and its film.
@@ -87,6 +163,19 @@ struct SavedView {
     std::uint64_t spp = 0;
     Hash128 scene_hash_of_film;
     std::vector<frame::FilmTile> blocks;
+    std::uint64_t block_count = 0;  // of one that was decoded: so many follow in the file
+    static constexpr auto describe(auto row) {
+        return std::tuple(
+            row(1, "name", &SavedView::name), row(2, "owner_user", &SavedView::owner_user),
+            row(3, "owner_key", &SavedView::owner_key, FullWidth{}), row(4, "number", &SavedView::number),
+            row(5, "view", &SavedView::view), row(6, "spp", &SavedView::spp),
+            row(7, "scene_hash_of_film", &SavedView::scene_hash_of_film),
+            row(8, "blocks",
+                Computed{[](const SavedView& view) {
+                             return std::max<std::uint64_t>(view.blocks.size(), view.block_count);
+                         },
+                         [](SavedView& view, std::uint64_t count) { view.block_count = count; }}));
+    }
 };
 
 struct CheckpointState {
@@ -98,8 +187,19 @@ struct CheckpointState {
     std::vector<RecordedObjectWriters> objects;
     std::vector<RecordedTransaction> transactions;  // oldest first
     std::vector<RecordedEditor> editors;
-    std::vector<SavedView> views;  // encoded without their blocks
-    std::vector<std::uint64_t> block_counts;
+    std::vector<SavedView> views;                           // encoded without their blocks
+    std::uint32_t render_revision = frame::RenderRevision;  // of the blocks; 0: of before there were any
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "journal", &CheckpointState::journal),
+                          row(2, "title", &CheckpointState::title), row(3, "scene", &CheckpointState::scene),
+                          row(4, "last_transaction", &CheckpointState::last_transaction),
+                          row(5, "writers", &CheckpointState::writers, Limit{MaxRecorded}),
+                          row(6, "objects", &CheckpointState::objects, Limit{MaxRecorded}),
+                          row(7, "transactions", &CheckpointState::transactions, Limit{MaxRecorded}),
+                          row(8, "editors", &CheckpointState::editors, Limit{MaxRecorded}),
+                          row(9, "views", &CheckpointState::views, Limit{MaxRecorded}),
+                          row(10, "render_revision", &CheckpointState::render_revision));
+    }
 };
 
 }  // namespace tessera::wire

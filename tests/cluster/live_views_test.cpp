@@ -101,6 +101,43 @@ TEST_F(LiveViews, OnlyWhatChangesThePictureStartsItAnew) {
     EXPECT_GT(after.front().scale, 1u);
 }
 
+// A slider of a filter costs a picture, no sample: not while samples come, not when all are there.
+TEST_F(LiveViews, AnotherFilterKeepsTheFilm) {
+    cluster.add_node("null");
+    client::LiveViewRequest request = view_of(64, 48, 16);
+    request.view.filter = "gauss:sigma=1";
+    request.picture = wire::PictureEncoding::Planes;
+    ann->open_view(1, request);
+    const client::Frame before = frames_until(*ann, complete).back();
+    const auto units = [this] { return cluster.session(blobs)->status().units.issued; };
+    const std::uint64_t issued = units();
+    request.view.filter = "gauss:sigma=4";
+    ann->open_view(1, request);
+    const auto frames =
+        frames_until(*ann, [&](const client::Frame& frame) { return frame.picture != before.picture; });
+    for (const client::Frame& frame : frames) EXPECT_TRUE(frame.complete) << "rendered again for a filter";
+    EXPECT_EQ(frames.back().film_hash, before.film_hash);
+    EXPECT_GT(frames.back().revision, before.revision) << "who asked can tell the new picture from the old";
+    EXPECT_EQ(units(), issued);
+}
+
+TEST_F(LiveViews, AFilterThatReadsMoreGetsItFromThenOn) {
+    cluster.add_node("null", {}, 20us);
+    client::LiveViewRequest request = view_of(64, 48, 256);
+    request.view.filter = "none";
+    request.picture = wire::PictureEncoding::Planes;
+    ann->open_view(1, request);
+    const client::Frame before = frames_until(*ann, [](const client::Frame& frame) {
+                                     return frame.scale == 1 && frame.samples_least >= 8;
+                                 }).back();
+    request.view.filter = "bilateral";
+    ann->open_view(1, request);
+    for (const client::Frame& frame : frames_until(*ann, complete)) {
+        EXPECT_EQ(frame.scale, 1u) << "started anew";
+        EXPECT_GE(frame.samples_least, before.samples_least);
+    }
+}
+
 TEST_F(LiveViews, WhileTheCameraIsDraggedPicturesGoOn) {
     cluster.add_node("null", {}, 2us);
     client::LiveViewRequest request = view_of(320, 240, 1024);

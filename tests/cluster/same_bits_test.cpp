@@ -6,6 +6,7 @@
 
 #include "mediator/frame/resolve.h"
 #include "mediator/scene/fields.h"
+#include "mediator/wire/envelope.h"
 #include "tests/cluster/cluster_scene.h"
 #include "tests/cluster/loopback_cluster.h"
 
@@ -139,6 +140,22 @@ TEST(Cluster, SaysThatNobodyCame) {
     client::JobRequest request = request_for(Policy::Mixed, 1);
     request.wait_limit = 300ms;
     EXPECT_EQ(session->render(request, [](const client::Progress&) {}, {}).outcome, client::Outcome::NoNodes);
+}
+
+TEST(Cluster, ANodeOfAnotherRenderRevisionIsRefused) {
+    LoopbackCluster cluster;
+    const auto peer = cluster.channel(net::Role::Node);
+    const wire::ControlMessage hello = wire::Hello{
+        .peer = wire::PeerKind::Node, .name = "new", .render_revision = frame::RenderRevision + 1};
+    ASSERT_EQ(peer->send(net::Link::Control, net::ServerPeer, wire::encode(hello)), net::SendResult::Sent);
+    const auto received = peer->receive(std::chrono::steady_clock::now() + 5s);
+    const auto* message = std::get_if<net::Message>(&received);
+    ASSERT_NE(message, nullptr);
+    const auto answer = wire::decode_control(message->bytes);
+    ASSERT_TRUE(answer && std::holds_alternative<wire::Refusal>(*answer));
+    EXPECT_NE(std::get<wire::Refusal>(*answer).reason.find("render revision 1, yours is of revision 2"),
+              std::string::npos)
+        << std::get<wire::Refusal>(*answer).reason;
 }
 
 TEST(Cluster, ATimeLimitEndsTheFrameWithItsCounts) {

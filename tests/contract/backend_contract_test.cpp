@@ -11,6 +11,7 @@
 
 #include "mediator/backend/catalog.h"
 #include "mediator/frame/merge.h"
+#include "mediator/frame/render_revision.h"
 #include "tests/contract/contract_scene.h"
 
 namespace tessera::backend {
@@ -60,7 +61,8 @@ TEST_P(BackendContract, TellsWhatItCan) {
     EXPECT_TRUE(capabilities.channels.contains(frame::Channel::Radiance));
     EXPECT_GE(capabilities.preferred_tile, 1u);
     EXPECT_GE(capabilities.concurrent_units, 1u);
-    EXPECT_FALSE(capabilities.kind.empty());
+    EXPECT_TRUE(capabilities.kind.ends_with(frame::with_render_revision(""))) << capabilities.kind;
+    EXPECT_GT(capabilities.kind.size(), frame::with_render_revision("").size());
     EXPECT_EQ(fresh()->capabilities().kind, capabilities.kind);
 }
 

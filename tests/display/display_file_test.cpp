@@ -30,8 +30,8 @@ TEST(DisplayFile, OneMonitorTakesThreeLines) {
     EXPECT_NEAR(camera.right, top * 2560 / 1440, 1e-12);
 }
 
-TEST(DisplayFile, EveryKeyArrives) {
-    const DisplayFile file = parsed(R"(
+// Every key that a file may have.
+constexpr std::string_view AllKeys = R"(
 [display]
 name = "show"
 camera = "main"
@@ -70,7 +70,10 @@ screen = { lower_left = [2, -1, 1], lower_right = [2, -1, 4], upper_left = [2, 1
 view = [300, 400]
 blend = { left = 10, top = 20, shape = 2.0 }
 color = { gain = [0.9, 1.0, 1.1], gamma = 2.2, matrix = [1, 0.1, 0, 0, 1, 0, 0, 0.2, 1] }
-)");
+)";
+
+TEST(DisplayFile, EveryKeyArrives) {
+    const DisplayFile file = parsed(AllKeys);
     const display::Display& d = file.display;
     EXPECT_EQ(d.name, "show");
     EXPECT_EQ(d.camera, "main");

@@ -199,7 +199,7 @@ TEST_F(MachineSceneTest, ListsThatCameDuringABuildAreBuiltTogether) {
     collect();
     const auto builds = take<BuildScene>();
     ASSERT_EQ(builds.size(), 1u);
-    EXPECT_EQ(builds[0].build.lists.size(), 2u);
+    EXPECT_EQ(builds[0].build.steps.size(), 2u);
 }
 
 TEST_F(MachineSceneTest, BlobsAreFetchedBeforeTheBuildAndTheOldVersionIsRenderedMeanwhile) {
@@ -223,7 +223,7 @@ TEST_F(MachineSceneTest, BlobsAreFetchedBeforeTheBuildAndTheOldVersionIsRendered
     const auto builds = take<BuildScene>();
     ASSERT_EQ(builds.size(), 1u);
     ASSERT_EQ(builds[0].build.unchecked.size(), 1u);
-    EXPECT_EQ(builds[0].build.unchecked[0].first, ObjectId{60});
+    EXPECT_EQ(builds[0].build.unchecked[0], ObjectId{60});
 }
 
 TEST_F(MachineSceneTest, ABlobThatTheMasterLacksIsAskedForAgain) {
@@ -260,8 +260,8 @@ TEST_F(MachineSceneTest, ASnapshotByBlobIsFetchedReadAndBuilt) {
     pass(Duration(1));
     const auto builds = take<BuildScene>();
     ASSERT_EQ(builds.size(), 1u);
-    EXPECT_EQ(builds[0].build.lists.size(), 2u);
-    EXPECT_EQ(builds[0].build.to, builder.scene().version());
+    EXPECT_EQ(builds[0].build.steps.size(), 2u);
+    EXPECT_EQ(builds[0].build.scene().version(), builder.scene().version());
 }
 
 TEST_F(MachineSceneTest, ABlobThatHoldsNoChangeListIsAResync) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mediator/backend/catalog.h"
 #include "tests/backend/scene_builder.h"
 
 namespace tessera::node {
@@ -72,7 +73,7 @@ TEST_F(SceneReplicaTest, AListWaitsForItsOwnBlobsButNotForThoseOfLaterOnes) {
     EXPECT_EQ(replica.missing(), std::vector{geometry.positions});
     const auto build = replica.take_build();
     ASSERT_TRUE(build);
-    EXPECT_EQ(build->to, one.to);
+    EXPECT_EQ(build->scene().version(), one.to);
     EXPECT_TRUE(build->unchecked.empty());
 }
 
@@ -105,8 +106,8 @@ TEST_F(SceneReplicaTest, ABlobThatALaterListLetsGoOfIsNotWaitedFor) {
     EXPECT_TRUE(replica.missing().empty());
     const auto build = replica.take_build();
     ASSERT_TRUE(build);
-    EXPECT_EQ(build->lists.size(), 3u);
-    EXPECT_EQ(build->to, last.to);
+    EXPECT_EQ(build->steps.size(), 3u);
+    EXPECT_EQ(build->scene().version(), last.to);
 }
 
 TEST_F(SceneReplicaTest, AVersionWhoseBlobsAreHereIsBuiltThoughThoseOfALaterOneAreNot) {
@@ -127,8 +128,35 @@ TEST_F(SceneReplicaTest, AVersionWhoseBlobsAreHereIsBuiltThoughThoseOfALaterOneA
     ASSERT_TRUE(replica.advance());
     const auto build = replica.take_build();
     ASSERT_TRUE(build);
-    EXPECT_EQ(build->to, lists[1].to);
+    EXPECT_EQ(build->scene().version(), lists[1].to);
     EXPECT_EQ(replica.missing(), (std::vector<scene::BlobRef>{{blake2b(bytes(2)), 12}}));
+}
+
+// The back-end reads the objects that the replica has checked: a list whose hash nobody looks at again is good.
+TEST_F(SceneReplicaTest, TheBackEndHoldsTheSameObjectsAndHashesNone) {
+    const auto backend = backend::find_backend("null").make({.blobs = blobs});
+    for (std::uint64_t id = 2; id < 300; ++id) replica.offer(camera(id));
+    replica.offer(builder.edit(
+        {scene::Remove{ObjectId{7}},
+         test::SceneBuilder::update(ObjectId{8}, scene::Fields<scene::Camera>(scene::Camera::Field::Name),
+                                    scene::Camera{.name = "eight"})}));
+    ASSERT_TRUE(replica.advance());
+    auto build = replica.take_build();
+    ASSERT_TRUE(build);
+    const auto scope = backend->begin_edit();
+    for (SceneReplica::Step& step : build->steps) {
+        step.list.state_hash = {};
+        ASSERT_TRUE(scope->apply(step.list, step.after));
+    }
+    ASSERT_TRUE(scope->commit());
+    EXPECT_EQ(scope->scene().state_hash(), builder.scene().state_hash());
+    ASSERT_EQ(scope->scene().objects().size(), builder.scene().objects().size());
+    for (const auto& [id, object] : replica.scene().objects())
+        EXPECT_EQ(scope->scene().find(id), object.get());
+
+    replica.offer(camera(400));  // the replica goes on; the back-end's scene stays
+    ASSERT_TRUE(replica.advance());
+    EXPECT_EQ(scope->scene().find(ObjectId{400}), nullptr);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the include arrows, file sizes and a few conventions that the README promises.
+"""Checks the include arrows, the sizes of files and functions and a few conventions that the README promises.
 
 Usage: check_rules.py ROOT. Prints one line per violation and exits 1 if there is any.
 """
@@ -7,6 +7,8 @@ Usage: check_rules.py ROOT. Prints one line per violation and exits 1 if there i
 import os
 import re
 import sys
+
+from functions import check_functions
 
 CORE = ["mediator/base", "mediator/scene", "mediator/view", "mediator/frame", "mediator/filter", "mediator/display"]
 KIT = CORE + ["mediator/backend", "mediator/shading"]
@@ -178,6 +180,7 @@ def check_file(path, text):
     limit = TEST_LIMIT if path.startswith("tests/") else LIMIT
     if path.endswith(MEASURED) and len(lines) > limit:
         yield f"{path}: {len(lines)} lines, more than {limit}: it holds more than one idea"
+    yield from check_functions(path, text)
     if path.endswith(CODE):
         yield from check_code(path, lines)
     if path.endswith(("CMakeLists.txt", ".cmake")):

@@ -68,6 +68,8 @@ PLANTED = [
     ("mediator/shading/a.h", GUARD + "struct A {\n    double x;\n};\n", "double"),
     ("node/a.cpp", "\n" * 451, "451 lines"),
     ("tests/node/a.cpp", "\n" * 601, "601 lines"),
+    ("node/a.cpp", "void f() {\n" + "    g();\n" * 69 + "}\n", "f has 71 lines"),
+    ("tests/node/a.py", "def f():\n" + "    g()\n" * 70, "f has 71 lines"),
     ("node/CMakeLists.txt", "file(GLOB sources *.cpp)\n", "GLOB"),
     ("deploy/cmake/a.cmake", "  FILE( glob_recurse sources *.cpp)\n", "GLOB"),
 ]

@@ -13,7 +13,8 @@ import sys
 
 # Whole paths: tests/transport compares what they find on both sides. What is drawn: tests/vulkan compares what the
 # device finds with what rays find on the host.
-ELSEWHERE = ("transmittance", "leave_vertex", "trace_from", "trace_sample", "raster_hit")
+PATHS = ("trace.h", "walk.h")
+ELSEWHERE = ("transmittance", "raster_hit")
 
 FUNCTION = re.compile(r"^(?:WITH_CONTEXT |SELDOM )?inline (?!constexpr)\w+ (\w+)\(", re.MULTILINE)
 
@@ -27,8 +28,9 @@ def main():
     root = sys.argv[1]
     functions = []
     for path in sorted(glob.glob(os.path.join(root, "mediator/shading/*.h"))):
-        traversal = os.path.basename(path).startswith(("bvh_", "plain_"))
-        if "SHADING_BEGIN" in text_of(path) and not traversal:
+        name = os.path.basename(path)
+        traversal = name.startswith(("bvh_", "plain_"))
+        if "SHADING_BEGIN" in text_of(path) and not traversal and name not in PATHS:
             functions += FUNCTION.findall(text_of(path))
     lists = glob.glob(os.path.join(root, "tests/shading/functions/*.inc"))
     own = [os.path.join(root, "tests/shading", name) for name in ("cases.h", "world.h", "world_cases.h", "media_cases.h")]

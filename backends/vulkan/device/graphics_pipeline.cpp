@@ -1,6 +1,7 @@
 #include "backends/vulkan/device/graphics_pipeline.h"
 
 #include <array>
+#include <span>
 #include <utility>
 
 #include "backends/vulkan/device/device.h"
@@ -15,6 +16,73 @@ struct GraphicsPipeline::Parts {
     Handle<VkPipelineLayout, vkDestroyPipelineLayout> layout;
     Handle<VkPipeline, vkDestroyPipeline> pipeline;
 };
+
+namespace {
+
+// What all pipelines have alike: triangles without attributes, of two numbers a pixel, nearest first.
+struct FixedState {
+    VkPipelineVertexInputStateCreateInfo no_attributes{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
+    VkPipelineInputAssemblyStateCreateInfo assembly{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
+    VkPipelineViewportStateCreateInfo viewport{.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
+                                               .viewportCount = 1,
+                                               .scissorCount = 1};
+    VkPipelineRasterizationStateCreateInfo rasterization{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+        .polygonMode = VK_POLYGON_MODE_FILL,
+        .cullMode = VK_CULL_MODE_NONE,
+        .lineWidth = 1.0f};
+    VkPipelineMultisampleStateCreateInfo samples{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+        .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
+    VkPipelineDepthStencilStateCreateInfo depth{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
+        .depthTestEnable = VK_TRUE,
+        .depthWriteEnable = VK_TRUE,
+        .depthCompareOp = VK_COMPARE_OP_GREATER_OR_EQUAL};
+    VkPipelineColorBlendAttachmentState both_numbers{.colorWriteMask =
+                                                         VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT};
+    VkPipelineColorBlendStateCreateInfo blending{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
+        .attachmentCount = 1,
+        .pAttachments = &both_numbers};
+    std::array<VkDynamicState, 2> dynamic_states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+    VkPipelineDynamicStateCreateInfo dynamic{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+        .dynamicStateCount = static_cast<std::uint32_t>(dynamic_states.size()),
+        .pDynamicStates = dynamic_states.data()};
+    VkFormat ids = Image::format(Image::Kind::Ids);
+    VkPipelineRenderingCreateInfo targets{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
+                                          .colorAttachmentCount = 1,
+                                          .pColorAttachmentFormats = &ids,
+                                          .depthAttachmentFormat = Image::format(Image::Kind::Depth)};
+
+    FixedState() = default;
+    FixedState(const FixedState&) = delete;  // members point to each other
+    FixedState& operator=(const FixedState&) = delete;
+
+    // Good as long as this and the stages are.
+    VkGraphicsPipelineCreateInfo info(std::span<const VkPipelineShaderStageCreateInfo> stages,
+                                      VkPipelineLayout layout) const {
+        return {.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+                .pNext = &targets,
+                .stageCount = static_cast<std::uint32_t>(stages.size()),
+                .pStages = stages.data(),
+                .pVertexInputState = &no_attributes,
+                .pInputAssemblyState = &assembly,
+                .pViewportState = &viewport,
+                .pRasterizationState = &rasterization,
+                .pMultisampleState = &samples,
+                .pDepthStencilState = &depth,
+                .pColorBlendState = &blending,
+                .pDynamicState = &dynamic,
+                .layout = layout};
+    }
+};
+
+}  // namespace
 
 GraphicsPipeline::GraphicsPipeline(Device& device, const GraphicsSettings& settings)
     : device_(&device),
@@ -37,59 +105,8 @@ GraphicsPipeline::GraphicsPipeline(Device& device, const GraphicsSettings& setti
     const ShaderStage fragment(device.get(), name_, VK_SHADER_STAGE_FRAGMENT_BIT, settings.fragment,
                                settings.constants);
     const std::array stages{vertex.info(), fragment.info()};
-
-    const VkPipelineVertexInputStateCreateInfo no_attributes{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
-    const VkPipelineInputAssemblyStateCreateInfo assembly{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
-        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
-    const VkPipelineViewportStateCreateInfo viewport{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
-        .viewportCount = 1,
-        .scissorCount = 1};
-    const VkPipelineRasterizationStateCreateInfo rasterization{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
-        .polygonMode = VK_POLYGON_MODE_FILL,
-        .cullMode = VK_CULL_MODE_NONE,
-        .lineWidth = 1.0f};
-    const VkPipelineMultisampleStateCreateInfo samples{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
-        .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
-    const VkPipelineDepthStencilStateCreateInfo depth{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
-        .depthTestEnable = VK_TRUE,
-        .depthWriteEnable = VK_TRUE,
-        .depthCompareOp = VK_COMPARE_OP_GREATER_OR_EQUAL};
-    const VkPipelineColorBlendAttachmentState both_numbers{.colorWriteMask = VK_COLOR_COMPONENT_R_BIT |
-                                                                             VK_COLOR_COMPONENT_G_BIT};
-    const VkPipelineColorBlendStateCreateInfo blending{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-        .attachmentCount = 1,
-        .pAttachments = &both_numbers};
-    constexpr std::array Dynamic{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-    const VkPipelineDynamicStateCreateInfo dynamic{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
-        .dynamicStateCount = static_cast<std::uint32_t>(Dynamic.size()),
-        .pDynamicStates = Dynamic.data()};
-    const VkFormat ids = Image::format(Image::Kind::Ids);
-    const VkPipelineRenderingCreateInfo targets{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
-                                                .colorAttachmentCount = 1,
-                                                .pColorAttachmentFormats = &ids,
-                                                .depthAttachmentFormat = Image::format(Image::Kind::Depth)};
-    const VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
-                                            .pNext = &targets,
-                                            .stageCount = static_cast<std::uint32_t>(stages.size()),
-                                            .pStages = stages.data(),
-                                            .pVertexInputState = &no_attributes,
-                                            .pInputAssemblyState = &assembly,
-                                            .pViewportState = &viewport,
-                                            .pRasterizationState = &rasterization,
-                                            .pMultisampleState = &samples,
-                                            .pDepthStencilState = &depth,
-                                            .pColorBlendState = &blending,
-                                            .pDynamicState = &dynamic,
-                                            .layout = layout};
-    parts_->pipeline = device.pipelines().make(info, settings);
+    const FixedState fixed;
+    parts_->pipeline = device.pipelines().make(fixed.info(stages, layout), settings);
 }
 
 GraphicsPipeline& GraphicsPipeline::operator=(GraphicsPipeline&& other) noexcept {

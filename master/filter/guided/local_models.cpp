@@ -86,60 +86,84 @@ bool LocalModels::run(const Frame& frame, RunContext& context) {
     return true;
 }
 
-template <std::uint32_t Components>
-void LocalModels::fit(const Frame& frame, std::int64_t left, std::int64_t top, std::int64_t bottom,
-                      Space& space) {
-    const auto n = static_cast<std::size_t>(2 * frame.radius + 1);
-    const std::size_t pitch = Width + n - 1, rows = Height + n - 1, plane = pitch * rows;
-    const auto source = [&](std::size_t number) { return space.source.data() + number * plane; };
-    const std::int64_t first_x = std::max<std::int64_t>(left - frame.radius, 0),
-                       last_x = std::min(left + std::int64_t{Width} + frame.radius, frame.width),
-                       first_y = std::max<std::int64_t>(top - frame.radius, 0),
-                       last_y = std::min(top + std::int64_t{Height} + frame.radius, frame.height);
-    const std::size_t count = static_cast<std::size_t>(last_x - first_x);
-    const auto place = [&](std::int64_t y) {
+// A tile with its surroundings, as it lies in Space::source.
+struct LocalModels::Tile {
+    std::int64_t left, top, bottom;
+    std::int64_t first_x, last_x, first_y, last_y;  // in the frame, with the surroundings
+    std::size_t window, pitch, plane;
+
+    Tile(const Frame& frame, std::int64_t from_left, std::int64_t from_top, std::int64_t to_bottom)
+        : left(from_left),
+          top(from_top),
+          bottom(to_bottom),
+          first_x(std::max<std::int64_t>(left - frame.radius, 0)),
+          last_x(std::min(left + std::int64_t{Width} + frame.radius, frame.width)),
+          first_y(std::max<std::int64_t>(top - frame.radius, 0)),
+          last_y(std::min(top + std::int64_t{Height} + frame.radius, frame.height)),
+          window(static_cast<std::size_t>(2 * frame.radius + 1)),
+          pitch(Width + window - 1),
+          plane(pitch * (Height + window - 1)) {}
+
+    std::size_t count() const { return static_cast<std::size_t>(last_x - first_x); }
+    std::size_t row(const Frame& frame, std::int64_t y) const {
         return static_cast<std::size_t>(y - top + frame.radius) * pitch +
                static_cast<std::size_t>(first_x - left + frame.radius);
-    };
-    std::fill(space.source.begin(), space.source.end(), 0.0f);
-    for (std::int64_t y = first_y; y < last_y; ++y) {
-        std::copy_n(frame.known.row(0, static_cast<std::uint32_t>(y)) + first_x, count, source(0) + place(y));
     }
-    // Differences from a value of the tile, so that little is lost to cancellation; from the least colour,
-    // which no bright pixel can have moved. Unknown pixels are 0.
-    std::array<float, GuideCount> guide_origin;
-    std::array<float, Components> color_origin;
-    const auto load = [&](const Planes& planes, std::uint32_t number, float* to, float origin) {
-        for (std::int64_t y = first_y; y < last_y; ++y) {
-            const float* from = planes.row(number, static_cast<std::uint32_t>(y)) + first_x;
-            const float* known = source(0) + place(y);
-            float* __restrict row = to + place(y);
+};
+
+// What values are differences from: a value of the tile, so that little is lost to cancellation; of colours the
+// least, which no bright pixel can have moved.
+template <std::uint32_t Components>
+struct LocalModels::Origins {
+    std::array<float, GuideCount> guide;
+    std::array<float, Components> color;
+};
+
+template <std::uint32_t Components>
+void LocalModels::load(const Frame& frame, const Tile& tile, Space& space, Origins<Components>& origins) {
+    const std::size_t count = tile.count();
+    const auto source = [&](std::size_t number) { return space.source.data() + number * tile.plane; };
+    std::fill(space.source.begin(), space.source.end(), 0.0f);
+    for (std::int64_t y = tile.first_y; y < tile.last_y; ++y) {
+        std::copy_n(frame.known.row(0, static_cast<std::uint32_t>(y)) + tile.first_x, count,
+                    source(0) + tile.row(frame, y));
+    }
+    // Unknown pixels are 0.
+    const auto load_plane = [&](const Planes& planes, std::uint32_t number, float* to, float origin) {
+        for (std::int64_t y = tile.first_y; y < tile.last_y; ++y) {
+            const float* from = planes.row(number, static_cast<std::uint32_t>(y)) + tile.first_x;
+            const float* known = source(0) + tile.row(frame, y);
+            float* __restrict row = to + tile.row(frame, y);
             for (std::size_t x = 0; x < count; ++x) {
                 row[x] = known[x] * (std::clamp(from[x], -MostColor, MostColor) - origin);
             }
         }
     };
     for (std::uint32_t g = 0; g < GuideCount; ++g) {
-        guide_origin[g] = frame.guides.row(g, static_cast<std::uint32_t>(top))[left];
-        load(frame.guides, g, source(1 + g), guide_origin[g]);
+        origins.guide[g] = frame.guides.row(g, static_cast<std::uint32_t>(tile.top))[tile.left];
+        load_plane(frame.guides, g, source(1 + g), origins.guide[g]);
     }
     for (std::uint32_t c = 0; c < Components; ++c) {
         float least = MostColor;
-        for (std::int64_t y = first_y; y < last_y; ++y) {
-            const float* from = frame.color.row(c, static_cast<std::uint32_t>(y)) + first_x;
-            const float* known = source(0) + place(y);
+        for (std::int64_t y = tile.first_y; y < tile.last_y; ++y) {
+            const float* from = frame.color.row(c, static_cast<std::uint32_t>(y)) + tile.first_x;
+            const float* known = source(0) + tile.row(frame, y);
             for (std::size_t x = 0; x < count; ++x)
                 least = known[x] > 0.0f ? std::min(least, from[x]) : least;
         }
-        color_origin[c] = std::max(least, -MostColor);
-        load(frame.color, c, source(1 + GuideCount + c), color_origin[c]);
+        origins.color[c] = std::max(least, -MostColor);
+        load_plane(frame.color, c, source(1 + GuideCount + c), origins.color[c]);
     }
+}
 
+template <std::uint32_t Components>
+void LocalModels::sum_products(const Tile& tile, Space& space) {
+    const auto source = [&](std::size_t number) { return space.source.data() + number * tile.plane; };
     const auto sum = [&](std::size_t number, std::size_t a, std::size_t b) {
         float* __restrict values = space.values.data();
         const float *first = source(a), *second = source(b);
-        for (std::size_t i = 0; i < plane; ++i) values[i] = first[i] * second[i];
-        box_sum(values, pitch, Width, Height, n, space.between.data(),
+        for (std::size_t i = 0; i < tile.plane; ++i) values[i] = first[i] * second[i];
+        box_sum(values, tile.pitch, Width, Height, tile.window, space.between.data(),
                 space.sums.data() + number * Width * Height);
     };
     sum(0, 0, 0);
@@ -149,55 +173,68 @@ void LocalModels::fit(const Frame& frame, std::int64_t left, std::int64_t top, s
         for (std::size_t c = 0; c < Components; ++c) sum(sum_of_color(c, i), 1 + GuideCount + c, 1 + i);
     }
     for (std::size_t c = 0; c < Components; ++c) sum(sum_of_color(c, GuideCount), 1 + GuideCount + c, 0);
+}
 
+// The models of a row.
+template <std::uint32_t Components>
+void LocalModels::solve(const Frame& frame, const Tile& tile, const Space& space,
+                        const Origins<Components>& origins, std::int64_t y) {
     using System = Ridge<GuideCount, Width>;
     using Row = typename System::Row;
     System system;
     std::array<Row, GuideCount> mean;
-    const std::size_t visible = static_cast<std::size_t>(std::min(std::int64_t{Width}, frame.width - left));
-    for (std::int64_t y = top; y < bottom; ++y) {
-        const auto sums = [&](std::size_t number) {
-            return space.sums.data() + (number * Height + static_cast<std::size_t>(y - top)) * Width;
-        };
-        Row inverse;
-        for (std::size_t x = 0; x < Width; ++x) inverse[x] = sums(0)[x] > 0.0f ? 1.0f / sums(0)[x] : 0.0f;
-        for (std::size_t i = 0; i < GuideCount; ++i) {
-            for (std::size_t x = 0; x < Width; ++x) mean[i][x] = sums(sum_of_guide(i))[x] * inverse[x];
-            for (std::size_t j = 0; j <= i; ++j) {
-                const float* pair = sums(sum_of_pair(i, j));
-                for (std::size_t x = 0; x < Width; ++x) {
-                    system.at(i, j)[x] = pair[x] * inverse[x] - mean[i][x] * mean[j][x];
-                }
-            }
-        }
-        system.factorise(frame.ridge);
-        for (std::uint32_t c = 0; c < Components; ++c) {
-            std::array<Row, GuideCount> slope;
-            Row constant;
-            const float* own = sums(sum_of_color(c, GuideCount));
-            for (std::size_t x = 0; x < Width; ++x) constant[x] = own[x] * inverse[x];
-            for (std::size_t i = 0; i < GuideCount; ++i) {
-                const float* product = sums(sum_of_color(c, i));
-                for (std::size_t x = 0; x < Width; ++x) {
-                    slope[i][x] = product[x] * inverse[x] - mean[i][x] * constant[x];
-                }
-            }
-            system.solve(slope);
-            const float* color = frame.color.row(c, static_cast<std::uint32_t>(y)) + left;
-            for (std::size_t i = 0; i < GuideCount; ++i) {
-                for (std::size_t x = 0; x < Width; ++x) {
-                    constant[x] -= slope[i][x] * (mean[i][x] + guide_origin[i]);
-                }
-                std::copy_n(slope[i].data(), visible,
-                            model_row(frame, static_cast<std::uint32_t>(c * ModelSize + i), y) + left);
-            }
-            float* __restrict constants =
-                model_row(frame, static_cast<std::uint32_t>(c * ModelSize + GuideCount), y) + left;
-            for (std::size_t x = 0; x < visible; ++x) {
-                constants[x] = inverse[x] > 0.0f ? constant[x] + color_origin[c] : color[x];
+    const auto visible = static_cast<std::size_t>(std::min(std::int64_t{Width}, frame.width - tile.left));
+    const auto sums = [&](std::size_t number) {
+        return space.sums.data() + (number * Height + static_cast<std::size_t>(y - tile.top)) * Width;
+    };
+    Row inverse;
+    for (std::size_t x = 0; x < Width; ++x) inverse[x] = sums(0)[x] > 0.0f ? 1.0f / sums(0)[x] : 0.0f;
+    for (std::size_t i = 0; i < GuideCount; ++i) {
+        for (std::size_t x = 0; x < Width; ++x) mean[i][x] = sums(sum_of_guide(i))[x] * inverse[x];
+        for (std::size_t j = 0; j <= i; ++j) {
+            const float* pair = sums(sum_of_pair(i, j));
+            for (std::size_t x = 0; x < Width; ++x) {
+                system.at(i, j)[x] = pair[x] * inverse[x] - mean[i][x] * mean[j][x];
             }
         }
     }
+    system.factorise(frame.ridge);
+    for (std::uint32_t c = 0; c < Components; ++c) {
+        std::array<Row, GuideCount> slope;
+        Row constant;
+        const float* own = sums(sum_of_color(c, GuideCount));
+        for (std::size_t x = 0; x < Width; ++x) constant[x] = own[x] * inverse[x];
+        for (std::size_t i = 0; i < GuideCount; ++i) {
+            const float* product = sums(sum_of_color(c, i));
+            for (std::size_t x = 0; x < Width; ++x) {
+                slope[i][x] = product[x] * inverse[x] - mean[i][x] * constant[x];
+            }
+        }
+        system.solve(slope);
+        for (std::size_t i = 0; i < GuideCount; ++i) {
+            for (std::size_t x = 0; x < Width; ++x) {
+                constant[x] -= slope[i][x] * (mean[i][x] + origins.guide[i]);
+            }
+            std::copy_n(slope[i].data(), visible,
+                        model_row(frame, static_cast<std::uint32_t>(c * ModelSize + i), y) + tile.left);
+        }
+        const float* color = frame.color.row(c, static_cast<std::uint32_t>(y)) + tile.left;
+        float* __restrict constants =
+            model_row(frame, static_cast<std::uint32_t>(c * ModelSize + GuideCount), y) + tile.left;
+        for (std::size_t x = 0; x < visible; ++x) {
+            constants[x] = inverse[x] > 0.0f ? constant[x] + origins.color[c] : color[x];
+        }
+    }
+}
+
+template <std::uint32_t Components>
+void LocalModels::fit(const Frame& frame, std::int64_t left, std::int64_t top, std::int64_t bottom,
+                      Space& space) {
+    const Tile tile(frame, left, top, bottom);
+    Origins<Components> origins;
+    load(frame, tile, space, origins);
+    sum_products<Components>(tile, space);
+    for (std::int64_t y = top; y < bottom; ++y) solve(frame, tile, space, origins, y);
 }
 
 template <std::uint32_t Components>

@@ -34,8 +34,20 @@ class LocalModels {
         std::vector<float> source;  // known, guides and colours of a tile with its surroundings
     };
 
+    struct Tile;
+    template <std::uint32_t Components>
+    struct Origins;
+
     template <std::uint32_t Components>
     bool run(const Frame& frame, RunContext& context);
+    // The steps of fit: a tile's values, the sums of their products over squares, the models from the sums.
+    template <std::uint32_t Components>
+    static void load(const Frame& frame, const Tile& tile, Space& space, Origins<Components>& origins);
+    template <std::uint32_t Components>
+    static void sum_products(const Tile& tile, Space& space);
+    template <std::uint32_t Components>
+    void solve(const Frame& frame, const Tile& tile, const Space& space, const Origins<Components>& origins,
+               std::int64_t y);
     template <std::uint32_t Components>
     void fit(const Frame& frame, std::int64_t left, std::int64_t top, std::int64_t bottom, Space& space);
     template <std::uint32_t Components>

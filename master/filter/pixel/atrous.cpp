@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -13,6 +15,9 @@ namespace {
 constexpr int Iterations = 3;
 constexpr std::array<double, 5> Spline{1.0 / 16, 4.0 / 16, 6.0 / 16, 4.0 / 16, 1.0 / 16};
 
+// Of the joint kernel of all iterations, whose steps are at most the 32 pixels of the parameter sigma_s.
+constexpr std::size_t MaxJointTaps = 1 + 4 * Iterations * 32;
+
 struct Steps {
     std::array<std::int64_t, Iterations> step;
     float correction;  // of the product of r in flat regions
@@ -22,7 +27,8 @@ struct Steps {
 // own. The plane has its square.
 Steps steps_of(float sigma) {
     Steps steps{};
-    std::vector<double> joint{1.0};
+    std::array<double, MaxJointTaps> joint{1.0};
+    std::size_t taps = 1;
     double product = 1.0;
     const auto squares = [](const auto& weights) {
         double sum = 0.0;
@@ -33,13 +39,16 @@ Steps steps_of(float sigma) {
         const double wanted = iteration_sigma(sigma, Iterations - k, Iterations);
         const auto step = std::max<std::int64_t>(1, std::lround(wanted));
         steps.step[static_cast<std::size_t>(k)] = step;
-        std::vector<double> wider(joint.size() + static_cast<std::size_t>(4 * step), 0.0);
+        std::array<double, MaxJointTaps> wider{};
+        const std::size_t wider_taps = taps + static_cast<std::size_t>(4 * step);
+        assert(wider_taps <= MaxJointTaps);
         for (std::size_t tap = 0; tap < Spline.size(); ++tap) {
-            for (std::size_t i = 0; i < joint.size(); ++i) {
+            for (std::size_t i = 0; i < taps; ++i) {
                 wider[i + tap * static_cast<std::size_t>(step)] += Spline[tap] * joint[i];
             }
         }
-        joint = std::move(wider);
+        joint = wider;
+        taps = wider_taps;
         product *= squares(Spline);
     }
     const double ratio = squares(joint) / product;

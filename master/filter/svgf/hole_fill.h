@@ -30,7 +30,18 @@ class HoleFill {
         std::vector<float> texels;  // weight, then a value per plane
         std::vector<std::uint32_t> ids;
     };
-    std::vector<Level> levels_;
+
+    // Both: false when stopped.
+    template <class Fine>
+    static bool reduce_to(Level& level, const Fine& fine, std::size_t size, RunContext& context);
+    bool build_pyramid(const Planes& counts, const std::vector<std::uint32_t>& ids,
+                       std::span<const PlaneView> planes, RunContext& context);
+    // One hole; false: the level knows nothing around it. `scale`: of its texels per pixel.
+    static bool fill_from(const Level& level, float scale, std::uint32_t x, std::uint32_t y,
+                          std::uint32_t& id, std::span<const PlaneView> planes);
+
+    std::vector<Level> levels_;  // finest first; kept for their memory
+    std::size_t used_ = 0;       // of them, up to the first that knows something everywhere
 };
 
 }  // namespace tessera::filter::svgf

@@ -134,6 +134,87 @@ class SurfaceTest {
     std::array<float, 3> normal_{};
 };
 
+// The history at one pixel of the new picture.
+class Lookup {
+  public:
+    Lookup(const Guides& now, const Guides& before, const SurfaceTests& tests,
+           std::span<const HistoryView> from)
+        : test_(now, before, tests),
+          from_(from),
+          width_(static_cast<std::int32_t>(now.inverse_depth.width())),
+          height_(static_cast<std::int32_t>(now.inverse_depth.height())) {}
+
+    bool may_reach(float px, float py) const {
+        return px > -2.0f && py > -2.0f && px < static_cast<float>(width_ + 1) &&
+               py < static_cast<float>(height_ + 1);
+    }
+    void set_pixel(std::uint32_t x, std::uint32_t y, float expected) { test_.set_pixel(x, y, expected); }
+
+    enum class Found { History, SurfaceAlone, Nothing };
+    // Of the four pixels around (px, py), by bilinear weights of those that show the same surface.
+    Found interpolate(float px, float py, std::uint32_t x, std::uint32_t y, Planes& to) {
+        const auto x0 = static_cast<std::int32_t>(px + 2.0f) - 2,
+                   y0 = static_cast<std::int32_t>(py + 2.0f) - 2;
+        const float fx = px - static_cast<float>(x0), fy = py - static_cast<float>(y0);
+        std::array<float, 4> weights{(1.0f - fx) * (1.0f - fy), fx * (1.0f - fy), (1.0f - fx) * fy, fx * fy};
+        float same = 0.0f, sum = 0.0f;  // of the taps on this surface; of those that know something
+        for (std::int32_t t = 0; t < 4; ++t) {
+            float& weight = weights[static_cast<std::size_t>(t)];
+            const bool on_surface = weight > 0.0f && passes(x0 + t % 2, y0 + t / 2);
+            same += on_surface ? weight : 0.0f;
+            if (!on_surface || !knows(x0 + t % 2, y0 + t / 2)) weight = 0.0f;
+            sum += weight;
+        }
+        if (!(sum >= LeastWeight)) return same >= LeastWeight ? Found::SurfaceAlone : Found::Nothing;
+        // A tap without weight may lie outside: it looks at the pixel of another one.
+        std::array<std::int32_t, 4> tx, ty;
+        std::size_t some = 0;
+        while (weights[some] == 0.0f) ++some;
+        for (std::size_t t = 0; t < 4; ++t) {
+            const auto used = static_cast<std::int32_t>(weights[t] > 0.0f ? t : some);
+            tx[t] = x0 + used % 2;
+            ty[t] = y0 + used / 2;
+            weights[t] /= sum;
+        }
+        for (std::uint32_t c = 0; c < from_.size(); ++c) {
+            const HistoryView& view = from_[c];
+            to.row(c, y)[x] = (weights[0] * at(view, tx[0], ty[0]) + weights[1] * at(view, tx[1], ty[1])) +
+                              (weights[2] * at(view, tx[2], ty[2]) + weights[3] * at(view, tx[3], ty[3]));
+        }
+        return Found::History;
+    }
+
+    // The mean of the pixels around (px, py) that show the same surface.
+    void average_around(float px, float py, std::uint32_t x, std::uint32_t y, Planes& to) {
+        const auto near_x = static_cast<std::int32_t>(px + 2.5f) - 2;
+        const auto near_y = static_cast<std::int32_t>(py + 2.5f) - 2;
+        float found = 0.0f;
+        for (std::int32_t ty = near_y - 1; ty <= near_y + 1; ++ty) {
+            for (std::int32_t tx = near_x - 1; tx <= near_x + 1; ++tx) {
+                if (!passes(tx, ty) || !knows(tx, ty)) continue;
+                found += 1.0f;
+                for (std::uint32_t c = 0; c < from_.size(); ++c) to.row(c, y)[x] += at(from_[c], tx, ty);
+            }
+        }
+        for (std::uint32_t c = 0; c < from_.size() && found > 1.0f; ++c) to.row(c, y)[x] /= found;
+    }
+
+  private:
+    static float at(const HistoryView& view, std::int32_t x, std::int32_t y) {
+        return view.values[static_cast<std::ptrdiff_t>(y) * static_cast<std::ptrdiff_t>(view.pitch) + x];
+    }
+    bool passes(std::int32_t x, std::int32_t y) {
+        return x >= 0 && y >= 0 && x < width_ && y < height_ &&
+               test_.passes(static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                            static_cast<std::size_t>(x));
+    }
+    bool knows(std::int32_t x, std::int32_t y) const { return at(from_.back(), x, y) > 0.0f; }  // its age
+
+    SurfaceTest test_;
+    std::span<const HistoryView> from_;
+    std::int32_t width_, height_;
+};
+
 }  // namespace
 
 bool reproject(const Guides& now, const Guides& before, const Motion& motion, const SurfaceTests& tests,
@@ -143,76 +224,18 @@ bool reproject(const Guides& now, const Guides& before, const Motion& motion, co
     if (to.width() != width || to.height() != height || to.components() != components) {
         to = Planes(width, height, components);
     }
-    const HistoryView ages = from.back();
-    const auto w = static_cast<std::int32_t>(width), h = static_cast<std::int32_t>(height);
     return for_rows(context, height, [&](std::uint32_t y) {
-        SurfaceTest test(now, before, tests);
+        Lookup lookup(now, before, tests, from);
         const float *to_x = motion.position.row(0, y), *to_y = motion.position.row(1, y);
         const float* expected = motion.inverse_depth.row(0, y);
-        const auto inside = [&](std::int32_t tx, std::int32_t ty) {
-            return tx >= 0 && ty >= 0 && tx < w && ty < h;
-        };
-        const auto passes = [&](std::int32_t tx, std::int32_t ty) {
-            return inside(tx, ty) &&
-                   test.passes(static_cast<std::size_t>(ty) * width + static_cast<std::size_t>(tx));
-        };
-        const auto at = [](const HistoryView& view, std::int32_t tx, std::int32_t ty) {
-            return view
-                .values[static_cast<std::ptrdiff_t>(ty) * static_cast<std::ptrdiff_t>(view.pitch) + tx];
-        };
         for (std::uint32_t x = 0; x < width; ++x) {
             for (std::uint32_t c = 0; c < components; ++c) to.row(c, y)[x] = 0.0f;
-            const float px = to_x[x], py = to_y[x];
-            if (!(px > -2.0f && py > -2.0f && px < static_cast<float>(w + 1) &&
-                  py < static_cast<float>(h + 1))) {
-                continue;
-            }
-            test.set_pixel(x, y, expected[x]);
-            const auto x0 = static_cast<std::int32_t>(px + 2.0f) - 2,
-                       y0 = static_cast<std::int32_t>(py + 2.0f) - 2;
-            const float fx = px - static_cast<float>(x0), fy = py - static_cast<float>(y0);
-            std::array<float, 4> weights{(1.0f - fx) * (1.0f - fy), fx * (1.0f - fy), (1.0f - fx) * fy,
-                                         fx * fy};
-            float same = 0.0f, sum = 0.0f;  // of the taps on this surface; of those that know something
-            for (std::int32_t t = 0; t < 4; ++t) {
-                float& weight = weights[static_cast<std::size_t>(t)];
-                const bool on_surface = weight > 0.0f && passes(x0 + t % 2, y0 + t / 2);
-                same += on_surface ? weight : 0.0f;
-                if (!on_surface || !(at(ages, x0 + t % 2, y0 + t / 2) > 0.0f)) weight = 0.0f;
-                sum += weight;
-            }
-            if (sum >= LeastWeight) {
-                // A tap without weight may lie outside: it looks at the pixel of another one.
-                std::array<std::int32_t, 4> tx, ty;
-                std::size_t some = 0;
-                while (weights[some] == 0.0f) ++some;
-                for (std::size_t t = 0; t < 4; ++t) {
-                    const auto used = static_cast<std::int32_t>(weights[t] > 0.0f ? t : some);
-                    tx[t] = x0 + used % 2;
-                    ty[t] = y0 + used / 2;
-                    weights[t] /= sum;
-                }
-                for (std::uint32_t c = 0; c < components; ++c) {
-                    const HistoryView& view = from[c];
-                    to.row(c, y)[x] =
-                        (weights[0] * at(view, tx[0], ty[0]) + weights[1] * at(view, tx[1], ty[1])) +
-                        (weights[2] * at(view, tx[2], ty[2]) + weights[3] * at(view, tx[3], ty[3]));
-                }
-                continue;
-            }
+            if (!lookup.may_reach(to_x[x], to_y[x])) continue;
+            lookup.set_pixel(x, y, expected[x]);
+            const Lookup::Found found = lookup.interpolate(to_x[x], to_y[x], x, y, to);
             // Neighbours stand in for a surface that was missed, not for one that is known to be unknown.
-            if (same >= LeastWeight || motion.identity) continue;
-            const auto near_x = static_cast<std::int32_t>(px + 2.5f) - 2;
-            const auto near_y = static_cast<std::int32_t>(py + 2.5f) - 2;
-            float found = 0.0f;
-            for (std::int32_t ty = near_y - 1; ty <= near_y + 1; ++ty) {
-                for (std::int32_t tx = near_x - 1; tx <= near_x + 1; ++tx) {
-                    if (!passes(tx, ty) || !(at(ages, tx, ty) > 0.0f)) continue;
-                    found += 1.0f;
-                    for (std::uint32_t c = 0; c < components; ++c) to.row(c, y)[x] += at(from[c], tx, ty);
-                }
-            }
-            for (std::uint32_t c = 0; c < components && found > 1.0f; ++c) to.row(c, y)[x] /= found;
+            if (found == Lookup::Found::Nothing && !motion.identity)
+                lookup.average_around(to_x[x], to_y[x], x, y, to);
         }
     });
 }

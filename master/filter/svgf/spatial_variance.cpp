@@ -101,75 +101,82 @@ bool SpatialVariance::estimate(const Guides& guides, const EdgeStops& stops, flo
         return std::find(young_rows_.begin() + first, young_rows_.begin() + last + 1, 1) !=
                young_rows_.begin() + last + 1;
     };
-    if (!for_rows(context, height, [&](std::uint32_t y) {
-            if (!near_young(y)) return;
-            const float* mean = state.moments.row(MeanLuminance, y);
-            const float* variance = state.moments.row(SampleVariance, y);
-            const float* age = state.moments.row(Age, y);
-            float* __restrict known = sums_.row(Known, y);
-            float* __restrict square = sums_.row(Square, y);
-            float* __restrict sum_known = sums_.row(RowKnown, y);
-            float* __restrict sum_mean = sums_.row(RowMean, y);
-            float* __restrict sum_square = sums_.row(RowSquare, y);
-            for (std::uint32_t x = 0; x < width; ++x) {
-                known[x] = age[x] > 0.0f ? 1.0f : 0.0f;
-                square[x] = variance[x] + mean[x] * mean[x];
-                sum_known[x] = known[x];
-                sum_mean[x] = known[x] * mean[x];
-                sum_square[x] = known[x] * square[x];
-            }
-            for (std::int64_t d = -Radius; d <= Radius; ++d) {
-                const std::int64_t begin = std::max<std::int64_t>(0, -d);
-                const std::int64_t end = std::min<std::int64_t>(width, std::int64_t{width} - d);
-                if (d == 0 || begin >= end) continue;
-                const auto count = static_cast<std::size_t>(end - begin);
-                float* weights = sums_.row(Weight, y);
-                surface_weights(surfaces_of(guides, y, begin), surfaces_of(guides, y, begin + d),
-                                guides.slope.row(0, y) + begin, static_cast<float>(std::abs(d)),
-                                Gaussian[static_cast<std::size_t>(std::abs(d))], stops, count, weights);
-                for (std::size_t i = 0; i < count; ++i)
-                    weights[i] *= known[begin + d + static_cast<std::int64_t>(i)];
-                add_weighted(weights, known + begin + d, mean + begin + d, square + begin + d, count,
-                             sum_known + begin, sum_mean + begin, sum_square + begin);
-            }
-        })) {
-        return false;
+    return for_rows(context, height,
+                    [&](std::uint32_t y) {
+                        if (near_young(y)) sum_along(guides, stops, state, y);
+                    }) &&
+           for_rows(context, height, [&](std::uint32_t y) {
+               if (young_rows_[y]) sum_across(guides, stops, young, state, y);
+           });
+}
+
+void SpatialVariance::sum_along(const Guides& guides, const EdgeStops& stops, const State& state,
+                                std::uint32_t y) {
+    const std::uint32_t width = state.moments.width();
+    const float* mean = state.moments.row(MeanLuminance, y);
+    const float* variance = state.moments.row(SampleVariance, y);
+    const float* age = state.moments.row(Age, y);
+    float* __restrict known = sums_.row(Known, y);
+    float* __restrict square = sums_.row(Square, y);
+    float* __restrict sum_known = sums_.row(RowKnown, y);
+    float* __restrict sum_mean = sums_.row(RowMean, y);
+    float* __restrict sum_square = sums_.row(RowSquare, y);
+    for (std::uint32_t x = 0; x < width; ++x) {
+        known[x] = age[x] > 0.0f ? 1.0f : 0.0f;
+        square[x] = variance[x] + mean[x] * mean[x];
+        sum_known[x] = known[x];
+        sum_mean[x] = known[x] * mean[x];
+        sum_square[x] = known[x] * square[x];
     }
+    for (std::int64_t d = -Radius; d <= Radius; ++d) {
+        const std::int64_t begin = std::max<std::int64_t>(0, -d);
+        const std::int64_t end = std::min<std::int64_t>(width, std::int64_t{width} - d);
+        if (d == 0 || begin >= end) continue;
+        const auto count = static_cast<std::size_t>(end - begin);
+        float* weights = sums_.row(Weight, y);
+        surface_weights(surfaces_of(guides, y, begin), surfaces_of(guides, y, begin + d),
+                        guides.slope.row(0, y) + begin, static_cast<float>(std::abs(d)),
+                        Gaussian[static_cast<std::size_t>(std::abs(d))], stops, count, weights);
+        for (std::size_t i = 0; i < count; ++i) weights[i] *= known[begin + d + static_cast<std::int64_t>(i)];
+        add_weighted(weights, known + begin + d, mean + begin + d, square + begin + d, count,
+                     sum_known + begin, sum_mean + begin, sum_square + begin);
+    }
+}
+
+void SpatialVariance::sum_across(const Guides& guides, const EdgeStops& stops, float young,
+                                 const State& state, std::uint32_t y) {
+    constexpr std::uint32_t Chunk = 256;
+    const std::uint32_t width = state.moments.width(), height = state.moments.height();
     const bool of_mean = stops.deviation == Deviation::Mean;
-    return for_rows(context, height, [&](std::uint32_t y) {
-        if (!young_rows_[y]) return;
-        constexpr std::uint32_t Chunk = 256;
-        const float* age = state.moments.row(Age, y);
-        float* __restrict raw = raw_.row(0, y);
-        for (std::uint32_t start = 0; start < width; start += Chunk) {
-            const std::uint32_t count = std::min(Chunk, width - start);
-            std::array<float, Chunk> weights, known{}, mean{}, square{};
-            for (std::int64_t d = -Radius; d <= Radius; ++d) {
-                const std::int64_t other = std::int64_t{y} + d;
-                if (other < 0 || other >= height) continue;
-                const auto ty = static_cast<std::uint32_t>(other);
-                if (d == 0) {
-                    weights.fill(1.0f);
-                } else {
-                    surface_weights(surfaces_of(guides, y, start), surfaces_of(guides, ty, start),
-                                    guides.slope.row(1, y) + start, static_cast<float>(std::abs(d)),
-                                    Gaussian[static_cast<std::size_t>(std::abs(d))], stops, count,
-                                    weights.data());
-                }
-                add_weighted(weights.data(), sums_.row(RowKnown, ty) + start, sums_.row(RowMean, ty) + start,
-                             sums_.row(RowSquare, ty) + start, count, known.data(), mean.data(),
-                             square.data());
+    const float* age = state.moments.row(Age, y);
+    float* __restrict raw = raw_.row(0, y);
+    for (std::uint32_t start = 0; start < width; start += Chunk) {
+        const std::uint32_t count = std::min(Chunk, width - start);
+        std::array<float, Chunk> weights, known{}, mean{}, square{};
+        for (std::int64_t d = -Radius; d <= Radius; ++d) {
+            const std::int64_t other = std::int64_t{y} + d;
+            if (other < 0 || other >= height) continue;
+            const auto ty = static_cast<std::uint32_t>(other);
+            if (d == 0) {
+                weights.fill(1.0f);
+            } else {
+                surface_weights(surfaces_of(guides, y, start), surfaces_of(guides, ty, start),
+                                guides.slope.row(1, y) + start, static_cast<float>(std::abs(d)),
+                                Gaussian[static_cast<std::size_t>(std::abs(d))], stops, count,
+                                weights.data());
             }
-            for (std::uint32_t k = 0; k < count; ++k) {
-                const std::size_t x = start + k;
-                const float scale = 1.0f / std::max(known[k], Tiny);
-                const float m1 = mean[k] * scale;
-                const float variance = std::max(0.0f, square[k] * scale - m1 * m1);
-                const float wide = of_mean ? variance / std::max(age[x], 1.0f) : variance;
-                raw[x] = age[x] < young ? wide : raw[x];
-            }
+            add_weighted(weights.data(), sums_.row(RowKnown, ty) + start, sums_.row(RowMean, ty) + start,
+                         sums_.row(RowSquare, ty) + start, count, known.data(), mean.data(), square.data());
         }
-    });
+        for (std::uint32_t k = 0; k < count; ++k) {
+            const std::size_t x = start + k;
+            const float scale = 1.0f / std::max(known[k], Tiny);
+            const float m1 = mean[k] * scale;
+            const float variance = std::max(0.0f, square[k] * scale - m1 * m1);
+            const float wide = of_mean ? variance / std::max(age[x], 1.0f) : variance;
+            raw[x] = age[x] < young ? wide : raw[x];
+        }
+    }
 }
 
 }  // namespace tessera::filter::svgf

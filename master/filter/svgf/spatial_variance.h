@@ -17,6 +17,9 @@ class SpatialVariance {
   private:
     bool estimate(const Guides& guides, const EdgeStops& stops, float young, const State& state,
                   RunContext& context);
+    void sum_along(const Guides& guides, const EdgeStops& stops, const State& state, std::uint32_t y);
+    void sum_across(const Guides& guides, const EdgeStops& stops, float young, const State& state,
+                    std::uint32_t y);
 
     Planes raw_;   // 1: before the blur
     Planes sums_;  // what the wide estimate needs of each pixel, and its sums along the row

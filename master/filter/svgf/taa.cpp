@@ -34,105 +34,148 @@ void take_nearer(const float* nearest, const float* x, const float* y, std::size
     }
 }
 
+struct Frame {
+    const Planes &picture, &before;
+    const Guides& now;
+    const Motion& motion;
+    std::uint32_t width, height, components;
+};
+
+// Part of a row.
+struct Piece {
+    std::uint32_t y, start;
+    std::size_t count;
+};
+
+// The picture before, where the pixels of a piece come from, and their share of the new one.
+struct Old {
+    std::array<std::array<float, Chunk>, 4> color;
+    std::array<float, Chunk> share;
+};
+
+// Edges are repeated.
+void load(const float* row, const Frame& frame, const Piece& piece, Lane& lane) {
+    lane[0] = row[piece.start > 0 ? piece.start - 1 : 0];
+    std::copy_n(row + piece.start, piece.count, lane.begin() + 1);
+    std::fill(lane.begin() + 1 + static_cast<std::ptrdiff_t>(piece.count), lane.end(),
+              row[std::min<std::size_t>(frame.width - 1, piece.start + piece.count)]);
+}
+
+// Of the rows above, here and below, column by column.
+Around columns_around(const Frame& frame, const Piece& piece) {
+    Around column;
+    column.nearest.fill(-1.0f);
+    const std::uint32_t above = piece.y > 0 ? piece.y - 1 : 0;
+    for (std::uint32_t row = above; row <= std::min(piece.y + 1, frame.height - 1); ++row) {
+        Lane lane, x, y;
+        for (std::uint32_t c = 0; c < frame.components; ++c) {
+            load(frame.picture.row(c, row), frame, piece, lane);
+            const bool first = row == above;
+            for (std::size_t k = 0; k < Wide; ++k) {
+                column.least[c][k] = first ? lane[k] : std::min(lane[k], column.least[c][k]);
+                column.most[c][k] = first ? lane[k] : std::max(lane[k], column.most[c][k]);
+            }
+        }
+        load(frame.now.inverse_depth.row(0, row), frame, piece, lane);
+        load(frame.motion.position.row(0, row), frame, piece, x);
+        load(frame.motion.position.row(1, row), frame, piece, y);
+        for (std::size_t k = 0; k < Wide; ++k) {
+            const float at = static_cast<float>(static_cast<std::int32_t>(piece.start + k)) - 1.0f;
+            x[k] -= std::min(std::max(at, 0.0f), static_cast<float>(frame.width - 1));
+            y[k] -= static_cast<float>(row);
+        }
+        take_nearer(lane.data(), x.data(), y.data(), Wide, column.nearest.data(), column.move_x.data(),
+                    column.move_y.data());
+    }
+    return column;
+}
+
+void look_around(const Frame& frame, const Piece& piece, Around& around) {
+    const Around column = columns_around(frame, piece);
+    around.nearest = column.nearest;
+    around.move_x = column.move_x;
+    around.move_y = column.move_y;
+    for (const std::size_t side : {0u, 2u}) {
+        take_nearer(column.nearest.data() + side, column.move_x.data() + side, column.move_y.data() + side,
+                    Chunk, around.nearest.data() + 1, around.move_x.data() + 1, around.move_y.data() + 1);
+    }
+    for (std::uint32_t c = 0; c < frame.components; ++c) {
+        reduce(column.least[c], column.most[c], around.least[c], around.most[c]);
+    }
+}
+
+// Within the colours around; `fresh`: the least share of the new picture, as `ratio`.
+void fetch_before(const Frame& frame, const Piece& piece, const Around& around, const float* fresh,
+                  float ratio, Old& old) {
+    const std::uint32_t width = frame.width, height = frame.height, components = frame.components;
+    for (std::size_t k = 0; k < piece.count; ++k) {
+        const float px =
+            static_cast<float>(static_cast<std::int32_t>(piece.start + k)) + around.move_x[k + 1];
+        const float py = static_cast<float>(piece.y) + around.move_y[k + 1];
+        const bool seen = px >= 0.0f && py >= 0.0f && px <= static_cast<float>(width - 1) &&
+                          py <= static_cast<float>(height - 1);
+        old.share[k] = seen ? std::min(1.0f, std::max(ratio, fresh[k])) : 1.0f;
+        if (!seen) {
+            for (std::uint32_t c = 0; c < components; ++c) old.color[c][k] = 0.0f;
+            continue;
+        }
+        const auto x0 = static_cast<std::int32_t>(px), y0 = static_cast<std::int32_t>(py);
+        const std::int32_t right = x0 + 1 < static_cast<std::int32_t>(width) ? 1 : 0;
+        const std::size_t down = y0 + 1 < static_cast<std::int32_t>(height) ? width : 0;
+        const float fx = px - static_cast<float>(x0), fy = py - static_cast<float>(y0);
+        for (std::uint32_t c = 0; c < components; ++c) {
+            const float* up = frame.before.row(c, static_cast<std::uint32_t>(y0)) + x0;
+            const float* low = up + down;
+            old.color[c][k] = (1.0f - fy) * ((1.0f - fx) * up[0] + fx * up[right]) +
+                              fy * ((1.0f - fx) * low[0] + fx * low[right]);
+        }
+    }
+    for (std::uint32_t c = 0; c < components; ++c) {
+        for (std::size_t k = 0; k < piece.count; ++k) {
+            old.color[c][k] =
+                std::min(std::max(old.color[c][k], around.least[c][k + 1]), around.most[c][k + 1]);
+        }
+    }
+}
+
+// Bright colours count less, so that a single one does not flicker.
+void blend(const Frame& frame, const Piece& piece, const Old& old, Planes& out) {
+    const float *r = frame.picture.row(0, piece.y) + piece.start,
+                *g = frame.picture.row(1, piece.y) + piece.start,
+                *b = frame.picture.row(2, piece.y) + piece.start;
+    std::array<float, Chunk> part;
+    for (std::size_t k = 0; k < piece.count; ++k) {
+        const float bright = std::max(std::max(r[k], g[k]), std::max(b[k], 0.0f));
+        const float old_bright =
+            std::max(std::max(old.color[0][k], old.color[1][k]), std::max(old.color[2][k], 0.0f));
+        const float new_weight = old.share[k] / (1.0f + bright);
+        const float old_weight = (1.0f - old.share[k]) / (1.0f + old_bright);
+        part[k] = old_weight / (new_weight + old_weight);
+    }
+    for (std::uint32_t c = 0; c < frame.components; ++c) {
+        const float* here = frame.picture.row(c, piece.y) + piece.start;
+        float* __restrict to = out.row(c, piece.y) + piece.start;
+        for (std::size_t k = 0; k < piece.count; ++k) to[k] = here[k] + part[k] * (old.color[c][k] - here[k]);
+    }
+}
+
 }  // namespace
 
 bool antialias(const Planes& picture, const Planes& before, const Guides& now, const Motion& motion,
                const Planes& newness, float ratio, Planes& out, RunContext& context) {
-    const std::uint32_t width = picture.width(), height = picture.height(), components = picture.components();
-    if (out.width() != width || out.height() != height || out.components() != components) {
-        out = Planes(width, height, components);
+    const Frame frame{picture, before, now, motion, picture.width(), picture.height(), picture.components()};
+    if (out.width() != frame.width || out.height() != frame.height || out.components() != frame.components) {
+        out = Planes(frame.width, frame.height, frame.components);
     }
-    const auto piece = [&](std::uint32_t y, std::uint32_t start) {
-        const std::size_t count = std::min<std::size_t>(Chunk, width - start);
-        Around column, around;
-        std::array<std::array<float, Chunk>, 4> old;
-        // Lanes of row `row`, edges repeated.
-        const auto load = [&](const float* row, Lane& lane) {
-            lane[0] = row[start > 0 ? start - 1 : 0];
-            std::copy_n(row + start, count, lane.begin() + 1);
-            std::fill(lane.begin() + 1 + static_cast<std::ptrdiff_t>(count), lane.end(),
-                      row[std::min<std::size_t>(width - 1, start + count)]);
-        };
-        column.nearest.fill(-1.0f);
-        for (std::uint32_t row = y > 0 ? y - 1 : 0; row <= std::min(y + 1, height - 1); ++row) {
-            Lane lane, x, y_lane;
-            for (std::uint32_t c = 0; c < components; ++c) {
-                load(picture.row(c, row), lane);
-                const bool first = row == (y > 0 ? y - 1 : 0);
-                for (std::size_t k = 0; k < Wide; ++k) {
-                    column.least[c][k] = first ? lane[k] : std::min(lane[k], column.least[c][k]);
-                    column.most[c][k] = first ? lane[k] : std::max(lane[k], column.most[c][k]);
-                }
-            }
-            load(now.inverse_depth.row(0, row), lane);
-            load(motion.position.row(0, row), x);
-            load(motion.position.row(1, row), y_lane);
-            for (std::size_t k = 0; k < Wide; ++k) {
-                const float at = static_cast<float>(static_cast<std::int32_t>(start + k)) - 1.0f;
-                x[k] -= std::min(std::max(at, 0.0f), static_cast<float>(width - 1));
-                y_lane[k] -= static_cast<float>(row);
-            }
-            take_nearer(lane.data(), x.data(), y_lane.data(), Wide, column.nearest.data(),
-                        column.move_x.data(), column.move_y.data());
+    return for_rows(context, frame.height, [&](std::uint32_t y) {
+        for (std::uint32_t start = 0; start < frame.width; start += Chunk) {
+            const Piece piece{y, start, std::min<std::size_t>(Chunk, frame.width - start)};
+            Around around;
+            Old old;
+            look_around(frame, piece, around);
+            fetch_before(frame, piece, around, newness.row(0, y) + start, ratio, old);
+            blend(frame, piece, old, out);
         }
-        around.nearest = column.nearest;
-        around.move_x = column.move_x;
-        around.move_y = column.move_y;
-        for (const std::size_t side : {0u, 2u}) {
-            take_nearer(column.nearest.data() + side, column.move_x.data() + side,
-                        column.move_y.data() + side, Chunk, around.nearest.data() + 1,
-                        around.move_x.data() + 1, around.move_y.data() + 1);
-        }
-        for (std::uint32_t c = 0; c < components; ++c) {
-            reduce(column.least[c], column.most[c], around.least[c], around.most[c]);
-        }
-
-        const float* fresh = newness.row(0, y) + start;
-        std::array<float, Chunk> share;
-        for (std::size_t k = 0; k < count; ++k) {
-            const float px = static_cast<float>(static_cast<std::int32_t>(start + k)) + around.move_x[k + 1];
-            const float py = static_cast<float>(y) + around.move_y[k + 1];
-            const bool seen = px >= 0.0f && py >= 0.0f && px <= static_cast<float>(width - 1) &&
-                              py <= static_cast<float>(height - 1);
-            share[k] = seen ? std::min(1.0f, std::max(ratio, fresh[k])) : 1.0f;
-            if (!seen) {
-                for (std::uint32_t c = 0; c < components; ++c) old[c][k] = 0.0f;
-                continue;
-            }
-            const auto x0 = static_cast<std::int32_t>(px), y0 = static_cast<std::int32_t>(py);
-            const std::int32_t right = x0 + 1 < static_cast<std::int32_t>(width) ? 1 : 0;
-            const std::size_t down = y0 + 1 < static_cast<std::int32_t>(height) ? width : 0;
-            const float fx = px - static_cast<float>(x0), fy = py - static_cast<float>(y0);
-            for (std::uint32_t c = 0; c < components; ++c) {
-                const float* up = before.row(c, static_cast<std::uint32_t>(y0)) + x0;
-                const float* low = up + down;
-                old[c][k] = (1.0f - fy) * ((1.0f - fx) * up[0] + fx * up[right]) +
-                            fy * ((1.0f - fx) * low[0] + fx * low[right]);
-            }
-        }
-        for (std::uint32_t c = 0; c < components; ++c) {
-            for (std::size_t k = 0; k < count; ++k) {
-                old[c][k] = std::min(std::max(old[c][k], around.least[c][k + 1]), around.most[c][k + 1]);
-            }
-        }
-        const float *r = picture.row(0, y) + start, *g = picture.row(1, y) + start,
-                    *b = picture.row(2, y) + start;
-        std::array<float, Chunk> part;
-        for (std::size_t k = 0; k < count; ++k) {
-            const float bright = std::max(std::max(r[k], g[k]), std::max(b[k], 0.0f));
-            const float old_bright = std::max(std::max(old[0][k], old[1][k]), std::max(old[2][k], 0.0f));
-            const float new_weight = share[k] / (1.0f + bright);
-            const float old_weight = (1.0f - share[k]) / (1.0f + old_bright);
-            part[k] = old_weight / (new_weight + old_weight);
-        }
-        for (std::uint32_t c = 0; c < components; ++c) {
-            const float* here = picture.row(c, y) + start;
-            float* __restrict to = out.row(c, y) + start;
-            for (std::size_t k = 0; k < count; ++k) to[k] = here[k] + part[k] * (old[c][k] - here[k]);
-        }
-    };
-    return for_rows(context, height, [&](std::uint32_t y) {
-        for (std::uint32_t start = 0; start < width; start += Chunk) piece(y, start);
     });
 }
 

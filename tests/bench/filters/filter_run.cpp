@@ -58,7 +58,7 @@ FilterRun::FilterRun(const filter::Choice& choice, std::uint32_t width, std::uin
 frame::Image FilterRun::picture(const filter::Inputs& inputs, std::vector<std::string>* notes) {
     filter_->reset();
     const filter::Report report = filter_->run(inputs, choice_.values, output_, {arena_, {}});
-    if (notes) *notes = report.notes;
+    if (notes) notes->assign(report.notes.begin(), report.notes.end());
     return colors(output_.picture, to_text(choice_));
 }
 

@@ -3,16 +3,17 @@
 
 #include <limits>
 
-#include "master/render/job.h"
+#include "master/render/view_request.h"
 
 namespace tessera::master {
 namespace {
 
-wire::StartJob request_with(const view::CameraPose& camera) {
-    wire::StartJob request;
+ViewRequest request_with(const view::CameraPose& camera) {
+    ViewRequest request;
     request.view.camera = camera;
     request.view.channels = {frame::Channel::Radiance};
-    request.spp = 1;
+    request.stop.spp = 1;
+    request.film = true;
     return request;
 }
 

@@ -71,6 +71,22 @@ TEST_F(CheckpointTest, TheNewestAndTheJournalAfterItBringEverythingBack) {
     for (std::size_t i = 0; i < 2; ++i) EXPECT_TRUE(identical_bits(saved.blocks[i], original.blocks[i]));
 }
 
+TEST_F(CheckpointTest, FilmOfAnotherRenderRevisionIsLeftOutAndItsViewKept) {
+    const auto before = three_parts();
+    const fs::path newest = checkpoint_path(folder, 3);
+    auto state = read_checkpoint(newest, 3);
+    ASSERT_TRUE(state);
+    EXPECT_EQ(state->render_revision, frame::RenderRevision);
+    state->render_revision = frame::RenderRevision + 1;
+    write_checkpoint(newest, 3, *state);
+    const auto again = start(2);
+    EXPECT_TRUE(tells(again->recovery, "its views start anew"));
+    expect_same(before->authority, again->authority);
+    ASSERT_EQ(again->recovery.views.size(), 1u);
+    EXPECT_EQ(again->recovery.views[0].view.width, 64u);
+    EXPECT_TRUE(again->recovery.views[0].blocks.empty());
+}
+
 TEST_F(CheckpointTest, WhatIsDoneAfterwardsComesOutTheSame) {
     const auto before = three_parts();
     const auto again = start(2);

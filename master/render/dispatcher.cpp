@@ -1,0 +1,291 @@
+#include "master/render/dispatcher.h"
+
+#include <algorithm>
+
+#include "master/peers/suitable_nodes.h"
+
+namespace tessera::master {
+
+namespace {
+constexpr std::uint64_t UnitsPerPass = std::uint64_t{1} << 32;
+}
+
+Dispatcher::Dispatcher(Duration overdue_patience, const Clock& clock, NodeTable& nodes, Outbox& outbox,
+                       EventSink events)
+    : overdue_patience_(overdue_patience),
+      clock_(clock),
+      nodes_(nodes),
+      outbox_(outbox),
+      events_(std::move(events)) {}
+
+// ---- passes ----
+
+Scheduler& Dispatcher::begin(const view::View& view, const PlanSettings& plan, const Crew& crew,
+                             std::optional<TimePoint> deadline) {
+    if (Active* before = active(view.id)) {
+        send_cancellations(before->scheduler.cancel_everything());
+        add(counts_, before->scheduler.counts());
+        by_first_unit_.erase(before->first_unit);
+        passes_.erase(view.id);
+    }
+    const UnitId first{next_unit_};
+    next_unit_ += UnitsPerPass;
+    by_first_unit_[first] = view.id;
+    const auto place = passes_.emplace(
+        view.id,
+        Active{view, crew, first, Scheduler(plan, view.id, view.revision, crew.version, first, deadline)});
+    return place.first->second.scheduler;
+}
+
+void Dispatcher::end(ViewId pass) {
+    Active* ended = active(pass);
+    if (ended == nullptr) return;
+    send_cancellations(ended->scheduler.cancel_everything());
+    add(counts_, ended->scheduler.counts());
+    by_first_unit_.erase(ended->first_unit);
+    passes_.erase(pass);
+    for (auto& [id, node] : nodes_.all()) {
+        if (node.views.erase(pass) > 0) outbox_.control(node.control, wire::CloseView{pass});
+    }
+}
+
+void Dispatcher::cancel(ViewId pass) {
+    if (Active* cancelled = active(pass)) send_cancellations(cancelled->scheduler.cancel_everything());
+}
+
+void Dispatcher::revise(const view::View& view) {
+    Active* pass = active(view.id);
+    if (pass == nullptr) return;
+    pass->view = view;
+    send_cancellations(pass->scheduler.revise(view.revision));
+}
+
+void Dispatcher::follow(ViewId pass, Version version) {
+    if (Active* followed = active(pass)) {
+        followed->crew.version = version;
+        followed->scheduler.follow(version);
+    }
+}
+
+Scheduler* Dispatcher::find(ViewId pass) {
+    Active* found = active(pass);
+    return found == nullptr ? nullptr : &found->scheduler;
+}
+
+const Scheduler* Dispatcher::find(ViewId pass) const {
+    const auto found = passes_.find(pass);
+    return found == passes_.end() ? nullptr : &found->second.scheduler;
+}
+
+Dispatcher::Active* Dispatcher::active(ViewId pass) {
+    const auto found = passes_.find(pass);
+    return found == passes_.end() ? nullptr : &found->second;
+}
+
+Dispatcher::Active* Dispatcher::holder(UnitId unit) {
+    const auto after = by_first_unit_.upper_bound(unit);
+    if (after == by_first_unit_.begin()) return nullptr;
+    const auto& [first, pass] = *std::prev(after);
+    return unit.value - first.value < UnitsPerPass ? active(pass) : nullptr;
+}
+
+// ---- nodes ----
+
+bool Dispatcher::suits(const NodeRecord& node, const view::View& view, const Crew& crew) const {
+    return master::suits(node, view, crew.version) && (!crew.reproducible || node.hello.reproducible);
+}
+
+bool Dispatcher::ready(const NodeRecord& node, const view::View& view, const Crew& crew) const {
+    return suits(node, view, crew) && master::ready(node, view, crew.version);
+}
+
+std::vector<NodeCapacity> Dispatcher::capacities() const {
+    std::vector<NodeCapacity> capacities;
+    for (const auto& [id, node] : nodes_.all()) capacities.push_back(node.capacity());
+    return capacities;
+}
+
+void Dispatcher::deal(ViewId id, std::vector<NodeCapacity>& capacities, TimePoint now) {
+    Active* pass = active(id);
+    if (pass == nullptr) return;
+    std::vector<NodeCapacity> suitable;
+    for (const NodeCapacity& capacity : capacities) {
+        if (ready(*nodes_.find(capacity.node), pass->view, pass->crew)) suitable.push_back(capacity);
+    }
+    if (suitable.empty()) return;
+    for (const Assignment& assignment : pass->scheduler.assign(suitable, balancer_, now)) {
+        NodeRecord& node = *nodes_.find(assignment.node);
+        if (auto opening = node.opening(pass->view)) outbox_.control(node.control, *std::move(opening));
+        node.pending[assignment.unit.id] = ++node.work_sequence;
+        outbox_.control(node.control, wire::Work{node.work_sequence, assignment.unit});
+        for (NodeCapacity& capacity : capacities) {
+            if (capacity.node != assignment.node) continue;
+            --capacity.free_places;
+            ++capacity.in_hand;
+        }
+    }
+}
+
+Dispatcher::Prospects Dispatcher::prospects(const view::View& view, const Crew& crew) const {
+    Prospects prospects;
+    for (const auto& [id, node] : nodes_.all()) {
+        if (!suits(node, view, crew)) continue;
+        ++prospects.suitable;
+        prospects.workers += std::max(1u, node.hello.concurrent_units);
+        const double rate = balancer_.rate(id);
+        double& slowest = prospects.slowest_worker;
+        if (rate > 0.0) slowest = slowest > 0.0 ? std::min(slowest, rate) : rate;
+        if (!ready(node, view, crew)) continue;
+        ++prospects.ready;
+        prospects.samples_per_second += node.capacity().workers * rate;
+    }
+    return prospects;
+}
+
+std::string Dispatcher::obstacles(const view::View& view, Version version) const {
+    return master::obstacles(nodes_, view, version);
+}
+
+void Dispatcher::send_cancellations(const std::vector<Cancellation>& cancellations) {
+    constexpr std::size_t PerMessage = 1024, MaxUnconfirmed = 4096;
+    std::map<NodeId, std::vector<UnitId>> by_node;
+    for (const Cancellation& cancellation : cancellations) {
+        by_node[cancellation.node].push_back(cancellation.unit);
+        if (cancelled_.size() < MaxUnconfirmed) cancelled_.emplace(cancellation.unit, clock_.now());
+    }
+    for (const auto& [id, units] : by_node) {
+        const NodeRecord* node = nodes_.find(id);
+        for (std::size_t i = 0; node != nullptr && i < units.size(); i += PerMessage) {
+            const auto begin = units.begin() + static_cast<std::ptrdiff_t>(i);
+            const auto end =
+                units.begin() + static_cast<std::ptrdiff_t>(std::min(units.size(), i + PerMessage));
+            outbox_.control(node->control, wire::CancelUnits{{begin, end}});
+        }
+    }
+}
+
+void Dispatcher::confirm_cancelled(UnitId unit, TimePoint now) {
+    if (const auto order = cancelled_.extract(unit)) cancellations_.add(now - order.mapped());
+}
+
+// ---- events ----
+
+void Dispatcher::collect_overdue(TimePoint now) {
+    if (passes_.empty()) return;
+    for (auto& [id, node] : nodes_.all()) {
+        std::vector<UnitId> held;
+        for (const auto& [view, pass] : passes_) {
+            const auto units = pass.scheduler.held_by(id);
+            held.insert(held.end(), units.begin(), units.end());
+        }
+        for (const UnitId unit : NodeTable::overdue(node, held, now, overdue_patience_)) {
+            if (Active* pass = holder(unit)) pass->scheduler.released(unit, id, Scheduler::Loss::Lost);
+        }
+        if (!node.stuck) continue;
+        for (auto& [view, pass] : passes_) pass.scheduler.node_gone(id);
+    }
+}
+
+Dispatcher::Taken Dispatcher::take(const MergeReport& report, TimePoint now) {
+    const NodeRecord* node = nodes_.by_bulk(report.peer);
+    if (report.part + 1 == report.parts) confirm_cancelled(report.unit, now);  // it was done already
+    if (report.malformed) {
+        ++malformed_film_;
+        events_({wire::Severity::Warning, "malformed film was dropped"});
+        return Taken::Dropped;
+    }
+    Active* pass = report.stale ? nullptr : active(report.view);
+    if (pass == nullptr || pass->view.revision != report.revision) return Taken::Dropped;
+    Scheduler& scheduler = pass->scheduler;
+    Taken taken = Taken::Known;
+    switch (report.result.outcome) {
+        case FrameAssembler::Outcome::Misfit:
+            scheduler.count_refused();
+            events_({wire::Severity::Error, "film that does not fit the frame was refused" +
+                                                (node ? " (node " + node->hello.name + ")" : std::string())});
+            return Taken::Dropped;
+        case FrameAssembler::Outcome::Contradiction:
+            report_contradiction(*pass, report, node);
+            scheduler.count_duplicate();
+            break;
+        case FrameAssembler::Outcome::Duplicate:
+            scheduler.count_duplicate();
+            break;
+        case FrameAssembler::Outcome::Merged:
+            taken = Taken::New;
+            break;
+    }
+    if (node && report.parts == 1) balancer_.measured(node->id, report.pixel_samples, report.busy);
+    send_cancellations(scheduler.merged(report.unit, report.result.tile, report.block));
+    return taken;
+}
+
+std::optional<wire::NodeSummary> Dispatcher::sender(const MergeReport& report) const {
+    const NodeRecord* node = nodes_.by_bulk(report.peer);
+    if (node == nullptr) return std::nullopt;
+    return wire::NodeSummary{.id = node->id,
+                             .name = node->hello.name,
+                             .host = node->hello.host,
+                             .backend = node->hello.backend,
+                             .kind = node->hello.kind,
+                             .pid = node->hello.pid};
+}
+
+void Dispatcher::report_contradiction(const Active& pass, const MergeReport& report, const NodeRecord* node) {
+    const Rect& tile = pass.scheduler.tiles().at(report.result.tile);
+    events_({wire::Severity::Error,
+             "two nodes gave different bits for samples " + std::to_string(report.block.first) + ".." +
+                 std::to_string(report.block.end()) + (node ? " (second: " + node->hello.name + ")" : "") +
+                 "; replay: tessera probe SCENE --pixel " + std::to_string(tile.x) + "," +
+                 std::to_string(tile.y) + " --sample " + std::to_string(report.block.first)});
+}
+
+std::optional<Dispatcher::Failure> Dispatcher::released(NodeRecord& node, const wire::UnitReleased& release,
+                                                        TimePoint now) {
+    node.pending.erase(release.unit);
+    confirm_cancelled(release.unit, now);
+    Active* pass = holder(release.unit);
+    if (pass == nullptr) return std::nullopt;
+    pass->scheduler.released(release.unit, node.id, Scheduler::Loss::Released);
+    switch (release.reason) {
+        case wire::ReleaseReason::Cancelled:
+        case wire::ReleaseReason::Leaving:
+            return std::nullopt;
+        case wire::ReleaseReason::UnknownView:
+            node.views.erase(pass->view.id);  // the message got lost: say it again
+            [[fallthrough]];
+        case wire::ReleaseReason::OtherVersion:
+            pass->scheduler.count_refused();
+            return std::nullopt;
+        case wire::ReleaseReason::Failed:
+            break;
+    }
+    pass->scheduler.count_refused();
+    events_({wire::Severity::Error, "node " + node.hello.name + ": " + release.message});
+    return Failure{pass->view.id, release.message};
+}
+
+// Film that was sent is on its way on the other link; the overdue check catches it if it never comes.
+void Dispatcher::goodbye(NodeRecord& node, const wire::Goodbye& goodbye) {
+    for (auto& [view, pass] : passes_) {
+        for (const UnitId unit : pass.scheduler.held_by(node.id)) {
+            const auto& sent = goodbye.units_sent;
+            if (std::find(sent.begin(), sent.end(), unit) != sent.end()) continue;
+            pass.scheduler.released(unit, node.id, Scheduler::Loss::Released);
+        }
+    }
+}
+
+void Dispatcher::node_gone(NodeId node) {
+    balancer_.forget(node);
+    cancelled_.clear();  // some will never be confirmed
+    for (auto& [view, pass] : passes_) pass.scheduler.node_gone(node);
+}
+
+wire::UnitCounts Dispatcher::counts() const {
+    wire::UnitCounts counts = counts_;
+    for (const auto& [view, pass] : passes_) add(counts, pass.scheduler.counts());
+    return counts;
+}
+
+}  // namespace tessera::master

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "master/peers/event.h"
+#include "master/peers/node_table.h"
+#include "master/peers/outbox.h"
+#include "master/render/percentiles.h"
+#include "master/render/render_outputs.h"
+#include "master/render/schedule/scheduler.h"
+
+namespace tessera::master {
+
+// Which nodes may render a pass.
+struct Crew {
+    Version version;            // of the scene that they must hold
+    bool reproducible = false;  // only nodes pinned to AVX2
+};
+
+// Between passes and nodes: deals units, takes back what nodes hand back, lose or leave behind, cancels what
+// need not be finished, measures how fast nodes are. Passes go by the ids of their views. Told of events by
+// the master's loop; owns no socket.
+class Dispatcher {
+  public:
+    // `overdue_patience`: a unit that the node neither holds nor sent film of for so long is lost.
+    Dispatcher(Duration overdue_patience, const Clock& clock, NodeTable& nodes, Outbox& outbox,
+               EventSink events);
+
+    // ---- passes ----
+    // Units of the pass are dealt from now on. What its id stood for before ends; nodes replace their view.
+    Scheduler& begin(const view::View& view, const PlanSettings& plan, const Crew& crew,
+                     std::optional<TimePoint> deadline = {});
+    void end(ViewId pass);     // cancelled; nodes forget its view
+    void cancel(ViewId pass);  // no more is dealt; film that is on its way is still taken
+    // The view goes on under another revision: what is under way is dealt again.
+    void revise(const view::View& view);
+    void follow(ViewId pass, Version version);  // another version of the scene that gives the same samples
+    Scheduler* find(ViewId pass);
+    const Scheduler* find(ViewId pass) const;
+
+    // ---- nodes ----
+    std::vector<NodeCapacity> capacities() const;
+    // To nodes that suit and are ready; counts them down in `capacities`.
+    void deal(ViewId pass, std::vector<NodeCapacity>& capacities, TimePoint now);
+    // How many nodes could render the view, and how many could at once.
+    struct Prospects {
+        std::uint32_t suitable = 0, ready = 0;
+        std::uint32_t workers = 0;        // of those that suit
+        double samples_per_second = 0.0;  // of those that are ready; 0 = not measured
+        double slowest_worker = 0.0;      // samples per second, of those that suit and were measured
+    };
+    Prospects prospects(const view::View& view, const Crew& crew) const;
+    std::string obstacles(const view::View& view, Version version) const;
+    std::size_t node_count() const { return nodes_.all().size(); }
+    double rate(NodeId node) const { return balancer_.rate(node); }  // pixel samples a second of one worker
+
+    // ---- events ----
+    void collect_overdue(TimePoint now);
+    enum class Taken { Dropped, Known, New };  // New: samples that were not there before
+    Taken take(const MergeReport& report, TimePoint now);
+    // Who sent it, without a share of work; nothing when it is gone.
+    std::optional<wire::NodeSummary> sender(const MergeReport& report) const;
+    struct Failure {
+        ViewId pass;
+        std::string message;
+    };
+    std::optional<Failure> released(NodeRecord& node, const wire::UnitReleased& release, TimePoint now);
+    void goodbye(NodeRecord& node, const wire::Goodbye& goodbye);
+    void node_gone(NodeId node);
+
+    // ---- counts ----
+    wire::UnitCounts counts() const;  // of all passes, those under way too
+    std::uint64_t malformed_film() const { return malformed_film_; }
+    // From the order to stop to the node's word that it has.
+    const Percentiles& cancellations() const { return cancellations_; }
+
+  private:
+    struct Active {
+        view::View view;
+        Crew crew;
+        UnitId first_unit;  // its units have ids from here, UnitsPerPass of them
+        Scheduler scheduler;
+    };
+    Active* active(ViewId pass);
+    Active* holder(UnitId unit);
+    bool suits(const NodeRecord& node, const view::View& view, const Crew& crew) const;
+    bool ready(const NodeRecord& node, const view::View& view, const Crew& crew) const;
+    void send_cancellations(const std::vector<Cancellation>& cancellations);
+    void confirm_cancelled(UnitId unit, TimePoint now);
+    void report_contradiction(const Active& pass, const MergeReport& report, const NodeRecord* node);
+
+    Duration overdue_patience_;
+    const Clock& clock_;
+    NodeTable& nodes_;
+    Outbox& outbox_;
+    EventSink events_;
+    Balancer balancer_;
+    std::map<ViewId, Active> passes_;
+    std::map<UnitId, ViewId> by_first_unit_;
+    std::uint64_t next_unit_ = 1;
+    wire::UnitCounts counts_;  // of passes that have ended
+    std::uint64_t malformed_film_ = 0;
+    std::map<UnitId, TimePoint> cancelled_;  // not confirmed yet
+    Percentiles cancellations_;
+};
+
+}  // namespace tessera::master

@@ -1,0 +1,185 @@
+#include "master/render/film_store.h"
+
+#include <algorithm>
+#include <functional>
+
+#include "mediator/wire/envelope.h"
+
+namespace tessera::master {
+
+FilmStore::FilmStore(RenderOutputs& outputs)
+    : outputs_(outputs), pictures_(outputs), thread_([this](std::stop_token stop) { run(stop); }) {}
+
+FilmStore::~FilmStore() = default;
+
+void FilmStore::open(ViewId view, std::uint64_t revision, FrameAssembler assembler) {
+    enqueue(Open{view, revision, std::make_shared<FrameAssembler>(std::move(assembler))}, 0);
+}
+
+void FilmStore::close(ViewId view) {
+    enqueue(Close{view}, 0);
+}
+
+void FilmStore::widen(ViewId view, std::uint64_t revision, frame::ChannelSet channels) {
+    enqueue(Widen{view, revision, channels}, 0);
+}
+
+void FilmStore::keep_features(ViewId view, ViewId of_picture) {
+    enqueue(KeepFeatures{view, of_picture}, 0);
+}
+
+void FilmStore::push(net::PeerId peer, net::Bytes film_message) {
+    const std::size_t bytes = film_message.size();
+    enqueue(Film{peer, std::move(film_message)}, bytes);
+}
+
+void FilmStore::deliver(ViewId view, std::uint64_t frame, JobId label, std::uint32_t first,
+                        std::uint32_t last) {
+    enqueue(Deliver{view, frame, label, first, last}, 0);
+}
+
+void FilmStore::copy(ViewId view) {
+    enqueue(Copy{view}, 0);
+}
+
+void FilmStore::reconstruct(std::uint64_t frame, const view::View& view, Version version,
+                            wire::PictureEncoding encoding, FilmHash hash) {
+    enqueue(Reconstruct{frame, view, version, encoding, hash}, 0);
+}
+
+void FilmStore::make_output(OutputOrder order) {
+    enqueue(std::move(order), 0);
+}
+
+std::size_t FilmStore::queued_bytes() const {
+    const std::scoped_lock lock(mutex_);
+    return queued_bytes_;
+}
+
+void FilmStore::enqueue(Task task, std::size_t bytes) {
+    {
+        const std::scoped_lock lock(mutex_);
+        tasks_.push_back(std::move(task));
+        queued_bytes_ += bytes;
+    }
+    changed_.notify_one();
+}
+
+void FilmStore::run(std::stop_token stop) {
+    while (true) {
+        std::unique_lock lock(mutex_);
+        if (!changed_.wait(lock, stop, [this] { return !tasks_.empty(); })) return;
+        Task task = std::move(tasks_.front());
+        tasks_.pop_front();
+        lock.unlock();
+        std::visit([this](auto& chosen) { perform(chosen); }, task);
+        if (const auto* film = std::get_if<Film>(&task)) {
+            const std::scoped_lock done(mutex_);
+            queued_bytes_ -= film->bytes.size();
+        }
+    }
+}
+
+FilmStore::OpenFilm* FilmStore::film(ViewId view) {
+    const auto place = films_.find(view);
+    return place == films_.end() ? nullptr : &place->second;
+}
+
+void FilmStore::perform(Open& task) {
+    OpenFilm opened{.revision = task.revision, .assembler = std::move(task.assembler), .features = {}};
+    if (auto features = features_.extract(task.view)) opened.features = std::move(features.mapped());
+    films_.insert_or_assign(task.view, std::move(opened));
+}
+
+void FilmStore::perform(Close& task) {
+    films_.erase(task.view);
+    features_.erase(task.view);
+}
+
+void FilmStore::perform(KeepFeatures& task) {
+    if (auto ended = films_.extract(task.view)) {
+        features_[task.of_picture] =
+            std::make_shared<const frame::FilmTile>(ended.mapped().assembler->whole());
+    }
+}
+
+void FilmStore::perform(Widen& task) {
+    OpenFilm* opened = film(task.view);
+    if (opened == nullptr) return;
+    opened->revision = task.revision;
+    opened->assembler->widen(task.channels);
+}
+
+void FilmStore::perform(Film& task) {
+    MergeReport report{.peer = task.peer};
+    auto message = wire::decode_bulk(task.bytes);
+    auto* part = message ? std::get_if<wire::FilmPart>(&*message) : nullptr;
+    if (part == nullptr) {
+        report.malformed = true;
+        outputs_.put(std::move(report));
+        return;
+    }
+    report.unit = part->unit;
+    report.view = part->view;
+    report.revision = part->revision;
+    report.part = part->part;
+    report.parts = part->parts;
+    report.block = part->film.block;
+    report.pixel_samples = part->film.block.count() * part->film.pixel_count();
+    report.nonfinite = part->film.nonfinite_samples;
+    report.rays = part->rays;
+    report.busy = std::chrono::nanoseconds(part->busy_ns);
+    OpenFilm* opened = film(part->view);
+    report.stale = opened == nullptr || part->revision != opened->revision;
+    if (!report.stale) report.result = opened->assembler->insert(std::move(part->film));
+    outputs_.put(std::move(report));
+}
+
+void FilmStore::perform(Deliver& task) {
+    const OpenFilm* opened = film(task.view);
+    if (opened == nullptr) return;
+    for (std::uint32_t tile = task.first; tile < task.last; ++tile) {
+        wire::FrameTile frame_tile{.job = task.label,
+                                   .index = tile,
+                                   .count = opened->assembler->tile_count(),
+                                   .film = opened->assembler->merged_tile(tile)};
+        outputs_.put(EncodedTile{task.frame, wire::encode(wire::BulkMessage(std::move(frame_tile)))});
+    }
+}
+
+void FilmStore::perform(Copy& task) {
+    const OpenFilm* opened = film(task.view);
+    if (opened != nullptr) outputs_.put(FilmBlocks{task.view, opened->revision, opened->assembler->blocks()});
+}
+
+void FilmStore::perform(Reconstruct& task) {
+    const OpenFilm* opened = film(task.view.id);
+    if (opened == nullptr) return;
+    pictures_.make({.frame = task.frame,
+                    .film = opened->assembler->whole(),
+                    .later = opened->assembler->later(),
+                    .features = opened->features,
+                    .view = std::move(task.view),
+                    .version = task.version,
+                    .encoding = task.encoding,
+                    .hash_film = task.hash == FilmHash::Wanted});
+}
+
+void FilmStore::perform(OutputOrder& task) {
+    std::vector<frame::FilmTile> films;
+    for (const OutputOrder::EyePicture& eye : task.eyes) {
+        for (const view::View& layer : eye.layers) {
+            const OpenFilm* opened = film(layer.id);
+            if (opened == nullptr || opened->revision != layer.revision) {
+                outputs_.put(MadeOutput{.order = std::move(task),
+                                        .eyes = {},
+                                        .error = "its film is gone: the scene changed meanwhile"});
+                return;
+            }
+            films.push_back(opened->assembler->whole());
+        }
+    }
+    pictures_.make(std::move(task), std::move(films));
+}
+
+}  // namespace tessera::master

@@ -1,0 +1,208 @@
+#include "master/render/lockstep_group.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace tessera::master {
+
+void LockstepGroup::open(std::uint64_t spp, std::uint32_t coarsest, Version version) {
+    open_.emplace(Open{.spp = std::bit_floor(std::max<std::uint64_t>(spp, 1)),
+                       .coarsest = coarsest,
+                       .version = version,
+                       .views = {}});
+}
+
+std::vector<ViewId> LockstepGroup::close() {
+    std::vector<ViewId> views = this->views();
+    open_.reset();
+    return views;
+}
+
+const std::vector<ViewId>& LockstepGroup::views() const {
+    static const std::vector<ViewId> none;
+    return open_ ? open_->views : none;
+}
+
+void LockstepGroup::changed() {
+    if (open_) open_->restart_wanted = true;
+}
+
+void LockstepGroup::take_again() {
+    if (open_) open_->retake_wanted = true;
+}
+
+void LockstepGroup::scene_changed(Version version, bool restarts) {
+    if (!open_) return;
+    open_->version = version;
+    open_->restart_wanted = open_->restart_wanted || restarts;
+}
+
+bool LockstepGroup::is_restart_due() const {
+    if (!open_ || !open_->restart_wanted || views_.passes_held) return false;
+    return open_->first_is_taken ||
+           std::none_of(open_->views.begin(), open_->views.end(),
+                        [this](ViewId view) { return views_.find(view)->is_protected(); });
+}
+
+// As large as the work is cheap: a unit costs messages whatever its size, but must be stopped soon, and all
+// nodes are to be busy until the end.
+std::uint32_t LockstepGroup::tile_edge(const view::View& view) const {
+    constexpr double UnitSeconds = 0.01;
+    constexpr double UnitsPerWorker = 6.0;
+    constexpr std::uint32_t UnknownEdge = 64, LargestEdge = 256;
+    constexpr std::uint64_t MaxUnitBytes = std::uint64_t{1} << 20;
+    const auto prospects = passes_.dispatcher.prospects(view, {open_->version});
+    double pixels = 0.0;
+    for (const ViewId other : open_->views)
+        pixels += static_cast<double>(views_.find(other)->request.view.window.pixel_count());
+    double area = prospects.slowest_worker > 0.0 ? prospects.slowest_worker * UnitSeconds
+                                                 : double(UnknownEdge) * UnknownEdge;
+    area = std::min(area, pixels / (UnitsPerWorker * std::max(1u, prospects.workers)));
+    std::uint32_t edge = 8;
+    while (edge < LargestEdge && 4.0 * edge * edge <= area) edge *= 2;
+    while (std::uint64_t{edge} * edge * 4 * (1 + view.channels.plane_count()) > MaxUnitBytes) edge /= 2;
+    return edge;
+}
+
+// The same views again keep their ids, so that nodes replace what they have instead of forgetting it first.
+std::vector<ViewId> LockstepGroup::restart(const std::vector<GroupView>& wanted, TimePoint now) {
+    Open& group = *open_;
+    std::vector<ViewId> removed;
+    group.restart_wanted = group.retake_wanted = false;
+    group.first_is_taken = group.complete = false;
+    group.samples = 0;
+    if (wanted.size() != group.views.size()) {
+        removed = std::exchange(group.views, {});
+        for (const GroupView& view : wanted) {
+            ViewState& state = views_.add();
+            state.group_priority = view.priority;
+            state.waits_since = now;
+            group.views.push_back(state.id);
+        }
+    }
+    // Stages are the same for all: what is too small for a coarse picture decides.
+    std::uint32_t coarsest = group.coarsest;
+    for (const GroupView& asked : wanted) {
+        while (coarsest > 1 && !has_coarse_pass(asked.view, coarsest)) coarsest /= 2;
+    }
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        ViewState& view = *views_.find(group.views[i]);
+        view.name = wanted[i].name;
+        view.group_priority = wanted[i].priority;
+        view.request.view = wanted[i].view;
+        view.request.stop.spp = group.spp * wanted[i].priority;
+        view.version = group.version;
+        view.restart_wanted = false;
+        view.problem.clear();
+        view.camera_revision = ++view.revision;
+        for (std::size_t old = 1; old < view.passes.size(); ++old) passes_.end(view.passes[old].view.id);
+        view.passes = passes_of(view, coarsest);
+        view.current = 0;
+        view.shown.reset();
+        view.run = {.phase = wire::JobPhase::Rendering, .started = now, .rendering_since = now};
+        begin_pass(view);
+    }
+    return removed;
+}
+
+void LockstepGroup::begin_pass(ViewState& view) {
+    Pass& pass = view.pass();
+    const PlanSettings plan{.window = pass.view.window, .tile = tile_edge(pass.view), .spp = pass.spp};
+    passes_.begin(pass, plan, {view.version}, std::nullopt);
+    if (!view.is_last_pass()) return;
+    passes_.dispatcher.find(pass.view.id)
+        ->hold_at(std::max<std::uint64_t>(open_->samples, 1) * view.priority());
+}
+
+bool LockstepGroup::is_whole() const {
+    return std::all_of(open_->views.begin(), open_->views.end(), [this](ViewId id) {
+        const ViewState& view = *views_.find(id);
+        const Scheduler* pass = view.passes.empty() ? nullptr : passes_.dispatcher.find(view.pass().view.id);
+        return pass != nullptr && pass->tiles_without_samples() == 0;
+    });
+}
+
+bool LockstepGroup::is_stage_done() const {
+    return std::all_of(open_->views.begin(), open_->views.end(), [this](ViewId id) {
+        const ViewState& view = *views_.find(id);
+        const Scheduler* pass = view.passes.empty() ? nullptr : passes_.dispatcher.find(view.pass().view.id);
+        return pass != nullptr && pass->paused();
+    });
+}
+
+std::optional<GroupStage> LockstepGroup::advance(Consumer consumer) {
+    if (!open_ || open_->views.empty()) return std::nullopt;
+    Open& group = *open_;
+    group.is_first_stage = false;
+    // Where films are not whole, their stage is going to be taken anyway.
+    if (group.retake_wanted && group.first_is_taken && is_whole()) {
+        if (consumer == Consumer::Free) {
+            group.retake_wanted = false;
+            return stage();
+        }
+    } else {
+        group.retake_wanted = false;
+    }
+    if (group.complete || !is_stage_done()) return std::nullopt;
+    const bool is_picture = views_.find(group.views.front())->is_last_pass();
+    if (is_picture) group.samples = std::max<std::uint64_t>(group.samples, 1);
+    const bool is_last = is_picture && group.samples >= group.spp;
+    if (consumer == Consumer::Free) {
+        if (mark_shown(is_last)) {
+            group.is_first_stage = !std::exchange(group.first_is_taken, true);
+            return stage();
+        }
+    } else if (!group.first_is_taken || is_last) {
+        return std::nullopt;
+    }
+    if (is_last) {
+        group.complete = true;
+    } else if (!group.restart_wanted && !views_.passes_held) {
+        go_on();
+    }
+    return std::nullopt;
+}
+
+// False: this stage was taken, and the next one had to wait.
+bool LockstepGroup::mark_shown(bool is_last) {
+    for (const ViewId id : open_->views) {
+        ViewState& view = *views_.find(id);
+        const Shown shown{.pass = view.current,
+                          .revision = view.revision,
+                          .asked = view.camera_revision,
+                          .samples = passes_.dispatcher.find(view.pass().view.id)->merged_samples(),
+                          .complete = is_last};
+        if (view.shown == shown) return false;
+        view.shown = shown;
+        for (std::size_t earlier = 0; earlier < view.current; ++earlier)
+            passes_.end(view.passes[earlier].view.id);
+    }
+    return true;
+}
+
+void LockstepGroup::go_on() {
+    const bool is_picture = views_.find(open_->views.front())->is_last_pass();
+    if (is_picture) open_->samples *= 2;
+    for (const ViewId id : open_->views) {
+        ViewState& view = *views_.find(id);
+        if (is_picture) {
+            passes_.dispatcher.find(view.pass().view.id)->hold_at(open_->samples * view.priority());
+        } else {
+            ++view.current;
+            begin_pass(view);
+        }
+    }
+}
+
+GroupStage LockstepGroup::stage() const {
+    GroupStage stage{.version = open_->version, .views = {}};
+    for (const ViewId id : open_->views) {
+        const ViewState& view = *views_.find(id);
+        stage.version = view.version;
+        stage.scale = view.pass().scale;
+        stage.views.push_back(view.pass().view);
+    }
+    return stage;
+}
+
+}  // namespace tessera::master

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "master/render/dispatcher.h"
+#include "master/render/film_store.h"
+#include "master/render/view_table.h"
+
+namespace tessera::master {
+
+// Begins and ends the passes of views: their units and their films together.
+struct PassStarter {
+    Dispatcher& dispatcher;
+    FilmStore& film;
+
+    // In place of what the id of its view stood for before. `blocks`: film that is there already.
+    void begin(Pass& pass, const PlanSettings& plan, const Crew& crew, std::optional<TimePoint> deadline,
+               std::vector<frame::FilmTile>&& blocks = {});
+    void end(ViewId pass);
+    void end_all(ViewState& view);  // its passes, and what they showed
+};
+
+}  // namespace tessera::master

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <list>
+
+#include "master/peers/session_table.h"
+#include "master/render/pass_starter.h"
+
+namespace tessera::master {
+
+// What is under a pixel: one sample of a view that sees nothing but the pixel's middle.
+class Picks {
+  public:
+    Picks(ViewIds& ids, PassStarter& passes, SessionTable& sessions, Outbox& outbox)
+        : ids_(ids), passes_(passes), sessions_(sessions), outbox_(outbox) {}
+
+    // In the view that the session watches under this number; null: it watches none.
+    void pick(SessionId session, const wire::Pick& request, const view::View* seen, Version version);
+    void session_left(SessionId session);
+    void close_all();
+    void follow(Version version);  // the scene is at another version
+
+    bool empty() const { return tasks_.empty(); }
+    void deal(std::vector<NodeCapacity>& capacities, TimePoint now);
+    void tick();                        // has the films of those that are complete copied
+    bool take(const FilmBlocks& film);  // false: not of a pick
+
+  private:
+    struct Task {
+        SessionId session;
+        wire::Pick request;
+        Version version;
+        Pass pass;
+        glm::dvec3 eye{0.0}, direction{0.0};
+        double along_axis = 1.0;  // distance along the ray = depth along the view's axis x this
+        bool copied = false;
+    };
+    void aim(Task& task, const view::View& seen) const;
+    void answer(const Task& task, const frame::FilmTile& film);
+    void refuse(const Task& task, const std::string& problem);
+
+    ViewIds& ids_;
+    PassStarter& passes_;
+    SessionTable& sessions_;
+    Outbox& outbox_;
+    std::list<Task> tasks_;
+};
+
+}  // namespace tessera::master

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "master/render/frame_assembler.h"
+#include "master/render/output_maker.h"
+#include "master/render/reconstruction.h"
+#include "mediator/net/channel.h"
+
+namespace tessera::master {
+
+// What became of one film message.
+struct MergeReport {
+    net::PeerId peer = 0;  // bulk peer that sent it
+    UnitId unit;
+    ViewId view;
+    std::uint64_t revision = 0;
+    std::uint16_t part = 0, parts = 1;
+    frame::SampleBlock block;
+    std::uint64_t pixel_samples = 0, nonfinite = 0, rays = 0;
+    Duration busy{};
+    FrameAssembler::Result result;
+    bool stale = false;      // of a view or revision that is not being assembled
+    bool malformed = false;  // not decodable; the rest means nothing
+};
+// One merged tile of a frame on its way to a client.
+struct EncodedTile {
+    std::uint64_t frame = 0;
+    net::Bytes bytes;
+};
+// The film of a view as it lies: the blocks of all tiles.
+struct FilmBlocks {
+    ViewId view;
+    std::uint64_t revision = 0;
+    std::vector<frame::FilmTile> blocks;
+};
+// The picture of a frame, or why there is none.
+struct Reconstructed {
+    std::uint64_t frame = 0;
+    Reconstruction picture;
+    std::uint64_t samples_least = 0, samples_most = 0;
+    std::optional<Hash256> film_hash;
+};
+// How long a made-up picture for a view took.
+struct Rehearsed {
+    ViewId view;
+    std::uint64_t pixels = 0;
+    double seconds = 0.0;
+};
+using RenderOutput = std::variant<MergeReport, EncodedTile, FilmBlocks, Reconstructed, Rehearsed, MadeOutput>;
+
+// What the threads that merge film and make pictures bring forth, for the loop that owns the channel: it is
+// woken for each. Thread-safe.
+class RenderOutputs {
+  public:
+    explicit RenderOutputs(net::Channel& loop) : loop_(loop) {}
+
+    void put(RenderOutput output) {
+        {
+            const std::scoped_lock lock(mutex_);
+            outputs_.push_back(std::move(output));
+        }
+        loop_.wake();
+    }
+    std::vector<RenderOutput> take() {
+        const std::scoped_lock lock(mutex_);
+        return std::exchange(outputs_, {});
+    }
+
+  private:
+    net::Channel& loop_;
+    std::mutex mutex_;  // protects outputs_
+    std::vector<RenderOutput> outputs_;
+};
+
+}  // namespace tessera::master

@@ -1,0 +1,366 @@
+#include "master/render/view_runner.h"
+
+#include <algorithm>
+
+#include "master/render/view_summary.h"
+
+namespace tessera::master {
+
+using wire::JobOutcome;
+using wire::JobPhase;
+
+// ---- from the request to its passes ----
+
+void ViewRunner::restart(ViewState& view, TimePoint now) {
+    passes_.end_all(view);
+    ++view.revision;
+    view.camera_revision = view.asked_revision;
+    view.restart_wanted = false;
+    view.run = {.started = now,
+                .without_nodes_since = now,
+                .way = way_of(view.request),
+                .bytes_before = views_.bytes_at_start};
+    wait_for_nodes(view, now);
+}
+
+void ViewRunner::resume(ViewState& view, std::vector<frame::FilmTile>&& blocks, TimePoint now) {
+    view.restart_wanted = false;
+    ++view.revision;
+    view.camera_revision = view.asked_revision;
+    view.run = {.phase = JobPhase::Rendering,
+                .started = now,
+                .rendering_since = now,
+                .without_nodes_since = now,
+                .way = way_of(view.request),
+                .bytes_before = views_.bytes_at_start};
+    view.passes = passes_of(view);
+    view.current = view.passes.size() - 1;
+    begin_pass(view, std::move(blocks));
+}
+
+void ViewRunner::wait_for_nodes(ViewState& view, TimePoint now) {
+    const auto prospects = passes_.dispatcher.prospects(view.request.view, crew(view));
+    Run& run = view.run;
+    if (prospects.ready >= view.request.min_nodes) {
+        if (budget_is_planned(view, now)) begin_rendering(view, now);
+        return;
+    }
+    if (prospects.suitable >= view.request.min_nodes) {
+        run.phase = JobPhase::Syncing;
+        run.without_nodes_since = now;
+        return;
+    }
+    run.phase = JobPhase::WaitingForNodes;
+    if (view.request.wait_limit == Duration::zero() ||
+        now - run.without_nodes_since < view.request.wait_limit)
+        return;
+    decide(view, JobOutcome::NoNodes,
+           passes_.dispatcher.obstacles(view.request.view, view.version) +
+               std::to_string(prospects.suitable) + " of " + std::to_string(view.request.min_nodes) +
+               " nodes came: start more nodes or ask for fewer with --wait-nodes",
+           now);
+}
+
+// True when it is known how long filter and encoding will take; before, that is tried out.
+bool ViewRunner::budget_is_planned(ViewState& view, TimePoint now) {
+    const StopRule& stop = view.request.stop;
+    Run& run = view.run;
+    if (!stop.has_budget()) {
+        run.deadline = stop.deadline(now, now, {});
+        return true;
+    }
+    if (!run.ready_since) run.ready_since = now;
+    const auto predicted = time_budget_.predict(run.way, view.request.view.window.pixel_count());
+    if (!predicted) {
+        view::View rehearsed = view.request.view;
+        rehearsed.id = view.id;
+        if (!run.rehearsing) passes_.film.rehearse(rehearsed, view.request.picture);
+        run.rehearsing = true;
+        run.phase = JobPhase::Syncing;
+        return false;
+    }
+    run.predicted_seconds = *predicted;
+    const auto after = std::chrono::duration_cast<Duration>(std::chrono::duration<double>(*predicted));
+    run.deadline = stop.deadline(*run.ready_since, now, after);
+    return true;
+}
+
+// A budget too small for two samples in every pixel: fewer pixels, and features to bring them back to size.
+std::uint32_t ViewRunner::scale_that_fits(const ViewState& view, TimePoint now) const {
+    if (!view.request.stop.adapts_size || !view.run.deadline) return 1;
+    constexpr double LeastSamples = 2.5;  // 2, and room for what is lost at the end of the time
+    return master::scale_that_fits(
+        view.request.view.window.pixel_count(), seconds(*view.run.deadline - now),
+        passes_.dispatcher.prospects(view.request.view, crew(view)).samples_per_second, LeastSamples);
+}
+
+void ViewRunner::begin_rendering(ViewState& view, TimePoint now) {
+    Run& run = view.run;
+    run.scale = scale_that_fits(view, now);
+    run.phase = JobPhase::Rendering;
+    run.rendering_since = now;
+    view.passes = passes_of(view);
+    for (Pass& pass : view.passes) {  // pixels without features are blurred, no more
+        if (pass.kind == Pass::Kind::Features) pass.deadline = now + (*run.deadline - now) / 2;
+    }
+    view.current = 0;
+    begin_pass(view);
+    advance(view, now);
+}
+
+PlanSettings ViewRunner::plan_of(const ViewState& view) const {
+    const Pass& pass = view.pass();
+    PlanSettings plan{.window = pass.view.window,
+                      .tile = choose_tile_edge(view.request.view, view.request.tile),
+                      .spp = pass.spp,
+                      .policy = view.request.policy};
+    if (pass.kind == Pass::Kind::Coarse) {
+        // So many tiles that nobody idles while the last are rendered, but none below 8 pixels.
+        constexpr std::uint64_t TilesPerWorker = 6;
+        const std::uint32_t workers = passes_.dispatcher.prospects(pass.view, crew(view)).workers;
+        plan.tile = 8;
+        for (const std::uint32_t edge : {16u, 32u}) {
+            if (pass.view.window.pixel_count() >= TilesPerWorker * std::max(1u, workers) * edge * edge)
+                plan.tile = edge;
+        }
+    }
+    // Who waits for the end is shown nothing before 4 samples; against the clock every round counts, but a
+    // variance, which filters need, takes 2.
+    if (pass.kind == Pass::Kind::Picture && !view.shows_all())
+        plan.first_level = !view.run.deadline ? 2u : view.request.stop.has_budget() ? 1u : 0u;
+    return plan;
+}
+
+void ViewRunner::begin_pass(ViewState& view, std::vector<frame::FilmTile>&& blocks) {
+    passes_.begin(view.pass(), plan_of(view), crew(view), view.run.deadline, std::move(blocks));
+}
+
+// ---- from pass to pass ----
+
+void ViewRunner::advance(ViewState& view, TimePoint now) {
+    Run& run = view.run;
+    if (run.is_over()) return;
+    if (view.passes.empty()) {
+        if (!view.restart_wanted && !run.outcome && !run.is_rendering()) wait_for_nodes(view, now);
+        return;
+    }
+    observe(view, now);
+    if (run.outcome || view.is_last_pass()) {
+        advance_picture(view, now);
+    } else {
+        advance_to_next_pass(view, now);
+    }
+}
+
+void ViewRunner::observe(ViewState& view, TimePoint now) {
+    const Scheduler& pass = *passes_.dispatcher.find(view.pass().view.id);
+    Run& run = view.run;
+    run.samples = pass.merged_samples();
+    run.units = pass.counts();
+    run.seen_at = now;
+    const bool is_picture = view.pass().kind != Pass::Kind::Features;
+    if (!run.first_picture && is_picture && pass.tiles_without_samples() == 0) run.first_picture = now;
+}
+
+void ViewRunner::advance_to_next_pass(ViewState& view, TimePoint now) {
+    Pass& pass = view.pass();
+    const Scheduler& scheduler = *passes_.dispatcher.find(pass.view.id);
+    const bool is_over = scheduler.complete() || (pass.deadline && now >= *pass.deadline);
+    if (!is_over) return;
+    if (pass.kind == Pass::Kind::Coarse) {
+        show(view, now);
+        if (views_.passes_held || view.restart_wanted) return;
+    } else {
+        passes_.dispatcher.end(pass.view.id);
+        passes_.film.keep_features(pass.view.id, view.passes.back().view.id);
+    }
+    ++view.current;
+    begin_pass(view);
+}
+
+void ViewRunner::advance_picture(ViewState& view, TimePoint now) {
+    const Scheduler& scheduler = *passes_.dispatcher.find(view.pass().view.id);
+    const StopRule& stop = view.request.stop;
+    Run& run = view.run;
+    const bool is_whole = scheduler.tiles_without_samples() == 0;
+    if (!run.outcome) {
+        const auto prospects = passes_.dispatcher.prospects(view.pass().view, crew(view));
+        if (prospects.ready > 0) run.without_nodes_since = now;
+        if (scheduler.complete()) {
+            decide(view, JobOutcome::Complete, {}, now);
+        } else if (stop.time_is_up(run.deadline, is_whole, now)) {
+            decide(view, JobOutcome::TimeUp, {}, now);
+        } else if (view.request.wait_limit > Duration::zero() &&
+                   now - run.without_nodes_since >= view.request.wait_limit) {
+            decide(view, JobOutcome::NoNodes, "all nodes are gone: what was merged so far is delivered", now);
+        }
+    }
+    if (run.outcome && !run.is_over() && (scheduler.idle() || now - run.outcome_at > settings_.stop_grace))
+        return finish(view, now);
+    if (is_whole) show(view, now);
+}
+
+void ViewRunner::took(ViewState& view, const MergeReport& report, Dispatcher::Taken taken, TimePoint now) {
+    account(view, report, taken);
+    if (!view.passes.empty() && view.pass().view.id == report.view) advance(view, now);
+}
+
+void ViewRunner::account(ViewState& view, const MergeReport& report, Dispatcher::Taken taken) {
+    if (taken != Dispatcher::Taken::New) return;
+    view.run.rays += report.part == 0 ? report.rays : 0;
+    view.run.nonfinite_samples += report.nonfinite;
+    if (const auto node = passes_.dispatcher.sender(report)) {
+        wire::NodeSummary& part = view.run.nodes[node->id];
+        const wire::NodeSummary before = part;
+        part = *node;
+        part.units = before.units + (report.part == 0 ? 1 : 0);
+        part.samples = before.samples + report.pixel_samples;
+        part.seconds_busy = before.seconds_busy + (report.part == 0 ? seconds(report.busy) : 0.0);
+    }
+}
+
+void ViewRunner::show(ViewState& view, TimePoint now) {
+    const Shown shown{.pass = view.current,
+                      .revision = view.revision,
+                      .asked = view.camera_revision,
+                      .samples = passes_.dispatcher.find(view.pass().view.id)->merged_samples(),
+                      .complete = view.run.is_over()};
+    if (view.shown == shown) return;
+    const bool is_first = !view.shown || view.shown->revision != view.revision;
+    view.shown = shown;
+    if (is_first) first_pictures_.push_back({view.version, now});
+    delivery_.offer(view, now, settings_.frame_interval);  // before anything newer ends the pass
+    for (std::size_t earlier = 0; earlier < view.current; ++earlier)
+        passes_.end(view.passes[earlier].view.id);
+}
+
+// ---- the end ----
+
+void ViewRunner::decide(ViewState& view, JobOutcome outcome, std::string message, TimePoint now) {
+    if (view.run.outcome) return;
+    view.run.outcome = outcome;
+    view.run.outcome_at = now;
+    view.run.message = std::move(message);
+    if (!view.passes.empty()) passes_.dispatcher.cancel(view.pass().view.id);
+    if (!view.run.is_rendering()) finish(view, now);
+}
+
+void ViewRunner::finish(ViewState& view, TimePoint now) {
+    Run& run = view.run;
+    if (!view.passes.empty()) observe(view, now);
+    const bool is_awaited = delivery_.watchers(view.id) > 0;
+    run.phase =
+        is_awaited && has_picture(view, view.request.picture) ? JobPhase::Filtering : JobPhase::Delivering;
+    if (run.phase == JobPhase::Delivering) run.ended = now;
+    send_progress(view, now);
+    if (!view.passes.empty()) return show(view, now);
+    view.shown = Shown{.revision = view.revision, .asked = view.camera_revision, .complete = true};
+    delivery_.offer(view, now, settings_.frame_interval);
+}
+
+void ViewRunner::take(Reconstructed&& made, TimePoint now) {
+    if (!made.picture.error.empty()) events_({wire::Severity::Error, made.picture.error});
+    const auto ended = delivery_.ends(made.frame);
+    ViewState* view = ended ? views_.find(*ended) : nullptr;
+    if (view != nullptr && view->run.phase == JobPhase::Filtering) {
+        Run& run = view->run;
+        if (view->request.stop.has_budget() && run.outcome == JobOutcome::TimeUp && run.deadline) {
+            time_budget_.measured(run.way, view->request.view.window.pixel_count(),
+                                  seconds(now - *run.deadline));
+        }
+        if (!made.picture.error.empty()) {
+            run.outcome = JobOutcome::Failed;
+            run.message = made.picture.error;
+        }
+        run.phase = JobPhase::Delivering;
+        run.ended = now;
+        send_progress(*view, now);
+    }
+    delivery_.take(made, now);
+}
+
+void ViewRunner::take(const Rehearsed& rehearsed) {
+    if (const ViewState* view = views_.find(rehearsed.view))
+        time_budget_.measured(view->run.way, rehearsed.pixels, rehearsed.seconds);
+}
+
+void ViewRunner::unit_failed(ViewState& view, const std::string& problem, TimePoint now) {
+    if (++view.failures < settings_.failure_limit) return;
+    if (!view.shows_all()) return decide(view, JobOutcome::Failed, problem, now);
+    view.problem = problem;
+    const std::string text = "view " + view.name + " is not rendered: " + problem;
+    events_({wire::Severity::Error, text});
+    tell_owner(view, text);
+    passes_.end_all(view);
+}
+
+// ---- another filter ----
+
+void ViewRunner::change_filter(ViewState& view, const FilterChange& change, TimePoint now) {
+    view.request.view.filter = change.view.filter;
+    view.request.view.channels = change.view.channels;
+    view.run.way = way_of(view.request);
+    if (view.passes.empty()) return;
+    Pass& picture = view.passes.back();
+    picture.view.filter = change.view.filter;
+    if (change.effect == FilterChange::Effect::Widened) {
+        picture.view.channels = change.view.channels;
+        if (view.is_last_pass()) {
+            // All that is in the nodes' hands lacks the channels: it is dealt again under a new revision.
+            picture.view.revision = ++view.revision;
+            if (view.shown) view.shown->revision = view.revision;
+            passes_.dispatcher.revise(picture.view);
+            passes_.film.widen(picture.view.id, view.revision, picture.view.channels);
+        }
+    }
+    if (view.shown && view.is_last_pass()) show(view, now);
+}
+
+// ---- what is told ----
+
+void ViewRunner::tell_owner(const ViewState& view, const std::string& text) {
+    if (view.in_group()) events_({wire::Severity::Warning, text});
+    if (const SessionRecord* owner = sessions_.find(view.owner.session))
+        outbox_.control(owner->control, wire::Notice{wire::Severity::Warning, text});
+}
+
+void ViewRunner::tell_of_waiting(ViewState& view, TimePoint now) {
+    if (!view.shows_all()) return;  // its owner hears where it is anyway
+    const bool has_node = passes_.dispatcher.prospects(view.request.view, crew(view)).suitable > 0;
+    if (has_node || view.is_complete()) {
+        view.waits_since = now;
+        view.told_of_waiting = false;
+    }
+    if (view.told_of_waiting || now - view.waits_since < settings_.patience_without_nodes) return;
+    view.told_of_waiting = true;
+    const std::size_t count = passes_.dispatcher.node_count();
+    tell_owner(view, "view " + view.name + " waits: " +
+                         (count == 0 ? "there are no nodes: start some with tessera-node"
+                                     : passes_.dispatcher.obstacles(view.request.view, view.version) +
+                                           "none of " + std::to_string(count) + " nodes can render it"));
+}
+
+void ViewRunner::show_progress(ViewState& view, TimePoint now) {
+    if (view.run.phase == JobPhase::Delivering || now - view.progress_sent < settings_.progress_interval)
+        return;
+    send_progress(view, now);
+}
+
+void ViewRunner::send_progress(ViewState& view, TimePoint now) {
+    view.progress_sent = now;
+    delivery_.report_progress(view, passes_.dispatcher.prospects(view.request.view, crew(view)).ready);
+}
+
+TimePoint ViewRunner::next_event(const ViewState& view, TimePoint now) const {
+    if (view.is_complete() && view.run.phase != JobPhase::Filtering)
+        return now + Duration(std::chrono::seconds(1));
+    TimePoint next = now + (view.shows_all() ? settings_.frame_interval : settings_.progress_interval);
+    if (view.run.outcome) return next;
+    for (const auto& deadline :
+         {view.passes.empty() ? std::nullopt : view.pass().deadline, view.run.deadline}) {
+        if (deadline && now < *deadline) next = std::min(next, *deadline);
+    }
+    return next;
+}
+
+}  // namespace tessera::master

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "master/render/delivery.h"
+#include "master/render/filter_change.h"
+#include "master/render/pass_starter.h"
+#include "master/render/time_budget.h"
+
+namespace tessera::master {
+
+struct ViewSettings {
+    Duration overdue_patience = std::chrono::seconds(5);      // film neither in hand nor here: lost
+    Duration orphan_patience = std::chrono::seconds(60);      // a view whose owner fell silent waits so long
+    Duration frame_interval = std::chrono::milliseconds(33);  // between pictures of the same pass
+    Duration progress_interval = std::chrono::milliseconds(100);
+    Duration stop_grace = std::chrono::seconds(2);  // for the film of stopped units
+    std::uint32_t failure_limit = 8;
+    Duration patience_without_nodes = std::chrono::seconds(3);  // before its owner is told that a view waits
+    std::size_t max_views = 60;  // of all members: a node keeps 256, and each has several passes
+};
+
+// The first picture of a version is merged.
+struct FirstPicture {
+    Version version;
+    TimePoint at{};
+};
+
+// Takes views through their passes: waits for nodes, plans the time, begins one pass after another, shows what
+// there is, ends the view when its stop rule says so. Keeps no view; works on those of the table.
+class ViewRunner {
+  public:
+    ViewRunner(const ViewSettings& settings, ViewTable& views, PassStarter& passes, Delivery& delivery,
+               SessionTable& sessions, Outbox& outbox, EventSink events)
+        : settings_(settings),
+          views_(views),
+          passes_(passes),
+          delivery_(delivery),
+          sessions_(sessions),
+          outbox_(outbox),
+          events_(std::move(events)) {}
+
+    void restart(ViewState& view, TimePoint now);
+    // Begins with the last pass, which has this film already.
+    void resume(ViewState& view, std::vector<frame::FilmTile>&& blocks, TimePoint now);
+    // Time has passed, or there are new samples.
+    void advance(ViewState& view, TimePoint now);
+    void took(ViewState& view, const MergeReport& report, Dispatcher::Taken taken, TimePoint now);
+    void unit_failed(ViewState& view, const std::string& problem, TimePoint now);
+    // The film goes on with another filter; not for a change that restarts.
+    void change_filter(ViewState& view, const FilterChange& change, TimePoint now);
+    void decide(ViewState& view, wire::JobOutcome outcome, std::string message, TimePoint now);
+
+    void take(Reconstructed&& made, TimePoint now);
+    void take(const Rehearsed& rehearsed);
+
+    // Once, as long as it lasts.
+    void tell_of_waiting(ViewState& view, TimePoint now);
+    void show_progress(ViewState& view, TimePoint now);
+    TimePoint next_event(const ViewState& view, TimePoint now) const;
+    void is_first_picture(Version version, TimePoint now) { first_pictures_.push_back({version, now}); }
+    std::vector<FirstPicture> take_first_pictures() { return std::exchange(first_pictures_, {}); }
+
+  private:
+    void wait_for_nodes(ViewState& view, TimePoint now);
+    bool budget_is_planned(ViewState& view, TimePoint now);
+    std::uint32_t scale_that_fits(const ViewState& view, TimePoint now) const;
+    void begin_rendering(ViewState& view, TimePoint now);
+    void begin_pass(ViewState& view, std::vector<frame::FilmTile>&& blocks = {});
+    PlanSettings plan_of(const ViewState& view) const;
+    void advance_to_next_pass(ViewState& view, TimePoint now);
+    void advance_picture(ViewState& view, TimePoint now);
+    void observe(ViewState& view, TimePoint now);
+    void account(ViewState& view, const MergeReport& report, Dispatcher::Taken taken);
+    void show(ViewState& view, TimePoint now);
+    void finish(ViewState& view, TimePoint now);
+    void send_progress(ViewState& view, TimePoint now);
+    void tell_owner(const ViewState& view, const std::string& text);
+    Crew crew(const ViewState& view) const { return {view.version, view.request.reproducible}; }
+
+    const ViewSettings& settings_;
+    ViewTable& views_;
+    PassStarter& passes_;
+    Delivery& delivery_;
+    SessionTable& sessions_;
+    Outbox& outbox_;
+    EventSink events_;
+    TimeBudget time_budget_;
+    std::vector<FirstPicture> first_pictures_;
+};
+
+}  // namespace tessera::master

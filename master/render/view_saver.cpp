@@ -1,0 +1,63 @@
+#include "master/render/view_saver.h"
+
+namespace tessera::master {
+
+// The ledger of the last pass, when that is under way.
+const Scheduler* ViewSaver::accumulating(const ViewState& view) const {
+    if (view.restart_wanted || view.passes.empty() || !view.is_last_pass()) return nullptr;
+    return passes_.dispatcher.find(view.pass().view.id);
+}
+
+void ViewSaver::save(Hash128 scene_hash) {
+    saving_.emplace();
+    for (const auto& [id, view] : views_.all()) {
+        if (view.in_group() || !view.shows_all()) continue;
+        wire::SavedView& saved = saving_->views[id];
+        saved = {.name = view.name,
+                 .owner_user = view.owner.user,
+                 .owner_key = view.owner.key,
+                 .view = view.request.view,
+                 .spp = view.request.stop.spp,
+                 .scene_hash_of_film = scene_hash,
+                 .blocks = {}};
+        const Scheduler* pass = accumulating(view);
+        if (pass == nullptr || pass->merged_samples() == 0) continue;
+        saving_->revisions[id] = view.revision;
+        saving_->waiting.insert(view.pass().view.id);
+        passes_.film.copy(view.pass().view.id);
+    }
+}
+
+std::uint64_t ViewSaver::film_progress() const {
+    std::uint64_t progress = views_.ids().given();
+    for (const auto& [id, view] : views_.all()) {
+        if (view.in_group()) continue;
+        progress += view.revision << 32;  // a film that starts anew is another one
+        if (const Scheduler* pass = accumulating(view)) progress += pass->merged_samples();
+    }
+    return progress;
+}
+
+std::optional<std::vector<wire::SavedView>> ViewSaver::take_saved() {
+    if (!saving_) return std::nullopt;
+    // A film that ended meanwhile does not come any more.
+    std::erase_if(saving_->waiting, [this](ViewId film) {
+        const ViewState* view = views_.of_pass(film);
+        return view == nullptr || saving_->revisions[view->id] != view->revision;
+    });
+    if (!saving_->waiting.empty()) return std::nullopt;
+    std::vector<wire::SavedView> views;
+    for (auto& [id, saved] : saving_->views) views.push_back(std::move(saved));
+    saving_.reset();
+    return views;
+}
+
+bool ViewSaver::take(FilmBlocks&& film) {
+    if (!saving_ || saving_->waiting.erase(film.view) == 0) return false;
+    const ViewState* view = views_.of_pass(film.view);
+    if (view != nullptr && saving_->revisions[view->id] == film.revision)
+        saving_->views[view->id].blocks = std::move(film.blocks);
+    return true;
+}
+
+}  // namespace tessera::master

@@ -1,0 +1,51 @@
+#include "master/render/view_summary.h"
+
+namespace tessera::master {
+
+bool has_picture(const ViewState& view, wire::PictureEncoding wanted) {
+    return wanted != wire::PictureEncoding::None && view.run.samples > 0 && view.is_last_pass();
+}
+
+wire::JobProgress progress_of(const ViewState& view, JobId job, std::uint32_t nodes) {
+    wire::JobProgress progress{
+        .job = job, .phase = view.run.phase, .rays = view.run.rays, .nodes = nodes, .elapsed = {}};
+    const view::View& last = view.passes.empty() ? view.request.view : view.passes.back().view;
+    progress.samples = view.run.samples;
+    progress.samples_expected = last.window.pixel_count() * view.request.stop.most_samples();
+    if (!view.passes.empty()) progress.elapsed = view.run.seen_at - view.run.rendering_since;
+    return progress;
+}
+
+wire::JobDone summary_of(const ViewState& view, const SceneFacts& facts, const wire::WireBytes& bytes) {
+    const Run& run = view.run;
+    wire::JobDone done{.outcome = *run.outcome,
+                       .message = run.message,
+                       .version = view.version,
+                       .seed = view.request.view.seed,
+                       .rays = run.rays,
+                       .nonfinite_samples = run.nonfinite_samples,
+                       .triangles = facts.triangles,
+                       .instances = facts.instances,
+                       .lights = facts.lights};
+    if (!view.passes.empty()) {
+        done.seconds_render = seconds(*run.ended - run.rendering_since);
+        done.samples = run.samples;
+        done.units = run.units;
+    }
+    if (run.first_picture) done.first_picture_seconds = seconds(*run.first_picture - run.started);
+    for (const auto& [id, node] : run.nodes) done.nodes.push_back(node);
+    done.wire_bytes = {.control = bytes.control - run.bytes_before.control,
+                       .blobs = bytes.blobs - run.bytes_before.blobs,
+                       .film = bytes.film - run.bytes_before.film};
+    return done;
+}
+
+void describe(const ViewState& view, wire::PictureSummary& picture) {
+    picture.seconds_predicted = view.run.predicted_seconds;
+    picture.scale = view.run.scale;
+    if (view.run.scale == 1) return;
+    picture.notes.push_back("the time is too short for 2 samples in every pixel: rendered at 1/" +
+                            std::to_string(view.run.scale) + " of the size and upsampled");
+}
+
+}  // namespace tessera::master

@@ -1,0 +1,357 @@
+#include "master/render/views.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "master/filter/catalog.h"
+#include "master/render/picture_effect.h"
+#include "mediator/filter/choice.h"
+
+namespace tessera::master {
+
+namespace {
+constexpr std::uint64_t MaxFilmBytes = std::uint64_t{128}
+                                       << 20;  // of a view whose every film goes to a client
+
+bool differ_in_filter_alone(view::View a, view::View b) {
+    a.filter.clear();
+    b.filter.clear();
+    return a == b;
+}
+}  // namespace
+
+Views::Views(const ViewSettings& settings, const RenderServices& services, SessionTable& sessions,
+             Outbox& outbox, const EventSink& events)
+    : settings_(settings),
+      services_(services),
+      table_(services.ids),
+      passes_{services.dispatcher, services.film},
+      delivery_(table_, sessions, outbox, services.film),
+      runner_(settings_, table_, passes_, delivery_, sessions, outbox, events),
+      group_(table_, passes_),
+      picks_(services.ids, passes_, sessions, outbox),
+      saver_(table_, passes_) {}
+
+// ---- clients ----
+
+std::string Views::share(SessionId session, std::uint64_t number, const std::string& name,
+                         const Delivery::Wish& wish) {
+    const ViewState* view = table_.named(name);
+    if (view == nullptr) return "no view is named '" + name + "': ask for the views that there are";
+    delivery_.watch(session, number, view->id, wish);
+    return {};
+}
+
+std::string Views::open(const ViewOwner& owner, std::uint64_t number, ViewRequest request,
+                        const Delivery::Wish& wish, Version version, TimePoint now) {
+    if (std::string problem = problem_of(request); !problem.empty()) return problem;
+    view::View completed = request.view;
+    complete(completed);
+    const std::uint64_t film_bytes =
+        4 * (1 + completed.channels.plane_count()) * completed.window.pixel_count();
+    if (request.film && request.frames == ViewRequest::Frames::All && film_bytes > MaxFilmBytes) {
+        return "the statistics of this view have " + std::to_string(film_bytes >> 20) +
+               " MiB a frame, more than 128: ask for a picture, fewer channels or a smaller window";
+    }
+    if (request.name.empty()) request.name = owner.name + "/" + std::to_string(number);
+    std::string problem;
+    ViewState* view = find_or_add(owner, number, request.name, problem);
+    if (view == nullptr) return problem;
+    view->owner = owner;
+    view->name = request.name;
+    view->orphaned.reset();
+    delivery_.watch(owner.session, number, view->id, wish);
+    change(*view, std::move(request), version, now);
+    return {};
+}
+
+// The view of this number, or the owner's view of this name that waits for it, or a new one.
+ViewState* Views::find_or_add(const ViewOwner& owner, std::uint64_t number, const std::string& name,
+                              std::string& problem) {
+    const auto watched = delivery_.watched(owner.session, number);
+    ViewState* view = watched ? table_.find(*watched) : nullptr;
+    if (ViewState* known = table_.named(name); known != nullptr && known != view) {
+        const bool is_owner = known->owner.user == owner.user && known->owner.key == owner.key;
+        if (!known->orphaned || !is_owner) {
+            problem = "a view named '" + name + "' is there already: choose another name, or share it";
+            return nullptr;
+        }
+        view = known;
+    }
+    if (view != nullptr && view->owner.session != owner.session && !view->orphaned) view = nullptr;
+    if (view != nullptr) return view;
+    const std::size_t count = table_.all().size() - group_.views().size();
+    if (count >= settings_.max_views) {
+        problem = "there are " + std::to_string(count) + " views already: close some";
+        return nullptr;
+    }
+    return &table_.add();
+}
+
+void Views::change(ViewState& view, ViewRequest&& request, Version version, TimePoint now) {
+    const view::View asked = std::exchange(view.asked, request.view);
+    complete(request.view);
+    request.view.id = view.request.view.id;
+    request.view.revision = view.request.view.revision;
+    const bool is_new = view.asked_revision == 0;
+    const bool same_terms = !is_new && request.stop == view.request.stop;
+    view.request.picture = request.picture;
+    view.request.film = request.film;
+    if (same_terms && request.view == view.request.view) return;
+    ++view.asked_revision;
+    if (same_terms && !view.restart_wanted && differ_in_filter_alone(asked, view.asked)) {
+        const FilterChange change = filter_change(view.request.view, request.view.filter);
+        const bool goes_on = change.effect == FilterChange::Effect::Kept ||
+                             (change.effect == FilterChange::Effect::Widened && !view.run.outcome);
+        if (goes_on) {
+            view.camera_revision = view.asked_revision;
+            return runner_.change_filter(view, change, now);
+        }
+    }
+    view.request = std::move(request);
+    view.failures = 0;
+    view.problem.clear();
+    if (is_new) view.waits_since = now;
+    const bool wait = view.is_protected();
+    view.restart_wanted = true;
+    if (!wait) passes_.end_all(view);
+    view.version = version;
+}
+
+void Views::close(SessionId session, std::uint64_t number) {
+    const auto view = delivery_.watched(session, number);
+    delivery_.leave(session, number);
+    if (view && delivery_.watchers(*view) == 0 && !table_.find(*view)->in_group()) remove(*view);
+}
+
+void Views::stop(SessionId session, std::uint64_t number, TimePoint now) {
+    const auto watched = delivery_.watched(session, number);
+    ViewState* view = watched ? table_.find(*watched) : nullptr;
+    if (view != nullptr && view->owner.session == session)
+        runner_.decide(*view, wire::JobOutcome::Stopped, "stopped by the client", now);
+}
+
+bool Views::has_job() const {
+    return std::any_of(table_.all().begin(), table_.all().end(),
+                       [](const auto& entry) { return !entry.second.shows_all(); });
+}
+
+std::string Views::set_filter(const std::string& filter, TimePoint now) {
+    const auto refuse = [](const std::string& why) -> std::string { throw Error(ErrorCode::Refused, why); };
+    const auto choice = filter::parse_choice(filter, filter::catalog());
+    if (!choice) return refuse(choice.error().what());
+    for (auto& [id, view] : table_.all()) {
+        const bool has_features_first = !view.passes.empty() && !view.is_last_pass();
+        if (view.shows_all() || view.run.outcome || has_features_first) continue;
+        if (view.request.picture == wire::PictureEncoding::None) {
+            return refuse(
+                "the frame's client asked for the film alone: nothing would be filtered; start it with "
+                "--filter");
+        }
+        const FilterChange change = filter_change(view.request.view, filter);
+        if (change.effect == FilterChange::Effect::Restarted) return refuse(change.text);
+        runner_.change_filter(view, change, now);
+        return change.text;
+    }
+    return refuse("no frame is being rendered: try again when one is");
+}
+
+void Views::pick(SessionId session, const wire::Pick& request, Version version) {
+    const auto watched = delivery_.watched(session, request.number);
+    const ViewState* view = watched ? table_.find(*watched) : nullptr;
+    picks_.pick(session, request, view == nullptr ? nullptr : &view->request.view, version);
+}
+
+void Views::session_left(SessionId session, Departure departure, TimePoint now) {
+    picks_.session_left(session);
+    for (const std::uint64_t number : delivery_.numbers(session)) {
+        ViewState& view = *table_.find(*delivery_.watched(session, number));
+        if (departure == Departure::Goodbye || !view.shows_all()) {
+            close(session, number);
+            continue;
+        }
+        delivery_.leave(session, number);
+        if (delivery_.watchers(view.id) == 0 || view.owner.session == session) view.orphaned = now;
+    }
+}
+
+void Views::remove(ViewId id) {
+    ViewState* view = table_.find(id);
+    if (view == nullptr) return;
+    passes_.end_all(*view);
+    delivery_.forget(id);
+    services_.film.forget(id, ViewId{id.value + MaxPasses});
+    table_.erase(id);
+}
+
+void Views::close_all() {
+    close_group();
+    while (!table_.all().empty()) remove(table_.all().begin()->first);
+    picks_.close_all();
+}
+
+// ---- scene ----
+
+bool Views::may_publish() const {
+    return std::none_of(table_.all().begin(), table_.all().end(), [this](const auto& entry) {
+        const ViewState& view = entry.second;
+        // Without a node that could render it there is nothing to wait for.
+        return view.is_protected() &&
+               services_.dispatcher.prospects(view.request.view, {view.version, view.request.reproducible})
+                       .suitable > 0;
+    });
+}
+
+bool Views::scene_changed(const scene::ChangeList& changes, const scene::Scene& after) {
+    const bool restarts = changes_pictures(changes, after);
+    group_.scene_changed(changes.to, restarts);
+    for (auto& [id, view] : table_.all()) {
+        view.version = changes.to;
+        if (restarts) {
+            view.problem.clear();
+            view.failures = 0;
+            view.restart_wanted = true;
+            passes_.end_all(view);
+        } else {
+            for (const Pass& pass : view.passes) services_.dispatcher.follow(pass.view.id, changes.to);
+        }
+    }
+    picks_.follow(changes.to);
+    return restarts;
+}
+
+void Views::restore(std::vector<wire::SavedView>&& saved, Version version, Hash128 scene_hash,
+                    TimePoint now) {
+    for (wire::SavedView& old : saved) {
+        if (table_.all().size() >= settings_.max_views) return;
+        ViewState& view = table_.add();
+        view.name = old.name;
+        view.owner = {.session = {}, .name = {}, .user = old.owner_user, .key = old.owner_key};
+        view.request.view = std::move(old.view);
+        view.request.view.id = {};
+        view.request.view.revision = 1;
+        view.request.stop.spp = old.spp;
+        view.asked = view.request.view;
+        view.asked_revision = 1;
+        view.version = version;
+        view.waits_since = now;
+        view.orphaned = now;
+        // Film of another scene is of no use.
+        if (old.blocks.empty() || old.scene_hash_of_film != scene_hash) continue;
+        runner_.resume(view, std::move(old.blocks), now);
+    }
+}
+
+// ---- events ----
+
+void Views::took(const MergeReport& report, Dispatcher::Taken taken, TimePoint now) {
+    ViewState* view = table_.of_pass(report.view);
+    if (view != nullptr && !view->in_group()) runner_.took(*view, report, taken, now);
+}
+
+void Views::unit_failed(const Dispatcher::Failure& failure, TimePoint now) {
+    if (ViewState* view = table_.of_pass(failure.pass)) runner_.unit_failed(*view, failure.message, now);
+}
+
+bool Views::take(RenderOutput& output, TimePoint now) {
+    if (auto* tile = std::get_if<EncodedTile>(&output)) {
+        delivery_.take(std::move(*tile));
+    } else if (auto* made = std::get_if<Reconstructed>(&output)) {
+        runner_.take(std::move(*made), now);
+    } else if (const auto* rehearsed = std::get_if<Rehearsed>(&output)) {
+        runner_.take(*rehearsed);
+    } else if (auto* film = std::get_if<FilmBlocks>(&output)) {
+        if (!picks_.take(*film)) (void)saver_.take(std::move(*film));
+    } else {
+        return false;
+    }
+    return true;
+}
+
+std::vector<FirstPicture> Views::take_first_pictures() {
+    return runner_.take_first_pictures();
+}
+
+// ---- lockstep ----
+
+void Views::close_group() {
+    for (const ViewId view : group_.close()) remove(view);
+}
+
+void Views::restart_group(const std::vector<GroupView>& wanted, TimePoint now) {
+    for (const ViewId view : group_.restart(wanted, now)) remove(view);
+}
+
+std::optional<GroupStage> Views::next_group_stage(LockstepGroup::Consumer consumer, TimePoint now) {
+    auto stage = group_.advance(consumer);
+    if (stage && group_.is_first_stage()) runner_.is_first_picture(stage->version, now);
+    return stage;
+}
+
+// ---- time ----
+
+void Views::forget_orphans(TimePoint now) {
+    std::vector<ViewId> forgotten;
+    for (const auto& [id, view] : table_.all()) {
+        if (view.orphaned && delivery_.watchers(id) == 0 && now - *view.orphaned > settings_.orphan_patience)
+            forgotten.push_back(id);
+    }
+    for (const ViewId view : forgotten) remove(view);
+}
+
+void Views::advance(TimePoint now) {
+    forget_orphans(now);
+    for (auto& [id, view] : table_.all()) {
+        runner_.tell_of_waiting(view, now);
+        if (!view.in_group()) runner_.advance(view, now);
+    }
+}
+
+void Views::deal(TimePoint now) {
+    std::vector<NodeCapacity> capacities = services_.dispatcher.capacities();
+    picks_.deal(capacities, now);
+    std::vector<ViewState*> order;
+    for (auto& [id, view] : table_.all()) {
+        if (!view.in_group() && view.restart_wanted && !table_.passes_held && !view.is_protected() &&
+            view.problem.empty())
+            runner_.restart(view, now);
+        if (!view.passes.empty()) order.push_back(&view);
+    }
+    if (!order.empty()) {
+        // Those without a picture first, then those with the fewest samples; equals take turns.
+        std::rotate(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(turn_++ % order.size()),
+                    order.end());
+        const auto rank = [this](const ViewState& view) {
+            const Pass& pass = view.pass();
+            const auto pixels = static_cast<double>(view.request.view.window.pixel_count());
+            const auto samples =
+                static_cast<double>(services_.dispatcher.find(pass.view.id)->merged_samples());
+            const double spp = pass.kind == Pass::Kind::Picture ? samples / pixels / view.priority() : 0.0;
+            return std::pair(-static_cast<int>(pass.scale), std::floor(spp));
+        };
+        std::stable_sort(order.begin(), order.end(),
+                         [&](const ViewState* a, const ViewState* b) { return rank(*a) < rank(*b); });
+        for (const ViewState* view : order) services_.dispatcher.deal(view->pass().view.id, capacities, now);
+    }
+    deliver(now);
+}
+
+void Views::deliver(TimePoint now) {
+    for (auto& [id, view] : table_.all()) {
+        delivery_.offer(view, now, settings_.frame_interval);
+        if (!view.shows_all()) runner_.show_progress(view, now);
+    }
+    std::vector<ViewId> delivered;
+    delivery_.send(delivered);
+    for (const ViewId view : delivered) remove(view);
+    picks_.tick();
+}
+
+TimePoint Views::next_event(TimePoint now) const {
+    TimePoint next = TimePoint::max();
+    for (const auto& [id, view] : table_.all()) next = std::min(next, runner_.next_event(view, now));
+    if (group_.is_open() || !picks_.empty()) next = std::min(next, now + settings_.frame_interval);
+    return next;
+}
+
+}  // namespace tessera::master

@@ -1,0 +1,58 @@
+#include "master/scene/session_journal.h"
+
+namespace tessera::master {
+
+SessionJournal::SessionJournal(const std::filesystem::path& folder, Duration interval,
+                               SceneAuthority& authority, std::shared_ptr<scene::BlobStore> blobs,
+                               EventSink events)
+    : folder_(folder),
+      interval_(interval),
+      authority_(authority),
+      events_(std::move(events)),
+      recovery_(recover(folder_, authority, *blobs)),
+      writer_(folder) {
+    for (const std::string& note : recovery_.notes) events_({wire::Severity::Info, note});
+    journal_.emplace(folder, std::move(blobs), recovery_.next_segment);
+}
+
+void SessionJournal::opened(const std::string& title) {
+    if (auto written = journal_->opened(title); !written) throw written.error();
+    authority_.record_to(&*journal_);
+    is_open_ = true;
+}
+
+void SessionJournal::closed() {
+    authority_.record_to(nullptr);
+    is_open_ = false;
+}
+
+void SessionJournal::tick() {
+    const auto result = writer_.take_result();
+    if (!result) return;
+    if (result->problem.empty()) {
+        ++checkpoints_;
+    } else {
+        events_({wire::Severity::Error, "no checkpoint: " + result->problem});
+    }
+}
+
+bool SessionJournal::wants_checkpoint(std::uint64_t film_progress, TimePoint now) const {
+    return is_open_ && now - last_ >= interval_ && !writer_.busy() &&
+           saved_ != std::pair(authority_.transactions(), film_progress);
+}
+
+void SessionJournal::write_checkpoint(const std::string& title, std::vector<wire::SavedView>&& views,
+                                      std::uint64_t film_progress, TimePoint now) {
+    last_ = now;
+    saved_ = {authority_.transactions(), film_progress};
+    if (!is_open_) return;
+    try {
+        const std::uint64_t number = journal_->start_segment();
+        writer_.start(
+            {.number = number, .title = title, .authority = authority_.save(), .views = std::move(views)});
+    } catch (const Error& error) {
+        events_({wire::Severity::Error, std::string("no checkpoint: ") + error.what()});
+    }
+}
+
+}  // namespace tessera::master

@@ -1,0 +1,374 @@
+#include "master/scene_session.h"
+
+#include <algorithm>
+
+#include "mediator/wire/envelope.h"
+
+namespace tessera::master {
+
+namespace {
+
+constexpr Duration VersionInterval = std::chrono::milliseconds(16);
+constexpr std::size_t MaxNameLength = 64, MaxPresenceText = 1024, MaxSelection = 1024;
+constexpr Duration MaxPresence = std::chrono::minutes(10);
+
+}  // namespace
+
+SceneSession::SceneSession(std::uint64_t epoch, const ViewSettings& settings, const MasterServices& services)
+    : services_(services),
+      authority_(epoch, services.blobs),
+      distributor_(authority_, *services.blobs, services.outbox, services.events),
+      views_(settings, services.render, services.sessions, services.outbox, services.events),
+      display_(authority_, services.sessions, views_, services.outbox, services.events) {}
+
+std::string SceneSession::unique_name(const std::string& wanted) const {
+    const auto taken = [&](const std::string& name) {
+        return std::any_of(members_.begin(), members_.end(),
+                           [&](const auto& entry) { return entry.second.name == name; });
+    };
+    const std::string base = wanted.empty() ? "client" : wanted.substr(0, MaxNameLength);
+    if (!taken(base)) return base;
+    for (int number = 2;; ++number) {
+        const std::string name = base + " (" + std::to_string(number) + ")";
+        if (!taken(name)) return name;
+    }
+}
+
+void SceneSession::open(const std::string& title) {
+    if (journal_) journal_->opened(title);
+    open_ = true;
+    title_ = title;
+    counts_ = {};
+    traces_ = {};
+    services_.events({wire::Severity::Info, "live scene '" + title_ + "' is open"});
+}
+
+void SceneSession::record_to(const std::filesystem::path& folder, Duration checkpoint_interval,
+                             TimePoint now) {
+    journal_.emplace(folder, checkpoint_interval, authority_, services_.blobs, services_.events);
+    const Recovery& recovery = journal_->recovery();
+    if (!recovery.found || recovery.title.empty()) {
+        (void)authority_.clear();
+        return;
+    }
+    open(recovery.title);
+    std::vector<wire::SavedView> views = recovery.views;
+    views_.restore(std::move(views), authority_.version(), authority_.state_hash(), now);
+}
+
+void SceneSession::join(SessionRecord& session, const wire::JoinScene& request, TimePoint now) {
+    const bool may_edit = session.role != net::Role::Viewer;
+    if (may_edit && request.key == 0)
+        throw Error(ErrorCode::Refused, "a member needs a key that it has chosen, not 0");
+    if (!open_) open(request.title.empty() ? "untitled" : request.title);
+    // Who only looks needs neither ids nor a place in the journal.
+    const IdRange ids = may_edit ? authority_.join(session.id, session.user, request.key) : IdRange{};
+    if (may_edit && ids.count == 0) {
+        throw Error(ErrorCode::Refused,
+                    "no ids are left to lend, or the session folder cannot be written: see the master's log");
+    }
+    if (!members_.contains(session.id)) {
+        Member& member = members_[session.id];
+        member.name = unique_name(request.name);
+        member.key = request.key;
+        services_.events(
+            {wire::Severity::Info, member.name + " (" + session.user + ") joined '" + title_ + "'"});
+    }
+    publish_if_due(now);
+    services_.outbox.control(session.control,
+                             wire::SceneJoined{.version = authority_.version(),
+                                               .first_id = ids.first,
+                                               .id_count = ids.count,
+                                               .last_sequence = authority_.last_sequence(session.id),
+                                               .title = title_,
+                                               .name = members_.at(session.id).name});
+}
+
+void SceneSession::close(TimePoint now) {
+    if (!open_) return;
+    open_ = false;
+    services_.events({wire::Severity::Info, "live scene '" + title_ + "' is closed"});
+    display_.close();
+    views_.close_all();
+    for (const auto& [id, member] : members_) authority_.forget(id);
+    members_.clear();
+    reads_.clear();
+    if (auto cleared = authority_.clear()) publish(*cleared, now);
+    if (journal_) journal_->closed();
+}
+
+void SceneSession::left(SessionId session, Views::Departure departure, TimePoint now) {
+    const auto member = members_.find(session);
+    if (member == members_.end()) return;
+    services_.events({wire::Severity::Info, member->second.name + " left '" + title_ + "'"});
+    views_.session_left(session, departure, now);
+    display_.left(session, now);
+    authority_.release_all(session);
+    authority_.forget(session);
+    members_.erase(member);
+    std::erase_if(reads_, [&](const WaitingRead& read) { return read.session == session; });
+}
+
+void SceneSession::edited(const SessionRecord& session, const scene::Edit& edit, const EditAnswer& answer,
+                          std::uint64_t message_bytes, TimePoint now) {
+    ++counts_.edits;
+    counts_.edit_bytes += message_bytes;
+    if (!answer.accepted || answer.transaction == 0) return;
+    traces_.submitted({.transaction = answer.transaction,
+                       .name = name(session.id),
+                       .bytes = message_bytes,
+                       .submitted_at = edit.submitted_at,
+                       .clock = session.clock.offset(now),
+                       .received = now,
+                       .version = answer.version});
+}
+
+void SceneSession::node_built(const NodeRecord& node, const wire::VersionReport& report, TimePoint now) {
+    if (!open_) return;
+    traces_.node_built(node.id, node.hello.name, report.version, report.received_at, report.built_at,
+                       node.clock.offset(now));
+}
+
+wire::Trace SceneSession::trace(const wire::ReadTrace& request) const {
+    wire::Trace trace{request.request, traces_.latest(request.count)};
+    while (!wire::fits_control(trace))  // the older ones go
+        trace.edits.erase(trace.edits.begin(),
+                          trace.edits.begin() + static_cast<std::ptrdiff_t>((trace.edits.size() + 1) / 2));
+    return trace;
+}
+
+void SceneSession::done(const SessionRecord& session, std::uint64_t request, std::string problem) {
+    const bool accepted = problem.empty();
+    services_.outbox.control(session.control, wire::RequestDone{request, accepted, std::move(problem)});
+}
+
+void SceneSession::asked(SessionRecord& session, const wire::ReadScene& request) {
+    reads_.push_back({session.id, request, authority_.pending()});
+}
+
+// At most one content a member is kept; a second question before the first content was fetched gets a newer
+// one.
+void SceneSession::answer(const WaitingRead& read) {
+    const SessionRecord* session = services_.sessions.find(read.session);
+    if (session == nullptr) return;
+    auto changes = authority_.since(read.request.known);
+    wire::SceneContent content{.request = read.request.request,
+                               .list = changes ? std::move(*changes) : authority_.snapshot(),
+                               .blob = {}};
+    if (!wire::fits_control(content)) {
+        const scene::BlobPtr blob = services_.blobs->insert(wire::encode(content.list));
+        members_.at(read.session).content = blob;
+        content.list = {};
+        content.blob = scene::reference(*blob);
+    }
+    services_.outbox.control(session->control, std::move(content));
+}
+
+void SceneSession::asked(SessionRecord& session, const wire::LockObjects& request) {
+    if (request.release) {
+        authority_.unlock(session.id, request.objects);
+        return done(session, request.request, {});
+    }
+    std::string problems;
+    for (const std::string& problem : authority_.lock(session.id, name(session.id), request.objects)) {
+        problems += (problems.empty() ? "" : "; ") + problem;
+    }
+    done(session, request.request, problems);
+}
+
+void SceneSession::asked(SessionRecord& session, wire::SetPresence request, TimePoint now) {
+    Member& member = members_.at(session.id);
+    request.text.resize(std::min(request.text.size(), MaxPresenceText));
+    request.selection.resize(std::min(request.selection.size(), MaxSelection));
+    member.presence_until = now + std::clamp(request.time_to_live, Duration::zero(), MaxPresence);
+    member.presence = std::move(request);
+}
+
+void SceneSession::asked(SessionRecord& session, const wire::ReadPeople& request, TimePoint now) {
+    wire::People people{.request = request.request, .title = title_, .locks = authority_.locks()};
+    for (const auto& [id, member] : members_) {
+        const SessionRecord* other = services_.sessions.find(id);
+        if (other == nullptr) continue;
+        wire::Person person{.session = id,
+                            .name = member.name,
+                            .user = other->user,
+                            .editor = other->role != net::Role::Viewer};
+        if (const auto clock = other->clock.offset(now)) {
+            person.clock_offset_seconds = seconds(clock->offset);
+            person.clock_bound_seconds = seconds(clock->bound);
+        }
+        if (now < member.presence_until) {
+            person.text = member.presence.text;
+            person.selection = member.presence.selection;
+        }
+        people.people.push_back(std::move(person));
+    }
+    for (const auto& [id, live] : views_.table().all()) {
+        people.views.push_back(
+            {.name = live.name,
+             .owner = live.owner.name,
+             .width = live.request.view.width,
+             .height = live.request.view.height,
+             .samples = live.shown ? live.shown->samples / live.request.view.window.pixel_count() : 0,
+             .spp = live.request.stop.spp,
+             .watchers = views_.watchers(id)});
+    }
+    services_.outbox.control(session.control, std::move(people));
+}
+
+void SceneSession::asked(SessionRecord& session, const wire::ReadHistory& request) {
+    constexpr std::uint32_t MaxTold = 256;
+    wire::History history{request.request, authority_.history(std::min(request.count, MaxTold))};
+    while (!wire::fits_control(history)) history.transactions.resize(history.transactions.size() / 2);
+    services_.outbox.control(session.control, std::move(history));
+}
+
+void SceneSession::asked(SessionRecord& session, const wire::ReadWriters& request) {
+    services_.outbox.control(session.control,
+                             wire::Writers{request.request, authority_.writers(request.object)});
+}
+
+void SceneSession::asked(SessionRecord& session, wire::OpenLiveView request, TimePoint now) {
+    const std::uint64_t number = request.request;
+    const glm::dvec3 eye(request.view.camera.world_from_camera[3]);
+    const bool leads = !request.share && views_.table().all().size() <= 1;
+    const Delivery::Wish wish{request.picture, request.film, {}};
+    const ViewOwner owner{session.id, name(session.id), session.user, members_.at(session.id).key};
+    std::string problem = request.share ? views_.share(session.id, request.number, request.name, wish)
+                                        : views_.open(owner, request.number,
+                                                      {.name = std::move(request.name),
+                                                       .view = std::move(request.view),
+                                                       .stop = {.spp = request.spp},
+                                                       .picture = request.picture,
+                                                       .film = request.film},
+                                                      wish, authority_.version(), now);
+    // The render origin follows the camera while it is the only one.
+    if (problem.empty() && leads) {
+        if (auto moved = authority_.follow_camera(eye)) publish(*moved, now);
+    }
+    if (number != 0 || !problem.empty()) done(session, number, std::move(problem));
+}
+
+std::string SceneSession::open_display(const scene::BlobPtr& description, std::vector<scene::BlobPtr> content,
+                                       TimePoint now) {
+    if (!open_) return "there is no live scene: join one first";
+    std::string problem = display_.open(description, std::move(content), now);
+    if (problem.empty()) follow_display(now);
+    return problem;
+}
+
+void SceneSession::asked(SessionRecord& session, const wire::CloseDisplay& request) {
+    const std::string problem = display_.is_open() ? "" : "no display is open";
+    display_.close();
+    done(session, request.request, problem);
+}
+
+void SceneSession::asked(SessionRecord& session, const wire::AdjustDisplay& request) {
+    done(session, request.request, display_.adjust(request));
+}
+
+void SceneSession::asked(SessionRecord& session, const wire::JoinOutput& request, TimePoint now) {
+    if (std::string problem = display_.join(session, request, now); !problem.empty())
+        done(session, request.request, std::move(problem));
+}
+
+// The render origin follows the display while nobody else looks.
+void SceneSession::follow_display(TimePoint now) {
+    const auto& views = views_.table().all();
+    if (!std::all_of(views.begin(), views.end(), [](const auto& entry) { return entry.second.in_group(); }))
+        return;
+    const auto head = display_.head_in_world();
+    if (!head) return;
+    if (auto moved = authority_.follow_camera(*head)) publish(*moved, now);
+}
+
+void SceneSession::publish(const scene::ChangeList& changes, TimePoint now) {
+    published_at_ = now;
+    ++counts_.versions;
+    // What is out of date is cancelled before the nodes hear of the change: they build sooner.
+    const bool restarts = views_.scene_changed(changes, authority_.scene());
+    const std::uint64_t before = services_.outbox.bytes.control;
+    distributor_.published(services_.nodes, changes, now);
+    counts_.change_bytes += services_.outbox.bytes.control - before;
+    traces_.published(changes.to, now);
+    if (display_.scene_changed(changes)) follow_display(now);
+    if (views_.table().all().empty()) {
+        traces_.nobody_looks();
+    } else if (!restarts) {
+        traces_.merged(changes.to, now);  // the pictures that there are show it
+    }
+}
+
+void SceneSession::publish_if_due(TimePoint now) {
+    const bool waits = authority_.has_unpublished();
+    views_.hold_passes(waits);
+    if (!waits || now - published_at_ < VersionInterval || !views_.may_publish()) return;
+    if (auto changes = authority_.publish()) publish(*changes, now);
+    views_.hold_passes(false);
+}
+
+void SceneSession::take(RenderOutput& output, TimePoint now) {
+    if (const auto* report = std::get_if<MergeReport>(&output)) {
+        const Dispatcher::Taken taken = services_.render.dispatcher.take(*report, now);
+        if (taken != Dispatcher::Taken::Dropped) views_.took(*report, taken, now);
+    } else if (auto* made = std::get_if<MadeOutput>(&output)) {
+        display_.made(std::move(*made), now);
+    } else {
+        views_.take(output, now);
+    }
+}
+
+// The one story: what was published, then passes with their new samples, then whoever consumes pictures, then
+// units for the nodes and frames for the clients.
+void SceneSession::tick(TimePoint now) {
+    keep_journal(now);
+    if (open_) {
+        publish_if_due(now);
+        std::erase_if(reads_, [&](const WaitingRead& read) {
+            if (authority_.version().number < read.wanted.number) return false;
+            answer(read);
+            return true;
+        });
+    }
+    views_.advance(now);
+    display_.tick(now);
+    views_.deal(now);
+    for (const FirstPicture& first : views_.take_first_pictures()) traces_.merged(first.version, first.at);
+}
+
+void SceneSession::keep_journal(TimePoint now) {
+    if (!journal_) return;
+    journal_->tick();
+    ViewSaver& saver = views_.saver();
+    if (auto saved = saver.take_saved())
+        journal_->write_checkpoint(title_, std::move(*saved), progress_being_saved_, now);
+    const std::uint64_t progress = saver.film_progress();
+    if (saver.is_saving() || !journal_->wants_checkpoint(progress, now)) return;
+    progress_being_saved_ = progress;
+    saver.save(authority_.state_hash());
+}
+
+TimePoint SceneSession::next_event(TimePoint now) const {
+    TimePoint next = std::min(views_.next_event(now), display_.next_event());
+    if (open_ && authority_.has_unpublished())
+        next = std::min(next, std::max(now, published_at_ + VersionInterval));
+    return next;
+}
+
+wire::LiveStatus SceneSession::status() const {
+    if (!open_) return {};
+    wire::LiveStatus status = counts_;
+    status.title = title_;
+    status.members = static_cast<std::uint32_t>(members_.size());
+    status.views = static_cast<std::uint32_t>(views_.table().all().size());
+    status.transactions = authority_.transactions();
+    if (journal_) {
+        status.journal_bytes = journal_->byte_size();
+        status.checkpoints = journal_->checkpoints();
+    }
+    status.stages = traces_.stages();
+    status.stages.push_back(views_.dispatcher().cancellations().summary("cancel to stopped"));
+    return status;
+}
+
+}  // namespace tessera::master

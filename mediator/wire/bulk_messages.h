@@ -1,0 +1,148 @@
+#pragma once
+
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+#include "mediator/base/description.h"
+#include "mediator/base/hash.h"
+#include "mediator/base/ids.h"
+#include "mediator/frame/film_tile.h"
+#include "mediator/view/view.h"
+#include "mediator/wire/live_messages.h"
+
+// What goes over the bulk link: a fixed little-endian header, whose fields are the rows in their order, then raw planes.
+namespace tessera::wire {
+
+inline constexpr std::size_t MaxChunk = std::size_t{1} << 20;
+
+// Null, or why a piece of so many bytes cannot be one of a whole.
+constexpr const char* malformed_piece(std::uint64_t total, std::uint64_t offset, std::size_t size) {
+    if (size > MaxChunk) return "a chunk is longer than 1 MiB";
+    return offset <= total && size <= total - offset ? nullptr : "a chunk reaches beyond its whole";
+}
+
+struct BulkHello {
+    std::uint64_t token = 0;
+    static constexpr auto describe(auto row) { return std::tuple(row(1, "token", &BulkHello::token)); }
+};
+struct BlobRequest {
+    Hash256 hash;
+    std::uint64_t offset = 0;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "hash", &BlobRequest::hash), row(2, "offset", &BlobRequest::offset));
+    }
+};
+struct BlobChunk {
+    Hash256 hash;
+    std::uint64_t total = 0, offset = 0;
+    std::vector<std::byte> data;  // at most 1 MiB
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "hash", &BlobChunk::hash), row(2, "total", &BlobChunk::total),
+                          row(3, "offset", &BlobChunk::offset), row(4, "data", &BlobChunk::data));
+    }
+    const char* malformed() const { return malformed_piece(total, offset, data.size()); }
+};
+struct BlobAbsent {
+    Hash256 hash;
+    static constexpr auto describe(auto row) { return std::tuple(row(1, "hash", &BlobAbsent::hash)); }
+};
+// Node to master: blocks of a unit; a unit that was stopped sends several, `part` of `parts`.
+struct FilmPart {
+    UnitId unit;
+    ViewId view;
+    std::uint64_t revision = 0;
+    Version version;
+    std::uint16_t part = 0, parts = 1;
+    std::uint64_t rays = 0;     // of the whole unit, in part 0
+    std::uint64_t busy_ns = 0;  // likewise
+    frame::FilmTile film;
+    static constexpr auto describe(auto row) {
+        using Self = FilmPart;
+        return std::tuple(
+            row(1, "unit", &Self::unit), row(2, "view", &Self::view), row(3, "revision", &Self::revision),
+            row(4, "version", &Self::version), row(5, "part", &Self::part), row(6, "parts", &Self::parts),
+            row(7, "rays", &Self::rays), row(8, "busy_ns", &Self::busy_ns), row(9, "film", &Self::film));
+    }
+    const char* malformed() const;
+};
+// Master to client: the merged film of one tile.
+struct FrameTile {
+    JobId job;
+    std::uint32_t index = 0, count = 0;
+    frame::FilmTile film;  // block means nothing here: the counts say all
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "job", &FrameTile::job), row(2, "index", &FrameTile::index),
+                          row(3, "count", &FrameTile::count), row(4, "film", &FrameTile::film));
+    }
+    const char* malformed() const { return index < count ? nullptr : "a tile is not one of its frame"; }
+};
+// Master to client: a piece of the picture, as JobDone describes it.
+struct PictureChunk {
+    JobId job;
+    std::uint64_t total = 0, offset = 0;
+    std::vector<std::byte> data;  // at most 1 MiB
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "job", &PictureChunk::job), row(2, "total", &PictureChunk::total),
+                          row(3, "offset", &PictureChunk::offset), row(4, "data", &PictureChunk::data));
+    }
+    const char* malformed() const { return malformed_piece(total, offset, data.size()); }
+};
+// Master to client: a frame of a view that it opened, in front of its PictureChunks and FrameTiles, whose job
+// is the frame's number. One is on its way at a time: the next comes after FrameTaken.
+struct LiveFrame {
+    std::uint64_t view = 0, frame = 0;  // the client's number of the view; frames count from 1
+    Version version;                    // of the scene that is seen
+    std::uint64_t revision = 0;         // of the view: grows with every change of its camera
+    std::uint32_t scale = 1;            // 8, 4, 2: a coarse picture of this part of the view's size
+    std::uint32_t width = 0, height = 0, components = 0;
+    PictureEncoding encoding = PictureEncoding::None;
+    std::uint64_t picture_bytes = 0;
+    std::uint32_t film_tiles = 0;
+    std::uint64_t samples_least = 0, samples_most = 0, spp = 0;  // of a pixel, and how many there will be
+    bool complete = false;
+    Hash256 film_hash;  // when complete
+    static constexpr auto describe(auto row) {
+        using Self = LiveFrame;
+        return std::tuple(
+            row(1, "view", &Self::view), row(2, "frame", &Self::frame), row(3, "version", &Self::version),
+            row(4, "revision", &Self::revision), row(5, "scale", &Self::scale), row(6, "width", &Self::width),
+            row(7, "height", &Self::height), row(8, "components", &Self::components),
+            row(9, "encoding", &Self::encoding, UpTo{PictureEncoding::Exr}),
+            row(10, "picture_bytes", &Self::picture_bytes), row(11, "film_tiles", &Self::film_tiles),
+            row(12, "complete", &Self::complete), row(13, "samples_least", &Self::samples_least),
+            row(14, "samples_most", &Self::samples_most), row(15, "spp", &Self::spp),
+            row(16, "film_hash", &Self::film_hash));
+    }
+    const char* malformed() const { return scale != 0 ? nullptr : "a scale of 0"; }
+};
+// Master to output process: a piece of an eye's picture of a frame; pieces of one picture come in order.
+struct OutputPicture {
+    std::uint64_t frame = 0;
+    view::Eye eye = view::Eye::Mono;
+    std::uint32_t eyes = 1;   // pictures of this frame for this output
+    Version version;          // of the scene that is seen
+    view::CameraPose camera;  // in display space, that it was rendered with
+    std::uint32_t width = 0, height = 0;
+    PictureEncoding encoding = PictureEncoding::Bytes;  // or Half
+    std::uint64_t samples = 0;                          // of a pixel, the least
+    std::uint64_t total = 0, offset = 0;                // bytes of the picture
+    std::vector<std::byte> data;                        // at most 1 MiB
+    static constexpr auto describe(auto row) {
+        using Self = OutputPicture;
+        return std::tuple(
+            row(1, "frame", &Self::frame), row(2, "eye", &Self::eye), row(3, "eyes", &Self::eyes),
+            row(4, "version", &Self::version),
+            row(
+                5, "world_from_camera",
+                [](auto& picture) -> auto& { return picture.camera.world_from_camera; }),
+            row(6, "frustum",
+                Computed{[](const Self& picture) { return picture.camera.edges(); },
+                         [](Self& picture, const glm::dvec4& edges) { picture.camera.set_edges(edges); }}),
+            row(7, "width", &Self::width), row(8, "height", &Self::height),
+            row(9, "encoding", &Self::encoding), row(10, "samples", &Self::samples),
+            row(11, "total", &Self::total), row(12, "offset", &Self::offset), row(13, "data", &Self::data));
+    }
+    const char* malformed() const;
+};
+}  // namespace tessera::wire

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "mediator/scene/change_list.h"
+#include "mediator/wire/codec.h"
+
+// Private to wire/*.cpp: entries of change lists and edits. An update carries the fields of its mask only. What is
+// decoded may still be invalid as a scene.
+namespace tessera::wire {
+
+template <>
+struct CustomCodec<scene::Entry> {
+    static void write(FormatWriter& out, const scene::Entry& entry);
+    static void read(FormatReader& in, scene::Entry& entry);
+};
+
+}  // namespace tessera::wire

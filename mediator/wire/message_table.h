@@ -1,0 +1,59 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <initializer_list>
+#include <string_view>
+#include <tuple>
+#include <variant>
+
+#include "mediator/base/description.h"
+
+// Messages of a link, one row each: the number and the name on the wire, the structure, and who may send it to a master.
+namespace tessera::wire {
+
+enum class Senders : std::uint8_t {
+    Master,  // it alone: nobody sends this to a master
+    Nodes,
+    Editors,
+    Clients,  // viewers, too
+    Everybody,
+};
+
+template <std::size_t N>
+struct Literal {
+    char text[N];
+    constexpr Literal(const char (&from)[N]) { std::copy_n(from, N, text); }
+};
+
+template <unsigned Number, Literal Name, class M, Senders From>
+struct MessageRow {
+    using Type = M;
+    static constexpr unsigned number = Number;
+    static constexpr Senders senders = From;
+    static constexpr Alternative<M> alternative() { return {Number, Name.text}; }
+};
+
+template <class... Rows>
+struct MessageTable {
+    using Message = std::variant<typename Rows::Type...>;
+    static constexpr auto alternatives() { return std::tuple(Rows::alternative()...); }
+    static constexpr unsigned number(const Message& message) {
+        constexpr unsigned Numbers[] = {Rows::number...};
+        return Numbers[message.index()];
+    }
+    static constexpr Senders senders(const Message& message) {
+        constexpr Senders From[] = {Rows::senders...};
+        return From[message.index()];
+    }
+    static constexpr bool has(unsigned number) { return ((number == Rows::number) || ...); }
+    // No number twice, and none that stood for something else once.
+    static constexpr bool is_sound(std::initializer_list<unsigned> retired) {
+        unsigned numbers[] = {Rows::number...};
+        std::sort(std::begin(numbers), std::end(numbers));
+        return std::adjacent_find(std::begin(numbers), std::end(numbers)) == std::end(numbers) &&
+               std::none_of(retired.begin(), retired.end(), has);
+    }
+};
+
+}  // namespace tessera::wire

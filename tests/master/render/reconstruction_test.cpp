@@ -1,0 +1,86 @@
+// A filter belongs to a view and remembers its pictures.
+#include "master/render/reconstruction.h"
+
+#include <gtest/gtest.h>
+
+#include "master/render/view_request.h"
+#include "mediator/base/random.h"
+
+namespace tessera::master {
+namespace {
+
+constexpr std::uint32_t Edge = 32;
+constexpr Version Scene{1, 1};
+
+view::View psvgf_view(std::uint64_t id, std::uint64_t revision) {
+    view::View view{.id = ViewId{id}, .revision = revision};
+    view.width = view.height = Edge;
+    view.window = {0, 0, Edge, Edge};
+    view.camera = view::perspective(glm::dmat4(1.0), 0.8, 1.0);
+    view.channels = {frame::Channel::Radiance};
+    view.filter = "psvgf";
+    complete(view);
+    return view;
+}
+
+// Noise on a wall in front of the camera, every pixel with 2 samples.
+frame::FilmTile noise(const view::View& view, std::uint64_t seed) {
+    frame::FilmTile film(view.window, {0, 1}, view.channels);
+    std::fill(film.counts.begin(), film.counts.end(), 2u);
+    std::uint32_t state = static_cast<std::uint32_t>(seed) * 2654435761u + 1u;
+    for (float& value : film.planes) {
+        state = state * 1664525u + 1013904223u;
+        value = static_cast<float>(state >> 8) * 0x1p-24f;
+    }
+    const auto fill = [&](frame::Channel channel, std::uint32_t plane, float value) {
+        const auto values = film.plane(film.channels.first_plane(channel) + plane);
+        std::fill(values.begin(), values.end(), value);
+    };
+    fill(frame::Channel::Depth, 0, 2.0f);
+    fill(frame::Channel::ObjectIndex, 0, 0.0f);
+    fill(frame::Channel::ObjectIndex, 1, 1.0f);  // one object everywhere: its bits are those of an id
+    for (const auto& [plane, value] : {std::pair{0u, 0.0f}, {1u, 0.0f}, {2u, 1.0f}})
+        fill(frame::Channel::Normal, plane, value);
+    return film;
+}
+
+std::vector<std::byte> picture(Reconstructor& reconstructor, const view::View& view, std::uint64_t seed,
+                               Version version = Scene) {
+    const frame::FilmTile film = noise(view, seed);
+    const Reconstruction made =
+        reconstructor.reconstruct({.film = film}, view, version, wire::PictureEncoding::Planes);
+    EXPECT_EQ(made.error, "");
+    return *made.bytes;
+}
+
+TEST(Reconstructor, ATemporalFilterRemembersThePicturesOfItsView) {
+    Reconstructor fresh, used;
+    const auto alone = picture(fresh, psvgf_view(8, 2), 2);
+    (void)picture(used, psvgf_view(8, 1), 1);
+    EXPECT_NE(picture(used, psvgf_view(8, 2), 2), alone) << "the picture before is history";
+}
+
+TEST(Reconstructor, NothingOfOneViewReachesAnother) {
+    Reconstructor fresh, used;
+    const auto alone = picture(fresh, psvgf_view(16, 2), 2);
+    (void)picture(used, psvgf_view(8, 1), 1);
+    EXPECT_EQ(picture(used, psvgf_view(16, 2), 2), alone);
+}
+
+TEST(Reconstructor, AFilmThatGoesOnIsNoHistory) {
+    Reconstructor fresh, used;
+    const auto alone = picture(fresh, psvgf_view(8, 1), 2);
+    (void)picture(used, psvgf_view(8, 1), 1);
+    EXPECT_EQ(picture(used, psvgf_view(8, 1), 2), alone) << "the same revision: more samples, no more";
+}
+
+TEST(Reconstructor, ForgottenViewsBeginAnew) {
+    Reconstructor fresh, used;
+    const auto alone = picture(fresh, psvgf_view(8, 2), 2);
+    (void)picture(used, psvgf_view(8, 1), 1);
+    used.forget(ViewId{8}, ViewId{16});
+    EXPECT_EQ(picture(used, psvgf_view(8, 2), 2), alone);
+}
+
+}  // namespace
+}  // namespace tessera::master

@@ -1,0 +1,41 @@
+#include "master/render/stop_rule.h"
+
+#include <gtest/gtest.h>
+
+namespace tessera::master {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr TimePoint Start{100s};
+
+TEST(StopRule, SamplesAloneKnowNoClock) {
+    const StopRule rule{.spp = 32};
+    EXPECT_FALSE(rule.has_clock());
+    EXPECT_EQ(rule.most_samples(), 32u);
+    EXPECT_FALSE(rule.deadline(Start, Start, {}));
+    EXPECT_FALSE(rule.time_is_up(std::nullopt, true, Start + 1h));
+}
+
+TEST(StopRule, ATimeLimitCountsFromNow) {
+    const StopRule rule{.spp = 0, .time_limit = 3s};
+    EXPECT_EQ(rule.most_samples(), MaxSamplesPerPixel);
+    const auto deadline = rule.deadline(Start, Start + 1s, 2s);
+    EXPECT_EQ(deadline, Start + 4s) << "what comes afterwards is not its affair";
+    EXPECT_FALSE(rule.time_is_up(deadline, false, Start + 3s));
+    EXPECT_TRUE(rule.time_is_up(deadline, false, Start + 4s));
+}
+
+TEST(StopRule, ABudgetLeavesTimeForThePicture) {
+    const StopRule rule{.spp = 16, .budget = 8s};
+    EXPECT_EQ(rule.most_samples(), MaxSamplesPerPixel);
+    const auto deadline = rule.deadline(Start, Start + 1s, 3s);
+    EXPECT_EQ(deadline, Start + 5s);
+    EXPECT_EQ(rule.deadline(Start, Start + 1s, 20s), Start + 1s) << "at once when there is no time";
+    EXPECT_TRUE(rule.time_is_up(deadline, true, Start + 5s));
+    EXPECT_FALSE(rule.time_is_up(deadline, false, Start + 5s)) << "a pixel has no sample yet";
+    EXPECT_TRUE(rule.time_is_up(deadline, false, Start + 6s)) << "an eighth of the budget later at most";
+}
+
+}  // namespace
+}  // namespace tessera::master

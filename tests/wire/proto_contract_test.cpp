@@ -1,0 +1,55 @@
+// The descriptions of structures say what the files of proto/ say, field by field, and the codec's bytes are those of
+// libprotobuf. So neither can change without the other.
+#include "tests/wire/proto_contract.h"
+
+#include "mediator/wire/display_codec.h"
+#include "mediator/wire/envelope.h"
+#include "mediator/wire/journal_codec.h"
+#include "proto/control.pb.h"
+#include "proto/journal.pb.h"
+
+namespace tessera::wire::test {
+namespace {
+
+// A function that the codecs overload, as an object.
+constexpr auto encoded = [](const auto& value) { return encode(value); };
+
+TEST(ProtoContract, ControlMessages) {
+    expect_contract<ControlMessage, proto::Control>(400, encoded,
+                                                    [](auto bytes) { return decode_control(bytes); });
+}
+
+TEST(ProtoContract, ChangeLists) {
+    expect_contract<scene::ChangeList, proto::ChangeList>(
+        50, encoded, [](auto bytes) { return decode_change_list(bytes); });
+    expect_same_message<scene::Object>(*proto::Object::descriptor());
+}
+
+TEST(ProtoContract, RecordsOfTheJournal) {
+    expect_contract<JournalRecord, proto::JournalRecord>(
+        50, encoded, [](auto bytes) { return decode_journal_record(bytes); });
+}
+
+TEST(ProtoContract, Displays) {
+    expect_contract<display::Display, proto::Display>(20, encoded,
+                                                      [](auto bytes) { return decode_display(bytes); });
+}
+
+// What a checkpoint says has to agree with itself, so any value will not do.
+TEST(ProtoContract, Checkpoints) {
+    expect_same_message<CheckpointState>(*proto::Checkpoint::descriptor());
+}
+
+// The numbers of oneofs that are free are free for ever.
+TEST(ProtoContract, NumbersOfMessagesThatAreGoneAreReserved) {
+    const auto& proto = *proto::Control::descriptor();
+    int last = 0;
+    for (int i = 0; i < proto.field_count(); ++i) last = std::max(last, proto.field(i)->number());
+    for (int number = 1; number <= last; ++number) {
+        EXPECT_TRUE(proto.FindFieldByNumber(number) != nullptr || proto.IsReservedNumber(number))
+            << number << " is neither a message nor reserved";
+    }
+}
+
+}  // namespace
+}  // namespace tessera::wire::test
