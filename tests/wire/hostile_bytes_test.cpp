@@ -49,7 +49,7 @@ scene::ChangeList some_changes() {
             .entries = {scene::Create{ObjectId{7}, geometry},
                         scene::Update{ObjectId{8},
                                       scene::Fields<scene::Transform>(
-                                          {scene::Transform::Field::Matrix, scene::Transform::Field::Layers})
+                                          {&scene::Transform::matrix, &scene::Transform::layers})
                                           .bits(),
                                       moved},
                         scene::Create{ObjectId{9}, scene::Material{}},
@@ -219,8 +219,8 @@ TEST(ControlMessages, AnUpdateCarriesTheFieldsOfItsMaskOnly) {
     scene::Transform moved;
     moved.name = std::string(500, 'x');
     moved.children.assign(1000, ObjectId{5});
-    const scene::Update update{
-        ObjectId{8}, scene::Fields<scene::Transform>(scene::Transform::Field::Matrix).bits(), moved};
+    const scene::Update update{ObjectId{8}, scene::Fields<scene::Transform>(&scene::Transform::matrix).bits(),
+                               moved};
     EXPECT_LT(encode(ControlMessage(Changes{{.entries = {update}}})).size(), 300u);
 }
 
