@@ -1,6 +1,7 @@
 #include "client/session.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "client/film_collector.h"
 #include "client/link.h"

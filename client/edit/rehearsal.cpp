@@ -1,5 +1,7 @@
 #include "client/edit/rehearsal.h"
 
+#include <functional>
+
 #include "client/edit/script_error.h"
 #include "mediator/scene/fields.h"
 #include "mediator/scene/validate.h"
