@@ -13,7 +13,7 @@ using test::moved;
 using test::SceneBuilder;
 using test::transform;
 
-constexpr ObjectId Mesh{2}, Lamp{3}, Glow{4}, Near{5}, Far{6}, Lit{7}, Sun{8}, Glass{9};
+constexpr ObjectId MovedMesh{2}, MovedLamp{3}, MovedGlow{4}, Near{5}, Far{6}, Lit{7}, MovedSun{8}, Glass{9};
 
 struct MovesTest : testing::Test, test::TablesStage {
     MovesTest() {
@@ -21,11 +21,12 @@ struct MovesTest : testing::Test, test::TablesStage {
         const std::vector<glm::vec3> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
         const scene::Geometry mesh{.indices = blob(indices), .positions = blob(positions)};
         scene::Geometry lamp = mesh;
-        lamp.material = Glow;
-        edit({Create{Mesh, mesh}, Create{Lamp, lamp},
-              Create{Glow, scene::Material{.emission = glm::vec3(1.0f)}},
-              Create{Near, transform(moved(1, 0, 0), {Mesh})}, Create{Far, transform(moved(9, 0, 0), {Mesh})},
-              Create{Lit, transform(moved(2, 0, 0), {Lamp})},
+        lamp.material = MovedGlow;
+        edit({Create{MovedMesh, mesh}, Create{MovedLamp, lamp},
+              Create{MovedGlow, scene::Material{.emission = glm::vec3(1.0f)}},
+              Create{Near, transform(moved(1, 0, 0), {MovedMesh})},
+              Create{Far, transform(moved(9, 0, 0), {MovedMesh})},
+              Create{Lit, transform(moved(2, 0, 0), {MovedLamp})},
               Create{scene::RootId, scene::Root{.children = {Near, Far, Lit}}}});
     }
 
@@ -71,9 +72,9 @@ TEST_F(MovesTest, ALampTakesItsEmittersWithIt) {
 
 TEST_F(MovesTest, LightFromInfinitelyFarGrowsWithTheScene) {
     const scene::Light sun{.kind = scene::LightKind::Directional};
-    EXPECT_EQ(edit({Create{Sun, sun},
+    EXPECT_EQ(edit({Create{MovedSun, sun},
                     SceneBuilder::update<scene::Root>(scene::RootId, &scene::Root::children,
-                                                      scene::Root{.children = {Near, Far, Lit, Sun}})}),
+                                                      scene::Root{.children = {Near, Far, Lit, MovedSun}})}),
               TablesStep::Made);
     EXPECT_EQ(move(Near, moved(2, 0, 0)), TablesStep::Made);    // it was at the scene's rim
     EXPECT_EQ(move(Near, moved(3, 0, 0)), TablesStep::Moved);   // inside, where the lamp is the rim now
@@ -85,7 +86,7 @@ TEST_F(MovesTest, LightFromInfinitelyFarGrowsWithTheScene) {
 TEST_F(MovesTest, GlassThatComesIntoGlassIsNoted) {
     const auto nests = [&] { return (tables.scene.features & shading::FeatureNestedGlass) != 0; };
     edit({Create{Glass, scene::Material{.transmission = 1.0f, .thickness = 1.0f}},
-          SceneBuilder::update<scene::Geometry>(Mesh, &scene::Geometry::material,
+          SceneBuilder::update<scene::Geometry>(MovedMesh, &scene::Geometry::material,
                                                 scene::Geometry{.material = Glass})});
     EXPECT_FALSE(nests());
     EXPECT_EQ(move(Near, moved(2, 0, 0)), TablesStep::Moved);
@@ -106,7 +107,7 @@ TEST_F(MovesTest, WhatMovesInTheShutterHasPlacesOfItsOwn) {
 }
 
 TEST_F(MovesTest, AnEditOfAMaterialIsNoMove) {
-    EXPECT_EQ(edit({SceneBuilder::update<scene::Material>(Glow, &scene::Material::emission,
+    EXPECT_EQ(edit({SceneBuilder::update<scene::Material>(MovedGlow, &scene::Material::emission,
                                                           scene::Material{.emission = glm::vec3(3.0f)})}),
               TablesStep::Made);
 }
