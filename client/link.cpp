@@ -1,6 +1,7 @@
 #include "client/link.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "mediator/wire/blob_transfer.h"
 #include "mediator/wire/envelope.h"

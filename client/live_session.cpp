@@ -1,6 +1,7 @@
 #include "client/live_session.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "client/live_exchange.h"
 #include "mediator/net/zmq_channel.h"

@@ -1,6 +1,7 @@
 #include "client/session.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "client/encoded_edit.h"
 #include "client/film_collector.h"

@@ -1,6 +1,7 @@
 #include "master/render_master.h"
 
 #include <algorithm>
+#include <functional>
 #include <random>
 
 #include "master/peers/roles.h"

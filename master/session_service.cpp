@@ -1,5 +1,7 @@
 #include "master/session_service.h"
 
+#include <functional>
+
 #include "mediator/wire/display_codec.h"
 #include "mediator/wire/envelope.h"
 

@@ -3,6 +3,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "mediator/display/pattern_run.h"
 #include "mediator/wire/display_codec.h"

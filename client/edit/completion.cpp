@@ -8,6 +8,7 @@
 #include "client/edit/path_book.h"
 #include "client/edit/script_error.h"
 #include "client/edit/values.h"
+#include "mediator/scene/fields.h"
 
 namespace tessera::edit {
 namespace {
@@ -64,7 +65,7 @@ class Completer {
 
     void argument(const Command& command, std::size_t index) {
         if (!command.keyword.empty() && index > 0 && words_[index].is(command.keyword)) {
-            paths(ObjectKind::Transform, ObjectKind::Transform, " ");
+            paths(ObjectKind::Transform, " ");
             return offer("root ");
         }
         if (!command.keyword.empty() && index >= command.least) offer(std::string(command.keyword) + " ");
@@ -73,20 +74,21 @@ class Completer {
         switch (kind) {
             case Argument::Path:
                 offer("root ");
-                return paths(ObjectKind::Transform, ObjectKind::Medium, " ");
+                return all_paths(" ");
             case Argument::Transform:
-                return paths(ObjectKind::Transform, ObjectKind::Transform, " ");
+                return paths(ObjectKind::Transform, " ");
             case Argument::Field:
                 return fields();
             case Argument::Value:
                 return value();
             case Argument::Kind:
-                for (std::size_t i = 1; i < KindCount; ++i)
-                    offer(scene::name(static_cast<ObjectKind>(i)) + std::string(" "));
+                for (const scene::KindRow& row : scene::Kinds) {
+                    if (row.kind != ObjectKind::Root) offer(std::string(row.name) + " ");
+                }
                 return;
             case Argument::KindOrPath:
                 for (const std::string& word : kind_words()) offer(word + " ");
-                return paths(ObjectKind::Transform, ObjectKind::Medium, " ");
+                return all_paths(" ");
             case Argument::Assignments:
                 return assignments();
             case Argument::File:
@@ -104,18 +106,22 @@ class Completer {
         }
     }
 
-    // Kinds first, so that a scene of a million objects is not listed at once.
-    void paths(ObjectKind first, ObjectKind last, const std::string& end, const std::string& before = {}) {
-        for (auto i = static_cast<std::size_t>(first); i <= static_cast<std::size_t>(last); ++i) {
-            const std::string prefix = before + std::string(kind_words()[i]) + "/";
-            if (!start_.starts_with(prefix) && first != last) {
-                if (!book_.names(static_cast<ObjectKind>(i)).empty()) offer(prefix);
-                continue;
-            }
-            const auto& names = book_.names(static_cast<ObjectKind>(i));
-            for (const auto& [name, ids] : names) {
-                for (const ObjectId id : ids) offer(before + book_.path(scene_, id) + end);
-                if (found_.size() >= MostCandidates) return;
+    void paths(ObjectKind kind, const std::string& end, const std::string& before = {}) {
+        for (const auto& [name, ids] : book_.names(kind)) {
+            for (const ObjectId id : ids) offer(before + book_.path(scene_, id) + end);
+            if (found_.size() >= MostCandidates) return;
+        }
+    }
+
+    // Of everything but the root. Kinds first, so that a scene of a million objects is not listed at once.
+    void all_paths(const std::string& end, const std::string& before = {}) {
+        for (const scene::KindRow& row : scene::Kinds) {
+            const std::string prefix = before + row.plural + "/";
+            if (row.kind == ObjectKind::Root) continue;
+            if (start_.starts_with(prefix)) {
+                paths(row.kind, end, before);
+            } else if (!book_.names(row.kind).empty()) {
+                offer(prefix);
             }
         }
     }
@@ -131,12 +137,13 @@ class Completer {
             field_words(scene::kind(*scene_.find(id)), path, " ");
         }
         offer("root.");
-        paths(ObjectKind::Transform, ObjectKind::Medium, ".");
+        all_paths(".");
     }
 
     void field_words(ObjectKind kind, const std::string& before, const std::string& end) {
-        for (unsigned field = 0; field < field_count(kind); ++field) {
-            if (value_form(kind, field).is_settable) offer(before + field_names(kind)[field] + end);
+        for (const unsigned field : fields_of(kind)) {
+            if (value_form(kind, field).is_settable)
+                offer(before + std::string(scene::field_name(kind, field)) + end);
         }
         if (kind == ObjectKind::Material) offer(before + "diffuse" + end);
     }
@@ -162,7 +169,7 @@ class Completer {
 
     void value_of(const ValueForm& form, const std::string& before, const std::string& end) {
         for (const std::string& word : form.words) offer(before + word + (word.ends_with('=') ? "" : end));
-        if (form.takes_paths) paths(ObjectKind::Transform, ObjectKind::Medium, end, before);
+        if (form.takes_paths) all_paths(end, before);
     }
 
     void assignments() {

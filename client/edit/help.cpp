@@ -6,6 +6,7 @@
 #include "client/edit/values.h"
 #include "client/edit/verbs.h"
 #include "mediator/base/nearest.h"
+#include "mediator/scene/fields.h"
 
 namespace tessera::edit {
 namespace {
@@ -47,9 +48,10 @@ have been taken. Behind 'undo' and 'redo' no line may read or edit the scene, si
 Errors name file, line and column.
 )";
 
-std::string wrapped(std::string_view text, const std::string& indent) {
+// Lines after the first are indented by `more` beyond the others.
+std::string wrapped(std::string_view text, const std::string& first_indent, std::size_t more = 0) {
     constexpr std::size_t Width = 100;
-    std::string result;
+    std::string result, indent = first_indent;
     std::size_t column = 0;
     while (!text.empty()) {
         const std::size_t end = std::min(text.find(' '), text.size());
@@ -58,6 +60,7 @@ std::string wrapped(std::string_view text, const std::string& indent) {
         if (column > 0 && column + 1 + word.size() > Width) {
             result += "\n";
             column = 0;
+            indent = first_indent + std::string(more, ' ');
         }
         result += column == 0 ? indent : " ";
         column += (column == 0 ? indent.size() : 1) + word.size();
@@ -88,8 +91,9 @@ std::string about(const Command& command) {
 
 std::string about(scene::ObjectKind kind) {
     std::string text = "Fields of " + std::string(kind_word(kind)) + "\n";
-    for (unsigned field = 0; field < field_count(kind); ++field) {
-        text += "  " + padded(field_names(kind)[field], 28) + value_form(kind, field).text + "\n";
+    for (const unsigned field : fields_of(kind)) {
+        const ValueForm form = value_form(kind, field);
+        text += wrapped(padded(scene::field_name(kind, field), 28) + form.text + form.notes, "  ", 28);
     }
     return text;
 }
@@ -105,8 +109,7 @@ std::string whole_manual() {
     std::string text = overview();
     for (const Command& command : commands()) text += "\n" + about(command);
     for (const std::string_view part : {Paths, Values, Scripts}) text += "\n" + std::string(part);
-    for (std::size_t kind = 0; kind < KindCount; ++kind)
-        text += "\n" + about(static_cast<scene::ObjectKind>(kind));
+    for (const scene::KindRow& row : scene::Kinds) text += "\n" + about(row.kind);
     return text;
 }
 

@@ -18,22 +18,22 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 }  // namespace
 
 const std::vector<std::string>& kind_words() {
-    static const std::vector<std::string> Words{"root",        "transforms",      "geometries", "materials",
-                                                "textures",    "lights",          "cameras",    "backgrounds",
-                                                "attachments", "surface_shaders", "media"};
-    static_assert(KindCount == 11);
+    static const std::vector<std::string> Words = [] {
+        std::vector<std::string> words;
+        for (const scene::KindRow& row : scene::Kinds) words.emplace_back(row.plural);
+        return words;
+    }();
     return Words;
 }
 
 std::string_view kind_word(ObjectKind kind) {
-    return kind_words()[static_cast<std::size_t>(kind)];
+    return scene::kind_row(kind).plural;
 }
 
 bool is_kind(std::string_view word, ObjectKind& kind) {
-    for (std::size_t i = 0; i < KindCount; ++i) {
-        const auto candidate = static_cast<ObjectKind>(i);
-        if (word != kind_word(candidate) && word != scene::name(candidate)) continue;
-        kind = candidate;
+    for (const scene::KindRow& row : scene::Kinds) {
+        if (word != row.plural && word != row.name) continue;
+        kind = row.kind;
         return true;
     }
     return false;
@@ -54,11 +54,11 @@ PathBook::PathBook(const scene::Scene& scene) {
 }
 
 void PathBook::learn(ObjectId id, const scene::Object& object) {
-    names_[object.index()][scene::name(object)].insert(id);
+    names_[scene::kind(object)][scene::name(object)].insert(id);
 }
 
 void PathBook::forget(ObjectId id, const scene::Object& object) {
-    auto& names = names_[object.index()];
+    auto& names = names_[scene::kind(object)];
     const auto place = names.find(scene::name(object));
     if (place == names.end()) return;
     place->second.erase(id);
@@ -78,9 +78,9 @@ std::string PathBook::full_path(const scene::Scene& scene, ObjectId id) const {
 std::string PathBook::path(const scene::Scene& scene, ObjectId id) const {
     const scene::Object* object = scene.find(id);
     if (object == nullptr || id == scene::RootId || scene::name(*object).empty()) return full_path(scene, id);
-    const auto& names = names_[object->index()];
-    const auto place = names.find(scene::name(*object));
-    if (place == names.end() || place->second.size() != 1) return full_path(scene, id);
+    const auto& known = names(scene::kind(*object));
+    const auto place = known.find(scene::name(*object));
+    if (place == known.end() || place->second.size() != 1) return full_path(scene, id);
     return std::string(kind_word(scene::kind(*object))) + "/" + in_quotes(scene::name(*object));
 }
 
@@ -132,11 +132,11 @@ ObjectId PathBook::read_id(const scene::Scene& scene, ObjectKind kind, const Wor
 }
 
 ObjectId PathBook::read_name(const scene::Scene& scene, ObjectKind kind, const Word& name) const {
-    const auto& names = names_[static_cast<std::size_t>(kind)];
-    const auto place = names.find(name.text());
-    if (place == names.end()) {
+    const auto& known = names(kind);
+    const auto place = known.find(name.text());
+    if (place == known.end()) {
         std::vector<std::string> candidates;
-        for (const auto& [candidate, unused] : names) candidates.push_back(candidate);
+        for (const auto& [candidate, unused] : known) candidates.push_back(candidate);
         const std::string nearest = did_you_mean(name.text(), candidates);
         throw ScriptError(
             name.column(),

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <map>
 #include <set>
 #include <string>
@@ -12,10 +11,8 @@
 
 namespace tessera::edit {
 
-inline constexpr std::size_t KindCount = std::variant_size_v<scene::Object>;
-
 std::string_view kind_word(scene::ObjectKind kind);  // "materials"; "root"
-const std::vector<std::string>& kind_words();        // in the order of ObjectKind
+const std::vector<std::string>& kind_words();        // in the order of scene::Kinds
 scene::ObjectKind read_kind(const Word& word);       // also "material"; throws ScriptError
 bool is_kind(std::string_view word, scene::ObjectKind& kind);
 
@@ -37,7 +34,9 @@ class PathBook {
     ObjectId read(const scene::Scene& scene, const Word& word) const;
 
     const std::map<std::string, std::set<ObjectId>>& names(scene::ObjectKind kind) const {
-        return names_[static_cast<std::size_t>(kind)];
+        static const std::map<std::string, std::set<ObjectId>> None;
+        const auto place = names_.find(kind);
+        return place == names_.end() ? None : place->second;
     }
 
   private:
@@ -45,7 +44,7 @@ class PathBook {
                      std::size_t at) const;
     ObjectId read_name(const scene::Scene& scene, scene::ObjectKind kind, const Word& name) const;
 
-    std::array<std::map<std::string, std::set<ObjectId>>, KindCount> names_;
+    std::map<scene::ObjectKind, std::map<std::string, std::set<ObjectId>>> names_;
 };
 
 }  // namespace tessera::edit

@@ -1,5 +1,7 @@
 #include "client/edit/rehearsal.h"
 
+#include <functional>
+
 #include "client/edit/script_error.h"
 #include "mediator/scene/fields.h"
 #include "mediator/scene/validate.h"
@@ -74,7 +76,7 @@ void Rehearsal::act(std::function<Expected<std::string>(EditTarget&)> run) {
     (waits ? late_ : steps_).push_back(Action{line_, std::move(run)});
 }
 
-std::uint32_t Rehearsal::uncommitted_fields(ObjectId id) const {
+scene::FieldMask Rehearsal::uncommitted_fields(ObjectId id) const {
     const auto place = touched_.find(id);
     const scene::Object* now = scene_.find(id);
     if (actions_ == Actions::Late || place == touched_.end() || now == nullptr) return 0;

@@ -52,7 +52,7 @@ class Rehearsal {
     bool has_edits() const { return !touched_.empty(); }
     // Of the object, those that an action at this place would not yet find at the target; all bits when it is
     // new.
-    std::uint32_t uncommitted_fields(ObjectId id) const;
+    scene::FieldMask uncommitted_fields(ObjectId id) const;
     void begin();     // throws ScriptError when a transaction is open that holds edits
     void commit();    // throws ScriptError, naming the line, when the scene would not be valid
     void rollback();  // to the last commit

@@ -8,62 +8,6 @@
 
 namespace tessera::edit {
 
-template <>
-const std::vector<std::string>& enumerators<scene::MotionHint>() {
-    static const std::vector<std::string> Names{"unflagged", "static", "animated"};
-    return Names;
-}
-template <>
-const std::vector<std::string>& enumerators<scene::AlphaMode>() {
-    static const std::vector<std::string> Names{"opaque", "mask", "blend"};
-    return Names;
-}
-template <>
-const std::vector<std::string>& enumerators<scene::TexelFormat>() {
-    static const std::vector<std::string> Names{"rgba8", "rgba8_srgb", "rgb_float"};
-    return Names;
-}
-template <>
-const std::vector<std::string>& enumerators<scene::Wrap>() {
-    static const std::vector<std::string> Names{"repeat", "mirror", "clamp"};
-    return Names;
-}
-template <>
-const std::vector<std::string>& enumerators<scene::TextureFilter>() {
-    static const std::vector<std::string> Names{"linear", "nearest"};
-    return Names;
-}
-template <>
-const std::vector<std::string>& enumerators<scene::LightKind>() {
-    static const std::vector<std::string> Names{"point", "spot", "directional", "sphere", "quad"};
-    return Names;
-}
-template <>
-const std::vector<std::string>& enumerators<scene::Projection>() {
-    static const std::vector<std::string> Names{"perspective", "orthographic"};
-    return Names;
-}
-template <>
-const std::vector<std::string>& enumerators<scene::Aperture>() {
-    static const std::vector<std::string> Names{"uniform", "gaussian"};
-    return Names;
-}
-template <>
-const std::vector<std::string>& enumerators<scene::VisibleBackground>() {
-    static const std::vector<std::string> Names{"environment", "color"};
-    return Names;
-}
-template <>
-const std::vector<std::string>& enumerators<scene::NormalFormat>() {
-    static const std::vector<std::string> Names{"unorm", "snorm"};
-    return Names;
-}
-template <>
-const std::vector<std::string>& enumerators<scene::NormalSpace>() {
-    static const std::vector<std::string> Names{"tangent", "object"};
-    return Names;
-}
-
 double read_number(const Word& word) {
     double value = 0.0;
     const std::string& text = word.text();

@@ -10,9 +10,11 @@
 // Private to values.cpp and value_reader.cpp: one function for each type of field.
 namespace tessera::edit {
 
-// The names of an enumeration's values, in order.
-template <class E>
-const std::vector<std::string>& enumerators();
+template <Enumerated E>
+std::vector<std::string> words_of() {
+    const auto names = enumerators(E{});
+    return {names.begin(), names.end()};
+}
 
 // The pieces of one value. Throws ScriptError when there are too few, too many or wrong ones.
 class ValueReader {
@@ -39,7 +41,7 @@ class ValueReader {
     void read(std::vector<scene::BlobRef>& value);
     template <class E>
     requires std::is_enum_v<E>
-    void read(E& value) { value = static_cast<E>(choice(enumerators<E>())); }
+    void read(E& value) { value = static_cast<E>(choice(words_of<E>())); }
 
     void expect_end() const;
 

@@ -7,6 +7,7 @@
 #include "client/edit/value_reader.h"
 #include "mediator/base/nearest.h"
 #include "mediator/scene/fields.h"
+#include "mediator/scene/validate_object.h"
 
 namespace tessera::edit {
 namespace {
@@ -24,39 +25,40 @@ std::string alternatives(const std::vector<std::string>& words) {
 template <class V>
 ValueForm form_of() {
     if constexpr (std::is_same_v<V, std::string>) {
-        return {"a text, in quotes when it has blanks", {}};
+        return {"a text, in quotes when it has blanks", "", {}};
     } else if constexpr (std::is_same_v<V, bool>) {
-        return {"true or false", {"true", "false"}};
+        return {"true or false", "", {"true", "false"}};
     } else if constexpr (std::is_same_v<V, std::uint32_t> || std::is_same_v<V, std::int32_t>) {
-        return {"a whole number", {}};
+        return {"a whole number", "", {}};
     } else if constexpr (std::is_arithmetic_v<V>) {
-        return {"a number", {}};
+        return {"a number", "", {}};
     } else if constexpr (std::is_same_v<V, glm::vec2>) {
-        return {"2 numbers, or 1 for both", {}};
+        return {"2 numbers, or 1 for both", "", {}};
     } else if constexpr (std::is_same_v<V, glm::vec3>) {
-        return {"3 numbers, or 1 for all", {}};
+        return {"3 numbers, or 1 for all", "", {}};
     } else if constexpr (std::is_same_v<V, glm::vec4>) {
-        return {"3 or 4 numbers (alpha stays when it is left out)", {}};
+        return {"3 or 4 numbers (alpha stays when it is left out)", "", {}};
     } else if constexpr (std::is_same_v<V, glm::dvec3>) {
-        return {"3 numbers", {}};
+        return {"3 numbers", "", {}};
     } else if constexpr (std::is_same_v<V, glm::dmat4>) {
-        return {"identity, or 16 numbers column by column", {"identity"}};
+        return {"identity, or 16 numbers column by column", "", {"identity"}};
     } else if constexpr (std::is_same_v<V, std::vector<glm::dmat4>>) {
-        return {"none, or up to 15 matrices of 16 numbers column by column", {"none", "identity"}};
+        return {"none, or up to 15 matrices of 16 numbers column by column", "", {"none", "identity"}};
     } else if constexpr (std::is_same_v<V, ObjectId>) {
-        return {"a path, or none", {"none"}, true};
+        return {"a path, or none", "", {"none"}, true};
     } else if constexpr (std::is_same_v<V, std::vector<ObjectId>>) {
-        return {"paths, or none", {"none"}, true};
+        return {"paths, or none", "", {"none"}, true};
     } else if constexpr (std::is_same_v<V, scene::TextureSlot>) {
         return {"a texture's path or none, then offset=U,V scale=U,V rotation=RADIANS set=0|1 as needed",
+                "",
                 {"none", "offset=", "scale=", "rotation=", "set="},
                 true};
     } else if constexpr (std::is_same_v<V, scene::BlobRef> ||
                          std::is_same_v<V, std::vector<scene::BlobRef>>) {
-        return {"bytes, which cannot be typed: they come with 'load'", {}, false, false};
+        return {"bytes, which cannot be typed: they come with 'load'", "", {}, false, false};
     } else {
         static_assert(std::is_enum_v<V>, "a new type of field needs a form, a reader and a text");
-        return {alternatives(enumerators<V>()), enumerators<V>()};
+        return {alternatives(words_of<V>()), "", words_of<V>()};
     }
 }
 
@@ -106,53 +108,69 @@ std::string text_of(const V& value, const WritePath& write_path) {
         if (value.empty()) return "no bytes";
         return std::to_string(value.size()) + " steps of " + std::to_string(value[0].byte_size) + " bytes";
     } else if constexpr (std::is_enum_v<V>) {
-        const auto& names = enumerators<V>();
-        const auto index = static_cast<std::size_t>(value);
-        return index < names.size() ? names[index] : std::to_string(index);
+        const std::string_view name = enumerator_name(value);
+        return name.empty() ? std::to_string(static_cast<int>(value)) : std::string(name);
     } else {
         return components(value);
     }
 }
 
-// Calls visit(object, pointer to member) for the field.
+// Calls visit(row) for the field's row.
+template <class T, class Visitor>
+void with_row(unsigned field, const Visitor& visit) {
+    for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
+        if (row_of<T, I>.number - 1 == field) visit(row_of<T, I>);
+    });
+}
+
+// Calls visit(value) for the field of the object.
 template <class O, class Visitor>
 void with_field(O& object, unsigned field, const Visitor& visit) {
     std::visit(
         [&]<class T>(T& value) {
-            scene::for_each_field<std::remove_const_t<T>>([&](unsigned index, auto member) {
-                if (index == field) visit(value.*member);
-            });
+            with_row<std::remove_const_t<T>>(field, [&](const auto& row) { visit(row.of(value)); });
         },
         object);
+}
+
+// Range, unit and what the row says about the field; each behind a comma or a semicolon.
+template <class Row>
+std::string notes_of(const Row& row) {
+    std::string text;
+    if constexpr (Row::template has<scene::Range>)
+        text += ", " + scene::text_of(row.template note<scene::Range>());
+    if constexpr (Row::template has<scene::Unit>)
+        text += ", in " + std::string(row.template note<scene::Unit>().symbol);
+    if constexpr (Row::template has<scene::About>)
+        text += "; " + std::string(row.template note<scene::About>().text);
+    return text;
 }
 
 }  // namespace
 
 scene::Object default_object(ObjectKind kind) {
     scene::Object object;
-    const auto make = [&]<std::size_t... I>(std::index_sequence<I...>) {
-        ((static_cast<std::size_t>(kind) == I ? (void)object.emplace<I>() : void()), ...);
-    };
-    make(std::make_index_sequence<KindCount>());
+    scene::with_kind(kind, [&]<class T>() { object = T{}; });
     return object;
 }
 
-unsigned field_count(ObjectKind kind) {
-    return std::visit(
-        []<class T>(const T&) { return static_cast<unsigned>(std::tuple_size_v<decltype(T::fields())>); },
-        default_object(kind));
+std::vector<unsigned> fields_of(ObjectKind kind) {
+    std::vector<unsigned> fields;
+    scene::with_kind(kind, [&]<class T>() {
+        scene::for_each_field<T>([&](unsigned index, auto) { fields.push_back(index); });
+    });
+    return fields;
 }
 
 std::vector<std::string> field_names(ObjectKind kind) {
     std::vector<std::string> names;
-    for (unsigned field = 0; field < field_count(kind); ++field)
-        names.emplace_back(scene::field_name(kind, field));
+    for (const unsigned field : fields_of(kind)) names.emplace_back(scene::field_name(kind, field));
     return names;
 }
 
 std::optional<unsigned> find_field(ObjectKind kind, std::string_view name) {
     if (kind == ObjectKind::Material && name == "diffuse") name = "base_color";
-    for (unsigned field = 0; field < field_count(kind); ++field) {
+    for (const unsigned field : fields_of(kind)) {
         if (scene::field_name(kind, field) == name) return field;
     }
     return std::nullopt;
@@ -170,8 +188,12 @@ unsigned read_field(ObjectKind kind, const Word& name) {
 
 ValueForm value_form(ObjectKind kind, unsigned field) {
     ValueForm form;
-    scene::Object object = default_object(kind);
-    with_field(object, field, [&]<class V>(V&) { form = form_of<V>(); });
+    scene::with_kind(kind, [&]<class T>() {
+        with_row<T>(field, [&](const auto& row) {
+            form = form_of<std::decay_t<decltype(row.of(std::declval<T&>()))>>();
+            form.notes = notes_of(row);
+        });
+    });
     return form;
 }
 

@@ -14,11 +14,11 @@
 // The fields of objects as text.
 namespace tessera::edit {
 
-// By the name in mediator/scene/fields.h; `diffuse` is another one for a material's base_color.
+// By the name in its row; `diffuse` is another one for a material's base_color.
 std::optional<unsigned> find_field(scene::ObjectKind kind, std::string_view name);
 unsigned read_field(scene::ObjectKind kind, const Word& name);  // throws ScriptError with the nearest one
 std::vector<std::string> field_names(scene::ObjectKind kind);
-unsigned field_count(scene::ObjectKind kind);
+std::vector<unsigned> fields_of(scene::ObjectKind kind);  // their indices, in the order of the rows
 
 // Reads the words as the field's new value. Numbers may stand in one word with commas between them. What a
 // value leaves out stays: alpha behind three numbers, the parts of a texture slot that are not named. Throws
@@ -34,6 +34,7 @@ std::string value_text(const scene::Object& object, unsigned field, const WriteP
 // What may be written for a field: for help and for completion.
 struct ValueForm {
     std::string text;                // "3 or 4 numbers", "opaque, mask or blend"
+    std::string notes;               // ", from 0 to 1; half angle"
     std::vector<std::string> words;  // enumerators, true and false, none, identity, offset= ...
     bool takes_paths = false;
     bool is_settable = true;

@@ -28,8 +28,7 @@ void change_matrix(Rehearsal& rehearsal, const Word& path, const Change& change)
     scene::Transform transform = *present;
     change(transform.matrix);
     using Fields = scene::Fields<scene::Transform>;
-    rehearsal.apply(
-        {scene::Update{id, Fields(scene::Transform::Field::Matrix).bits(), std::move(transform)}});
+    rehearsal.apply({scene::Update{id, Fields(&scene::Transform::matrix).bits(), std::move(transform)}});
 }
 
 std::vector<double> numbers(const std::vector<Word>& words) {

@@ -97,7 +97,7 @@ void load_file(Rehearsal& rehearsal, const Arguments& given, std::size_t end) {
         if (parent == scene::RootId) with_background = std::get<scene::Root>(update.fields);
         with_background.background = ids.at(imported->root.background);
         using Fields = scene::Fields<scene::Root>;
-        const scene::FieldMask mask = Fields(scene::Root::Field::Background).bits();
+        const scene::FieldMask mask = Fields(&scene::Root::background).bits();
         if (parent == scene::RootId) {
             update = {scene::RootId, update.mask | mask, std::move(with_background)};
         } else {

@@ -15,8 +15,7 @@ namespace {
 using scene::ObjectKind;
 
 bool is_placed(ObjectKind kind) {
-    return kind == ObjectKind::Transform || kind == ObjectKind::Geometry || kind == ObjectKind::Light ||
-           kind == ObjectKind::Camera || kind == ObjectKind::Attachment;
+    return (scene::PlacedKinds & scene::bit(kind)) != 0;
 }
 
 void expect_placed(const Rehearsal& rehearsal, ObjectId id, const Word& path) {

@@ -15,10 +15,9 @@ using scene::ObjectKind;
 void print_names(Rehearsal& rehearsal, std::string_view kind_pattern, std::string_view name_pattern) {
     const scene::Scene& scene = rehearsal.scene();
     std::string text;
-    for (std::size_t i = 0; i < KindCount; ++i) {
-        const auto kind = static_cast<ObjectKind>(i);
-        if (!matches(kind_pattern, kind_word(kind))) continue;
-        for (const auto& [name, ids] : rehearsal.book().names(kind)) {
+    for (const scene::KindRow& row : scene::Kinds) {
+        if (!matches(kind_pattern, row.plural)) continue;
+        for (const auto& [name, ids] : rehearsal.book().names(row.kind)) {
             if (!matches(name_pattern, name)) continue;
             for (const ObjectId id : ids) text += rehearsal.book().path(scene, id) + "\n";
         }
@@ -121,9 +120,9 @@ void show_object(Rehearsal& rehearsal, const Arguments& arguments, std::size_t) 
     const scene::Scene& scene = rehearsal.scene();
     const scene::Object& object = *scene.find(id);
     const ObjectKind kind = scene::kind(object);
-    const std::uint32_t uncommitted = rehearsal.uncommitted_fields(id);
+    const scene::FieldMask uncommitted = rehearsal.uncommitted_fields(id);
     std::vector<ShownField> fields;
-    for (unsigned field = 0; field < field_count(kind); ++field) {
+    for (const unsigned field : fields_of(kind)) {
         const std::string name(scene::field_name(kind, field));
         fields.push_back({name + std::string(name.size() < 27 ? 28 - name.size() : 1, ' ') +
                               value_text(object, field, [&](ObjectId to) { return rehearsal.path(to); }),
@@ -131,7 +130,7 @@ void show_object(Rehearsal& rehearsal, const Arguments& arguments, std::size_t) 
     }
     const std::string title = rehearsal.book().full_path(scene, id);
     // Who wrote what is the master's to know, so it is asked when the line is done in earnest.
-    const bool is_new = uncommitted == ~0u;
+    const bool is_new = uncommitted == ~scene::FieldMask{0};
     rehearsal.act([title, fields, id, is_new](EditTarget& target) -> Expected<std::string> {
         if (is_new) return shown(title, fields, {});
         const auto writers = target.writers(id);

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "client/export/glb_text.h"
-#include "client/import/gltf_extras.h"
 
 namespace tessera::exporting {
 namespace {
@@ -32,7 +31,7 @@ Value value_of(const glm::vec<N, float>& numbers) {
 }
 template <class E>
 requires std::is_enum_v<E> Value value_of(E value) {
-    return Value(std::string(import::words<E>()[static_cast<std::size_t>(value)]));
+    return Value(std::string(enumerator_name(value)));
 }
 
 }  // namespace
@@ -40,13 +39,15 @@ requires std::is_enum_v<E> Value value_of(E value) {
 template <class T>
 Value extras_of(const T& object, scene::Fields<T> mask, const WriteSlot& write_slot) {
     Value::Object members;
-    scene::for_each_field<T>([&](unsigned field, auto member) {
-        if (!mask.contains(static_cast<typename T::Field>(field))) return;
-        const std::string name(scene::field_name(scene::kind(scene::Object(object)), field));
-        if constexpr (std::is_same_v<std::decay_t<decltype(object.*member)>, scene::TextureSlot>) {
-            if (auto slot = write_slot ? write_slot(object.*member) : std::nullopt) members[name] = *slot;
+    for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
+        constexpr auto& row = row_of<T, I>;
+        if (!mask.contains(row.access)) return;
+        const auto& value = row.of(object);
+        const std::string name(row.name);
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, scene::TextureSlot>) {
+            if (auto slot = write_slot ? write_slot(value) : std::nullopt) members[name] = *slot;
         } else {
-            members[name] = value_of(object.*member);
+            members[name] = value_of(value);
         }
     });
     return Value(std::move(members));
@@ -64,6 +65,7 @@ template Value extras_of(const scene::Material&, scene::Fields<scene::Material>,
 template Value extras_of(const scene::SurfaceShader&, scene::Fields<scene::SurfaceShader>, const WriteSlot&);
 template Value extras_of(const scene::Medium&, scene::Fields<scene::Medium>, const WriteSlot&);
 template scene::Fields<scene::Light> fields_beside(const scene::Light&, const scene::Light&);
+template scene::Fields<scene::Material> fields_beside(const scene::Material&, const scene::Material&);
 template scene::Fields<scene::Camera> fields_beside(const scene::Camera&, const scene::Camera&);
 
 }  // namespace tessera::exporting

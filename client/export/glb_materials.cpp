@@ -8,6 +8,7 @@
 #include "client/export/glb_extras.h"
 #include "client/export/glb_text.h"
 #include "client/export/nearest_material.h"
+#include "client/import/gltf_extensions.h"
 #include "client/import/gltf_extras.h"
 #include "mediator/picture/png_writer.h"
 
@@ -85,12 +86,10 @@ WriteSlot GlbMaterials::slots() {
 }
 
 tinygltf::Material GlbMaterials::make(const scene::SurfaceShader& shader) {
-    using Field = scene::SurfaceShader::Field;
     tinygltf::Material made = make(nearest_material(shader));
     // All but the name: it stands in the material.
-    const auto all = scene::Fields<scene::SurfaceShader>::all().bits() &
-                     ~scene::field_bit(static_cast<unsigned>(Field::Name));
-    const auto fields = scene::Fields<scene::SurfaceShader>::from_bits(all);
+    const auto fields = scene::Fields<scene::SurfaceShader>::from_bits(
+        ~scene::Fields<scene::SurfaceShader>(&scene::SurfaceShader::name).bits());
     made.extras = Value(Object{{import::ShaderExtras, extras_of(shader, fields, slots())}});
     return made;
 }
@@ -122,11 +121,11 @@ tinygltf::Material GlbMaterials::make(const scene::Material& material) {
     made.alphaCutoff = material.alpha_cutoff;
     made.doubleSided = material.double_sided;
     add_extensions(made, material);
-    if (material.shadow_catcher) {
-        using Field = scene::Material::Field;
-        made.extras = Value(
-            Object{{import::MaterialExtras, extras_of<scene::Material>(material, Field::ShadowCatcher)}});
-    }
+    const auto own = scene::Fields<scene::Material>::from_bits(
+        scene::Fields<scene::Material>::with<scene::BesideGltf>().bits() &
+        fields_beside(material, scene::Material{}).bits());
+    if (!own.empty())
+        made.extras = Value(Object{{import::MaterialExtras, extras_of(material, own, slots())}});
     return made;
 }
 
@@ -159,83 +158,30 @@ std::optional<Value> GlbMaterials::info_of(const scene::TextureSlot& slot, float
     return Value(std::move(info));
 }
 
-// An extension on its way into a file: only what is not its default.
-class GlbMaterials::Extension {
-  public:
-    Extension(GlbMaterials& owner, const char* name) : owner_(owner), name_(name) {}
-
-    void number(const char* member, float value, float otherwise) {
-        if (value != otherwise) members_[member] = Value(double{value});
+// Only what is not the default.
+void GlbMaterials::add_extensions(tinygltf::Material& made, const scene::Material& material) {
+    std::map<std::string, Object> extensions;
+    if (material.unlit) extensions["KHR_materials_unlit"] = {};
+    for (const import::GltfMember& member : import::gltf_members()) {
+        std::optional<Value> value;
+        if (const auto* color = std::get_if<glm::vec3 scene::Material::*>(&member.field)) {
+            const glm::vec3& v = material.*(*color);
+            if (v != scene::Material{}.*(*color))
+                value = Value(Value::Array{Value(double{v.x}), Value(double{v.y}), Value(double{v.z})});
+        } else if (const auto* factor = std::get_if<float scene::Material::*>(&member.field)) {
+            if (material.*(*factor) != scene::Material{}.*(*factor))
+                value = Value(double{material.*(*factor)});
+        } else {
+            const auto field = std::get<scene::TextureSlot scene::Material::*>(member.field);
+            const bool is_coat = field == &scene::Material::clearcoat_normal_texture;
+            value = info_of(material.*field, is_coat ? material.clearcoat_normal_scale : 1.0f);
+        }
+        if (value) extensions[member.extension][member.name] = *value;
     }
-    void color(const char* member, const glm::vec3& value, float otherwise) {
-        if (value == glm::vec3(otherwise)) return;
-        members_[member] =
-            Value(Value::Array{Value(double{value.x}), Value(double{value.y}), Value(double{value.z})});
+    for (auto& [name, members] : extensions) {
+        made.extensions[name] = Value(std::move(members));
+        uses(name.c_str());
     }
-    void texture(const char* member, const scene::TextureSlot& slot, float scale = 1.0f) {
-        if (auto info = owner_.info_of(slot, scale)) members_[member] = *info;
-    }
-    void write(tinygltf::Material& to) {
-        if (members_.empty()) return;
-        to.extensions[name_] = Value(std::move(members_));
-        owner_.uses(name_);
-    }
-
-  private:
-    GlbMaterials& owner_;
-    const char* name_;
-    Object members_;
-};
-
-void GlbMaterials::add_extensions(tinygltf::Material& made, const scene::Material& m) {
-    if (m.unlit) {
-        made.extensions["KHR_materials_unlit"] = Value(Object{});
-        uses("KHR_materials_unlit");
-    }
-    Extension index(*this, "KHR_materials_ior");
-    index.number("ior", m.index_of_refraction, 1.5f);
-    index.write(made);
-    Extension transmission(*this, "KHR_materials_transmission");
-    transmission.number("transmissionFactor", m.transmission, 0.0f);
-    transmission.texture("transmissionTexture", m.transmission_texture);
-    transmission.write(made);
-    Extension volume(*this, "KHR_materials_volume");
-    volume.number("thicknessFactor", m.thickness, 0.0f);
-    volume.number("attenuationDistance", m.attenuation_distance, 0.0f);
-    volume.color("attenuationColor", m.attenuation_color, 1.0f);
-    volume.write(made);
-    Extension specular(*this, "KHR_materials_specular");
-    specular.number("specularFactor", m.specular, 1.0f);
-    specular.texture("specularTexture", m.specular_texture);
-    specular.color("specularColorFactor", m.specular_color, 1.0f);
-    specular.texture("specularColorTexture", m.specular_color_texture);
-    specular.write(made);
-    Extension coat(*this, "KHR_materials_clearcoat");
-    coat.number("clearcoatFactor", m.clearcoat, 0.0f);
-    coat.texture("clearcoatTexture", m.clearcoat_texture);
-    coat.number("clearcoatRoughnessFactor", m.clearcoat_roughness, 0.0f);
-    coat.texture("clearcoatRoughnessTexture", m.clearcoat_roughness_texture);
-    coat.texture("clearcoatNormalTexture", m.clearcoat_normal_texture, m.clearcoat_normal_scale);
-    coat.write(made);
-    Extension sheen(*this, "KHR_materials_sheen");
-    sheen.color("sheenColorFactor", m.sheen_color, 0.0f);
-    sheen.texture("sheenColorTexture", m.sheen_color_texture);
-    sheen.number("sheenRoughnessFactor", m.sheen_roughness, 0.0f);
-    sheen.texture("sheenRoughnessTexture", m.sheen_roughness_texture);
-    sheen.write(made);
-    Extension anisotropy(*this, "KHR_materials_anisotropy");
-    anisotropy.number("anisotropyStrength", m.anisotropy, 0.0f);
-    anisotropy.number("anisotropyRotation", m.anisotropy_rotation, 0.0f);
-    anisotropy.texture("anisotropyTexture", m.anisotropy_texture);
-    anisotropy.write(made);
-    Extension iridescence(*this, "KHR_materials_iridescence");
-    iridescence.number("iridescenceFactor", m.iridescence, 0.0f);
-    iridescence.texture("iridescenceTexture", m.iridescence_texture);
-    iridescence.number("iridescenceIor", m.iridescence_index_of_refraction, 1.3f);
-    iridescence.number("iridescenceThicknessMinimum", m.iridescence_thickness_minimum, 100.0f);
-    iridescence.number("iridescenceThicknessMaximum", m.iridescence_thickness_maximum, 400.0f);
-    iridescence.texture("iridescenceThicknessTexture", m.iridescence_thickness_texture);
-    iridescence.write(made);
 }
 
 std::optional<int> GlbMaterials::texture(ObjectId id) {

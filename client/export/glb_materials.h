@@ -32,7 +32,6 @@ class GlbMaterials {
     tinygltf::Material make(const scene::SurfaceShader& shader);
     WriteSlot slots();
     std::optional<tinygltf::Value> info_of(const scene::TextureSlot& slot, float scale = 1.0f);
-    class Extension;
     void add_extensions(tinygltf::Material& made, const scene::Material& material);
     std::optional<tinygltf::Value> transform_of(const scene::TextureSlot& slot);  // none: as it is
     template <class Info>

@@ -19,13 +19,13 @@ struct Elements {
     const unsigned char* at(std::size_t i) const { return bytes.data() + i * stride; }
 };
 
-[[noreturn]] void reject(int accessor, const std::string& cause) {
+[[noreturn]] void reject_accessor(int accessor, const std::string& cause) {
     throw Error(ErrorCode::InvalidInput, "accessor " + std::to_string(accessor) + " " + cause);
 }
 
 const tinygltf::Accessor& find(const tinygltf::Model& model, int accessor) {
     if (accessor < 0 || static_cast<std::size_t>(accessor) >= model.accessors.size()) {
-        reject(accessor, "is missing: there are " + std::to_string(model.accessors.size()));
+        reject_accessor(accessor, "is missing: there are " + std::to_string(model.accessors.size()));
     }
     return model.accessors[static_cast<std::size_t>(accessor)];
 }
@@ -114,12 +114,12 @@ Elements elements(const GltfAccessors& accessors, const tinygltf::Model& model, 
     const std::span<const unsigned char> bytes = accessors.view(buffer_view);
     std::uint64_t stride = model.bufferViews[static_cast<std::size_t>(buffer_view)].byteStride;
     if (stride == 0) stride = element_size;
-    if (stride < element_size) reject(accessor, "has a stride smaller than its elements");
+    if (stride < element_size) reject_accessor(accessor, "has a stride smaller than its elements");
     // count <= MaxElements and stride <= 252, so nothing here can overflow.
     if (count > MaxElements || offset > bytes.size() ||
         (count > 0 && (count - 1) * stride + element_size > bytes.size() - offset)) {
-        reject(accessor, "wants " + std::to_string(count) + " elements from a buffer view of " +
-                             std::to_string(bytes.size()) + " bytes");
+        reject_accessor(accessor, "wants " + std::to_string(count) + " elements from a buffer view of " +
+                                      std::to_string(bytes.size()) + " bytes");
     }
     return {bytes.subspan(offset), stride};
 }
@@ -128,14 +128,14 @@ std::vector<float> decode(const GltfAccessors& accessors, const tinygltf::Model&
                           std::size_t components) {
     const tinygltf::Accessor& accessor = find(model, index);
     const std::size_t size = component_size(accessor.componentType);
-    if (size == 0) reject(index, "has an unknown component type");
+    if (size == 0) reject_accessor(index, "has an unknown component type");
     if (component_count(accessor.type) != components) {
-        reject(index,
-               "does not have the " + std::to_string(components) + " components that its use asks for");
+        reject_accessor(
+            index, "does not have the " + std::to_string(components) + " components that its use asks for");
     }
     const bool backed = accessor.bufferView >= 0;
     if (accessor.count > (backed ? MaxElements : MaxUnbackedElements)) {
-        reject(index, "claims " + std::to_string(accessor.count) + " elements");
+        reject_accessor(index, "claims " + std::to_string(accessor.count) + " elements");
     }
     const std::size_t element_size = size * components;
     const auto convert = [&](const unsigned char* from, float* to) {
@@ -156,7 +156,7 @@ std::vector<float> decode(const GltfAccessors& accessors, const tinygltf::Model&
     if (sparse.count < 0 || static_cast<std::size_t>(sparse.count) > accessor.count ||
         !is_index_type(sparse.indices.componentType) || sparse.indices.byteOffset < 0 ||
         sparse.values.byteOffset < 0) {
-        reject(index, "has a sparse part with impossible numbers");
+        reject_accessor(index, "has a sparse part with impossible numbers");
     }
     const auto count = static_cast<std::size_t>(sparse.count);
     const Elements places = elements(accessors, model, index, sparse.indices.bufferView,
@@ -168,7 +168,7 @@ std::vector<float> decode(const GltfAccessors& accessors, const tinygltf::Model&
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t place = index_component(places.at(i), sparse.indices.componentType);
         if (place >= accessor.count)
-            reject(index, "replaces element " + std::to_string(place) + ", which it lacks");
+            reject_accessor(index, "replaces element " + std::to_string(place) + ", which it lacks");
         convert(replacements.at(i), &values[place * components]);
     }
     return values;
@@ -210,10 +210,10 @@ std::uint64_t GltfAccessors::count(int accessor) const {
 std::vector<std::uint32_t> GltfAccessors::indices(int index) const {
     const tinygltf::Accessor& accessor = find(model_, index);
     if (!is_index_type(accessor.componentType) || accessor.type != TINYGLTF_TYPE_SCALAR) {
-        reject(index, "is used for indices, but holds no unsigned integers");
+        reject_accessor(index, "is used for indices, but holds no unsigned integers");
     }
     if (accessor.sparse.isSparse || accessor.bufferView < 0)
-        reject(index, "holds indices without a buffer view");
+        reject_accessor(index, "holds indices without a buffer view");
     const std::size_t size = component_size(accessor.componentType);
     const Elements source =
         elements(*this, model_, index, accessor.bufferView, accessor.byteOffset, accessor.count, size);
@@ -248,7 +248,7 @@ std::vector<glm::u16vec4> GltfAccessors::joints(int index) const {
     const int type = accessor.componentType;
     if (accessor.normalized ||
         (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT)) {
-        reject(index, "is used for joints, but holds no unsigned 8 or 16 bit integers");
+        reject_accessor(index, "is used for joints, but holds no unsigned 8 or 16 bit integers");
     }
     std::vector<glm::u16vec4> joints;
     for (const glm::vec4& four : vec4(index)) joints.emplace_back(four);  // floats hold 16 bits exactly
@@ -257,7 +257,7 @@ std::vector<glm::u16vec4> GltfAccessors::joints(int index) const {
 
 std::vector<glm::dmat4> GltfAccessors::matrices(int index) const {
     if (find(model_, index).componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
-        reject(index, "is used for matrices, but holds no floats");
+        reject_accessor(index, "is used for matrices, but holds no floats");
     const std::vector<float> values = decode(*this, model_, index, 16);
     std::vector<glm::dmat4> matrices(values.size() / 16, glm::dmat4(1.0));
     for (std::size_t i = 0; i < values.size(); ++i) {

@@ -2,8 +2,6 @@
 
 #include <tiny_gltf.h>
 
-#include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "client/import/gltf_document.h"
@@ -14,13 +12,6 @@ namespace tessera::import {
 namespace {
 
 using tinygltf::Value;
-
-constexpr const char* Lights[] = {"point", "spot", "directional", "sphere", "quad"};
-constexpr const char* Projections[] = {"perspective", "orthographic"};
-constexpr const char* Apertures[] = {"uniform", "gaussian"};
-constexpr const char* AlphaModes[] = {"opaque", "mask", "blend"};
-constexpr const char* NormalFormats[] = {"unorm", "snorm"};
-constexpr const char* NormalSpaces[] = {"tangent", "object"};
 
 // Each gives whether the value is of that type.
 bool read(const Value& from, std::string& value) {
@@ -55,52 +46,12 @@ bool read(const Value& from, glm::vec<N, float>& value) {
 template <class E>
 requires std::is_enum_v<E>
 bool read(const Value& from, E& value) {
-    const auto known = words<E>();
-    const auto word = std::find(known.begin(), known.end(), from.IsString() ? from.Get<std::string>() : "");
-    if (word != known.end()) value = static_cast<E>(word - known.begin());
-    return word != known.end();
-}
-
-template <class T>
-TextureUse use_in(unsigned field) {
-    if constexpr (std::is_same_v<T, scene::SurfaceShader> || std::is_same_v<T, scene::Medium>)
-        return use_of(static_cast<typename T::Field>(field));
-    return TextureUse::Color;
-}
-
-// "light 0 ('lamp'): the radius ..." without whose it is.
-std::string cause_of(const std::string& problem) {
-    const std::size_t colon =
-        problem.find("): ") != std::string::npos ? problem.find("): ") + 1 : problem.find(": ");
-    return colon == std::string::npos ? problem : problem.substr(colon + 2);
+    const auto named = enumerator_named<E>(from.IsString() ? from.Get<std::string>() : "");
+    if (named) value = *named;
+    return named.has_value();
 }
 
 }  // namespace
-
-template <>
-std::span<const char* const> words<scene::LightKind>() {
-    return Lights;
-}
-template <>
-std::span<const char* const> words<scene::Projection>() {
-    return Projections;
-}
-template <>
-std::span<const char* const> words<scene::Aperture>() {
-    return Apertures;
-}
-template <>
-std::span<const char* const> words<scene::AlphaMode>() {
-    return AlphaModes;
-}
-template <>
-std::span<const char* const> words<scene::NormalFormat>() {
-    return NormalFormats;
-}
-template <>
-std::span<const char* const> words<scene::NormalSpace>() {
-    return NormalSpaces;
-}
 
 const Value* object_extras(const Value& extras, const char* name) {
     if (!extras.IsObject() || !extras.Has(name)) return nullptr;
@@ -108,41 +59,34 @@ const Value* object_extras(const Value& extras, const char* name) {
     return found.IsObject() ? &found : nullptr;
 }
 
-TextureUse use_of(scene::SurfaceShader::Field field) {
-    using enum scene::SurfaceShader::Field;
-    const bool is_data = field == ShininessTexture || field == AlphaTexture || field == NormalTexture ||
-                         field == HeightTexture;
-    return is_data ? TextureUse::Data : TextureUse::Color;
-}
-
-TextureUse use_of(scene::Medium::Field field) {
-    using enum scene::Medium::Field;
-    return field == AbsorptionTexture || field == ScatteringTexture ? TextureUse::Data : TextureUse::Color;
-}
-
 template <class T>
 void read_extras(const Value& from, T& object, const std::string& owner, SceneBuilder& builder,
                  const ReadSlot& read_slot) {
     std::set<std::string> unknown;
     for (const std::string& name : from.Keys()) unknown.insert(name);
-    scene::for_each_field<T>([&](unsigned field, auto member) {
-        const std::string name(scene::field_name(scene::kind(scene::Object(object)), field));
+    for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
+        constexpr auto& row = row_of<T, I>;
+        const std::string name(row.name);
         if (unknown.erase(name) == 0) return;
         T candidate = object;
+        auto& value = row.of(candidate);
         bool fits = false;
-        if constexpr (std::is_same_v<std::decay_t<decltype(candidate.*member)>, scene::TextureSlot>) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, scene::TextureSlot>) {
+            using Row = std::decay_t<decltype(row)>;
+            constexpr TextureUse use =
+                Row::template has<scene::DataTexels> ? TextureUse::Data : TextureUse::Color;
             fits = from.Get(name).IsObject() && read_slot != nullptr;
-            if (fits) candidate.*member = read_slot(from, name.c_str(), use_in<T>(field));
+            if (fits) value = read_slot(from, name.c_str(), use);
         } else {
-            fits = read(from.Get(name), candidate.*member);
+            fits = read(from.Get(name), value);
         }
-        const auto problems = scene::problems_of({}, candidate);
-        if (fits && problems.empty()) {
+        const auto causes = scene::causes_of(candidate);
+        if (fits && causes.empty()) {
             object = std::move(candidate);
             return;
         }
         builder.notice(owner + ": its " + name + " cannot be used (" +
-                       (fits ? cause_of(problems.front()) : "it is of another type") +
+                       (fits ? causes.front() : "it is of another type") +
                        "): its default is used, correct it");
     });
     if (unknown.empty()) return;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <span>
 #include <string>
 
 #include "client/import/scene_builder.h"
@@ -12,7 +11,7 @@ class Value;
 }
 
 // What glTF has no place for stands in its `extras`: objects whose members are fields of ours
-// (mediator/scene/fields.h). Numbers and flags are themselves, vectors arrays, enumerators words, textures
+// (mediator/scene/objects.h). Numbers and flags are themselves, vectors arrays, enumerators words, textures
 // glTF's textureInfo. Other programs see what glTF says instead.
 namespace tessera::import {
 
@@ -24,15 +23,8 @@ inline constexpr const char* MediaExtras = "tessera_media";            // of the
 inline constexpr const char* MediumExtras = "tessera_medium";          // of a primitive: which of them
 inline constexpr const char* DepthExtras = "tessera_depth";  // of a texture: slices, from the top down
 
-// The words of an enumeration, in the order of its values.
-template <class E>
-std::span<const char* const> words();
-
 // A member of extras that is an object; else null.
 const tinygltf::Value* object_extras(const tinygltf::Value& extras, const char* name);
-
-TextureUse use_of(scene::SurfaceShader::Field field);
-TextureUse use_of(scene::Medium::Field field);
 
 // A texture that a member of an object names.
 using ReadSlot =

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "client/import/gltf_extensions.h"
+
 namespace tessera::import {
 namespace {
 
@@ -20,20 +22,18 @@ struct Range {
 };
 constexpr Range Unit{};
 constexpr Range FromZero{0.0, 1e12};
-constexpr Range AboveZero{1e-12, 1e12};
 constexpr Range Any{-1e6, 1e6};  // beyond, texture coordinates have no digits left
-constexpr Range Index{1.0, 100.0};
 constexpr Range Scale{-1e3, 1e3};
 constexpr Range Whole{0.0, 2147483647.0};
 
 // A member, its owners before it. Owners have rules of their own, above.
 struct Rule {
-    const char* path;
+    std::string path;
     Type type;
     Range range{};
 };
 
-constexpr Rule OfMaterials[] = {
+const Rule OfMaterials[] = {
     {"pbrMetallicRoughness", Type::Object},
     {"pbrMetallicRoughness/baseColorFactor", Type::ColorAndAlpha, Unit},
     {"pbrMetallicRoughness/baseColorTexture", Type::Texture},
@@ -51,45 +51,9 @@ constexpr Rule OfMaterials[] = {
     {"extensions/KHR_materials_emissive_strength", Type::Object},
     {"extensions/KHR_materials_emissive_strength/emissiveStrength", Type::Number, FromZero},
     {"extensions/KHR_materials_unlit", Type::Object},
-    {"extensions/KHR_materials_ior", Type::Object},
-    {"extensions/KHR_materials_ior/ior", Type::Number, Index},
-    {"extensions/KHR_materials_transmission", Type::Object},
-    {"extensions/KHR_materials_transmission/transmissionFactor", Type::Number, Unit},
-    {"extensions/KHR_materials_transmission/transmissionTexture", Type::Texture},
-    {"extensions/KHR_materials_volume", Type::Object},
-    {"extensions/KHR_materials_volume/thicknessFactor", Type::Number, FromZero},
-    {"extensions/KHR_materials_volume/attenuationDistance", Type::Number, AboveZero},
-    {"extensions/KHR_materials_volume/attenuationColor", Type::Color, Unit},
-    {"extensions/KHR_materials_specular", Type::Object},
-    {"extensions/KHR_materials_specular/specularFactor", Type::Number, Unit},
-    {"extensions/KHR_materials_specular/specularTexture", Type::Texture},
-    {"extensions/KHR_materials_specular/specularColorFactor", Type::Color, FromZero},
-    {"extensions/KHR_materials_specular/specularColorTexture", Type::Texture},
-    {"extensions/KHR_materials_clearcoat", Type::Object},
-    {"extensions/KHR_materials_clearcoat/clearcoatFactor", Type::Number, Unit},
-    {"extensions/KHR_materials_clearcoat/clearcoatTexture", Type::Texture},
-    {"extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor", Type::Number, Unit},
-    {"extensions/KHR_materials_clearcoat/clearcoatRoughnessTexture", Type::Texture},
-    {"extensions/KHR_materials_clearcoat/clearcoatNormalTexture", Type::Texture},
-    {"extensions/KHR_materials_sheen", Type::Object},
-    {"extensions/KHR_materials_sheen/sheenColorFactor", Type::Color, Unit},
-    {"extensions/KHR_materials_sheen/sheenColorTexture", Type::Texture},
-    {"extensions/KHR_materials_sheen/sheenRoughnessFactor", Type::Number, Unit},
-    {"extensions/KHR_materials_sheen/sheenRoughnessTexture", Type::Texture},
-    {"extensions/KHR_materials_anisotropy", Type::Object},
-    {"extensions/KHR_materials_anisotropy/anisotropyStrength", Type::Number, Unit},
-    {"extensions/KHR_materials_anisotropy/anisotropyRotation", Type::Number, Any},
-    {"extensions/KHR_materials_anisotropy/anisotropyTexture", Type::Texture},
-    {"extensions/KHR_materials_iridescence", Type::Object},
-    {"extensions/KHR_materials_iridescence/iridescenceFactor", Type::Number, Unit},
-    {"extensions/KHR_materials_iridescence/iridescenceTexture", Type::Texture},
-    {"extensions/KHR_materials_iridescence/iridescenceIor", Type::Number, Index},
-    {"extensions/KHR_materials_iridescence/iridescenceThicknessMinimum", Type::Number, FromZero},
-    {"extensions/KHR_materials_iridescence/iridescenceThicknessMaximum", Type::Number, FromZero},
-    {"extensions/KHR_materials_iridescence/iridescenceThicknessTexture", Type::Texture},
 };
 
-constexpr Rule OfTextures[] = {
+const Rule OfTextures[] = {
     {"texCoord", Type::WholeNumber, Whole},
     {"scale", Type::Number, Scale},
     {"strength", Type::Number, Unit},
@@ -100,6 +64,21 @@ constexpr Rule OfTextures[] = {
     {"extensions/KHR_texture_transform/scale", Type::Pair, Any},
     {"extensions/KHR_texture_transform/texCoord", Type::WholeNumber, Whole},
 };
+
+// Of the extensions that stand in a table.
+std::vector<Rule> of_extensions() {
+    std::vector<Rule> rules;
+    std::string_view open;
+    for (const GltfMember& member : gltf_members()) {
+        const std::string extension = std::string("extensions/") + member.extension;
+        if (open != member.extension) rules.push_back({extension, Type::Object});
+        open = member.extension;
+        constexpr Type Types[] = {Type::Number, Type::Color, Type::Texture};  // as in GltfMember::field
+        rules.push_back(
+            {extension + "/" + member.name, Types[member.field.index()], {member.least, member.most}});
+    }
+    return rules;
+}
 
 bool is_whole(const json& value) {
     return value.is_number_integer() && value >= 0 && value <= Whole.highest;
@@ -127,7 +106,7 @@ std::string wrong(const json& value, const Rule& rule) {
         case Type::Number:
             if (!value.is_number()) return "no number";
             // KHR_materials_ior: 0 is a surface that reflects everything.
-            if (rule.path == std::string_view("extensions/KHR_materials_ior/ior") && value == 0.0) return "";
+            if (rule.path == "extensions/KHR_materials_ior/ior" && value == 0.0) return "";
             return numbers_wrong(json::array({value}), 1, rule.range);
         case Type::Pair:
             return numbers_wrong(value, 2, rule.range);
@@ -172,6 +151,7 @@ class Check {
                 name != material.end() && name->is_string() && !name->get_ref<const std::string&>().empty())
                 name_ = "material '" + name->get<std::string>().substr(0, 100) + "'";
             check(material, OfMaterials, "");
+            check(material, extensions_, "");
             tell_of_brightness(material);
         }
         if (others_ > 0) notices_.push_back(std::to_string(others_) + " other wrong values of materials");
@@ -181,7 +161,7 @@ class Check {
   private:
     void check(json& object, std::span<const Rule> rules, const std::string& owner) {
         for (const Rule& rule : rules) {
-            const json::json_pointer pointer("/" + std::string(rule.path));
+            const json::json_pointer pointer("/" + rule.path);
             if (!object.contains(pointer)) continue;
             json& value = object[pointer];
             const std::string path = owner + rule.path;
@@ -237,6 +217,7 @@ class Check {
     }
 
     json& materials_;
+    const std::vector<Rule> extensions_ = of_extensions();
     std::string name_;
     std::vector<std::string> notices_;
     std::size_t others_ = 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "client/import/gltf_extensions.h"
 #include "client/import/gltf_extras.h"
 #include "client/import/gltf_slots.h"
 #include "mediator/scene/fields.h"
@@ -19,84 +20,28 @@ float number(double value) {
     return static_cast<float>(value);
 }
 
-// The KHR_materials_* extensions of one material.
-class Extensions {
-  public:
-    Extensions(const tinygltf::Material& source, GltfSlots& slots)
-        : source_(source.extensions), slots_(slots) {}
-
-    void read(scene::Material& material) {
-        if (open("KHR_materials_unlit")) material.unlit = true;
-        if (open("KHR_materials_ior")) number("ior", material.index_of_refraction);
-        if (open("KHR_materials_transmission")) {
-            number("transmissionFactor", material.transmission);
-            texture("transmissionTexture", material.transmission_texture);
-        }
-        if (open("KHR_materials_volume")) {
-            number("thicknessFactor", material.thickness);
-            number("attenuationDistance", material.attenuation_distance);
-            color("attenuationColor", material.attenuation_color);
-        }
-        if (open("KHR_materials_specular")) {
-            number("specularFactor", material.specular);
-            texture("specularTexture", material.specular_texture);
-            color("specularColorFactor", material.specular_color);
-            texture("specularColorTexture", material.specular_color_texture, TextureUse::Color);
-        }
-        if (open("KHR_materials_clearcoat")) read_coat(material);
-        if (open("KHR_materials_sheen")) {
-            color("sheenColorFactor", material.sheen_color);
-            texture("sheenColorTexture", material.sheen_color_texture, TextureUse::Color);
-            number("sheenRoughnessFactor", material.sheen_roughness);
-            texture("sheenRoughnessTexture", material.sheen_roughness_texture);
-        }
-        if (open("KHR_materials_anisotropy")) {
-            number("anisotropyStrength", material.anisotropy);
-            number("anisotropyRotation", material.anisotropy_rotation);
-            texture("anisotropyTexture", material.anisotropy_texture);
-        }
-        if (open("KHR_materials_iridescence")) {
-            number("iridescenceFactor", material.iridescence);
-            texture("iridescenceTexture", material.iridescence_texture);
-            number("iridescenceIor", material.iridescence_index_of_refraction);
-            number("iridescenceThicknessMinimum", material.iridescence_thickness_minimum);
-            number("iridescenceThicknessMaximum", material.iridescence_thickness_maximum);
-            texture("iridescenceThicknessTexture", material.iridescence_thickness_texture);
+void read_extensions(const tinygltf::ExtensionMap& source, GltfSlots& slots, scene::Material& material) {
+    material.unlit = gltf_extension(source, "KHR_materials_unlit") != nullptr;
+    for (const GltfMember& member : gltf_members()) {
+        const tinygltf::Value* extension = gltf_extension(source, member.extension);
+        if (extension == nullptr || !extension->IsObject()) continue;
+        if (const auto* color = std::get_if<glm::vec3 scene::Material::*>(&member.field)) {
+            const std::vector<double> given = number_array(*extension, member.name);
+            for (glm::length_t i = 0; given.size() == 3 && i < 3; ++i)
+                (material.*(*color))[i] = number(given[static_cast<std::size_t>(i)]);
+        } else if (const auto* factor = std::get_if<float scene::Material::*>(&member.field)) {
+            float& value = material.*(*factor);
+            value = number(number_member(*extension, member.name, double{value}));
+        } else {
+            const auto field = std::get<scene::TextureSlot scene::Material::*>(member.field);
+            material.*field = slots.slot(*extension, member.name, use_of(field));
         }
     }
-
-  private:
-    bool open(const char* name) {
-        here_ = gltf_extension(source_, name);
-        return here_ != nullptr && here_->IsObject();
-    }
-    void number(const char* member, float& value) {
-        value = static_cast<float>(number_member(*here_, member, double{value}));
-    }
-    void color(const char* member, glm::vec3& value) {
-        const std::vector<double> given = number_array(*here_, member);
-        if (given.size() != 3) return;
-        for (int i = 0; i < 3; ++i) value[i] = static_cast<float>(given[static_cast<std::size_t>(i)]);
-    }
-    void texture(const char* member, scene::TextureSlot& slot, TextureUse use = TextureUse::Data) {
-        slot = slots_.slot(*here_, member, use);
-    }
-    void read_coat(scene::Material& material) {
-        number("clearcoatFactor", material.clearcoat);
-        texture("clearcoatTexture", material.clearcoat_texture);
-        number("clearcoatRoughnessFactor", material.clearcoat_roughness);
-        texture("clearcoatRoughnessTexture", material.clearcoat_roughness_texture);
-        texture("clearcoatNormalTexture", material.clearcoat_normal_texture);
-        if (!here_->Has("clearcoatNormalTexture")) return;
-        const tinygltf::Value& map = here_->Get("clearcoatNormalTexture");
-        if (map.IsObject())
-            material.clearcoat_normal_scale = static_cast<float>(number_member(map, "scale", 1.0));
-    }
-
-    const tinygltf::ExtensionMap& source_;
-    GltfSlots& slots_;
-    const tinygltf::Value* here_ = nullptr;
-};
+    const tinygltf::Value* coat = gltf_extension(source, "KHR_materials_clearcoat");
+    if (coat == nullptr || !coat->Has("clearcoatNormalTexture")) return;
+    const tinygltf::Value& map = coat->Get("clearcoatNormalTexture");
+    if (map.IsObject()) material.clearcoat_normal_scale = number(number_member(map, "scale", 1.0));
+}
 
 }  // namespace
 
@@ -199,7 +144,7 @@ GltfMaterial GltfMaterials::make(const tinygltf::Material& source, const std::st
     if (source.alphaMode == "BLEND") material.alpha_mode = scene::AlphaMode::Blend;
     material.alpha_cutoff = number(source.alphaCutoff);
     material.double_sided = source.doubleSided;
-    Extensions(source, slots).read(material);
+    read_extensions(source.extensions, slots, material);
     if (const auto* own = object_extras(source.extras, MaterialExtras))
         read_extras(*own, material, "material '" + name + "'", builder_, slots.reader());
     if (material.transmission > 0.0f &&

@@ -124,7 +124,7 @@ std::vector<scene::Entry> entries(const ImportedScene& scene, RootEntry root) {
     if (root == RootEntry::Create) {
         result.push_back(scene::Create{scene::RootId, scene.root});
     } else {
-        const scene::Fields<scene::Root> fields{scene::Root::Field::Children, scene::Root::Field::Background};
+        const scene::Fields<scene::Root> fields{&scene::Root::children, &scene::Root::background};
         result.push_back(scene::Update{scene::RootId, fields.bits(), scene.root});
     }
     result.insert(result.end(), scene.objects.begin(), scene.objects.end());

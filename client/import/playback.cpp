@@ -16,9 +16,9 @@ namespace {
 using scene::Geometry;
 using scene::Transform;
 
-constexpr std::uint32_t MatrixBit = scene::Fields<Transform>(Transform::Field::Matrix).bits();
-constexpr scene::FieldMask MotionBit = scene::Fields<Transform>(Transform::Field::Motion).bits();
-constexpr std::uint32_t ChildrenBit = scene::Fields<Transform>(Transform::Field::Children).bits();
+constexpr scene::FieldMask MatrixBit = scene::Fields<Transform>(&Transform::matrix).bits();
+constexpr scene::FieldMask MotionBit = scene::Fields<Transform>(&Transform::motion).bits();
+constexpr scene::FieldMask ChildrenBit = scene::Fields<Transform>(&Transform::children).bits();
 
 class Step {
   public:
@@ -129,30 +129,30 @@ class Step {
 
     void set_arrays(ObjectId id, const MeshData& mesh) {
         auto& geometry = std::get<Geometry>(object(id));
-        set_array(id, geometry.positions, mesh.positions, Geometry::Field::Positions);
-        set_array(id, geometry.normals, mesh.normals, Geometry::Field::Normals);
-        set_array(id, geometry.tangents, mesh.tangents, Geometry::Field::Tangents);
+        set_array(id, geometry.positions, mesh.positions, &Geometry::positions);
+        set_array(id, geometry.normals, mesh.normals, &Geometry::normals);
+        set_array(id, geometry.tangents, mesh.tangents, &Geometry::tangents);
     }
 
     template <class T>
     void set_array(ObjectId id, scene::BlobRef& reference, const std::vector<T>& values,
-                   Geometry::Field field) {
+                   scene::Fields<Geometry> field) {
         if (values.empty()) return;
         auto blob = std::make_shared<const scene::Blob>(std::as_bytes(std::span(values)));
         if (blob->hash() == reference.hash) return;
         reference = scene::reference(*blob);
-        changed_[id] |= scene::Fields<Geometry>(field).bits();
+        changed_[id] |= field.bits();
         made_.emplace(blob->hash(), std::move(blob));
     }
 
     void set_steps(ObjectId id, const Steps& steps) {
         auto& geometry = std::get<Geometry>(object(id));
-        set_list(id, geometry.motion_positions, steps.positions, Geometry::Field::MotionPositions);
-        set_list(id, geometry.motion_normals, steps.normals, Geometry::Field::MotionNormals);
+        set_list(id, geometry.motion_positions, steps.positions, &Geometry::motion_positions);
+        set_list(id, geometry.motion_normals, steps.normals, &Geometry::motion_normals);
     }
 
     void set_list(ObjectId id, std::vector<scene::BlobRef>& references,
-                  const std::vector<std::vector<glm::vec3>>& steps, Geometry::Field field) {
+                  const std::vector<std::vector<glm::vec3>>& steps, scene::Fields<Geometry> field) {
         std::vector<scene::BlobRef> now;
         for (const std::vector<glm::vec3>& step : steps) {
             auto blob = std::make_shared<const scene::Blob>(std::as_bytes(std::span(step)));
@@ -161,7 +161,7 @@ class Step {
         }
         if (now == references) return;
         references = std::move(now);
-        changed_[id] |= scene::Fields<Geometry>(field).bits();
+        changed_[id] |= field.bits();
     }
 
     // Those of the time before go, unless something else has them, too.

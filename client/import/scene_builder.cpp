@@ -55,7 +55,7 @@ ObjectId SceneBuilder::add(scene::Object object) {
                                                  std::to_string(result_.objects.size()) +
                                                  " objects that may be made: split the scene");
     }
-    const scene::ObjectKind kind = static_cast<scene::ObjectKind>(object.index());
+    const scene::ObjectKind kind = scene::kind(object);
     std::visit([&](auto& value) { value.name = unique_name(kind, value.name); }, object);
     result_.objects.push_back({id, std::move(object)});
     return id;

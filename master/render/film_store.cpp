@@ -1,6 +1,7 @@
 #include "master/render/film_store.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "mediator/wire/envelope.h"
 

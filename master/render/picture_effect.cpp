@@ -63,22 +63,19 @@ struct Matters {
         return any(Fields<T>::from_bits(~fields.bits()));
     }
     bool operator()(const Root&) const {
-        return any<Root>({Root::Field::Children, Root::Field::Background, Root::Field::RenderOrigin});
+        return any<Root>({&Root::children, &Root::background, &Root::render_origin});
     }
     bool operator()(const Transform&) const {
-        if (any<Transform>(Transform::Field::Children)) return true;
-        return any<Transform>(
-                   {Transform::Field::Matrix, Transform::Field::Motion, Transform::Field::Layers}) &&
+        if (any<Transform>(&Transform::children)) return true;
+        return any<Transform>({&Transform::matrix, &Transform::motion, &Transform::layers}) &&
                content.finds_any(update.id);
     }
-    bool operator()(const Geometry&) const {
-        return any_but<Geometry>({Geometry::Field::Name, Geometry::Field::Hint});
-    }
+    bool operator()(const Geometry&) const { return any_but<Geometry>({&Geometry::name, &Geometry::hint}); }
     bool operator()(const Camera&) const { return false; }
     bool operator()(const Attachment&) const { return false; }
     template <class Other>
     bool operator()(const Other&) const {
-        return any_but<Other>(Other::Field::Name);
+        return any_but<Other>(&Other::name);
     }
 };
 

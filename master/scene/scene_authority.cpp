@@ -298,8 +298,8 @@ std::optional<scene::ChangeList> SceneAuthority::follow_camera(const glm::dvec3&
         return {};
     scene::Root moved;
     moved.render_origin = glm::round(camera_position / RenderOriginCell) * RenderOriginCell;
-    const std::vector<scene::Entry> entries{scene::Update{
-        scene::RootId, scene::Fields<scene::Root>(scene::Root::Field::RenderOrigin).bits(), moved}};
+    const std::vector<scene::Entry> entries{
+        scene::Update{scene::RootId, scene::Fields<scene::Root>(&scene::Root::render_origin).bits(), moved}};
     const auto changes = scene::apply_and_observe(scene_, entries);
     if (!changes) throw changes.error();
     if (recorder_ && !recorder_->edited({.entries = entries, .state_hash = scene_.state_hash()})) {

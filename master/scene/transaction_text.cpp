@@ -1,7 +1,6 @@
 #include "master/scene/transaction_text.h"
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 #include "mediator/scene/fields.h"
@@ -62,12 +61,8 @@ std::string shown(const std::string& text, std::size_t limit) {
 }
 
 std::string object_path(ObjectId id, const scene::Object& object) {
-    static constexpr std::array Groups{"root",        "transforms",      "geometries", "materials",
-                                       "textures",    "lights",          "cameras",    "backgrounds",
-                                       "attachments", "surface_shaders", "media"};
-    static_assert(Groups.size() == std::variant_size_v<scene::Object>);
     if (id == scene::RootId) return "root";
-    const std::string group = Groups[object.index()];
+    const std::string group = scene::kind_row(kind(object)).plural;
     const std::string& given = name(object);
     return group + "/" + (given.empty() ? "@" + std::to_string(id.value) : shown(given, MaxName));
 }

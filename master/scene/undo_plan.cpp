@@ -82,7 +82,7 @@ class Planner {
         if (now->index() != change.object.before->index())
             return note(object_path(id, *now) + " is another object by now: it stays");
         scene::Update update{id, 0, scene::only(*change.object.before, change.object.mask)};
-        const std::uint32_t children = scene::children_field(kind(*now));
+        const scene::FieldMask children = scene::children_field(kind(*now));
         for (std::uint32_t field = 0; change.object.mask >> field != 0; ++field) {
             const scene::FieldMask bit = scene::field_bit(field);
             if ((change.object.mask & bit) == 0) continue;

@@ -23,7 +23,7 @@ std::vector<typename Set::value_type> listed(const Set& set) {
 
 template <class T>
 bool names_only(scene::FieldMask mask) {
-    return Fields<T>::from_bits(mask) == Fields<T>(T::Field::Name);
+    return Fields<T>::from_bits(mask) == Fields<T>(&T::name);
 }
 
 bool is_name_only(const Object& object, scene::FieldMask mask) {
@@ -277,18 +277,17 @@ void ShadowScene::touch_updated(Touched& touched, const scene::Update& update) c
     ++touched.relevant;
     if (std::holds_alternative<Root>(update.fields)) {
         const auto fields = Fields<Root>::from_bits(mask);
-        touched.structure |= fields.contains(Root::Field::Children);
-        touched.background |= fields.contains(Root::Field::Background);
-        touched.render_origin |= fields.contains(Root::Field::RenderOrigin);
+        touched.structure |= fields.contains(&Root::children);
+        touched.background |= fields.contains(&Root::background);
+        touched.render_origin |= fields.contains(&Root::render_origin);
     } else if (std::holds_alternative<Transform>(update.fields)) {
         const auto fields = Fields<Transform>::from_bits(mask);
-        touched.structure |=
-            fields.intersects({Transform::Field::Children, Transform::Field::Hint, Transform::Field::Layers});
-        if (fields.intersects({Transform::Field::Matrix, Transform::Field::Motion}))
+        touched.structure |= fields.intersects({&Transform::children, &Transform::hint, &Transform::layers});
+        if (fields.intersects({&Transform::matrix, &Transform::motion}))
             touched.moved_transforms.push_back(update.id);
     } else if (std::holds_alternative<Geometry>(update.fields)) {
         const auto fields = Fields<Geometry>::from_bits(mask);
-        touched.structure |= fields.contains(Geometry::Field::Hint);
+        touched.structure |= fields.contains(&Geometry::hint);
         touched.changed_geometries.push_back({update.id, fields});
     } else if (std::holds_alternative<scene::Light>(update.fields)) {
         touched.light_values.push_back(update.id);

@@ -45,6 +45,17 @@ struct Limit {
 // A note: the number has 8 bytes on the wire (fixed64), as keys and hashes do, which are seldom small.
 struct FullWidth {};
 
+// A note, of rows that came after the first release; their line in proto/ is `optional`. Absent, the member has the
+// structure's own initial value, so that files and peers that do not know it yet stay readable.
+struct InitialWhenAbsent {};
+
+// A structure with its initial values.
+template <class T>
+const T& initial() {
+    static const T Value{};
+    return Value;
+}
+
 // A note: an enumerator beyond this one is not decoded here, though the enumeration has it.
 template <class E>
 struct UpTo {

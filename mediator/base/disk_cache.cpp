@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <utility>
 
 namespace tessera {

@@ -2,7 +2,7 @@
 
 #include <compare>
 #include <cstdint>
-#include <functional>
+#include <string_view>  // std::hash, at half of what <functional> costs
 #include <tuple>
 
 namespace tessera {

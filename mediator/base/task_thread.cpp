@@ -1,5 +1,7 @@
 #include "mediator/base/task_thread.h"
 
+#include <functional>
+
 namespace tessera {
 
 TaskThread::TaskThread() : thread_([this](std::stop_token end) { work(end); }) {}

@@ -1,55 +1,85 @@
 #pragma once
 
-#include <cstdint>
-#include <initializer_list>
+#include <cstdlib>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "mediator/scene/objects.h"
 
 namespace tessera::scene {
 
-// Which fields of a T are meant; bit i is T::Field(i). Typed, so that a mask of one kind cannot reach
-// another.
+// Calls visit(index, pointer to member) for every field of T, in the order of its rows. The index, number - 1,
+// is that of the field's bit in a mask.
+template <class T, class Visitor>
+constexpr void for_each_field(Visitor&& visit) {
+    for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
+        visit(row_of<T, I>.number - 1, row_of<T, I>.access);
+    });
+}
+
+// Which fields of a T are meant. Typed, so that a mask of one kind cannot reach another.
 template <class T>
 class Fields {
   public:
     constexpr Fields() = default;
-    constexpr Fields(typename T::Field field) : bits_(field_bit(static_cast<unsigned>(field))) {}
-    constexpr Fields(std::initializer_list<typename T::Field> fields) {
-        for (const auto field : fields) bits_ |= field_bit(static_cast<unsigned>(field));
-    }
+    template <class... V>
+    requires(sizeof...(V) > 0) constexpr Fields(V T::*... members) : bits_((bit_of(members) | ...)) {}
     static constexpr Fields from_bits(FieldMask bits) { return Fields(bits & all().bits_, 0); }
     static constexpr Fields all() {
-        return Fields(field_bit(std::tuple_size_v<decltype(T::fields())>) - 1, 0);
+        FieldMask bits = 0;
+        for_each_field<T>([&](unsigned index, auto) { bits |= field_bit(index); });
+        return Fields(bits, 0);
+    }
+    // Those whose rows have the note.
+    template <class Note>
+    static constexpr Fields with() {
+        FieldMask bits = 0;
+        for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
+            if (std::decay_t<decltype(row_of<T, I>)>::template has<Note>)
+                bits |= field_bit(row_of<T, I>.number - 1);
+        });
+        return Fields(bits, 0);
     }
     constexpr FieldMask bits() const { return bits_; }
     constexpr bool empty() const { return bits_ == 0; }
-    constexpr bool contains(typename T::Field field) const {
-        return (bits_ >> static_cast<unsigned>(field)) & 1;
-    }
+    constexpr bool contains(Fields other) const { return (bits_ & other.bits_) == other.bits_; }
     constexpr bool intersects(Fields other) const { return (bits_ & other.bits_) != 0; }
     constexpr Fields operator|(Fields other) const { return Fields(bits_ | other.bits_, 0); }
     friend constexpr bool operator==(Fields, Fields) = default;
 
   private:
     constexpr Fields(FieldMask bits, int) : bits_(bits) {}
+    template <class V>
+    static constexpr FieldMask bit_of(V T::*member) {
+        FieldMask bit = 0;
+        for_each_field<T>([&](unsigned index, auto candidate) {
+            if constexpr (std::is_same_v<decltype(candidate), V T::*>) {
+                if (candidate == member) bit = field_bit(index);
+            }
+        });
+        if (bit == 0) std::abort();  // a member without a row; where a constant is wanted it does not compile
+        return bit;
+    }
+
     FieldMask bits_ = 0;
 };
 
-// Calls visit(bit index, pointer to member) for every field of T in the order of T::Field.
-template <class T, class Visitor>
-constexpr void for_each_field(Visitor&& visit) {
-    [&]<std::size_t... I>(std::index_sequence<I...>) {
-        (visit(static_cast<unsigned>(I), std::get<I>(T::fields())), ...);
-    }
-    (std::make_index_sequence<std::tuple_size_v<decltype(T::fields())>>{});
+// Calls visit.template operator()<T>() for the structure of this kind.
+template <class Visitor>
+void with_kind(ObjectKind kind, Visitor&& visit) {
+    const auto look = [&]<class... T>(const std::variant<T...>*) {
+        ((T::Kind.kind == kind ? visit.template operator()<T>() : void()), ...);
+    };
+    look(static_cast<const Object*>(nullptr));
 }
 
 // The untyped forms, for lists that hold all kinds. `from` must be of `to`'s kind (asserted).
 FieldMask all_fields(const Object& object);
+FieldMask all_fields(ObjectKind kind);
 void assign(Object& to, const Object& from, FieldMask mask);
 FieldMask differing_fields(const Object& a, const Object& b);
-std::string_view field_name(ObjectKind kind, unsigned field);  // snake_case, as users type it
+// snake_case, as users type it; "" when there is none with this index.
+std::string_view field_name(ObjectKind kind, unsigned field);
 
 }  // namespace tessera::scene

@@ -38,11 +38,11 @@ std::vector<Entry> inverse(std::span<const ObjectChange> changes) {
     std::vector<Entry> entries;
     for (const ObjectChange& change : changes) {
         if (change.is_update()) {
-            entries.push_back(Update{change.id, change.mask, only(*change.before, change.mask)});
+            entries.emplace_back(Update{change.id, change.mask, only(*change.before, change.mask)});
             continue;
         }
-        if (change.after) entries.push_back(Remove{change.id});
-        if (change.before) entries.push_back(Create{change.id, *change.before});
+        if (change.after) entries.emplace_back(Remove{change.id});
+        if (change.before) entries.emplace_back(Create{change.id, *change.before});
     }
     return entries;
 }

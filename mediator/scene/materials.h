@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "mediator/base/ids.h"
+#include "mediator/scene/field_notes.h"
 
 // What surfaces and media are made of: two models of surfaces (Material, SurfaceShader) and one of what fills
 // a body (Medium). Every value is factor x texture.
@@ -18,16 +19,22 @@ namespace tessera::scene {
 // A texture as a material uses it: uv' = translate(offset) rotate(rotation) scale(scale) uv
 // (KHR_texture_transform).
 struct TextureSlot {
-    ObjectId texture;  // 0 = none: the factor alone
+    ObjectId texture;
     glm::vec2 offset{0.0f}, scale{1.0f};
     float rotation = 0.0f;
-    std::uint32_t set = 0;  // which texture coordinates of a geometry: tex_coords or tex_coords_1
+    std::uint32_t set = 0;
     friend bool operator==(const TextureSlot&, const TextureSlot&) = default;
+    // clang-format off
     static constexpr auto describe(auto row) {
-        return std::tuple(row(1, "texture", &TextureSlot::texture), row(2, "offset", &TextureSlot::offset),
-                          row(3, "scale", &TextureSlot::scale), row(4, "rotation", &TextureSlot::rotation),
-                          row(5, "set", &TextureSlot::set));
+        using T = TextureSlot;
+        return std::tuple(
+            row(1, "texture", &T::texture, Refers{bit(ObjectKind::Texture)}, About{"0 = none: the factor alone"}),
+            row(2, "offset", &T::offset),
+            row(3, "scale", &T::scale),
+            row(4, "rotation", &T::rotation, Radians),
+            row(5, "set", &T::set, Range{0, 1}, About{"which texture coordinates: tex_coords or tex_coords_1"}));
     }
+    // clang-format on
 };
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
@@ -38,156 +45,102 @@ constexpr auto enumerators(AlphaMode) {
 // glTF 2.0 metallic-roughness with the KHR_materials_* extensions that light can tell; names and meanings are
 // theirs.
 struct Material {
-    enum class Field : std::uint8_t {
-        Name,
-        BaseColor,
-        BaseColorTexture,
-        Metallic,
-        Roughness,
-        MetallicRoughnessTexture,
-        NormalTexture,
-        NormalScale,
-        Emission,
-        EmissionTexture,
-        AlphaMode,
-        AlphaCutoff,
-        DoubleSided,
-        Unlit,
-        IndexOfRefraction,
-        Transmission,
-        TransmissionTexture,
-        Thickness,
-        AttenuationColor,
-        AttenuationDistance,
-        Specular,
-        SpecularTexture,
-        SpecularColor,
-        SpecularColorTexture,
-        Clearcoat,
-        ClearcoatTexture,
-        ClearcoatRoughness,
-        ClearcoatRoughnessTexture,
-        ClearcoatNormalTexture,
-        ClearcoatNormalScale,
-        SheenColor,
-        SheenColorTexture,
-        SheenRoughness,
-        SheenRoughnessTexture,
-        Anisotropy,
-        AnisotropyRotation,
-        AnisotropyTexture,
-        Iridescence,
-        IridescenceTexture,
-        IridescenceIndexOfRefraction,
-        IridescenceThicknessMinimum,
-        IridescenceThicknessMaximum,
-        IridescenceThicknessTexture,
-        ShadowCatcher
-    };
+    static constexpr KindRow Kind{ObjectKind::Material, "material", "materials"};
     std::string name;
     glm::vec4 base_color{0.8f, 0.8f, 0.8f, 1.0f};
-    TextureSlot base_color_texture;  // sRGB
+    TextureSlot base_color_texture;
     float metallic = 0.0f;
-    float roughness = 1.0f;                  // perceptual; alpha = roughness^2
-    TextureSlot metallic_roughness_texture;  // g = roughness, b = metallic
-    TextureSlot normal_texture;              // tangent space, rgb = (n + 1) / 2
+    float roughness = 1.0f;
+    TextureSlot metallic_roughness_texture;
+    TextureSlot normal_texture;
     float normal_scale = 1.0f;
-    glm::vec3 emission{0.0f};      // radiance, strength included
-    TextureSlot emission_texture;  // sRGB
+    glm::vec3 emission{0.0f};
+    TextureSlot emission_texture;
     AlphaMode alpha_mode = AlphaMode::Opaque;
     float alpha_cutoff = 0.5f;
     bool double_sided = false;
     bool unlit = false;
     float index_of_refraction = 1.5f;
     float transmission = 0.0f;
-    TextureSlot transmission_texture;   // r
-    float thickness = 0.0f;             // 0: thin walls; else a solid body
-    glm::vec3 attenuation_color{1.0f};  // what is left of white light
-    float attenuation_distance = 0.0f;  // after so many metres of the body; 0: all of it, always
+    TextureSlot transmission_texture;
+    float thickness = 0.0f;
+    glm::vec3 attenuation_color{1.0f};
+    float attenuation_distance = 0.0f;
     float specular = 1.0f;
-    TextureSlot specular_texture;  // a
+    TextureSlot specular_texture;
     glm::vec3 specular_color{1.0f};
-    TextureSlot specular_color_texture;  // sRGB
+    TextureSlot specular_color_texture;
     float clearcoat = 0.0f;
-    TextureSlot clearcoat_texture;  // r
+    TextureSlot clearcoat_texture;
     float clearcoat_roughness = 0.0f;
-    TextureSlot clearcoat_roughness_texture;  // g
+    TextureSlot clearcoat_roughness_texture;
     TextureSlot clearcoat_normal_texture;
     float clearcoat_normal_scale = 1.0f;
     glm::vec3 sheen_color{0.0f};
-    TextureSlot sheen_color_texture;  // sRGB
+    TextureSlot sheen_color_texture;
     float sheen_roughness = 0.0f;
-    TextureSlot sheen_roughness_texture;  // a
-    float anisotropy = 0.0f;              // strength
-    float anisotropy_rotation = 0.0f;     // from the tangent, counter-clockwise
-    TextureSlot anisotropy_texture;       // rg = direction, b = strength
+    TextureSlot sheen_roughness_texture;
+    float anisotropy = 0.0f;
+    float anisotropy_rotation = 0.0f;
+    TextureSlot anisotropy_texture;
     float iridescence = 0.0f;
-    TextureSlot iridescence_texture;  // r
+    TextureSlot iridescence_texture;
     float iridescence_index_of_refraction = 1.3f;
-    float iridescence_thickness_minimum = 100.0f, iridescence_thickness_maximum = 400.0f;  // nm
-    TextureSlot iridescence_thickness_texture;                                             // g
-    bool shadow_catcher = false;  // shows nothing but the shadows on it (Lardinoije 3)
-    static constexpr auto fields() {
-        return std::tuple(
-            &Material::name, &Material::base_color, &Material::base_color_texture, &Material::metallic,
-            &Material::roughness, &Material::metallic_roughness_texture, &Material::normal_texture,
-            &Material::normal_scale, &Material::emission, &Material::emission_texture, &Material::alpha_mode,
-            &Material::alpha_cutoff, &Material::double_sided, &Material::unlit,
-            &Material::index_of_refraction, &Material::transmission, &Material::transmission_texture,
-            &Material::thickness, &Material::attenuation_color, &Material::attenuation_distance,
-            &Material::specular, &Material::specular_texture, &Material::specular_color,
-            &Material::specular_color_texture, &Material::clearcoat, &Material::clearcoat_texture,
-            &Material::clearcoat_roughness, &Material::clearcoat_roughness_texture,
-            &Material::clearcoat_normal_texture, &Material::clearcoat_normal_scale, &Material::sheen_color,
-            &Material::sheen_color_texture, &Material::sheen_roughness, &Material::sheen_roughness_texture,
-            &Material::anisotropy, &Material::anisotropy_rotation, &Material::anisotropy_texture,
-            &Material::iridescence, &Material::iridescence_texture,
-            &Material::iridescence_index_of_refraction, &Material::iridescence_thickness_minimum,
-            &Material::iridescence_thickness_maximum, &Material::iridescence_thickness_texture,
-            &Material::shadow_catcher);
-    }
+    float iridescence_thickness_minimum = 100.0f;
+    float iridescence_thickness_maximum = 400.0f;
+    TextureSlot iridescence_thickness_texture;
+    bool shadow_catcher = false;
+    // clang-format off
     static constexpr auto describe(auto row) {
+        using T = Material;
+        constexpr Unit Nanometres{"nm"};
         return std::tuple(
-            row(1, "name", &Material::name), row(2, "base_color", &Material::base_color),
-            row(3, "base_color_texture", &Material::base_color_texture),
-            row(4, "metallic", &Material::metallic), row(5, "roughness", &Material::roughness),
-            row(6, "metallic_roughness_texture", &Material::metallic_roughness_texture),
-            row(7, "normal_texture", &Material::normal_texture),
-            row(8, "normal_scale", &Material::normal_scale), row(9, "emission", &Material::emission),
-            row(10, "emission_texture", &Material::emission_texture),
-            row(11, "alpha_mode", &Material::alpha_mode), row(12, "alpha_cutoff", &Material::alpha_cutoff),
-            row(13, "double_sided", &Material::double_sided), row(14, "unlit", &Material::unlit),
-            row(15, "index_of_refraction", &Material::index_of_refraction),
-            row(16, "transmission", &Material::transmission),
-            row(17, "transmission_texture", &Material::transmission_texture),
-            row(18, "thickness", &Material::thickness),
-            row(19, "attenuation_color", &Material::attenuation_color),
-            row(20, "attenuation_distance", &Material::attenuation_distance),
-            row(21, "specular", &Material::specular),
-            row(22, "specular_texture", &Material::specular_texture),
-            row(23, "specular_color", &Material::specular_color),
-            row(24, "specular_color_texture", &Material::specular_color_texture),
-            row(25, "clearcoat", &Material::clearcoat),
-            row(26, "clearcoat_texture", &Material::clearcoat_texture),
-            row(27, "clearcoat_roughness", &Material::clearcoat_roughness),
-            row(28, "clearcoat_roughness_texture", &Material::clearcoat_roughness_texture),
-            row(29, "clearcoat_normal_texture", &Material::clearcoat_normal_texture),
-            row(30, "clearcoat_normal_scale", &Material::clearcoat_normal_scale),
-            row(31, "sheen_color", &Material::sheen_color),
-            row(32, "sheen_color_texture", &Material::sheen_color_texture),
-            row(33, "sheen_roughness", &Material::sheen_roughness),
-            row(34, "sheen_roughness_texture", &Material::sheen_roughness_texture),
-            row(35, "anisotropy", &Material::anisotropy),
-            row(36, "anisotropy_rotation", &Material::anisotropy_rotation),
-            row(37, "anisotropy_texture", &Material::anisotropy_texture),
-            row(38, "iridescence", &Material::iridescence),
-            row(39, "iridescence_texture", &Material::iridescence_texture),
-            row(40, "iridescence_index_of_refraction", &Material::iridescence_index_of_refraction),
-            row(41, "iridescence_thickness_minimum", &Material::iridescence_thickness_minimum),
-            row(42, "iridescence_thickness_maximum", &Material::iridescence_thickness_maximum),
-            row(43, "iridescence_thickness_texture", &Material::iridescence_thickness_texture),
-            row(44, "shadow_catcher", &Material::shadow_catcher));
+            row(1, "name", &T::name, MaxName),
+            row(2, "base_color", &T::base_color, Fraction),
+            row(3, "base_color_texture", &T::base_color_texture),
+            row(4, "metallic", &T::metallic, Fraction),
+            row(5, "roughness", &T::roughness, Fraction, About{"perceptual; alpha = roughness^2"}),
+            row(6, "metallic_roughness_texture", &T::metallic_roughness_texture, DataTexels{}, About{"g = roughness, b = metallic"}),
+            row(7, "normal_texture", &T::normal_texture, DataTexels{}, About{"tangent space, rgb = (n + 1) / 2"}),
+            row(8, "normal_scale", &T::normal_scale),
+            row(9, "emission", &T::emission, NotNegative, Radiance),
+            row(10, "emission_texture", &T::emission_texture),
+            row(11, "alpha_mode", &T::alpha_mode),
+            row(12, "alpha_cutoff", &T::alpha_cutoff, NotNegative),
+            row(13, "double_sided", &T::double_sided),
+            row(14, "unlit", &T::unlit),
+            row(15, "index_of_refraction", &T::index_of_refraction, Range{0, 100}, About{"0, or from 1"}),
+            row(16, "transmission", &T::transmission, Fraction),
+            row(17, "transmission_texture", &T::transmission_texture, DataTexels{}, About{"r"}),
+            row(18, "thickness", &T::thickness, NotNegative, Metres, About{"0: thin walls; else a solid body"}),
+            row(19, "attenuation_color", &T::attenuation_color, Fraction, About{"what is left of white light after attenuation_distance"}),
+            row(20, "attenuation_distance", &T::attenuation_distance, NotNegative, Metres, About{"0: all light passes"}),
+            row(21, "specular", &T::specular, Fraction),
+            row(22, "specular_texture", &T::specular_texture, DataTexels{}, About{"a"}),
+            row(23, "specular_color", &T::specular_color, NotNegative),
+            row(24, "specular_color_texture", &T::specular_color_texture),
+            row(25, "clearcoat", &T::clearcoat, Fraction),
+            row(26, "clearcoat_texture", &T::clearcoat_texture, DataTexels{}, About{"r"}),
+            row(27, "clearcoat_roughness", &T::clearcoat_roughness, Fraction),
+            row(28, "clearcoat_roughness_texture", &T::clearcoat_roughness_texture, DataTexels{}, About{"g"}),
+            row(29, "clearcoat_normal_texture", &T::clearcoat_normal_texture, DataTexels{}),
+            row(30, "clearcoat_normal_scale", &T::clearcoat_normal_scale),
+            row(31, "sheen_color", &T::sheen_color, Fraction),
+            row(32, "sheen_color_texture", &T::sheen_color_texture),
+            row(33, "sheen_roughness", &T::sheen_roughness, Fraction),
+            row(34, "sheen_roughness_texture", &T::sheen_roughness_texture, DataTexels{}, About{"a"}),
+            row(35, "anisotropy", &T::anisotropy, Fraction),
+            row(36, "anisotropy_rotation", &T::anisotropy_rotation, Radians, About{"from the tangent, counter-clockwise"}),
+            row(37, "anisotropy_texture", &T::anisotropy_texture, DataTexels{}, About{"rg = direction, b = strength"}),
+            row(38, "iridescence", &T::iridescence, Fraction),
+            row(39, "iridescence_texture", &T::iridescence_texture, DataTexels{}, About{"r"}),
+            row(40, "iridescence_index_of_refraction", &T::iridescence_index_of_refraction, Range{1, 100}),
+            row(41, "iridescence_thickness_minimum", &T::iridescence_thickness_minimum, NotNegative, Nanometres),
+            row(42, "iridescence_thickness_maximum", &T::iridescence_thickness_maximum, NotNegative, Nanometres),
+            row(43, "iridescence_thickness_texture", &T::iridescence_thickness_texture, DataTexels{}, About{"g"}),
+            row(44, "shadow_catcher", &T::shadow_catcher, BesideGltf{}, About{"shows nothing but the shadows on it"}));
     }
+    // clang-format on
 };
 
 // How a normal map's texels are stored (unsigned normalised: 0 .. 1) and what they are relative to.
@@ -202,153 +155,104 @@ constexpr auto enumerators(NormalSpace) {
 
 // X3D's CommonSurfaceShader (Schwenk 5.A.3), with the defaults of the thesis.
 struct SurfaceShader {
-    enum class Field : std::uint8_t {
-        Name,
-        Emission,
-        EmissionTexture,
-        Ambient,
-        AmbientTexture,
-        Diffuse,
-        DiffuseTexture,
-        Specular,
-        SpecularTexture,
-        Shininess,
-        ShininessTexture,
-        Alpha,
-        AlphaTexture,
-        InvertAlphaTexture,
-        NormalTexture,
-        NormalFormat,
-        NormalSpace,
-        NormalScale,
-        NormalBias,
-        HeightTexture,
-        HeightScale,
-        Reflection,
-        ReflectionTexture,
-        Transmission,
-        TransmissionTexture,
-        RelativeIndexOfRefraction,
-        FresnelBlend,
-        TangentTexCoords,
-        BinormalTexCoords,
-        Environment,
-        EnvironmentTexture
-    };
+    static constexpr KindRow Kind{ObjectKind::SurfaceShader, "surface_shader", "surface_shaders"};
     std::string name;
-    glm::vec3 emission{0.0f};  // radiance
+    glm::vec3 emission{0.0f};
     TextureSlot emission_texture;
-    glm::vec3 ambient{0.2f};  // no path tracer's business
+    glm::vec3 ambient{0.2f};
     TextureSlot ambient_texture;
     glm::vec3 diffuse{0.8f};
     TextureSlot diffuse_texture;
-    glm::vec3 specular{0.0f};  // of the glossy lobe
+    glm::vec3 specular{0.0f};
     TextureSlot specular_texture;
-    glm::vec2 shininess{0.0f};  // along tangent and binormal; Blinn's exponent = 128 x shininess
+    glm::vec2 shininess{0.0f};
     TextureSlot shininess_texture;
     float alpha = 1.0f;
-    TextureSlot alpha_texture;  // a
+    TextureSlot alpha_texture;
     bool invert_alpha_texture = false;
     TextureSlot normal_texture;
     scene::NormalFormat normal_format = scene::NormalFormat::Unorm;
     scene::NormalSpace normal_space = scene::NormalSpace::Tangent;
-    glm::vec3 normal_scale{2.0f}, normal_bias{-1.0f};  // normal = scale x texel + bias
+    glm::vec3 normal_scale{2.0f}, normal_bias{-1.0f};
     TextureSlot height_texture;
-    float height_scale = 1.0f;   // metres that a texel of 1 stands out
-    glm::vec3 reflection{0.0f};  // of the perfect mirror
+    float height_scale = 1.0f;
+    glm::vec3 reflection{0.0f};
     TextureSlot reflection_texture;
-    glm::vec3 transmission{0.0f};  // of the smooth glass
+    glm::vec3 transmission{0.0f};
     TextureSlot transmission_texture;
-    glm::vec3 relative_index_of_refraction{1.0f};  // inside / outside, for each channel
-    float fresnel_blend = 1.0f;                    // how far Fresnel's equations weigh the two
-    std::int32_t tangent_tex_coords = -1, binormal_tex_coords = -1;  // sets whose u are the frame; -1: none
-    glm::vec3 environment{0.0f};  // what perfect speculars see where nothing is hit, besides the sky
+    glm::vec3 relative_index_of_refraction{1.0f};
+    float fresnel_blend = 1.0f;
+    std::int32_t tangent_tex_coords = -1, binormal_tex_coords = -1;
+    glm::vec3 environment{0.0f};
     TextureSlot environment_texture;
-    static constexpr auto fields() {
-        return std::tuple(
-            &SurfaceShader::name, &SurfaceShader::emission, &SurfaceShader::emission_texture,
-            &SurfaceShader::ambient, &SurfaceShader::ambient_texture, &SurfaceShader::diffuse,
-            &SurfaceShader::diffuse_texture, &SurfaceShader::specular, &SurfaceShader::specular_texture,
-            &SurfaceShader::shininess, &SurfaceShader::shininess_texture, &SurfaceShader::alpha,
-            &SurfaceShader::alpha_texture, &SurfaceShader::invert_alpha_texture,
-            &SurfaceShader::normal_texture, &SurfaceShader::normal_format, &SurfaceShader::normal_space,
-            &SurfaceShader::normal_scale, &SurfaceShader::normal_bias, &SurfaceShader::height_texture,
-            &SurfaceShader::height_scale, &SurfaceShader::reflection, &SurfaceShader::reflection_texture,
-            &SurfaceShader::transmission, &SurfaceShader::transmission_texture,
-            &SurfaceShader::relative_index_of_refraction, &SurfaceShader::fresnel_blend,
-            &SurfaceShader::tangent_tex_coords, &SurfaceShader::binormal_tex_coords,
-            &SurfaceShader::environment, &SurfaceShader::environment_texture);
-    }
+    // clang-format off
     static constexpr auto describe(auto row) {
+        using T = SurfaceShader;
+        constexpr About Set{"the texture coordinates whose u gives the frame; -1 = none"};
         return std::tuple(
-            row(1, "name", &SurfaceShader::name), row(2, "emission", &SurfaceShader::emission),
-            row(3, "emission_texture", &SurfaceShader::emission_texture),
-            row(4, "ambient", &SurfaceShader::ambient),
-            row(5, "ambient_texture", &SurfaceShader::ambient_texture),
-            row(6, "diffuse", &SurfaceShader::diffuse),
-            row(7, "diffuse_texture", &SurfaceShader::diffuse_texture),
-            row(8, "specular", &SurfaceShader::specular),
-            row(9, "specular_texture", &SurfaceShader::specular_texture),
-            row(10, "shininess", &SurfaceShader::shininess),
-            row(11, "shininess_texture", &SurfaceShader::shininess_texture),
-            row(12, "alpha", &SurfaceShader::alpha), row(13, "alpha_texture", &SurfaceShader::alpha_texture),
-            row(14, "invert_alpha_texture", &SurfaceShader::invert_alpha_texture),
-            row(15, "normal_texture", &SurfaceShader::normal_texture),
-            row(16, "normal_format", &SurfaceShader::normal_format),
-            row(17, "normal_space", &SurfaceShader::normal_space),
-            row(18, "normal_scale", &SurfaceShader::normal_scale),
-            row(19, "normal_bias", &SurfaceShader::normal_bias),
-            row(20, "height_texture", &SurfaceShader::height_texture),
-            row(21, "height_scale", &SurfaceShader::height_scale),
-            row(22, "reflection", &SurfaceShader::reflection),
-            row(23, "reflection_texture", &SurfaceShader::reflection_texture),
-            row(24, "transmission", &SurfaceShader::transmission),
-            row(25, "transmission_texture", &SurfaceShader::transmission_texture),
-            row(26, "relative_index_of_refraction", &SurfaceShader::relative_index_of_refraction),
-            row(27, "fresnel_blend", &SurfaceShader::fresnel_blend),
-            row(28, "tangent_tex_coords", &SurfaceShader::tangent_tex_coords),
-            row(29, "binormal_tex_coords", &SurfaceShader::binormal_tex_coords),
-            row(30, "environment", &SurfaceShader::environment),
-            row(31, "environment_texture", &SurfaceShader::environment_texture));
+            row(1, "name", &T::name, MaxName),
+            row(2, "emission", &T::emission, NotNegative, Radiance),
+            row(3, "emission_texture", &T::emission_texture),
+            row(4, "ambient", &T::ambient, Fraction, About{"path tracers ignore it"}),
+            row(5, "ambient_texture", &T::ambient_texture),
+            row(6, "diffuse", &T::diffuse, Fraction),
+            row(7, "diffuse_texture", &T::diffuse_texture),
+            row(8, "specular", &T::specular, Fraction, About{"of the glossy lobe"}),
+            row(9, "specular_texture", &T::specular_texture),
+            row(10, "shininess", &T::shininess, Range{0, 1e6}, About{"along tangent and binormal; Blinn's exponent = 128 x shininess"}),
+            row(11, "shininess_texture", &T::shininess_texture, DataTexels{}),
+            row(12, "alpha", &T::alpha, Fraction),
+            row(13, "alpha_texture", &T::alpha_texture, DataTexels{}, About{"a"}),
+            row(14, "invert_alpha_texture", &T::invert_alpha_texture),
+            row(15, "normal_texture", &T::normal_texture, DataTexels{}),
+            row(16, "normal_format", &T::normal_format),
+            row(17, "normal_space", &T::normal_space),
+            row(18, "normal_scale", &T::normal_scale, About{"normal = scale x texel + bias"}),
+            row(19, "normal_bias", &T::normal_bias),
+            row(20, "height_texture", &T::height_texture, DataTexels{}),
+            row(21, "height_scale", &T::height_scale, Metres, About{"how far a texel of 1 stands out"}),
+            row(22, "reflection", &T::reflection, Fraction, About{"of the perfect mirror"}),
+            row(23, "reflection_texture", &T::reflection_texture),
+            row(24, "transmission", &T::transmission, Fraction, About{"of the smooth glass"}),
+            row(25, "transmission_texture", &T::transmission_texture),
+            row(26, "relative_index_of_refraction", &T::relative_index_of_refraction, Range{0.01, 100}, About{"inside / outside, for each channel"}),
+            row(27, "fresnel_blend", &T::fresnel_blend, Fraction, About{"how far Fresnel's equations weigh the two"}),
+            row(28, "tangent_tex_coords", &T::tangent_tex_coords, Range{-1, 1}, Set),
+            row(29, "binormal_tex_coords", &T::binormal_tex_coords, Range{-1, 1}, Set),
+            row(30, "environment", &T::environment, NotNegative, Radiance, About{"what perfect speculars see where nothing is hit, besides the sky"}),
+            row(31, "environment_texture", &T::environment_texture));
     }
+    // clang-format on
 };
 
-// X3D's CommonVolumeShader (Schwenk 5.B.3): what the body of a closed geometry is filled with, per metre.
+// X3D's CommonVolumeShader (Schwenk 5.B.3): what the body of a closed geometry is filled with.
 struct Medium {
-    enum class Field : std::uint8_t {
-        Name,
-        Emission,
-        EmissionTexture,
-        Absorption,
-        AbsorptionTexture,
-        Scattering,
-        ScatteringTexture,
-        Anisotropy,
-        Priority
-    };
+    static constexpr KindRow Kind{ObjectKind::Medium, "medium", "media"};
     std::string name;
-    glm::vec3 emission{0.0f};  // radiance per metre
+    glm::vec3 emission{0.0f};
     TextureSlot emission_texture;
     glm::vec3 absorption{0.0f};
     TextureSlot absorption_texture;
     glm::vec3 scattering{0.0f};
     TextureSlot scattering_texture;
-    float anisotropy = 0.0f;    // Henyey and Greenstein's g; 0 = isotropic
-    std::int32_t priority = 0;  // where bodies overlap, the highest fills them
-    static constexpr auto fields() {
-        return std::tuple(&Medium::name, &Medium::emission, &Medium::emission_texture, &Medium::absorption,
-                          &Medium::absorption_texture, &Medium::scattering, &Medium::scattering_texture,
-                          &Medium::anisotropy, &Medium::priority);
-    }
+    float anisotropy = 0.0f;
+    std::int32_t priority = 0;
+    // clang-format off
     static constexpr auto describe(auto row) {
-        return std::tuple(row(1, "name", &Medium::name), row(2, "emission", &Medium::emission),
-                          row(3, "emission_texture", &Medium::emission_texture),
-                          row(4, "absorption", &Medium::absorption),
-                          row(5, "absorption_texture", &Medium::absorption_texture),
-                          row(6, "scattering", &Medium::scattering),
-                          row(7, "scattering_texture", &Medium::scattering_texture),
-                          row(8, "anisotropy", &Medium::anisotropy), row(9, "priority", &Medium::priority));
+        using T = Medium;
+        constexpr Unit PerMetre{"1/m"};
+        return std::tuple(
+            row(1, "name", &T::name, MaxName),
+            row(2, "emission", &T::emission, NotNegative, Unit{"W/(m3 sr)"}),
+            row(3, "emission_texture", &T::emission_texture),
+            row(4, "absorption", &T::absorption, NotNegative, PerMetre),
+            row(5, "absorption_texture", &T::absorption_texture, DataTexels{}),
+            row(6, "scattering", &T::scattering, NotNegative, PerMetre),
+            row(7, "scattering_texture", &T::scattering_texture, DataTexels{}),
+            row(8, "anisotropy", &T::anisotropy, Range{-1, 1}, About{"Henyey and Greenstein's g; 0 = isotropic"}),
+            row(9, "priority", &T::priority, About{"where bodies overlap, the highest fills them"}));
     }
+    // clang-format on
 };
 
 }  // namespace tessera::scene

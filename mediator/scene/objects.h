@@ -11,24 +11,15 @@
 #include <variant>
 #include <vector>
 
-#include "mediator/base/description.h"
 #include "mediator/base/ids.h"
 #include "mediator/scene/blob.h"
+#include "mediator/scene/field_notes.h"
 #include "mediator/scene/materials.h"
 
-// The minimal set of scene objects (Schwenk 5.3.2.1). Plain values; `fields()` lists the members in the order
-// of `Field`, and everything that treats fields alike (masks, comparison, hashing) is derived from it.
-// Metres, radians, linear Rec. 709; world right-handed, y up.
+// The minimal set of scene objects (Schwenk 5.3.2.1). Plain values; `describe` has one row for each field,
+// and everything that treats fields alike is derived from it: masks, validation, comparison, hashing, the
+// wire, the edit language, Python. Metres, radians, linear Rec. 709; world right-handed, y up.
 namespace tessera::scene {
-
-// Fields of an object of any kind: bit i is the i-th.
-using FieldMask = std::uint64_t;
-inline constexpr std::size_t MaxFields = 64;
-
-// The mask of one field.
-constexpr FieldMask field_bit(unsigned field) {
-    return FieldMask{1} << field;
-}
 
 // How often a geometry is going to move (Schwenk 5.4.1): static is built for tracing, animated for updating,
 // unflagged starts as static and changes over at its first move.
@@ -39,82 +30,72 @@ constexpr auto enumerators(MotionHint) {
 
 // Steps of motion that an object may have after its first.
 inline constexpr std::size_t MaxMotion = 15;
-// Beyond these a list is not decoded; validation takes far less motion and says so better.
+// Longer lists are not decoded; validation allows much less motion and its message says more.
 inline constexpr std::size_t MaxDecodedMotion = 256, MaxChildren = 16'000'000;
+inline constexpr Limit DecodedMotion{MaxDecodedMotion}, DecodedChildren{MaxChildren};
 
 // The graph's inner node. Children may be transforms, geometries, lights, cameras and attachments; shared
 // children are instances. No cycles. Layers (Schwenk F55) are for views to leave out: an object is in those
 // of the nearest transform above it that names some, else in RootLayers.
 struct Transform {
-    enum class Field : std::uint8_t { Name, Matrix, Children, Hint, Layers, Motion };
+    static constexpr KindRow Kind{ObjectKind::Transform, "transform", "transforms"};
     std::string name;
-    glm::dmat4 matrix{1.0};  // parent from local, affine
+    glm::dmat4 matrix{1.0};
     std::vector<ObjectId> children;
     MotionHint hint = MotionHint::Unflagged;
-    std::uint32_t layers = 0;  // bit i: what hangs below is in layer i; 0 = as the parent says
+    std::uint32_t layers = 0;
     // While the shutter is open: matrices at even steps of time after `matrix`, the last when it closes;
-    // between them each element goes in a straight line. Empty: it stands still. At most MaxMotion.
+    // between them each element goes in a straight line. Empty: it stands still.
     std::vector<glm::dmat4> motion;
-    static constexpr auto fields() {
-        return std::tuple(&Transform::name, &Transform::matrix, &Transform::children, &Transform::hint,
-                          &Transform::layers, &Transform::motion);
-    }
+    // clang-format off
     static constexpr auto describe(auto row) {
-        return std::tuple(row(1, "name", &Transform::name), row(2, "matrix", &Transform::matrix),
-                          row(3, "children", &Transform::children, Limit{MaxChildren}),
-                          row(4, "hint", &Transform::hint), row(5, "layers", &Transform::layers),
-                          row(6, "motion", &Transform::motion, Limit{MaxDecodedMotion}));
+        using T = Transform;
+        return std::tuple(
+            row(1, "name", &T::name, MaxName),
+            row(2, "matrix", &T::matrix, About{"parent from local, affine"}),
+            row(3, "children", &T::children, Refers{PlacedKinds}, DecodedChildren),
+            row(4, "hint", &T::hint),
+            row(5, "layers", &T::layers, About{"bit i: what hangs below is in layer i; 0 = as the parent says"}),
+            row(6, "motion", &T::motion, Longest{MaxMotion}, DecodedMotion, About{"at even steps of time after matrix, until the shutter closes"}));
     }
+    // clang-format on
 };
 
-// Indexed triangles. Arrays are blobs of little-endian 32-bit elements; empty = not there.
+// Indexed triangles. Arrays are blobs; empty = not there.
 struct Geometry {
-    enum class Field : std::uint8_t {
-        Name,
-        Material,
-        Hint,
-        Indices,
-        Positions,
-        Normals,
-        Tangents,
-        TexCoords,
-        Colors,
-        TexCoords1,
-        Medium,
-        MotionPositions,
-        MotionNormals
-    };
+    static constexpr KindRow Kind{ObjectKind::Geometry, "geometry", "geometries"};
     std::string name;
-    ObjectId material;  // a Material or a SurfaceShader; 0 = the default grey
+    ObjectId material;
     MotionHint hint = MotionHint::Unflagged;
-    BlobRef indices;       // uint32 x 3 per triangle
-    BlobRef positions;     // float x 3 per vertex
-    BlobRef normals;       // float x 3 per vertex
-    BlobRef tangents;      // float x 4 per vertex, w = handedness
-    BlobRef tex_coords;    // float x 2 per vertex, v down as in glTF
-    BlobRef colors;        // float x 4 per vertex, linear
-    BlobRef tex_coords_1;  // as tex_coords
-    ObjectId medium;       // what its body is filled with; 0 = nothing
-    // As a transform's motion: where the vertices are at even steps of time after `positions`, and their
-    // normals (none, or as many: then those of the beginning stay).
+    BlobRef indices;
+    BlobRef positions;
+    BlobRef normals;
+    BlobRef tangents;
+    BlobRef tex_coords;
+    BlobRef colors;
+    BlobRef tex_coords_1;
+    ObjectId medium;
     std::vector<BlobRef> motion_positions, motion_normals;
-    static constexpr auto fields() {
-        return std::tuple(&Geometry::name, &Geometry::material, &Geometry::hint, &Geometry::indices,
-                          &Geometry::positions, &Geometry::normals, &Geometry::tangents,
-                          &Geometry::tex_coords, &Geometry::colors, &Geometry::tex_coords_1,
-                          &Geometry::medium, &Geometry::motion_positions, &Geometry::motion_normals);
-    }
+    // clang-format off
     static constexpr auto describe(auto row) {
-        return std::tuple(row(1, "name", &Geometry::name), row(2, "material", &Geometry::material),
-                          row(3, "hint", &Geometry::hint), row(4, "indices", &Geometry::indices),
-                          row(5, "positions", &Geometry::positions), row(6, "normals", &Geometry::normals),
-                          row(7, "tangents", &Geometry::tangents),
-                          row(8, "tex_coords", &Geometry::tex_coords), row(9, "colors", &Geometry::colors),
-                          row(10, "tex_coords_1", &Geometry::tex_coords_1),
-                          row(11, "medium", &Geometry::medium),
-                          row(12, "motion_positions", &Geometry::motion_positions, Limit{MaxDecodedMotion}),
-                          row(13, "motion_normals", &Geometry::motion_normals, Limit{MaxDecodedMotion}));
+        using T = Geometry;
+        constexpr auto of_vertex = [](unsigned components) { return Array{Element::Float32, components, true}; };
+        return std::tuple(
+            row(1, "name", &T::name, MaxName),
+            row(2, "material", &T::material, Refers{bit(ObjectKind::Material) | bit(ObjectKind::SurfaceShader)}, About{"0 = the default grey"}),
+            row(3, "hint", &T::hint),
+            row(4, "indices", &T::indices, Array{Element::Uint32, 3}, About{"of a triangle"}),
+            row(5, "positions", &T::positions, of_vertex(3)),
+            row(6, "normals", &T::normals, of_vertex(3)),
+            row(7, "tangents", &T::tangents, of_vertex(4), About{"w = handedness"}),
+            row(8, "tex_coords", &T::tex_coords, of_vertex(2), About{"v down as in glTF"}),
+            row(9, "colors", &T::colors, of_vertex(4), About{"linear"}),
+            row(10, "tex_coords_1", &T::tex_coords_1, of_vertex(2)),
+            row(11, "medium", &T::medium, Refers{bit(ObjectKind::Medium)}, About{"what its body is filled with; 0 = nothing"}),
+            row(12, "motion_positions", &T::motion_positions, of_vertex(3), Longest{MaxMotion}, DecodedMotion, About{"at even steps of time after positions"}),
+            row(13, "motion_normals", &T::motion_normals, of_vertex(3), Longest{MaxMotion}, DecodedMotion, About{"none: normals stay; or as many as motion_positions"}));
     }
+    // clang-format on
 };
 
 enum class TexelFormat : std::uint8_t { Rgba8, Rgba8Srgb, RgbFloat };
@@ -130,29 +111,32 @@ constexpr auto enumerators(TextureFilter) {
     return std::to_array<std::string_view>({"linear", "nearest"});
 }
 
-// Decoded texels, rows from the top, slices of a volume one after the other (only media read more than the
-// first); decoding is the client's work, a node never parses image files.
+// Decoded texels; decoding is the client's work, a node never parses image files.
 struct Texture {
-    enum class Field : std::uint8_t { Name, Width, Height, Format, WrapS, WrapT, Filter, Texels, Depth };
+    static constexpr KindRow Kind{ObjectKind::Texture, "texture", "textures"};
     std::string name;
     std::uint32_t width = 0, height = 0;
     TexelFormat format = TexelFormat::Rgba8;
     Wrap wrap_s = Wrap::Repeat, wrap_t = Wrap::Repeat;
     TextureFilter filter = TextureFilter::Linear;
     BlobRef texels;
-    std::uint32_t depth = 1;  // slices
-    static constexpr auto fields() {
-        return std::tuple(&Texture::name, &Texture::width, &Texture::height, &Texture::format,
-                          &Texture::wrap_s, &Texture::wrap_t, &Texture::filter, &Texture::texels,
-                          &Texture::depth);
-    }
+    std::uint32_t depth = 1;
+    // clang-format off
     static constexpr auto describe(auto row) {
-        return std::tuple(row(1, "name", &Texture::name), row(2, "width", &Texture::width),
-                          row(3, "height", &Texture::height), row(4, "format", &Texture::format),
-                          row(5, "wrap_s", &Texture::wrap_s), row(6, "wrap_t", &Texture::wrap_t),
-                          row(7, "filter", &Texture::filter), row(8, "texels", &Texture::texels),
-                          row(9, "depth", &Texture::depth));
+        using T = Texture;
+        constexpr Range Edge{1, 65536};
+        return std::tuple(
+            row(1, "name", &T::name, MaxName),
+            row(2, "width", &T::width, Edge),
+            row(3, "height", &T::height, Edge),
+            row(4, "format", &T::format),
+            row(5, "wrap_s", &T::wrap_s),
+            row(6, "wrap_t", &T::wrap_t),
+            row(7, "filter", &T::filter),
+            row(8, "texels", &T::texels, Array{Element::Byte, 1}, About{"rows from the top, slices one after the other"}),
+            row(9, "depth", &T::depth, Edge, About{"slices; only media read more than the first"}));
     }
+    // clang-format on
 };
 
 enum class LightKind : std::uint8_t { Point, Spot, Directional, Sphere, Quad };
@@ -161,38 +145,32 @@ constexpr auto enumerators(LightKind) {
 }
 
 // KHR_lights_punctual, in the frame of its parent transform: shines along -z; only its place and direction
-// count, not its scale. Intensity: W/sr as seen from afar (point, spot, sphere, quad), W/m2 (directional).
-// Spheres and quads can be seen and do not block light; emissive geometry is a light, too.
+// count, not its scale. Spheres and quads can be seen and do not block light; emissive geometry is a light,
+// too.
 struct Light {
-    enum class Field : std::uint8_t {
-        Name,
-        Kind,
-        Intensity,
-        InnerConeAngle,
-        OuterConeAngle,
-        Radius,
-        Size,
-        Angle
-    };
+    static constexpr KindRow Kind{ObjectKind::Light, "light", "lights"};
     std::string name;
     LightKind kind = LightKind::Point;
     glm::vec3 intensity{1.0f};
-    float inner_cone_angle = 0.0f;             // half angles
+    float inner_cone_angle = 0.0f;
     float outer_cone_angle = 0.785398163397f;  // pi / 4
-    float radius = 0.1f;                       // of a sphere, m
-    glm::vec2 size{1.0f};                      // of a quad along x and y, m; it shines on one side
-    float angle = 0.0f;                        // of a directional light: half of what it spans in the sky
-    static constexpr auto fields() {
-        return std::tuple(&Light::name, &Light::kind, &Light::intensity, &Light::inner_cone_angle,
-                          &Light::outer_cone_angle, &Light::radius, &Light::size, &Light::angle);
-    }
+    float radius = 0.1f;
+    glm::vec2 size{1.0f};
+    float angle = 0.0f;
+    // clang-format off
     static constexpr auto describe(auto row) {
+        using T = Light;
         return std::tuple(
-            row(1, "name", &Light::name), row(2, "kind", &Light::kind),
-            row(3, "intensity", &Light::intensity), row(4, "inner_cone_angle", &Light::inner_cone_angle),
-            row(5, "outer_cone_angle", &Light::outer_cone_angle), row(6, "radius", &Light::radius),
-            row(7, "size", &Light::size), row(8, "angle", &Light::angle));
+            row(1, "name", &T::name, MaxName),
+            row(2, "kind", &T::kind),
+            row(3, "intensity", &T::intensity, NotNegative, About{"W/sr as seen from afar; W/m2 of a directional light"}),
+            row(4, "inner_cone_angle", &T::inner_cone_angle, Cone, Radians, About{"half angle"}),
+            row(5, "outer_cone_angle", &T::outer_cone_angle, Cone, Radians, About{"half angle"}),
+            row(6, "radius", &T::radius, NotNegative, Metres, About{"of a sphere"}),
+            row(7, "size", &T::size, NotNegative, Metres, About{"of a quad along x and y; it shines on one side"}),
+            row(8, "angle", &T::angle, Range{0, std::numbers::pi / 2}, Radians, About{"of a directional light: half of what it spans in the sky"}));
     }
+    // clang-format on
 };
 
 enum class Projection : std::uint8_t { Perspective, Orthographic };
@@ -207,37 +185,30 @@ constexpr auto enumerators(Aperture) {
 // In the frame of its parent transform: looks along -z, y up. A view takes its values; it is no node's
 // business.
 struct Camera {
-    enum class Field : std::uint8_t {
-        Name,
-        VerticalFov,
-        AspectRatio,
-        Projection,
-        OrthographicHeight,
-        LensRadius,
-        FocusDistance,
-        Aperture
-    };
+    static constexpr KindRow Kind{ObjectKind::Camera, "camera", "cameras"};
     std::string name;
     double vertical_fov = 0.7;
-    double aspect_ratio = 0.0;  // width / height; 0 = the picture's
+    double aspect_ratio = 0.0;
     scene::Projection projection = scene::Projection::Perspective;
-    double orthographic_height = 2.0;                     // of what is seen, m
-    double lens_radius = 0.0;                             // m; 0 = a pinhole
-    double focus_distance = 1.0;                          // of the plane that is sharp, along the axis, m
-    scene::Aperture aperture = scene::Aperture::Uniform;  // Gaussian: sigma = half the lens' radius
-    static constexpr auto fields() {
-        return std::tuple(&Camera::name, &Camera::vertical_fov, &Camera::aspect_ratio, &Camera::projection,
-                          &Camera::orthographic_height, &Camera::lens_radius, &Camera::focus_distance,
-                          &Camera::aperture);
-    }
+    double orthographic_height = 2.0;
+    double lens_radius = 0.0;
+    double focus_distance = 1.0;
+    scene::Aperture aperture = scene::Aperture::Uniform;
+    // clang-format off
     static constexpr auto describe(auto row) {
+        using T = Camera;
+        constexpr Range Positive{0, MaxCoordinate, true};
         return std::tuple(
-            row(1, "name", &Camera::name), row(2, "vertical_fov", &Camera::vertical_fov),
-            row(3, "aspect_ratio", &Camera::aspect_ratio), row(4, "projection", &Camera::projection),
-            row(5, "orthographic_height", &Camera::orthographic_height),
-            row(6, "lens_radius", &Camera::lens_radius), row(7, "focus_distance", &Camera::focus_distance),
-            row(8, "aperture", &Camera::aperture));
+            row(1, "name", &T::name, MaxName),
+            row(2, "vertical_fov", &T::vertical_fov, Range{0, std::numbers::pi, true}, Radians),
+            row(3, "aspect_ratio", &T::aspect_ratio, NotNegative, About{"width / height; 0 = the picture's"}),
+            row(4, "projection", &T::projection),
+            row(5, "orthographic_height", &T::orthographic_height, Positive, Metres, About{"of what is seen"}),
+            row(6, "lens_radius", &T::lens_radius, Range{0, MaxCoordinate}, Metres, About{"0 = a pinhole"}),
+            row(7, "focus_distance", &T::focus_distance, Positive, Metres, About{"of the plane that is sharp, along the axis"}),
+            row(8, "aperture", &T::aperture, About{"gaussian: sigma = half the lens' radius"}));
     }
+    // clang-format on
 };
 
 // What camera rays see that hit nothing; all others see the environment.
@@ -249,57 +220,62 @@ constexpr auto enumerators(VisibleBackground) {
 // Light from infinitely far: color + strength x environment. Latitude-longitude map, row 0 is +y, column
 // centre of the map is -z at rotation 0 (u grows to +x), turned about y.
 struct Background {
-    enum class Field : std::uint8_t { Name, Color, Environment, Strength, Rotation, Visible, VisibleColor };
+    static constexpr KindRow Kind{ObjectKind::Background, "background", "backgrounds"};
     std::string name;
     glm::vec3 color{0.0f};
-    ObjectId environment;  // a Texture with RgbFloat texels, 0 = none
+    ObjectId environment;
     float strength = 1.0f;
     float rotation = 0.0f;
     VisibleBackground visible = VisibleBackground::Environment;
-    glm::vec4 visible_color{0.0f};  // with alpha, 0 = transparent
-    static constexpr auto fields() {
-        return std::tuple(&Background::name, &Background::color, &Background::environment,
-                          &Background::strength, &Background::rotation, &Background::visible,
-                          &Background::visible_color);
-    }
+    glm::vec4 visible_color{0.0f};
+    // clang-format off
     static constexpr auto describe(auto row) {
-        return std::tuple(row(1, "name", &Background::name), row(2, "color", &Background::color),
-                          row(3, "environment", &Background::environment),
-                          row(4, "strength", &Background::strength),
-                          row(5, "rotation", &Background::rotation), row(6, "visible", &Background::visible),
-                          row(7, "visible_color", &Background::visible_color));
+        using T = Background;
+        return std::tuple(
+            row(1, "name", &T::name, MaxName),
+            row(2, "color", &T::color, NotNegative, Radiance),
+            row(3, "environment", &T::environment, Refers{bit(ObjectKind::Texture)}, About{"with rgb_float texels; 0 = none"}),
+            row(4, "strength", &T::strength, NotNegative),
+            row(5, "rotation", &T::rotation, Radians),
+            row(6, "visible", &T::visible, About{"to camera rays that hit nothing"}),
+            row(7, "visible_color", &T::visible_color, NotNegative, About{"alpha 0 = transparent"}));
     }
+    // clang-format on
 };
 
-// Data that only some parts understand (Schwenk F54); everybody else carries it along.
+// Data that only some parts understand (Schwenk F54); all others carry it along.
 struct Attachment {
-    enum class Field : std::uint8_t { Name, Key, Value };
+    static constexpr KindRow Kind{ObjectKind::Attachment, "attachment", "attachments"};
     std::string name;
     std::string key, value;
-    static constexpr auto fields() {
-        return std::tuple(&Attachment::name, &Attachment::key, &Attachment::value);
-    }
+    // clang-format off
     static constexpr auto describe(auto row) {
-        return std::tuple(row(1, "name", &Attachment::name), row(2, "key", &Attachment::key),
-                          row(3, "value", &Attachment::value));
+        using T = Attachment;
+        return std::tuple(
+            row(1, "name", &T::name, MaxName),
+            row(2, "key", &T::key, MaxName),
+            row(3, "value", &T::value, Longest{1 << 20}));
     }
+    // clang-format on
 };
 
 // The one object with a fixed id: where the graph starts and what rendering is relative to.
 struct Root {
-    enum class Field : std::uint8_t { Name, Children, Background, RenderOrigin };
+    static constexpr KindRow Kind{ObjectKind::Root, "root", "root"};
     std::string name;
     std::vector<ObjectId> children;
     ObjectId background;
-    glm::dvec3 render_origin{0.0};  // set by the authority, on a coarse power-of-two grid
-    static constexpr auto fields() {
-        return std::tuple(&Root::name, &Root::children, &Root::background, &Root::render_origin);
-    }
+    glm::dvec3 render_origin{0.0};
+    // clang-format off
     static constexpr auto describe(auto row) {
+        using T = Root;
         return std::tuple(
-            row(1, "name", &Root::name), row(2, "children", &Root::children, Limit{MaxChildren}),
-            row(3, "background", &Root::background), row(4, "render_origin", &Root::render_origin));
+            row(1, "name", &T::name, MaxName),
+            row(2, "children", &T::children, Refers{PlacedKinds}, DecodedChildren),
+            row(3, "background", &T::background, Refers{bit(ObjectKind::Background)}),
+            row(4, "render_origin", &T::render_origin, Range{-MaxCoordinate, MaxCoordinate}, Metres, About{"set by the master, on a coarse power-of-two grid"}));
     }
+    // clang-format on
 };
 
 inline constexpr ObjectId RootId{1};
@@ -307,32 +283,37 @@ inline constexpr std::uint32_t RootLayers = 1;  // layer 0
 
 using Object = std::variant<Root, Transform, Geometry, Material, Texture, Light, Camera, Background,
                             Attachment, SurfaceShader, Medium>;
-// Numbers of the oneof in proto/scene.proto.
-constexpr auto alternatives(const Object*) {
-    return std::tuple(Alternative<Root>{1, "root"}, Alternative<Transform>{2, "transform"},
-                      Alternative<Geometry>{3, "geometry"}, Alternative<Material>{4, "material"},
-                      Alternative<Texture>{5, "texture"}, Alternative<Light>{6, "light"},
-                      Alternative<Camera>{7, "camera"}, Alternative<Background>{8, "background"},
-                      Alternative<Attachment>{9, "attachment"},
-                      Alternative<SurfaceShader>{10, "surface_shader"}, Alternative<Medium>{11, "medium"});
-}
-enum class ObjectKind : std::uint8_t {
-    Root,
-    Transform,
-    Geometry,
-    Material,
-    Texture,
-    Light,
-    Camera,
-    Background,
-    Attachment,
-    SurfaceShader,
-    Medium
+
+// Every kind, in the order of Object.
+template <class T>
+struct KindRowsOf;
+template <class... T>
+struct KindRowsOf<std::variant<T...>> {
+    static constexpr std::array rows{T::Kind...};
 };
-inline ObjectKind kind(const Object& object) {
-    return static_cast<ObjectKind>(object.index());
+inline constexpr auto& Kinds = KindRowsOf<Object>::rows;
+
+constexpr const KindRow& kind_row(ObjectKind kind) {
+    for (const KindRow& row : Kinds) {
+        if (row.kind == kind) return row;
+    }
+    return Kinds[0];  // not reached: every kind has a row
 }
-const char* name(ObjectKind kind);
+inline ObjectKind kind(const Object& object) {
+    return Kinds[object.index()].kind;
+}
+constexpr const char* name(ObjectKind kind) {
+    return kind_row(kind).name;
+}
 const std::string& name(const Object& object);
+
+// The oneof of proto/scene.proto, for the codec.
+template <class... T>
+constexpr auto alternatives(const std::variant<Root, T...>*) {
+    const auto row = []<class Kind>(const Kind*) {
+        return Alternative<Kind>{static_cast<unsigned>(Kind::Kind.kind) + 1, Kind::Kind.name};
+    };
+    return std::tuple(row(static_cast<const Root*>(nullptr)), row(static_cast<const T*>(nullptr))...);
+}
 
 }  // namespace tessera::scene

@@ -27,35 +27,30 @@ const std::vector<ObjectId>& children(const Object& object) {
 }
 
 FieldMask children_field(ObjectKind kind) {
-    if (kind == ObjectKind::Root) return Fields<Root>(Root::Field::Children).bits();
-    if (kind == ObjectKind::Transform) return Fields<Transform>(Transform::Field::Children).bits();
+    if (kind == ObjectKind::Root) return Fields<Root>(&Root::children).bits();
+    if (kind == ObjectKind::Transform) return Fields<Transform>(&Transform::children).bits();
     return 0;
 }
 
 std::vector<Reference> references(const Object& object) {
-    constexpr std::uint32_t Children = bit(ObjectKind::Transform) | bit(ObjectKind::Geometry) |
-                                       bit(ObjectKind::Light) | bit(ObjectKind::Camera) |
-                                       bit(ObjectKind::Attachment);
     std::vector<Reference> found;
-    const auto add = [&](ObjectId id, std::uint32_t kinds, const char* role) {
-        if (id) found.push_back({id, kinds, role});
+    const auto look = [&](const auto& row, const auto& value) {
+        using Row = std::decay_t<decltype(row)>;
+        using V = std::decay_t<decltype(value)>;
+        if constexpr (std::is_same_v<V, TextureSlot>) {
+            if (value.texture) found.push_back({value.texture, bit(ObjectKind::Texture), row.name});
+        } else if constexpr (std::is_same_v<V, ObjectId>) {
+            static_assert(Row::template has<Refers>, "a reference says what it may name");
+            if (value) found.push_back({value, row.template note<Refers>().kinds, row.name});
+        } else if constexpr (std::is_same_v<V, std::vector<ObjectId>>) {
+            for (const ObjectId id : value)
+                found.push_back({id, row.template note<Refers>().kinds, row.name});
+        }
     };
-    for (const ObjectId child : children(object)) found.push_back({child, Children, "child"});
-    if (const auto* root = std::get_if<Root>(&object)) {
-        add(root->background, bit(ObjectKind::Background), "background");
-    } else if (const auto* geometry = std::get_if<Geometry>(&object)) {
-        add(geometry->material, bit(ObjectKind::Material) | bit(ObjectKind::SurfaceShader), "material");
-        add(geometry->medium, bit(ObjectKind::Medium), "medium");
-    } else if (const auto* background = std::get_if<Background>(&object)) {
-        add(background->environment, bit(ObjectKind::Texture), "environment");
-    }
     std::visit(
         [&]<class T>(const T& value) {
-            for_each_field<T>([&](unsigned field, auto member) {
-                if constexpr (std::is_same_v<std::decay_t<decltype(value.*member)>, TextureSlot>) {
-                    add((value.*member).texture, bit(ObjectKind::Texture),
-                        field_name(kind(object), field).data());
-                }
+            for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
+                look(row_of<T, I>, row_of<T, I>.of(value));
             });
         },
         object);
@@ -64,19 +59,15 @@ std::vector<Reference> references(const Object& object) {
 
 FieldMask reference_fields(ObjectKind kind) {
     FieldMask mask = 0;
-    const auto add = [&]<class T>(const T& value) {
-        for_each_field<T>([&](unsigned field, auto member) {
-            using V = std::decay_t<decltype(value.*member)>;
+    with_kind(kind, [&]<class T>() {
+        for_each_field<T>([&](unsigned index, auto member) {
+            using V = std::decay_t<decltype(std::declval<T>().*member)>;
             if constexpr (std::is_same_v<V, ObjectId> || std::is_same_v<V, std::vector<ObjectId>> ||
                           std::is_same_v<V, TextureSlot>) {
-                mask |= field_bit(field);
+                mask |= field_bit(index);
             }
         });
-    };
-    const auto look = [&]<std::size_t... I>(std::index_sequence<I...>) {
-        ((static_cast<std::size_t>(kind) == I ? add(std::variant_alternative_t<I, Object>()) : void()), ...);
-    };
-    look(std::make_index_sequence<std::variant_size_v<Object>>{});
+    });
     return mask;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -9,15 +10,11 @@
 
 namespace tessera::scene {
 
-constexpr std::uint32_t bit(ObjectKind kind) {
-    return 1u << static_cast<unsigned>(kind);
-}
-
 // That one object names another.
 struct Reference {
     ObjectId id;
     std::uint32_t kinds = 0;  // that it may have, a bit(kind) each
-    const char* role = "";    // "material": for messages
+    std::string_view field;   // that names it: for messages
 };
 std::vector<Reference> references(const Object& object);
 // The fields that hold them, as a mask.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mediator/scene/field_hash.h"
+#include "mediator/scene/field_values.h"
 #include "mediator/scene/fields.h"
 
 namespace tessera::scene {
@@ -27,11 +27,7 @@ Hash128 object_hash(ObjectId id, const Object& object) {
     Blake2b hash;
     feed(hash, id);
     feed(hash, kind(object));
-    std::visit(
-        [&]<class T>(const T& value) {
-            for_each_field<T>([&](unsigned, auto member) { feed(hash, value.*member); });
-        },
-        object);
+    std::visit([&](const auto& value) { feed(hash, value); }, object);
     return truncated(hash.finish());
 }
 
@@ -164,18 +160,18 @@ std::vector<BlobRef> referenced_blobs(const Object& object) {
     const auto add = [&](const BlobRef& blob) {
         if (!blob.empty()) blobs.push_back(blob);
     };
-    if (const auto* geometry = std::get_if<Geometry>(&object)) {
-        for (const BlobRef* blob :
-             {&geometry->indices, &geometry->positions, &geometry->normals, &geometry->tangents,
-              &geometry->tex_coords, &geometry->tex_coords_1, &geometry->colors}) {
-            add(*blob);
-        }
-        for (const auto* steps : {&geometry->motion_positions, &geometry->motion_normals}) {
-            for (const BlobRef& blob : *steps) add(blob);
-        }
-    } else if (const auto* texture = std::get_if<Texture>(&object)) {
-        add(texture->texels);
-    }
+    std::visit(
+        [&]<class T>(const T& value) {
+            for_each_field<T>([&](unsigned, auto member) {
+                using V = std::decay_t<decltype(value.*member)>;
+                if constexpr (std::is_same_v<V, BlobRef>) {
+                    add(value.*member);
+                } else if constexpr (std::is_same_v<V, std::vector<BlobRef>>) {
+                    for (const BlobRef& blob : value.*member) add(blob);
+                }
+            });
+        },
+        object);
     return blobs;
 }
 

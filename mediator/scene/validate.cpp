@@ -21,16 +21,16 @@ void check_reference(const Scene& scene, ObjectId id, const Object& object, cons
     const Object* target = scene.find(reference.id);
     if (target == nullptr) {
         problems.push_back({id, describe(id, object) + " refers to object " +
-                                    std::to_string(reference.id.value) + " as its " + reference.role +
-                                    ", which is not there: create it first"});
+                                    std::to_string(reference.id.value) + " as its " +
+                                    std::string(reference.field) + ", which is not there: create it first"});
     } else if ((reference.kinds & bit(kind(*target))) == 0) {
         problems.push_back({id, describe(id, object) + " cannot have " + describe(reference.id, *target) +
-                                    " as its " + reference.role});
+                                    " as its " + std::string(reference.field)});
     } else if (const auto* texture = std::get_if<Texture>(target);
                texture && texture->depth != 1 && !std::holds_alternative<Medium>(object)) {
         problems.push_back({id, describe(id, object) + " has " + describe(reference.id, *target) + " of " +
-                                    std::to_string(texture->depth) + " slices as its " + reference.role +
-                                    ": only media can have volumes"});
+                                    std::to_string(texture->depth) + " slices as its " +
+                                    std::string(reference.field) + ": only media can have volumes"});
     }
 }
 
@@ -43,7 +43,7 @@ void check_references(const Scene& scene, ObjectId id, const Object& object, std
 // Users of a texture that becomes a volume may be unable to read it.
 bool may_disturb_users(const Object& object, FieldMask mask) {
     const auto* texture = std::get_if<Texture>(&object);
-    return texture && texture->depth != 1 && Fields<Texture>::from_bits(mask).contains(Texture::Field::Depth);
+    return texture && texture->depth != 1 && Fields<Texture>::from_bits(mask).contains(&Texture::depth);
 }
 
 void still_referred(ObjectId id, const Object& object, ObjectId gone, std::vector<Problem>& problems) {
@@ -173,9 +173,7 @@ std::vector<Problem> validate_entries(const Scene& scene, const std::vector<Entr
         const FieldMask mask = update ? update->mask : Any;
         if (may_disturb_users(*object, mask)) volumes.insert(target);
         const bool children_touched =
-            !children_of(object).empty() &&
-            (!update || Fields<Transform>::from_bits(mask).contains(Transform::Field::Children) ||
-             std::holds_alternative<Root>(*object));
+            !children_of(object).empty() && (mask & children_field(kind(*object))) != 0;
         if (children_touched) parents.push_back(target);
     }
     check_cycles(scene, parents, problems);

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "mediator/scene/fields.h"
 #include "mediator/scene/validate.h"
 #include "mediator/scene/validate_object.h"
 
@@ -13,17 +14,17 @@ class BlobCheck {
         : id_(id), object_(object), blobs_(blobs) {}
 
     // Null with a problem when the blob is absent or shorter than said.
-    BlobPtr get(const BlobRef& reference, const std::string& what) {
+    BlobPtr get(const BlobRef& reference, std::string_view what) {
         if (reference.empty()) return nullptr;
         BlobPtr blob = blobs_.find(reference.hash);
         if (!blob || blob->bytes().size() != reference.byte_size) {
-            add("the blob of its " + what + " is missing or has another size than said");
+            add("the blob of its " + std::string(what) + " is missing or has another size than said");
             return nullptr;
         }
         return blob;
     }
 
-    void finite(const BlobRef& reference, std::size_t components, const std::string& what) {
+    void finite(const BlobRef& reference, std::size_t components, std::string_view what) {
         const BlobPtr blob = get(reference, what);
         if (!blob) return;
         const auto values = blob->as<float>();
@@ -33,8 +34,9 @@ class BlobCheck {
             if (bad++ == 0) first = i / components;
         }
         if (bad > 0) {
-            add(std::to_string(bad) + " numbers of its " + what + " are not finite, the first in element " +
-                std::to_string(first) + ": mend the file or the exporter");
+            add(std::to_string(bad) + " numbers of its " + std::string(what) +
+                " are not finite, the first in element " + std::to_string(first) +
+                ": mend the file or the exporter");
         }
     }
 
@@ -55,6 +57,21 @@ class BlobCheck {
         }
     }
 
+    void texels(const Texture& texture) {
+        if (texture.format == TexelFormat::RgbFloat) {
+            finite(texture.texels, 3, "texels");
+        } else {
+            get(texture.texels, "texels");
+        }
+    }
+
+    void all_finite(const BlobRef& array, std::size_t components, std::string_view what) {
+        finite(array, components, what);
+    }
+    void all_finite(const std::vector<BlobRef>& arrays, std::size_t components, std::string_view what) {
+        for (const BlobRef& array : arrays) finite(array, components, what);
+    }
+
     std::vector<Problem> take() { return std::move(problems_); }
 
   private:
@@ -70,23 +87,20 @@ class BlobCheck {
 
 std::vector<Problem> validate_blobs(ObjectId id, const Object& object, const BlobStore& blobs) {
     BlobCheck check(id, object, blobs);
-    if (const auto* geometry = std::get_if<Geometry>(&object)) {
-        check.finite(geometry->positions, 3, "positions");
-        check.finite(geometry->normals, 3, "normals");
-        check.finite(geometry->tangents, 4, "tangents");
-        check.finite(geometry->tex_coords, 2, "texture coordinates");
-        check.finite(geometry->tex_coords_1, 2, "second texture coordinates");
-        check.finite(geometry->colors, 4, "vertex colours");
-        for (const BlobRef& step : geometry->motion_positions) check.finite(step, 3, "moving positions");
-        for (const BlobRef& step : geometry->motion_normals) check.finite(step, 3, "moving normals");
-        check.indices(*geometry);
-    } else if (const auto* texture = std::get_if<Texture>(&object)) {
-        if (texture->format == TexelFormat::RgbFloat) {
-            check.finite(texture->texels, 3, "texels");
-        } else {
-            check.get(texture->texels, "texels");
-        }
-    }
+    std::visit(
+        [&]<class T>(const T& value) {
+            for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
+                constexpr auto& row = row_of<T, I>;
+                using Row = std::decay_t<decltype(row)>;
+                if constexpr (Row::template has<Array>) {
+                    if (row.template note<Array>().element == Element::Float32)
+                        check.all_finite(row.of(value), row.template note<Array>().components, row.name);
+                }
+            });
+        },
+        object);
+    if (const auto* geometry = std::get_if<Geometry>(&object)) check.indices(*geometry);
+    if (const auto* texture = std::get_if<Texture>(&object)) check.texels(*texture);
     return check.take();
 }
 

@@ -1,9 +1,8 @@
 #include "mediator/scene/validate_object.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
+#include <cstdio>
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "mediator/scene/fields.h"
 
@@ -11,258 +10,179 @@ namespace tessera::scene {
 
 namespace {
 
-constexpr std::size_t MaxName = 4096;
 constexpr std::uint64_t MaxElements = std::uint64_t{1} << 31;
-constexpr double MaxCoordinate = 1e15;  // beyond, double transforms lose the centimetre
-constexpr double Pi = std::numbers::pi;
-constexpr double Largest = std::numeric_limits<float>::max();
+constexpr Range Finite{-std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
 
-class Check {
-  public:
-    Check(ObjectId id, const Object& object) : id_(id), object_(object) {}
-    void that(bool holds, const std::string& cause) {
-        if (!holds) problems_.push_back(describe(id_, object_) + ": " + cause);
-    }
-    template <class V>
-    void finite(const V& value, const std::string& what) {
-        if constexpr (std::is_floating_point_v<V>) {
-            that(std::isfinite(value), what + " is not a finite number");
-        } else {
-            for (glm::length_t i = 0; i < value.length(); ++i) {
-                if (std::isfinite(value[i])) continue;
-                return that(false, what + " is not a finite number");
-            }
-        }
-    }
-    template <class V>
-    void not_negative(const V& value, const std::string& what) {
-        for (glm::length_t i = 0; i < value.length(); ++i) {
-            if (value[i] >= 0 && std::isfinite(value[i])) continue;
-            return that(false, what + " is negative or not finite");
-        }
-    }
-    // Shares of light.
-    template <class V>
-    void unit(const V& value, const std::string& what) {
-        for (glm::length_t i = 0; i < value.length(); ++i) range(value[i], 0.0, 1.0, what);
-    }
-    void range(double value, double low, double high, const std::string& what) {
-        that(value >= low && value <= high,
-             what + " lies outside " + std::to_string(low) + " .. " + std::to_string(high));
-    }
-    template <class Enum>
-    void known(Enum value, Enum last, const std::string& what) {
-        that(static_cast<unsigned>(value) <= static_cast<unsigned>(last), what + " is unknown");
-    }
-    std::vector<std::string> take() { return std::move(problems_); }
-
-  private:
-    ObjectId id_;
-    const Object& object_;
-    std::vector<std::string> problems_;
-};
-
-void check(const Root& root, Check& check) {
-    check.finite(root.render_origin, "the render origin");
-    check.that(glm::all(glm::lessThan(glm::abs(root.render_origin), glm::dvec3(MaxCoordinate))),
-               "the render origin is farther away than 1e15 m");
-}
-
-void check(const glm::dmat4& m, const std::string& what, Check& check) {
-    for (glm::length_t column = 0; column < 4; ++column) check.finite(m[column], what);
-    check.that(m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == 0.0 && m[3][3] == 1.0,
-               what + " is not affine: its last row has to be 0 0 0 1");
-    check.that(glm::all(glm::lessThan(glm::abs(glm::dvec3(m[3])), glm::dvec3(MaxCoordinate))),
-               "the translation of " + what + " is longer than 1e15 m");
-}
-
-void check_steps(std::size_t count, const std::string& what, Check& check) {
-    check.that(count <= MaxMotion, what + " has " + std::to_string(count) + " steps: there may be " +
-                                       std::to_string(MaxMotion) + " after the first");
-}
-
-void check(const Transform& transform, Check& check) {
-    check.known(transform.hint, MotionHint::Animated, "the motion hint");
-    scene::check(transform.matrix, "the matrix", check);
-    check_steps(transform.motion.size(), "the motion", check);
-    for (std::size_t i = 0; i < transform.motion.size(); ++i) {
-        scene::check(transform.motion[i], "the matrix of step " + std::to_string(i + 1) + " of the motion",
-                     check);
-    }
-}
-
-// Byte sizes that fit together; what is in the arrays is validate_blobs' matter.
-void check(const Geometry& geometry, Check& check) {
-    check.known(geometry.hint, MotionHint::Animated, "the motion hint");
-    check.that(!geometry.positions.empty() && !geometry.indices.empty(),
-               "it has no positions or no indices: a mesh needs both");
-    check.that(geometry.indices.byte_size % 12 == 0, "the indices are no whole triangles");
-    check.that(geometry.positions.byte_size % 12 == 0, "the positions are no whole vectors");
-    const std::uint64_t vertices = geometry.positions.byte_size / 12;
-    check.that(vertices <= MaxElements && geometry.indices.byte_size / 12 <= MaxElements,
-               "it has more than 2^31 vertices or triangles: split it");
-    const auto per_vertex = [&](const BlobRef& blob, std::uint64_t bytes, const std::string& what) {
-        check.that(blob.empty() || (blob.byte_size == vertices * bytes),
-                   "the " + what + " are " + std::to_string(blob.byte_size) + " bytes, not one per vertex (" +
-                       std::to_string(vertices * bytes) + ")");
-    };
-    per_vertex(geometry.normals, 12, "normals");
-    per_vertex(geometry.tangents, 16, "tangents");
-    per_vertex(geometry.tex_coords, 8, "texture coordinates");
-    per_vertex(geometry.colors, 16, "vertex colours");
-    per_vertex(geometry.tex_coords_1, 8, "second texture coordinates");
-    check_steps(geometry.motion_positions.size(), "the motion of its positions", check);
-    for (const auto* steps : {&geometry.motion_positions, &geometry.motion_normals}) {
-        for (const BlobRef& step : *steps) {
-            check.that(!step.empty(), "a step of its motion is empty: each has an element for each vertex");
-            per_vertex(step, 12, "elements of a step of its motion");
-        }
-    }
-    check.that(
-        geometry.motion_normals.empty() ||
-            (geometry.motion_normals.size() == geometry.motion_positions.size() && !geometry.normals.empty()),
-        "its normals move in " + std::to_string(geometry.motion_normals.size()) +
-            " steps, its positions in " + std::to_string(geometry.motion_positions.size()) +
-            ": they need as many steps, and normals to begin with");
-}
-
-// A field's name as people say it.
-std::string in_words(std::string_view name) {
-    std::string text(name);
-    std::replace(text.begin(), text.end(), '_', ' ');
+std::string text_of(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", value);
     return text;
 }
 
-void check(const TextureSlot& slot, const std::string& what, Check& check) {
-    check.finite(slot.offset, what + "'s offset");
-    check.finite(slot.scale, what + "'s scale");
-    check.finite(slot.rotation, what + "'s rotation");
-    check.that(slot.set <= 1,
-               what + " uses texture coordinates " + std::to_string(slot.set) + ": there are sets 0 and 1");
+bool is_inside(double value, const Range& range) {
+    if (range.excludes_ends) return value > range.least && value < range.most;
+    return value >= range.least && value <= range.most;
 }
 
-void check(const Material& material, Check& check) {
-    for (glm::length_t i = 0; i < 4; ++i) check.range(material.base_color[i], 0.0, 1.0, "the base colour");
-    check.range(material.metallic, 0.0, 1.0, "metallic");
-    check.range(material.roughness, 0.0, 1.0, "roughness");
-    check.finite(material.normal_scale, "the normal scale");
-    check.not_negative(material.emission, "the emission");
-    check.known(material.alpha_mode, AlphaMode::Blend, "the alpha mode");
-    check.range(material.alpha_cutoff, 0.0, Largest, "the alpha cutoff");
-    check.that(material.index_of_refraction == 0.0f ||
-                   (material.index_of_refraction >= 1.0f && material.index_of_refraction <= 100.0f),
-               "the index of refraction is neither 0 nor between 1 and 100");
-    check.range(material.transmission, 0.0, 1.0, "transmission");
-    check.range(material.thickness, 0.0, Largest, "the thickness");
-    check.unit(material.attenuation_color, "the attenuation colour");
-    check.range(material.attenuation_distance, 0.0, Largest, "the attenuation distance");
-    check.range(material.specular, 0.0, 1.0, "specular");
-    check.not_negative(material.specular_color, "the specular colour");
-    check.range(material.clearcoat, 0.0, 1.0, "clearcoat");
-    check.range(material.clearcoat_roughness, 0.0, 1.0, "the clearcoat roughness");
-    check.finite(material.clearcoat_normal_scale, "the clearcoat normal scale");
-    check.unit(material.sheen_color, "the sheen colour");
-    check.range(material.sheen_roughness, 0.0, 1.0, "the sheen roughness");
-    check.range(material.anisotropy, 0.0, 1.0, "anisotropy");
-    check.finite(material.anisotropy_rotation, "the anisotropy rotation");
-    check.range(material.iridescence, 0.0, 1.0, "iridescence");
-    check.range(material.iridescence_index_of_refraction, 1.0, 100.0, "the iridescence index of refraction");
-    check.range(material.iridescence_thickness_minimum, 0.0, Largest, "the least iridescence thickness");
-    check.range(material.iridescence_thickness_maximum, 0.0, Largest, "the greatest iridescence thickness");
-}
+// A field, one within a texture slot, or an entry of a list. Made into a text only when something is wrong.
+struct Place {
+    std::string_view field, part = {};
+    std::size_t entry = 0;
+    bool has_entry = false;
 
-void check(const SurfaceShader& shader, Check& check) {
-    check.not_negative(shader.emission, "the emission");
-    check.unit(shader.ambient, "ambient");
-    check.unit(shader.diffuse, "diffuse");
-    check.unit(shader.specular, "specular");
-    for (glm::length_t i = 0; i < 2; ++i) check.range(shader.shininess[i], 0.0, 1e6, "shininess");
-    check.range(shader.alpha, 0.0, 1.0, "alpha");
-    check.known(shader.normal_format, NormalFormat::Snorm, "the normal format");
-    check.known(shader.normal_space, NormalSpace::Object, "the normal space");
-    check.finite(shader.normal_scale, "the normal scale");
-    check.finite(shader.normal_bias, "the normal bias");
-    check.finite(shader.height_scale, "the height scale");
-    check.unit(shader.reflection, "reflection");
-    check.unit(shader.transmission, "transmission");
-    for (glm::length_t i = 0; i < 3; ++i) {
-        check.range(shader.relative_index_of_refraction[i], 0.01, 100.0, "the relative index of refraction");
+    std::string text() const {
+        std::string text(field);
+        if (!part.empty()) text += "." + std::string(part);
+        if (has_entry) text += "[" + std::to_string(entry) + "]";
+        return text;
     }
-    check.range(shader.fresnel_blend, 0.0, 1.0, "the Fresnel blend");
-    check.range(shader.tangent_tex_coords, -1, 1, "the tangents' texture coordinates");
-    check.range(shader.binormal_tex_coords, -1, 1, "the binormals' texture coordinates");
-    check.not_negative(shader.environment, "the environment");
+};
+
+template <class E>
+std::string choices() {
+    std::string text;
+    for (const std::string_view name : enumerators(E{}))
+        text += (text.empty() ? "" : ", ") + std::string(name);
+    return text;
 }
 
-void check(const Medium& medium, Check& check) {
-    check.not_negative(medium.emission, "the emission");
-    check.not_negative(medium.absorption, "the absorption");
-    check.not_negative(medium.scattering, "the scattering");
-    check.range(medium.anisotropy, -1.0, 1.0, "the anisotropy");
-}
+// Collects what is wrong with one object.
+class Check {
+  public:
+    void add(std::string cause) { causes_.push_back(std::move(cause)); }
 
-void check(const Texture& texture, Check& check) {
-    check.known(texture.format, TexelFormat::RgbFloat, "the texel format");
-    check.known(texture.wrap_s, Wrap::Clamp, "the wrap mode");
-    check.known(texture.wrap_t, Wrap::Clamp, "the wrap mode");
-    check.known(texture.filter, TextureFilter::Nearest, "the filter");
-    constexpr std::uint32_t MaxEdge = 65536;
-    check.that(
-        texture.width >= 1 && texture.height >= 1 && texture.width <= MaxEdge && texture.height <= MaxEdge,
-        "its size is not between 1x1 and 65536x65536");
-    check.that(texture.depth >= 1 && texture.depth <= MaxEdge, "its depth is not between 1 and 65536");
-    const std::uint64_t texel = texture.format == TexelFormat::RgbFloat ? 12 : 4;
-    check.that(
-        texture.texels.byte_size == std::uint64_t{texture.width} * texture.height * texture.depth * texel,
-        "its texels are " + std::to_string(texture.texels.byte_size) +
-            " bytes, not width x height x depth x " + std::to_string(texel));
-}
+    template <class T>
+    void fields(const T& object) {
+        for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
+            value(row_of<T, I>, row_of<T, I>.of(object), {row_of<T, I>.name});
+        });
+    }
+    std::vector<std::string> take() { return std::move(causes_); }
 
-void check(const Light& light, Check& check) {
-    check.known(light.kind, LightKind::Quad, "the kind of light");
-    check.not_negative(light.intensity, "the intensity");
-    check.range(light.inner_cone_angle, 0.0, Pi / 2 + 1e-6, "the inner cone angle");
-    check.range(light.outer_cone_angle, 0.0, Pi / 2 + 1e-6, "the outer cone angle");
-    check.that(light.kind != LightKind::Spot || light.inner_cone_angle <= light.outer_cone_angle,
-               "the inner cone is wider than the outer");
-    check.range(light.radius, 0.0, Largest, "the radius");
-    for (glm::length_t i = 0; i < 2; ++i) check.range(light.size[i], 0.0, Largest, "the size");
-    check.range(light.angle, 0.0, Pi / 2, "the angle");
-}
+  private:
+    template <class Row, class V>
+    void value(const Row& row, const V& value, const Place& place) {
+        if constexpr (std::is_same_v<V, bool> || std::is_same_v<V, ObjectId>) {
+            return;
+        } else if constexpr (std::is_arithmetic_v<V>) {
+            number(static_cast<double>(value), note_or(row, Finite), place);
+        } else if constexpr (std::is_enum_v<V>) {
+            if (enumerator_name(value).empty())
+                add(place.text() + " is " + std::to_string(static_cast<int>(value)) +
+                    ": it has to be one of " + choices<V>());
+        } else if constexpr (std::is_same_v<V, std::string>) {
+            size(value.size(), row.template note<Longest>(), place, " bytes");
+        } else if constexpr (std::is_same_v<V, TextureSlot>) {
+            for_each_row<V>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
+                this->value(row_of<V, I>, row_of<V, I>.of(value), {place.field, row_of<V, I>.name});
+            });
+        } else if constexpr (std::is_same_v<V, glm::dmat4>) {
+            matrix(value, place);
+        } else if constexpr (std::is_same_v<V, BlobRef>) {
+            const std::size_t element = row.template note<Array>().bytes();
+            if (value.byte_size % element != 0)
+                add(place.text() + " has " + std::to_string(value.byte_size) + " bytes: an element has " +
+                    std::to_string(element));
+        } else if constexpr (requires { value.length(); }) {
+            for (glm::length_t i = 0; i < V::length(); ++i) number(value[i], note_or(row, Finite), place);
+        } else {
+            list(row, value, place);
+        }
+    }
+    template <class Row, class V>
+    void list(const Row& row, const V& values, const Place& place) {
+        if constexpr (Row::template has<Longest>)
+            size(values.size(), row.template note<Longest>(), place, " entries");
+        if constexpr (!std::is_same_v<typename V::value_type, ObjectId>) {
+            for (std::size_t i = 0; i < values.size(); ++i) value(row, values[i], {place.field, {}, i, true});
+        }
+    }
+    void number(double value, const Range& range, const Place& place) {
+        if (!is_inside(value, range))
+            add(place.text() + " is " + text_of(value) + ": it has to be " + scene::text_of(range));
+    }
+    void size(std::size_t size, const Longest& longest, const Place& place, const char* what) {
+        if (size > longest.size)
+            add(place.text() + " has " + std::to_string(size) + what + ": there may be " +
+                std::to_string(longest.size));
+    }
+    void matrix(const glm::dmat4& m, const Place& place) {
+        for (glm::length_t i = 0; i < 16; ++i) number(m[i / 4][i % 4], Finite, place);
+        if (m[0][3] != 0.0 || m[1][3] != 0.0 || m[2][3] != 0.0 || m[3][3] != 1.0)
+            add(place.text() + " is not affine: its last row has to be 0 0 0 1");
+        if (glm::any(glm::greaterThan(glm::abs(glm::dvec3(m[3])), glm::dvec3(MaxCoordinate))))
+            add("the translation of " + place.text() + " is longer than 1e15 m: move the scene");
+    }
 
-void check(const Camera& camera, Check& check) {
-    check.that(camera.vertical_fov > 0.0 && camera.vertical_fov < Pi,
-               "the field of view is not between 0 and pi");
-    check.that(camera.aspect_ratio >= 0.0 && std::isfinite(camera.aspect_ratio),
-               "the aspect ratio is negative");
-    check.known(camera.projection, Projection::Orthographic, "the projection");
-    check.known(camera.aperture, Aperture::Gaussian, "the aperture");
-    const auto length = [&](double metres, const std::string& what) {
-        check.that(metres >= 0.0 && metres < MaxCoordinate, what + " is not between 0 and 1e15 m");
+    std::vector<std::string> causes_;
+};
+
+// What no single field shows. Byte sizes have to fit together; what is in the arrays is validate_blobs'
+// matter.
+void check_together(const Geometry& geometry, Check& check) {
+    if (geometry.positions.empty() || geometry.indices.empty())
+        check.add("it has no positions or no indices: a mesh needs both");
+    const std::uint64_t vertices = geometry.positions.byte_size / 12;
+    if (vertices > MaxElements || geometry.indices.byte_size / 12 > MaxElements)
+        check.add("it has more than 2^31 vertices or triangles: split it");
+    const auto per_vertex = [&](std::uint64_t size, std::size_t element, const Place& place) {
+        if (size != vertices * element)
+            check.add(place.text() + " has " + std::to_string(size) + " bytes: " + std::to_string(vertices) +
+                      " vertices need " + std::to_string(vertices * element));
     };
-    length(camera.orthographic_height, "the orthographic height");
-    length(camera.lens_radius, "the lens radius");
-    length(camera.focus_distance, "the focus distance");
-    check.that(camera.orthographic_height > 0.0, "the orthographic height is 0");
-    check.that(camera.focus_distance > 0.0, "the focus distance is 0");
+    for_each_row<Geometry>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
+        constexpr auto& row = row_of<Geometry, I>;
+        constexpr Array array = note_or(row, Array{});
+        if constexpr (array.is_per_vertex) {
+            const auto& value = row.of(geometry);
+            if constexpr (std::is_same_v<std::decay_t<decltype(value)>, BlobRef>) {
+                if (!value.empty()) per_vertex(value.byte_size, array.bytes(), {row.name});
+            } else {
+                for (std::size_t i = 0; i < value.size(); ++i)
+                    per_vertex(value[i].byte_size, array.bytes(), {row.name, {}, i, true});
+            }
+        }
+    });
+    const std::size_t positions = geometry.motion_positions.size(), normals = geometry.motion_normals.size();
+    if (normals != 0 && (normals != positions || geometry.normals.empty()))
+        check.add("motion_normals has " + std::to_string(normals) + " entries, motion_positions " +
+                  std::to_string(positions) + ": they need as many, and normals to begin with");
 }
 
-void check(const Background& background, Check& check) {
-    check.not_negative(background.color, "the colour");
-    check.range(background.strength, 0.0, Largest, "the strength");
-    check.finite(background.rotation, "the rotation");
-    check.known(background.visible, VisibleBackground::Color, "what is visible of it");
-    check.not_negative(background.visible_color, "the visible colour");
-    check.range(background.visible_color.w, 0.0, 1.0, "the visible alpha");
+void check_together(const Material& material, Check& check) {
+    const float index = material.index_of_refraction;
+    if (index > 0.0f && index < 1.0f)
+        check.add("index_of_refraction is " + text_of(index) + ": it has to be 0 or from 1 to 100");
 }
 
-void check(const Attachment& attachment, Check& check) {
-    constexpr std::size_t MaxValue = 1 << 20;
-    check.that(attachment.key.size() <= MaxName && attachment.value.size() <= MaxValue,
-               "its key or value is longer than 4 KiB or 1 MiB");
+void check_together(const Texture& texture, Check& check) {
+    const std::uint64_t texel = texture.format == TexelFormat::RgbFloat ? 12 : 4;
+    if (texture.texels.byte_size != std::uint64_t{texture.width} * texture.height * texture.depth * texel)
+        check.add("texels has " + std::to_string(texture.texels.byte_size) +
+                  " bytes: it needs width x height x depth x " + std::to_string(texel));
 }
+
+void check_together(const Light& light, Check& check) {
+    if (light.kind == LightKind::Spot && light.inner_cone_angle > light.outer_cone_angle)
+        check.add("inner_cone_angle is wider than outer_cone_angle: exchange them");
+}
+
+void check_together(const Background& background, Check& check) {
+    const float alpha = background.visible_color.w;
+    if (alpha > 1.0f) check.add("visible_color's alpha is " + text_of(alpha) + ": it has to be from 0 to 1");
+}
+
+template <class T>
+void check_together(const T&, Check&) {}
 
 }  // namespace
+
+std::string text_of(const Range& range) {
+    if (range.least == Finite.least) return "finite";
+    if (range.excludes_ends) return "between " + text_of(range.least) + " and " + text_of(range.most);
+    if (range.most >= Unbounded) return "at least " + text_of(range.least) + " and finite";
+    return "from " + text_of(range.least) + " to " + text_of(range.most);
+}
 
 std::string describe(ObjectId id, const Object& object) {
     std::string text = std::string(name(kind(object))) + " " + std::to_string(id.value);
@@ -270,20 +190,21 @@ std::string describe(ObjectId id, const Object& object) {
     return text;
 }
 
-std::vector<std::string> problems_of(ObjectId id, const Object& object) {
-    Check checks(id, object);
-    checks.that(name(object).size() <= MaxName, "its name is longer than 4096 bytes");
+std::vector<std::string> causes_of(const Object& object) {
+    Check check;
     std::visit(
-        [&]<class T>(const T& value) {
-            check(value, checks);
-            for_each_field<T>([&](unsigned field, auto member) {
-                if constexpr (std::is_same_v<std::decay_t<decltype(value.*member)>, TextureSlot>) {
-                    check(value.*member, "the " + in_words(field_name(kind(object), field)), checks);
-                }
-            });
+        [&](const auto& value) {
+            check.fields(value);
+            check_together(value, check);
         },
         object);
-    return checks.take();
+    return check.take();
+}
+
+std::vector<std::string> problems_of(ObjectId id, const Object& object) {
+    std::vector<std::string> problems = causes_of(object);
+    for (std::string& problem : problems) problem = describe(id, object) + ": " + problem;
+    return problems;
 }
 
 }  // namespace tessera::scene

@@ -11,7 +11,12 @@ namespace tessera::scene {
 std::string describe(ObjectId id, const Object& object);
 
 // What is wrong with an object seen alone: numbers that are not finite or out of range, unknown enumerators,
-// arrays whose sizes contradict each other. Messages name object, cause and remedy.
+// arrays whose sizes contradict each other. Each names field, cause and remedy.
+std::vector<std::string> causes_of(const Object& object);
+// The same with the object's description in front.
 std::vector<std::string> problems_of(ObjectId id, const Object& object);
+
+// "from 0 to 1", "at least 0", "finite".
+std::string text_of(const Range& range);
 
 }  // namespace tessera::scene

@@ -120,16 +120,16 @@ Concern concern(const Entry& entry) {
     if (update == nullptr) return Concern::Graph;
     if (std::holds_alternative<Root>(update->fields)) {
         const auto fields = Fields<Root>::from_bits(update->mask);
-        return fields.contains(Root::Field::Children) ? Concern::Graph : Concern::None;
+        return fields.contains(&Root::children) ? Concern::Graph : Concern::None;
     }
     if (std::holds_alternative<Transform>(update->fields)) {
         const auto fields = Fields<Transform>::from_bits(update->mask);
-        if (fields.contains(Transform::Field::Children)) return Concern::Graph;
-        return fields.contains(Transform::Field::Matrix) ? Concern::Matrix : Concern::None;
+        if (fields.contains(&Transform::children)) return Concern::Graph;
+        return fields.contains(&Transform::matrix) ? Concern::Matrix : Concern::None;
     }
     if (std::holds_alternative<Camera>(update->fields)) {
         const auto fields = Fields<Camera>::from_bits(update->mask);
-        return fields.contains(Camera::Field::Name) ? Concern::Graph : Concern::None;
+        return fields.contains(&Camera::name) ? Concern::Graph : Concern::None;
     }
     return Concern::None;
 }

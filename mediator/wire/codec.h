@@ -24,14 +24,15 @@
 //     std::vector                              repeated; of glm types: one after another
 //
 // Numbers that are 0 and empty texts and lists are left out, as proto3 has it, so an absent number is 0 whatever the
-// structure's own initial value; an absent vector or structure keeps it. Unknown fields are skipped. A decoder throws
+// structure's own initial value; an absent vector or structure keeps it. With InitialWhenAbsent numbers are always written,
+// and an absent one has the initial value. Unknown fields are skipped. A decoder throws
 // Error{InvalidInput}; on its way it allocates in proportion to the bytes that it has, never to a number in them.
 namespace tessera::wire {
 
 // Entries of a list without a Limit: as many as fit into a control message.
 inline constexpr Limit DefaultLimit{65536};
 
-// Fields of a structure: bit i is row i. More than 64 rows cannot be masked.
+// Fields of a structure: bit i is the row with number i + 1. Numbers beyond 64 cannot be masked.
 using RowMask = std::uint64_t;
 inline constexpr RowMask AllRows = ~RowMask{0};
 
@@ -87,13 +88,13 @@ void write_list(FormatWriter& out, std::uint32_t tag, const std::vector<T>& valu
     }
 }
 
-template <unsigned Number_, bool Full, class T>
+template <unsigned Number_, bool Full, bool Always = false, class T>
 void write_field(FormatWriter& out, const T& value) {
     constexpr WireType Type = wire_type<T>(Full);
     constexpr std::uint32_t Tag = make_tag(Number_, Type);
     if constexpr (Number<T>) {
         const std::uint64_t bits = to_bits(value, Full);
-        if (bits == 0) return;
+        if (!Always && bits == 0) return;
         out.varint(Tag);
         put_bits(out, Type, bits);
     } else if constexpr (Set<T>) {
@@ -209,6 +210,7 @@ struct RowTraits {
     static constexpr const auto& row = row_of<T, I>;
     using RowType = std::remove_cvref_t<decltype(row)>;
     static constexpr bool full_width = RowType::template has<FullWidth>;
+    static constexpr bool initial_when_absent = RowType::template has<InitialWhenAbsent>;
     static constexpr std::size_t limit() {
         if constexpr (RowType::template has<Limit>) {
             return row.template note<Limit>().entries;
@@ -220,9 +222,9 @@ struct RowTraits {
     static constexpr std::uint32_t tag = make_tag(row.number, wire_type<Value>(full_width));
 };
 
-template <std::size_t I>
+template <unsigned Number_>
 constexpr bool in_mask(RowMask mask) {
-    return I >= 64 || ((mask >> (I % 64)) & 1) != 0;
+    return Number_ > 64 || ((mask >> ((Number_ - 1) % 64)) & 1) != 0;
 }
 
 template <Described T, std::size_t I>
@@ -238,7 +240,9 @@ void read_row(FormatReader& in, T& value) {
 template <Described T, std::size_t I>
 void set_row_absent(T& value) {
     using Traits = RowTraits<T, I>;
-    if constexpr (!is_computed<typename Traits::RowType>) {
+    if constexpr (Traits::initial_when_absent) {
+        Traits::row.of(value) = Traits::row.of(initial<T>());
+    } else if constexpr (!is_computed<typename Traits::RowType>) {
         set_absent(Traits::row.of(value));
     } else if constexpr (Number<typename Traits::Value>) {
         Traits::row.access.set(value, {});
@@ -254,8 +258,9 @@ template <Described T>
 void write_rows(FormatWriter& out, const T& value, RowMask mask) {
     for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
         using Traits = detail::RowTraits<T, I>;
-        if (!detail::in_mask<I>(mask)) return;
-        detail::write_field<Traits::row.number, Traits::full_width>(out, row_value<I>(value));
+        if (!detail::in_mask<Traits::row.number>(mask)) return;
+        detail::write_field<Traits::row.number, Traits::full_width, Traits::initial_when_absent>(
+            out, row_value<I>(value));
     });
 }
 
@@ -263,14 +268,14 @@ void write_rows(FormatWriter& out, const T& value, RowMask mask) {
 template <Described T>
 void read_rows(FormatReader& in, T& value, RowMask mask) {
     for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
-        if (detail::in_mask<I>(mask)) detail::set_row_absent<T, I>(value);
+        if (detail::in_mask<row_of<T, I>.number>(mask)) detail::set_row_absent<T, I>(value);
     });
     std::uint32_t tag = in.tag();
     while (tag != 0) {
         bool taken = false;
         // Fields come in the order of the rows, so one walk along them finds nearly all.
         for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
-            if (!detail::in_mask<I>(mask)) return;
+            if (!detail::in_mask<row_of<T, I>.number>(mask)) return;
             while (tag == detail::RowTraits<T, I>::tag) {
                 detail::read_row<T, I>(in, value);
                 tag = in.tag();

@@ -48,12 +48,15 @@ void read_object(FormatReader in, scene::Object& object, scene::FieldMask mask) 
 }  // namespace
 
 void CustomCodec<scene::Entry>::write(FormatWriter& out, const scene::Entry& entry) {
-    Head head{.id = scene::id(entry), .action = static_cast<Action>(entry.index())};
-    const auto* update = std::get_if<scene::Update>(&entry);
-    if (update != nullptr) head.mask = update->mask;
-    write_rows(out, head);
-    if (update != nullptr) write_object(out, update->fields, update->mask);
-    if (const auto* create = std::get_if<scene::Create>(&entry)) write_object(out, create->object, AllRows);
+    if (const auto* update = std::get_if<scene::Update>(&entry)) {
+        write_rows(out, Head{update->id, Action::Update, update->mask});
+        write_object(out, update->fields, update->mask);
+    } else if (const auto* create = std::get_if<scene::Create>(&entry)) {
+        write_rows(out, Head{create->id, Action::Create});
+        write_object(out, create->object, AllRows);
+    } else {
+        write_rows(out, Head{scene::id(entry), Action::Remove});
+    }
 }
 
 void CustomCodec<scene::Entry>::read(FormatReader& in, scene::Entry& entry) {

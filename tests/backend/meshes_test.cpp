@@ -13,7 +13,6 @@ namespace {
 using scene::Create;
 using scene::Geometry;
 using test::SceneBuilder;
-using Field = Geometry::Field;
 
 constexpr ObjectId Shape{2};
 
@@ -63,39 +62,38 @@ TEST_F(MeshesTest, ANewMeshIsBuiltAndMeasured) {
 TEST_F(MeshesTest, OtherShadingDataCostNoStructure) {
     create(scene::MotionHint::Static);
     const Geometry other{.normals = points({{0, 0, 1}, {0, 0, 1}, {0, 0, 1}})};
-    EXPECT_EQ(step_of(Field::Normals, other), MeshStep::ShadingData);
+    EXPECT_EQ(step_of(&Geometry::normals, other), MeshStep::ShadingData);
     EXPECT_EQ(elements<glm::vec3>(meshes.find(Shape)->normals).size(), 3u);
 }
 
 TEST_F(MeshesTest, MovedVerticesRefitWhatIsAnimatedAndRebuildTheRest) {
     const Geometry moved{.positions = points({{0, 0, 0}, {9, 0, 0}, {0, 2, 0}})};
     create(scene::MotionHint::Animated);
-    EXPECT_EQ(step_of(Field::Positions, moved), MeshStep::Refit);
+    EXPECT_EQ(step_of(&Geometry::positions, moved), MeshStep::Refit);
     EXPECT_EQ(meshes.find(Shape)->high.x, 9.0f);
     const Geometry more{.positions = points({{0, 0, 0}, {9, 0, 0}, {0, 2, 0}, {1, 1, 1}})};
-    EXPECT_EQ(step_of(Field::Positions, more), MeshStep::Rebuild);
-    EXPECT_EQ(step_of(Field::Hint, Geometry{.hint = scene::MotionHint::Static}), MeshStep::Rebuild);
-    EXPECT_EQ(step_of(Field::Positions, moved), MeshStep::Rebuild);
+    EXPECT_EQ(step_of(&Geometry::positions, more), MeshStep::Rebuild);
+    EXPECT_EQ(step_of(&Geometry::hint, Geometry{.hint = scene::MotionHint::Static}), MeshStep::Rebuild);
+    EXPECT_EQ(step_of(&Geometry::positions, moved), MeshStep::Rebuild);
 }
 
 TEST_F(MeshesTest, WhatCannotBeDrawnHasAPlaceholderUntilItCan) {
     create(scene::MotionHint::Animated);
     const MeshCatalog::Result broken =
-        edit({SceneBuilder::update<Geometry>(Shape, Field::Indices, {.indices = triangles({0, 1, 7})})});
+        edit({SceneBuilder::update<Geometry>(Shape, &Geometry::indices, {.indices = triangles({0, 1, 7})})});
     EXPECT_EQ(broken.problems.size(), 1u);
     EXPECT_EQ(broken.count(MeshStep::Rebuild), 1u);
     EXPECT_TRUE(meshes.find(Shape)->placeholder);
     EXPECT_EQ(meshes.find(Shape)->high, glm::vec3(0.5f));
     EXPECT_EQ(elements<glm::uvec3>(meshes.find(Shape)->triangles).size(), 12u);
-    EXPECT_EQ(step_of(Field::Indices, {.indices = triangles({0, 1, 2})}), MeshStep::Rebuild);
+    EXPECT_EQ(step_of(&Geometry::indices, {.indices = triangles({0, 1, 2})}), MeshStep::Rebuild);
     EXPECT_FALSE(meshes.find(Shape)->placeholder);
 }
 
 TEST_F(MeshesTest, ARemovedMeshIsForgotten) {
     create(scene::MotionHint::Static);
-    const MeshCatalog::Result result =
-        edit({SceneBuilder::update<scene::Root>(scene::RootId, scene::Root::Field::Children, {}),
-              scene::Remove{Shape}});
+    const MeshCatalog::Result result = edit(
+        {SceneBuilder::update<scene::Root>(scene::RootId, &scene::Root::children, {}), scene::Remove{Shape}});
     EXPECT_EQ(result.removed, std::vector{Shape});
     EXPECT_EQ(meshes.find(Shape), nullptr);
 }

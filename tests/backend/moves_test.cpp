@@ -72,7 +72,7 @@ TEST_F(MovesTest, ALampTakesItsEmittersWithIt) {
 TEST_F(MovesTest, LightFromInfinitelyFarGrowsWithTheScene) {
     const scene::Light sun{.kind = scene::LightKind::Directional};
     EXPECT_EQ(edit({Create{Sun, sun},
-                    SceneBuilder::update<scene::Root>(scene::RootId, scene::Root::Field::Children,
+                    SceneBuilder::update<scene::Root>(scene::RootId, &scene::Root::children,
                                                       scene::Root{.children = {Near, Far, Lit, Sun}})}),
               TablesStep::Made);
     EXPECT_EQ(move(Near, moved(2, 0, 0)), TablesStep::Made);    // it was at the scene's rim
@@ -85,7 +85,7 @@ TEST_F(MovesTest, LightFromInfinitelyFarGrowsWithTheScene) {
 TEST_F(MovesTest, GlassThatComesIntoGlassIsNoted) {
     const auto nests = [&] { return (tables.scene.features & shading::FeatureNestedGlass) != 0; };
     edit({Create{Glass, scene::Material{.transmission = 1.0f, .thickness = 1.0f}},
-          SceneBuilder::update<scene::Geometry>(Mesh, scene::Geometry::Field::Material,
+          SceneBuilder::update<scene::Geometry>(Mesh, &scene::Geometry::material,
                                                 scene::Geometry{.material = Glass})});
     EXPECT_FALSE(nests());
     EXPECT_EQ(move(Near, moved(2, 0, 0)), TablesStep::Moved);
@@ -99,14 +99,14 @@ TEST_F(MovesTest, GlassThatComesIntoGlassIsNoted) {
 TEST_F(MovesTest, WhatMovesInTheShutterHasPlacesOfItsOwn) {
     scene::Transform swings = transform(moved(1, 0, 0), {});
     swings.motion = {moved(2, 0, 0)};
-    EXPECT_EQ(edit({SceneBuilder::update<scene::Transform>(Near, scene::Transform::Field::Motion, swings)}),
+    EXPECT_EQ(edit({SceneBuilder::update<scene::Transform>(Near, &scene::Transform::motion, swings)}),
               TablesStep::Made);
     EXPECT_EQ(move(Near, moved(0, 0, 0)), TablesStep::Made);
     EXPECT_EQ(move(Far, moved(7, 0, 0)), TablesStep::Moved);
 }
 
 TEST_F(MovesTest, AnEditOfAMaterialIsNoMove) {
-    EXPECT_EQ(edit({SceneBuilder::update<scene::Material>(Glow, scene::Material::Field::Emission,
+    EXPECT_EQ(edit({SceneBuilder::update<scene::Material>(Glow, &scene::Material::emission,
                                                           scene::Material{.emission = glm::vec3(3.0f)})}),
               TablesStep::Made);
 }

@@ -36,7 +36,7 @@ class SceneBuilder {
     }
 
     scene::ChangeList move(ObjectId id, const glm::dmat4& matrix) {
-        return edit({update<scene::Transform>(id, scene::Transform::Field::Matrix, transform(matrix, {}))});
+        return edit({update<scene::Transform>(id, &scene::Transform::matrix, transform(matrix, {}))});
     }
 
     template <class T>

@@ -82,7 +82,7 @@ TEST_F(ShadowSceneTest, AMatrixMovesOnlyWhatHangsBelowIt) {
 }
 
 TEST_F(ShadowSceneTest, MotionMovesWhatHangsBelow) {
-    const scene::Update update{Right, scene::Fields<Transform>(Transform::Field::Motion).bits(),
+    const scene::Update update{Right, scene::Fields<Transform>(&Transform::motion).bits(),
                                Transform{.motion = {moved(0, 9, 0)}}};
     ASSERT_TRUE(shadow.apply(builder.edit({update})));
     expect_like_rebuilt(shadow);
@@ -94,13 +94,13 @@ TEST_F(ShadowSceneTest, MotionMovesWhatHangsBelow) {
 
 TEST_F(ShadowSceneTest, DeltasOfSeveralListsAddUp) {
     ASSERT_TRUE(shadow.apply(builder.move(Left, moved(5, 0, 0))));
-    ASSERT_TRUE(shadow.apply(
-        builder.edit({SceneBuilder::update<Geometry>(Mesh, Geometry::Field::Material, Geometry{})})));
+    ASSERT_TRUE(
+        shadow.apply(builder.edit({SceneBuilder::update<Geometry>(Mesh, &Geometry::material, Geometry{})})));
     ASSERT_TRUE(shadow.apply(builder.move(Right, moved(6, 0, 0))));
     const SceneDelta delta = shadow.take_delta();
     EXPECT_EQ(delta.moved_instances, (std::vector<std::uint32_t>{0, 1}));
     ASSERT_EQ(delta.geometries.size(), 1u);
-    EXPECT_EQ(delta.geometries[0].fields, scene::Fields<Geometry>(Geometry::Field::Material));
+    EXPECT_EQ(delta.geometries[0].fields, scene::Fields<Geometry>(&Geometry::material));
     EXPECT_EQ(delta.entries, 3u);
     EXPECT_EQ(delta.relevant, 3u);
     EXPECT_TRUE(shadow.take_delta().moved_instances.empty());
@@ -108,7 +108,7 @@ TEST_F(ShadowSceneTest, DeltasOfSeveralListsAddUp) {
 
 TEST_F(ShadowSceneTest, NamesCamerasAndAttachmentsAreNotRelevant) {
     const SceneDelta delta =
-        edit({SceneBuilder::update<Geometry>(Mesh, Geometry::Field::Name, Geometry{.name = "m"}),
+        edit({SceneBuilder::update<Geometry>(Mesh, &Geometry::name, Geometry{.name = "m"}),
               Create{ObjectId{50}, scene::Camera{}}, Create{ObjectId{51}, scene::Attachment{}}});
     EXPECT_EQ(delta.entries, 3u);
     EXPECT_EQ(delta.relevant, 0u);
@@ -117,23 +117,23 @@ TEST_F(ShadowSceneTest, NamesCamerasAndAttachmentsAreNotRelevant) {
 }
 
 TEST_F(ShadowSceneTest, AddingAnInstanceChangesTheListButNotTheGeometry) {
-    const SceneDelta delta = edit(
-        {SceneBuilder::update<Transform>(Left, Transform::Field::Children, transform({}, {Inner, Mesh}))});
+    const SceneDelta delta =
+        edit({SceneBuilder::update<Transform>(Left, &Transform::children, transform({}, {Inner, Mesh}))});
     EXPECT_TRUE(delta.instances_changed);
     EXPECT_TRUE(delta.geometries.empty());
     EXPECT_EQ(shadow.lowered().instances.size(), 3u);
 }
 
 TEST_F(ShadowSceneTest, ReparentingThatKeepsTheMembersIsNoChangeOfTheList) {
-    const SceneDelta delta = edit(
-        {SceneBuilder::update<Transform>(Left, Transform::Field::Children, transform({}, {Inner, Inner}))});
+    const SceneDelta delta =
+        edit({SceneBuilder::update<Transform>(Left, &Transform::children, transform({}, {Inner, Inner}))});
     EXPECT_FALSE(delta.instances_changed);
     EXPECT_TRUE(delta.moved_instances.empty());
 }
 
 TEST_F(ShadowSceneTest, OtherLayersAreToldAsMovesOfWhatHangsBelow) {
     const auto put = [](ObjectId id, std::uint32_t layers) {
-        return SceneBuilder::update<Transform>(id, Transform::Field::Layers, Transform{.layers = layers});
+        return SceneBuilder::update<Transform>(id, &Transform::layers, Transform{.layers = layers});
     };
     SceneDelta delta = edit({put(Left, 4)});
     EXPECT_FALSE(delta.instances_changed);
@@ -164,9 +164,9 @@ TEST_F(ShadowSceneTest, ARemovedAndANewGeometryAreTold) {
 
 TEST_F(ShadowSceneTest, ALightThatHangsNowhereChangesNoPlacedLight) {
     edit({Create{ObjectId{31}, scene::Light{}}});
-    EXPECT_FALSE(edit({SceneBuilder::update<scene::Light>(ObjectId{31}, scene::Light::Field::Intensity, {})})
+    EXPECT_FALSE(edit({SceneBuilder::update<scene::Light>(ObjectId{31}, &scene::Light::intensity, {})})
                      .lights_changed);
-    EXPECT_TRUE(edit({SceneBuilder::update<scene::Light>(Lamp, scene::Light::Field::Intensity,
+    EXPECT_TRUE(edit({SceneBuilder::update<scene::Light>(Lamp, &scene::Light::intensity,
                                                          {.name = {}, .intensity = glm::vec3(3.0f)})})
                     .lights_changed);
 }
@@ -193,7 +193,7 @@ TEST_F(ShadowSceneTest, AGapAndACycleLeaveTheLastState) {
     SceneBuilder cyclic;
     cyclic.edit(start());
     EXPECT_FALSE(shadow.apply(cyclic.edit(
-        {SceneBuilder::update<Transform>(Inner, Transform::Field::Children, transform({}, {Mesh, Left}))})));
+        {SceneBuilder::update<Transform>(Inner, &Transform::children, transform({}, {Mesh, Left}))})));
     EXPECT_EQ(shadow.scene().version(), before.version());
     EXPECT_EQ(shadow.scene().state_hash(), before.state_hash());
     expect_like_rebuilt(shadow);

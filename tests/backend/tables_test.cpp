@@ -237,7 +237,7 @@ TEST(Tables, OnlyTexturesThatAreUsedAreThere) {
         EXPECT_EQ(tables.levels[i] != nullptr, first == 2 || first == 6) << "not of light: " << int{first};
     }
     tables = stage.make(
-        {SceneBuilder::update<scene::Geometry>(Corner, scene::Geometry::Field::Material, {.material = Sun})});
+        {SceneBuilder::update<scene::Geometry>(Corner, &scene::Geometry::material, {.material = Sun})});
     EXPECT_EQ(only(tables), (std::set<std::uint8_t>{1, 2, 4}));
 }
 

@@ -21,7 +21,7 @@ std::vector<Entry> scene_entries(ObjectId first, BlobStore& blobs) {
     const Root root{.children = {first}};
     return {Create{first, transform}, Create{material, Material{.emission = glm::vec3(1.0f)}},
             Create{a, geometry}, Create{b, geometry},
-            Update{RootId, Fields<Root>(Root::Field::Children).bits(), root}};
+            Update{RootId, Fields<Root>(&Root::children).bits(), root}};
 }
 
 }  // namespace tessera::test

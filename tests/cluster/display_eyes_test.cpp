@@ -73,7 +73,7 @@ TEST_F(Displays, LayersAreSwitchedAtRunTime) {
     cluster.add_node("embree");
     Transform gui;
     gui.layers = 2;
-    submit({Update{first, Fields<Transform>(Transform::Field::Layers).bits(), gui}});
+    submit({Update{first, Fields<Transform>(&Transform::layers).bits(), gui}});
     wall.outputs.pop_back();
     wall.layers = {{"model", view::Renderer::PathTracing, 1, true},
                    {"gui", view::Renderer::Whitted, 2, true}};
@@ -115,10 +115,10 @@ TEST_F(Displays, TheNearerLayerIsSeenWhicheverItIs) {
                                 shining_quad(*ann, *blobs, {0, 1, 0}, -2, 0, 1, green),
                                 shining_quad(*ann, *blobs, {0, 0, 1}, 0, 2, 5, blue)})
         submit(entries);
-    submit({Create{model, Transform{.children = {red}, .layers = 1}},
-            Create{gui, Transform{.children = {green, blue}, .layers = 2}},
-            Update{RootId, Fields<Root>(Root::Field::Children).bits(),
-                   Root{.children = {place_id(), model, gui}}}});
+    submit(
+        {Create{model, Transform{.children = {red}, .layers = 1}},
+         Create{gui, Transform{.children = {green, blue}, .layers = 2}},
+         Update{RootId, Fields<Root>(&Root::children).bits(), Root{.children = {place_id(), model, gui}}}});
     wall.outputs = {part_of_wall("left", -1, 1)};
     wall.layers = {{"model", view::Renderer::PathTracing, 1, true},
                    {"gui", view::Renderer::PathTracing, 2, true}};

@@ -39,10 +39,9 @@ void Shower::step() {
 void Displays::SetUp() {
     for (int i = 0; i < 8; ++i) ann->new_id();
     submit(scene_entries(first, *blobs));
-    submit(
-        {Create{camera_id(), Camera{.name = "main"}},
-         Create{place_id(), Transform{.name = "place", .children = {camera_id()}}},
-         Update{RootId, Fields<Root>(Root::Field::Children).bits(), Root{.children = {first, place_id()}}}});
+    submit({Create{camera_id(), Camera{.name = "main"}},
+            Create{place_id(), Transform{.name = "place", .children = {camera_id()}}},
+            Update{RootId, Fields<Root>(&Root::children).bits(), Root{.children = {first, place_id()}}}});
     wall.outputs = {part_of_wall("left", -2, 0), part_of_wall("right", 0, 2)};
     wall.spp = 4;
     wall.rate = 1000;
@@ -76,7 +75,7 @@ void Displays::submit(const std::vector<Entry>& entries) {
 void Displays::move_camera(double x) {
     Transform moved;
     moved.matrix[3][0] = x;
-    submit({Update{place_id(), Fields<Transform>(Transform::Field::Matrix).bits(), moved}});
+    submit({Update{place_id(), Fields<Transform>(&Transform::matrix).bits(), moved}});
 }
 
 }  // namespace tessera::test

@@ -236,7 +236,7 @@ TEST_F(Displays, ExposureMakesOtherPicturesOfTheSameLight) {
 TEST_F(Displays, TheCameraMayComeLaterAndGoAgain) {
     cluster.add_node("null");
     const auto rename_camera = [&](const std::string& name) {
-        submit({scene::Update{camera_id(), scene::Fields<scene::Camera>(scene::Camera::Field::Name).bits(),
+        submit({scene::Update{camera_id(), scene::Fields<scene::Camera>(&scene::Camera::name).bits(),
                               scene::Camera{.name = name}}});
     };
     const auto is_told = [&] {

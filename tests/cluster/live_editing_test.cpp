@@ -27,8 +27,7 @@ struct LiveEditing : testing::Test {
     }
     ObjectId material() const { return ObjectId{first.value + 1}; }
     Update paint(glm::vec4 color) const {
-        return {material(), Fields<Material>(Material::Field::BaseColor).bits(),
-                Material{.base_color = color}};
+        return {material(), Fields<Material>(&Material::base_color).bits(), Material{.base_color = color}};
     }
     static glm::vec4 color(client::LiveSession& of, ObjectId id) {
         of.refresh();
@@ -65,7 +64,7 @@ TEST_F(LiveEditing, ARefusedEditIsRefusedWholeAndNobodyElseNotices) {
     Transform dangling;
     dangling.children = {ObjectId{999}};
     const auto result = ann->submit(
-        {paint({0, 1, 0, 1}), Update{first, Fields<Transform>(Transform::Field::Children).bits(), dangling}});
+        {paint({0, 1, 0, 1}), Update{first, Fields<Transform>(&Transform::children).bits(), dangling}});
     EXPECT_FALSE(result.accepted);
     ASSERT_FALSE(result.problems.empty());
     EXPECT_NE(result.problems[0].find("999"), std::string::npos) << result.problems[0];
@@ -157,7 +156,7 @@ TEST_F(LiveEditing, TheWriterOfAFieldIsKnown) {
     const auto result = bob->submit({paint({1, 0, 0, 1})});
     const auto writers = ann->writers(material());
     ASSERT_EQ(writers.size(), 1u);
-    EXPECT_EQ(writers[0].field, static_cast<std::uint32_t>(Material::Field::BaseColor));
+    EXPECT_EQ(writers[0].field, static_cast<std::uint32_t>(&Material::base_color));
     EXPECT_EQ(writers[0].name, "bob");
     EXPECT_EQ(writers[0].transaction, result.transaction);
 }

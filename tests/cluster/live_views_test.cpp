@@ -36,7 +36,7 @@ struct LiveViews : testing::Test {
         ASSERT_TRUE(ann->submit(scene_entries(first, *blobs)).accepted);
     }
     Update paint(glm::vec3 emission) const {
-        return {ObjectId{first.value + 1}, Fields<Material>(Material::Field::Emission).bits(),
+        return {ObjectId{first.value + 1}, Fields<Material>(&Material::emission).bits(),
                 Material{.emission = emission}};
     }
     template <class Done>
@@ -87,9 +87,9 @@ TEST_F(LiveViews, OnlyWhatChangesThePictureStartsItAnew) {
     cluster.add_node("null");
     ann->open_view(1, view_of(64, 48, 4));
     const client::Frame before = frames_until(*ann, complete).back();
-    ASSERT_TRUE(ann->submit({Update{first, Fields<Transform>(Transform::Field::Name).bits(),
-                                    Transform{.name = "renamed"}}})
-                    .accepted);
+    ASSERT_TRUE(
+        ann->submit({Update{first, Fields<Transform>(&Transform::name).bits(), Transform{.name = "renamed"}}})
+            .accepted);
     // The same picture is of the new version, too: said so, not rendered again.
     const auto renamed =
         frames_until(*ann, [&](const client::Frame& frame) { return frame.version != before.version; });

@@ -310,10 +310,10 @@ TEST_P(BackendContract, AListThatDoesNotFollowIsRefused) {
 TEST_P(BackendContract, SeveralListsInOneEditEqualOneAtATime) {
     const auto stepwise = fresh();
     test::commit(*stepwise, {snapshot(builder.scene())});
-    const std::vector<scene::ChangeList> lists{builder.move(test::BlockAt, test::moved(0.2, 0.1, -1.5)),
-                                               builder.edit({test::SceneBuilder::update<scene::Light>(
-                                                   test::Lamp, scene::Light::Field::Intensity, {})}),
-                                               builder.move(test::LampAt, test::moved(0.5, 0.5, 0.5))};
+    const std::vector<scene::ChangeList> lists{
+        builder.move(test::BlockAt, test::moved(0.2, 0.1, -1.5)),
+        builder.edit({test::SceneBuilder::update<scene::Light>(test::Lamp, &scene::Light::intensity, {})}),
+        builder.move(test::LampAt, test::moved(0.5, 0.5, 0.5))};
     for (const scene::ChangeList& list : lists) test::commit(*stepwise, {list});
     test::commit(*backend, lists);
     EXPECT_EQ(backend->version(), stepwise->version());

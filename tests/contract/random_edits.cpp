@@ -46,8 +46,7 @@ void RandomEdits::change(scene::SceneEditor& editor) {
                 Transform changed = transform(placement(), {});
                 changed.layers = layers();
                 const bool moves = random_.below(4) != 0;
-                editor.update<Transform>(id, moves ? Transform::Field::Matrix : Transform::Field::Layers,
-                                         changed);
+                editor.update<Transform>(id, moves ? &Transform::matrix : &Transform::layers, changed);
             }
     }
 }
@@ -77,12 +76,12 @@ void RandomEdits::unhook(scene::SceneEditor& editor) {
         if (!holder || parent == victim) continue;
         Transform without = *holder;
         if (std::erase(without.children, victim) != 0) {
-            editor.update<Transform>(parent, Transform::Field::Children, without);
+            editor.update<Transform>(parent, &Transform::children, without);
         }
     }
     scene::Root root = std::get<scene::Root>(*editor.find(scene::RootId));
     if (std::erase(root.children, victim) != 0) {
-        editor.update<scene::Root>(scene::RootId, scene::Root::Field::Children, root);
+        editor.update<scene::Root>(scene::RootId, &scene::Root::children, root);
     }
     editor.remove(victim);
 }
@@ -100,14 +99,14 @@ void RandomEdits::bend(scene::SceneEditor& editor) {
     bent.hint = static_cast<scene::MotionHint>(random_.below(3));
     switch (random_.below(4)) {
         case 0:
-            return editor.update<Geometry>(id, Geometry::Field::Positions, bent);
+            return editor.update<Geometry>(id, &Geometry::positions, bent);
         case 1:
-            return editor.update<Geometry>(id, Geometry::Field::Material, bent);
+            return editor.update<Geometry>(id, &Geometry::material, bent);
         case 2:
-            return editor.update<Geometry>(id, Geometry::Field::Hint, bent);
+            return editor.update<Geometry>(id, &Geometry::hint, bent);
         default:
             bent.indices = array_blob<std::uint32_t>(blobs_, {0, 1, 2});
-            return editor.update<Geometry>(id, {Geometry::Field::Indices, Geometry::Field::Name}, bent);
+            return editor.update<Geometry>(id, {&Geometry::indices, &Geometry::name}, bent);
     }
 }
 
@@ -119,27 +118,28 @@ void RandomEdits::tint(scene::SceneEditor& editor) {
             if (random_.below(3) == 0) material.emission = {unit(), unit(), unit()};
             if (random_.below(3) == 0) material.transmission = unit();
             if (random_.below(3) == 0) material.roughness = 0.0f;
-            using Field = scene::Material::Field;
             return editor.update<scene::Material>(
                 any(ObjectKind::Material),
-                {Field::BaseColor, Field::Emission, Field::Transmission, Field::Roughness}, material);
+                {&scene::Material::base_color, &scene::Material::emission, &scene::Material::transmission,
+                 &scene::Material::roughness},
+                material);
         }
         case 1:
             if (const ObjectId id = any(ObjectKind::Light)) {
                 scene::Light light;
                 light.intensity = {5 * unit(), 5 * unit(), 5 * unit()};
-                editor.update<scene::Light>(id, scene::Light::Field::Intensity, light);
+                editor.update<scene::Light>(id, &scene::Light::intensity, light);
             }
             return;
         case 2: {
             scene::Background sky;
             sky.color = {unit(), unit(), unit()};
-            return editor.update<scene::Background>(Sky, scene::Background::Field::Color, sky);
+            return editor.update<scene::Background>(Sky, &scene::Background::color, sky);
         }
         default: {
             scene::Root root;
             root.render_origin = {static_cast<double>(random_.below(3)), 0.0, 0.0};
-            return editor.update<scene::Root>(scene::RootId, scene::Root::Field::RenderOrigin, root);
+            return editor.update<scene::Root>(scene::RootId, &scene::Root::render_origin, root);
         }
     }
 }
@@ -167,11 +167,11 @@ void RandomEdits::hook(scene::SceneEditor& editor, ObjectId parent, ObjectId chi
     if (object && std::holds_alternative<Transform>(*object)) {
         Transform more = std::get<Transform>(*object);
         more.children.push_back(child);
-        editor.update<Transform>(parent, Transform::Field::Children, more);
+        editor.update<Transform>(parent, &Transform::children, more);
     } else {
         scene::Root root = std::get<scene::Root>(*editor.find(scene::RootId));
         root.children.push_back(child);
-        editor.update<scene::Root>(scene::RootId, scene::Root::Field::Children, root);
+        editor.update<scene::Root>(scene::RootId, &scene::Root::children, root);
     }
 }
 

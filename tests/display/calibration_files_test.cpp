@@ -15,7 +15,7 @@
 namespace tessera::display_file {
 namespace {
 
-constexpr float Nothing = std::numeric_limits<float>::quiet_NaN();
+constexpr float NoValue = std::numeric_limits<float>::quiet_NaN();
 
 std::vector<std::byte> pfm(const std::string& header, const std::vector<float>& values,
                            bool is_big_endian = false) {
@@ -34,7 +34,7 @@ std::string error_of(const auto& loaded) {
 }
 
 TEST(Pfm, BothByteOrdersAndNumbersThatAreNone) {
-    const std::vector<float> values{1, 2, 3, Nothing, Nothing, Nothing};
+    const std::vector<float> values{1, 2, 3, NoValue, NoValue, NoValue};
     for (const bool is_big : {false, true}) {
         const auto grid =
             parse_pfm(pfm(is_big ? "PF\n2 1\n1.0\n" : "PF\n2 1\n-1.0\n", values, is_big), "a.pfm");
@@ -63,7 +63,7 @@ TEST(Pfm, SaysWhatIsWrong) {
     EXPECT_NE(refused(pfm("Pf\n0 1\n-1\n", {})).find("0 x 1 nodes"), std::string::npos);
     EXPECT_NE(refused(pfm("Pf\n70000 70000\n-1\n", {})).find("16384"), std::string::npos);
     EXPECT_NE(refused(pfm("Pf\n2 1\n-1\n", {1, INFINITY})).find("column 1, row 0"), std::string::npos);
-    EXPECT_NE(refused(pfm("Pf\n1 1\n-1\n", {Nothing})).find("no number at all"), std::string::npos);
+    EXPECT_NE(refused(pfm("Pf\n1 1\n-1\n", {NoValue})).find("no number at all"), std::string::npos);
     EXPECT_NE(refused({}), "");
     EXPECT_EQ(load_pfm("/no/such.pfm").error().code(), ErrorCode::NotFound);
 }
@@ -78,7 +78,7 @@ TEST(Weights, PngAndPfmInLinearLight) {
     EXPECT_TRUE(parse_weights(pfm("Pf\n1 1\n-1\n", {0.5f}), "a.pfm", 2.2));
     EXPECT_NE(error_of(parse_weights(pfm("Pf\n2 1\n-1\n", {0.5f, 1.5f}), "a.pfm", 1.0)).find("column 1"),
               std::string::npos);
-    EXPECT_NE(error_of(parse_weights(pfm("Pf\n2 1\n-1\n", {Nothing, 1}), "a.pfm", 1.0)).find("column 0"),
+    EXPECT_NE(error_of(parse_weights(pfm("Pf\n2 1\n-1\n", {NoValue, 1}), "a.pfm", 1.0)).find("column 0"),
               std::string::npos);
     EXPECT_NE(error_of(parse_weights({}, "a.pfm", 1.0)).find("not a PNG"), std::string::npos);
 }

@@ -18,7 +18,7 @@ std::string refusal(std::string_view text) {
     return "taken";
 }
 
-constexpr std::string_view Wall =
+constexpr std::string_view WallText =
     "[[wall]]\nname = 'w'\nlower_left = [-1, -1, -2]\nlower_right = [1, -1, -2]\nupper_left = [-1, 1, -2]\n";
 
 struct Wrong {
@@ -28,7 +28,7 @@ struct Wrong {
 };
 
 TEST(DisplayFileErrors, SayWhereWhatAndHowToMendIt) {
-    const std::string wall(Wall), output("[[output]]\nname = 'a'\n");
+    const std::string wall(WallText), output("[[output]]\nname = 'a'\n");
     const std::vector<Wrong> all{
         {"", "wall.toml:", "no outputs"},
         {"[[output]\n", "wall.toml:1:", "no TOML"},
@@ -91,7 +91,7 @@ TEST(DisplayFileErrors, SayWhereWhatAndHowToMendIt) {
     }
 }
 
-const std::string Whole = std::string(Wall) + R"(columns = 2
+const std::string Whole = std::string(WallText) + R"(columns = 2
 overlap = [100, 0]
 color = { gain = [1, 0.9, 0.8], curve = [0, 0.5, 1] }
 [head]

@@ -20,7 +20,7 @@ namespace {
 
 using namespace test;
 
-constexpr float Nothing = std::numeric_limits<float>::quiet_NaN();
+constexpr float NoPoint = std::numeric_limits<float>::quiet_NaN();
 
 constexpr const char* Warp =
     "<geometryWarpFile><path>w.pfm</path><interpolation>linear</interpolation></geometryWarpFile>\n";
@@ -50,7 +50,7 @@ Mpcdi parsed(const Entries& entries) {
     return std::move(*mpcdi);
 }
 
-std::string error_of(const Entries& entries) {
+std::string archive_error(const Entries& entries) {
     const auto bytes = zipped(entries);
     const auto mpcdi = parse_mpcdi(bytes, "a.mpcdi");
     return mpcdi ? "" : mpcdi.error().what();
@@ -190,7 +190,7 @@ TEST_F(ImportTest, ShaderLampsAreProjectorsInOurAxes) {
 
 TEST(MpcdiErrors, NameFileLineAndRemedy) {
     const auto about = [](const Entries& entries, const std::string& words) {
-        const std::string message = error_of(entries);
+        const std::string message = archive_error(entries);
         EXPECT_NE(message.find(words), std::string::npos) << message;
         EXPECT_EQ(message.find("a.mpcdi"), 0u) << message;
     };
@@ -222,13 +222,13 @@ TEST(MpcdiErrors, NameFileLineAndRemedy) {
 TEST(MpcdiErrors, NamesThatLeadOutAndBombsAreRefused) {
     const std::string text = xml("2d", region("r"), "");
     for (const char* name : {"../evil", "a/../../evil", "/etc/evil", "C:evil", "a\\..\\evil"})
-        EXPECT_NE(error_of({{"mpcdi.xml", text}, {name, "x"}}).find("leads out of the archive"),
+        EXPECT_NE(archive_error({{"mpcdi.xml", text}, {name, "x"}}).find("leads out of the archive"),
                   std::string::npos)
             << name;
-    EXPECT_EQ(error_of({{"mpcdi.xml", text}, {"folder/..fine", "x"}}), "");
+    EXPECT_EQ(archive_error({{"mpcdi.xml", text}, {"folder/..fine", "x"}}), "");
     Entries many{{"mpcdi.xml", text}};
     for (int i = 0; i < 5000; ++i) many.push_back({"f" + std::to_string(i), ""});
-    EXPECT_NE(error_of(many).find("5001 entries"), std::string::npos);
+    EXPECT_NE(archive_error(many).find("5001 entries"), std::string::npos);
 
     // Says in its directory that it is larger than anything that may be unpacked.
     auto bytes = zipped({{"mpcdi.xml", text}});
@@ -244,7 +244,7 @@ TEST(MpcdiErrors, NamesThatLeadOutAndBombsAreRefused) {
 TEST(MpcdiErrors, DamagedArchivesAreReadOrRefused) {
     const std::string sets = files("r", std::string(Warp) + "<alphaMap><path>a.png</path></alphaMap>");
     const auto whole = zipped({{"mpcdi.xml", xml("3d", region("r", Frustum), sets)},
-                               {"w.pfm", pfm(2, 2, {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, Nothing})},
+                               {"w.pfm", pfm(2, 2, {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, NoPoint})},
                                {"a.png", text_of({1, 2, 3})}});
     ASSERT_TRUE(parse_mpcdi(whole, "a.mpcdi"));
     CounterRandom random(9);

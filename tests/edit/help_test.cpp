@@ -19,10 +19,10 @@ TEST(Help, HasEveryCommandAndField) {
         EXPECT_TRUE(command.usage.starts_with(command.name));
         EXPECT_TRUE(command.most == 0 || !command.arguments.empty()) << command.name << " completes nothing";
     }
-    for (std::size_t i = 0; i < KindCount; ++i) {
-        const std::string text = help_text(kind_words()[i]);
+    for (const scene::KindRow& row : scene::Kinds) {
+        const std::string text = help_text(row.plural);
         EXPECT_THAT(manual, HasSubstr(text));
-        for (const std::string& field : field_names(static_cast<scene::ObjectKind>(i)))
+        for (const std::string& field : field_names(row.kind))
             EXPECT_THAT(text, HasSubstr("  " + field + " "));
     }
     for (const std::string& topic : help_topics()) EXPECT_NE(help_text(topic), "") << topic;

@@ -176,9 +176,10 @@ TEST(Values, EveryFieldOfEveryKindIsReadAndShown) {
     const auto write = [&](ObjectId id) { return book.path(target.scene(), id); };
     const auto all = cases();
     std::size_t seen = 0;
-    for (std::size_t k = 0; k < KindCount; ++k) {
-        const auto kind = static_cast<ObjectKind>(k);
-        for (unsigned field = 0; field < field_count(kind); ++field, ++seen) {
+    for (const scene::KindRow& row : scene::Kinds) {
+        const ObjectKind kind = row.kind;
+        for (const unsigned field : fields_of(kind)) {
+            ++seen;
             const std::string name =
                 std::string(scene::name(kind)) + "." + std::string(scene::field_name(kind, field));
             SCOPED_TRACE(name);

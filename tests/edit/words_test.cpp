@@ -68,9 +68,9 @@ TEST(Words, ErrorsNameTheColumn) {
 TEST(Words, WhatIsQuotedReadsBack) {
     for (const std::string text : {"plain", "my red", "a\"b\\c", "", "# x", "a@1", "line\nend\t\x01\x7f",
                                    "\xff\xfe", "in", "a=b,c*?", "Cube.001", "\xc3\xa4"}) {
-        EXPECT_THAT(texts(edit::quoted(text)), testing::ElementsAre(text)) << edit::quoted(text);
+        EXPECT_THAT(texts(edit::in_quotes(text)), testing::ElementsAre(text)) << edit::in_quotes(text);
     }
-    EXPECT_EQ(quoted("Cube.001"), "Cube.001");
+    EXPECT_EQ(in_quotes("Cube.001"), "Cube.001");
 }
 
 TEST(Words, PatternsMatch) {

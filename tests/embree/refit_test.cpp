@@ -71,8 +71,7 @@ struct Sea {
     }
     backend::EditReport deform(double phase) {
         const Geometry mesh{.positions = blob(waves(phase))};
-        return edit(
-            builder.edit({test::SceneBuilder::update<Geometry>(MeshId, Geometry::Field::Positions, mesh)}));
+        return edit(builder.edit({test::SceneBuilder::update<Geometry>(MeshId, &Geometry::positions, mesh)}));
     }
 };
 

@@ -190,7 +190,7 @@ TEST(GlbExport, AMapOfFloatsInAMaterialIsLeftOutAndTold) {
             if (scene::name(*candidate) == "sky") material.emission_texture = {.texture = texture};
         }
         ASSERT_TRUE(rich.scene.apply_entries({scene::Update{
-            id, scene::Fields<scene::Material>(scene::Material::Field::EmissionTexture).bits(), material}}));
+            id, scene::Fields<scene::Material>(&scene::Material::emission_texture).bits(), material}}));
         break;
     }
     Notices notices;
@@ -208,8 +208,7 @@ TEST(GlbExport, NamesThatAreNoTextAreWrittenAsText) {
     root.children = {ObjectId{900}};
     ASSERT_TRUE(rich.scene.apply_entries(
         {scene::Create{ObjectId{900}, odd},
-         scene::Update{scene::RootId, scene::Fields<scene::Root>(scene::Root::Field::Children).bits(),
-                       root}}));
+         scene::Update{scene::RootId, scene::Fields<scene::Root>(&scene::Root::children).bits(), root}}));
     Notices notices;
     const import::ImportedScene imported = through_glb(rich.scene, rich.blobs, notices);
     import::named<scene::Transform>(imported, "a\xef\xbf\xbd\xef\xbf\xbdz");

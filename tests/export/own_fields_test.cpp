@@ -103,7 +103,7 @@ void expect_same(const T& expected, T found, const Imported& imported) {
         }
     });
     found.name = expected.name;
-    for (unsigned field = 0; field < std::tuple_size_v<decltype(T::fields())>; ++field) {
+    for (unsigned field = 0; field < row_count<T>; ++field) {
         if ((scene::differing_fields(expected, found) >> field) & 1)
             ADD_FAILURE() << scene::field_name(scene::kind(scene::Object(expected)), field);
     }

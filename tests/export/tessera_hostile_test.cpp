@@ -157,7 +157,7 @@ TEST_F(TesseraHostile, ScenesThatAreNoneAreTold) {
     using Root = scene::Root;
     scene::Root root = *rich_.scene.find_as<Root>(scene::RootId);
     root.children.push_back(ObjectId{4000});
-    const auto children = scene::Fields<Root>(Root::Field::Children).bits();
+    const auto children = scene::Fields<Root>(&Root::children).bits();
     EXPECT_THAT(changed(scene::Update{scene::RootId, children, root}), testing::HasSubstr("not there"));
 
     // A transform above itself: whoever walked the graph before checking it would not come back.

@@ -8,7 +8,7 @@ namespace tessera::filter {
 
 namespace {
 
-constexpr std::uint32_t Width = 96, Height = 54;
+constexpr std::uint32_t ConsistencyWidth = 96, ConsistencyHeight = 54;
 
 float light_texture(std::uint32_t x, std::uint32_t y) {
     return static_cast<float>(0.5 + 0.2 * std::sin(0.9 * x) * std::sin(0.7 * y));
@@ -28,11 +28,13 @@ double relative_error(const Planes& picture, const Planes& truth) {
 }  // namespace
 
 double error_ratio(const std::string& choice, ConsistencyScene scene, std::uint64_t n) {
-    Planes truth = shadowed_texture_truth(Width, Height);
-    Sampler sampler = [](auto x, auto y, auto i) { return shadowed_texture(Width, Height, x, y, i); };
+    Planes truth = shadowed_texture_truth(ConsistencyWidth, ConsistencyHeight);
+    Sampler sampler = [](auto x, auto y, auto i) {
+        return shadowed_texture(ConsistencyWidth, ConsistencyHeight, x, y, i);
+    };
     if (scene == ConsistencyScene::LightTexture) {
-        for (std::uint32_t y = 0; y < Height; ++y) {
-            for (std::uint32_t x = 0; x < Width; ++x) {
+        for (std::uint32_t y = 0; y < ConsistencyHeight; ++y) {
+            for (std::uint32_t x = 0; x < ConsistencyWidth; ++x) {
                 for (std::uint32_t c = 0; c < 3; ++c) truth.row(c, y)[x] = light_texture(x, y);
             }
         }
@@ -45,7 +47,7 @@ double error_ratio(const std::string& choice, ConsistencyScene scene, std::uint6
     }
     const frame::ChannelSet channels{frame::Channel::Radiance, frame::Channel::Albedo, frame::Channel::Normal,
                                      frame::Channel::Depth, frame::Channel::EvenHalf};
-    const Inputs inputs = synthetic_inputs(Width, Height, n, sampler, channels);
+    const Inputs inputs = synthetic_inputs(ConsistencyWidth, ConsistencyHeight, n, sampler, channels);
     return relative_error(run_filter(choice, inputs).picture, truth) /
            relative_error(inputs.mean(frame::Channel::Radiance), truth);
 }

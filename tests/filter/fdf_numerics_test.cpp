@@ -14,16 +14,16 @@ namespace {
 
 using frame::Channel;
 
-constexpr std::uint32_t Width = 192, Height = 192;
-constexpr frame::ChannelSet Channels{Channel::Radiance, Channel::Albedo, Channel::Normal, Channel::Depth,
-                                     Channel::ShadingFeature};
+constexpr std::uint32_t FdfWidth = 192, FdfHeight = 192;
+constexpr frame::ChannelSet FdfChannels{Channel::Radiance, Channel::Albedo, Channel::Normal, Channel::Depth,
+                                        Channel::ShadingFeature};
 
 // Statistics of n samples that find the light or not, without drawing each.
 Inputs shadows(std::uint32_t n, std::uint64_t seed = 1) {
     Inputs inputs = synthetic_inputs(
-        Width, Height, 1, [](auto x, auto y, auto i) { return shadowed_texture(Width, Height, x, y, i); },
-        Channels);
-    const Planes truth = shadowed_texture_truth(Width, Height);
+        FdfWidth, FdfHeight, 1,
+        [](auto x, auto y, auto i) { return shadowed_texture(FdfWidth, FdfHeight, x, y, i); }, FdfChannels);
+    const Planes truth = shadowed_texture_truth(FdfWidth, FdfHeight);
     std::mt19937_64 random(seed * 10007 + n);
     for (std::size_t i = 0; i < inputs.pixel_count(); ++i) {
         const double light = truth.plane(0)[i] / inputs.mean(Channel::Albedo).plane(0)[i];
@@ -43,7 +43,7 @@ Inputs shadows(std::uint32_t n, std::uint64_t seed = 1) {
     return inputs;
 }
 
-double relative_error(const Planes& picture, const Planes& truth) {
+double fdf_error(const Planes& picture, const Planes& truth) {
     double mean = 0.0, sum = 0.0;
     const std::size_t count = truth.values().size();
     for (const float t : truth.values()) mean += t / double(count);
@@ -60,7 +60,7 @@ struct Errors {
 };
 Errors errors(const std::string& filter, std::uint32_t n) {
     const Inputs inputs = shadows(n);
-    const Planes truth = shadowed_texture_truth(Width, Height);
+    const Planes truth = shadowed_texture_truth(FdfWidth, FdfHeight);
     return {mean_squared_error(inputs.mean(Channel::Radiance), truth),
             mean_squared_error(run_filter(filter, inputs).picture, truth)};
 }
@@ -75,7 +75,7 @@ TEST(FdfNumerics, TheVarianceOfTheShadingFallsWithTheSamples) {  // LT6
                 sample.shading = CounterRandom(mix(i + 1), mix(y * 64 + x)).uniform() < 0.3f ? 1.0f : 0.0f;
                 return sample;
             },
-            Channels);
+            FdfChannels);
         for (const float v : inputs.variance(Channel::ShadingFeature).values()) variances[n] += v / 4096.0;
     }
     EXPECT_NEAR(variances[4] * 4.0, 0.21, 0.01);
@@ -155,7 +155,7 @@ TEST(FdfNumerics, OneSampleHasTheVarianceOfItsNeighbourhood) {
             sample.high = {sample.shading, sample.shading, sample.shading};
             return sample;
         },
-        Channels);
+        FdfChannels);
     Planes truth(64, 64, 3);
     std::ranges::fill(truth.values(), 0.5f);
     const double unfiltered = mean_squared_error(inputs.mean(Channel::Radiance), truth);
@@ -163,16 +163,16 @@ TEST(FdfNumerics, OneSampleHasTheVarianceOfItsNeighbourhood) {
 }
 
 TEST(FdfNumerics, NeverWorseThanUnfiltered) {  // L36
-    const Planes truth = shadowed_texture_truth(Width, Height);
+    const Planes truth = shadowed_texture_truth(FdfWidth, FdfHeight);
     for (std::uint32_t n = 4; n <= 4096; n *= 4) {
         const Inputs inputs = shadows(n);
-        const double unfiltered = relative_error(inputs.mean(Channel::Radiance), truth);
-        EXPECT_LE(relative_error(run_filter("fdf", inputs).picture, truth), 1.05 * unfiltered) << n;
+        const double unfiltered = fdf_error(inputs.mean(Channel::Radiance), truth);
+        EXPECT_LE(fdf_error(run_filter("fdf", inputs).picture, truth), 1.05 * unfiltered) << n;
     }
     const Inputs inputs = shadows(65536);
-    const double unfiltered = relative_error(inputs.mean(Channel::Radiance), truth);
-    EXPECT_GT(relative_error(run_filter("fdf:fade=off", inputs).picture, truth), 2.0 * unfiltered);
-    EXPECT_LE(relative_error(run_filter("fdf", inputs).picture, truth), 1.05 * unfiltered);
+    const double unfiltered = fdf_error(inputs.mean(Channel::Radiance), truth);
+    EXPECT_GT(fdf_error(run_filter("fdf:fade=off", inputs).picture, truth), 2.0 * unfiltered);
+    EXPECT_LE(fdf_error(run_filter("fdf", inputs).picture, truth), 1.05 * unfiltered);
 }
 
 TEST(FdfNumerics, CountsMayDifferBetweenPixels) {  // L13
@@ -181,7 +181,8 @@ TEST(FdfNumerics, CountsMayDifferBetweenPixels) {  // L13
     const Inputs few = shadows(4);
     const auto take_left = [&](Planes& to, const Planes& from) {
         for (std::uint32_t c = 0; c < to.components(); ++c) {
-            for (std::uint32_t y = 0; y < Height; ++y) std::copy_n(from.row(c, y), Width / 2, to.row(c, y));
+            for (std::uint32_t y = 0; y < FdfHeight; ++y)
+                std::copy_n(from.row(c, y), FdfWidth / 2, to.row(c, y));
         }
     };
     take_left(mixed.counts, few.counts);
@@ -190,12 +191,12 @@ TEST(FdfNumerics, CountsMayDifferBetweenPixels) {  // L13
         take_left(mixed.means[index], few.means[index]);
         take_left(mixed.variances[index], few.variances[index]);
     }
-    const Planes truth = shadowed_texture_truth(Width, Height);
+    const Planes truth = shadowed_texture_truth(FdfWidth, FdfHeight);
     const auto error = [&](const Planes& picture, std::uint32_t first) {
         double sum = 0.0;
         for (std::uint32_t c = 0; c < 3; ++c) {
-            for (std::uint32_t y = 0; y < Height; ++y) {
-                for (std::uint32_t x = first; x < first + Width / 2; ++x) {
+            for (std::uint32_t y = 0; y < FdfHeight; ++y) {
+                for (std::uint32_t x = first; x < first + FdfWidth / 2; ++x) {
                     sum += std::pow(double(picture.row(c, y)[x]) - truth.row(c, y)[x], 2.0);
                 }
             }
@@ -204,7 +205,8 @@ TEST(FdfNumerics, CountsMayDifferBetweenPixels) {  // L13
     };
     const Planes together = run_filter("fdf", mixed).picture;
     EXPECT_LT(error(together, 0), 1.1 * error(run_filter("fdf", few).picture, 0));
-    EXPECT_LT(error(together, Width / 2), 1.1 * error(run_filter("fdf", shadows(256)).picture, Width / 2));
+    EXPECT_LT(error(together, FdfWidth / 2),
+              1.1 * error(run_filter("fdf", shadows(256)).picture, FdfWidth / 2));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <chrono>
+#include <functional>
 
 #include "master/filter/catalog.h"
 #include "master/filter/pixel/edge_model.h"

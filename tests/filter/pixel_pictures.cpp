@@ -1,6 +1,7 @@
 #include "tests/filter/pixel_pictures.h"
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 
 #include "mediator/base/random.h"

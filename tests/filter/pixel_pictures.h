@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "tests/filter/synthetic.h"
 
 namespace tessera::filter {

@@ -11,18 +11,18 @@
 namespace tessera::filter {
 namespace {
 
-constexpr std::uint32_t Width = 96, Height = 54;
+constexpr std::uint32_t PsvgfWidth = 96, PsvgfHeight = 54;
 
-Inputs shadows(std::uint64_t n, std::uint64_t seed = 1) {
-    Inputs inputs = synthetic_inputs(Width, Height, n, [seed](auto x, auto y, auto i) {
-        return shadowed_texture(Width, Height, x, y, i, seed);
+Inputs psvgf_shadows(std::uint64_t n, std::uint64_t seed = 1) {
+    Inputs inputs = synthetic_inputs(PsvgfWidth, PsvgfHeight, n, [seed](auto x, auto y, auto i) {
+        return shadowed_texture(PsvgfWidth, PsvgfHeight, x, y, i, seed);
     });
     inputs.path_class = view::PathClass::Diffuse;
     return inputs;
 }
 
 // L37's measure: squared error by the square of the truth.
-double relative_error(const Planes& picture, const Planes& truth) {
+double psvgf_error(const Planes& picture, const Planes& truth) {
     double sum = 0.0;
     for (std::uint32_t c = 0; c < 3; ++c) {
         for (std::size_t i = 0; i < truth.pixel_count(); ++i) {
@@ -34,39 +34,39 @@ double relative_error(const Planes& picture, const Planes& truth) {
 }
 
 TEST(Psvgf, IsConsistent) {
-    const Planes truth = shadowed_texture_truth(Width, Height);
+    const Planes truth = shadowed_texture_truth(PsvgfWidth, PsvgfHeight);
     for (const std::uint64_t n : {4u, 8u, 16u, 32u, 64u, 128u, 256u, 512u, 1024u}) {
-        const Inputs inputs = shadows(n);
-        const double unfiltered = relative_error(run_filter("none", inputs).picture, truth);
+        const Inputs inputs = psvgf_shadows(n);
+        const double unfiltered = psvgf_error(run_filter("none", inputs).picture, truth);
         for (const char* how : {"psvgf", "psvgf:mode=svgf", "psvgf:mode=dundr", "psvgf:sigma_l=100"}) {
-            EXPECT_LE(relative_error(run_filter(how, inputs).picture, truth), 1.05 * unfiltered)
+            EXPECT_LE(psvgf_error(run_filter(how, inputs).picture, truth), 1.05 * unfiltered)
                 << how << " " << n;
         }
-        const double filtered = relative_error(run_filter("psvgf", inputs).picture, truth);
+        const double filtered = psvgf_error(run_filter("psvgf", inputs).picture, truth);
         EXPECT_LE(filtered, (n <= 16 ? 0.15 : 0.25) * unfiltered) << n;
     }
     // Without the fade, too strong a filter is not.
-    const Inputs inputs = shadows(1024);
-    EXPECT_GT(relative_error(run_filter("psvgf:sigma_l=100,fade=off", inputs).picture, truth),
-              relative_error(run_filter("none", inputs).picture, truth));
+    const Inputs inputs = psvgf_shadows(1024);
+    EXPECT_GT(psvgf_error(run_filter("psvgf:sigma_l=100,fade=off", inputs).picture, truth),
+              psvgf_error(run_filter("none", inputs).picture, truth));
 }
 
 TEST(Psvgf, ErrorFallsWithEverySample) {  // DT20
-    const Planes truth = shadowed_texture_truth(Width, Height);
+    const Planes truth = shadowed_texture_truth(PsvgfWidth, PsvgfHeight);
     double last = 1e30;
     for (std::uint64_t n = 1; n <= 256; n *= 2) {
-        const Inputs inputs = shadows(n);
-        const double error = relative_error(run_filter("psvgf", inputs).picture, truth);
+        const Inputs inputs = psvgf_shadows(n);
+        const double error = psvgf_error(run_filter("psvgf", inputs).picture, truth);
         EXPECT_LE(error, 1.05 * last) << n;
-        EXPECT_LT(error, relative_error(run_filter("none", inputs).picture, truth)) << n;
+        EXPECT_LT(error, psvgf_error(run_filter("none", inputs).picture, truth)) << n;
         last = error;
     }
 }
 
 TEST(Psvgf, TheRestGoesThroughUnfilteredOrFiltered) {
-    Inputs inputs = synthetic_inputs(Width, Height, 8, [](auto x, auto y, auto i) {
-        SyntheticSample s = shadowed_texture(Width, Height, x, y, i, 1);
-        const SyntheticSample other = shadowed_texture(Width, Height, x, y, i, 2);
+    Inputs inputs = synthetic_inputs(PsvgfWidth, PsvgfHeight, 8, [](auto x, auto y, auto i) {
+        SyntheticSample s = shadowed_texture(PsvgfWidth, PsvgfHeight, x, y, i, 1);
+        const SyntheticSample other = shadowed_texture(PsvgfWidth, PsvgfHeight, x, y, i, 2);
         s.low = other.irradiance;
         return s;
     });
@@ -82,20 +82,20 @@ TEST(Psvgf, TheRestGoesThroughUnfilteredOrFiltered) {
     for (std::size_t i = 0; i < rest.values().size(); ++i) {
         EXPECT_NEAR(all.values()[i] - diffuse.values()[i], rest.values()[i], 2e-6);
     }
-    Planes truth = shadowed_texture_truth(Width, Height);
-    for (std::uint32_t y = 0; y < Height; ++y) {
-        for (std::uint32_t x = 0; x < Width; ++x) {
+    Planes truth = shadowed_texture_truth(PsvgfWidth, PsvgfHeight);
+    for (std::uint32_t y = 0; y < PsvgfHeight; ++y) {
+        for (std::uint32_t x = 0; x < PsvgfWidth; ++x) {
             const float light =
                 truth.row(0, y)[x] / inputs.mean(frame::Channel::Albedo).row(0, y)[x];  // of the rest as well
             for (std::uint32_t c = 0; c < 3; ++c) truth.row(c, y)[x] += light;
         }
     }
-    EXPECT_LT(relative_error(run_filter("psvgf:rest=filtered", inputs).picture, truth),
-              0.3 * relative_error(all, truth));
+    EXPECT_LT(psvgf_error(run_filter("psvgf:rest=filtered", inputs).picture, truth),
+              0.3 * psvgf_error(all, truth));
 }
 
 TEST(Psvgf, OtherPathClassesAreServedByTheIrradiance) {
-    Inputs inputs = shadows(8);
+    Inputs inputs = psvgf_shadows(8);
     const Planes diffuse = run_filter("psvgf", inputs).picture;
     inputs.path_class = view::PathClass::Indirect;
     for (const auto channel : {frame::Channel::HighVariance, frame::Channel::LowVariance}) {
@@ -121,7 +121,7 @@ TEST(Psvgf, PartlyCoveredPixelsKeepTheirLight) {
         s.alpha = covered ? 1.0f : 0.0f;
         return s;
     };
-    Inputs inputs = synthetic_inputs(Width, Height, 8, sampler);
+    Inputs inputs = synthetic_inputs(PsvgfWidth, PsvgfHeight, 8, sampler);
     inputs.path_class = view::PathClass::Diffuse;
     const Planes picture = run_filter("psvgf", inputs).picture;
     ASSERT_EQ(picture.components(), 4u);
@@ -133,8 +133,8 @@ TEST(Psvgf, PartlyCoveredPixelsKeepTheirLight) {
 
 TEST(Psvgf, ConstantLightStays) {  // DT13
     for (const std::uint64_t n : {1u, 2u, 5u}) {
-        Inputs inputs = synthetic_inputs(Width, Height, n, [](auto x, auto y, auto i) {
-            SyntheticSample s = shadowed_texture(Width, Height, x, y, i);
+        Inputs inputs = synthetic_inputs(PsvgfWidth, PsvgfHeight, n, [](auto x, auto y, auto i) {
+            SyntheticSample s = shadowed_texture(PsvgfWidth, PsvgfHeight, x, y, i);
             s.irradiance.fill(0.7f);
             for (int c = 0; c < 3; ++c) s.high[c] = s.albedo[c] * 0.7f;
             s.object = x / 7;
@@ -153,28 +153,28 @@ TEST(Psvgf, ConstantLightStays) {  // DT13
 
 // Where the light across a vertical edge at the middle passes 10 and 90 % of its step.
 double edge_width(const Planes& picture) {
-    std::vector<double> profile(Width);
-    for (std::uint32_t y = 0; y < Height; ++y) {
-        for (std::uint32_t x = 0; x < Width; ++x) profile[x] += picture.row(0, y)[x] / Height;
+    std::vector<double> profile(PsvgfWidth);
+    for (std::uint32_t y = 0; y < PsvgfHeight; ++y) {
+        for (std::uint32_t x = 0; x < PsvgfWidth; ++x) profile[x] += picture.row(0, y)[x] / PsvgfHeight;
     }
     const double dark = profile.front(), bright = profile.back();
     const auto crossing = [&](double share) {
         const double level = dark + share * (bright - dark);
-        for (std::uint32_t x = 1; x < Width; ++x) {
+        for (std::uint32_t x = 1; x < PsvgfWidth; ++x) {
             if (profile[x] >= level) {
                 return x - 1 + (level - profile[x - 1]) / std::max(profile[x] - profile[x - 1], 1e-9);
             }
         }
-        return double(Width);
+        return double(PsvgfWidth);
     };
     return crossing(0.9) - crossing(0.1);
 }
 
 TEST(Psvgf, HardShadowsStayHard) {  // DT15
-    Inputs inputs = synthetic_inputs(Width, Height, 16, [](auto x, auto y, auto i) {
-        SyntheticSample s = shadowed_texture(Width, Height, x, y, i);
+    Inputs inputs = synthetic_inputs(PsvgfWidth, PsvgfHeight, 16, [](auto x, auto y, auto i) {
+        SyntheticSample s = shadowed_texture(PsvgfWidth, PsvgfHeight, x, y, i);
         CounterRandom random(5, (std::uint64_t{y} << 32 | x) ^ mix(i));
-        const float light = random.uniform() < (x < Width / 2 ? 0.15 : 0.9) ? 1.0f : 0.0f;
+        const float light = random.uniform() < (x < PsvgfWidth / 2 ? 0.15 : 0.9) ? 1.0f : 0.0f;
         s.irradiance.fill(light);
         s.albedo.fill(1.0f);
         s.high.fill(light);
@@ -189,8 +189,8 @@ TEST(Psvgf, HardShadowsStayHard) {  // DT15
 
 TEST(Psvgf, SteepSidesAreFilteredOnceDepthIsIgnored) {  // DT27
     const auto residual = [](const std::string& choice) {
-        Inputs inputs = synthetic_inputs(Width, Height, 4, [](auto x, auto y, auto i) {
-            SyntheticSample s = shadowed_texture(Width, Height, x, y, i);
+        Inputs inputs = synthetic_inputs(PsvgfWidth, PsvgfHeight, 4, [](auto x, auto y, auto i) {
+            SyntheticSample s = shadowed_texture(PsvgfWidth, PsvgfHeight, x, y, i);
             // Strips of a few pixels, each ever so steep: slopes differ from pixel to pixel.
             CounterRandom jitter(3, std::uint64_t{y} << 32 | x);
             s.depth = static_cast<float>(1.0 + 2.0 * (x % 4) + 1.5 * jitter.uniform());
@@ -212,7 +212,7 @@ TEST(Psvgf, SteepSidesAreFilteredOnceDepthIsIgnored) {  // DT27
 }
 
 TEST(Psvgf, HolesAreFilled) {
-    Inputs inputs = shadows(4);
+    Inputs inputs = psvgf_shadows(4);
     for (std::size_t i = 0; i < inputs.pixel_count(); ++i) {
         if (mix(i) % 10 != 0) continue;
         inputs.counts.plane(0)[i] = 0.0f;
@@ -224,33 +224,34 @@ TEST(Psvgf, HolesAreFilled) {
         }
         inputs.means[std::size_t(frame::Channel::Depth)].plane(0)[i] = std::numeric_limits<float>::infinity();
     }
-    const Planes truth = shadowed_texture_truth(Width, Height);
-    EXPECT_LT(relative_error(run_filter("psvgf", inputs).picture, truth),
-              0.2 * relative_error(run_filter("none", inputs).picture, truth));
+    const Planes truth = shadowed_texture_truth(PsvgfWidth, PsvgfHeight);
+    EXPECT_LT(psvgf_error(run_filter("psvgf", inputs).picture, truth),
+              0.2 * psvgf_error(run_filter("none", inputs).picture, truth));
 }
 
 TEST(Psvgf, WithoutItsChannelsItSaysSo) {
     const Inputs inputs = synthetic_inputs(
-        Width, Height, 2, [](auto x, auto y, auto i) { return shadowed_texture(Width, Height, x, y, i); },
+        PsvgfWidth, PsvgfHeight, 2,
+        [](auto x, auto y, auto i) { return shadowed_texture(PsvgfWidth, PsvgfHeight, x, y, i); },
         {frame::Channel::Radiance});
     const FilterEntry& entry = *parse_choice("psvgf", catalog()).value().entry;
     tbb::task_arena arena(2);
     Output out;
-    const Report report =
-        entry.make(Width, Height)->run(inputs, standard_values(entry.description), out, {arena, {}});
+    const Report report = entry.make(PsvgfWidth, PsvgfHeight)
+                              ->run(inputs, standard_values(entry.description), out, {arena, {}});
     ASSERT_EQ(report.notes.size(), 1u);
     EXPECT_NE(report.notes[0].find("unfiltered"), std::string::npos);
     EXPECT_TRUE(std::ranges::equal(out.picture.values(), inputs.mean(frame::Channel::Radiance).values()));
 }
 
 TEST(Psvgf, AnyNumberOfThreadsGivesTheSameBits) {  // DT33
-    const Inputs inputs = shadows(3);
+    const Inputs inputs = psvgf_shadows(3);
     const Choice choice = parse_choice("psvgf:rest=filtered", catalog()).value();
     std::vector<Planes> pictures;
     for (const int threads : {1, 2, 5}) {
         tbb::task_arena arena(threads);
         Output out;
-        choice.entry->make(Width, Height)->run(inputs, choice.values, out, {arena, {}});
+        choice.entry->make(PsvgfWidth, PsvgfHeight)->run(inputs, choice.values, out, {arena, {}});
         pictures.push_back(out.picture);
     }
     EXPECT_TRUE(std::ranges::equal(pictures[0].values(), pictures[1].values()));

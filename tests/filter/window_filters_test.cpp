@@ -2,18 +2,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "tests/filter/synthetic.h"
 
 namespace tessera::filter {
 namespace {
 
-constexpr std::uint32_t Size = 65, Middle = 32;
+constexpr std::uint32_t WindowSize = 65, Middle = 32;
 
 // One bright pixel, or whatever `light` says, on flat features or those of `change`.
 Inputs picture_of(const std::function<float(std::uint32_t, std::uint32_t)>& light,
                   const std::function<void(SyntheticSample&, std::uint32_t, std::uint32_t)>& change = {}) {
-    return synthetic_inputs(Size, Size, 2, [&](auto x, auto y, auto) {
+    return synthetic_inputs(WindowSize, WindowSize, 2, [&](auto x, auto y, auto) {
         SyntheticSample s;
         if (change) change(s, x, y);
         s.high = s.irradiance = {light(x, y), light(x, y), light(x, y)};
@@ -30,8 +31,8 @@ float step(std::uint32_t x, std::uint32_t) {
 }
 
 void expect_step_kept(const Output& out, const char* what) {
-    for (std::uint32_t y = 0; y < Size; ++y) {
-        for (std::uint32_t x = 0; x < Size; ++x) {
+    for (std::uint32_t y = 0; y < WindowSize; ++y) {
+        for (std::uint32_t x = 0; x < WindowSize; ++x) {
             ASSERT_NEAR(out.picture.row(0, y)[x], step(x, y), 1e-6f) << what << " at " << x << ", " << y;
         }
     }

@@ -15,7 +15,7 @@ using scene::Geometry;
 using scene::Transform;
 using testing::ElementsAre;
 
-ImportedScene load(const SceneFile& file, const ImportOptions& options = {}) {
+ImportedScene load_animated(const SceneFile& file, const ImportOptions& options = {}) {
     const TestFolder folder;
     ImportedScene scene = loaded(folder.write("scene.glb", file.glb()), options);
     expect_sound(scene, options);
@@ -23,7 +23,7 @@ ImportedScene load(const SceneFile& file, const ImportOptions& options = {}) {
 }
 
 ImportedScene at(double seconds, Motion motion = Motion::Still) {
-    return load(moving_file(), {.at = seconds, .motion = motion});
+    return load_animated(moving_file(), {.at = seconds, .motion = motion});
 }
 
 // Where the vertices of a geometry are seen, over all its instances.
@@ -50,7 +50,7 @@ void expect_places(const std::vector<glm::dvec3>& points, const std::vector<glm:
 }
 
 TEST(GltfAnimation, WithoutATimeTheRestIsSeenAndAnimationsAreListed) {
-    const ImportedScene scene = load(moving_file());
+    const ImportedScene scene = load_animated(moving_file());
     expect_places(seen(scene, "arm"), {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {1, 2, 0}});
     EXPECT_EQ(named<Transform>(scene, "cart").matrix, glm::dmat4(1.0));
     ASSERT_EQ(scene.animations.size(), 4u);
@@ -84,7 +84,7 @@ TEST(GltfAnimation, CamerasRideAlong) {
 
 TEST(GltfAnimation, OneIsChosenByNameOrNumber) {
     for (const std::string choice : {"drive", "0"}) {
-        const ImportedScene scene = load(moving_file(), {.at = 1.0, .animation = choice});
+        const ImportedScene scene = load_animated(moving_file(), {.at = 1.0, .animation = choice});
         expect_places(seen(scene, "arm"), {{5, 0, 0}, {6, 0, 0}, {5, 2, 0}, {6, 2, 0}});
     }
     const TestFolder folder;
@@ -99,10 +99,10 @@ TEST(GltfAnimation, OfTwoThatMoveTheSameTheFirstIsPlayed) {
     SceneFile file = moving_file();
     const int times = file.accessor(file.view(std::vector<float>{0, 1}), Component::Float, "SCALAR", 2);
     file.add("animations", animation("up", times, file.positions({{0, 9, 0}, {0, 9, 0}}), 0, "translation"));
-    const ImportedScene scene = load(file, {.at = 1.0});
+    const ImportedScene scene = load_animated(file, {.at = 1.0});
     EXPECT_EQ(named<Transform>(scene, "cart").matrix[3], glm::dvec4(5, 0, 0, 1));
     EXPECT_TRUE(has_notice(scene, "animation 'up' moves what one before it moves"));
-    EXPECT_EQ(named<Transform>(load(file, {.at = 1.0, .animation = "up"}), "cart").matrix[3],
+    EXPECT_EQ(named<Transform>(load_animated(file, {.at = 1.0, .animation = "up"}), "cart").matrix[3],
               glm::dvec4(0, 9, 0, 1));
 }
 
@@ -116,7 +116,7 @@ TEST(GltfAnimation, WeightsAtRestAreTheNodesElseTheMeshs) {
     file.add("nodes", R"({"mesh":0})");
     file.add("nodes", R"({"mesh":0,"weights":[0]})");
     file.add("scenes", R"({"nodes":[0,1,2]})");
-    const ImportedScene scene = load(file);
+    const ImportedScene scene = load_animated(file);
     EXPECT_EQ(scene.counts.geometries, 2u) << "nodes that bend it alike share it";
     expect_places(seen(scene, "m.2"), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
     EXPECT_EQ(seen(scene, "m")[1], glm::dvec3(3, 0, 0));
@@ -191,7 +191,7 @@ TEST(GltfAnimation, StepsLeadToWhatTheFileIsAtThatTime) {
 // still, the weight goes from 0.5 to 1 and back to 0.75.
 TEST(GltfShutter, WhatMovesGetsSteps) {
     const ImportOptions options{.at = 0.5, .shutter = 0.75};
-    const ImportedScene scene = load(moving_file(), options);
+    const ImportedScene scene = load_animated(moving_file(), options);
     EXPECT_EQ(scene.playback, nullptr);
     const Transform& cart = named<Transform>(scene, "cart");
     ASSERT_EQ(cart.motion.size(), 1u) << "a straight line needs one";
@@ -214,7 +214,7 @@ TEST(GltfShutter, WhatMovesGetsSteps) {
 
 // Of what the steps say at their times is what the file says.
 TEST(GltfShutter, ItsStepsAreThePosesOfTheirTimes) {
-    const ImportedScene scene = load(moving_file(), {.at = 0.25, .shutter = 1.5});
+    const ImportedScene scene = load_animated(moving_file(), {.at = 0.25, .shutter = 1.5});
     const Geometry& arm = named<Geometry>(scene, "arm");
     ASSERT_EQ(arm.motion_positions.size(), 15u);
     for (std::size_t i = 0; i < 15; ++i) {
@@ -228,7 +228,7 @@ TEST(GltfShutter, ItsStepsAreThePosesOfTheirTimes) {
 
 TEST(GltfShutter, OpensAnewAtEachFrame) {
     const ImportOptions options{.at = 0.0, .shutter = 0.5, .motion = Motion::Sequence};
-    ImportedScene scene = load(moving_file(), options);
+    ImportedScene scene = load_animated(moving_file(), options);
     scene::Scene mirror;
     ASSERT_TRUE(mirror.apply_entries(entries(scene, RootEntry::Create)));
     for (const double seconds : {0.25, 1.0, 1.75, 2.5}) {
@@ -238,7 +238,7 @@ TEST(GltfShutter, OpensAnewAtEachFrame) {
         expect_sound(scene);
         ImportOptions again = options;
         again.at = seconds;
-        expect_same(scene, load(moving_file(), again));
+        expect_same(scene, load_animated(moving_file(), again));
         ASSERT_TRUE(mirror.apply_entries(step->entries));
         scene::Scene direct;
         ASSERT_TRUE(direct.apply_entries(entries(scene, RootEntry::Create)));

@@ -34,10 +34,10 @@ TEST(GltfExtras, OfAnotherTypeOrOutOfRangeAreToldAndTheRestIsTaken) {
     EXPECT_EQ(light.size, scene::Light{}.size);
     EXPECT_EQ(light.angle, 0.0f);
     for (const char* part :
-         {"light 'lamp': its radius cannot be used (the radius lies outside",
+         {"light 'lamp': its radius cannot be used (radius is -1: it has to be at least 0",
           "its size cannot be used (it is of another type): its default is used, correct it",
           "its angle cannot be used (it is of another type)",
-          "its outer_cone_angle cannot be used (the outer cone angle lies outside",
+          "its outer_cone_angle cannot be used (outer_cone_angle is inf: it has to be from 0 to",
           "its extras have no field 'glow' and 1 others: what they say is ignored"})
         EXPECT_TRUE(has_notice(scene, part));
 }

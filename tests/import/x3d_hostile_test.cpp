@@ -7,7 +7,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string error_of(const std::string& text, const std::string& name = "a.x3d") {
+std::string x3d_error(const std::string& text, const std::string& name = "a.x3d") {
     const TestFolder folder;
     const auto scene = import_scene(folder.write(name, text));
     if (scene) {
@@ -29,17 +29,17 @@ std::string repeated(const std::string& text, std::size_t times) {
 constexpr const char* Good = "<Shape><Box/></Shape>";
 
 TEST(X3dHostile, BrokenXmlNamesTheLine) {
-    EXPECT_THAT(error_of("<?xml version='1.0'?>\n<X3D>\n<Scene>\n<Shape>\n</Scene></X3D>"),
+    EXPECT_THAT(x3d_error("<?xml version='1.0'?>\n<X3D>\n<Scene>\n<Shape>\n</Scene></X3D>"),
                 HasSubstr("line 5: the XML is broken"));
-    EXPECT_THAT(error_of(""), HasSubstr("the XML is broken"));
-    EXPECT_THAT(error_of("<X3D version='3.3"), HasSubstr("the XML is broken"));
-    EXPECT_THAT(error_of("\n<html><Scene/></html>"), HasSubstr("line 2: it begins with <html>"));
-    EXPECT_THAT(error_of("<X3D><head/></X3D>"), HasSubstr("has no <Scene>"));
-    EXPECT_THAT(error_of(std::string("<\0?\0x\0m\0", 8)), HasSubstr("UTF-8"));
-    EXPECT_THAT(error_of(x3d("")), HasSubstr("nothing to draw"));
-    EXPECT_THAT(error_of(x3d("<Shape><Extrusion/></Shape><Shape><Text/></Shape><Shape><Text/></Shape>")),
+    EXPECT_THAT(x3d_error(""), HasSubstr("the XML is broken"));
+    EXPECT_THAT(x3d_error("<X3D version='3.3"), HasSubstr("the XML is broken"));
+    EXPECT_THAT(x3d_error("\n<html><Scene/></html>"), HasSubstr("line 2: it begins with <html>"));
+    EXPECT_THAT(x3d_error("<X3D><head/></X3D>"), HasSubstr("has no <Scene>"));
+    EXPECT_THAT(x3d_error(std::string("<\0?\0x\0m\0", 8)), HasSubstr("UTF-8"));
+    EXPECT_THAT(x3d_error(x3d("")), HasSubstr("nothing to draw"));
+    EXPECT_THAT(x3d_error(x3d("<Shape><Extrusion/></Shape><Shape><Text/></Shape><Shape><Text/></Shape>")),
                 HasSubstr("skipped: 1 <Extrusion>, 2 <Text>"));
-    EXPECT_THAT(error_of("#VRML V2.0 utf8", "a.wrl"), HasSubstr("convert it to .x3d"));
+    EXPECT_THAT(x3d_error("#VRML V2.0 utf8", "a.wrl"), HasSubstr("convert it to .x3d"));
 }
 
 TEST(X3dHostile, EntitiesAreNotExpanded) {
@@ -77,10 +77,10 @@ TEST(X3dHostile, DoublingByUseIsRefused) {
         const std::string before = "<Group USE='g" + std::to_string(i - 1) + "'/>";
         doubling += "<Group DEF='g" + std::to_string(i) + "'>" + before + before + "</Group>";
     }
-    EXPECT_THAT(error_of(x3d(doubling)), HasSubstr("split the scene"));
+    EXPECT_THAT(x3d_error(x3d(doubling)), HasSubstr("split the scene"));
     const std::size_t first = doubling.find(Good);
     doubling.erase(first, std::string(Good).size());
-    EXPECT_THAT(error_of(x3d(Good + doubling)), HasSubstr("split the scene")) << "also of nothing";
+    EXPECT_THAT(x3d_error(x3d(Good + doubling)), HasSubstr("split the scene")) << "also of nothing";
 }
 
 TEST(X3dHostile, UseOfNothingAndOfItself) {

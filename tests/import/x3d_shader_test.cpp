@@ -89,8 +89,7 @@ TEST(X3dSurfaceShader, EveryFieldIsRead) {
         "</CommonSurfaceShader>");
     const auto shader = only<scene::SurfaceShader>(scene);
     EXPECT_EQ(shader.name, "s");
-    EXPECT_EQ(differences(shader, scene::SurfaceShader{}).size(),
-              std::tuple_size_v<decltype(scene::SurfaceShader::fields())> - 1)
+    EXPECT_EQ(differences(shader, scene::SurfaceShader{}).size(), row_count<scene::SurfaceShader> - 1)
         << "every field but the name";
     EXPECT_EQ(shader.emission, glm::vec3(7, 8, 9));
     EXPECT_EQ(shader.ambient, glm::vec3(0.1f, 0.2f, 0.3f));
@@ -271,8 +270,7 @@ TEST(X3dVolumeShader, DefaultsAndFields) {
         "containerField='absorptionTexture' url='a.png'/><ImageTexture containerField='scatteringTexture' "
         "url='b.png'/></CommonVolumeShader>");
     const auto fog = only<scene::Medium>(full);
-    EXPECT_EQ(differences(fog, scene::Medium{}).size(),
-              std::tuple_size_v<decltype(scene::Medium::fields())> - 1);
+    EXPECT_EQ(differences(fog, scene::Medium{}).size(), row_count<scene::Medium> - 1);
     EXPECT_EQ(fog.emission, glm::vec3(1, 2, 3));
     EXPECT_EQ(fog.absorption, glm::vec3(4, 5, 6));
     EXPECT_EQ(fog.scattering, glm::vec3(7, 8, 9));

@@ -94,7 +94,7 @@ TEST_F(SceneReplicaTest, ABlobThatALaterListLetsGoOfIsNotWaitedFor) {
     scene::Geometry old, now;
     old.positions = {blake2b(bytes(1)), 12};
     now.positions = {blake2b(bytes(2)), 12};
-    const scene::Fields<scene::Geometry> shape{scene::Geometry::Field::Positions};
+    const scene::Fields<scene::Geometry> shape{&scene::Geometry::positions};
     replica.offer(builder.edit({scene::Create{ObjectId{3}, old}}));
     replica.offer(builder.edit({test::SceneBuilder::update(ObjectId{3}, shape, now)}));
     const auto last = builder.edit({scene::Create{ObjectId{4}, old}, scene::Remove{ObjectId{4}}});
@@ -112,7 +112,7 @@ TEST_F(SceneReplicaTest, ABlobThatALaterListLetsGoOfIsNotWaitedFor) {
 
 TEST_F(SceneReplicaTest, AVersionWhoseBlobsAreHereIsBuiltThoughThoseOfALaterOneAreNot) {
     const auto bytes = [](unsigned char value) { return std::vector<std::byte>(12, std::byte(value)); };
-    const scene::Fields<scene::Geometry> shape{scene::Geometry::Field::Positions};
+    const scene::Fields<scene::Geometry> shape{&scene::Geometry::positions};
     std::vector<scene::ChangeList> lists;
     for (unsigned char i = 0; i < 3; ++i) {
         scene::Geometry geometry;
@@ -138,7 +138,7 @@ TEST_F(SceneReplicaTest, TheBackEndHoldsTheSameObjectsAndHashesNone) {
     for (std::uint64_t id = 2; id < 300; ++id) replica.offer(camera(id));
     replica.offer(builder.edit(
         {scene::Remove{ObjectId{7}},
-         test::SceneBuilder::update(ObjectId{8}, scene::Fields<scene::Camera>(scene::Camera::Field::Name),
+         test::SceneBuilder::update(ObjectId{8}, scene::Fields<scene::Camera>(&scene::Camera::name),
                                     scene::Camera{.name = "eight"})}));
     ASSERT_TRUE(replica.advance());
     auto build = replica.take_build();

@@ -1,6 +1,7 @@
 // The pixel filter at the ends of its ranges: widths, radiances, depths, sample counts.
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <limits>
 
 #include "tests/filter/pixel_pictures.h"

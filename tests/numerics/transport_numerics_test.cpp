@@ -17,7 +17,7 @@
 namespace tessera::shading {
 namespace {
 
-constexpr double Ulp = 0x1p-24;
+constexpr double TransportUlp = 0x1p-24;
 
 // A ray leads to its own place within the pixel, up to a few roundings of the picture's edge: in a picture of
 // 65,536 pixels that is 1 % of a pixel.
@@ -33,7 +33,7 @@ TEST(CameraNumerics, HugePicturesKeepThePlaceInThePixel) {
         view.camera = {.left = left, .right = right, .bottom = left, .top = right};
         const View record = backend::make_view(view, {});
         const double pixel = (right - left) / size;
-        const double bound = 6.0 * Ulp * std::max(std::fabs(left), std::fabs(right)) / pixel;
+        const double bound = 6.0 * TransportUlp * std::max(std::fabs(left), std::fabs(right)) / pixel;
         for (const std::uint32_t x : {0u, 1u, size / 3, size / 2, size - 1}) {
             for (const float u : {0.0f, 0.25f, 0.5f, 0.99f}) {
                 const Ray ray = camera_ray(record, x, x, {u, u});
@@ -70,8 +70,8 @@ TEST(TriangleNumerics, NormalsAreThoseOfDoubles) {
                 const glm::dvec3 p = triangle.p, q = triangle.q, r = triangle.r;
                 const glm::dvec3 expected = glm::normalize(glm::cross((q - p) / size, (r - p) / size));
                 const glm::dvec3 found = face_normal(instance, triangle, glm::vec3(0.0f));
-                ASSERT_NEAR(glm::length(found), 1.0, 4.0 * Ulp);
-                ASSERT_LT(glm::length(found - expected), 16.0 * Ulp) << size << " " << thin;
+                ASSERT_NEAR(glm::length(found), 1.0, 4.0 * TransportUlp);
+                ASSERT_LT(glm::length(found - expected), 16.0 * TransportUlp) << size << " " << thin;
             }
         }
     }
@@ -84,8 +84,8 @@ TEST(ScalingNumerics, DirectionsAndDistancesAreThoseOfDoubles) {
     for (double size = 1e-37; size < 1e38; size *= 10.0) {
         const glm::dvec3 direction = random_direction(random);
         const Measured measured = measure(glm::vec3(size * direction));
-        EXPECT_NEAR(measured.distance / size, 1.0, 8.0 * Ulp) << size;
-        EXPECT_LT(glm::length(glm::dvec3(measured.direction) - direction), 8.0 * Ulp) << size;
+        EXPECT_NEAR(measured.distance / size, 1.0, 8.0 * TransportUlp) << size;
+        EXPECT_LT(glm::length(glm::dvec3(measured.direction) - direction), 8.0 * TransportUlp) << size;
     }
     EXPECT_EQ(measure(glm::vec3(0.0f)).distance, 0.0f);
     EXPECT_EQ(measure({1.0f, INFINITY, 0.0f}).distance, 0.0f);

@@ -115,9 +115,8 @@ TEST(Parity, WhereLayersAreHidden) {
     std::size_t transforms = 0;
     for (const auto& [id, object] : scene.content.objects()) {
         if (!std::holds_alternative<scene::Transform>(*object) || transforms++ % 3 != 2) continue;
-        entries.push_back(
-            scene::Update{id, scene::Fields<scene::Transform>(scene::Transform::Field::Layers).bits(),
-                          scene::Transform{.layers = 2}});
+        entries.push_back(scene::Update{id, scene::Fields<scene::Transform>(&scene::Transform::layers).bits(),
+                                        scene::Transform{.layers = 2}});
     }
     ASSERT_TRUE(scene.content.apply_entries(entries));
     view::View view = square_view(scene, Size);

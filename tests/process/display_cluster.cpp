@@ -52,7 +52,7 @@ void DisplayCluster::begin_scene() {
     const auto made = editor_->submit(
         {scene::Create{camera, scene::Camera{.name = "head"}},
          scene::Create{place_, scene::Transform{.name = "place", .children = {camera}}},
-         scene::Update{scene::RootId, scene::Fields<scene::Root>(scene::Root::Field::Children).bits(),
+         scene::Update{scene::RootId, scene::Fields<scene::Root>(&scene::Root::children).bits(),
                        scene::Root{.children = {place_}}}});
     EXPECT_TRUE(made.accepted);
 }
@@ -156,7 +156,7 @@ MovingScene::MovingScene(DisplayCluster& cluster)
                   scene::Transform moved;
                   moved.matrix[3][0] = 0.01 * step;
                   session->submit_ahead({scene::Update{
-                      cluster.place_, scene::Fields<scene::Transform>(scene::Transform::Field::Matrix).bits(),
+                      cluster.place_, scene::Fields<scene::Transform>(&scene::Transform::matrix).bits(),
                       moved}});
                   (void)session->take_results();
               }

@@ -53,7 +53,7 @@ struct LiveProcess : testing::Test {
         view.view.channels = {frame::Channel::Radiance};
     }
     std::vector<Entry> paint(float red) const {
-        return {Update{material, Fields<Material>(Material::Field::BaseColor).bits(),
+        return {Update{material, Fields<Material>(&Material::base_color).bits(),
                        Material{.base_color = {red, 0.5f, 0.5f, 1.0f}}}};
     }
     Hash256 finished_film() {

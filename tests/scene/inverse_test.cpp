@@ -58,12 +58,12 @@ TEST(Inverse, HoldsOnlyTheFieldsItNeeds) {
     Material smooth;
     smooth.roughness = 0.5f;
     const auto changes = apply_and_observe(
-        scene, {Update{ObjectId{5}, Fields<Material>(Material::Field::Roughness).bits(), smooth}});
+        scene, {Update{ObjectId{5}, Fields<Material>(&Material::roughness).bits(), smooth}});
     ASSERT_TRUE(changes);
     const std::vector<Entry> back = inverse(*changes);
     ASSERT_EQ(back.size(), 1u);
     const auto& update = std::get<Update>(back[0]);
-    EXPECT_EQ(update.mask, Fields<Material>(Material::Field::Roughness).bits());
+    EXPECT_EQ(update.mask, Fields<Material>(&Material::roughness).bits());
     EXPECT_EQ(std::get<Material>(update.fields).roughness, 0.25f);
     EXPECT_TRUE(name(update.fields).empty());
 }
@@ -112,9 +112,9 @@ TEST(ValidateChanges, FindsCyclesOfLargeEditsToo) {
     EXPECT_TRUE(validate_changes(scene, referrers, *created).empty());
     Transform back_to_first;
     back_to_first.children = {ObjectId{First}};
-    const auto closed = apply_and_observe(
-        scene, {Update{ObjectId{First + Length - 1}, Fields<Transform>(Transform::Field::Children).bits(),
-                       back_to_first}});
+    const auto closed =
+        apply_and_observe(scene, {Update{ObjectId{First + Length - 1},
+                                         Fields<Transform>(&Transform::children).bits(), back_to_first}});
     ASSERT_TRUE(closed);
     index(referrers, *closed);
     EXPECT_EQ(validate_changes(scene, referrers, *closed).size(), 1u) << "one new link closes it";

@@ -36,14 +36,14 @@ class RandomEdits {
                 if (!target) return {Remove{ObjectId{4'000'000'000}}};
                 Transform self;
                 self.children = {target};
-                return {Update{target, Fields<Transform>(Transform::Field::Children).bits(), self}};
+                return {Update{target, Fields<Transform>(&Transform::children).bits(), self}};
             }
             case 2:
                 return {Create{ObjectId{next_id_++}, Material{.roughness = 7.0f}}};
             default: {
                 Root root;
                 root.background = RootId;
-                return {Update{RootId, Fields<Root>(Root::Field::Background).bits(), root}};
+                return {Update{RootId, Fields<Root>(&Root::background).bits(), root}};
             }
         }
     }
@@ -125,7 +125,7 @@ class RandomEdits {
             if (std::erase(list, id) != 0) set_children(editor, other, list);
             now = editor.find(other);
             if (const auto* geometry = std::get_if<Geometry>(now); geometry && geometry->material == id)
-                editor.update(other, Fields<Geometry>(Geometry::Field::Material), Geometry{});
+                editor.update(other, Fields<Geometry>(&Geometry::material), Geometry{});
         }
         editor.remove(id);
     }

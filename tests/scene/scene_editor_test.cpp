@@ -13,7 +13,7 @@ struct SceneEditorTest : testing::Test {
         ASSERT_TRUE(base.apply_entries({Create{RootId, Root{}}, Create{Lamp, Light{.name = "lamp"}}}));
     }
     static Light intense(float value) { return {.intensity = glm::vec3(value)}; }
-    static constexpr Fields<Light> Intensity{Light::Field::Intensity};
+    static constexpr Fields<Light> Intensity{&Light::intensity};
 };
 
 TEST_F(SceneEditorTest, ManyWritesOfAFieldAreOneEntry) {
@@ -65,7 +65,7 @@ TEST_F(SceneEditorTest, RefusesWhatIsNotThereOrOfAnotherKind) {
     SceneEditor editor(base);
     EXPECT_THROW(editor.remove(Other), Error);
     EXPECT_THROW(editor.create(Lamp, Light{}), Error);
-    EXPECT_THROW(editor.update(Lamp, Fields<Camera>(Camera::Field::VerticalFov), Camera{}), Error);
+    EXPECT_THROW(editor.update(Lamp, Fields<Camera>(&Camera::vertical_fov), Camera{}), Error);
     EXPECT_THROW(editor.update(Other, Intensity, Light{}), Error);
     EXPECT_TRUE(editor.take().empty());
 }

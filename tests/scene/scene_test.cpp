@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mediator/scene/field_values.h"
 #include "mediator/scene/fields.h"
 
 namespace tessera::scene {
@@ -97,6 +98,41 @@ TEST(ObjectHash, SeesEveryFieldOfEveryKind) {
     expect_every_field_counts<Attachment>();
     expect_every_field_counts<SurfaceShader>();
     expect_every_field_counts<Medium>();
+}
+
+// As a kind was in the first release, and as it is with a field that came later.
+struct Early {
+    float size = 2.0f;
+    static constexpr auto describe(auto row) { return std::tuple(row(1, "size", &Early::size)); }
+};
+struct Late {
+    float size = 2.0f, edge = 0.5f;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "size", &Late::size), row(2, "edge", &Late::edge, InitialWhenAbsent{}));
+    }
+};
+
+template <class T>
+Hash256 hash_of(const T& value) {
+    Blake2b hash;
+    feed(hash, value);
+    return hash.finish();
+}
+
+TEST(ObjectHash, OfOlderScenesStaysWhenAFieldIsAdded) {
+    EXPECT_EQ(hash_of(Late{}), hash_of(Early{}));
+    EXPECT_EQ(hash_of(Late{.size = 3.0f}), hash_of(Early{.size = 3.0f}));
+    EXPECT_NE(hash_of(Late{.edge = 0.0f}), hash_of(Late{}));
+    EXPECT_NE(hash_of(Late{.edge = 0.0f}), hash_of(Late{.edge = 1.0f}));
+}
+
+TEST(Masks, AreNumbersLessOne) {
+    EXPECT_EQ(Fields<Material>(&Material::base_color).bits(), 0b10u);
+    EXPECT_EQ(Fields<Geometry>(&Geometry::motion_normals).bits(), field_bit(12));
+    EXPECT_EQ((Fields<Root>{&Root::name, &Root::render_origin}.bits()), 0b1001u);
+    EXPECT_EQ(all_fields(ObjectKind::Material), Fields<Material>::all().bits());
+    EXPECT_EQ(field_name(ObjectKind::Material, 43), "shadow_catcher");
+    EXPECT_EQ(field_name(ObjectKind::Material, 63), "");
 }
 
 TEST(Difference, LeadsFromOneSceneToAnother) {

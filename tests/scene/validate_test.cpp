@@ -125,7 +125,7 @@ TEST(Validate, LetsOnlyMediaHaveVolumes) {
     ASSERT_TRUE(scene.apply_entries({Create{RootId, Root{}}, Create{A, material}, Create{B, flat}}));
     for (const auto& [id, object] : scene.objects()) referrers.replace(id, nullptr, object.get());
     const std::vector<Entry> grown{
-        Update{B, (Fields<Texture>(Texture::Field::Depth) | Texture::Field::Texels).bits(), volume}};
+        Update{B, (Fields<Texture>(&Texture::depth) | &Texture::texels).bits(), volume}};
     const auto changes = apply_and_observe(scene, grown);
     ASSERT_TRUE(changes);
     EXPECT_FALSE(validate_entries(scene, grown).empty());

@@ -24,12 +24,11 @@ Transform at(double x, std::vector<ObjectId> children) {
 Update matrix_of(ObjectId id, const glm::dmat4& matrix) {
     Transform transform;
     transform.matrix = matrix;
-    return {id, Fields<Transform>(Transform::Field::Matrix).bits(), transform};
+    return {id, Fields<Transform>(&Transform::matrix).bits(), transform};
 }
 
 Update children_of(ObjectId id, std::vector<ObjectId> children) {
-    return {id, Fields<Transform>(Transform::Field::Children).bits(),
-            Transform{.children = std::move(children)}};
+    return {id, Fields<Transform>(&Transform::children).bits(), Transform{.children = std::move(children)}};
 }
 
 Scene scene_of(std::vector<Entry> entries, std::vector<ObjectId> top) {
@@ -128,7 +127,7 @@ TEST_F(Followed, GoesWithTheGraph) {
     EXPECT_FALSE(follow({matrix_of(A, moved(8))})) << "it was taken from there";
     EXPECT_FALSE(follow({Create{ObjectId{30}, at(1, {Side})}})) << "placed nowhere itself";
     EXPECT_FALSE(follow({children_of(A, {Front, Loose})})) << "another camera";
-    EXPECT_TRUE(follow({Update{RootId, Fields<Root>(Root::Field::Children).bits(), Root{.children = {A}}}}));
+    EXPECT_TRUE(follow({Update{RootId, Fields<Root>(&Root::children).bits(), Root{.children = {A}}}}));
     EXPECT_FALSE(camera.world_from_camera()) << "gone";
     EXPECT_TRUE(follow({children_of(A, {Front, Side})}));
     EXPECT_TRUE(
@@ -137,7 +136,7 @@ TEST_F(Followed, GoesWithTheGraph) {
 
 TEST_F(Followed, NamesDecide) {
     const auto renamed = [](ObjectId id, const std::string& name) {
-        return Update{id, Fields<Camera>(Camera::Field::Name).bits(), Camera{.name = name}};
+        return Update{id, Fields<Camera>(&Camera::name).bits(), Camera{.name = name}};
     };
     EXPECT_TRUE(follow({renamed(Side, "back")}));
     EXPECT_FALSE(camera.world_from_camera());

@@ -51,7 +51,7 @@ TEST(VulkanMerging, IsTheSameWhereTheHostHasToDoIt) {
     Rendering rendering;
     const auto backend = with_scene(find_backend("vulkan").make({.blobs = rendering.blobs}), rendering);
     const auto dazzling = rendering.builder.edit({test::SceneBuilder::update<scene::Background>(
-        test::Sky, scene::Background::Field::Color, {.color = glm::vec3(1e25f)})});
+        test::Sky, &scene::Background::color, {.color = glm::vec3(1e25f)})});
     test::commit(*backend, {dazzling});
     const frame::FilmTile whole = rendering.film(*backend, {8, 3});
     frame::BlockStack single;
@@ -138,7 +138,7 @@ TEST(VulkanBackendMemory, ASceneThatDoesNotFitIsRefusedAndTheLastOneStays) {
             {scene::Create{ObjectId{90}, large},
              scene::Create{ObjectId{9}, test::transform(test::moved(0, 0, -4), {ObjectId{90}})},
              test::SceneBuilder::update<scene::Root>(
-                 scene::RootId, scene::Root::Field::Children,
+                 scene::RootId, &scene::Root::children,
                  {.children = {ObjectId{9}, test::FloorAt, test::BlockAt}})});
         ASSERT_TRUE(scope->apply(changes));
         const auto done = scope->commit();
@@ -177,9 +177,9 @@ class VulkanBackendTrees : public testing::Test {
     ~VulkanBackendTrees() override { fs::remove_all(folder); }
 
     scene::ChangeList wave_of(float height) {
-        using Field = scene::Geometry::Field;
         return rendering.builder.edit({test::SceneBuilder::update<scene::Geometry>(
-            test::Floor, {Field::Hint, Field::Positions, Field::Indices}, wave(*rendering.blobs, height))});
+            test::Floor, {&scene::Geometry::hint, &scene::Geometry::positions, &scene::Geometry::indices},
+            wave(*rendering.blobs, height))});
     }
     std::unique_ptr<Backend> start(const fs::path& cache_folder) const {
         return with_scene(make_backend({.cache_folder = cache_folder, .blobs = rendering.blobs}, {}),

@@ -77,16 +77,16 @@ TEST_F(ValidatedBackend, RendersEveryWayAndIsEditedAtEveryLevel) {
         EXPECT_GT(rays_of(view::Renderer::Whitted), 0u);  // by the same kernel, since the range is wanted
         test::commit(*backend, {builder.move(test::BlockAt, test::moved(0.2, 0.1, -1.5))});  // retransformed
         EXPECT_GT(rays_of(), 0u);
-        using Field = scene::Geometry::Field;
-        test::commit(*backend, {builder.edit({test::SceneBuilder::update<scene::Geometry>(
-                                   test::Block, Field::Hint, {.hint = scene::MotionHint::Animated})})});
+        test::commit(*backend,
+                     {builder.edit({test::SceneBuilder::update<scene::Geometry>(
+                         test::Block, &scene::Geometry::hint, {.hint = scene::MotionHint::Animated})})});
         scene::Geometry bent = test::square(*blobs, 0.3f, test::Glow);
         bent.positions = test::array_blob<float>(
             *blobs, {-0.3f, -0.3f, 0, 0.3f, -0.3f, 0.1f, 0.3f, 0.3f, 0, -0.3f, 0.3f, 0});
         {
             const auto scope = backend->begin_edit();
-            ASSERT_TRUE(scope->apply(builder.edit(
-                {test::SceneBuilder::update<scene::Geometry>(test::Block, Field::Positions, bent)})));
+            ASSERT_TRUE(scope->apply(builder.edit({test::SceneBuilder::update<scene::Geometry>(
+                test::Block, &scene::Geometry::positions, bent)})));
             EXPECT_EQ(scope->commit().value().refitted, 1u);
         }
         EXPECT_GT(rays_of(), 0u);

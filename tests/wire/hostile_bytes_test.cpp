@@ -49,7 +49,7 @@ scene::ChangeList some_changes() {
             .entries = {scene::Create{ObjectId{7}, geometry},
                         scene::Update{ObjectId{8},
                                       scene::Fields<scene::Transform>(
-                                          {scene::Transform::Field::Matrix, scene::Transform::Field::Layers})
+                                          {&scene::Transform::matrix, &scene::Transform::layers})
                                           .bits(),
                                       moved},
                         scene::Create{ObjectId{9}, scene::Material{}},
@@ -62,9 +62,10 @@ scene::ChangeList some_changes() {
             .state_hash = {1, ~0ull}};
 }
 
-std::vector<ControlMessage> control_messages() {
+const NodeSummary node{NodeId{1}, "n", "host", "embree", "embree/avx2", 4711, 3, 4096, 1.5};
+
+std::vector<ControlMessage> peer_messages() {
     const view::WorkUnit unit{UnitId{4}, ViewId{3}, 9, {5, 2}, {32, 64, 32, 32}, {8, 3}};
-    const NodeSummary node{NodeId{1}, "n", "host", "embree", "embree/avx2", 4711, 3, 4096, 1.5};
     return {Hello{.peer = PeerKind::Node,
                   .name = "n",
                   .host = "h",
@@ -88,8 +89,11 @@ std::vector<ControlMessage> control_messages() {
             UnitReleased{UnitId{4}, ReleaseReason::Failed, "why"},
             Leave{},
             Goodbye{"bye", {UnitId{4}}},
-            Notice{Severity::Error, "text"},
-            OpenScene{"title", true},
+            Notice{Severity::Error, "text"}};
+}
+
+std::vector<ControlMessage> batch_messages() {
+    return {OpenScene{"title", true},
             QueuePlace{2},
             SceneOpened{{5, 1}, 65536, 100},
             SubmitEdit{{SessionId{2}, 3, {5, 1}, some_changes().entries, 4, -5, 6}},
@@ -134,8 +138,11 @@ std::vector<ControlMessage> control_messages() {
                                  .stages = {{"first picture", 9, 0.02, 0.05}}}},
             SetFilter{"fdf:radius=3"},
             FilterSet{true, "from now on"},
-            SceneRefused{{5, 1}, "too large"},
-            JoinScene{"room", "ann", 0xfedcba9876543210, true},
+            SceneRefused{{5, 1}, "too large"}};
+}
+
+std::vector<ControlMessage> live_messages() {
+    return {JoinScene{"room", "ann", 0xfedcba9876543210, true},
             SceneJoined{{5, 1}, 65536, 100, 3, "room", "ann (2)"},
             RequestDone{1, true, "why"},
             CloseScene{2},
@@ -168,6 +175,13 @@ std::vector<ControlMessage> control_messages() {
             OutputOpened{15, {blake2b({}), 100}, 3, true},
             OutputReady{9},
             PresentFrame{9, {5, 3}, 1000, 10}};
+}
+
+std::vector<ControlMessage> control_messages() {
+    std::vector<ControlMessage> all = peer_messages();
+    for (const auto& more : {batch_messages(), live_messages()})
+        all.insert(all.end(), more.begin(), more.end());
+    return all;
 }
 
 std::vector<BulkMessage> bulk_messages() {
@@ -219,8 +233,8 @@ TEST(ControlMessages, AnUpdateCarriesTheFieldsOfItsMaskOnly) {
     scene::Transform moved;
     moved.name = std::string(500, 'x');
     moved.children.assign(1000, ObjectId{5});
-    const scene::Update update{
-        ObjectId{8}, scene::Fields<scene::Transform>(scene::Transform::Field::Matrix).bits(), moved};
+    const scene::Update update{ObjectId{8}, scene::Fields<scene::Transform>(&scene::Transform::matrix).bits(),
+                               moved};
     EXPECT_LT(encode(ControlMessage(Changes{{.entries = {update}}})).size(), 300u);
 }
 

@@ -65,7 +65,8 @@ void expect_same_field(const google::protobuf::Descriptor& proto) {
         << field->full_name();
     EXPECT_EQ(field->is_repeated(), detail::is_list<Value> || detail::Vector<Value>) << field->full_name();
     if (proto_type<Element>(false) != Field::TYPE_MESSAGE) {
-        EXPECT_EQ(field->has_optional_keyword(), detail::is_optional<Value>) << field->full_name();
+        EXPECT_EQ(field->has_optional_keyword(), detail::is_optional<Value> || Traits::initial_when_absent)
+            << field->full_name();
     }
     if (field->is_repeated() && field->type() != Field::TYPE_BYTES && field->type() != Field::TYPE_MESSAGE) {
         EXPECT_TRUE(field->is_packed()) << field->full_name();

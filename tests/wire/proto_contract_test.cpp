@@ -51,5 +51,32 @@ TEST(ProtoContract, NumbersOfMessagesThatAreGoneAreReserved) {
     }
 }
 
+// A structure before and after a row came to it.
+struct Early {
+    float size = 2.0f;
+    static constexpr auto describe(auto row) { return std::tuple(row(1, "size", &Early::size)); }
+};
+struct Late {
+    float size = 2.0f, edge = 0.5f;
+    std::uint32_t count = 7;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "size", &Late::size), row(2, "edge", &Late::edge, InitialWhenAbsent{}),
+                          row(3, "count", &Late::count, InitialWhenAbsent{}));
+    }
+};
+
+TEST(LaterRows, HaveTheirInitialValueWhereTheyAreAbsent) {
+    const auto read = from_bytes<Late>(to_bytes(Early{.size = 0.0f}));
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->size, 0.0f);
+    EXPECT_EQ(read->edge, 0.5f);
+    EXPECT_EQ(read->count, 7u);
+    const auto zero = from_bytes<Late>(to_bytes(Late{.edge = 0.0f, .count = 0}));
+    ASSERT_TRUE(zero);
+    EXPECT_EQ(zero->edge, 0.0f);
+    EXPECT_EQ(zero->count, 0u);
+    EXPECT_EQ(from_bytes<Early>(to_bytes(Late{.size = 3.0f}))->size, 3.0f) << "older readers skip it";
+}
+
 }  // namespace
 }  // namespace tessera::wire::test

@@ -1,6 +1,7 @@
 #include <tbb/parallel_for.h>
 
 #include <array>
+#include <functional>
 
 #include "backends/vulkan/bvh/quantise.h"
 #include "backends/vulkan/bvh/wide_tree.h"

@@ -21,12 +21,13 @@ from .errors import Error, InvalidInput, Malformed, Refused, Unavailable
 from .film import Film, floats
 from .frame import Frame
 from .link import LinkSettings as _LinkSettings
-from .objects import (ROOT_ID, Attachment, Background, Blob, Camera, Geometry, Light, Material, Medium, Object, Root,
-                      SurfaceShader, Texture, TextureSlot, Transform)
+from .objects import (Attachment, Background, Camera, Geometry, Light, Material, Medium, Root, SurfaceShader, Texture,
+                      TextureSlot, Transform)
 from .people import Committed, Hit, People, Person, Status, Writer
 from .scene import Scene
 from .session import Session
 from .transaction import Transaction
+from .values import ROOT_ID, Blob, Object
 from .view import View
 
 __all__ = [

@@ -8,7 +8,7 @@ from typing import Protocol
 
 from . import bulk
 from .errors import Malformed
-from .objects import Blob
+from .values import Blob
 
 IN_FLIGHT = 8  # chunks asked for and not yet here
 RETRY_SECONDS = 3.0

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Sequence
 
 from .errors import InvalidInput
-from .objects import Matrix, Vec3
+from .values import Matrix, Vec3
 
 # In the order of the wire.
 PROJECTIONS = ("perspective", "orthographic")

@@ -14,9 +14,9 @@ from .endpoint import Endpoint
 from .errors import Error, InvalidInput, Malformed, Refused, Unavailable
 from .keys import ClientKeys
 from .link import Link, LinkSettings
-from .objects import Blob
 from .people import text
 from .proto import control_pb2
+from .values import Blob
 
 Message = Any
 _LOG = logging.getLogger("tessera")

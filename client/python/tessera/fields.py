@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import difflib
 import math
-import re
 import struct
 from array import array
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, Callable, Iterable, Mapping, Sequence
 
 from .blobs import BlobSource
 from .errors import InvalidInput, Malformed
-from .objects import (Attachment, Background, Blob, Camera, Geometry, Light, Material, Medium, Object, Root,
-                      SurfaceShader, Texture, TextureSlot, Transform)
+from .objects import KIND_ROWS, TEXTURE_SLOT_ROWS, TextureSlot
 from .proto import scene_pb2
+from .values import Blob, FieldRow, Object
 
 Message = Any  # of protobuf, which has no type hints in Debian
 
@@ -217,47 +216,48 @@ def _flatten(value: Any, to: list[Any], depth: int) -> None:
         to.append(value)
 
 
-_FLOAT = _plain(_float32)
-_FLOAT2 = _vector(2, _float32)
-
-
 def _write_slot(message: Message, field: str, value: Any, blobs: BlobSource) -> None:
     slot = value if isinstance(value, TextureSlot) else TextureSlot(object_id(value))
     target = getattr(message, field)
     target.Clear()
     target.SetInParent()
-    target.texture = object_id(slot.texture)
-    _FLOAT2.write(target, "offset", slot.offset, blobs)
-    _FLOAT2.write(target, "scale", slot.scale, blobs)
-    _FLOAT.write(target, "rotation", slot.rotation, blobs)
-    _UINT.write(target, "set", slot.set, blobs)
+    for name, codec in _SLOT.items():
+        codec.write(target, name, getattr(slot, name), blobs)
 
 
 def _read_slot(message: Message, field: str) -> TextureSlot:
     slot = getattr(message, field)
-    return TextureSlot(slot.texture, _FLOAT2.read(slot, "offset"), _FLOAT2.read(slot, "scale"), slot.rotation,
-                       slot.set)
+    return TextureSlot(**{name: codec.read(slot, name) for name, codec in _SLOT.items()})
 
 
-_TEXT = Codec(_write_text, _read_text)
-_DOUBLE, _BOOL, _UINT, _REF = _plain(_number), _plain(_boolean), _plain(_size), _plain(object_id)
-_FLOAT3, _FLOAT4 = _vector(3, _float32), _vector(4, _float32)
-_DOUBLE3, _MATRIX = _vector(3, _number), _vector(16, _number)
-_IDS = Codec(_write_ids, lambda message, field: tuple(getattr(message, field)))
-_SLOT = Codec(_write_slot, _read_slot)
-_INT = _plain(_signed)
-_HINT = _choice("unflagged", "static", "animated")
-_WRAP = _choice("repeat", "mirror", "clamp")
+# By the words of the rows in `objects.py`.
+_CODECS: Mapping[str, Codec] = {
+    "text": Codec(_write_text, _read_text), "bool": _plain(_boolean), "int": _plain(_signed), "uint": _plain(_size),
+    "float": _plain(_float32), "double": _plain(_number),
+    "float2": _vector(2, _float32), "float3": _vector(3, _float32), "float4": _vector(4, _float32),
+    "double3": _vector(3, _number), "matrix": _vector(16, _number), "matrices": Codec(_write_matrices, _read_matrices),
+    "id": _plain(object_id), "ids": Codec(_write_ids, lambda message, field: tuple(getattr(message, field))),
+    "slot": Codec(_write_slot, _read_slot),
+    "blob I": _blob("I"), "blob f": _blob("f"), "blob B": _blob("B"), "blobs f": _blobs("f"),
+}
+
+
+def _codec(row: FieldRow) -> Codec:
+    return _choice(*row.choices) if row.choices else _CODECS[row.codec]
+
+
+_SLOT: Mapping[str, Codec] = {row.name: _codec(row) for row in TEXTURE_SLOT_ROWS}
 
 
 @dataclass(frozen=True)
 class Kind:
-    """One kind of objects. The order of `codecs` is that of the bits of a mask."""
+    """One kind of objects. `codecs` is in the order of the message's fields."""
 
     name: str  # as in messages
     plural: str  # as in paths
     type: type[Object]
     codecs: Mapping[str, Codec]
+    bits: Mapping[str, int]  # of each field, in a mask
     is_placed: bool  # may be a child of the root or of a transform
 
     def bit(self, field: str) -> int:
@@ -267,7 +267,7 @@ class Kind:
             near = difflib.get_close_matches(field, names, 1)
             hint = f"did you mean '{near[0]}'?" if near else f"it has {', '.join(names)}"
             raise InvalidInput(f"a {self.name} has no field '{field}': {hint}")
-        return 1 << names.index(field)
+        return self.bits[field]
 
     def write(self, message: Message, field: str, value: Any, blobs: BlobSource) -> int:
         """Into a message of this kind; returns the field's bit."""
@@ -289,55 +289,10 @@ class Kind:
         return message
 
 
-def _kind(plural: str, object_type: type[Object], is_placed: bool, **codecs: Codec) -> Kind:
-    words = re.findall("[A-Z][a-z]*", object_type.__name__)
-    kind = Kind("_".join(words).lower(), plural, object_type, {"name": _TEXT, **codecs}, is_placed)
-    assert [f.name for f in fields(object_type)] == ["id", *kind.codecs]
-    return kind
-
-
-# In the order of ObjectKind.
-KINDS: tuple[Kind, ...] = (
-    _kind("root", Root, False, children=_IDS, background=_REF, render_origin=_DOUBLE3),
-    _kind("transforms", Transform, True, matrix=_MATRIX, children=_IDS, hint=_HINT, layers=_UINT,
-          motion=Codec(_write_matrices, _read_matrices)),
-    _kind("geometries", Geometry, True, material=_REF, hint=_HINT, indices=_blob("I"), positions=_blob("f"),
-          normals=_blob("f"), tangents=_blob("f"), tex_coords=_blob("f"), colors=_blob("f"),
-          tex_coords_1=_blob("f"), medium=_REF, motion_positions=_blobs("f"), motion_normals=_blobs("f")),
-    _kind("materials", Material, False, base_color=_FLOAT4, base_color_texture=_SLOT, metallic=_FLOAT,
-          roughness=_FLOAT, metallic_roughness_texture=_SLOT, normal_texture=_SLOT, normal_scale=_FLOAT,
-          emission=_FLOAT3, emission_texture=_SLOT, alpha_mode=_choice("opaque", "mask", "blend"),
-          alpha_cutoff=_FLOAT, double_sided=_BOOL, unlit=_BOOL, index_of_refraction=_FLOAT, transmission=_FLOAT,
-          transmission_texture=_SLOT, thickness=_FLOAT, attenuation_color=_FLOAT3, attenuation_distance=_FLOAT,
-          specular=_FLOAT, specular_texture=_SLOT, specular_color=_FLOAT3, specular_color_texture=_SLOT,
-          clearcoat=_FLOAT, clearcoat_texture=_SLOT, clearcoat_roughness=_FLOAT, clearcoat_roughness_texture=_SLOT,
-          clearcoat_normal_texture=_SLOT, clearcoat_normal_scale=_FLOAT, sheen_color=_FLOAT3,
-          sheen_color_texture=_SLOT, sheen_roughness=_FLOAT, sheen_roughness_texture=_SLOT, anisotropy=_FLOAT,
-          anisotropy_rotation=_FLOAT, anisotropy_texture=_SLOT, iridescence=_FLOAT, iridescence_texture=_SLOT,
-          iridescence_index_of_refraction=_FLOAT, iridescence_thickness_minimum=_FLOAT,
-          iridescence_thickness_maximum=_FLOAT, iridescence_thickness_texture=_SLOT, shadow_catcher=_BOOL),
-    _kind("textures", Texture, False, width=_UINT, height=_UINT, format=_choice("rgba8", "rgba8_srgb", "rgb_float"),
-          wrap_s=_WRAP, wrap_t=_WRAP, filter=_choice("linear", "nearest"), texels=_blob("B"),
-          depth=_UINT),
-    _kind("lights", Light, True, kind=_choice("point", "spot", "directional", "sphere", "quad"), intensity=_FLOAT3,
-          inner_cone_angle=_FLOAT, outer_cone_angle=_FLOAT, radius=_FLOAT, size=_FLOAT2, angle=_FLOAT),
-    _kind("cameras", Camera, True, vertical_fov=_DOUBLE, aspect_ratio=_DOUBLE,
-          projection=_choice("perspective", "orthographic"), orthographic_height=_DOUBLE, lens_radius=_DOUBLE,
-          focus_distance=_DOUBLE, aperture=_choice("uniform", "gaussian")),
-    _kind("backgrounds", Background, False, color=_FLOAT3, environment=_REF, strength=_FLOAT, rotation=_FLOAT,
-          visible=_choice("environment", "color"), visible_color=_FLOAT4),
-    _kind("attachments", Attachment, True, key=_TEXT, value=_TEXT),
-    _kind("surface_shaders", SurfaceShader, False, emission=_FLOAT3, emission_texture=_SLOT, ambient=_FLOAT3,
-          ambient_texture=_SLOT, diffuse=_FLOAT3, diffuse_texture=_SLOT, specular=_FLOAT3, specular_texture=_SLOT,
-          shininess=_FLOAT2, shininess_texture=_SLOT, alpha=_FLOAT, alpha_texture=_SLOT, invert_alpha_texture=_BOOL,
-          normal_texture=_SLOT, normal_format=_choice("unorm", "snorm"), normal_space=_choice("tangent", "object"),
-          normal_scale=_FLOAT3, normal_bias=_FLOAT3, height_texture=_SLOT, height_scale=_FLOAT, reflection=_FLOAT3,
-          reflection_texture=_SLOT, transmission=_FLOAT3, transmission_texture=_SLOT,
-          relative_index_of_refraction=_FLOAT3, fresnel_blend=_FLOAT, tangent_tex_coords=_INT,
-          binormal_tex_coords=_INT, environment=_FLOAT3, environment_texture=_SLOT),
-    _kind("media", Medium, False, emission=_FLOAT3, emission_texture=_SLOT, absorption=_FLOAT3,
-          absorption_texture=_SLOT, scattering=_FLOAT3, scattering_texture=_SLOT, anisotropy=_FLOAT, priority=_INT),
-)
+# In the order of messages.
+KINDS: tuple[Kind, ...] = tuple(
+    Kind(kind.name, kind.plural, kind.type, {row.name: _codec(row) for row in kind.fields},
+         {row.name: 1 << (row.number - 1) for row in kind.fields}, kind.is_placed) for kind in KIND_ROWS)
 KIND_OF_TYPE: Mapping[type[Object], Kind] = {kind.type: kind for kind in KINDS}
 
 

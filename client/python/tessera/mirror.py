@@ -9,8 +9,9 @@ from typing import Any, Iterator, Sequence
 from .camera import MAX_MOTION, multiply
 from .errors import InvalidInput, Malformed
 from .fields import KINDS, Kind, kind_in, kind_named
-from .objects import IDENTITY, Matrix, Object, ROOT_ID, Root, Transform
+from .objects import Root, Transform
 from .proto import scene_pb2
+from .values import IDENTITY, Matrix, Object, ROOT_ID
 
 Message = Any
 Version = tuple[int, int]  # epoch, number
@@ -62,12 +63,12 @@ class Mirror:
             return
         if entry.action != scene_pb2.Entry.UPDATE or known is None or known[0] is not kind:
             raise Malformed("an update of what is not there, or of another kind")
-        if entry.mask >> len(kind.codecs):
+        if entry.mask & ~sum(kind.bits.values()):
             raise Malformed("an update has unknown fields")
         self._forget(entry.id, *known)
         target = known[1]
-        for i, field in enumerate(kind.codecs):
-            if entry.mask >> i & 1:
+        for field, bit in kind.bits.items():
+            if entry.mask & bit:
                 copy_field(message, target, field)
         self._remember(entry.id, kind, target)
 

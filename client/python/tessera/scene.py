@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Iterator, TypeVar
 from .errors import InvalidInput
 from .fields import KIND_OF_TYPE, object_id
 from .mirror import Version
-from .objects import Blob, Object, ROOT_ID, Root
+from .objects import Root
+from .values import Blob, Object, ROOT_ID
 
 if TYPE_CHECKING:
     from .session import Session

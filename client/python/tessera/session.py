@@ -15,12 +15,13 @@ from .errors import Error, InvalidInput, Malformed, Refused, Unavailable
 from .fields import blob_from, object_id
 from .link import CONTROL_LIMIT
 from .mirror import Mirror, Version
-from .objects import Blob, Camera, Object
+from .objects import Camera
 from .parsing import parsed
 from .people import Committed, HistoryEntry, People, Status, Writer, history_of, people_of, status_of, text
 from .proto import control_pb2, scene_pb2
 from .scene import Scene
 from .transaction import Transaction
+from .values import Blob, Object
 from .view import ALL_LAYERS, CameraLike, View, plain_view
 
 Message = Any

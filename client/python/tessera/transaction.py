@@ -8,9 +8,9 @@ from .blobs import BlobHeap
 from .errors import InvalidInput
 from .fields import KIND_OF_TYPE, KINDS, Kind, kind_named, object_id
 from .mirror import Mirror
-from .objects import Object, ROOT_ID
 from .people import Committed
 from .proto import scene_pb2
+from .values import Object, ROOT_ID
 
 Message = Any
 _CREATE, _UPDATE, _REMOVE = scene_pb2.Entry.CREATE, scene_pb2.Entry.UPDATE, scene_pb2.Entry.REMOVE

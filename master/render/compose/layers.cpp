@@ -21,11 +21,11 @@ constexpr std::size_t Components = 4;  // r, g, b, alpha
 constexpr std::size_t Planes = 5;      // and depth
 // Pixels are taken a run at a time, plane after plane: the planes of a picture often lie whole pages apart,
 // and lines of more of them than a set of the cache holds would throw each other out.
-constexpr std::size_t Run = 512, RunsPerTask = 16;
+constexpr std::size_t RunLength = 512, RunsPerTask = 16;
 constexpr float Infinity = std::numeric_limits<float>::infinity();
 constexpr float Largest = std::numeric_limits<float>::max();
 
-using Values = float[Run];
+using Values = float[RunLength];
 
 struct Sheet {
     Pack depth;
@@ -84,10 +84,10 @@ void compose_run(std::span<const Layer> layers, std::size_t first, std::size_t c
                                                      layer.alpha, layer.depth};
         for (std::size_t p = 0; p < Planes; ++p) {
             std::copy_n(sources[p].data() + first, count, planes[i][p]);
-            std::fill(planes[i][p] + count, planes[i][p] + Run, 0.0f);
+            std::fill(planes[i][p] + count, planes[i][p] + RunLength, 0.0f);
         }
     }
-    for (std::size_t at = 0; at < Run; at += PackSize) compose_pack(planes, layers.size(), at, result);
+    for (std::size_t at = 0; at < RunLength; at += PackSize) compose_pack(planes, layers.size(), at, result);
     for (std::uint32_t c = 0; c < Components; ++c) {
         std::copy_n(result[c], count, out.plane(c).data() + first);
     }
@@ -120,11 +120,11 @@ void compose(std::span<const Layer> layers, std::uint32_t width, std::uint32_t h
     if (out.width() != width || out.height() != height || out.components() != Components) {
         out = filter::Planes(width, height, Components);
     }
-    constexpr std::size_t Task = Run * RunsPerTask;
+    constexpr std::size_t Task = RunLength * RunsPerTask;
     parallel_for(arena, (pixels + Task - 1) / Task, [&](std::size_t task) {
         const std::size_t end = std::min(pixels, (task + 1) * Task);
-        for (std::size_t first = task * Task; first < end; first += Run) {
-            compose_run(layers, first, std::min(Run, end - first), out);
+        for (std::size_t first = task * Task; first < end; first += RunLength) {
+            compose_run(layers, first, std::min(RunLength, end - first), out);
         }
     });
 }

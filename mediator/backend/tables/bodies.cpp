@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <glm/matrix.hpp>
 #include <glm/vector_relational.hpp>
 #include <limits>

@@ -12,7 +12,6 @@ namespace tessera::backend {
 namespace {
 
 using scene::Geometry;
-using Field = Geometry::Field;
 
 void resolve_blobs(Mesh& mesh, const scene::BlobStore& blobs) {
     const auto find = [&](const scene::BlobRef& reference) {
@@ -97,8 +96,8 @@ MeshCatalog::Result MeshCatalog::update(const scene::Scene& scene, const SceneDe
         const auto* geometry = scene.find_as<Geometry>(change.id);
         if (geometry == nullptr) continue;
         const auto place = meshes_.find(change.id);
-        const scene::Fields<Geometry> shape{Field::Hint, Field::Indices, Field::Positions,
-                                            Field::MotionPositions};
+        const scene::Fields<Geometry> shape{&Geometry::hint, &Geometry::indices, &Geometry::positions,
+                                            &Geometry::motion_positions};
         MeshStep step = MeshStep::Rebuild;
         if (place != meshes_.end() && !place->second.placeholder &&
             scene::validate_blobs(change.id, *scene.find(change.id), *blobs_).empty()) {

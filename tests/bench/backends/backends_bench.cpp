@@ -1,6 +1,7 @@
 #include "tests/bench/backends/backends_bench.h"
 
 #include <atomic>
+#include <functional>
 
 #include "mediator/base/clock.h"
 #include "mediator/base/parallel.h"

@@ -17,8 +17,8 @@ constexpr float Stretch = 1.001f;
 constexpr double Shift = 0.001;
 
 template <class T>
-scene::Update update(ObjectId id, typename T::Field field, const T& value) {
-    return {id, scene::Fields<T>(field).bits(), value};
+scene::Update update(ObjectId id, scene::Fields<T> fields, const T& value) {
+    return {id, fields.bits(), value};
 }
 
 void carry_out(scene::Scene& scene, const std::vector<scene::Entry>& entries) {
@@ -47,7 +47,7 @@ ObjectId place_of(scene::Scene& scene, const backend::Instance& instance) {
     Root root = *scene.find_as<Root>(scene::RootId);
     std::replace(root.children.begin(), root.children.end(), instance.geometry, place);
     carry_out(scene, {scene::Create{place, Transform{.children = {instance.geometry}}},
-                      update<Root>(scene::RootId, Root::Field::Children, root)});
+                      update<Root>(scene::RootId, &Root::children, root)});
     return place;
 }
 
@@ -73,7 +73,7 @@ EditedScene with_edits(BenchScene made) {
     const ObjectId mesh = largest->geometry, place = place_of(content, *largest);
     Geometry geometry = *content.find_as<Geometry>(mesh);
     geometry.hint = scene::MotionHint::Animated;
-    carry_out(content, {update<Geometry>(mesh, Geometry::Field::Hint, geometry)});
+    carry_out(content, {update<Geometry>(mesh, &Geometry::hint, geometry)});
     edited.everything = scene::snapshot(content);
 
     scene::Scene after = content;
@@ -81,10 +81,10 @@ EditedScene with_edits(BenchScene made) {
     std::vector<float> stretched(positions.begin(), positions.end());
     for (float& value : stretched) value *= Stretch;
     geometry.positions = scene::reference(*edited.blobs->insert(std::as_bytes(std::span(stretched))));
-    edited.vertices = step(after, {update<Geometry>(mesh, Geometry::Field::Positions, geometry)});
+    edited.vertices = step(after, {update<Geometry>(mesh, &Geometry::positions, geometry)});
     Transform transform = *after.find_as<Transform>(place);
     transform.matrix = glm::translate(glm::dmat4(1.0), glm::dvec3(Shift)) * transform.matrix;
-    edited.place = step(after, {update<Transform>(place, Transform::Field::Matrix, transform)});
+    edited.place = step(after, {update<Transform>(place, &Transform::matrix, transform)});
     return edited;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -85,7 +86,7 @@ class Wall {
         const auto made = editor_->submit(
             {scene::Create{camera, scene::Camera{.name = "head"}},
              scene::Create{place, scene::Transform{.name = "place", .children = {camera}}},
-             scene::Update{scene::RootId, scene::Fields<scene::Root>(scene::Root::Field::Children).bits(),
+             scene::Update{scene::RootId, scene::Fields<scene::Root>(&scene::Root::children).bits(),
                            scene::Root{.children = {place}}}});
         if (!made.accepted) throw Error(ErrorCode::Internal, made.problems.front());
         for (const display::Output& output : wall_.outputs) {

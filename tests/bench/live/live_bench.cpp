@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <thread>
@@ -98,8 +99,8 @@ class LiveBench {
         scene::Material wanted;
         const auto wave = [&](double shift) { return float(0.5 + 0.4 * std::sin(phase + shift)); };
         wanted.base_color = {wave(0.0), wave(2.1), wave(4.2), 1.0f};
-        return {scene::Update{
-            material, scene::Fields<scene::Material>(scene::Material::Field::BaseColor).bits(), wanted}};
+        return {scene::Update{material, scene::Fields<scene::Material>(&scene::Material::base_color).bits(),
+                              wanted}};
     }
 
     // The time of day moves on between edits, so that they meet passes of every kind.

@@ -32,7 +32,7 @@ class Fixture {
             materials_.push_back(next());
             entries.push_back(Create{materials_.back(), Material{.name = "paint"}});
         }
-        entries.push_back(Update{RootId, Fields<Root>(Root::Field::Children).bits(), root});
+        entries.push_back(Update{RootId, Fields<Root>(&Root::children).bits(), root});
         submit(std::move(entries));
         authority_.publish();
     }
@@ -70,9 +70,8 @@ void set_a_colour(benchmark::State& state) {
     for (auto _ : state) {
         Material paint;
         paint.roughness = static_cast<float>(++i % 997) / 997.0f;
-        fixture.submit(
-            {Update{fixture.material(i), Fields<Material>(Material::Field::Roughness).bits(), paint}},
-            i / 100 + 1);
+        fixture.submit({Update{fixture.material(i), Fields<Material>(&Material::roughness).bits(), paint}},
+                       i / 100 + 1);
         fixture.publish_now_and_then();
     }
 }
@@ -83,7 +82,7 @@ void move_a_group(benchmark::State& state) {
     for (auto _ : state) {
         Transform moved;
         moved.matrix[3][0] = static_cast<double>(++i);
-        fixture.submit({Update{fixture.group(i), Fields<Transform>(Transform::Field::Matrix).bits(), moved}});
+        fixture.submit({Update{fixture.group(i), Fields<Transform>(&Transform::matrix).bits(), moved}});
         fixture.publish_now_and_then();
     }
 }
@@ -91,7 +90,7 @@ void move_a_group(benchmark::State& state) {
 void add_and_remove_a_lamp(benchmark::State& state) {
     Fixture fixture(static_cast<std::uint64_t>(state.range(0)));
     std::uint64_t i = 0;
-    constexpr std::uint32_t Children = Fields<Transform>(Transform::Field::Children).bits();
+    constexpr std::uint32_t Children = Fields<Transform>(&Transform::children).bits();
     for (auto _ : state) {
         const ObjectId group = fixture.group(++i), lamp = fixture.next();
         Transform parent = *fixture.authority().scene().find_as<Transform>(group);

@@ -14,7 +14,6 @@ namespace tessera::embree {
 namespace {
 
 using scene::Geometry;
-using Field = Geometry::Field;
 
 constexpr std::uint32_t Side = 224, Instances = 100000, Rounds = 21, Shapes = 4;
 constexpr ObjectId MeshId{2}, SkyId{3};
@@ -79,7 +78,8 @@ struct Waves : Stage {
     }
     double deform(std::uint32_t shape) {
         const Geometry mesh{.positions = shapes[shape]};
-        return timed(builder.edit({test::SceneBuilder::update<Geometry>(MeshId, Field::Positions, mesh)}));
+        return timed(
+            builder.edit({test::SceneBuilder::update<Geometry>(MeshId, &Geometry::positions, mesh)}));
     }
 };
 

@@ -51,7 +51,7 @@ TEST(PictureEffect, OfEveryFieldOfEveryKind) {
 
 TEST(PictureEffect, APlaceThatHoldsButACameraMovesNothing) {
     const Scene scene = some_scene();
-    const Update move{ObjectId{20}, Fields<Transform>(Transform::Field::Matrix).bits(), Transform{}};
+    const Update move{ObjectId{20}, Fields<Transform>(&Transform::matrix).bits(), Transform{}};
     EXPECT_FALSE(changes_pictures(list_of(move), scene));
 }
 
@@ -68,14 +68,13 @@ TEST(PictureEffect, OfPlacesThatAreDeepOrDoubleAtEveryLevel) {
         return scene;
     };
     const auto at = [](std::uint64_t id) {
-        return list_of(Update{ObjectId{id}, Fields<Transform>(Transform::Field::Matrix).bits(), Transform{}});
+        return list_of(Update{ObjectId{id}, Fields<Transform>(&Transform::matrix).bits(), Transform{}});
     };
     Scene deep = chain(200'000, 1);
     EXPECT_FALSE(changes_pictures(at(1000), deep));
-    ASSERT_TRUE(
-        deep.apply_entries({Create{ObjectId{10}, Light{}},
-                            Update{ObjectId{201'000}, Fields<Transform>(Transform::Field::Children).bits(),
-                                   Transform{.children = {ObjectId{10}}}}}));
+    ASSERT_TRUE(deep.apply_entries({Create{ObjectId{10}, Light{}},
+                                    Update{ObjectId{201'000}, Fields<Transform>(&Transform::children).bits(),
+                                           Transform{.children = {ObjectId{10}}}}}));
     EXPECT_TRUE(changes_pictures(at(1000), deep));
     EXPECT_FALSE(changes_pictures(at(1000), chain(64, 2)));
 }

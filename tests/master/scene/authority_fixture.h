@@ -41,17 +41,17 @@ struct AuthorityFixture : testing::Test {
     }
 
     template <class T>
-    static scene::Entry set(ObjectId id, typename T::Field field, const T& value) {
-        return scene::Update{id, scene::Fields<T>(field).bits(), value};
+    static scene::Entry set(ObjectId id, scene::Fields<T> fields, const T& value) {
+        return scene::Update{id, fields.bits(), value};
     }
     static scene::Entry roughness(ObjectId id, float value) {
-        return set<scene::Material>(id, scene::Material::Field::Roughness, {.roughness = value});
+        return set<scene::Material>(id, &scene::Material::roughness, {.roughness = value});
     }
     static scene::Entry metallic(ObjectId id, float value) {
-        return set<scene::Material>(id, scene::Material::Field::Metallic, {.metallic = value});
+        return set<scene::Material>(id, &scene::Material::metallic, {.metallic = value});
     }
     static scene::Entry root_children(std::vector<ObjectId> list) {
-        return set<scene::Root>(scene::RootId, scene::Root::Field::Children, {.children = std::move(list)});
+        return set<scene::Root>(scene::RootId, &scene::Root::children, {.children = std::move(list)});
     }
     const std::vector<ObjectId>& root_children() const {
         return authority.scene().find_as<scene::Root>(scene::RootId)->children;

@@ -21,14 +21,15 @@ bool says(const EditAnswer& answer, const std::string& text) {
 TEST_F(EditorsTest, ARefusalNamesObjectFieldAndReason) {
     EXPECT_TRUE(says(edit(anna, {roughness(anna.id(7), 0.5f)}),
                      "there is no material " + std::to_string(anna.id(7).value) + ": its roughness"));
-    EXPECT_TRUE(says(edit(anna, {set<Light>(red, Light::Field::Intensity, {})}),
+    EXPECT_TRUE(says(edit(anna, {set<Light>(red, &Light::intensity, {})}),
                      "('red') is no light: its intensity cannot be set"));
-    EXPECT_TRUE(says(edit(anna, {roughness(red, 1.5f)}), "('red'): roughness lies outside"));
+    EXPECT_TRUE(
+        says(edit(anna, {roughness(red, 1.5f)}), "('red'): roughness is 1.5: it has to be from 0 to 1"));
     EXPECT_TRUE(says(edit(anna, {Create{ben.id(0), Light{}}}), "outside the ids lent"));
     EXPECT_TRUE(says(edit(anna, {Create{red, Light{}}}), "is there already"));
     Material textured;
     textured.normal_texture.texture = ObjectId{77};
-    EXPECT_TRUE(says(edit(anna, {set<Material>(red, Material::Field::NormalTexture, textured)}),
+    EXPECT_TRUE(says(edit(anna, {set<Material>(red, &Material::normal_texture, textured)}),
                      "refers to object 77 as its normal_texture, which is not there"));
 }
 
@@ -50,7 +51,7 @@ TEST_F(EditorsTest, RecordsTheLastWriterOfEachField) {
     const auto second = must(edit(ben, {metallic(red, 0.25f)}));
     const auto writers = authority.writers(red);
     ASSERT_EQ(writers.size(), 2u) << "the name is as it came";
-    EXPECT_EQ(writers[0].field, static_cast<std::uint32_t>(Material::Field::Metallic));
+    EXPECT_EQ(writers[0].field, static_cast<std::uint32_t>(&Material::metallic));
     EXPECT_EQ(writers[0].transaction, second);
     EXPECT_EQ(writers[0].name, "ben");
     EXPECT_EQ(writers[0].user, "ben's key");

@@ -151,7 +151,7 @@ TEST_F(ManyEditors, PublishTakesManyEditsTogether) {
     ASSERT_TRUE(changes);
     ASSERT_EQ(changes->entries.size(), 1u) << "the lamp came and went";
     const auto& update = std::get<Update>(changes->entries[0]);
-    EXPECT_EQ(update.mask, (Fields<Material>{Material::Field::Roughness, Material::Field::Metallic}.bits()));
+    EXPECT_EQ(update.mask, (Fields<Material>{&Material::roughness, &Material::metallic}.bits()));
     EXPECT_FALSE(authority.has_unpublished());
     EXPECT_FALSE(authority.publish());
 }

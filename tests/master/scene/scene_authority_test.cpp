@@ -70,7 +70,7 @@ TEST_F(SceneAuthorityTest, ClearLeavesWhatABatchFound) {
     Root root;
     root.children = {id(0)};
     ASSERT_TRUE(
-        submit({Create{id(0), Transform{}}, Update{RootId, Fields<Root>(Root::Field::Children).bits(), root}})
+        submit({Create{id(0), Transform{}}, Update{RootId, Fields<Root>(&Root::children).bits(), root}})
             .accepted);
     const auto cleared = authority.clear();
     ASSERT_TRUE(cleared);

@@ -18,7 +18,7 @@ struct SessionLogTest : SessionFixture {
         ASSERT_TRUE(answer.accepted);
     }
     Entry roughness(ObjectId id, float value) {
-        return Update{id, Fields<Material>(Material::Field::Roughness).bits(), Material{.roughness = value}};
+        return Update{id, Fields<Material>(&Material::roughness).bits(), Material{.roughness = value}};
     }
     std::int64_t time = 0;
 };

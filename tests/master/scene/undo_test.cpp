@@ -62,7 +62,7 @@ TEST_F(UndoTest, ARemovedObjectComesBackUnderItsIdAtItsPlaceWithItsLinks) {
     must(edit(anna, {roughness(red, 0.5f)}));
     geometry.material = {};
     const auto removal = must(edit(anna, {Remove{b}, Remove{red}, root_children({a, c, wall}),
-                                          set<Geometry>(wall, Geometry::Field::Material, geometry)}));
+                                          set<Geometry>(wall, &Geometry::material, geometry)}));
     EXPECT_TRUE(authority.writers(red).empty()) << "gone with the object";
     must(edit(ben, {Create{d, Light{}}, root_children({d, c, a, wall})}));
     must(undo(anna, removal));
