@@ -17,8 +17,8 @@ namespace {
 
 constexpr float NoValue = std::numeric_limits<float>::quiet_NaN();
 
-std::vector<std::byte> pfm(const std::string& header, const std::vector<float>& values,
-                           bool is_big_endian = false) {
+std::vector<std::byte> pfm_bytes(const std::string& header, const std::vector<float>& values,
+                                 bool is_big_endian = false) {
     std::vector<std::byte> bytes(header.size() + 4 * values.size());
     std::memcpy(bytes.data(), header.data(), header.size());
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -37,7 +37,7 @@ TEST(Pfm, BothByteOrdersAndNumbersThatAreNone) {
     const std::vector<float> values{1, 2, 3, NoValue, NoValue, NoValue};
     for (const bool is_big : {false, true}) {
         const auto grid =
-            parse_pfm(pfm(is_big ? "PF\n2 1\n1.0\n" : "PF\n2 1\n-1.0\n", values, is_big), "a.pfm");
+            parse_pfm(pfm_bytes(is_big ? "PF\n2 1\n1.0\n" : "PF\n2 1\n-1.0\n", values, is_big), "a.pfm");
         ASSERT_TRUE(grid) << error_of(grid);
         EXPECT_EQ(grid->columns, 2u);
         EXPECT_EQ(grid->rows, 1u);
@@ -45,7 +45,7 @@ TEST(Pfm, BothByteOrdersAndNumbersThatAreNone) {
         EXPECT_EQ(grid->values[1], 2.0f);
         EXPECT_TRUE(std::isnan(grid->values[4]));
     }
-    const auto grey = parse_pfm(pfm("Pf 3 2 -1\n", {1, 2, 3, 4, 5, 6}), "b.pfm");
+    const auto grey = parse_pfm(pfm_bytes("Pf 3 2 -1\n", {1, 2, 3, 4, 5, 6}), "b.pfm");
     ASSERT_TRUE(grey) << error_of(grey);
     EXPECT_EQ(grey->rows, 2u);
     EXPECT_EQ(grey->values[3], 4.0f);
@@ -55,15 +55,15 @@ TEST(Pfm, SaysWhatIsWrong) {
     const auto refused = [](const std::vector<std::byte>& bytes) {
         return error_of(parse_pfm(bytes, "w.pfm"));
     };
-    EXPECT_NE(refused(pfm("P6\n2 1\n-1\n", {1, 2})).find("w.pfm: is no PFM"), std::string::npos);
-    EXPECT_NE(refused(pfm("Pf\n2 1\n0\n", {1, 2})).find("scale"), std::string::npos);
-    EXPECT_NE(refused(pfm("Pf\n2 2\n-1\n", {1, 2})).find("8 bytes of numbers instead of 16"),
+    EXPECT_NE(refused(pfm_bytes("P6\n2 1\n-1\n", {1, 2})).find("w.pfm: is no PFM"), std::string::npos);
+    EXPECT_NE(refused(pfm_bytes("Pf\n2 1\n0\n", {1, 2})).find("scale"), std::string::npos);
+    EXPECT_NE(refused(pfm_bytes("Pf\n2 2\n-1\n", {1, 2})).find("8 bytes of numbers instead of 16"),
               std::string::npos);
-    EXPECT_NE(refused(pfm("Pf\n2 1\n-1\n", {1, 2, 3})).find("instead of 8"), std::string::npos);
-    EXPECT_NE(refused(pfm("Pf\n0 1\n-1\n", {})).find("0 x 1 nodes"), std::string::npos);
-    EXPECT_NE(refused(pfm("Pf\n70000 70000\n-1\n", {})).find("16384"), std::string::npos);
-    EXPECT_NE(refused(pfm("Pf\n2 1\n-1\n", {1, INFINITY})).find("column 1, row 0"), std::string::npos);
-    EXPECT_NE(refused(pfm("Pf\n1 1\n-1\n", {NoValue})).find("no number at all"), std::string::npos);
+    EXPECT_NE(refused(pfm_bytes("Pf\n2 1\n-1\n", {1, 2, 3})).find("instead of 8"), std::string::npos);
+    EXPECT_NE(refused(pfm_bytes("Pf\n0 1\n-1\n", {})).find("0 x 1 nodes"), std::string::npos);
+    EXPECT_NE(refused(pfm_bytes("Pf\n70000 70000\n-1\n", {})).find("16384"), std::string::npos);
+    EXPECT_NE(refused(pfm_bytes("Pf\n2 1\n-1\n", {1, INFINITY})).find("column 1, row 0"), std::string::npos);
+    EXPECT_NE(refused(pfm_bytes("Pf\n1 1\n-1\n", {NoValue})).find("no number at all"), std::string::npos);
     EXPECT_NE(refused({}), "");
     EXPECT_EQ(load_pfm("/no/such.pfm").error().code(), ErrorCode::NotFound);
 }
@@ -75,11 +75,13 @@ TEST(Weights, PngAndPfmInLinearLight) {
     EXPECT_EQ(weights->components, 1u);
     EXPECT_NEAR(weights->values[1], std::pow(128.0 / 255.0, 2.2), 1e-6);
     EXPECT_EQ(weights->values[2], 1.0f);
-    EXPECT_TRUE(parse_weights(pfm("Pf\n1 1\n-1\n", {0.5f}), "a.pfm", 2.2));
-    EXPECT_NE(error_of(parse_weights(pfm("Pf\n2 1\n-1\n", {0.5f, 1.5f}), "a.pfm", 1.0)).find("column 1"),
-              std::string::npos);
-    EXPECT_NE(error_of(parse_weights(pfm("Pf\n2 1\n-1\n", {NoValue, 1}), "a.pfm", 1.0)).find("column 0"),
-              std::string::npos);
+    EXPECT_TRUE(parse_weights(pfm_bytes("Pf\n1 1\n-1\n", {0.5f}), "a.pfm", 2.2));
+    EXPECT_NE(
+        error_of(parse_weights(pfm_bytes("Pf\n2 1\n-1\n", {0.5f, 1.5f}), "a.pfm", 1.0)).find("column 1"),
+        std::string::npos);
+    EXPECT_NE(
+        error_of(parse_weights(pfm_bytes("Pf\n2 1\n-1\n", {NoValue, 1}), "a.pfm", 1.0)).find("column 0"),
+        std::string::npos);
     EXPECT_NE(error_of(parse_weights({}, "a.pfm", 1.0)).find("not a PNG"), std::string::npos);
 }
 
@@ -127,7 +129,7 @@ TEST(Mesh, SaysTheLineThatIsWrong) {
 TEST(CalibrationFiles, DamagedOnesAreRefusedOrRead) {
     CounterRandom random(5);
     const std::string mesh = "2\n2 2\n-1 -1 0 0 1\n1 -1 1 0 1\n-1 1 0 1 1\n1 1 1 1 1\n";
-    std::vector<std::vector<std::byte>> seeds{pfm("PF\n2 1\n-1.0\n", {1, 2, 3, 4, 5, 6}),
+    std::vector<std::vector<std::byte>> seeds{pfm_bytes("PF\n2 1\n-1.0\n", {1, 2, 3, 4, 5, 6}),
                                               picture::encode_png(4, 4, std::vector<std::uint8_t>(48, 77))};
     seeds.emplace_back(mesh.size());
     std::memcpy(seeds.back().data(), mesh.data(), mesh.size());
