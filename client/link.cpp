@@ -39,10 +39,14 @@ Link::~Link() {
     thread_.join();
 }
 
-void Link::send(wire::ControlMessage message) {
+void Link::send(const wire::ControlMessage& message) {
+    send(wire::encode(message));
+}
+
+void Link::send(net::Bytes encoded) {
     {
         const std::scoped_lock lock(mutex_);
-        to_send_.push_back(std::move(message));
+        to_send_.push_back(std::move(encoded));
     }
     channel_->wake();
 }
@@ -104,7 +108,7 @@ bool Link::step(std::stop_token stop) {
         receive(std::get<net::Message>(received), deadline);
         if (stop.stop_requested()) return false;
     }
-    std::vector<wire::ControlMessage> to_send;
+    std::vector<net::Bytes> to_send;
     std::vector<wire::BlobRequest> to_ask;
     {
         const std::scoped_lock lock(mutex_);
@@ -114,7 +118,7 @@ bool Link::step(std::stop_token stop) {
             to_ask.swap(to_ask_);
         }
     }
-    for (const wire::ControlMessage& message : to_send) push(message);
+    for (net::Bytes& encoded : to_send) outbox_.push_back({net::Link::Control, std::move(encoded)});
     for (const wire::BlobRequest& request : to_ask)
         outbox_.push_back({net::Link::Bulk, wire::encode(wire::BulkMessage(request))});
     watch(clock_.now());

@@ -42,7 +42,8 @@ class Link {
     ~Link();
 
     // Any thread. `send` takes what waits for the connection, too.
-    void send(wire::ControlMessage message);
+    void send(const wire::ControlMessage& message);
+    void send(net::Bytes encoded);  // a control message
     void ask(const wire::BlobRequest& request);
     std::uint64_t join();  // blocks until welcome; the session's number. Throws Error.
     // The next one; nothing at the deadline or when stopped. Throws Error when the link is over.
@@ -87,7 +88,7 @@ class Link {
 
     std::mutex mutex_;  // protects what stands below
     std::condition_variable_any changed_;
-    std::vector<wire::ControlMessage> to_send_;
+    std::vector<net::Bytes> to_send_;  // control messages
     std::vector<wire::BlobRequest> to_ask_;
     std::deque<Incoming> inbox_;
     std::optional<Error> failure_;

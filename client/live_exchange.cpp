@@ -89,7 +89,7 @@ void LiveSession::Implementation::frame_may_be_here() {
 }
 
 void LiveSession::Implementation::resend() {
-    for (const SentEdit& edit : unanswered) link.send(edit.message);
+    for (const SentEdit& edit : unanswered) link.send(net::Bytes(edit.encoded.message));
     for (const auto& [request, message] : asked) link.send(message);
     for (const auto& [number, request] : views) link.send(opening(number, request, 0));
     if (!output.empty()) ask_for_output();
@@ -107,15 +107,8 @@ void LiveSession::Implementation::send_edit(scene::Edit edit) {
     edit.sequence = ++last_sequence;
     edit.base = scene.version();
     edit.submitted_at = clock.now().time_since_epoch().count();
-    SentEdit sent{.sequence = edit.sequence, .message = wire::SubmitEdit{std::move(edit)}, .encoded = {}};
-    if (!wire::fits_control(sent.message)) {
-        const scene::Edit& long_edit = std::get<wire::SubmitEdit>(sent.message).edit;
-        sent.encoded = blobs->insert(wire::encode(long_edit));
-        sent.message =
-            wire::SubmitEditByBlob{id, sent.sequence, scene.version(), scene::reference(*sent.encoded)};
-    }
-    if (state == State::Inside) link.send(sent.message);
-    unanswered.push_back(std::move(sent));
+    unanswered.push_back({last_sequence, encode_edit(std::move(edit), *blobs)});
+    if (state == State::Inside) link.send(net::Bytes(unanswered.back().encoded.message));
 }
 
 void LiveSession::Implementation::wait_for_answers(std::size_t at_most) {

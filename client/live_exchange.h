@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 
+#include "client/encoded_edit.h"
 #include "client/frame_collector.h"
 #include "client/link.h"
 #include "client/live_session.h"
@@ -24,8 +25,7 @@ std::uint64_t random_key();
 struct LiveSession::Implementation {
     struct SentEdit {
         std::uint64_t sequence = 0;
-        wire::ControlMessage message;
-        scene::BlobPtr encoded;  // kept until the master has it
+        EncodedEdit encoded;
     };
     enum class State { Outside, Joining, Inside };
 

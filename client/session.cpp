@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "client/encoded_edit.h"
 #include "client/film_collector.h"
 #include "client/link.h"
 #include "client/picture_collector.h"
@@ -110,19 +111,12 @@ std::optional<SubmitResult> Session::submit(std::vector<scene::Entry> entries, s
                      .sequence = ++self.last_sequence,
                      .base = self.version,
                      .entries = std::move(entries)};
-    wire::ControlMessage request = wire::SubmitEdit{std::move(edit)};
-    scene::BlobPtr encoded;  // kept until the master has it
-    if (!wire::fits_control(request)) {
-        const scene::Edit& long_edit = std::get<wire::SubmitEdit>(request).edit;
-        encoded = self.blobs->insert(wire::encode(long_edit));
-        request =
-            wire::SubmitEditByBlob{self.id, self.last_sequence, self.version, scene::reference(*encoded)};
-    }
-    self.link.send(request);
+    const EncodedEdit request = encode_edit(std::move(edit), *self.blobs);
+    self.link.send(net::Bytes(request.message));
     while (const auto incoming = self.next(stop)) {
         if (const auto* rejoined = std::get_if<Rejoined>(&*incoming)) {
             expect_same(*rejoined);
-            self.link.send(request);  // the same sequence again does no harm
+            self.link.send(net::Bytes(request.message));  // the same sequence again does no harm
         }
         const auto* message = std::get_if<wire::ControlMessage>(&*incoming);
         if (message == nullptr) continue;

@@ -129,12 +129,15 @@ void SceneSession::node_built(const NodeRecord& node, const wire::VersionReport&
                        node.clock.offset(now));
 }
 
-wire::Trace SceneSession::trace(const wire::ReadTrace& request) const {
+net::Bytes SceneSession::trace(const wire::ReadTrace& request) const {
     wire::Trace trace{request.request, traces_.latest(request.count)};
-    while (!wire::fits_control(trace))  // the older ones go
+    net::Bytes message = wire::encode(wire::ControlMessage(trace));
+    while (!wire::fits_control(message)) {  // the older ones go
         trace.edits.erase(trace.edits.begin(),
                           trace.edits.begin() + static_cast<std::ptrdiff_t>((trace.edits.size() + 1) / 2));
-    return trace;
+        message = wire::encode(wire::ControlMessage(trace));
+    }
+    return message;
 }
 
 void SceneSession::done(const SessionRecord& session, std::uint64_t request, std::string problem) {
@@ -146,22 +149,34 @@ void SceneSession::asked(SessionRecord& session, const wire::ReadScene& request)
     reads_.push_back({session.id, request, authority_.pending()});
 }
 
+// Members that follow a scene read the same lists: the latest is encoded once.
+scene::BlobPtr SceneSession::encoded(const scene::ChangeList& list) {
+    scene::BlobPtr blob = latest_content_.blob.lock();
+    if (!blob || latest_content_.from != list.from || latest_content_.to != list.to) {
+        blob = services_.blobs->insert(wire::encode(list));
+        latest_content_ = {list.from, list.to, blob};
+    }
+    return blob;
+}
+
 // At most one content a member is kept; a second question before the first content was fetched gets a newer
 // one.
 void SceneSession::answer(const WaitingRead& read) {
     const SessionRecord* session = services_.sessions.find(read.session);
     if (session == nullptr) return;
     auto changes = authority_.since(read.request.known);
-    wire::SceneContent content{.request = read.request.request,
-                               .list = changes ? std::move(*changes) : authority_.snapshot(),
-                               .blob = {}};
-    if (!wire::fits_control(content)) {
-        const scene::BlobPtr blob = services_.blobs->insert(wire::encode(content.list));
+    const scene::ChangeList list = changes ? std::move(*changes) : authority_.snapshot();
+    net::Bytes message;
+    if (wire::may_fit_control(list.entries.size()))
+        message = wire::encode(wire::ControlMessage(
+            wire::SceneContent{.request = read.request.request, .list = list, .blob = {}}));
+    if (message.empty() || !wire::fits_control(message)) {
+        const scene::BlobPtr blob = encoded(list);
         members_.at(read.session).content = blob;
-        content.list = {};
-        content.blob = scene::reference(*blob);
+        message = wire::encode(wire::ControlMessage(wire::SceneContent{
+            .request = read.request.request, .list = {}, .blob = scene::reference(*blob)}));
     }
-    services_.outbox.control(session->control, std::move(content));
+    services_.outbox.control(session->control, std::move(message));
 }
 
 void SceneSession::asked(SessionRecord& session, const wire::LockObjects& request) {
@@ -219,8 +234,12 @@ void SceneSession::asked(SessionRecord& session, const wire::ReadPeople& request
 void SceneSession::asked(SessionRecord& session, const wire::ReadHistory& request) {
     constexpr std::uint32_t MaxTold = 256;
     wire::History history{request.request, authority_.history(std::min(request.count, MaxTold))};
-    while (!wire::fits_control(history)) history.transactions.resize(history.transactions.size() / 2);
-    services_.outbox.control(session.control, std::move(history));
+    net::Bytes message = wire::encode(wire::ControlMessage(history));
+    while (!wire::fits_control(message)) {
+        history.transactions.resize(history.transactions.size() / 2);
+        message = wire::encode(wire::ControlMessage(history));
+    }
+    services_.outbox.control(session.control, std::move(message));
 }
 
 void SceneSession::asked(SessionRecord& session, const wire::ReadWriters& request) {

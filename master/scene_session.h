@@ -85,7 +85,7 @@ class SceneSession {
     void asked(SessionRecord& session, const wire::AdjustDisplay& request);
     void asked(SessionRecord& session, const wire::JoinOutput& request, TimePoint now);
 
-    wire::Trace trace(const wire::ReadTrace& request) const;
+    net::Bytes trace(const wire::ReadTrace& request) const;  // the encoded answer, with as many as fit
 
     // What the rendering threads brought forth; what is another scene's is left alone.
     void take(RenderOutput& output, TimePoint now);
@@ -101,6 +101,10 @@ class SceneSession {
         TimePoint presence_until{};
         scene::BlobPtr content;  // the scene as it was read last: kept until the client has it
     };
+    struct LatestContent {
+        Version from, to;
+        std::weak_ptr<const scene::Blob> blob;  // an encoded change list; members keep it
+    };
     struct WaitingRead {
         SessionId session;
         wire::ReadScene request;
@@ -110,6 +114,7 @@ class SceneSession {
     void open(const std::string& title);
     std::string unique_name(const std::string& wanted) const;
     void answer(const WaitingRead& read);
+    scene::BlobPtr encoded(const scene::ChangeList& list);
     void done(const SessionRecord& session, std::uint64_t request, std::string problem);
     void follow_display(TimePoint now);
     void publish_if_due(TimePoint now);
@@ -124,6 +129,7 @@ class SceneSession {
     bool open_ = false;
     std::string title_;
     std::map<SessionId, Member> members_;
+    LatestContent latest_content_;
     std::vector<WaitingRead> reads_;
     TimePoint published_at_{};
     std::uint64_t progress_being_saved_ = 0;

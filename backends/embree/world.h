@@ -18,6 +18,8 @@ class World {
     Expected<void> apply(const scene::ChangeList& changes, const scene::Scene& after) {
         return shadow_.apply(changes, after);
     }
+    // For owners that keep no scene.
+    Expected<void> apply(const scene::ChangeList& changes) { return shadow_.apply(changes); }
     void rollback() { shadow_.rollback(); }
     Expected<backend::EditReport> commit();
 

@@ -27,6 +27,8 @@ class World final {
     Expected<void> apply(const scene::ChangeList& changes, const scene::Scene& after) {
         return shadow_.apply(changes, after);
     }
+    // For owners that keep no scene.
+    Expected<void> apply(const scene::ChangeList& changes) { return shadow_.apply(changes); }
     // To the last version that was committed.
     void rollback();
     // May be called again after DeviceLost, on another device.

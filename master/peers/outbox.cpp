@@ -5,7 +5,10 @@
 namespace tessera::master {
 
 void Outbox::control(net::PeerId peer, const wire::ControlMessage& message) {
-    net::Bytes encoded = wire::encode(message);
+    control(peer, wire::encode(message));
+}
+
+void Outbox::control(net::PeerId peer, net::Bytes&& encoded) {
     bytes.control += encoded.size();
     put(net::Link::Control, peer, std::move(encoded));
 }

@@ -16,6 +16,7 @@ class Outbox {
     explicit Outbox(net::Channel& channel) : channel_(channel) {}
 
     void control(net::PeerId peer, const wire::ControlMessage& message);
+    void control(net::PeerId peer, net::Bytes&& encoded);
     void bulk(net::PeerId peer, const wire::BulkMessage& message);
     void bulk(net::PeerId peer, net::Bytes&& encoded, std::uint64_t wire::WireBytes::*counter);
 

@@ -20,7 +20,7 @@ namespace {
 using frame::Channel;
 
 // Red, green and blue planes of a picture, and what each value is to be multiplied by.
-struct LightPlanes {
+struct PictureLight {
     std::uint32_t width = 0, height = 0;
     std::array<const float*, 3> planes{};
     const std::uint32_t* counts = nullptr;  // not null: planes are sums over so many samples
@@ -43,7 +43,7 @@ struct Tone {
 };
 
 template <class Store>
-void for_each_pixel(const LightPlanes& light, const Tone& tone, tbb::task_arena& arena, const Store& store) {
+void for_each_pixel(const PictureLight& light, const Tone& tone, tbb::task_arena& arena, const Store& store) {
     arena.execute([&] {
         tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, light.height, 32), [&](const auto& rows) {
             for (std::size_t i = std::size_t{rows.begin()} * light.width,
@@ -63,7 +63,7 @@ void for_each_pixel(const LightPlanes& light, const Tone& tone, tbb::task_arena&
     });
 }
 
-MadeOutput::Picture encoded(const LightPlanes& light, const Tone& tone, wire::PictureEncoding encoding,
+MadeOutput::Picture encoded(const PictureLight& light, const Tone& tone, wire::PictureEncoding encoding,
                             tbb::task_arena& arena) {
     static const picture::SrgbBytes to_srgb;
     const std::size_t pixels = std::size_t{light.width} * light.height;
@@ -94,16 +94,16 @@ bool is_plain(const view::View& view) {
            !view.channels.contains(Channel::Alpha);
 }
 
-LightPlanes light_of(const filter::Planes& picture) {
-    LightPlanes light{picture.width(), picture.height()};
+PictureLight light_of(const filter::Planes& picture) {
+    PictureLight light{picture.width(), picture.height()};
     for (std::uint32_t c = 0; c < 3; ++c) light.planes[c] = picture.plane(c).data();
     return light;
 }
 
-LightPlanes light_of(const frame::FilmTile& film, const view::View& view, Version version,
-                     Reconstructor& reconstructor) {
-    LightPlanes light{static_cast<std::uint32_t>(film.rect.width),
-                      static_cast<std::uint32_t>(film.rect.height)};
+PictureLight light_of(const frame::FilmTile& film, const view::View& view, Version version,
+                      Reconstructor& reconstructor) {
+    PictureLight light{static_cast<std::uint32_t>(film.rect.width),
+                       static_cast<std::uint32_t>(film.rect.height)};
     if (is_plain(view)) {
         const std::uint32_t first = film.channels.first_plane(Channel::Color);
         for (std::uint32_t c = 0; c < 3; ++c) light.planes[c] = film.plane(first + c).data();
@@ -153,7 +153,7 @@ struct Measured {
     view::CameraPose camera;
     std::uint32_t width, height;
 
-    Measured(const LightPlanes& light, const OutputOrder::EyePicture& eye,
+    Measured(const PictureLight& light, const OutputOrder::EyePicture& eye,
              std::span<const frame::FilmTile> films)
         : camera(eye.layers.front().camera), width(light.width), height(light.height) {
         const std::size_t pixels = std::size_t{width} * height;
@@ -190,7 +190,7 @@ MadeOutput make_output(OutputOrder order, const std::vector<frame::FilmTile>& fi
         for (const OutputOrder::EyePicture& eye : made.order.eyes) {
             const auto own = rest.first(eye.layers.size());
             rest = rest.subspan(eye.layers.size());
-            LightPlanes light;
+            PictureLight light;
             if (own.size() == 1) {
                 light = light_of(own.front(), eye.layers.front(), made.order.version, reconstructor);
             } else {

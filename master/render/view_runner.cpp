@@ -238,6 +238,7 @@ void ViewRunner::show(ViewState& view, TimePoint now) {
 
 void ViewRunner::decide(ViewState& view, JobOutcome outcome, std::string message, TimePoint now) {
     if (view.run.outcome) return;
+    view.restart_wanted = false;  // it may not have begun
     view.run.outcome = outcome;
     view.run.outcome_at = now;
     view.run.message = std::move(message);

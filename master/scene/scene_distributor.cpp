@@ -5,17 +5,17 @@
 namespace tessera::master {
 
 void SceneDistributor::published(NodeTable& nodes, const scene::ChangeList& changes, TimePoint now) {
-    const wire::ControlMessage inline_message = wire::Changes{changes};
-    const bool small = wire::fits_control(inline_message);
-    if (!small) long_changes_ = blobs_.insert(wire::encode(changes));
+    net::Bytes message;
+    if (wire::may_fit_control(changes.entries.size()))
+        message = wire::encode(wire::ControlMessage(wire::Changes{changes}));
+    if (message.empty() || !wire::fits_control(message)) {
+        long_changes_ = blobs_.insert(wire::encode(changes));
+        message = wire::encode(wire::ControlMessage(
+            wire::ChangesByBlob{changes.from, changes.to, scene::reference(*long_changes_)}));
+    }
     for (auto& [id, node] : nodes.all()) {
         if (node.sent != changes.from) continue;  // it is being sent a snapshot, or will be by repair()
-        if (small) {
-            outbox_.control(node.control, inline_message);
-        } else {
-            outbox_.control(node.control,
-                            wire::ChangesByBlob{changes.from, changes.to, scene::reference(*long_changes_)});
-        }
+        outbox_.control(node.control, net::Bytes(message));
         node.sent = changes.to;
         node.sent_at = now;
         node.hash_mismatches = 0;

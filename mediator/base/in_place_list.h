@@ -16,6 +16,7 @@ class InPlaceList {
     }
     std::size_t size() const { return size_; }
     bool empty() const { return size_ == 0; }
+    const T& operator[](std::size_t i) const { return items_[i]; }
     const T* begin() const { return items_.data(); }
     const T* end() const { return items_.data() + size_; }
 

@@ -17,8 +17,9 @@ bool fits_control(std::span<const std::byte> encoded) {
     return encoded.size() <= ControlBytes;
 }
 
-bool fits_control(const ControlMessage& message) {
-    return fits_control(encode(message));
+bool may_fit_control(std::size_t entries) {
+    constexpr std::size_t LeastEntry = 4;  // bytes
+    return entries * LeastEntry <= ControlBytes;
 }
 
 Expected<ControlMessage> decode_control(std::span<const std::byte> bytes) {

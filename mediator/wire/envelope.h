@@ -32,6 +32,8 @@ Expected<scene::Edit> decode_edit(std::span<const std::byte> bytes);
 
 // Whether an encoded message fits the control link (64 KiB); else send its content as a blob.
 bool fits_control(std::span<const std::byte> encoded);
-bool fits_control(const ControlMessage& message);
+// Whether a message with so many entries may fit: each takes 4 bytes or more. What may not need not be encoded to
+// be measured.
+bool may_fit_control(std::size_t entries);
 
 }  // namespace tessera::wire

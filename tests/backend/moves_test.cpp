@@ -13,7 +13,7 @@ using test::moved;
 using test::SceneBuilder;
 using test::transform;
 
-constexpr ObjectId MovedMesh{2}, MovedLamp{3}, MovedGlow{4}, Near{5}, Far{6}, Lit{7}, MovedSun{8}, Glass{9};
+constexpr ObjectId MeshId{2}, LampId{3}, GlowId{4}, NearId{5}, FarId{6}, LitId{7}, SunId{8}, GlassId{9};
 
 struct MovesTest : testing::Test, test::TablesStage {
     MovesTest() {
@@ -21,13 +21,13 @@ struct MovesTest : testing::Test, test::TablesStage {
         const std::vector<glm::vec3> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
         const scene::Geometry mesh{.indices = blob(indices), .positions = blob(positions)};
         scene::Geometry lamp = mesh;
-        lamp.material = MovedGlow;
-        edit({Create{MovedMesh, mesh}, Create{MovedLamp, lamp},
-              Create{MovedGlow, scene::Material{.emission = glm::vec3(1.0f)}},
-              Create{Near, transform(moved(1, 0, 0), {MovedMesh})},
-              Create{Far, transform(moved(9, 0, 0), {MovedMesh})},
-              Create{Lit, transform(moved(2, 0, 0), {MovedLamp})},
-              Create{scene::RootId, scene::Root{.children = {Near, Far, Lit}}}});
+        lamp.material = GlowId;
+        edit({Create{MeshId, mesh}, Create{LampId, lamp},
+              Create{GlowId, scene::Material{.emission = glm::vec3(1.0f)}},
+              Create{NearId, transform(moved(1, 0, 0), {MeshId})},
+              Create{FarId, transform(moved(9, 0, 0), {MeshId})},
+              Create{LitId, transform(moved(2, 0, 0), {LampId})},
+              Create{scene::RootId, scene::Root{.children = {NearId, FarId, LitId}}}});
     }
 
     TablesStep edit(std::vector<scene::Entry> entries) { return take(builder.edit(std::move(entries))); }
@@ -61,53 +61,53 @@ struct MovesTest : testing::Test, test::TablesStage {
 };
 
 TEST_F(MovesTest, WhatDoesNotShineGetsAPlaceAndNoMore) {
-    EXPECT_EQ(move(Near, moved(1, 2, 3)), TablesStep::Moved);
-    EXPECT_EQ(move(Far, moved(20, 2, 3)), TablesStep::Moved);
-    EXPECT_EQ(move(Near, glm::scale(moved(1, 2, 3), glm::dvec3(-1.0, 2.0, 0.0))), TablesStep::Moved);
+    EXPECT_EQ(move(NearId, moved(1, 2, 3)), TablesStep::Moved);
+    EXPECT_EQ(move(FarId, moved(20, 2, 3)), TablesStep::Moved);
+    EXPECT_EQ(move(NearId, glm::scale(moved(1, 2, 3), glm::dvec3(-1.0, 2.0, 0.0))), TablesStep::Moved);
 }
 
 TEST_F(MovesTest, ALampTakesItsEmittersWithIt) {
-    EXPECT_EQ(move(Lit, moved(1, 2, 3)), TablesStep::Made);
+    EXPECT_EQ(move(LitId, moved(1, 2, 3)), TablesStep::Made);
 }
 
 TEST_F(MovesTest, LightFromInfinitelyFarGrowsWithTheScene) {
     const scene::Light sun{.kind = scene::LightKind::Directional};
-    EXPECT_EQ(edit({Create{MovedSun, sun},
-                    SceneBuilder::update<scene::Root>(scene::RootId, &scene::Root::children,
-                                                      scene::Root{.children = {Near, Far, Lit, MovedSun}})}),
+    EXPECT_EQ(edit({Create{SunId, sun}, SceneBuilder::update<scene::Root>(
+                                            scene::RootId, &scene::Root::children,
+                                            scene::Root{.children = {NearId, FarId, LitId, SunId}})}),
               TablesStep::Made);
-    EXPECT_EQ(move(Near, moved(2, 0, 0)), TablesStep::Made);    // it was at the scene's rim
-    EXPECT_EQ(move(Near, moved(3, 0, 0)), TablesStep::Moved);   // inside, where the lamp is the rim now
-    EXPECT_EQ(move(Near, moved(3, 0, 0.5)), TablesStep::Made);  // beyond the rim
-    EXPECT_EQ(move(Far, moved(8, 0, 0)), TablesStep::Made);
+    EXPECT_EQ(move(NearId, moved(2, 0, 0)), TablesStep::Made);    // it was at the scene's rim
+    EXPECT_EQ(move(NearId, moved(3, 0, 0)), TablesStep::Moved);   // inside, where the lamp is the rim now
+    EXPECT_EQ(move(NearId, moved(3, 0, 0.5)), TablesStep::Made);  // beyond the rim
+    EXPECT_EQ(move(FarId, moved(8, 0, 0)), TablesStep::Made);
 }
 
 // Bodies of glass know of each other as soon as one may lie in another.
 TEST_F(MovesTest, GlassThatComesIntoGlassIsNoted) {
     const auto nests = [&] { return (tables.scene.features & shading::FeatureNestedGlass) != 0; };
-    edit({Create{Glass, scene::Material{.transmission = 1.0f, .thickness = 1.0f}},
-          SceneBuilder::update<scene::Geometry>(MovedMesh, &scene::Geometry::material,
-                                                scene::Geometry{.material = Glass})});
+    edit({Create{GlassId, scene::Material{.transmission = 1.0f, .thickness = 1.0f}},
+          SceneBuilder::update<scene::Geometry>(MeshId, &scene::Geometry::material,
+                                                scene::Geometry{.material = GlassId})});
     EXPECT_FALSE(nests());
-    EXPECT_EQ(move(Near, moved(2, 0, 0)), TablesStep::Moved);
-    EXPECT_EQ(move(Near, moved(8.5, 0, 0)), TablesStep::Made);
+    EXPECT_EQ(move(NearId, moved(2, 0, 0)), TablesStep::Moved);
+    EXPECT_EQ(move(NearId, moved(8.5, 0, 0)), TablesStep::Made);
     EXPECT_TRUE(nests());
-    EXPECT_EQ(move(Near, moved(8.4, 0, 0)), TablesStep::Moved);
-    EXPECT_EQ(move(Near, moved(8.4, 0, 0.1)), TablesStep::Made);
+    EXPECT_EQ(move(NearId, moved(8.4, 0, 0)), TablesStep::Moved);
+    EXPECT_EQ(move(NearId, moved(8.4, 0, 0.1)), TablesStep::Made);
     EXPECT_FALSE(nests());
 }
 
 TEST_F(MovesTest, WhatMovesInTheShutterHasPlacesOfItsOwn) {
     scene::Transform swings = transform(moved(1, 0, 0), {});
     swings.motion = {moved(2, 0, 0)};
-    EXPECT_EQ(edit({SceneBuilder::update<scene::Transform>(Near, &scene::Transform::motion, swings)}),
+    EXPECT_EQ(edit({SceneBuilder::update<scene::Transform>(NearId, &scene::Transform::motion, swings)}),
               TablesStep::Made);
-    EXPECT_EQ(move(Near, moved(0, 0, 0)), TablesStep::Made);
-    EXPECT_EQ(move(Far, moved(7, 0, 0)), TablesStep::Moved);
+    EXPECT_EQ(move(NearId, moved(0, 0, 0)), TablesStep::Made);
+    EXPECT_EQ(move(FarId, moved(7, 0, 0)), TablesStep::Moved);
 }
 
 TEST_F(MovesTest, AnEditOfAMaterialIsNoMove) {
-    EXPECT_EQ(edit({SceneBuilder::update<scene::Material>(MovedGlow, &scene::Material::emission,
+    EXPECT_EQ(edit({SceneBuilder::update<scene::Material>(GlowId, &scene::Material::emission,
                                                           scene::Material{.emission = glm::vec3(3.0f)})}),
               TablesStep::Made);
 }

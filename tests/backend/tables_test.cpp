@@ -19,7 +19,7 @@ using test::moved;
 using test::SceneBuilder;
 using test::transform;
 
-constexpr ObjectId Corner{2}, Paint{3}, Place{4}, Picture{5}, Sun{6}, Sky{7}, Bulb{8}, Glow{9}, Panel{10};
+constexpr ObjectId Corner{2}, PaintId{3}, Place{4}, Picture{5}, Sun{6}, Sky{7}, Bulb{8}, Glow{9}, Panel{10};
 
 struct Stage : test::TablesStage {
     MeshCatalog::Result steps;
@@ -42,9 +42,9 @@ TEST(Tables, PlaceWhatTheGraphPlaces) {
     Stage stage;
     const SceneTables tables = stage.make(
         {Create{scene::RootId, scene::Root{.children = {Corner, Place}, .render_origin = {1000.0, 0.0, 0.0}}},
-         Create{Corner, stage.corner(Paint)},
+         Create{Corner, stage.corner(PaintId)},
          Create{Place, transform(moved(1001.0, 2.0, 3.0), {Corner, Panel})},
-         Create{Paint, scene::Material{.roughness = 0.25f, .double_sided = true}},
+         Create{PaintId, scene::Material{.roughness = 0.25f, .double_sided = true}},
          Create{Panel, stage.corner(ObjectId{99})}});
     ASSERT_EQ(tables.instances.size(), 3u);
     ASSERT_EQ(tables.meshes.size(), 2u) << "shared by both instances";
@@ -72,7 +72,7 @@ TEST(Tables, NormalsSurviveTinyHugeAndMirroredInstances) {
         const glm::dmat4 matrix = glm::scale(glm::dmat4(1.0), glm::dvec3(scale, 2.0 * scale, scale));
         const SceneTables tables =
             stage.make({Create{scene::RootId, scene::Root{.children = {Place}}},
-                        Create{Place, transform(matrix, {Corner})}, Create{Corner, stage.corner(Paint)}});
+                        Create{Place, transform(matrix, {Corner})}, Create{Corner, stage.corner(PaintId)}});
         const glm::vec3 normal = tables.instances.at(0).normals * glm::vec3(0.0f, 0.0f, 1.0f);
         const float length = glm::length(normal);
         EXPECT_TRUE(length > 1e-3f && length < 1e3f) << scale;
@@ -85,8 +85,8 @@ TEST(Tables, TheTreeAndDistantLightsAreChosenByPowerAndATenthUniformly) {
     const scene::Material glow{.emission = glm::vec3(2.0f)};
     const SceneTables tables = stage.make(
         {Create{scene::RootId, scene::Root{.children = {Corner, Bulb, Panel, Sun}, .background = Sky}},
-         Create{Corner, stage.corner(Glow, 2.0f)}, Create{Panel, stage.corner(Paint)},
-         Create{Paint, scene::Material{}}, Create{Glow, glow},
+         Create{Corner, stage.corner(Glow, 2.0f)}, Create{Panel, stage.corner(PaintId)},
+         Create{PaintId, scene::Material{}}, Create{Glow, glow},
          Create{Bulb, scene::Light{.intensity = glm::vec3(3.0f)}},
          Create{Sun, scene::Light{.kind = scene::LightKind::Directional, .intensity = glm::vec3(0.2f)}},
          Create{Sky, scene::Background{.color = glm::vec3(0.5f)}}});
@@ -179,14 +179,14 @@ TEST(Tables, TexturesAreSeenAsWideAsAPathIs) {
     std::vector<std::uint8_t> texels;
     for (std::uint32_t i = 0; i < 64 * 64; ++i)
         texels.insert(texels.end(), 4, (i + i / 64) % 2 == 0 ? std::uint8_t{255} : std::uint8_t{0});
-    scene::Geometry painted = stage.corner(Paint);
+    scene::Geometry painted = stage.corner(PaintId);
     painted.tex_coords = stage.blob(std::array<glm::vec2, 4>{{{0, 0}, {1, 0}, {1, 1}, {0, 3}}});
     scene::Texture map{.width = 64, .height = 64};
     map.texels = scene::reference(*stage.blobs->insert(std::as_bytes(std::span(texels))));
     const SceneTables tables =
         stage.make({Create{scene::RootId, scene::Root{.children = {Corner}}}, Create{Corner, painted},
-                    Create{Paint, scene::Material{.base_color = glm::vec4(1.0f),
-                                                  .base_color_texture = {.texture = Picture}}},
+                    Create{PaintId, scene::Material{.base_color = glm::vec4(1.0f),
+                                                    .base_color_texture = {.texture = Picture}}},
                     Create{Picture, map}});
     EXPECT_EQ(tables.textures.at(0).level_count, 6u);
     const shading::Scene scene = on_host(tables);
@@ -224,10 +224,10 @@ TEST(Tables, OnlyTexturesThatAreUsedAreThere) {
         {Create{scene::RootId, scene::Root{.children = {Corner, Panel}, .background = Sky}},
          Create{Sky, scene::Background{.environment = Bulb}}, Create{Bulb, map(1)}, Create{Picture, map(2)},
          Create{Unused, map(3)}, Create{Unseen, map(4)}, Create{Shine, map(5)}, Create{Coat, map(6)},
-         Create{Corner, stage.corner(Paint)}, Create{Panel, stage.corner(Glow)},
-         Create{Paint, scene::Material{.emission_texture = {.texture = Shine},
-                                       .clearcoat = 1.0f,
-                                       .clearcoat_roughness_texture = {.texture = Coat}}},
+         Create{Corner, stage.corner(PaintId)}, Create{Panel, stage.corner(Glow)},
+         Create{PaintId, scene::Material{.emission_texture = {.texture = Shine},
+                                         .clearcoat = 1.0f,
+                                         .clearcoat_roughness_texture = {.texture = Coat}}},
          Create{Glow, scene::SurfaceShader{.ambient_texture = {.texture = Unused},
                                            .diffuse_texture = {.texture = Picture}}},
          Create{Sun, scene::Material{.base_color_texture = {.texture = Unseen}}}});
@@ -247,8 +247,8 @@ TEST(Tables, WhatIsInLayersIsMarkedAndSoIsAViewThatDoesNotSeeAll) {
     place.layers = 6;
     const SceneTables tables = stage.make(
         {Create{scene::RootId, scene::Root{.children = {Panel, Place}, .background = Sky}},
-         Create{Place, place}, Create{Corner, stage.corner(Glow)}, Create{Panel, stage.corner(Paint)},
-         Create{Bulb, scene::Light{}}, Create{Paint, scene::Material{}},
+         Create{Place, place}, Create{Corner, stage.corner(Glow)}, Create{Panel, stage.corner(PaintId)},
+         Create{Bulb, scene::Light{}}, Create{PaintId, scene::Material{}},
          Create{Glow, scene::Material{.emission = glm::vec3(2.0f)}},
          Create{Sky, scene::Background{.color = glm::vec3(0.5f)}}});
     ASSERT_EQ(tables.lights.size(), 3u);
@@ -285,8 +285,8 @@ TEST(Tables, AFlattenedLampIsNoLightAndABlackSkyNeither) {
 std::vector<scene::Entry> sky_with_a_map(Stage& stage) {
     const std::array<glm::vec3, 2> texels{{{1, 1, 1}, {3, 3, 3}}};
     return {Create{scene::RootId, scene::Root{.children = {Corner}, .background = Sky}},
-            Create{Corner, stage.corner(Paint)},
-            Create{Paint, scene::Material{.base_color_texture = {.texture = Picture}}},
+            Create{Corner, stage.corner(PaintId)},
+            Create{PaintId, scene::Material{.base_color_texture = {.texture = Picture}}},
             Create{Picture, scene::Texture{.width = 2,
                                            .height = 1,
                                            .format = scene::TexelFormat::RgbFloat,

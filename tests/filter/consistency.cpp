@@ -14,7 +14,7 @@ float light_texture(std::uint32_t x, std::uint32_t y) {
     return static_cast<float>(0.5 + 0.2 * std::sin(0.9 * x) * std::sin(0.7 * y));
 }
 
-double relative_error(const Planes& picture, const Planes& truth) {
+double relative_squared_error(const Planes& picture, const Planes& truth) {
     double sum = 0.0;
     for (std::uint32_t c = 0; c < 3; ++c) {
         for (std::size_t i = 0; i < truth.pixel_count(); ++i) {
@@ -48,8 +48,8 @@ double error_ratio(const std::string& choice, ConsistencyScene scene, std::uint6
     const frame::ChannelSet channels{frame::Channel::Radiance, frame::Channel::Albedo, frame::Channel::Normal,
                                      frame::Channel::Depth, frame::Channel::EvenHalf};
     const Inputs inputs = synthetic_inputs(ConsistencyWidth, ConsistencyHeight, n, sampler, channels);
-    return relative_error(run_filter(choice, inputs).picture, truth) /
-           relative_error(inputs.mean(frame::Channel::Radiance), truth);
+    return relative_squared_error(run_filter(choice, inputs).picture, truth) /
+           relative_squared_error(inputs.mean(frame::Channel::Radiance), truth);
 }
 
 }  // namespace tessera::filter

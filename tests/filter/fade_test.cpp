@@ -43,7 +43,7 @@ Planes uniform(float value) {
     return planes;
 }
 
-double fade_error(const Planes& picture, const Planes& truth) {
+double error_against(const Planes& picture, const Planes& truth) {
     double mean = 0.0, sum = 0.0;
     const std::size_t count = truth.values().size();
     for (const float t : truth.values()) mean += t / double(count);
@@ -78,9 +78,9 @@ TEST(Fade, NeverWorseThanUnfilteredAtAnyNumberOfSamples) {
         for (std::uint32_t n = 4; n <= 4096; n *= 4) {
             const Inputs inputs = noisy(truth, n);
             const Planes filtered = run_filter(blur, inputs).picture;
-            const double unfiltered = fade_error(inputs.mean(Channel::Radiance), truth);
-            blur_was_worse |= fade_error(filtered, truth) > 2.0 * unfiltered;
-            EXPECT_LE(fade_error(faded(inputs, filtered), truth), 1.05 * unfiltered) << blur << " " << n;
+            const double unfiltered = error_against(inputs.mean(Channel::Radiance), truth);
+            blur_was_worse |= error_against(filtered, truth) > 2.0 * unfiltered;
+            EXPECT_LE(error_against(faded(inputs, filtered), truth), 1.05 * unfiltered) << blur << " " << n;
         }
     }
     EXPECT_TRUE(blur_was_worse);
@@ -127,9 +127,9 @@ TEST(Fade, DoesNotKeepRareLightAsSpots) {
     const Planes truth = uniform(1.0f);
     for (const std::uint32_t n : {4u, 16u, 64u}) {
         const Inputs inputs = noisy(truth, n, 50.0f);
-        const double unfiltered = fade_error(inputs.mean(Channel::Radiance), truth);
+        const double unfiltered = error_against(inputs.mean(Channel::Radiance), truth);
         const Planes out = faded(inputs, truth);
-        EXPECT_LT(fade_error(out, truth), 0.02 * unfiltered) << n;
+        EXPECT_LT(error_against(out, truth), 0.02 * unfiltered) << n;
         EXPECT_NEAR(mean(out), 1.0, 0.05) << n;  // and none of it is lost
     }
 }
