@@ -39,9 +39,9 @@ class Side {
     virtual void evaluate(std::span<const Inputs> inputs, std::span<Outputs> outputs) = 0;
 };
 
-class Host final : public Side {
+class HostSide final : public Side {
   public:
-    Host(Evaluate& function, std::uint32_t list) : function_(function), list_(list) {
+    HostSide(Evaluate& function, std::uint32_t list) : function_(function), list_(list) {
         const std::size_t size = make_world(0).bytes.size();
         memory_ = std::make_unique<std::byte[]>(size);
         const PackedWorld packed = make_world(reinterpret_cast<std::uint64_t>(memory_.get()));
@@ -70,9 +70,9 @@ std::span<const std::uint32_t> shader_of(std::uint32_t list) {
     return Shaders[list]();
 }
 
-class Shader final : public Side {
+class DeviceSide final : public Side {
   public:
-    Shader(vulkan::Device& device, std::uint32_t list, std::size_t functions)
+    DeviceSide(vulkan::Device& device, std::uint32_t list, std::size_t functions)
         : device_(device),
           kernel_(device,
                   {.name = "shared shading", .code = shader_of(list), .push_bytes = sizeof(Arguments)}),
@@ -140,14 +140,14 @@ void compare(std::uint32_t list, Side& one, Side& other) {
 class SharedShading : public vulkan::VulkanTest, public testing::WithParamInterface<std::uint32_t> {};
 
 TEST_P(SharedShading, IsTheSameInAShader) {
-    Host host(evaluate_plain, GetParam());
-    Shader shader(device(), GetParam(), functions_of(GetParam()).size());
+    HostSide host(evaluate_plain, GetParam());
+    DeviceSide shader(device(), GetParam(), functions_of(GetParam()).size());
     compare(GetParam(), host, shader);
 }
 
 // Not every device is at hand: this is how far contraction alone takes one.
 TEST_P(SharedShading, StaysWithinTheBoundsWhenContracted) {
-    Host host(evaluate_plain, GetParam()), contracted(evaluate_contracted, GetParam());
+    HostSide host(evaluate_plain, GetParam()), contracted(evaluate_contracted, GetParam());
     compare(GetParam(), host, contracted);
 }
 
