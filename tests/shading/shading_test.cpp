@@ -70,9 +70,9 @@ std::span<const std::uint32_t> shader_of(std::uint32_t list) {
     return Shaders[list]();
 }
 
-class Shader final : public Side {
+class ShaderSide final : public Side {
   public:
-    Shader(vulkan::Device& device, std::uint32_t list, std::size_t functions)
+    ShaderSide(vulkan::Device& device, std::uint32_t list, std::size_t functions)
         : device_(device),
           kernel_(device,
                   {.name = "shared shading", .code = shader_of(list), .push_bytes = sizeof(Arguments)}),
@@ -141,7 +141,7 @@ class SharedShading : public vulkan::VulkanTest, public testing::WithParamInterf
 
 TEST_P(SharedShading, IsTheSameInAShader) {
     Host host(evaluate_plain, GetParam());
-    Shader shader(device(), GetParam(), functions_of(GetParam()).size());
+    ShaderSide shader(device(), GetParam(), functions_of(GetParam()).size());
     compare(GetParam(), host, shader);
 }
 
