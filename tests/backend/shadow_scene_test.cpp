@@ -15,16 +15,16 @@ using test::moved;
 using test::SceneBuilder;
 using test::transform;
 
-constexpr ObjectId Left{10}, Right{11}, Inner{12}, Mesh{20}, Lamp{30}, Paint{40};
+constexpr ObjectId Left{10}, Right{11}, Inner{12}, Mesh{20}, Lamp{30}, PaintedId{40};
 
 std::vector<scene::Entry> start() {
     return {Create{scene::RootId, scene::Root{.name = {}, .children = {Left, Right}}},
             Create{Left, transform(moved(1, 0, 0), {Inner})},
             Create{Right, transform(moved(0, 2, 0), {Inner, Lamp})},
             Create{Inner, transform(moved(0, 0, 3), {Mesh})},
-            Create{Mesh, Geometry{.name = {}, .material = Paint}},
+            Create{Mesh, Geometry{.name = {}, .material = PaintedId}},
             Create{Lamp, scene::Light{}},
-            Create{Paint, scene::Material{}}};
+            Create{PaintedId, scene::Material{}}};
 }
 
 void expect_like_rebuilt(const ShadowScene& shadow) {
