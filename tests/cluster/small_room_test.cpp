@@ -45,6 +45,7 @@ class SmallRoom final : public backend::Backend {
             }
             return inner_->apply(changes, after);
         }
+        const Scene& scene() const override { return inner_->scene(); }
         Expected<backend::EditReport> commit() override {
             if (lamps_.size() > owner_.room_) {
                 return failure(ErrorCode::OutOfMemory, "room for " + std::to_string(owner_.room_) +
