@@ -122,7 +122,7 @@ std::vector<scene::Entry> entries(const ImportedScene& scene, RootEntry root) {
     std::vector<scene::Entry> result;
     result.reserve(scene.objects.size() + 1);
     if (root == RootEntry::Create) {
-        result.push_back(scene::Create{scene::RootId, scene.root});
+        result.emplace_back(scene::Create{scene::RootId, scene.root});
     } else {
         const scene::Fields<scene::Root> fields{&scene::Root::children, &scene::Root::background};
         result.push_back(scene::Update{scene::RootId, fields.bits(), scene.root});

@@ -53,7 +53,7 @@ class Planner {
             note(object_path(id, *now) + " goes with what " + writer->name + " wrote to it since");
             break;
         }
-        plan_.entries.push_back(scene::Remove{id});
+        plan_.entries.emplace_back(scene::Remove{id});
     }
 
     void bring_back(ObjectId id, const TransactionChange& change) {
@@ -62,7 +62,7 @@ class Planner {
     }
 
     void create(ObjectId id, const TransactionChange& change) {
-        plan_.entries.push_back(scene::Create{id, *change.object.before});
+        plan_.entries.emplace_back(scene::Create{id, *change.object.before});
         plan_.writers[id] = change.writers_before;
     }
 
@@ -72,7 +72,7 @@ class Planner {
         if (now == nullptr) return note(gone(id, *change.object.after));
         if (now->index() != change.object.after->index())
             return note(object_path(id, *now) + " is another object by now: it stays");
-        plan_.entries.push_back(scene::Remove{id});
+        plan_.entries.emplace_back(scene::Remove{id});
         create(id, change);
     }
 

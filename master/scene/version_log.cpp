@@ -13,8 +13,8 @@ void add_entries(ObjectId id, std::optional<scene::ObjectKind> was, scene::Field
         if (mask != 0) entries.push_back(scene::Update{id, mask, scene::only(*now, mask)});
         return;
     }
-    if (was) entries.push_back(scene::Remove{id});
-    if (now) entries.push_back(scene::Create{id, *now});
+    if (was) entries.emplace_back(scene::Remove{id});
+    if (now) entries.emplace_back(scene::Create{id, *now});
 }
 
 std::optional<scene::ObjectKind> kind_of(const scene::Object* object) {
@@ -65,10 +65,10 @@ scene::ChangeList VersionLog::snapshot(const scene::Scene& head) const {
     scene::ChangeList list{
         .from = {version_.epoch, 0}, .to = version_, .entries = {}, .state_hash = state_hash_};
     for (const auto& [id, object] : head.objects()) {
-        if (!before_.contains(id)) list.entries.push_back(scene::Create{id, *object});
+        if (!before_.contains(id)) list.entries.emplace_back(scene::Create{id, *object});
     }
     for (const auto& [id, object] : before_) {
-        if (object) list.entries.push_back(scene::Create{id, *object});
+        if (object) list.entries.emplace_back(scene::Create{id, *object});
     }
     return list;
 }

@@ -156,7 +156,7 @@ TEST_F(LiveEditing, TheWriterOfAFieldIsKnown) {
     const auto result = bob->submit({paint({1, 0, 0, 1})});
     const auto writers = ann->writers(material());
     ASSERT_EQ(writers.size(), 1u);
-    EXPECT_EQ(writers[0].field, static_cast<std::uint32_t>(&Material::base_color));
+    EXPECT_EQ(field_bit(writers[0].field), Fields<Material>(&Material::base_color).bits());
     EXPECT_EQ(writers[0].name, "bob");
     EXPECT_EQ(writers[0].transaction, result.transaction);
 }

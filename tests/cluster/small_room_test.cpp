@@ -36,15 +36,16 @@ class SmallRoom final : public backend::Backend {
       public:
         explicit Edit(SmallRoom& owner)
             : owner_(owner), inner_(owner.inner_->begin_edit()), lamps_(owner.lamps_) {}
-        Expected<void> apply(const ChangeList& changes) override {
+        Expected<void> apply(const ChangeList& changes, const Scene& after) override {
             if (changes.from.number == 0) lamps_.clear();
             for (const Entry& entry : changes.entries) {
                 const auto* made = std::get_if<Create>(&entry);
                 if (made && std::holds_alternative<Light>(made->object)) lamps_.push_back(made->id);
                 if (std::holds_alternative<Remove>(entry)) std::erase(lamps_, id(entry));
             }
-            return inner_->apply(changes);
+            return inner_->apply(changes, after);
         }
+        const Scene& scene() const override { return inner_->scene(); }
         Expected<backend::EditReport> commit() override {
             if (lamps_.size() > owner_.room_) {
                 return failure(ErrorCode::OutOfMemory, "room for " + std::to_string(owner_.room_) +

@@ -46,7 +46,9 @@ void RandomEdits::change(scene::SceneEditor& editor) {
                 Transform changed = transform(placement(), {});
                 changed.layers = layers();
                 const bool moves = random_.below(4) != 0;
-                editor.update<Transform>(id, moves ? &Transform::matrix : &Transform::layers, changed);
+                using Changed = scene::Fields<Transform>;
+                editor.update<Transform>(
+                    id, moves ? Changed(&Transform::matrix) : Changed(&Transform::layers), changed);
             }
     }
 }

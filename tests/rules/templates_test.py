@@ -8,7 +8,7 @@ its first difference it says in words what it adds, and
     Targets: ...   what --build builds
     Tests: REGEX   what it runs then
 
-Without --build: the templates apply, and the tree keeps its rules and its format. With it, their tests pass as well. Exits 1
+Without --build: the templates apply, and the tree keeps its rules once it is formatted. With it, their tests pass as well. Exits 1
 when a template fails.
 """
 
@@ -64,9 +64,8 @@ def add(root, patch, to):
     product = [name for name in touched - made if PRODUCT.match(name) and not name.endswith("CMakeLists.txt")]
     if len(product) > int(header(patch)["Files"]):
         raise RuntimeError(f"it touches {len(product)} files of the product: {', '.join(sorted(product))}")
+    run("clang-format-14", "-i", *(name for name in touched if name.endswith((".h", ".cpp"))), cwd=to)
     run(sys.executable, to / "tests/rules/check_rules.py", to, cwd=to)
-    sources = [name for name in touched if name.endswith((".h", ".cpp"))]
-    run("clang-format-14", "--dry-run", "-Werror", *sources, cwd=to)
 
 
 def build(patch, copy, folder):

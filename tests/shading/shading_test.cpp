@@ -39,9 +39,9 @@ class Side {
     virtual void evaluate(std::span<const Inputs> inputs, std::span<Outputs> outputs) = 0;
 };
 
-class HostSide final : public Side {
+class Host final : public Side {
   public:
-    HostSide(Evaluate& function, std::uint32_t list) : function_(function), list_(list) {
+    Host(Evaluate& function, std::uint32_t list) : function_(function), list_(list) {
         const std::size_t size = make_world(0).bytes.size();
         memory_ = std::make_unique<std::byte[]>(size);
         const PackedWorld packed = make_world(reinterpret_cast<std::uint64_t>(memory_.get()));
@@ -70,9 +70,9 @@ std::span<const std::uint32_t> shader_of(std::uint32_t list) {
     return Shaders[list]();
 }
 
-class DeviceSide final : public Side {
+class ShaderSide final : public Side {
   public:
-    DeviceSide(vulkan::Device& device, std::uint32_t list, std::size_t functions)
+    ShaderSide(vulkan::Device& device, std::uint32_t list, std::size_t functions)
         : device_(device),
           kernel_(device,
                   {.name = "shared shading", .code = shader_of(list), .push_bytes = sizeof(Arguments)}),
@@ -140,14 +140,14 @@ void compare(std::uint32_t list, Side& one, Side& other) {
 class SharedShading : public vulkan::VulkanTest, public testing::WithParamInterface<std::uint32_t> {};
 
 TEST_P(SharedShading, IsTheSameInAShader) {
-    HostSide host(evaluate_plain, GetParam());
-    DeviceSide shader(device(), GetParam(), functions_of(GetParam()).size());
+    Host host(evaluate_plain, GetParam());
+    ShaderSide shader(device(), GetParam(), functions_of(GetParam()).size());
     compare(GetParam(), host, shader);
 }
 
 // Not every device is at hand: this is how far contraction alone takes one.
 TEST_P(SharedShading, StaysWithinTheBoundsWhenContracted) {
-    HostSide host(evaluate_plain, GetParam()), contracted(evaluate_contracted, GetParam());
+    Host host(evaluate_plain, GetParam()), contracted(evaluate_contracted, GetParam());
     compare(GetParam(), host, contracted);
 }
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 from typing import Sequence
 
 from .errors import InvalidInput
+from .objects import KIND_ROWS, Camera
 from .values import Matrix, Vec3
 
-# In the order of the wire.
-PROJECTIONS = ("perspective", "orthographic")
-APERTURES = ("uniform", "gaussian")
+_CHOICES = {row.name: row.choices for kind in KIND_ROWS if kind.type is Camera for row in kind.fields}
+PROJECTIONS, APERTURES = _CHOICES["projection"], _CHOICES["aperture"]  # in the order of the wire
 MAX_MOTION = 15  # steps after the first
 
 

@@ -51,7 +51,7 @@ TEST_F(EditorsTest, RecordsTheLastWriterOfEachField) {
     const auto second = must(edit(ben, {metallic(red, 0.25f)}));
     const auto writers = authority.writers(red);
     ASSERT_EQ(writers.size(), 2u) << "the name is as it came";
-    EXPECT_EQ(writers[0].field, static_cast<std::uint32_t>(&Material::metallic));
+    EXPECT_EQ(field_bit(writers[0].field), Fields<Material>(&Material::metallic).bits());
     EXPECT_EQ(writers[0].transaction, second);
     EXPECT_EQ(writers[0].name, "ben");
     EXPECT_EQ(writers[0].user, "ben's key");
