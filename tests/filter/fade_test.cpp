@@ -13,7 +13,7 @@ namespace {
 
 using frame::Channel;
 
-constexpr std::uint32_t Width = 96, Height = 96;
+constexpr std::uint32_t FadeWidth = 96, FadeHeight = 96;
 
 // Pixel values are 0 or `found` with probability truth / found: exact sums of n such samples.
 Inputs noisy(const Planes& truth, std::uint32_t n, float found = 1.0f, std::uint64_t seed = 1) {
@@ -38,7 +38,7 @@ Inputs noisy(const Planes& truth, std::uint32_t n, float found = 1.0f, std::uint
 }
 
 Planes uniform(float value) {
-    Planes planes(Width, Height, 3);
+    Planes planes(FadeWidth, FadeHeight, 3);
     std::ranges::fill(planes.values(), value);
     return planes;
 }
@@ -72,7 +72,7 @@ double mean(const Planes& planes) {
 }
 
 TEST(Fade, NeverWorseThanUnfilteredAtAnyNumberOfSamples) {
-    const Planes truth = shadowed_texture_truth(Width, Height);
+    const Planes truth = shadowed_texture_truth(FadeWidth, FadeHeight);
     bool blur_was_worse = false;
     for (const char* blur : {"gauss:sigma=0.7", "gauss:sigma=2", "gauss:sigma=6"}) {
         for (std::uint32_t n = 4; n <= 4096; n *= 4) {
@@ -111,7 +111,7 @@ TEST(Fade, CountsWhatAFilterTakesFromThePixelItself) {
     // F = U + half of the way to another truth: the covariance is V / 2.
     const Planes truth = uniform(0.3f);
     const Inputs inputs = noisy(truth, 64);
-    Planes filtered(Width, Height, 3);
+    Planes filtered(FadeWidth, FadeHeight, 3);
     for (std::size_t i = 0; i < filtered.values().size(); ++i) {
         filtered.values()[i] = 0.5f * inputs.means[0].values()[i] + 0.5f * 0.4f;
     }
@@ -137,7 +137,7 @@ TEST(Fade, DoesNotKeepRareLightAsSpots) {
 TEST(Fade, RemovesAFirefly) {
     const Planes truth = uniform(0.5f);
     Inputs inputs = noisy(truth, 1024);
-    const std::size_t at = 40 * Width + 40;
+    const std::size_t at = 40 * FadeWidth + 40;
     for (std::uint32_t c = 0; c < 3; ++c) {
         inputs.means[0].plane(c)[at] = 1000.0f;  // one sample of 1024000
         inputs.variances[0].plane(c)[at] = 1e6f;
@@ -182,25 +182,25 @@ TEST(Fade, PixelsWithoutVarianceHaveNoSay) {
 
 TEST(Fade, BrightPixelsDoNotDecideForDarkOnes) {
     // A noisy region of 1000 beside a converged one of 1 whose filtered value is wrong.
-    Planes truth(Width, Height, 3), filtered(Width, Height, 3);
+    Planes truth(FadeWidth, FadeHeight, 3), filtered(FadeWidth, FadeHeight, 3);
     for (std::size_t i = 0; i < truth.values().size(); ++i) {
-        const bool bright = i % Width < Width / 2;
+        const bool bright = i % FadeWidth < FadeWidth / 2;
         truth.values()[i] = bright ? 1000.0f : 1.0f;
         filtered.values()[i] = bright ? 1000.0f : 300.0f;
     }
     Inputs inputs = noisy(truth, 16, 2000.0f);
     for (std::uint32_t c = 0; c < 3; ++c) {
         for (std::size_t i = 0; i < inputs.pixel_count(); ++i) {
-            if (i % Width < Width / 2) continue;
+            if (i % FadeWidth < FadeWidth / 2) continue;
             inputs.means[0].plane(c)[i] = 1.0f;
             inputs.variances[0].plane(c)[i] = 1e-6f;
         }
     }
     const Planes out = faded(inputs, filtered);
-    EXPECT_LT(out.row(0, 48)[Width / 2], 100.0f);
+    EXPECT_LT(out.row(0, 48)[FadeWidth / 2], 100.0f);
     // Their own neighbours decide, once so many noisy pixels were seen.
-    EXPECT_LT(out.row(0, 48)[Width / 2 + 1], 20.0f);
-    EXPECT_NEAR(out.row(0, 48)[Width / 2 + 6], 1.0f, 0.01f);
+    EXPECT_LT(out.row(0, 48)[FadeWidth / 2 + 1], 20.0f);
+    EXPECT_NEAR(out.row(0, 48)[FadeWidth / 2 + 6], 1.0f, 0.01f);
 }
 
 TEST(Fade, FiniteAtExtremes) {
@@ -219,9 +219,9 @@ TEST(Fade, AlphaWithTheSameWeight) {
     const Planes truth = uniform(0.3f);
     Inputs inputs = noisy(truth, 64);
     auto& alpha = inputs.means[static_cast<std::size_t>(Channel::Alpha)];
-    alpha = Planes(Width, Height, 1);
+    alpha = Planes(FadeWidth, FadeHeight, 1);
     std::ranges::fill(alpha.values(), 1.0f);
-    Planes filtered(Width, Height, 4), weights;
+    Planes filtered(FadeWidth, FadeHeight, 4), weights;
     std::ranges::fill(filtered.values(), 0.0f);
     const Planes out = faded(inputs, filtered, {}, &weights);
     for (std::size_t i = 0; i < inputs.pixel_count(); ++i) {
@@ -232,7 +232,7 @@ TEST(Fade, AlphaWithTheSameWeight) {
 }
 
 TEST(Fade, SameBitsForAnyNumberOfThreadsAndStopsWhenAsked) {
-    const Inputs inputs = noisy(shadowed_texture_truth(Width, Height), 16);
+    const Inputs inputs = noisy(shadowed_texture_truth(FadeWidth, FadeHeight), 16);
     const Planes filtered = run_filter("gauss:sigma=3", inputs).picture;
     Fade fade;
     Planes one = filtered, two = filtered;

@@ -22,7 +22,7 @@ struct AdjustOptions {
 };
 
 // "0,2"
-Expected<std::uint32_t> parse_layers(const std::string& text) {
+Expected<std::uint32_t> parse_output_layers(const std::string& text) {
     std::uint32_t layers = 0;
     for (const std::string& word : split_list(text)) {
         if (word.size() != 1 || word[0] < '0' || word[0] >= char('0' + display::MaxLayers))
@@ -42,7 +42,7 @@ int run(const AdjustOptions& options) {
                                .shown_layers = {}};
     if (!options.pattern.empty()) change.pattern = options.pattern == "on";
     if (options.layers) {
-        const auto layers = parse_layers(*options.layers);
+        const auto layers = parse_output_layers(*options.layers);
         if (!layers) return complain(AdjustName, cli::ExitUsage, layers.error().what());
         change.shown_layers = *layers;
     }
