@@ -6,78 +6,81 @@ namespace tessera::client {
 
 namespace {
 
-// All tiles in one; they cover a rectangle.
-Expected<frame::FilmTile> pasted(const std::vector<frame::FilmTile>& tiles) {
-    Rect bounds = tiles.front().rect;
-    std::size_t pixels = 0;
-    for (const frame::FilmTile& tile : tiles) {
-        const std::int32_t right = std::max(bounds.right(), tile.rect.right());
-        const std::int32_t bottom = std::max(bounds.bottom(), tile.rect.bottom());
-        bounds.x = std::min(bounds.x, tile.rect.x);
-        bounds.y = std::min(bounds.y, tile.rect.y);
-        bounds.width = right - bounds.x;
-        bounds.height = bottom - bounds.y;
-        pixels += tile.rect.pixel_count();
-        if (tile.channels != tiles.front().channels)
-            return failure(ErrorCode::InvalidInput, "the master sent tiles with different channels");
-    }
-    if (pixels != bounds.pixel_count())
-        return failure(ErrorCode::InvalidInput, "the master sent tiles that do not fit together");
-    frame::FilmTile film(bounds, {}, tiles.front().channels);
-    for (const frame::FilmTile& tile : tiles) frame::paste(film, tile);
-    return film;
+constexpr std::uint64_t MaxPictureBytes = std::uint64_t{1}
+                                          << 33;  // 2^28 pixels of four floats and room for a header
+constexpr std::size_t FilmAhead = 8;              // the whole film is at most so many times what has come
+
+tl::unexpected<Error> unfit(const char* what) {
+    return failure(ErrorCode::InvalidInput, std::string("the master sent ") + what +
+                                                ": check that master and client are of the same version");
 }
 
 }  // namespace
 
-void FrameCollector::begin(const wire::LiveFrame& header) {
+void FrameCollector::begin(const wire::FrameHeader& header) {
+    *this = {};
     header_ = header;
-    picture_ = PictureCollector(JobId{header.frame});
-    tiles_.clear();
+    seen_.resize(header.film_tiles);
 }
 
 Expected<void> FrameCollector::add(wire::PictureChunk&& chunk) {
-    if (!header_) return {};
-    if (chunk.total != header_->picture_bytes && chunk.job.value == header_->frame)
-        return failure(ErrorCode::InvalidInput, "the master sent a picture of another size than it said");
-    return picture_.add(std::move(chunk));
+    if (!header_ || chunk.frame != header_->frame) return {};
+    if (chunk.total != header_->picture_bytes || chunk.total > MaxPictureBytes)
+        return unfit("a picture of another size than it said");
+    if (chunk.offset != picture_.size()) return unfit("a picture with a gap");
+    picture_.insert(picture_.end(), chunk.data.begin(), chunk.data.end());
+    return {};
 }
 
 Expected<void> FrameCollector::add(wire::FrameTile&& tile) {
-    if (!header_ || tile.job.value != header_->frame) return {};
-    if (tiles_.size() >= header_->film_tiles)
-        return failure(ErrorCode::InvalidInput, "the master sent more tiles than it said");
+    if (!header_ || tile.frame != header_->frame) return {};
+    const frame::FilmTile& film = tile.film;
+    const frame::ChannelSet channels = film_            ? film_->channels
+                                       : tiles_.empty() ? film.channels
+                                                        : tiles_.front().channels;
+    if (tile.count != header_->film_tiles || tile.index >= seen_.size())
+        return unfit("a tile with a number beyond its count");
+    if (seen_[tile.index]) return {};
+    if (intersection(film.rect, header_->film_window) != film.rect || film.channels != channels)
+        return unfit("a tile that does not fit the frame");
+    seen_[tile.index] = true;
+    ++tile_count_;
+    pixel_count_ += film.rect.pixel_count();
+    const std::size_t whole = header_->film_window.pixel_count();
+    const bool is_last = tile_count_ == header_->film_tiles;
+    if (pixel_count_ > whole || (is_last && pixel_count_ != whole))
+        return unfit("tiles that do not fit together");
+    if (film_) {
+        frame::paste(*film_, film);
+        return {};
+    }
     tiles_.push_back(std::move(tile.film));
+    if (pixel_count_ * FilmAhead < whole) return {};
+    film_.emplace(header_->film_window, frame::SampleBlock{}, channels);
+    for (const frame::FilmTile& part : std::exchange(tiles_, {})) frame::paste(*film_, part);
     return {};
 }
 
 std::optional<Frame> FrameCollector::take() {
-    if (!header_ || picture_.byte_size() < header_->picture_bytes || tiles_.size() < header_->film_tiles)
+    if (!header_ || picture_.size() < header_->picture_bytes || tile_count_ < header_->film_tiles)
         return std::nullopt;
-    const wire::LiveFrame header = *std::exchange(header_, std::nullopt);
-    Frame frame{.view = header.view,
-                .number = header.frame,
-                .version = header.version,
-                .revision = header.revision,
-                .scale = header.scale,
-                .width = header.width,
-                .height = header.height,
-                .components = header.components,
-                .encoding = header.encoding,
-                .picture = picture_.take(),
-                .film = {},
-                .samples_least = header.samples_least,
-                .samples_most = header.samples_most,
-                .spp = header.spp,
-                .complete = header.complete,
-                .film_hash = header.film_hash};
-    if (!tiles_.empty()) {
-        auto film = pasted(tiles_);
-        if (!film) throw film.error();
-        frame.film = std::move(*film);
-    }
-    tiles_.clear();
-    return frame;
+    const wire::FrameHeader header = *std::exchange(header_, std::nullopt);
+    return Frame{.view = header.view,
+                 .number = header.frame,
+                 .version = header.version,
+                 .revision = header.revision,
+                 .scale = header.scale,
+                 .width = header.width,
+                 .height = header.height,
+                 .components = header.components,
+                 .encoding = header.encoding,
+                 .picture = std::move(picture_),
+                 .film = std::exchange(film_, std::nullopt),
+                 .samples_least = header.samples_least,
+                 .samples_most = header.samples_most,
+                 .spp = header.spp,
+                 .complete = header.complete,
+                 .film_hash = header.film_hash};
 }
 
 }  // namespace tessera::client

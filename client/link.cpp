@@ -139,7 +139,7 @@ void Link::receive(const net::Message& message, TimePoint now) {
     if (const auto* request = std::get_if<wire::BlobRequest>(&*decoded)) serve(*request);
     if (auto* tile = std::get_if<wire::FrameTile>(&*decoded)) deliver(std::move(*tile));
     if (auto* chunk = std::get_if<wire::PictureChunk>(&*decoded)) deliver(std::move(*chunk));
-    if (auto* frame = std::get_if<wire::LiveFrame>(&*decoded)) deliver(*frame);
+    if (auto* frame = std::get_if<wire::FrameHeader>(&*decoded)) deliver(std::move(*frame));
     if (auto* picture = std::get_if<wire::OutputPicture>(&*decoded)) deliver(std::move(*picture));
     if (auto* blob = std::get_if<wire::BlobChunk>(&*decoded)) deliver(std::move(*blob));
     if (const auto* absent = std::get_if<wire::BlobAbsent>(&*decoded)) deliver(*absent);
@@ -156,9 +156,9 @@ void Link::control(wire::ControlMessage&& message, TimePoint now) {
         if (state_ != State::Away && now - last_greeting_ >= settings_.heartbeat) greet(now);
         return;
     }
-    if (std::holds_alternative<wire::Goodbye>(message) && settings_.returns) return leave_for_a_while(now);
-    if (const auto* goodbye = std::get_if<wire::Goodbye>(&message)) {
-        return fail(Error(ErrorCode::Unavailable, "the master left: " + goodbye->reason));
+    if (auto* goodbye = std::get_if<wire::Goodbye>(&message)) {
+        goodbye_ = std::move(goodbye->reason);
+        return leave_for_a_while(now);
     }
     if (const auto* refusal = std::get_if<wire::Refusal>(&message); refusal && number_ == 0) {
         return fail(Error(ErrorCode::Refused, "the master refuses: " + refusal->reason));
@@ -174,6 +174,8 @@ void Link::welcome(const wire::Welcome& welcome, TimePoint now) {
     number_ = welcome.peer_number;
     token_ = welcome.token;
     state_ = State::Joined;
+    is_away_ = false;
+    goodbye_.reset();
     const Duration interval = std::clamp<Duration>(welcome.heartbeat_interval, std::chrono::milliseconds(10),
                                                    std::chrono::minutes(1));
     settings_.heartbeat = interval;
@@ -191,6 +193,7 @@ void Link::welcome(const wire::Welcome& welcome, TimePoint now) {
 void Link::serve(const wire::BlobRequest& request) {
     if (outbox_.size() >= MaxWaitingMessages) return;
     outbox_.push_back({net::Link::Bulk, wire::encode(wire::answer(request, *blobs_))});
+    ++served_;
 }
 
 void Link::greet(TimePoint now) {
@@ -222,7 +225,8 @@ void Link::watch(TimePoint now) {
     if (state_ != State::Joined &&
         now - last_heard_ >= (never_joined ? settings_.connect_limit : settings_.lost_limit)) {
         return fail(Error(ErrorCode::Unavailable,
-                          never_joined
+                          goodbye_ ? "the master left and did not come back: " + *goodbye_
+                          : never_joined
                               ? "the master does not answer: is it running there, and is this key in "
                                 "its allow-list?"
                               : "the master has fallen silent: is it still running?"));
@@ -243,6 +247,7 @@ void Link::watch(TimePoint now) {
 void Link::leave_for_a_while(TimePoint now) {
     outbox_.clear();  // belongs to the old sockets
     state_ = State::Away;
+    is_away_ = true;
     return_at_ = now + liveness_.next_backoff();
 }
 

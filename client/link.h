@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -23,14 +24,14 @@ namespace tessera::client {
 struct Rejoined {
     bool same_session = false;
 };
-using Incoming = std::variant<wire::ControlMessage, wire::FrameTile, wire::PictureChunk, wire::LiveFrame,
+using Incoming = std::variant<wire::ControlMessage, wire::FrameTile, wire::PictureChunk, wire::FrameHeader,
                               wire::OutputPicture, wire::BlobChunk, wire::BlobAbsent, Rejoined>;
 
 // The session's thread: says hello, keeps heartbeats, reconnects after silence, serves blobs. What is meant
 // for the session waits in an inbox, in order per link. Its states:
 //
 //   Greeting   hello sent                 Welcome → Joined · silence → Away · Refusal → Over
-//   Joined     everything goes            silence → Away · Unknown → Greeting · Goodbye → Over
+//   Joined     everything goes            silence, Goodbye → Away · Unknown → Greeting
 //   Away       until the back-off ends    → new sockets → Greeting
 //   Over       failed for good: every call throws the reason
 //
@@ -45,6 +46,8 @@ class Link {
     void send(const wire::ControlMessage& message);
     void send(net::Bytes encoded);  // a control message
     void ask(const wire::BlobRequest& request);
+    std::uint64_t served_requests() const { return served_; }  // of the master, for blobs
+    bool is_away() const { return is_away_; }                  // the connection is tried again
     std::uint64_t join();  // blocks until welcome; the session's number. Throws Error.
     // The next one; nothing at the deadline or when stopped. Throws Error when the link is over.
     std::optional<Incoming> next(TimePoint deadline, std::stop_token stop);
@@ -85,6 +88,10 @@ class Link {
     TimePoint last_heard_, return_at_{}, last_greeting_{};
     std::int64_t master_sent_at_ = 0;
     TimePoint master_heard_at_{};
+
+    std::optional<std::string> goodbye_;  // the master left with this reason, and may come back
+    std::atomic<std::uint64_t> served_ = 0;
+    std::atomic<bool> is_away_ = false;
 
     std::mutex mutex_;  // protects what stands below
     std::condition_variable_any changed_;

@@ -4,6 +4,7 @@
 
 #include "client/output_event.h"
 #include "mediator/base/error.h"
+#include "mediator/wire/bulk_messages.h"
 
 namespace tessera::client {
 

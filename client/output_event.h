@@ -6,7 +6,9 @@
 #include <variant>
 #include <vector>
 
-#include "mediator/wire/messages.h"
+#include "mediator/session/display.h"
+#include "mediator/session/view_request.h"
+#include "mediator/view/view.h"
 
 namespace tessera::client {
 
@@ -16,7 +18,7 @@ struct OutputFrame {
         view::Eye eye = view::Eye::Mono;
         view::CameraPose camera;  // in display space
         std::uint32_t width = 0, height = 0;
-        wire::PictureEncoding encoding = wire::PictureEncoding::Bytes;  // or Half
+        session::PictureEncoding encoding = session::PictureEncoding::Bytes;  // or Half
         std::vector<std::byte> bytes;
     };
     std::uint64_t number = 0;
@@ -30,6 +32,7 @@ struct OutputUnavailable {
     std::string reason;
 };
 
-using OutputEvent = std::variant<wire::OutputOpened, OutputFrame, wire::PresentFrame, OutputUnavailable>;
+using OutputEvent =
+    std::variant<session::OutputOpened, OutputFrame, session::PresentFrame, OutputUnavailable>;
 
 }  // namespace tessera::client

@@ -1,190 +1,186 @@
 #include "client/session.h"
 
 #include <algorithm>
-#include <functional>
 
-#include "client/encoded_edit.h"
-#include "client/film_collector.h"
-#include "client/link.h"
-#include "client/picture_collector.h"
-#include "client/wire_values.h"
+#include "client/channel_session.h"
+#include "client/session_exchange.h"
 #include "mediator/net/zmq_channel.h"
-#include "mediator/wire/envelope.h"
 
 namespace tessera::client {
 
 namespace {
-
-Error lost_session() {
-    return Error(
-        ErrorCode::Unavailable,
-        "the master has lost this session (it was started anew, or the connection was away for too long): "
-        "start again");
+constexpr std::size_t MaxAhead = 256;  // edits without an answer
 }
 
-void expect_same(const Rejoined& rejoined) {
-    if (!rejoined.same_session) throw lost_session();
-}
-
-void throw_refusal(const wire::ControlMessage& message) {
-    if (const auto* refusal = std::get_if<wire::Refusal>(&message)) {
-        throw Error(ErrorCode::Refused, "the master refuses: " + refusal->reason);
-    }
-}
-
-}  // namespace
-
-struct Session::Implementation {
-    Link link;
-    std::shared_ptr<scene::BlobStore> blobs;
-    const Clock& clock;
-    SessionSettings settings;
-    SessionId id;
-    std::uint64_t last_sequence = 0, last_job = 0;
-    Version version;  // that holds everything submitted so far
-
-    // What has come; nothing when stopped. Looks again now and then, so that a deadline need not be known.
-    std::optional<Incoming> next(std::stop_token stop) {
-        while (!stop.stop_requested()) {
-            if (auto incoming = link.next(clock.now() + std::chrono::seconds(1), stop)) return incoming;
-        }
-        return std::nullopt;
-    }
-
-    // Asks again after a break.
-    template <class Answer>
-    Answer ask(const wire::ControlMessage& question) {
-        link.send(question);
-        const TimePoint deadline = clock.now() + settings.lost_limit;
-        while (const auto incoming = link.next(deadline, {})) {
-            if (std::holds_alternative<Rejoined>(*incoming)) link.send(question);
-            const auto* message = std::get_if<wire::ControlMessage>(&*incoming);
-            if (message == nullptr) continue;
-            throw_refusal(*message);
-            if (const auto* answer = std::get_if<Answer>(message)) return *answer;
-        }
-        throw Error(ErrorCode::Unavailable, "the master does not answer");
-    }
-};
-
-Session::Session(std::unique_ptr<net::Channel> channel, std::function<void()> reconnect,
-                 std::shared_ptr<scene::BlobStore> blobs, const Clock& clock, SessionSettings settings)
-    : implementation_(
-          new Implementation{.link = Link(std::move(channel), std::move(reconnect), blobs, clock, settings),
-                             .blobs = blobs,
-                             .clock = clock,
-                             .settings = std::move(settings)}) {
-    implementation_->id = SessionId{implementation_->link.join()};
-}
+Session::Session(std::unique_ptr<Implementation> implementation)
+    : implementation_(std::move(implementation)) {}
 
 Session::~Session() = default;
 
-OpenOutcome Session::open_scene(const std::string& title, WhenBusy when_busy,
-                                const std::function<void(std::uint32_t)>& on_place, std::stop_token stop) {
+JoinOutcome Session::join(const JoinRequest& request, std::stop_token stop) {
     Implementation& self = *implementation_;
-    const wire::OpenScene request{.title = title, .no_wait = when_busy == WhenBusy::GiveUp};
-    self.link.send(request);
-    while (const auto incoming = self.next(stop)) {
-        if (std::holds_alternative<Rejoined>(*incoming))
-            self.link.send(request);  // harmless when it had arrived
+    const bool gives_up = request.when_busy == WhenBusy::GiveUp;
+    self.join_request.title = request.title;
+    self.join_request.name = self.settings.name;
+    self.join_request.no_wait = gives_up;
+    self.join_request.exclusive = request.exclusive;
+    self.on_place = request.on_place;
+    self.state = Implementation::State::Joining;
+    self.link.send(self.join_request);
+    while (self.state != Implementation::State::Inside) {
+        if (stop.stop_requested()) return Stopped{};
+        auto incoming = self.link.next(self.clock.now() + Slice, stop);
+        if (!incoming) continue;
         const auto* message = std::get_if<wire::ControlMessage>(&*incoming);
-        if (message == nullptr) continue;
-        if (const auto* opened = std::get_if<wire::SceneOpened>(message)) {
-            self.version = opened->version;
-            return OpenedScene{opened->version, ObjectId{opened->first_id},
-                               ObjectId{opened->first_id + opened->id_count}};
+        if (const auto* refusal = message ? std::get_if<wire::Refusal>(message) : nullptr) {
+            if (gives_up) return Busy{refusal->reason};
+            throw Error(ErrorCode::Refused, "the master refuses: " + refusal->reason);
         }
-        if (const auto* place = std::get_if<wire::QueuePlace>(message); place && on_place)
-            on_place(place->place);
-        if (const auto* refusal = std::get_if<wire::Refusal>(message);
-            refusal && when_busy == WhenBusy::GiveUp) {
-            return Busy{refusal->reason};
-        }
-        throw_refusal(*message);
+        std::visit([&](auto&& body) { self.take(std::forward<decltype(body)>(body)); }, *std::move(incoming));
     }
-    return Stopped{};
+    if (self.settings.mirrors_scene && !request.exclusive) refresh();
+    const wire::SceneJoined& joined = self.joined;
+    return Joined{joined.title, joined.name, joined.version, ObjectId{joined.first_id},
+                  ObjectId{joined.first_id + joined.id_count}};
 }
 
-std::optional<SubmitResult> Session::submit(std::vector<scene::Entry> entries, std::stop_token stop) {
-    Implementation& self = *implementation_;
-    scene::Edit edit{.session = self.id,
-                     .sequence = ++self.last_sequence,
-                     .base = self.version,
-                     .entries = std::move(entries)};
-    const EncodedEdit request = encode_edit(std::move(edit), *self.blobs);
-    self.link.send(net::Bytes(request.message));
-    while (const auto incoming = self.next(stop)) {
-        if (const auto* rejoined = std::get_if<Rejoined>(&*incoming)) {
-            expect_same(*rejoined);
-            self.link.send(net::Bytes(request.message));  // the same sequence again does no harm
-        }
-        const auto* message = std::get_if<wire::ControlMessage>(&*incoming);
-        if (message == nullptr) continue;
-        throw_refusal(*message);
-        const auto* reply = std::get_if<wire::EditReply>(message);
-        if (reply == nullptr || reply->sequence != self.last_sequence) continue;
-        if (reply->accepted) self.version = reply->version;
-        return SubmitResult{reply->accepted, reply->version, reply->problems};
-    }
-    return std::nullopt;
+void Session::close_scene() {
+    implementation_->tell(wire::CloseScene{});
 }
 
-JobResult Session::render(const JobRequest& request, const std::function<void(const Progress&)>& on_progress,
-                          std::stop_token stop) {
-    Implementation& self = *implementation_;
-    const JobId job{++self.last_job};
-    FilmCollector film(job, request.view.window, request.view.channels);
-    PictureCollector picture(job);
-    const std::stop_callback ask_to_stop(stop, [&] { self.link.send(wire::StopJob{job}); });
-    self.link.send(to_wire(request, job));
-    if (stop.stop_requested()) self.link.send(wire::StopJob{job});  // after the start, whoever came first
+const scene::Scene& Session::scene() const {
+    return implementation_->scene;
+}
 
-    std::optional<wire::JobDone> done;
+void Session::refresh() {
+    Implementation& self = *implementation_;
+    self.wait_for_answers(0);
+    for (int attempt = 0; attempt < 3; ++attempt) {
+        const auto content = self.ask<wire::SceneContent>(wire::ReadScene{.known = self.scene.version()});
+        scene::ChangeList list = content.list;
+        if (!content.blob.empty()) {
+            auto decoded = wire::decode_change_list(fetch(content.blob)->bytes());
+            if (!decoded) throw decoded.error();
+            list = std::move(*decoded);
+        }
+        if (list.to == self.scene.version() && list.entries.empty()) return;
+        if (self.scene.apply(list)) return;
+        self.scene = {};  // what we have is of no use: all of it, then
+    }
+    throw Error(ErrorCode::Internal,
+                "the master's scene cannot be mirrored: check that both are one version");
+}
+
+ObjectId Session::new_id() {
+    Implementation& self = *implementation_;
+    if (self.next_id >= self.end_id)
+        throw Error(ErrorCode::Refused, "all ids lent to this session are used up: connect anew");
+    return ObjectId{self.next_id++};
+}
+
+scene::BlobPtr Session::fetch(const scene::BlobRef& blob) {
+    Implementation& self = *implementation_;
+    if (auto there = self.blobs->find(blob.hash)) return there;
+    if (auto wanted = self.fetcher.want(blob); !wanted) throw wanted.error();
+    const TimePoint deadline = self.clock.now() + self.settings.lost_limit;
+    std::uint64_t received = self.fetcher.received_bytes();
     TimePoint last_sign = self.clock.now();
-    while (!done || film.count() < done->tiles || picture.byte_size() < done->picture.byte_size) {
-        auto incoming = self.link.next(self.clock.now() + std::chrono::seconds(1), {});
-        if (!incoming) {
-            if (self.clock.now() - last_sign < self.settings.lost_limit) continue;
-            throw Error(ErrorCode::Unavailable,
-                        done ? "the picture did not arrive in full: start again"
-                             : "the master says nothing about the frame any more: start again");
+    while (true) {
+        for (const wire::BlobRequest& request : self.fetcher.due(self.clock.now())) self.link.ask(request);
+        if (auto there = self.blobs->find(blob.hash)) return there;
+        if (!self.fetcher.absent_blobs().empty()) {
+            self.fetcher.forget_all();
+            throw Error(ErrorCode::NotFound, "the master no longer has blob " + to_hex(blob.hash));
         }
-        last_sign = self.clock.now();
-        if (const auto* rejoined = std::get_if<Rejoined>(&*incoming)) {
-            expect_same(*rejoined);
-            if (stop.stop_requested()) self.link.send(wire::StopJob{job});
-        } else if (const auto* tile = std::get_if<wire::FrameTile>(&*incoming)) {
-            if (auto added = film.add(*tile); !added) throw added.error();
-        } else if (auto* chunk = std::get_if<wire::PictureChunk>(&*incoming)) {
-            if (auto added = picture.add(std::move(*chunk)); !added) throw added.error();
-        } else if (const auto* message = std::get_if<wire::ControlMessage>(&*incoming)) {
-            throw_refusal(*message);
-            if (const auto* progress = std::get_if<wire::JobProgress>(message);
-                progress && progress->job == job) {
-                if (on_progress) on_progress(from_wire(*progress));
-            } else if (const auto* end = std::get_if<wire::JobDone>(message); end && end->job == job) {
-                done = *end;
-            }
-        }
+        self.take_in(self.clock.now() + Slice, {});
+        self.throw_refusals();
+        if (self.fetcher.received_bytes() != received) last_sign = self.clock.now();
+        received = self.fetcher.received_bytes();
+        if (self.clock.now() > deadline && self.clock.now() - last_sign > self.settings.lost_limit)
+            throw Error(ErrorCode::Unavailable, "the master does not send a blob: is it still running?");
     }
-    JobResult result = from_wire(*done);
-    if (done->tiles > 0) result.film = film.take();
-    if (result.picture) result.picture->bytes = picture.take();
-    return result;
 }
 
-ClusterStatus Session::status() {
-    return from_wire(implementation_->ask<wire::StatusReply>(wire::StatusRequest{}));
+session::EditResult Session::submit(std::vector<scene::Entry> entries, std::uint64_t gesture) {
+    return implementation_->submit({.entries = std::move(entries), .gesture = gesture});
 }
 
-wire::Trace Session::trace(std::uint32_t count) {
-    return implementation_->ask<wire::Trace>(wire::ReadTrace{.request = 1, .count = count});
+void Session::submit_ahead(std::vector<scene::Entry> entries, std::uint64_t gesture) {
+    Implementation& self = *implementation_;
+    self.wait_for_answers(MaxAhead - 1);
+    self.send_edit({.entries = std::move(entries), .gesture = gesture});
 }
 
-std::string Session::set_filter(const std::string& filter) {
-    const auto reply = implementation_->ask<wire::FilterSet>(wire::SetFilter{filter});
-    if (!reply.accepted) throw Error(ErrorCode::Refused, reply.text);
-    return reply.text;
+std::vector<session::EditResult> Session::take_results() {
+    pump();
+    std::deque<session::EditResult> results = std::exchange(implementation_->results, {});
+    return {std::make_move_iterator(results.begin()), std::make_move_iterator(results.end())};
+}
+
+bool Session::settle(std::stop_token stop) {
+    return implementation_->wait_for_answers(0, stop);
+}
+
+session::EditResult Session::undo(std::uint64_t transaction) {
+    return implementation_->submit({.undo = transaction});
+}
+
+void Session::lock(const std::vector<ObjectId>& objects) {
+    implementation_->tell(wire::LockObjects{.objects = objects});
+}
+
+void Session::unlock(const std::vector<ObjectId>& objects) {
+    implementation_->tell(wire::LockObjects{.objects = objects, .release = true});
+}
+
+void Session::set_presence(const std::string& text, const std::vector<ObjectId>& selection,
+                           Duration time_to_live) {
+    implementation_->link.send(wire::SetPresence{text, selection, time_to_live});
+}
+
+session::People Session::people() {
+    return implementation_->ask<wire::People>(wire::ReadPeople{}).content;
+}
+
+std::vector<session::TransactionSummary> Session::history(std::uint32_t count) {
+    return implementation_->ask<wire::History>(wire::ReadHistory{.count = count}).transactions;
+}
+
+std::vector<session::FieldWriter> Session::writers(ObjectId object) {
+    return implementation_->ask<wire::Writers>(wire::ReadWriters{.object = object}).fields;
+}
+
+std::vector<session::EditTrace> Session::trace(std::uint32_t count) {
+    return implementation_->ask<wire::Trace>(wire::ReadTrace{.count = count}).edits;
+}
+
+session::ClusterStatus Session::status() {
+    Implementation& self = *implementation_;
+    self.status.reset();
+    self.asks_status = true;
+    self.link.send(wire::StatusRequest{});
+    const TimePoint deadline = self.clock.now() + self.settings.lost_limit;
+    while (!self.status && self.clock.now() < deadline) {
+        self.take_in(std::min(self.clock.now() + Slice, deadline), {});
+        self.throw_refusals();
+    }
+    self.asks_status = false;
+    if (!self.status) throw Error(ErrorCode::Unavailable, "the master does not answer: is it still running?");
+    return *std::move(self.status);
+}
+
+void Session::pump() {
+    Implementation& self = *implementation_;
+    while (self.take_in(self.clock.now(), {})) {
+    }
+    self.throw_refusals();
+}
+
+std::unique_ptr<Session> make_session(std::unique_ptr<net::Channel> channel, std::function<void()> reconnect,
+                                      std::shared_ptr<scene::BlobStore> blobs, const Clock& clock,
+                                      SessionSettings settings) {
+    return std::make_unique<Session>(std::make_unique<Session::Implementation>(
+        std::move(channel), std::move(reconnect), std::move(blobs), clock, std::move(settings)));
 }
 
 std::unique_ptr<Session> connect(const Address& address, std::shared_ptr<scene::BlobStore> blobs,
@@ -193,7 +189,7 @@ std::unique_ptr<Session> connect(const Address& address, std::shared_ptr<scene::
     if (!address.keys.empty()) client.keys = net::KeyDirectory(address.keys).client(address.user);
     auto channel = net::make_zmq_client(net::make_zmq_context(), client);
     net::ZmqClient* const sockets = channel.get();  // owned by the session
-    return std::make_unique<Session>(
+    return make_session(
         std::move(channel), [sockets] { sockets->reconnect(); }, std::move(blobs), clock, settings);
 }
 

@@ -53,7 +53,6 @@ RenderMaster::RenderMaster(std::unique_ptr<net::Channel> channel, std::shared_pt
       service_(blobs_, sessions_, scene_, outbox_) {
     if (settings.session_folder.empty()) return;
     scene_.record_to(settings.session_folder, settings.checkpoint_interval, started_);
-    if (scene_.is_open()) sessions_.give_stage_to_live_scene();
 }
 
 void RenderMaster::post(std::function<void(net::Channel&)> task) {

@@ -63,7 +63,7 @@ class RenderMaster {
     void bury_the_dead(TimePoint now);
     void drop_lost_peers(TimePoint now);
     void drop(const net::Message& message, const std::string& why);
-    wire::StatusReply status(TimePoint now) const;
+    session::ClusterStatus status(TimePoint now) const;
     TimePoint next_wake(TimePoint now) const;
     void say_goodbye();
 

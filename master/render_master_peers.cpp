@@ -45,20 +45,14 @@ void RenderMaster::from_client(SessionRecord& session, wire::ControlMessage& mes
         session.heartbeat_sent_at = beat->sent_at;
         session.heartbeat_at = now;
         session.clock.heartbeat(beat->sent_at, beat->echo_sent_at, beat->echo_delay, now);
-    } else if (const auto* open = std::get_if<wire::OpenScene>(&message)) {
-        service_.open_scene(session, *open, now);
     } else if (auto* edit = std::get_if<wire::SubmitEdit>(&message)) {
         service_.submit(session, std::move(edit->edit), byte_size, now);
     } else if (const auto* long_edit = std::get_if<wire::SubmitEditByBlob>(&message)) {
         service_.submit(session, *long_edit, now);
-    } else if (auto* job = std::get_if<wire::StartJob>(&message)) {
-        service_.start_job(session, std::move(*job), now);
-    } else if (const auto* stop = std::get_if<wire::StopJob>(&message)) {
-        scene_.views().stop(session.id, stop->job.value, now);
-    } else if (const auto* set = std::get_if<wire::SetFilter>(&message)) {
-        outbox_.control(session.control, service_.set_filter(set->filter, now));
+    } else if (const auto* set = std::get_if<wire::SetViewFilter>(&message)) {
+        scene_.asked(session, *set, now);
     } else if (std::holds_alternative<wire::StatusRequest>(message)) {
-        outbox_.control(session.control, status(now));
+        outbox_.control(session.control, wire::StatusReply{status(now)});
     } else if (const auto* join = std::get_if<wire::JoinScene>(&message)) {
         service_.join_scene(session, *join, now);
     } else if (std::holds_alternative<wire::Goodbye>(message)) {
@@ -68,15 +62,15 @@ void RenderMaster::from_client(SessionRecord& session, wire::ControlMessage& mes
     } else if (scene_.is_member(session.id)) {
         from_member(session, message, now);
     } else {
-        outbox_.control(session.control, wire::Refusal{"this client is in no live scene: join one first"});
+        outbox_.control(session.control, wire::Refusal{"this client is in no scene: join one first"});
     }
 }
 
 void RenderMaster::from_member(SessionRecord& session, wire::ControlMessage& message, TimePoint now) {
-    if (auto* open = std::get_if<wire::OpenLiveView>(&message)) {
-        scene_.asked(session, std::move(*open), now);
-    } else if (const auto* close = std::get_if<wire::CloseLiveView>(&message)) {
-        scene_.views().close(session.id, close->number);
+    if (auto* view = std::get_if<wire::RequestView>(&message)) {
+        scene_.asked(session, std::move(*view), now);
+    } else if (const auto* ended = std::get_if<wire::EndView>(&message)) {
+        scene_.views().end(session.id, *ended, now);
     } else if (const auto* taken = std::get_if<wire::FrameTaken>(&message)) {
         scene_.views().taken(session.id, *taken);
     } else if (const auto* pick = std::get_if<wire::Pick>(&message)) {
@@ -94,7 +88,7 @@ void RenderMaster::from_member(SessionRecord& session, wire::ControlMessage& mes
     } else if (const auto* writers = std::get_if<wire::ReadWriters>(&message)) {
         scene_.asked(session, *writers);
     } else if (const auto* end = std::get_if<wire::CloseScene>(&message)) {
-        service_.close_live_scene(session, *end, now);
+        service_.close_scene(session, *end, now);
     } else if (const auto* ready = std::get_if<wire::OutputReady>(&message)) {
         scene_.display().ready(session.id, *ready, now);
     } else if (const auto* head = std::get_if<wire::MoveHead>(&message)) {
@@ -150,22 +144,22 @@ void RenderMaster::drop_lost_peers(TimePoint now) {
     }
 }
 
-wire::StatusReply RenderMaster::status(TimePoint now) const {
-    wire::StatusReply reply{.software = settings_.software,
-                            .version = scene_.authority().version(),
-                            .uptime_seconds = seconds(now - started_),
-                            .blobs = blobs_->count(),
-                            .blob_bytes = blobs_->byte_size(),
-                            .sessions = static_cast<std::uint32_t>(sessions_.all().size()),
-                            .queued = static_cast<std::uint32_t>(sessions_.queue().size()),
-                            .dropped_messages = dropped_messages_ + dispatcher_.malformed_film(),
-                            .units = dispatcher_.counts(),
-                            .wire_bytes = outbox_.bytes,
-                            .live = scene_.status(),
-                            .resyncs = scene_.distributor().resyncs(),
-                            .display = scene_.display().status(now)};
+session::ClusterStatus RenderMaster::status(TimePoint now) const {
+    session::ClusterStatus reply{.software = settings_.software,
+                                 .version = scene_.authority().version(),
+                                 .uptime_seconds = seconds(now - started_),
+                                 .blobs = blobs_->count(),
+                                 .blob_bytes = blobs_->byte_size(),
+                                 .sessions = static_cast<std::uint32_t>(sessions_.all().size()),
+                                 .queued = static_cast<std::uint32_t>(sessions_.queue().size()),
+                                 .dropped_messages = dropped_messages_ + dispatcher_.malformed_film(),
+                                 .units = dispatcher_.counts(),
+                                 .wire_bytes = outbox_.bytes,
+                                 .scene = scene_.status(),
+                                 .resyncs = scene_.distributor().resyncs(),
+                                 .display = scene_.display().status(now)};
     for (const auto& [id, node] : nodes_.all()) {
-        wire::NodeStatus entry{
+        session::NodeStatus entry{
             .summary = {.id = id,
                         .name = node.hello.name,
                         .host = node.hello.host,

@@ -16,6 +16,7 @@ constexpr Duration MaxPresence = std::chrono::minutes(10);
 
 SceneSession::SceneSession(std::uint64_t epoch, const ViewSettings& settings, const MasterServices& services)
     : services_(services),
+      owner_patience_(settings.orphan_patience),
       authority_(epoch, services.blobs),
       distributor_(authority_, *services.blobs, services.outbox, services.events),
       views_(settings, services.render, services.sessions, services.outbox, services.events),
@@ -34,33 +35,50 @@ std::string SceneSession::unique_name(const std::string& wanted) const {
     }
 }
 
-void SceneSession::open(const std::string& title) {
-    if (journal_) journal_->opened(title);
+void SceneSession::open(wire::RecordedTitle scene) {
+    if (journal_) journal_->opened(scene);
     open_ = true;
-    title_ = title;
+    scene_ = std::move(scene);
+    left_alone_.reset();
+    views_.charge_from(services_.outbox.bytes);
     counts_ = {};
     traces_ = {};
-    services_.events({wire::Severity::Info, "live scene '" + title_ + "' is open"});
+    services_.events(
+        {wire::Severity::Info, (is_exclusive() ? "scene '" : "live scene '") + title() + "' is open"});
 }
 
 void SceneSession::record_to(const std::filesystem::path& folder, Duration checkpoint_interval,
                              TimePoint now) {
     journal_.emplace(folder, checkpoint_interval, authority_, services_.blobs, services_.events);
     const Recovery& recovery = journal_->recovery();
-    if (!recovery.found || recovery.title.empty()) {
+    if (!recovery.found || recovery.scene.title.empty()) {
         (void)authority_.clear();
         return;
     }
-    open(recovery.title);
+    open(recovery.scene);
+    if (is_exclusive()) left_alone_ = now;
     std::vector<wire::SavedView> views = recovery.views;
     views_.restore(std::move(views), authority_.version(), authority_.state_hash(), now);
+}
+
+bool SceneSession::admits(const SessionRecord& session, const wire::JoinScene& request) const {
+    if (!open_ || request.exclusive != is_exclusive()) return false;
+    return !is_exclusive() || is_member(session.id) ||
+           (scene_.owner->user == session.user && scene_.owner->key == request.key);
 }
 
 void SceneSession::join(SessionRecord& session, const wire::JoinScene& request, TimePoint now) {
     const bool may_edit = session.role != net::Role::Viewer;
     if (may_edit && request.key == 0)
         throw Error(ErrorCode::Refused, "a member needs a key that it has chosen, not 0");
-    if (!open_) open(request.title.empty() ? "untitled" : request.title);
+    if (!may_edit && request.exclusive)
+        throw Error(ErrorCode::Refused, "a viewer cannot open a scene of its own: use an editor's key");
+    if (!open_) {
+        open({.title = request.title.empty() ? "untitled" : request.title,
+              .owner = request.exclusive ? std::optional(wire::RecordedOwner{session.user, request.key})
+                                         : std::nullopt});
+    }
+    left_alone_.reset();
     // Who only looks needs neither ids nor a place in the journal.
     const IdRange ids = may_edit ? authority_.join(session.id, session.user, request.key) : IdRange{};
     if (may_edit && ids.count == 0) {
@@ -72,7 +90,7 @@ void SceneSession::join(SessionRecord& session, const wire::JoinScene& request, 
         member.name = unique_name(request.name);
         member.key = request.key;
         services_.events(
-            {wire::Severity::Info, member.name + " (" + session.user + ") joined '" + title_ + "'"});
+            {wire::Severity::Info, member.name + " (" + session.user + ") joined '" + title() + "'"});
     }
     publish_if_due(now);
     services_.outbox.control(session.control,
@@ -80,14 +98,15 @@ void SceneSession::join(SessionRecord& session, const wire::JoinScene& request, 
                                                .first_id = ids.first,
                                                .id_count = ids.count,
                                                .last_sequence = authority_.last_sequence(session.id),
-                                               .title = title_,
+                                               .title = title(),
                                                .name = members_.at(session.id).name});
 }
 
 void SceneSession::close(TimePoint now) {
     if (!open_) return;
     open_ = false;
-    services_.events({wire::Severity::Info, "live scene '" + title_ + "' is closed"});
+    services_.events(
+        {wire::Severity::Info, (is_exclusive() ? "scene '" : "live scene '") + title() + "' is closed"});
     display_.close();
     views_.close_all();
     for (const auto& [id, member] : members_) authority_.forget(id);
@@ -95,18 +114,20 @@ void SceneSession::close(TimePoint now) {
     reads_.clear();
     if (auto cleared = authority_.clear()) publish(*cleared, now);
     if (journal_) journal_->closed();
+    scene_ = {};
 }
 
 void SceneSession::left(SessionId session, Views::Departure departure, TimePoint now) {
     const auto member = members_.find(session);
     if (member == members_.end()) return;
-    services_.events({wire::Severity::Info, member->second.name + " left '" + title_ + "'"});
+    services_.events({wire::Severity::Info, member->second.name + " left '" + title() + "'"});
     views_.session_left(session, departure, now);
     display_.left(session, now);
     authority_.release_all(session);
     authority_.forget(session);
     members_.erase(member);
     std::erase_if(reads_, [&](const WaitingRead& read) { return read.session == session; });
+    if (is_exclusive() && members_.empty()) close(now);
 }
 
 void SceneSession::edited(const SessionRecord& session, const scene::Edit& edit, const EditAnswer& answer,
@@ -200,14 +221,14 @@ void SceneSession::asked(SessionRecord& session, wire::SetPresence request, Time
 }
 
 void SceneSession::asked(SessionRecord& session, const wire::ReadPeople& request, TimePoint now) {
-    wire::People people{.request = request.request, .title = title_, .locks = authority_.locks()};
+    session::People people{.title = title(), .locks = authority_.locks()};
     for (const auto& [id, member] : members_) {
         const SessionRecord* other = services_.sessions.find(id);
         if (other == nullptr) continue;
-        wire::Person person{.session = id,
-                            .name = member.name,
-                            .user = other->user,
-                            .editor = other->role != net::Role::Viewer};
+        session::Person person{.session = id,
+                               .name = member.name,
+                               .user = other->user,
+                               .editor = other->role != net::Role::Viewer};
         if (const auto clock = other->clock.offset(now)) {
             person.clock_offset_seconds = seconds(clock->offset);
             person.clock_bound_seconds = seconds(clock->bound);
@@ -228,7 +249,7 @@ void SceneSession::asked(SessionRecord& session, const wire::ReadPeople& request
              .spp = live.request.stop.spp,
              .watchers = views_.watchers(id)});
     }
-    services_.outbox.control(session.control, std::move(people));
+    services_.outbox.control(session.control, wire::People{request.request, std::move(people)});
 }
 
 void SceneSession::asked(SessionRecord& session, const wire::ReadHistory& request) {
@@ -247,25 +268,36 @@ void SceneSession::asked(SessionRecord& session, const wire::ReadWriters& reques
                              wire::Writers{request.request, authority_.writers(request.object)});
 }
 
-void SceneSession::asked(SessionRecord& session, wire::OpenLiveView request, TimePoint now) {
-    const std::uint64_t number = request.request;
-    const glm::dvec3 eye(request.view.camera.world_from_camera[3]);
-    const bool leads = !request.share && views_.table().all().size() <= 1;
-    const Delivery::Wish wish{request.picture, request.film, {}};
-    const ViewOwner owner{session.id, name(session.id), session.user, members_.at(session.id).key};
-    std::string problem = request.share ? views_.share(session.id, request.number, request.name, wish)
-                                        : views_.open(owner, request.number,
-                                                      {.name = std::move(request.name),
-                                                       .view = std::move(request.view),
-                                                       .stop = {.spp = request.spp},
-                                                       .picture = request.picture,
-                                                       .film = request.film},
-                                                      wish, authority_.version(), now);
-    // The render origin follows the camera while it is the only one.
-    if (problem.empty() && leads) {
-        if (auto moved = authority_.follow_camera(eye)) publish(*moved, now);
+void SceneSession::asked(SessionRecord& session, wire::RequestView request, TimePoint now) {
+    session::ViewRequest& wanted = request.wanted;
+    std::string problem;
+    if (request.share) {
+        problem = views_.share(session.id, request.number, wanted);
+    } else if (problem = problem_of(wanted); problem.empty()) {
+        // What was edited before is seen, and the render origin follows the camera while it is the only one.
+        publish_if_due(now);
+        const bool waits_for_end = wanted.frames == session::Frames::Last;
+        if (waits_for_end && authority_.has_unpublished() && views_.may_publish()) {
+            if (auto changes = authority_.publish()) publish(*changes, now);
+        }
+        if (views_.table().all().size() <= 1) {
+            const glm::dvec3 eye(wanted.view.camera.world_from_camera[3]);
+            if (auto moved = authority_.follow_camera(eye)) publish(*moved, now);
+        }
+        const ViewOwner owner{session.id, name(session.id), session.user, members_.at(session.id).key};
+        problem = views_.open(owner, request.number, std::move(wanted), authority_.version(), now);
     }
-    if (number != 0 || !problem.empty()) done(session, number, std::move(problem));
+    if (request.request != 0 || !problem.empty()) done(session, request.request, std::move(problem));
+}
+
+void SceneSession::asked(SessionRecord& session, const wire::SetViewFilter& request, TimePoint now) {
+    wire::RequestDone done{.request = request.request, .accepted = true, .text = {}};
+    try {
+        done.text = views_.set_filter(request.view, request.filter, now);
+    } catch (const Error& error) {
+        done = {.request = request.request, .accepted = false, .text = error.what()};
+    }
+    services_.outbox.control(session.control, std::move(done));
 }
 
 std::string SceneSession::open_display(const scene::BlobPtr& description, std::vector<scene::BlobPtr> content,
@@ -283,7 +315,7 @@ void SceneSession::asked(SessionRecord& session, const wire::CloseDisplay& reque
 }
 
 void SceneSession::asked(SessionRecord& session, const wire::AdjustDisplay& request) {
-    done(session, request.request, display_.adjust(request));
+    done(session, request.request, display_.adjust(request.adjustment));
 }
 
 void SceneSession::asked(SessionRecord& session, const wire::JoinOutput& request, TimePoint now) {
@@ -341,6 +373,10 @@ void SceneSession::take(RenderOutput& output, TimePoint now) {
 // units for the nodes and frames for the clients.
 void SceneSession::tick(TimePoint now) {
     keep_journal(now);
+    if (left_alone_ && now - *left_alone_ > owner_patience_) {
+        left_alone_.reset();
+        close(now);
+    }
     if (open_) {
         publish_if_due(now);
         std::erase_if(reads_, [&](const WaitingRead& read) {
@@ -360,7 +396,7 @@ void SceneSession::keep_journal(TimePoint now) {
     journal_->tick();
     ViewSaver& saver = views_.saver();
     if (auto saved = saver.take_saved())
-        journal_->write_checkpoint(title_, std::move(*saved), progress_being_saved_, now);
+        journal_->write_checkpoint(scene_, std::move(*saved), progress_being_saved_, now);
     const std::uint64_t progress = saver.film_progress();
     if (saver.is_saving() || !journal_->wants_checkpoint(progress, now)) return;
     progress_being_saved_ = progress;
@@ -374,10 +410,11 @@ TimePoint SceneSession::next_event(TimePoint now) const {
     return next;
 }
 
-wire::LiveStatus SceneSession::status() const {
+session::SceneStatus SceneSession::status() const {
     if (!open_) return {};
-    wire::LiveStatus status = counts_;
-    status.title = title_;
+    session::SceneStatus status = counts_;
+    status.title = title();
+    status.exclusive = is_exclusive();
     status.members = static_cast<std::uint32_t>(members_.size());
     status.views = static_cast<std::uint32_t>(views_.table().all().size());
     status.transactions = authority_.transactions();

@@ -54,12 +54,16 @@ class SceneSession {
     bool is_member(SessionId session) const { return members_.contains(session); }
     const std::string& name(SessionId session) const { return members_.at(session).name; }
     std::size_t member_count() const { return members_.size(); }
-    const std::string& title() const { return title_; }
+    const std::string& title() const { return scene_.title; }
 
-    // The stage is the live scene's. Throws Error when the session cannot be let in.
+    bool is_exclusive() const { return scene_.owner.has_value(); }
+    // Whether it would be let in at once: to the open scene, that is.
+    bool admits(const SessionRecord& session, const wire::JoinScene& request) const;
+    // Opens a scene where none is open. Throws Error when the session cannot be let in.
     void join(SessionRecord& session, const wire::JoinScene& request, TimePoint now);
-    // Everybody is out, the scene is empty, the stage is free again.
+    // Everybody is out, and the scene is empty.
     void close(TimePoint now);
+    // A member has gone; an exclusive scene goes with it.
     void left(SessionId session, Views::Departure departure, TimePoint now);
 
     // To the nodes and everything that looks at the scene.
@@ -76,7 +80,8 @@ class SceneSession {
     void asked(SessionRecord& session, const wire::ReadPeople& request, TimePoint now);
     void asked(SessionRecord& session, const wire::ReadHistory& request);
     void asked(SessionRecord& session, const wire::ReadWriters& request);
-    void asked(SessionRecord& session, wire::OpenLiveView request, TimePoint now);
+    void asked(SessionRecord& session, wire::RequestView request, TimePoint now);
+    void asked(SessionRecord& session, const wire::SetViewFilter& request, TimePoint now);
 
     // "" or what is wrong.
     std::string open_display(const scene::BlobPtr& description, std::vector<scene::BlobPtr> content,
@@ -91,7 +96,7 @@ class SceneSession {
     void take(RenderOutput& output, TimePoint now);
     void tick(TimePoint now);
     TimePoint next_event(TimePoint now) const;
-    wire::LiveStatus status() const;
+    session::SceneStatus status() const;
 
   private:
     struct Member {
@@ -111,7 +116,7 @@ class SceneSession {
         Version wanted;  // that has all edits made before the question
     };
 
-    void open(const std::string& title);
+    void open(wire::RecordedTitle scene);
     std::string unique_name(const std::string& wanted) const;
     void answer(const WaitingRead& read);
     scene::BlobPtr encoded(const scene::ChangeList& list);
@@ -121,19 +126,21 @@ class SceneSession {
     void keep_journal(TimePoint now);
 
     MasterServices services_;
+    Duration owner_patience_;
     SceneAuthority authority_;
     SceneDistributor distributor_;
     Views views_;
     DisplayService display_;
     std::optional<SessionJournal> journal_;
     bool open_ = false;
-    std::string title_;
+    wire::RecordedTitle scene_;
+    std::optional<TimePoint> left_alone_;  // an exclusive scene of a master before: its owner is waited for
     std::map<SessionId, Member> members_;
     LatestContent latest_content_;
     std::vector<WaitingRead> reads_;
     TimePoint published_at_{};
     std::uint64_t progress_being_saved_ = 0;
-    wire::LiveStatus counts_;
+    session::SceneStatus counts_;
     EditTraceLog traces_;
 };
 

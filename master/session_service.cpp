@@ -15,26 +15,8 @@ std::int64_t since_1970() {
 }
 }  // namespace
 
-void SessionService::open_scene(SessionRecord& session, const wire::OpenScene& request, TimePoint now) {
-    const bool would_wait = !sessions_.stage_is_free() || !sessions_.queue().empty();
-    if (scene_.is_member(session.id)) {
-        outbox_.control(session.control, wire::Refusal{"this client is in a live scene: connect anew"});
-        return;
-    }
-    if (request.no_wait && would_wait && sessions_.on_stage() != session.id) {
-        outbox_.control(session.control, wire::Refusal{busy_text()});
-        return;
-    }
-    if (sessions_.on_stage() == session.id) {
-        give_stage(session.id);  // a repeated request gets the same answer
-        return;
-    }
-    sessions_.queue_for_stage(session.id);
-    tick(now);
-}
-
 std::string SessionService::busy_text() const {
-    if (scene_.is_open()) {
+    if (scene_.is_open() && !scene_.is_exclusive()) {
         return "the cluster serves the live scene '" + scene_.title() +
                "': wait in the queue without --no-wait, or close that scene with: tessera edit -c close";
     }
@@ -42,18 +24,20 @@ std::string SessionService::busy_text() const {
 }
 
 void SessionService::join_scene(SessionRecord& session, const wire::JoinScene& request, TimePoint now) {
-    if (sessions_.on_stage() == session.id) {
-        outbox_.control(session.control, wire::Refusal{"this client has a batch scene open: connect anew"});
+    const bool is_free = !scene_.is_open() && sessions_.queue().empty();
+    if (is_free || scene_.admits(session, request)) return let_in(session, request, now);
+    if (scene_.is_member(session.id)) {
+        outbox_.control(session.control,
+                        wire::Refusal{"this client is in a scene of another kind: connect anew"});
         return;
     }
-    if (sessions_.stage_is_free() && sessions_.queue().empty()) sessions_.give_stage_to_live_scene();
-    if (sessions_.stage_is_live()) return let_in(session, request, now);
     if (request.no_wait) {
         outbox_.control(session.control, wire::Refusal{busy_text()});
         return;
     }
     session.joining = request;
-    sessions_.queue_for_stage(session.id);
+    session.told_place = 0;
+    sessions_.enqueue(session.id);
     tick(now);
 }
 
@@ -61,25 +45,15 @@ void SessionService::let_in(SessionRecord& session, const wire::JoinScene& reque
     try {
         scene_.join(session, request, now);
     } catch (const Error& error) {
-        if (!scene_.is_open()) sessions_.end_live_scene();
         outbox_.control(session.control, wire::Refusal{error.what()});
     }
 }
 
-void SessionService::close_live_scene(SessionRecord& session, const wire::CloseScene& request,
-                                      TimePoint now) {
+void SessionService::close_scene(SessionRecord& session, const wire::CloseScene& request, TimePoint now) {
     if (!scene_.is_member(session.id)) return;
     scene_.close(now);
-    sessions_.end_live_scene();
     outbox_.control(session.control, wire::RequestDone{request.request, true, {}});
     tick(now);
-}
-
-void SessionService::give_stage(SessionId id) {
-    const SessionRecord& session = *sessions_.find(id);
-    const SceneAuthority::IdRange ids = scene_.authority().lend_ids(id);
-    scene_.views().charge_from(outbox_.bytes);
-    outbox_.control(session.control, wire::SceneOpened{scene_.authority().version(), ids.first, ids.count});
 }
 
 void SessionService::submit(SessionRecord& session, scene::Edit edit, std::uint64_t message_bytes,
@@ -105,9 +79,9 @@ void SessionService::submit(SessionRecord& session, const wire::SubmitEditByBlob
 void SessionService::refuse_edit(SessionRecord& session, std::string problem) {
     const std::uint64_t sequence = session.edits.empty() ? 0 : session.edits.front().edit.sequence;
     outbox_.control(session.control, wire::EditReply{.sequence = sequence,
-                                                     .accepted = false,
-                                                     .version = scene_.authority().version(),
-                                                     .problems = {std::move(problem)}});
+                                                     .result = {.accepted = false,
+                                                                .version = scene_.authority().version(),
+                                                                .problems = {std::move(problem)}}});
 }
 
 bool SessionService::blobs_are_here(SessionRecord& session, SessionRecord::PendingEdit& pending) {
@@ -136,8 +110,7 @@ bool SessionService::blobs_are_here(SessionRecord& session, SessionRecord::Pendi
 void SessionService::advance(SessionRecord& session, TimePoint now) {
     while (!session.edits.empty()) {
         SessionRecord::PendingEdit& pending = session.edits.front();
-        const bool is_live = scene_.is_member(session.id);
-        if (!is_live && sessions_.on_stage() != session.id) {
+        if (!scene_.is_member(session.id)) {
             refuse_edit(session, "this session has no scene open: open one first");
             session.edits.pop_front();
             continue;
@@ -149,19 +122,15 @@ void SessionService::advance(SessionRecord& session, TimePoint now) {
             session.edits.pop_front();
             continue;
         }
-        const EditAnswer answer = scene_.authority().submit(
-            pending.edit,
-            {is_live ? scene_.name(session.id) : session.hello.name, session.user, since_1970()});
-        if (!is_live && scene_.authority().has_unpublished()) {
-            if (auto changes = scene_.authority().publish()) scene_.publish(*changes, now);
-        }
-        if (is_live) scene_.edited(session, pending.edit, answer, pending.bytes, now);
+        const EditAnswer answer =
+            scene_.authority().submit(pending.edit, {scene_.name(session.id), session.user, since_1970()});
+        scene_.edited(session, pending.edit, answer, pending.bytes, now);
         outbox_.control(session.control, wire::EditReply{.sequence = pending.edit.sequence,
-                                                         .accepted = answer.accepted,
-                                                         .version = answer.version,
-                                                         .problems = answer.problems,
-                                                         .transaction = answer.transaction,
-                                                         .notes = answer.notes});
+                                                         .result = {.accepted = answer.accepted,
+                                                                    .version = answer.version,
+                                                                    .problems = answer.problems,
+                                                                    .transaction = answer.transaction,
+                                                                    .notes = answer.notes}});
         session.edits.pop_front();
     }
     if (session.opening) advance_display(session, now);
@@ -230,80 +199,33 @@ void SessionService::absent(SessionRecord& session, const wire::BlobAbsent& abse
     advance(session, now);
 }
 
-void SessionService::start_job(SessionRecord& session, wire::StartJob request, TimePoint now) {
-    const glm::dvec3 eye(request.view.camera.world_from_camera[3]);
-    const Delivery::Wish wish{request.picture, request.film, request.job};
-    ViewRequest wanted{.view = std::move(request.view),
-                       .stop = {.spp = request.spp,
-                                .time_limit = request.time_limit,
-                                .budget = request.budget,
-                                .adapts_size = request.adapts_size},
-                       .policy = request.policy,
-                       .reproducible = request.reproducible,
-                       .tile = request.tile,
-                       .min_nodes = std::max(1u, request.wait_nodes),
-                       .wait_limit = request.wait_limit,
-                       .frames = ViewRequest::Frames::Last,
-                       .picture = request.picture,
-                       .film = request.film};
-    std::string problem = problem_of(wanted);
-    if (sessions_.on_stage() != session.id) problem = "this session has no scene open: open one first";
-    if (scene_.views().has_job())
-        problem = "a frame of this session is being rendered: wait for it or stop it";
-    if (problem.empty()) {
-        if (auto moved = scene_.authority().follow_camera(eye)) scene_.publish(*moved, now);
-        problem = scene_.views().open(
-            {.session = session.id, .name = session.hello.name, .user = session.user}, request.job.value,
-            std::move(wanted), wish, scene_.authority().version(), now);
-    }
-    if (problem.empty()) return;
-    outbox_.control(session.control, wire::JobDone{.job = request.job,
-                                                   .outcome = wire::JobOutcome::Failed,
-                                                   .message = std::move(problem),
-                                                   .version = scene_.authority().version()});
-}
-
-wire::FilterSet SessionService::set_filter(const std::string& filter, TimePoint now) {
-    try {
-        return {.accepted = true, .text = scene_.views().set_filter(filter, now)};
-    } catch (const Error& error) {
-        return {.accepted = false, .text = error.what()};
-    }
-}
-
 void SessionService::closed(SessionId id, Views::Departure departure, TimePoint now) {
-    if (!scene_.is_member(id)) scene_.views().session_left(id, departure, now);
     scene_.left(id, departure, now);
-    const bool had_stage = sessions_.on_stage() == id;
     sessions_.remove(id);
     scene_.authority().forget(id);
-    if (!had_stage) return;
-    if (auto cleared = scene_.authority().clear()) scene_.publish(*cleared, now);
     tick(now);
 }
 
 void SessionService::tick(TimePoint now) {
-    if (const auto next = sessions_.next_on_stage()) {
-        if (sessions_.find(*next)->joining) {
-            sessions_.leave_stage();
-            sessions_.give_stage_to_live_scene();
-        } else {
-            give_stage(*next);
-        }
-    }
-    // Whoever waits to join does not wait for those in front who want the stage for themselves.
-    for (auto& [id, session] : sessions_.all()) {
-        if (!session.joining || !sessions_.stage_is_live()) continue;
+    const auto let_in_from_queue = [&](SessionId id) {
+        SessionRecord& session = *sessions_.find(id);
         sessions_.leave_queue(id);
         const wire::JoinScene request = *std::exchange(session.joining, std::nullopt);
         let_in(session, request, now);
+    };
+    while (!scene_.is_open() && !sessions_.queue().empty()) let_in_from_queue(sessions_.queue().front());
+    // Whoever waits to join does not wait for those in front who want a scene for themselves.
+    const std::deque<SessionId> waiting = sessions_.queue();
+    for (const SessionId id : waiting) {
+        const SessionRecord& session = *sessions_.find(id);
+        if (scene_.admits(session, *session.joining)) let_in_from_queue(id);
     }
     for (const SessionId id : sessions_.queue()) {
         SessionRecord& session = *sessions_.find(id);
         const std::uint32_t place = sessions_.place(id);
         if (place == session.told_place) continue;
         session.told_place = place;
-        outbox_.control(session.control, wire::QueuePlace{place});
+        outbox_.control(session.control, wire::SceneJoined{.version = {}, .queue_place = place});
     }
     for (auto& [id, session] : sessions_.all()) {
         if (!session.fetcher.idle()) advance(session, now);

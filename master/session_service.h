@@ -5,34 +5,30 @@
 
 namespace tessera::master {
 
-// Serves clients: the stage, edits with their blobs, jobs. Told of messages by the render master.
+// Serves clients: the queue for the scene, edits with their blobs. Told of messages by the render master.
 class SessionService {
   public:
     SessionService(std::shared_ptr<scene::BlobStore> blobs, SessionTable& sessions, SceneSession& scene,
                    Outbox& outbox)
         : blobs_(std::move(blobs)), sessions_(sessions), scene_(scene), outbox_(outbox) {}
 
-    void open_scene(SessionRecord& session, const wire::OpenScene& request, TimePoint now);
     void join_scene(SessionRecord& session, const wire::JoinScene& request, TimePoint now);
-    void close_live_scene(SessionRecord& session, const wire::CloseScene& request, TimePoint now);
+    void close_scene(SessionRecord& session, const wire::CloseScene& request, TimePoint now);
     void submit(SessionRecord& session, scene::Edit edit, std::uint64_t message_bytes, TimePoint now);
     void submit(SessionRecord& session, const wire::SubmitEditByBlob& edit, TimePoint now);
     void open_display(SessionRecord& session, const wire::OpenDisplay& request, TimePoint now);
     void chunk(SessionRecord& session, wire::BlobChunk&& chunk, TimePoint now);
     void absent(SessionRecord& session, const wire::BlobAbsent& absent, TimePoint now);
-    void start_job(SessionRecord& session, wire::StartJob request, TimePoint now);
-    wire::FilterSet set_filter(const std::string& filter, TimePoint now);
-    // Its batch scene and job go; of a live scene it is no longer a member.
+    // It is no longer a member of the scene.
     void closed(SessionId session, Views::Departure departure, TimePoint now);
 
-    void tick(TimePoint now);  // who is next on the stage, chunks to ask for
+    void tick(TimePoint now);  // who is next, chunks to ask for
 
   private:
     void advance(SessionRecord& session, TimePoint now);  // edits whose blobs are here
     bool blobs_are_here(SessionRecord& session, SessionRecord::PendingEdit& edit);
     void advance_display(SessionRecord& session, TimePoint now);
     void refuse_edit(SessionRecord& session, std::string problem);
-    void give_stage(SessionId session);
     void let_in(SessionRecord& session, const wire::JoinScene& request, TimePoint now);
     std::string busy_text() const;
 

@@ -189,12 +189,12 @@ void NodeMachine::lose_link(TimePoint now, const std::string& why) {
     effects_.report(wire::Severity::Warning, why + "; trying again");
 }
 
-wire::NodePhase NodeMachine::phase() const {
-    if (leaving_) return wire::NodePhase::Leaving;
+session::NodePhase NodeMachine::phase() const {
+    if (leaving_) return session::NodePhase::Leaving;
     const SceneReplica& replica = scene_.replica();
-    if (replica.is_building()) return wire::NodePhase::Building;
-    if (replica.is_behind() || replica.version().number == 0) return wire::NodePhase::Syncing;
-    return units_.empty() ? wire::NodePhase::Idle : wire::NodePhase::Rendering;
+    if (replica.is_building()) return session::NodePhase::Building;
+    if (replica.is_behind() || replica.version().number == 0) return session::NodePhase::Syncing;
+    return units_.empty() ? session::NodePhase::Idle : session::NodePhase::Rendering;
 }
 
 void NodeMachine::heartbeat(TimePoint now) {

@@ -58,7 +58,7 @@ class NodeMachine {
     void keep_link(TimePoint now);
     void step_scene(TimePoint now);
     void dispatch();
-    wire::NodePhase phase() const;
+    session::NodePhase phase() const;
 
     void on(wire::Welcome& welcome, TimePoint now);
     void on(wire::Refusal& refusal, TimePoint now);

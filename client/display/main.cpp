@@ -61,14 +61,14 @@ client::SessionSettings session_settings(const Options& options) {
 }
 
 // Waits for a master that is not there yet; null when stopped before.
-std::unique_ptr<client::LiveSession> connected(const Options& options,
-                                               std::shared_ptr<scene::BlobStore> blobs, const Clock& clock,
-                                               const std::function<void(const std::string&)>& tell,
-                                               std::stop_token stop) {
+std::unique_ptr<client::Session> connected(const Options& options, std::shared_ptr<scene::BlobStore> blobs,
+                                           const Clock& clock,
+                                           const std::function<void(const std::string&)>& tell,
+                                           std::stop_token stop) {
     const client::SessionSettings settings = session_settings(options);
     for (bool told = false; !stop.stop_requested(); told = true) {
         try {
-            return client::connect_live(options.address, blobs, clock, settings);
+            return client::connect(options.address, blobs, clock, settings);
         } catch (const Error& error) {
             if (error.code() != ErrorCode::Unavailable) throw;
             if (!told) tell(std::string(error.what()) + " Waiting");
@@ -85,7 +85,8 @@ bool await_scene(const Options& options, const std::shared_ptr<scene::BlobStore>
         std::this_thread::sleep_for(std::chrono::milliseconds(500));
         try {
             const auto session = client::connect(options.address, blobs, clock, session_settings(options));
-            if (!session->status().live.title.empty()) return true;
+            const session::SceneStatus scene = session->status().scene;
+            if (!scene.title.empty() && !scene.exclusive) return true;
             if (!std::exchange(told, true)) tell("the live scene was closed; waiting for the next one");
         } catch (const Error& error) {
             if (error.code() != ErrorCode::Unavailable) throw;
@@ -105,9 +106,9 @@ int show(const Options& options) {
     const auto session = connected(options, blobs, clock, tell, interrupts.token());
     if (!session) return tools::ExitInterrupted;
     const auto join = [&] {
-        const auto joined = session->join(
-            "", client::WhenBusy::Queue, [&](std::uint32_t) { tell("a batch has the cluster: waiting"); },
-            interrupts.token());
+        const auto joined =
+            session->join({.on_place = [&](std::uint32_t) { tell("a batch has the cluster: waiting"); }},
+                          interrupts.token());
         return !std::holds_alternative<client::Stopped>(joined);
     };
     if (!join()) return tools::ExitInterrupted;

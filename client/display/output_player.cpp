@@ -23,8 +23,8 @@ void sleep_until(std::int64_t nanoseconds) {
 
 display::EyePicture as_picture(const client::OutputFrame::Picture& picture) {
     using Encoding = display::EyePicture::Encoding;
-    return {.encoding =
-                picture.encoding == wire::PictureEncoding::Half ? Encoding::LinearHalf : Encoding::SrgbBytes,
+    return {.encoding = picture.encoding == session::PictureEncoding::Half ? Encoding::LinearHalf
+                                                                           : Encoding::SrgbBytes,
             .width = picture.width,
             .height = picture.height,
             .values = picture.bytes};
@@ -32,7 +32,7 @@ display::EyePicture as_picture(const client::OutputFrame::Picture& picture) {
 
 }  // namespace
 
-OutputPlayer::OutputPlayer(client::LiveSession& session, scene::BlobStore& blobs, const Clock& clock,
+OutputPlayer::OutputPlayer(client::Session& session, scene::BlobStore& blobs, const Clock& clock,
                            std::string output, MakePresenter make_presenter, FrameLog& log,
                            std::function<void(const std::string&)> tell)
     : session_(session),
@@ -68,7 +68,7 @@ void OutputPlayer::take(const client::OutputUnavailable& unavailable) {
     ask_again_ = clock_.now() + AskAgain;
 }
 
-void OutputPlayer::take(const wire::OutputOpened& opened) {
+void OutputPlayer::take(const session::OutputOpened& opened) {
     try {
         open(opened);
     } catch (const Error& error) {
@@ -78,7 +78,7 @@ void OutputPlayer::take(const wire::OutputOpened& opened) {
     session_.output_ready(0);  // pictures may come
 }
 
-void OutputPlayer::open(const wire::OutputOpened& opened) {
+void OutputPlayer::open(const session::OutputOpened& opened) {
     told_.clear();
     if (!pipeline_ || opened.description != description_ || output_.name != name_) {
         auto display = wire::decode_display(session_.fetch(opened.description)->bytes());
@@ -148,7 +148,7 @@ void OutputPlayer::take(client::OutputFrame&& frame) {
     latest_ = std::move(frame);
 }
 
-void OutputPlayer::take(const wire::PresentFrame& order) {
+void OutputPlayer::take(const session::PresentFrame& order) {
     if (!prepared_ || prepared_->frame != order.frame || pattern_) return;
     if (order.at != 0) sleep_until(order.at);
     presenter_->present(order.frame);

@@ -11,7 +11,7 @@
 
 #include "client/display/frame_log.h"
 #include "client/display/presenter.h"
-#include "client/live_session.h"
+#include "client/session.h"
 #include "mediator/display/output_pipeline.h"
 
 namespace tessera::client_display {
@@ -21,9 +21,8 @@ namespace tessera::client_display {
 class OutputPlayer {
   public:
     // `tell`: what a person should know. All must outlive the player.
-    OutputPlayer(client::LiveSession& session, scene::BlobStore& blobs, const Clock& clock,
-                 std::string output, MakePresenter make_presenter, FrameLog& log,
-                 std::function<void(const std::string&)> tell);
+    OutputPlayer(client::Session& session, scene::BlobStore& blobs, const Clock& clock, std::string output,
+                 MakePresenter make_presenter, FrameLog& log, std::function<void(const std::string&)> tell);
 
     // Until the stop, the end of the window or so many frames (0 = without end). Throws Error when the master
     // is gone for good.
@@ -36,15 +35,15 @@ class OutputPlayer {
         std::uint64_t samples = 0;
     };
 
-    void take(const wire::OutputOpened& opened);
+    void take(const session::OutputOpened& opened);
     void take(client::OutputFrame&& frame);
-    void take(const wire::PresentFrame& order);
+    void take(const session::PresentFrame& order);
     void take(const client::OutputUnavailable& unavailable);
-    void open(const wire::OutputOpened& opened);
+    void open(const session::OutputOpened& opened);
     void show_pattern();
     void make(std::span<const display::EyePicture> pictures);
 
-    client::LiveSession& session_;
+    client::Session& session_;
     scene::BlobStore& blobs_;
     const Clock& clock_;
     std::string name_;

@@ -13,15 +13,15 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr int MasterRow = 1, FirstClientRow = 100, FirstNodeRow = 10'000;
 
-std::optional<std::int64_t> first_time(const wire::Trace& trace) {
+std::optional<std::int64_t> first_time(const std::vector<session::EditTrace>& edits) {
     std::optional<std::int64_t> first;
     const auto look_at = [&](std::int64_t time) {
         if (time != 0) first = std::min(first.value_or(time), time);
     };
-    for (const wire::EditTrace& edit : trace.edits) {
+    for (const session::EditTrace& edit : edits) {
         for (const std::int64_t time : {edit.submitted, edit.received, edit.published, edit.merged})
             look_at(time);
-        for (const wire::NodeTrace& node : edit.nodes) {
+        for (const session::NodeTrace& node : edit.nodes) {
             look_at(node.received);
             look_at(node.built);
         }
@@ -81,11 +81,11 @@ class Writer {
 
 }  // namespace
 
-std::string chrome_trace(const wire::Trace& trace) {
-    Writer writer(first_time(trace).value_or(0));
+std::string chrome_trace(const std::vector<session::EditTrace>& edits) {
+    Writer writer(first_time(edits).value_or(0));
     Rows clients(FirstClientRow), nodes(FirstNodeRow);
-    for (std::size_t i = 0; i < trace.edits.size(); ++i) {
-        const wire::EditTrace& edit = trace.edits[i];
+    for (std::size_t i = 0; i < edits.size(); ++i) {
+        const session::EditTrace& edit = edits[i];
         const std::string name = "transaction " + std::to_string(edit.transaction);
         const Json arguments{{"bytes", edit.edit_bytes}, {"version", edit.version.number}, {"by", edit.name}};
         Json from_client = arguments;
@@ -94,7 +94,7 @@ std::string chrome_trace(const wire::Trace& trace) {
                      from_client);
         writer.slice(MasterRow, name + " to published", i, edit.received, edit.published, arguments);
         writer.slice(MasterRow, name + " to picture", i, edit.published, edit.merged, arguments);
-        for (const wire::NodeTrace& node : edit.nodes) {
+        for (const session::NodeTrace& node : edit.nodes) {
             Json on_node = arguments;
             on_node["clock_bound_us"] = static_cast<double>(node.bound) * 1e-3;
             const int row = nodes.of(node.name);

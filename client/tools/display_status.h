@@ -1,12 +1,9 @@
 #pragma once
 
-#include <string>
-
-#include "mediator/wire/display_messages.h"
+#include "mediator/session/status.h"
 
 namespace tessera::tools {
 
-std::string output_state_name(wire::OutputState state);  // "absent", "joining", "locked", "late"
-void print_display(const wire::DisplayStatus& display);
+void print_display(const session::DisplayStatus& display);
 
 }  // namespace tessera::tools

@@ -4,7 +4,7 @@
 #include <iostream>
 #include <thread>
 
-#include "client/live_session.h"
+#include "client/session.h"
 #include "client/tools/cluster_options.h"
 
 namespace tessera::tools {
@@ -35,13 +35,15 @@ std::string joined_problems(const std::vector<std::string>& texts) {
 class LiveTarget final : public edit::EditTarget {
   public:
     explicit LiveTarget(const SceneAddress& address)
-        : session_(client::connect_live({address.master, address.keys, address.user}, blobs_, clock_,
-                                        session_settings(address.name))) {
-        (void)session_->join(address.title, client::WhenBusy::Queue,
-                             [](std::uint32_t place) {
-                                 std::cerr << "tessera edit: the cluster renders a batch: waiting, place "
-                                           << place << "\n";
-                             },
+        : session_(client::connect({address.master, address.keys, address.user}, blobs_, clock_,
+                                   session_settings(address.name))) {
+        (void)session_->join({.title = address.title,
+                              .on_place =
+                                  [](std::uint32_t place) {
+                                      std::cerr
+                                          << "tessera edit: the cluster renders a batch: waiting, place "
+                                          << place << "\n";
+                                  }},
                              {});
     }
 
@@ -54,7 +56,7 @@ class LiveTarget final : public edit::EditTarget {
 
     Expected<edit::SubmitReply> submit(std::vector<scene::Entry> entries, const std::string&) override {
         return guarded([&] {
-            const client::EditResult result = session_->submit(std::move(entries));
+            const session::EditResult result = session_->submit(std::move(entries));
             if (result.accepted) session_->refresh();
             return edit::SubmitReply{result.accepted, result.transaction, result.problems};
         });
@@ -67,7 +69,7 @@ class LiveTarget final : public edit::EditTarget {
     Expected<std::vector<edit::HistoryLine>> history(std::uint32_t count) override {
         return guarded([&] {
             std::vector<edit::HistoryLine> lines;
-            for (const wire::TransactionSummary& entry : session_->history(count)) {
+            for (const session::TransactionSummary& entry : session_->history(count)) {
                 lines.push_back(
                     {entry.number, entry.name, entry.time, entry.text, entry.undoes, entry.undone_by});
             }
@@ -77,7 +79,7 @@ class LiveTarget final : public edit::EditTarget {
     Expected<std::vector<edit::FieldWriter>> writers(ObjectId object) override {
         return guarded([&] {
             std::vector<edit::FieldWriter> writers;
-            for (const wire::FieldWriter& writer : session_->writers(object))
+            for (const session::FieldWriter& writer : session_->writers(object))
                 writers.push_back({writer.field, writer.transaction, writer.name});
             return writers;
         });
@@ -85,13 +87,13 @@ class LiveTarget final : public edit::EditTarget {
     Expected<std::vector<edit::Person>> people() override {
         return guarded([&] {
             std::vector<edit::Person> people;
-            const wire::People told = session_->people();
-            for (const wire::Person& person : told.people) {
+            const session::People told = session_->people();
+            for (const session::Person& person : told.people) {
                 edit::Person entry{person.name, person.user, person.text, person.editor, {}};
-                for (const wire::ObjectLock& lock : told.locks) {
+                for (const session::ObjectLock& lock : told.locks) {
                     if (lock.name == person.name) entry.locked.push_back(lock.object);
                 }
-                for (const wire::LiveViewSummary& view : told.views) {
+                for (const session::ViewEntry& view : told.views) {
                     if (view.owner == person.name)
                         entry.text += (entry.text.empty() ? "view " : "; view ") + view.name;
                 }
@@ -118,7 +120,7 @@ class LiveTarget final : public edit::EditTarget {
     }
 
   private:
-    Expected<std::string> taken_back(const client::EditResult& result) {
+    Expected<std::string> taken_back(const session::EditResult& result) {
         if (!result.accepted) return failure(ErrorCode::Refused, joined_problems(result.problems));
         return guarded([&] {
             session_->refresh();
@@ -132,7 +134,7 @@ class LiveTarget final : public edit::EditTarget {
     SteadyClock clock_;
     std::shared_ptr<scene::BlobStore> blobs_ = std::make_shared<scene::BlobStore>();
     std::vector<scene::BlobPtr> kept_;  // for entries to come
-    std::unique_ptr<client::LiveSession> session_;
+    std::unique_ptr<client::Session> session_;
 };
 
 }  // namespace

@@ -18,17 +18,17 @@ namespace tessera::tools {
 
 namespace {
 
-const char* name(client::Outcome outcome) {
+const char* name(session::Outcome outcome) {
     switch (outcome) {
-        case client::Outcome::Complete:
+        case session::Outcome::Complete:
             return "complete";
-        case client::Outcome::TimeUp:
+        case session::Outcome::TimeUp:
             return "time up";
-        case client::Outcome::Stopped:
+        case session::Outcome::Stopped:
             return "stopped";
-        case client::Outcome::NoNodes:
+        case session::Outcome::NoNodes:
             return "all nodes were gone";
-        case client::Outcome::Failed:
+        case session::Outcome::Failed:
             break;
     }
     return "failed";
@@ -46,33 +46,34 @@ const char* name(view::PixelFilterKind kind) {
     return "blackman-harris";
 }
 
-std::string kinds_of(const client::JobResult& result) {
+std::string kinds_of(const client::ViewResult& result) {
     std::set<std::string> kinds;
-    for (const client::NodeShare& node : result.nodes) kinds.insert(node.kind);
+    for (const session::NodeSummary& node : result.summary.nodes) kinds.insert(node.kind);
     std::string text;
     for (const std::string& kind : kinds) text += (text.empty() ? "" : "; ") + kind;
     return text;
 }
 
 // Enough to make the picture again, and to tell how much of it is there.
-std::map<std::string, std::string> provenance(const client::JobRequest& request,
-                                              const client::JobResult& result, const Origin& origin) {
-    const auto [fewest, most] = std::minmax_element(result.film->counts.begin(), result.film->counts.end());
+std::map<std::string, std::string> provenance(const session::ViewRequest& request,
+                                              const client::ViewResult& result, const Origin& origin) {
+    const auto [fewest, most] =
+        std::minmax_element(result.film()->counts.begin(), result.film()->counts.end());
     std::map<std::string, std::string> attributes = view_attributes(request.view);
-    if (result.picture) attributes["tessera.filter"] = result.picture->filter;
+    if (result.has_picture()) attributes["tessera.filter"] = result.summary.picture.filter;
     attributes.insert({{"tessera.software", "tessera " + cli::version()},
                        {"tessera.scene", origin.scene},
                        {"tessera.camera", origin.camera},
                        {"tessera.filmHash", origin.film_hash},
-                       {"tessera.outcome", name(result.outcome)},
+                       {"tessera.outcome", name(result.summary.outcome)},
                        {"tessera.kinds", kinds_of(result)},
-                       {"tessera.nodes", std::to_string(result.nodes.size())},
+                       {"tessera.nodes", std::to_string(result.summary.nodes.size())},
                        {"tessera.seed", std::to_string(request.view.seed)},
                        {"tessera.maxBounces", std::to_string(request.view.max_bounces)},
                        {"tessera.layers", std::to_string(request.view.layers)},
                        {"tessera.pixelFilter", name(request.view.pixel_filter.kind)},
-                       {"tessera.samples", std::to_string(result.samples)},
-                       {"tessera.nonfiniteSamples", std::to_string(result.film->nonfinite_samples)},
+                       {"tessera.samples", std::to_string(result.summary.samples)},
+                       {"tessera.nonfiniteSamples", std::to_string(result.film()->nonfinite_samples)},
                        {"tessera.samplesPerPixelLeast", std::to_string(*fewest)},
                        {"tessera.samplesPerPixelMost", std::to_string(*most)}});
     return attributes;
@@ -92,17 +93,17 @@ frame::Image unfiltered(const frame::FilmTile& film) {
 }
 
 // Throws Error{Unavailable} for a picture of another size than it says.
-frame::Image interleaved(const client::Picture& picture) {
+frame::Image interleaved(const client::Frame& picture) {
     frame::Image image(picture.width, picture.height, picture.components);
     if (picture.components < 3 || picture.components > 4 ||
-        picture.bytes.size() != image.values.size() * sizeof(float)) {
+        picture.picture.size() != image.values.size() * sizeof(float)) {
         throw Error(ErrorCode::Unavailable,
                     "the master's picture is damaged: check that master and client are of the same version");
     }
     for (std::uint32_t c = 0; c < image.components; ++c) {
         for (std::size_t i = 0; i < image.pixel_count(); ++i) {
             std::memcpy(&image.values[i * image.components + c],
-                        &picture.bytes[(c * image.pixel_count() + i) * sizeof(float)], sizeof(float));
+                        &picture.picture[(c * image.pixel_count() + i) * sizeof(float)], sizeof(float));
         }
     }
     return image;
@@ -133,24 +134,23 @@ void write_picture(const std::string& path, const frame::Image& image) {
                                                                                      : FileFormat::Exr));
 }
 
-void write_pictures(const std::vector<std::string>& paths, const client::JobRequest& request,
-                    const client::JobResult& result, const Origin& origin, picture::Statistics statistics) {
+void write_pictures(const std::vector<std::string>& paths, const session::ViewRequest& request,
+                    const client::ViewResult& result, const Origin& origin, picture::Statistics statistics) {
     std::optional<frame::Image> filtered;
-    if (result.picture && result.picture->encoding == client::PictureEncoding::Planes) {
-        filtered = interleaved(*result.picture);
-    }
+    if (result.has_picture() && result.frame.encoding == session::PictureEncoding::Planes)
+        filtered = interleaved(result.frame);
     for (const std::string& path : paths) {
-        if (result.picture && !filtered) {
-            write_bytes(path, result.picture->bytes);  // encoded by the master
+        if (result.has_picture() && !filtered) {
+            write_bytes(path, result.frame.picture);  // encoded by the master
         } else if (picture_format(path) == PictureFormat::Exr) {
             picture::write_film_exr(path,
                                     {.width = request.view.width,
                                      .height = request.view.height,
-                                     .film = *result.film,
+                                     .film = *result.film(),
                                      .attributes = provenance(request, result, origin)},
                                     filtered, statistics);
         } else {
-            write_picture(path, filtered ? *filtered : unfiltered(*result.film));
+            write_picture(path, filtered ? *filtered : unfiltered(*result.film()));
         }
     }
 }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "client/job.h"
+#include "client/frame.h"
 #include "mediator/picture/film_exr.h"
 
 namespace tessera::tools {
@@ -24,8 +24,8 @@ struct Origin {
 // Writes what the result holds to every path: the master's picture where there is one, else the resolved
 // radiance; an EXR gets the film's channels, too, and its statistics if they are to be saved. A file is there
 // in full or not at all. Throws Error{Io}.
-void write_pictures(const std::vector<std::string>& paths, const client::JobRequest& request,
-                    const client::JobResult& result, const Origin& origin, picture::Statistics statistics);
+void write_pictures(const std::vector<std::string>& paths, const session::ViewRequest& request,
+                    const client::ViewResult& result, const Origin& origin, picture::Statistics statistics);
 
 // An EXR without a film or a tone-mapped file, of linear R, G, B (A).
 void write_picture(const std::string& path, const frame::Image& image);

@@ -21,29 +21,29 @@ std::string time_left(double left) {
 
 }  // namespace
 
-std::string describe(const client::Progress& progress, const client::JobRequest& request) {
+std::string describe(const session::ViewProgress& progress, const session::ViewRequest& request) {
     switch (progress.phase) {
-        case client::Phase::WaitingForNodes:
-            return formatted("waiting for nodes: %u of %u", progress.nodes, request.wait_nodes);
-        case client::Phase::Syncing:
+        case session::Phase::WaitingForNodes:
+            return formatted("waiting for nodes: %u of %u", progress.nodes, request.min_nodes);
+        case session::Phase::Syncing:
             return formatted("the scene is on its way to the nodes: %u ready", progress.nodes);
-        case client::Phase::Filtering:
+        case session::Phase::Filtering:
             return "filtering";
-        case client::Phase::Delivering:
+        case session::Phase::Delivering:
             return "fetching the picture";
-        case client::Phase::Rendering:
+        case session::Phase::Rendering:
             break;
     }
-    const bool by_time = request.time_limit > Duration::zero();
+    const bool by_time = request.stop.time_limit > Duration::zero();
     const double elapsed = std::max(seconds(progress.elapsed), 1e-3);
     const double expected = double(std::max<std::uint64_t>(progress.samples_expected, 1));
-    const double done =
-        std::min(1.0, by_time ? elapsed / seconds(request.time_limit) : double(progress.samples) / expected);
+    const double done = std::min(
+        1.0, by_time ? elapsed / seconds(request.stop.time_limit) : double(progress.samples) / expected);
     const double spp =
         double(progress.samples) / double(std::max<std::size_t>(request.view.window.pixel_count(), 1));
     std::string text = formatted("%3.0f %%   ", 100.0 * done);
     text += by_time ? formatted("%.1f spp", spp)
-                    : formatted("%.0f of %llu spp", spp, static_cast<unsigned long long>(request.spp));
+                    : formatted("%.0f of %llu spp", spp, static_cast<unsigned long long>(request.stop.spp));
     text += formatted("   %.1f Mrays/s   %u node%s", double(progress.rays) / elapsed * 1e-6, progress.nodes,
                       progress.nodes == 1 ? "" : "s");
     if (done > 0.0) text += "   " + time_left(elapsed * (1.0 - done) / done);

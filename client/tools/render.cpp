@@ -6,7 +6,8 @@
 #include <iostream>
 #include <memory>
 
-#include "client/session.h"
+#include "client/channel_session.h"
+#include "client/render.h"
 #include "client/tools/cluster_options.h"
 #include "client/tools/frame_names.h"
 #include "client/tools/interrupts.h"
@@ -85,8 +86,7 @@ class Render {
         embedded_.emplace(plan_.embedded, blobs_, clock_, quiet_log(log_));
         client::SessionSettings settings = session_settings("tessera " + name_);
         settings.lost_limit = std::chrono::minutes(10);  // silence in here is a busy machine
-        session_ = std::make_unique<client::Session>(embedded_->client(), std::function<void()>(), blobs_,
-                                                     clock_, settings);
+        session_ = client::make_session(embedded_->client(), {}, blobs_, clock_, settings);
     }
 
     int render_sequence() {
@@ -132,28 +132,32 @@ class Render {
     }
 
     std::optional<int> submit(std::vector<scene::Entry> entries) {
-        const auto submitted = session_->submit(std::move(entries), interrupts_.token());
-        if (!submitted) return interrupted("nothing was rendered");
-        for (const std::string& problem : submitted->problems) log_.error(where_ + problem);
-        if (!submitted->accepted) return fail(ExitBadInput, "the master does not take the scene");
+        session_->submit_ahead(std::move(entries));
+        if (!session_->settle(interrupts_.token())) return interrupted("nothing was rendered");
+        const session::EditResult submitted = session_->take_results().back();
+        for (const std::string& problem : submitted.problems) log_.error(where_ + problem);
+        if (!submitted.accepted) return fail(ExitBadInput, "the master does not take the scene");
         return std::nullopt;
     }
 
     std::optional<int> bring_in_scene() {
         const std::string title = std::filesystem::path(plan_.view.scene).filename().string();
-        const auto outcome = session_->open_scene(
-            title, plan_.when_busy,
-            [this](std::uint32_t place) {
-                log_.info("the cluster is busy: waiting, place " + std::to_string(place) + " in the queue");
-            },
-            interrupts_.token());
+        const auto outcome = session_->join({.title = title,
+                                             .exclusive = true,
+                                             .when_busy = plan_.when_busy,
+                                             .on_place =
+                                                 [this](std::uint32_t place) {
+                                                     log_.info("the cluster is busy: waiting, place " +
+                                                               std::to_string(place) + " in the queue");
+                                                 }},
+                                            interrupts_.token());
         if (std::holds_alternative<client::Stopped>(outcome)) return interrupted("nothing was rendered");
         if (const auto* busy = std::get_if<client::Busy>(&outcome)) {
             return complain(name_, cli::ExitTryLater, busy->reason);
         }
-        const auto& opened = std::get<client::OpenedScene>(outcome);
-        if (opened.first_id != plan_.view.import.first_id) {
-            if (const auto code = import(opened.first_id)) return code;
+        const auto& joined = std::get<client::Joined>(outcome);
+        if (joined.first_id != plan_.view.import.first_id) {
+            if (const auto code = import(joined.first_id)) return code;
         }
         for (const std::string& notice : scene_.notices) log_.info(title + ": " + notice);
         return submit(entries(scene_, import::RootEntry::Update));
@@ -163,23 +167,24 @@ class Render {
         plan_.job.view = view_from(plan_.view, camera_);
         plan_.job.view.seed = seed;
         ProgressLine line;
-        result_ = session_->render(
-            plan_.job,
-            [&](const client::Progress& progress) { line.show(where_ + describe(progress, plan_.job)); },
+        result_ = client::render(
+            *session_, plan_.job,
+            [&](const session::ViewProgress& progress) { line.show(where_ + describe(progress, plan_.job)); },
             interrupts_.token());
     }
 
     // Of a whole picture alone: shares of a part would be those of another one.
     int count() {
-        using client::Outcome;
-        if (result_.outcome == Outcome::Stopped) return interrupted("nothing was counted");
-        if (result_.outcome == Outcome::NoNodes) return fail(cli::ExitUnavailable, result_.message);
-        if (result_.outcome != Outcome::Complete || !result_.film)
-            return fail(ExitInternal, "the frame failed: " + result_.message);
+        using session::Outcome;
+        if (result_.summary.outcome == Outcome::Stopped) return interrupted("nothing was counted");
+        if (result_.summary.outcome == Outcome::NoNodes)
+            return fail(cli::ExitUnavailable, result_.summary.message);
+        if (result_.summary.outcome != Outcome::Complete || !result_.film())
+            return fail(ExitInternal, "the frame failed: " + result_.summary.message);
         const SampleGrid grid = *plan_.coverage;
         for (const std::string& output : plan_.outputs)
-            write_picture(output, gather(frame::resolve_picture(*result_.film), grid));
-        const Coverage coverage = count_coverage(*result_.film, scene_.objects);
+            write_picture(output, gather(frame::resolve_picture(*result_.film()), grid));
+        const Coverage coverage = count_coverage(*result_.film(), scene_.objects);
         std::cout << (json_ ? as_json(coverage, grid.count()) : as_text(coverage, grid.count())) << std::endl;
         return 0;
     }
@@ -187,26 +192,28 @@ class Render {
     // The pictures of what there is, unless there is nothing; then the reason decides. Those of a sequence
     // are whole or not there.
     int finish(const std::vector<std::string>& outputs) {
-        using client::Outcome;
-        const bool is_failed = result_.outcome == Outcome::Failed;
-        if (is_failed) return fail(ExitInternal, "the frame failed: " + result_.message);
-        if (frame_ && result_.outcome == Outcome::Stopped) return interrupted("");
-        if (frame_ && result_.outcome == Outcome::NoNodes) return fail(cli::ExitUnavailable, result_.message);
-        if ((!result_.film && !result_.picture) || result_.samples == 0) {
-            if (result_.outcome == Outcome::Stopped) return interrupted("nothing was rendered yet");
-            return fail(cli::ExitUnavailable, result_.message.empty()
+        using session::Outcome;
+        const bool is_failed = result_.summary.outcome == Outcome::Failed;
+        if (is_failed) return fail(ExitInternal, "the frame failed: " + result_.summary.message);
+        if (frame_ && result_.summary.outcome == Outcome::Stopped) return interrupted("");
+        if (frame_ && result_.summary.outcome == Outcome::NoNodes)
+            return fail(cli::ExitUnavailable, result_.summary.message);
+        if ((!result_.film() && !result_.has_picture()) || result_.summary.samples == 0) {
+            if (result_.summary.outcome == Outcome::Stopped) return interrupted("nothing was rendered yet");
+            return fail(cli::ExitUnavailable, result_.summary.message.empty()
                                                   ? "no sample was finished in the time given: give it more"
-                                                  : result_.message);
+                                                  : result_.summary.message);
         }
-        const std::string hash = result_.film ? to_hex(frame::film_hash(*result_.film)) : std::string();
+        const std::string hash = result_.film() ? to_hex(frame::film_hash(*result_.film())) : std::string();
         write_pictures(outputs, plan_.job, result_,
                        {std::filesystem::path(plan_.view.scene).filename().string(), camera_.name, hash},
                        plan_.statistics);
-        const RenderReport report{plan_.job, result_, seconds(clock_.now() - started_), hash, frame_};
+        const RenderReport report{plan_.job, result_.summary, seconds(clock_.now() - started_), hash, frame_};
         std::cout << (json_ ? as_json(report) : as_text(report, outputs)) << std::endl;
-        if (result_.outcome == Outcome::Stopped) return interrupted("what was merged so far is written");
-        if (result_.outcome == Outcome::NoNodes)
-            return complain(name_, cli::ExitUnavailable, result_.message);
+        if (result_.summary.outcome == Outcome::Stopped)
+            return interrupted("what was merged so far is written");
+        if (result_.summary.outcome == Outcome::NoNodes)
+            return complain(name_, cli::ExitUnavailable, result_.summary.message);
         return 0;
     }
 
@@ -222,7 +229,7 @@ class Render {
     import::CameraInfo camera_;
     std::optional<EmbeddedCluster> embedded_;
     std::unique_ptr<client::Session> session_;  // says goodbye before the embedded cluster stops
-    client::JobResult result_;
+    client::ViewResult result_;
     std::optional<std::uint32_t> frame_;  // of a sequence, the one that is rendered
     std::string where_;                   // names it
 };

@@ -66,17 +66,17 @@ Expected<EmbeddedSettings> embedded_settings(const RenderOptions& options) {
     return settings;
 }
 
-Expected<void> set_amount(const RenderOptions& options, client::JobRequest& job) {
+Expected<void> set_amount(const RenderOptions& options, session::ViewRequest& job) {
     if (options.spp && options.time) return wrong("--spp and --time exclude each other");
     if (options.time) {
         const auto limit = parse_duration(*options.time);
         if (!limit) return wrong(std::string("--time: ") + limit.error().what());
-        job.time_limit = *limit;
-        job.spp = MaxSpp;
+        job.stop.time_limit = *limit;
+        job.stop.spp = MaxSpp;
     } else {
-        job.spp = options.spp.value_or(job.spp);
+        job.stop.spp = options.spp.value_or(job.stop.spp);
     }
-    if (job.spp == 0 || job.spp > MaxSpp) return wrong("--spp: between 1 and 2^31");
+    if (job.stop.spp == 0 || job.stop.spp > MaxSpp) return wrong("--spp: between 1 and 2^31");
     return {};
 }
 
@@ -127,7 +127,7 @@ frame::ChannelSet channels_for(const RenderOptions& options) {
 }
 
 // One picture file is encoded by the master, within the time given; for anything else the numbers come here.
-Expected<void> set_filter(const RenderOptions& options, client::JobRequest& job) {
+Expected<void> set_filter(const RenderOptions& options, session::ViewRequest& job) {
     if (options.save_statistics && !any_exr(options.outputs)) {
         return wrong("--save-statistics needs an EXR to save them in: add -o FILE.exr");
     }
@@ -137,12 +137,12 @@ Expected<void> set_filter(const RenderOptions& options, client::JobRequest& job)
     job.view.filter = filter::to_text(*choice);
     job.film = any_exr(options.outputs);
     const PictureFormat format = *picture_format(options.outputs.front());
-    job.picture = options.outputs.size() > 1 || job.film ? client::PictureEncoding::Planes
-                  : format == PictureFormat::Png         ? client::PictureEncoding::Png
-                                                         : client::PictureEncoding::Jpeg;
-    if (job.time_limit > Duration::zero()) {
-        job.budget = job.time_limit;
-        job.adapts_size = !job.film;
+    job.picture = options.outputs.size() > 1 || job.film ? session::PictureEncoding::Planes
+                  : format == PictureFormat::Png         ? session::PictureEncoding::Png
+                                                         : session::PictureEncoding::Jpeg;
+    if (job.stop.time_limit > Duration::zero()) {
+        job.stop.budget = job.stop.time_limit;
+        job.stop.adapts_size = !job.film;
     }
     return {};
 }
@@ -169,7 +169,7 @@ Expected<void> set_coverage(const RenderOptions& options, RenderPlan& plan) {
     plan.view.view.renderer = view::Renderer::Coverage;
     plan.view.view.channels = {frame::Channel::ObjectIndex};
     if (!plan.outputs.empty()) plan.view.view.channels.insert(frame::Channel::Color);
-    plan.job.spp = 1;
+    plan.job.stop.spp = 1;
     return {};
 }
 
@@ -246,12 +246,14 @@ Expected<RenderPlan> understand(const RenderOptions& options) {
     RenderPlan plan;
     plan.view = *view;
     plan.outputs = options.outputs;
+    plan.job.film = true;
+    plan.job.wait_limit = std::chrono::seconds(60);
     if (auto fine = check_outputs(options); !fine) return tl::unexpected(fine.error());
     if (auto fine = set_sequence(options, plan); !fine) return tl::unexpected(fine.error());
     auto embedded = embedded_settings(options);
     if (!embedded) return tl::unexpected(embedded.error());
     plan.embedded = *embedded;
-    plan.job.wait_nodes = plan.embedded.nodes;
+    plan.job.min_nodes = plan.embedded.nodes;
     if (options.master) {
         if (options.backend || options.device || options.cache || options.nodes || options.threads) {
             return wrong(
@@ -260,11 +262,11 @@ Expected<RenderPlan> understand(const RenderOptions& options) {
                 "nodes decide");
         }
         plan.address = {*options.master, options.keys.value_or(""), options.user};
-        plan.job.wait_nodes = 1;
+        plan.job.min_nodes = 1;
         if (options.wait_nodes) {
             const auto wait = parse_node_wait(*options.wait_nodes);
             if (!wait) return wrong(std::string("--wait-nodes: ") + wait.error().what());
-            plan.job.wait_nodes = wait->nodes;
+            plan.job.min_nodes = wait->nodes;
             plan.job.wait_limit = wait->limit;
         }
     } else if (options.keys || options.wait_nodes) {
@@ -280,9 +282,9 @@ Expected<RenderPlan> understand(const RenderOptions& options) {
         return plan;
     }
     if (auto fine = set_amount(options, plan.job); !fine) return tl::unexpected(fine.error());
-    plan.job.policy = options.policy == "tiled"         ? client::Policy::Tiled
-                      : options.policy == "cooperative" ? client::Policy::Cooperative
-                                                        : client::Policy::Mixed;
+    plan.job.policy = options.policy == "tiled"         ? session::Policy::Tiled
+                      : options.policy == "cooperative" ? session::Policy::Cooperative
+                                                        : session::Policy::Mixed;
     plan.job.reproducible = options.reproducible;
     if (auto fine = set_filter(options, plan.job); !fine) return tl::unexpected(fine.error());
     plan.view.view.filter = plan.job.view.filter;

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "client/job.h"
 #include "client/session.h"
 #include "client/tools/coverage.h"
 #include "client/tools/embedded_cluster.h"
@@ -45,7 +44,7 @@ struct Sequence {
 // The same, understood.
 struct RenderPlan {
     ViewPlan view;
-    client::JobRequest job;            // view with channels, without camera
+    session::ViewRequest job;          // view with channels, without camera
     std::vector<std::string> outputs;  // of a sequence: patterns for frame_name
     std::optional<Sequence> sequence;
     std::optional<client::Address> address;  // none: embedded

@@ -19,15 +19,15 @@ double per_second(std::uint64_t amount, double time) {
 }
 
 // A whole number where it is one: what was asked for and reached.
-Json spp_value(const client::JobRequest& request, const client::JobResult& result) {
-    if (result.outcome == client::Outcome::Complete) return request.spp;
+Json spp_value(const session::ViewRequest& request, const session::ViewSummary& result) {
+    if (result.outcome == session::Outcome::Complete) return request.stop.spp;
     return samples_per_pixel(request, result);
 }
 
-Json nodes_value(const client::JobResult& result) {
+Json nodes_value(const session::ViewSummary& result) {
     Json nodes = Json::array();
-    for (const client::NodeShare& node : result.nodes) {
-        nodes.push_back({{"id", node.id},
+    for (const session::NodeSummary& node : result.nodes) {
+        nodes.push_back({{"id", node.id.value},
                          {"pid", node.pid},
                          {"host", node.host},
                          {"kind", node.kind},
@@ -38,11 +38,11 @@ Json nodes_value(const client::JobResult& result) {
     return nodes;
 }
 
-Json picture_value(const client::JobResult& result) {
-    if (!result.picture) return nullptr;
-    const client::Picture& picture = *result.picture;
+Json picture_value(const session::ViewSummary& result) {
+    const session::PictureSummary& picture = result.picture;
+    if (picture.encoding == session::PictureEncoding::None) return nullptr;
     Json passes = Json::array();
-    for (const client::FilterPass& pass : picture.passes) {
+    for (const session::FilterPass& pass : picture.passes) {
         passes.push_back(
             {{"name", pass.name}, {"seconds", pass.seconds}, {"bytes_per_pixel", pass.bytes_per_pixel}});
     }
@@ -61,14 +61,14 @@ Json picture_value(const client::JobResult& result) {
 
 }  // namespace
 
-double samples_per_pixel(const client::JobRequest& request, const client::JobResult& result) {
+double samples_per_pixel(const session::ViewRequest& request, const session::ViewSummary& result) {
     return static_cast<double>(result.samples) /
            static_cast<double>(std::max<std::size_t>(request.view.window.pixel_count(), 1));
 }
 
 std::string as_json(const RenderReport& report) {
-    const client::JobResult& result = report.result;
-    const client::UnitCounts& units = result.units;
+    const session::ViewSummary& result = report.summary;
+    const session::UnitCounts& units = result.units;
     Json object{
         {"width", report.request.view.window.width},
         {"height", report.request.view.window.height},
@@ -106,7 +106,7 @@ std::string as_json(const RenderReport& report) {
 }
 
 std::string as_text(const RenderReport& report, const std::vector<std::string>& outputs) {
-    const client::JobResult& result = report.result;
+    const session::ViewSummary& result = report.summary;
     const Rect& window = report.request.view.window;
     std::string text;
     const auto line = [&](const char* format, auto... values) {
@@ -125,18 +125,18 @@ std::string as_text(const RenderReport& report, const std::vector<std::string>& 
     line("%.2f s in all, %.2f s rendering: %.2f Mrays/s, %.3f Msamples/s", report.seconds_total,
          result.seconds_render, per_second(result.rays, result.seconds_render) * 1e-6,
          per_second(result.samples, result.seconds_render) * 1e-6);
-    if (const auto& picture = result.picture) {
-        line("filter %s: %.1f ms, encoding %.1f ms%s", picture->filter.c_str(), picture->seconds_filter * 1e3,
-             picture->seconds_encode * 1e3,
-             picture->seconds_predicted > 0.0
-                 ? (" (" + std::to_string(std::lround(picture->seconds_predicted * 1e3)) +
+    if (const auto& picture = result.picture; picture.encoding != session::PictureEncoding::None) {
+        line("filter %s: %.1f ms, encoding %.1f ms%s", picture.filter.c_str(), picture.seconds_filter * 1e3,
+             picture.seconds_encode * 1e3,
+             picture.seconds_predicted > 0.0
+                 ? (" (" + std::to_string(std::lround(picture.seconds_predicted * 1e3)) +
                     " ms were set aside)")
                        .c_str()
                  : "");
-        for (const std::string& note : picture->notes) line("%s", note.c_str());
+        for (const std::string& note : picture.notes) line("%s", note.c_str());
     }
     std::set<std::string> kinds;
-    for (const client::NodeShare& node : result.nodes) kinds.insert(node.kind);
+    for (const session::NodeSummary& node : result.nodes) kinds.insert(node.kind);
     line("%zu node%s took part", result.nodes.size(), result.nodes.size() == 1 ? "" : "s");
     for (const std::string& kind : kinds) line("  %s", kind.c_str());
     if (result.nonfinite_samples != 0) {

@@ -14,7 +14,7 @@ constexpr const char* SetFilterName = "set-filter";
 
 struct SetFilterOptions {
     client::Address address;
-    std::string filter;
+    std::string filter, view;
 };
 
 int run(const SetFilterOptions& options) {
@@ -22,7 +22,7 @@ int run(const SetFilterOptions& options) {
         const SteadyClock clock;
         const auto session = client::connect(options.address, std::make_shared<scene::BlobStore>(), clock,
                                              session_settings("tessera set-filter"));
-        std::cout << session->set_filter(options.filter) << std::endl;
+        std::cout << session->set_filter(options.view, options.filter) << std::endl;
         return 0;
     } catch (const Error& error) {
         return complain(SetFilterName, exit_code(error.code()), error.what());
@@ -34,12 +34,14 @@ int run(const SetFilterOptions& options) {
 Command set_filter_command(cli::CommandLine& program) {
     const auto options = std::make_shared<SetFilterOptions>();
     cli::CommandLine& line = program.command(
-        SetFilterName, "Give the frame that a cluster is rendering another filter, or other values.");
+        SetFilterName, "Give a frame or view that a cluster is rendering another filter, or other values.");
     line.positional("FILTER", "NAME[:key=value,...]; tessera filters lists them", options->filter);
+    line.option("--view", "of this view of a live scene, by its name; tessera edit -c people lists them",
+                options->view);
     add_cluster_options(line, options->address);
     line.required("--master");
     line.examples({"tessera set-filter fdf --master tcp://render-1:7420 --keys ~/.tessera",
-                   "tessera set-filter pixel:t=0.002 --master tcp://127.0.0.1:7420"});
+                   "tessera set-filter pixel:t=0.002 --view ann/1 --master tcp://127.0.0.1:7420"});
     return {SetFilterName, [options](std::string_view) { return run(*options); }};
 }
 

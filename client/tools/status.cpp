@@ -28,14 +28,15 @@ Json version_value(const Version& version) {
     return {{"epoch", version.epoch}, {"number", version.number}};
 }
 
-Json live_value(const wire::LiveStatus& live) {
+Json live_value(const session::SceneStatus& live) {
     if (live.title.empty()) return nullptr;
     Json stages = Json::object();
-    for (const wire::StageTimes& stage : live.stages) {
+    for (const session::StageTimes& stage : live.stages) {
         stages[stage.name] = {
             {"count", stage.count}, {"p50_seconds", stage.p50_seconds}, {"p99_seconds", stage.p99_seconds}};
     }
     return {{"title", live.title},
+            {"exclusive", live.exclusive},
             {"members", live.members},
             {"views", live.views},
             {"edits", live.edits},
@@ -48,13 +49,13 @@ Json live_value(const wire::LiveStatus& live) {
             {"stages", stages}};
 }
 
-Json display_value(const wire::DisplayStatus& display) {
+Json display_value(const session::DisplayStatus& display) {
     if (display.name.empty()) return nullptr;
     Json outputs = Json::array();
-    for (const wire::OutputStatus& output : display.outputs) {
+    for (const session::OutputStatus& output : display.outputs) {
         outputs.push_back({{"name", output.name},
                            {"host", output.host},
-                           {"state", output_state_name(output.state)},
+                           {"state", enumerator_name(output.state)},
                            {"frames", output.frames},
                            {"late", output.late},
                            {"samples", output.samples},
@@ -67,16 +68,16 @@ Json display_value(const wire::DisplayStatus& display) {
             {"outputs", outputs}};
 }
 
-std::string as_json(const client::ClusterStatus& status) {
+std::string as_json(const session::ClusterStatus& status) {
     Json nodes = Json::array();
-    for (const client::NodeState& node : status.nodes) {
-        nodes.push_back({{"id", node.share.id},
-                         {"name", node.share.name},
-                         {"host", node.share.host},
-                         {"pid", node.share.pid},
-                         {"backend", node.share.backend},
-                         {"kind", node.share.kind},
-                         {"phase", node.phase},
+    for (const session::NodeStatus& node : status.nodes) {
+        nodes.push_back({{"id", node.summary.id.value},
+                         {"name", node.summary.name},
+                         {"host", node.summary.host},
+                         {"pid", node.summary.pid},
+                         {"backend", node.summary.backend},
+                         {"kind", node.summary.kind},
+                         {"phase", enumerator_name(node.phase)},
                          {"version", version_value(node.version)},
                          {"units_in_hand", node.units_in_hand},
                          {"samples_per_second", node.samples_per_second},
@@ -85,7 +86,7 @@ std::string as_json(const client::ClusterStatus& status) {
                          {"clock_offset_seconds", node.clock_offset_seconds},
                          {"clock_bound_seconds", node.clock_bound_seconds}});
     }
-    const client::UnitCounts& units = status.units;
+    const session::UnitCounts& units = status.units;
     const Json object{
         {"software", status.software},
         {"version", version_value(status.version)},
@@ -108,14 +109,14 @@ std::string as_json(const client::ClusterStatus& status) {
           {"blobs", status.wire_bytes.blobs},
           {"film", status.wire_bytes.film}}},
         {"resyncs", status.resyncs},
-        {"live", live_value(status.live)},
+        {"live", live_value(status.scene)},
         {"display", display_value(status.display)},
         {"nodes", nodes},
     };
     return object.dump(2);
 }
 
-void print_table(const client::ClusterStatus& status) {
+void print_table(const session::ClusterStatus& status) {
     std::printf("%s, up %.0f s, scene version %llu, %llu blobs (%.1f MiB)\n", status.software.c_str(),
                 status.uptime_seconds, static_cast<unsigned long long>(status.version.number),
                 static_cast<unsigned long long>(status.blobs), double(status.blob_bytes) / 1048576.0);
@@ -124,11 +125,12 @@ void print_table(const client::ClusterStatus& status) {
                 static_cast<unsigned long long>(status.units.merged),
                 static_cast<unsigned long long>(status.units.reissued),
                 static_cast<unsigned long long>(status.units.lost));
-    if (const wire::LiveStatus& live = status.live; !live.title.empty()) {
-        std::printf("live scene '%s': %u members, %u views, %llu edits, %llu transactions\n",
-                    live.title.c_str(), live.members, live.views, static_cast<unsigned long long>(live.edits),
+    if (const session::SceneStatus& live = status.scene; !live.title.empty()) {
+        std::printf("%s '%s': %u members, %u views, %llu edits, %llu transactions\n",
+                    live.exclusive ? "scene of one client" : "live scene", live.title.c_str(), live.members,
+                    live.views, static_cast<unsigned long long>(live.edits),
                     static_cast<unsigned long long>(live.transactions));
-        for (const wire::StageTimes& stage : live.stages) {
+        for (const session::StageTimes& stage : live.stages) {
             if (stage.count == 0) continue;
             std::printf("  %-22s %8.1f ms, 99 %% within %8.1f ms\n", stage.name.c_str(),
                         1e3 * stage.p50_seconds, 1e3 * stage.p99_seconds);
@@ -141,11 +143,12 @@ void print_table(const client::ClusterStatus& status) {
     }
     std::printf("%-16s %-16s %-9s %-10s %8s %6s %14s %9s %21s\n", "node", "host", "back-end", "phase",
                 "version", "units", "Msamples/s", "ping ms", "clock ms");
-    for (const client::NodeState& node : status.nodes) {
+    for (const session::NodeStatus& node : status.nodes) {
         std::printf("%-16.16s %-16.16s %-9.9s %-10s %8llu %6u %14.3f %9.2f %11.3f +-%7.3f%s\n",
-                    node.share.name.c_str(), node.share.host.c_str(), node.share.backend.c_str(),
-                    node.phase.c_str(), static_cast<unsigned long long>(node.version.number),
-                    node.units_in_hand, node.samples_per_second * 1e-6, node.round_trip_seconds * 1e3,
+                    node.summary.name.c_str(), node.summary.host.c_str(), node.summary.backend.c_str(),
+                    std::string(enumerator_name(node.phase)).c_str(),
+                    static_cast<unsigned long long>(node.version.number), node.units_in_hand,
+                    node.samples_per_second * 1e-6, node.round_trip_seconds * 1e3,
                     node.clock_offset_seconds * 1e3, node.clock_bound_seconds * 1e3,
                     node.stuck ? "  stuck" : "");
     }
@@ -160,7 +163,7 @@ int run(const StatusOptions& options) {
             constexpr std::uint32_t Edits = 4096;  // as many as the master keeps and a message holds
             picture::write_atomically(options.chrome_trace, chrome_trace(session->trace(Edits)));
         }
-        const client::ClusterStatus status = session->status();
+        const session::ClusterStatus status = session->status();
         if (options.json) {
             std::cout << as_json(status) << std::endl;
         } else {

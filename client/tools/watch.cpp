@@ -9,7 +9,7 @@
 #include <memory>
 #include <optional>
 
-#include "client/live_session.h"
+#include "client/session.h"
 #include "client/tools/cluster_options.h"
 #include "client/tools/interrupts.h"
 #include "client/tools/pictures.h"
@@ -79,13 +79,15 @@ class Watch {
             limit = *parsed;
         }
         if (const auto code = choose_size()) return *code;
-        session_ = client::connect_live(options_.address, std::make_shared<scene::BlobStore>(), clock_,
-                                        session_settings(options_.name));
+        session_ = client::connect(options_.address, std::make_shared<scene::BlobStore>(), clock_,
+                                   session_settings(options_.name));
         const auto joined = session_->join(
-            options_.title, options_.no_wait ? client::WhenBusy::GiveUp : client::WhenBusy::Queue,
-            [](std::uint32_t place) {
-                std::cerr << "tessera watch: the cluster is busy: place " << place << " in the queue\n";
-            },
+            {.title = options_.title,
+             .when_busy = options_.no_wait ? client::WhenBusy::GiveUp : client::WhenBusy::Queue,
+             .on_place =
+                 [](std::uint32_t place) {
+                     std::cerr << "tessera watch: the cluster is busy: place " << place << " in the queue\n";
+                 }},
             interrupts_.token());
         if (std::holds_alternative<client::Stopped>(joined)) return ExitInterrupted;
         if (const auto* busy = std::get_if<client::Busy>(&joined))
@@ -106,11 +108,11 @@ class Watch {
     }
 
     void open_view() {
-        client::LiveViewRequest request{.spp = options_.spp,
-                                        .picture = wire::PictureEncoding::Planes,
-                                        .name = options_.view,
-                                        .share = !options_.view.empty()};
-        if (!request.share) {
+        session::ViewRequest request{.name = options_.view,
+                                     .stop = {.spp = options_.spp},
+                                     .picture = session::PictureEncoding::Planes};
+        const bool shares = !options_.view.empty();
+        if (!shares) {
             // Until somebody loads a scene there may be none.
             while (!view::choose_camera(session_->scene(), "") && !interrupts_.token().stop_requested()) {
                 if (!told_) std::cerr << "tessera watch: the scene has no camera yet: waiting for one\n";
@@ -128,7 +130,7 @@ class Watch {
             request.view.channels = {frame::Channel::Radiance};
             request.view.filter = options_.filter;
         }
-        session_->open_view(View, request);
+        shares ? session_->share_view(View, request) : session_->request_view(View, request);
     }
 
     int watch(TimePoint end) {
@@ -178,7 +180,7 @@ class Watch {
     SteadyClock clock_;
     Size size_;
     bool to_terminal_ = false, told_ = false;
-    std::unique_ptr<client::LiveSession> session_;
+    std::unique_ptr<client::Session> session_;
 };
 
 int run(const WatchOptions& options) {

@@ -11,7 +11,7 @@
 
 namespace tessera::master {
 
-using wire::OutputState;
+using session::OutputState;
 
 namespace {
 
@@ -100,7 +100,7 @@ void DisplayService::forget() {
     open_.reset();
 }
 
-std::string DisplayService::adjust(const wire::AdjustDisplay& request) {
+std::string DisplayService::adjust(const session::DisplayAdjustment& request) {
     if (!open_) return "no display is open: open one with tessera display open";
     display::Display adjusted = open_->display;
     if (request.eye_separation) adjusted.eye_separation = *request.eye_separation;
@@ -182,10 +182,11 @@ void DisplayService::tell(std::size_t output, std::uint64_t request) {
     const SessionRecord* session = sessions_.find(shower.session);
     if (session == nullptr) return;
     ++shower.unanswered;
-    outbox_.control(session->control, wire::OutputOpened{.request = request,
-                                                         .description = open_->description,
-                                                         .index = static_cast<std::uint32_t>(output),
-                                                         .pattern = open_->pattern});
+    outbox_.control(session->control,
+                    wire::OutputOpened{.request = request,
+                                       .output = {.description = open_->description,
+                                                  .index = static_cast<std::uint32_t>(output),
+                                                  .pattern = open_->pattern}});
 }
 
 std::optional<std::size_t> DisplayService::output_of(SessionId session) const {
@@ -316,13 +317,13 @@ void DisplayService::present(const std::optional<FrameLock::Present>& present, T
             const SessionRecord* session =
                 open_->showers[output] ? sessions_.find(open_->showers[output]->session) : nullptr;
             if (session == nullptr) continue;
-            wire::PresentFrame order{.frame = present->frame, .version = open_->version};
+            session::PresentFrame order{.frame = present->frame, .version = open_->version};
             // Without a word of its clock yet: at once.
             if (const auto clock = session->clock.offset(now)) {
                 order.at = (present->at.time_since_epoch() + clock->offset).count();
                 order.bound = clock->bound.count();
             }
-            outbox_.control(session->control, order);
+            outbox_.control(session->control, wire::PresentFrame{order});
         }
     }
     send_waiting(now);
@@ -346,13 +347,13 @@ TimePoint DisplayService::next_event() const {
     return open_ ? open_->lock.next_event() : TimePoint::max();
 }
 
-wire::DisplayStatus DisplayService::status(TimePoint now) const {
+session::DisplayStatus DisplayService::status(TimePoint now) const {
     if (!open_) return {};
-    wire::DisplayStatus status{.name = open_->display.name.empty() ? "display" : open_->display.name,
-                               .frames = open_->lock.frames(),
-                               .version = open_->version,
-                               .rate = open_->lock.rate(now),
-                               .outputs = {}};
+    session::DisplayStatus status{.name = open_->display.name.empty() ? "display" : open_->display.name,
+                                  .frames = open_->lock.frames(),
+                                  .version = open_->version,
+                                  .rate = open_->lock.rate(now),
+                                  .outputs = {}};
     for (std::size_t i = 0; i < open_->showers.size(); ++i) {
         const FrameLock::Output& output = open_->lock.outputs()[i];
         const bool is_coming = open_->showers[i] && output.state == OutputState::Absent;

@@ -32,7 +32,7 @@ class DisplayService {
     bool is_open() const { return open_.has_value(); }
 
     // "" or what is wrong.
-    std::string adjust(const wire::AdjustDisplay& request);
+    std::string adjust(const session::DisplayAdjustment& request);
     void move_head(const display::Head& head);
     std::string join(const SessionRecord& session, const wire::JoinOutput& request, TimePoint now);
     void ready(SessionId session, const wire::OutputReady& ready, TimePoint now);
@@ -46,7 +46,7 @@ class DisplayService {
 
     void tick(TimePoint now);  // after every message
     TimePoint next_event() const;
-    wire::DisplayStatus status(TimePoint now) const;
+    session::DisplayStatus status(TimePoint now) const;
 
   private:
     // A process that shows an output. Pictures and orders go different ways, so it gets pictures only when it

@@ -77,8 +77,8 @@ void DisplayService::take(const GroupStage& stage) {
     for (std::size_t i = 0; i < display.outputs.size(); ++i) {
         const std::vector<PlannedEye>& eyes = open_->plan.at(i);
         OutputOrder order{.frame = frame.number, .output = i, .version = stage.version, .eyes = {}};
-        order.encoding = display::takes_linear_light(display.outputs[i]) ? wire::PictureEncoding::Half
-                                                                         : wire::PictureEncoding::Bytes;
+        order.encoding = display::takes_linear_light(display.outputs[i]) ? session::PictureEncoding::Half
+                                                                         : session::PictureEncoding::Bytes;
         order.look = {display.exposure, display.white};
         order.stereo_difference = display.stereo_difference && eyes.size() == 2 && stage.scale == 1;
         for (const PlannedEye& eye : eyes) {

@@ -4,7 +4,7 @@
 
 namespace tessera::master {
 
-using wire::OutputState;
+using session::OutputState;
 
 namespace {
 constexpr std::size_t KeptTimes = 64;

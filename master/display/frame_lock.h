@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mediator/base/clock.h"
+#include "mediator/session/status.h"
 #include "mediator/wire/display_messages.h"
 
 namespace tessera::master {
@@ -34,7 +35,7 @@ struct LockSettings {
 class FrameLock {
   public:
     struct Output {
-        wire::OutputState state = wire::OutputState::Absent;
+        session::OutputState state = session::OutputState::Absent;
         std::uint64_t in_hand = 0;  // frame that was sent and not answered; 0 = free
         TimePoint sent_at{};        // when
         Duration bound{0};          // of what is known of its clock

@@ -60,14 +60,14 @@ NodeRecord* NodeTable::by_token(std::uint64_t token) {
 void NodeTable::heartbeat(NodeRecord& node, const wire::Heartbeat& heartbeat, TimePoint now) {
     node.state = heartbeat;
     node.heartbeat_at = now;
-    node.leaving = node.leaving || heartbeat.phase == wire::NodePhase::Leaving;
+    node.leaving = node.leaving || heartbeat.phase == session::NodePhase::Leaving;
     std::erase_if(node.pending,
                   [&](const auto& work) { return work.second <= heartbeat.last_work_sequence; });
     const auto round_trip =
         node.clock.heartbeat(heartbeat.sent_at, heartbeat.echo_sent_at, heartbeat.echo_delay, now);
     if (round_trip) node.round_trip_seconds = seconds(*round_trip);
     const bool works =
-        heartbeat.phase == wire::NodePhase::Rendering || heartbeat.phase == wire::NodePhase::Building;
+        heartbeat.phase == session::NodePhase::Rendering || heartbeat.phase == session::NodePhase::Building;
     if (!works || heartbeat.progress != node.last_progress) {
         node.last_progress = heartbeat.progress;
         node.last_progress_at = now;

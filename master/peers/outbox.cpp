@@ -16,10 +16,10 @@ void Outbox::control(net::PeerId peer, net::Bytes&& encoded) {
 void Outbox::bulk(net::PeerId peer, const wire::BulkMessage& message) {
     const bool is_film = std::holds_alternative<wire::FrameTile>(message) ||
                          std::holds_alternative<wire::PictureChunk>(message);
-    bulk(peer, wire::encode(message), is_film ? &wire::WireBytes::film : &wire::WireBytes::blobs);
+    bulk(peer, wire::encode(message), is_film ? &session::WireBytes::film : &session::WireBytes::blobs);
 }
 
-void Outbox::bulk(net::PeerId peer, net::Bytes&& encoded, std::uint64_t wire::WireBytes::*counter) {
+void Outbox::bulk(net::PeerId peer, net::Bytes&& encoded, std::uint64_t session::WireBytes::*counter) {
     bytes.*counter += encoded.size();
     put(net::Link::Bulk, peer, std::move(encoded));
 }

@@ -18,7 +18,7 @@ class Outbox {
     void control(net::PeerId peer, const wire::ControlMessage& message);
     void control(net::PeerId peer, net::Bytes&& encoded);
     void bulk(net::PeerId peer, const wire::BulkMessage& message);
-    void bulk(net::PeerId peer, net::Bytes&& encoded, std::uint64_t wire::WireBytes::*counter);
+    void bulk(net::PeerId peer, net::Bytes&& encoded, std::uint64_t session::WireBytes::*counter);
 
     void flush();  // tries again what waits
     bool waiting() const { return !queues_.empty(); }
@@ -29,7 +29,7 @@ class Outbox {
     // list.
     std::vector<std::pair<net::Link, net::PeerId>> take_lost() { return std::exchange(lost_, {}); }
 
-    wire::WireBytes bytes;  // both directions; the receiving side is counted by whoever receives
+    session::WireBytes bytes;  // both directions; the receiving side is counted by whoever receives
 
   private:
     void put(net::Link link, net::PeerId peer, net::Bytes&& message);

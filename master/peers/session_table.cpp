@@ -7,7 +7,6 @@ namespace tessera::master {
 void SessionTable::remove(SessionId id) {
     sessions_.erase(id);
     std::erase(queue_, id);
-    if (on_stage_ == id) on_stage_.reset();
 }
 
 SessionRecord* SessionTable::find(SessionId id) {
@@ -36,16 +35,8 @@ SessionRecord* SessionTable::by_token(std::uint64_t token) {
     return nullptr;
 }
 
-void SessionTable::queue_for_stage(SessionId id) {
-    if (on_stage_ == id || place(id) != 0) return;
-    queue_.push_back(id);
-}
-
-std::optional<SessionId> SessionTable::next_on_stage() {
-    if (!stage_is_free() || queue_.empty()) return std::nullopt;
-    on_stage_ = queue_.front();
-    queue_.pop_front();
-    return on_stage_;
+void SessionTable::enqueue(SessionId id) {
+    if (place(id) == 0) queue_.push_back(id);
 }
 
 std::uint32_t SessionTable::place(SessionId id) const {

@@ -36,11 +36,10 @@ struct SessionRecord {
     TimePoint heartbeat_at{};
     net::PeerClock clock;
     std::uint32_t told_place = 0;            // in the queue, as last told
-    std::optional<wire::JoinScene> joining;  // waits for the stage to join or start the live scene
+    std::optional<wire::JoinScene> joining;  // waits in the queue
 };
 
-// Clients, and who of them has the stage: one batch scene at a time, or the live scene for all that joined
-// it. The others wait in order of arrival.
+// Clients, and those of them that wait for a scene, in order of arrival.
 class SessionTable {
   public:
     SessionRecord& add(SessionRecord record) {
@@ -55,23 +54,14 @@ class SessionTable {
     std::map<SessionId, SessionRecord>& all() { return sessions_; }
     const std::map<SessionId, SessionRecord>& all() const { return sessions_; }
 
-    void queue_for_stage(SessionId id);  // harmless when already queued or on stage
-    bool stage_is_free() const { return !on_stage_ && !live_; }
-    bool stage_is_live() const { return live_; }
-    void give_stage_to_live_scene() { live_ = true; }
-    void end_live_scene() { live_ = false; }
+    void enqueue(SessionId id);  // harmless when already queued
     void leave_queue(SessionId id) { std::erase(queue_, id); }
-    std::optional<SessionId> on_stage() const { return on_stage_; }
-    void leave_stage() { on_stage_.reset(); }
-    std::optional<SessionId> next_on_stage();  // takes the first of the queue, if the stage is free
-    std::uint32_t place(SessionId id) const;   // 1 = next; 0 = not waiting
+    std::uint32_t place(SessionId id) const;  // 1 = next; 0 = not waiting
     const std::deque<SessionId>& queue() const { return queue_; }
 
   private:
     std::map<SessionId, SessionRecord> sessions_;
     std::deque<SessionId> queue_;
-    std::optional<SessionId> on_stage_;
-    bool live_ = false;
 };
 
 }  // namespace tessera::master

@@ -34,12 +34,11 @@ void Delivery::taken(SessionId session, const wire::FrameTaken& taken) {
 
 void Delivery::resumed(SessionId session) {
     for (auto& [key, watcher] : watchers_) {
-        if (key.first != session || watcher.wish.job) continue;  // an end goes on where it was
+        if (key.first != session) continue;
         watcher.on_its_way = 0;
         watcher.seen.reset();
     }
-    std::erase_if(shipments_,
-                  [&](const Shipment& shipment) { return shipment.to.first == session && !shipment.is_end; });
+    std::erase_if(shipments_, [&](const Shipment& shipment) { return shipment.to.first == session; });
 }
 
 void Delivery::forget(ViewId view) {
@@ -75,7 +74,8 @@ void Delivery::offer(const ViewState& view, TimePoint now, Duration interval) {
     for (const auto& [key, watcher] : watchers_) {
         const bool has_seen = watcher.seen == shown && watcher.seen_version == view.version;
         if (watcher.view != view.id || watcher.on_its_way != 0 || has_seen) continue;
-        if (watcher.wish.job ? !shown.complete : view.passes.empty()) continue;
+        const bool waits = watcher.wish.frames == session::Frames::Last || view.passes.empty();
+        if (waits && !shown.complete) continue;
         free[watcher.wish].push_back(key);
     }
     for (auto& [wish, receivers] : free) {
@@ -102,6 +102,7 @@ Delivery::Making Delivery::frame_of(const ViewState& view, const Wish& wish, std
                      .encoding = wish.picture,
                      .spp = view.request.stop.spp,
                      .complete = view.shown->complete};
+    making.is_end = view.shown->complete && view.run.outcome.has_value();
     if (view.passes.empty()) return making;
     const Pass& pass = view.passes[view.shown->pass];
     making.header.scale = pass.scale;
@@ -115,23 +116,21 @@ void Delivery::begin(const ViewState& view, const Wish& wish, std::vector<Key> r
     Making making = frame_of(view, wish, frame);
     for (const Key& key : receivers) watchers_.at(key).on_its_way = frame;
     making.receivers = std::move(receivers);
-    if (wish.job && !has_picture(view, wish.picture)) {
-        if (wish.film && !view.passes.empty()) {
-            making.film = view.pass().view.id;
-            making.header.film_tiles = view.pass().tiles;
-        }
-        return ship(frame, std::move(making), {});
-    }
+    const bool waited = wish.frames == session::Frames::Last;
+    if (view.passes.empty()) return ship(frame, std::move(making), {});
     const Pass& pass = view.passes[view.shown->pass];
     if (wish.film) {
         making.header.film_tiles = pass.tiles;
-        if (wish.job) {
+        making.header.film_window = pass.view.window;
+        if (waited) {
             making.film = pass.view.id;  // nothing is added to it any more
         } else {
-            film_.deliver(pass.view.id, frame, JobId{frame}, 0, making.header.film_tiles);
+            film_.deliver(pass.view.id, frame, 0, making.header.film_tiles);
         }
     }
-    const bool hash = making.shown.complete && !wish.job;
+    const bool nothing_to_make = waited ? !has_picture(view, wish.picture) : view.run.samples == 0;
+    if (making.is_end && nothing_to_make) return ship(frame, std::move(making), {});
+    const bool hash = making.shown.complete && !waited;
     film_.reconstruct(frame, pass.view, view.version, wish.picture,
                       hash ? FilmStore::FilmHash::Wanted : FilmStore::FilmHash::NotWanted);
     making_.emplace(frame, std::move(making));
@@ -139,9 +138,9 @@ void Delivery::begin(const ViewState& view, const Wish& wish, std::vector<Key> r
 
 void Delivery::report_progress(const ViewState& view, std::uint32_t nodes) {
     for (const auto& [key, watcher] : watchers_) {
-        if (watcher.view != view.id || !watcher.wish.job) continue;
+        if (watcher.view != view.id || watcher.wish.frames != session::Frames::Last) continue;
         if (const SessionRecord* session = sessions_.find(key.first))
-            outbox_.control(session->control, progress_of(view, *watcher.wish.job, nodes));
+            outbox_.control(session->control, wire::ViewProgress{key.second, progress_of(view, nodes)});
     }
 }
 
@@ -170,9 +169,9 @@ void Delivery::take(const Reconstructed& made, TimePoint now) {
 }
 
 void Delivery::ship(std::uint64_t frame, Making&& making, const Reconstructed& made) {
-    wire::LiveFrame header = making.header;
-    const wire::PictureSummary& summary = made.picture.summary;
-    if (making.wish.picture != wire::PictureEncoding::None && made.picture.bytes) {
+    wire::FrameHeader header = making.header;
+    const session::PictureSummary& summary = made.picture.summary;
+    if (making.wish.picture != session::PictureEncoding::None && made.picture.bytes) {
         header.width = summary.width;
         header.height = summary.height;
         header.components = summary.components;
@@ -186,9 +185,8 @@ void Delivery::ship(std::uint64_t frame, Making&& making, const Reconstructed& m
         const auto watcher = watchers_.find(key);
         if (watcher == watchers_.end() || watcher->second.on_its_way != frame) continue;
         const SessionRecord* session = sessions_.find(key.first);
-        const bool is_end = making.wish.job.has_value();
-        const bool has_failed = !made.picture.error.empty() && !is_end;
-        const bool is_reachable = session != nullptr && (session->bulk || is_end);
+        const bool has_failed = !made.picture.error.empty() && !making.is_end;
+        const bool is_reachable = session != nullptr && (session->bulk || making.is_end);
         if (has_failed || is_reachable) {  // what cannot be made is not tried again until there is newer
             watcher->second.seen = making.shown;
             watcher->second.seen_version = header.version;
@@ -198,13 +196,11 @@ void Delivery::ship(std::uint64_t frame, Making&& making, const Reconstructed& m
             continue;
         }
         header.view = key.second;
-        if (is_end) announce_end(*views_.find(making.view), *session, making, made);
+        if (making.is_end) announce_end(*views_.find(making.view), *session, header, made);
         shipments_.push_back({.to = key,
                               .view = making.view,
                               .frame = frame,
-                              .label = making.wish.job.value_or(JobId{frame}),
-                              .is_end = is_end,
-                              .header = is_end ? std::nullopt : std::optional(header),
+                              .header = header,
                               .picture = made.picture.bytes ? made.picture.bytes : no_picture,
                               .tiles = making.tiles,
                               .tile_count = header.film_tiles,
@@ -213,32 +209,28 @@ void Delivery::ship(std::uint64_t frame, Making&& making, const Reconstructed& m
     }
 }
 
-void Delivery::announce_end(const ViewState& view, const SessionRecord& session, const Making& making,
-                            const Reconstructed& made) {
-    wire::JobDone done = summary_of(view, views_.facts, outbox_.bytes);
-    done.job = *making.wish.job;
-    done.tiles = making.header.film_tiles;
+void Delivery::announce_end(const ViewState& view, const SessionRecord& session,
+                            const wire::FrameHeader& header, const Reconstructed& made) {
+    wire::ViewDone done{.number = header.view,
+                        .frame = header.frame,
+                        .summary = summary_of(view, views_.facts, outbox_.bytes)};
     if (made.picture.bytes) {
-        done.picture = made.picture.summary;
-        describe(view, done.picture);
-        done.samples_least = made.samples_least;
-        done.samples_most = made.samples_most;
+        done.summary.picture = made.picture.summary;
+        describe(view, done.summary.picture);
+        done.summary.samples_least = made.samples_least;
+        done.summary.samples_most = made.samples_most;
     }
-    outbox_.control(session.control, done);
+    outbox_.control(session.control, std::move(done));
 }
 
-void Delivery::send(std::vector<ViewId>& delivered) {
+void Delivery::send() {
     std::set<SessionId> busy;
     std::erase_if(shipments_, [&](Shipment& shipment) {
         const SessionRecord* session = sessions_.find(shipment.to.first);
         if (busy.contains(shipment.to.first) || session == nullptr || !session->bulk) return false;
         send(shipment, *session);
-        if (!shipment.is_done()) {
-            busy.insert(shipment.to.first);
-            return false;
-        }
-        if (shipment.is_end) delivered.push_back(shipment.view);
-        return true;
+        if (!shipment.is_done()) busy.insert(shipment.to.first);
+        return shipment.is_done();
     });
 }
 
@@ -248,17 +240,17 @@ void Delivery::send(Shipment& shipment, const SessionRecord& session) {
     while (shipment.picture_sent < shipment.picture->size()) {  // what somebody is waiting for goes first
         if (!has_room()) return;
         const auto piece = next_chunk(*shipment.picture, shipment.picture_sent);
-        outbox_.bulk(*session.bulk, wire::PictureChunk{.job = shipment.label,
+        outbox_.bulk(*session.bulk, wire::PictureChunk{.frame = shipment.frame,
                                                        .total = shipment.picture->size(),
                                                        .offset = shipment.picture_sent,
                                                        .data = {piece.begin(), piece.end()}});
         shipment.picture_sent += piece.size();
     }
     for (; !shipment.tiles.empty() && has_room(); shipment.tiles.pop_front(), ++shipment.tiles_sent)
-        outbox_.bulk(*session.bulk, std::move(shipment.tiles.front()), &wire::WireBytes::film);
+        outbox_.bulk(*session.bulk, std::move(shipment.tiles.front()), &session::WireBytes::film);
     const std::uint32_t until = std::min(shipment.tile_count, shipment.tiles_sent + TilesAhead);
     if (!shipment.film.value || until <= shipment.tiles_requested || !has_room()) return;
-    film_.deliver(shipment.film, shipment.frame, shipment.label, shipment.tiles_requested, until);
+    film_.deliver(shipment.film, shipment.frame, shipment.tiles_requested, until);
     shipment.tiles_requested = until;
 }
 

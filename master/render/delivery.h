@@ -24,15 +24,15 @@ class Delivery {
         : views_(views), sessions_(sessions), outbox_(outbox), film_(film) {}
 
     struct Wish {
-        wire::PictureEncoding picture = wire::PictureEncoding::None;
+        session::PictureEncoding picture = session::PictureEncoding::None;
         bool film = false;
-        std::optional<JobId> job;  // the end alone, under this number
+        session::Frames frames = session::Frames::All;
         friend auto operator<=>(const Wish&, const Wish&) = default;
     };
     void watch(SessionId session, std::uint64_t number, ViewId view, const Wish& wish);
     void leave(SessionId session, std::uint64_t number);
     void taken(SessionId session, const wire::FrameTaken& taken);
-    void resumed(SessionId session);  // what was on its way may be lost: the newest goes again
+    void resumed(SessionId session);  // what was on its way may be lost: it goes again
     void forget(ViewId view);         // closed: nobody watches it any more
 
     std::optional<ViewId> watched(SessionId session, std::uint64_t number) const;
@@ -48,8 +48,8 @@ class Delivery {
     void take(EncodedTile&& tile);
     void take(const Reconstructed& made, TimePoint now);
     std::optional<ViewId> ends(std::uint64_t frame) const;  // the view whose end the frame shows
-    // Sends what is made to those whose links have room. Gives the views whose end has been delivered in full.
-    void send(std::vector<ViewId>& delivered);
+    // Sends what is made to those whose links have room.
+    void send();
 
   private:
     using Key = std::pair<SessionId, std::uint64_t>;
@@ -64,7 +64,8 @@ class Delivery {
         ViewId view;
         Wish wish;
         Shown shown;
-        wire::LiveFrame header;
+        wire::FrameHeader header;
+        bool is_end = false;
         std::deque<net::Bytes> tiles;
         ViewId film;  // of tiles that are made when there is room for them; 0: all are here
         std::vector<Key> receivers;
@@ -74,9 +75,7 @@ class Delivery {
         Key to;
         ViewId view;
         std::uint64_t frame = 0;
-        JobId label;
-        bool is_end = false;
-        std::optional<wire::LiveFrame> header;  // goes first
+        std::optional<wire::FrameHeader> header;  // goes first
         std::shared_ptr<const std::vector<std::byte>> picture;
         std::size_t picture_sent = 0;
         std::deque<net::Bytes> tiles;
@@ -87,7 +86,7 @@ class Delivery {
     Making frame_of(const ViewState& view, const Wish& wish, std::uint64_t frame) const;
     void begin(const ViewState& view, const Wish& wish, std::vector<Key> receivers);
     void ship(std::uint64_t frame, Making&& making, const Reconstructed& made);
-    void announce_end(const ViewState& view, const SessionRecord& session, const Making& making,
+    void announce_end(const ViewState& view, const SessionRecord& session, const wire::FrameHeader& header,
                       const Reconstructed& made);
     void send(Shipment& shipment, const SessionRecord& session);
 

@@ -220,15 +220,15 @@ Dispatcher::Taken Dispatcher::take(const MergeReport& report, TimePoint now) {
     return taken;
 }
 
-std::optional<wire::NodeSummary> Dispatcher::sender(const MergeReport& report) const {
+std::optional<session::NodeSummary> Dispatcher::sender(const MergeReport& report) const {
     const NodeRecord* node = nodes_.by_bulk(report.peer);
     if (node == nullptr) return std::nullopt;
-    return wire::NodeSummary{.id = node->id,
-                             .name = node->hello.name,
-                             .host = node->hello.host,
-                             .backend = node->hello.backend,
-                             .kind = node->hello.kind,
-                             .pid = node->hello.pid};
+    return session::NodeSummary{.id = node->id,
+                                .name = node->hello.name,
+                                .host = node->hello.host,
+                                .backend = node->hello.backend,
+                                .kind = node->hello.kind,
+                                .pid = node->hello.pid};
 }
 
 void Dispatcher::report_contradiction(const Active& pass, const MergeReport& report, const NodeRecord* node) {
@@ -282,8 +282,8 @@ void Dispatcher::node_gone(NodeId node) {
     for (auto& [view, pass] : passes_) pass.scheduler.node_gone(node);
 }
 
-wire::UnitCounts Dispatcher::counts() const {
-    wire::UnitCounts counts = counts_;
+session::UnitCounts Dispatcher::counts() const {
+    session::UnitCounts counts = counts_;
     for (const auto& [view, pass] : passes_) add(counts, pass.scheduler.counts());
     return counts;
 }

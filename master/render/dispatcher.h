@@ -63,7 +63,7 @@ class Dispatcher {
     enum class Taken { Dropped, Known, New };  // New: samples that were not there before
     Taken take(const MergeReport& report, TimePoint now);
     // Who sent it, without a share of work; nothing when it is gone.
-    std::optional<wire::NodeSummary> sender(const MergeReport& report) const;
+    std::optional<session::NodeSummary> sender(const MergeReport& report) const;
     struct Failure {
         ViewId pass;
         std::string message;
@@ -73,7 +73,7 @@ class Dispatcher {
     void node_gone(NodeId node);
 
     // ---- counts ----
-    wire::UnitCounts counts() const;  // of all passes, those under way too
+    session::UnitCounts counts() const;  // of all passes, those under way too
     std::uint64_t malformed_film() const { return malformed_film_; }
     // From the order to stop to the node's word that it has.
     const Percentiles& cancellations() const { return cancellations_; }
@@ -102,7 +102,7 @@ class Dispatcher {
     std::map<ViewId, Active> passes_;
     std::map<UnitId, ViewId> by_first_unit_;
     std::uint64_t next_unit_ = 1;
-    wire::UnitCounts counts_;  // of passes that have ended
+    session::UnitCounts counts_;  // of passes that have ended
     std::uint64_t malformed_film_ = 0;
     std::map<UnitId, TimePoint> cancelled_;  // not confirmed yet
     Percentiles cancellations_;

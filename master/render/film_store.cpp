@@ -33,9 +33,8 @@ void FilmStore::push(net::PeerId peer, net::Bytes film_message) {
     enqueue(Film{peer, std::move(film_message)}, bytes);
 }
 
-void FilmStore::deliver(ViewId view, std::uint64_t frame, JobId label, std::uint32_t first,
-                        std::uint32_t last) {
-    enqueue(Deliver{view, frame, label, first, last}, 0);
+void FilmStore::deliver(ViewId view, std::uint64_t frame, std::uint32_t first, std::uint32_t last) {
+    enqueue(Deliver{view, frame, first, last}, 0);
 }
 
 void FilmStore::copy(ViewId view) {
@@ -43,7 +42,7 @@ void FilmStore::copy(ViewId view) {
 }
 
 void FilmStore::reconstruct(std::uint64_t frame, const view::View& view, Version version,
-                            wire::PictureEncoding encoding, FilmHash hash) {
+                            session::PictureEncoding encoding, FilmHash hash) {
     enqueue(Reconstruct{frame, view, version, encoding, hash}, 0);
 }
 
@@ -139,7 +138,7 @@ void FilmStore::perform(Deliver& task) {
     const OpenFilm* opened = film(task.view);
     if (opened == nullptr) return;
     for (std::uint32_t tile = task.first; tile < task.last; ++tile) {
-        wire::FrameTile frame_tile{.job = task.label,
+        wire::FrameTile frame_tile{.frame = task.frame,
                                    .index = tile,
                                    .count = opened->assembler->tile_count(),
                                    .film = opened->assembler->merged_tile(tile)};

@@ -31,17 +31,17 @@ class FilmStore {
     // The film ends here: it has the full size, for upsampling the picture of another one.
     void keep_features(ViewId view, ViewId of_picture);
     void push(net::PeerId peer, net::Bytes film_message);
-    // Tiles [first, last) as messages for a client, who knows the frame as `label`.
-    void deliver(ViewId view, std::uint64_t frame, JobId label, std::uint32_t first, std::uint32_t last);
+    // Tiles [first, last) as messages for a client.
+    void deliver(ViewId view, std::uint64_t frame, std::uint32_t first, std::uint32_t last);
     void copy(ViewId view);  // FilmBlocks, or nothing when there is no such film
 
     enum class FilmHash { Wanted, NotWanted };
     // Of the film of view.id, which shows `version`. Nothing comes when there is no such film.
     void reconstruct(std::uint64_t frame, const view::View& view, Version version,
-                     wire::PictureEncoding encoding, FilmHash hash);
+                     session::PictureEncoding encoding, FilmHash hash);
     // Of the films of all layers of all eyes. Always comes; with an error when a film is gone.
     void make_output(OutputOrder order);
-    void rehearse(const view::View& view, wire::PictureEncoding encoding) {
+    void rehearse(const view::View& view, session::PictureEncoding encoding) {
         pictures_.rehearse(view, encoding);
     }
     // The views [first, last) are gone for good, and with them what their filters remember.
@@ -73,7 +73,6 @@ class FilmStore {
     struct Deliver {
         ViewId view;
         std::uint64_t frame;
-        JobId label;
         std::uint32_t first, last;
     };
     struct Copy {
@@ -83,7 +82,7 @@ class FilmStore {
         std::uint64_t frame;
         view::View view;
         Version version;
-        wire::PictureEncoding encoding;
+        session::PictureEncoding encoding;
         FilmHash hash;
     };
     using Task =

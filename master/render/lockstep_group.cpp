@@ -99,7 +99,7 @@ std::vector<ViewId> LockstepGroup::restart(const std::vector<GroupView>& wanted,
         view.passes = passes_of(view, coarsest);
         view.current = 0;
         view.shown.reset();
-        view.run = {.phase = wire::JobPhase::Rendering, .started = now, .rendering_since = now};
+        view.run = {.phase = session::Phase::Rendering, .started = now, .rendering_since = now};
         begin_pass(view);
     }
     return removed;

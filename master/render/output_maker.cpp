@@ -63,12 +63,12 @@ void for_each_pixel(const PictureLight& light, const Tone& tone, tbb::task_arena
     });
 }
 
-MadeOutput::Picture encoded(const PictureLight& light, const Tone& tone, wire::PictureEncoding encoding,
+MadeOutput::Picture encoded(const PictureLight& light, const Tone& tone, session::PictureEncoding encoding,
                             tbb::task_arena& arena) {
     static const picture::SrgbBytes to_srgb;
     const std::size_t pixels = std::size_t{light.width} * light.height;
     auto bytes = std::make_shared<std::vector<std::byte>>();
-    if (encoding == wire::PictureEncoding::Bytes) {
+    if (encoding == session::PictureEncoding::Bytes) {
         bytes->resize(3 * pixels);
         auto* const out = reinterpret_cast<std::uint8_t*>(bytes->data());
         for_each_pixel(light, tone, arena, [&](std::size_t i, float r, float g, float b) {

@@ -29,7 +29,7 @@ struct OutputOrder {
     std::size_t output = 0;
     Version version;  // of the scene that the films show
     std::vector<EyePicture> eyes;
-    wire::PictureEncoding encoding = wire::PictureEncoding::Bytes;  // or Half
+    session::PictureEncoding encoding = session::PictureEncoding::Bytes;  // or Half
     Look look;
     bool stereo_difference = false;  // of two eyes whose films have depth
 };

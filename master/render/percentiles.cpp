@@ -11,8 +11,8 @@ void Percentiles::add(Duration duration) {
     ++count_;
 }
 
-wire::StageTimes Percentiles::summary(const std::string& name) const {
-    wire::StageTimes times{.name = name, .count = count_};
+session::StageTimes Percentiles::summary(const std::string& name) const {
+    session::StageTimes times{.name = name, .count = count_};
     if (latest_.empty()) return times;
     std::vector<Duration> sorted(latest_.begin(), latest_.end());
     std::sort(sorted.begin(), sorted.end());

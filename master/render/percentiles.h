@@ -4,7 +4,7 @@
 #include <deque>
 
 #include "mediator/base/clock.h"
-#include "mediator/wire/live_messages.h"
+#include "mediator/session/status.h"
 
 namespace tessera::master {
 
@@ -14,7 +14,7 @@ class Percentiles {
     static constexpr std::size_t Length = 4096;
 
     void add(Duration duration);
-    wire::StageTimes summary(const std::string& name) const;  // nearest rank
+    session::StageTimes summary(const std::string& name) const;  // nearest rank
 
   private:
     std::deque<Duration> latest_;

@@ -105,13 +105,13 @@ bool Picks::take(const FilmBlocks& film) {
 
 void Picks::refuse(const Task& task, const std::string& problem) {
     if (const SessionRecord* session = sessions_.find(task.session))
-        outbox_.control(
-            session->control,
-            wire::Picked{.request = task.request.request, .version = task.version, .problem = problem});
+        outbox_.control(session->control, wire::Picked{.request = task.request.request,
+                                                       .seen = {.version = task.version},
+                                                       .problem = problem});
 }
 
 void Picks::answer(const Task& task, const frame::FilmTile& film) {
-    wire::Picked picked{.request = task.request.request, .version = task.version};
+    session::Picked picked{.version = task.version};
     const float depth = film.plane(film.channels.first_plane(frame::Channel::Depth))[0];
     if (std::isfinite(depth)) {
         const std::uint32_t object = film.channels.first_plane(frame::Channel::ObjectIndex) + 1;
@@ -123,7 +123,8 @@ void Picks::answer(const Task& task, const frame::FilmTile& film) {
         picked.normal = {film.plane(normal)[0], film.plane(normal + 1)[0], film.plane(normal + 2)[0]};
     }
     if (const SessionRecord* session = sessions_.find(task.session))
-        outbox_.control(session->control, std::move(picked));
+        outbox_.control(session->control,
+                        wire::Picked{.request = task.request.request, .seen = picked, .problem = {}});
 }
 
 }  // namespace tessera::master

@@ -18,7 +18,7 @@ void PictureMaker::make(OutputOrder order, std::vector<frame::FilmTile> films) {
     });
 }
 
-void PictureMaker::rehearse(const view::View& view, wire::PictureEncoding encoding) {
+void PictureMaker::rehearse(const view::View& view, session::PictureEncoding encoding) {
     thread_.post([this, view, encoding] {
         constexpr std::uint32_t Edge = 256;
         const auto width = std::min(static_cast<std::uint32_t>(view.window.width), Edge);
@@ -37,7 +37,7 @@ Reconstructed PictureMaker::made(const PictureTask& task) {
     Reconstructed made{.frame = task.frame, .picture = {}, .samples_least = *least, .samples_most = *most};
     made.picture.bytes = std::make_shared<const std::vector<std::byte>>();
     if (task.hash_film) made.film_hash = frame::film_hash(task.film);
-    if (task.encoding != wire::PictureEncoding::None) {
+    if (task.encoding != session::PictureEncoding::None) {
         made.picture = reconstructor_.reconstruct({.film = task.film,
                                                    .later = task.later ? &*task.later : nullptr,
                                                    .features = task.features.get()},

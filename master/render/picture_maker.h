@@ -15,8 +15,8 @@ struct PictureTask {
     std::optional<frame::FilmTile> later;             // with channels that `film` lacks
     std::shared_ptr<const frame::FilmTile> features;  // of the full size, to upsample by; may be null
     view::View view;
-    Version version;                                               // of the scene that the film shows
-    wire::PictureEncoding encoding = wire::PictureEncoding::None;  // None: only facts about the film
+    Version version;                                                     // of the scene that the film shows
+    session::PictureEncoding encoding = session::PictureEncoding::None;  // None: only facts about the film
     bool hash_film = false;
 };
 
@@ -29,7 +29,7 @@ class PictureMaker {
     void make(PictureTask task);
     void make(OutputOrder order, std::vector<frame::FilmTile> films);
     // A made-up film of at most 256 x 256 pixels, since somebody is waiting.
-    void rehearse(const view::View& view, wire::PictureEncoding encoding);
+    void rehearse(const view::View& view, session::PictureEncoding encoding);
     void forget(ViewId first, ViewId last);  // views [first, last)
 
   private:

@@ -17,18 +17,18 @@ double since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-std::vector<std::byte> encode(const filter::Planes& picture, wire::PictureEncoding encoding) {
+std::vector<std::byte> encode(const filter::Planes& picture, session::PictureEncoding encoding) {
     switch (encoding) {
-        case wire::PictureEncoding::Png:
+        case session::PictureEncoding::Png:
             return picture::encode_picture(interleaved(picture), picture::FileFormat::Png);
-        case wire::PictureEncoding::Jpeg:
+        case session::PictureEncoding::Jpeg:
             return picture::encode_picture(interleaved(picture), picture::FileFormat::Jpeg);
-        case wire::PictureEncoding::Exr:
+        case session::PictureEncoding::Exr:
             return picture::encode_picture(interleaved(picture), picture::FileFormat::Exr);
-        case wire::PictureEncoding::Planes:
-        case wire::PictureEncoding::None:
-        case wire::PictureEncoding::Bytes:  // of outputs: master/render/output_maker.h
-        case wire::PictureEncoding::Half:
+        case session::PictureEncoding::Planes:
+        case session::PictureEncoding::None:
+        case session::PictureEncoding::Bytes:  // of outputs: master/render/output_maker.h
+        case session::PictureEncoding::Half:
             break;
     }
     const auto bytes = std::as_bytes(picture.values());
@@ -62,9 +62,9 @@ void Reconstructor::forget(ViewId first, ViewId last) {
 }
 
 Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& view, Version version,
-                                          wire::PictureEncoding encoding) {
+                                          session::PictureEncoding encoding) {
     Reconstruction result{.bytes = std::make_shared<const std::vector<std::byte>>()};
-    wire::PictureSummary& summary = result.summary;
+    session::PictureSummary& summary = result.summary;
     const auto choice = filter::parse_choice(view.filter, filter::catalog());
     if (!choice) {
         result.error = choice.error().what();
@@ -110,8 +110,8 @@ const filter::Planes& Reconstructor::filtered(const frame::FilmTile& film, const
     return output_.picture;
 }
 
-double Reconstructor::rehearse(const view::View& asked, wire::PictureEncoding encoding, std::uint32_t width,
-                               std::uint32_t height) {
+double Reconstructor::rehearse(const view::View& asked, session::PictureEncoding encoding,
+                               std::uint32_t width, std::uint32_t height) {
     view::View view = asked;
     view.id = {};  // no picture of the view
     const Rect rect{0, 0, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};

@@ -12,7 +12,7 @@ namespace tessera::master {
 
 // A picture made of a film, and how.
 struct Reconstruction {
-    wire::PictureSummary summary;
+    session::PictureSummary summary;
     std::shared_ptr<const std::vector<std::byte>> bytes;  // never null; empty when it failed
     std::string error;
 };
@@ -32,14 +32,14 @@ class Reconstructor {
   public:
     // Of view.id; `version`: of the scene that the film shows.
     Reconstruction reconstruct(const Films& films, const view::View& view, Version version,
-                               wire::PictureEncoding encoding);
+                               session::PictureEncoding encoding);
 
     // The filtered picture alone, in memory of this object until the next call. Throws Error.
     const filter::Planes& filtered(const frame::FilmTile& film, const view::View& view, Version version);
     tbb::task_arena& arena() { return arena_; }
 
     // Seconds that the same takes on a made-up film of about `pixels`: for the first prediction.
-    double rehearse(const view::View& view, wire::PictureEncoding encoding, std::uint32_t width,
+    double rehearse(const view::View& view, session::PictureEncoding encoding, std::uint32_t width,
                     std::uint32_t height);
 
     void forget(ViewId first, ViewId last);  // the filters of the views [first, last)

@@ -47,7 +47,7 @@ std::string problem_of(const view::CameraPose& camera) {
 
 }  // namespace
 
-std::string problem_of(const ViewRequest& request) {
+std::string problem_of(const session::ViewRequest& request) {
     const view::View& view = request.view;
     if (view.width == 0 || view.height == 0 || view.width > MaxEdge || view.height > MaxEdge) {
         return "picture size " + std::to_string(view.width) + "x" + std::to_string(view.height) +
@@ -63,12 +63,13 @@ std::string problem_of(const ViewRequest& request) {
     if (!(view.pixel_filter.radius > 0.0f) || view.pixel_filter.radius > 16.0f) {
         return "the pixel filter's radius is not between 0 and 16 pixels";
     }
-    const StopRule& stop = request.stop;
-    if (stop.spp == 0 || stop.spp > MaxSamplesPerPixel) return "samples per pixel are not between 1 and 2^31";
+    const session::StopRule& stop = request.stop;
+    if (stop.spp == 0 || stop.spp > session::MaxSamplesPerPixel)
+        return "samples per pixel are not between 1 and 2^31";
     const auto filter = filter::parse_choice(view.filter, filter::catalog());
     if (!filter) return filter.error().what();
-    const bool has_picture = request.picture != wire::PictureEncoding::None;
-    if (request.frames == ViewRequest::Frames::Last && !has_picture && !request.film) {
+    const bool has_picture = request.picture != session::PictureEncoding::None;
+    if (request.frames == session::Frames::Last && !has_picture && !request.film) {
         return "neither a picture nor the film is asked for: ask for one of them";
     }
     if (stop.budget < Duration::zero()) return "the time budget is negative";
@@ -118,7 +119,7 @@ view::View scaled_view(const view::View& view, std::uint32_t scale) {
     return small;
 }
 
-std::string way_of(const ViewRequest& request) {
+std::string way_of(const session::ViewRequest& request) {
     return request.view.filter + " as " + std::to_string(static_cast<int>(request.picture)) +
            " of channels " + std::to_string(request.view.channels.bits());
 }

@@ -6,8 +6,8 @@
 
 namespace tessera::master {
 
-using wire::JobOutcome;
-using wire::JobPhase;
+using session::Outcome;
+using session::Phase;
 
 // ---- from the request to its passes ----
 
@@ -27,7 +27,7 @@ void ViewRunner::resume(ViewState& view, std::vector<frame::FilmTile>&& blocks, 
     view.restart_wanted = false;
     ++view.revision;
     view.camera_revision = view.asked_revision;
-    view.run = {.phase = JobPhase::Rendering,
+    view.run = {.phase = Phase::Rendering,
                 .started = now,
                 .rendering_since = now,
                 .without_nodes_since = now,
@@ -46,15 +46,15 @@ void ViewRunner::wait_for_nodes(ViewState& view, TimePoint now) {
         return;
     }
     if (prospects.suitable >= view.request.min_nodes) {
-        run.phase = JobPhase::Syncing;
+        run.phase = Phase::Syncing;
         run.without_nodes_since = now;
         return;
     }
-    run.phase = JobPhase::WaitingForNodes;
+    run.phase = Phase::WaitingForNodes;
     if (view.request.wait_limit == Duration::zero() ||
         now - run.without_nodes_since < view.request.wait_limit)
         return;
-    decide(view, JobOutcome::NoNodes,
+    decide(view, Outcome::NoNodes,
            passes_.dispatcher.obstacles(view.request.view, view.version) +
                std::to_string(prospects.suitable) + " of " + std::to_string(view.request.min_nodes) +
                " nodes came: start more nodes or ask for fewer with --wait-nodes",
@@ -63,7 +63,7 @@ void ViewRunner::wait_for_nodes(ViewState& view, TimePoint now) {
 
 // True when it is known how long filter and encoding will take; before, that is tried out.
 bool ViewRunner::budget_is_planned(ViewState& view, TimePoint now) {
-    const StopRule& stop = view.request.stop;
+    const session::StopRule& stop = view.request.stop;
     Run& run = view.run;
     if (!stop.has_budget()) {
         run.deadline = stop.deadline(now, now, {});
@@ -76,7 +76,7 @@ bool ViewRunner::budget_is_planned(ViewState& view, TimePoint now) {
         rehearsed.id = view.id;
         if (!run.rehearsing) passes_.film.rehearse(rehearsed, view.request.picture);
         run.rehearsing = true;
-        run.phase = JobPhase::Syncing;
+        run.phase = Phase::Syncing;
         return false;
     }
     run.predicted_seconds = *predicted;
@@ -97,7 +97,7 @@ std::uint32_t ViewRunner::scale_that_fits(const ViewState& view, TimePoint now) 
 void ViewRunner::begin_rendering(ViewState& view, TimePoint now) {
     Run& run = view.run;
     run.scale = scale_that_fits(view, now);
-    run.phase = JobPhase::Rendering;
+    run.phase = Phase::Rendering;
     run.rendering_since = now;
     view.passes = passes_of(view);
     for (Pass& pass : view.passes) {  // pixels without features are blurred, no more
@@ -180,19 +180,19 @@ void ViewRunner::advance_to_next_pass(ViewState& view, TimePoint now) {
 
 void ViewRunner::advance_picture(ViewState& view, TimePoint now) {
     const Scheduler& scheduler = *passes_.dispatcher.find(view.pass().view.id);
-    const StopRule& stop = view.request.stop;
+    const session::StopRule& stop = view.request.stop;
     Run& run = view.run;
     const bool is_whole = scheduler.tiles_without_samples() == 0;
     if (!run.outcome) {
         const auto prospects = passes_.dispatcher.prospects(view.pass().view, crew(view));
         if (prospects.ready > 0) run.without_nodes_since = now;
         if (scheduler.complete()) {
-            decide(view, JobOutcome::Complete, {}, now);
+            decide(view, Outcome::Complete, {}, now);
         } else if (stop.time_is_up(run.deadline, is_whole, now)) {
-            decide(view, JobOutcome::TimeUp, {}, now);
+            decide(view, Outcome::TimeUp, {}, now);
         } else if (view.request.wait_limit > Duration::zero() &&
                    now - run.without_nodes_since >= view.request.wait_limit) {
-            decide(view, JobOutcome::NoNodes, "all nodes are gone: what was merged so far is delivered", now);
+            decide(view, Outcome::NoNodes, "all nodes are gone: what was merged so far is delivered", now);
         }
     }
     if (run.outcome && !run.is_over() && (scheduler.idle() || now - run.outcome_at > settings_.stop_grace))
@@ -210,8 +210,8 @@ void ViewRunner::account(ViewState& view, const MergeReport& report, Dispatcher:
     view.run.rays += report.part == 0 ? report.rays : 0;
     view.run.nonfinite_samples += report.nonfinite;
     if (const auto node = passes_.dispatcher.sender(report)) {
-        wire::NodeSummary& part = view.run.nodes[node->id];
-        const wire::NodeSummary before = part;
+        session::NodeSummary& part = view.run.nodes[node->id];
+        const session::NodeSummary before = part;
         part = *node;
         part.units = before.units + (report.part == 0 ? 1 : 0);
         part.samples = before.samples + report.pixel_samples;
@@ -236,7 +236,7 @@ void ViewRunner::show(ViewState& view, TimePoint now) {
 
 // ---- the end ----
 
-void ViewRunner::decide(ViewState& view, JobOutcome outcome, std::string message, TimePoint now) {
+void ViewRunner::decide(ViewState& view, Outcome outcome, std::string message, TimePoint now) {
     if (view.run.outcome) return;
     view.restart_wanted = false;  // it may not have begun
     view.run.outcome = outcome;
@@ -250,9 +250,8 @@ void ViewRunner::finish(ViewState& view, TimePoint now) {
     Run& run = view.run;
     if (!view.passes.empty()) observe(view, now);
     const bool is_awaited = delivery_.watchers(view.id) > 0;
-    run.phase =
-        is_awaited && has_picture(view, view.request.picture) ? JobPhase::Filtering : JobPhase::Delivering;
-    if (run.phase == JobPhase::Delivering) run.ended = now;
+    run.phase = is_awaited && has_picture(view, view.request.picture) ? Phase::Filtering : Phase::Delivering;
+    if (run.phase == Phase::Delivering) run.ended = now;
     send_progress(view, now);
     if (!view.passes.empty()) return show(view, now);
     view.shown = Shown{.revision = view.revision, .asked = view.camera_revision, .complete = true};
@@ -263,17 +262,17 @@ void ViewRunner::take(Reconstructed&& made, TimePoint now) {
     if (!made.picture.error.empty()) events_({wire::Severity::Error, made.picture.error});
     const auto ended = delivery_.ends(made.frame);
     ViewState* view = ended ? views_.find(*ended) : nullptr;
-    if (view != nullptr && view->run.phase == JobPhase::Filtering) {
+    if (view != nullptr && view->run.phase == Phase::Filtering) {
         Run& run = view->run;
-        if (view->request.stop.has_budget() && run.outcome == JobOutcome::TimeUp && run.deadline) {
+        if (view->request.stop.has_budget() && run.outcome == Outcome::TimeUp && run.deadline) {
             time_budget_.measured(run.way, view->request.view.window.pixel_count(),
                                   seconds(now - *run.deadline));
         }
         if (!made.picture.error.empty()) {
-            run.outcome = JobOutcome::Failed;
+            run.outcome = Outcome::Failed;
             run.message = made.picture.error;
         }
-        run.phase = JobPhase::Delivering;
+        run.phase = Phase::Delivering;
         run.ended = now;
         send_progress(*view, now);
     }
@@ -287,7 +286,7 @@ void ViewRunner::take(const Rehearsed& rehearsed) {
 
 void ViewRunner::unit_failed(ViewState& view, const std::string& problem, TimePoint now) {
     if (++view.failures < settings_.failure_limit) return;
-    if (!view.shows_all()) return decide(view, JobOutcome::Failed, problem, now);
+    if (!view.shows_all()) return decide(view, Outcome::Failed, problem, now);
     view.problem = problem;
     const std::string text = "view " + view.name + " is not rendered: " + problem;
     events_({wire::Severity::Error, text});
@@ -342,8 +341,7 @@ void ViewRunner::tell_of_waiting(ViewState& view, TimePoint now) {
 }
 
 void ViewRunner::show_progress(ViewState& view, TimePoint now) {
-    if (view.run.phase == JobPhase::Delivering || now - view.progress_sent < settings_.progress_interval)
-        return;
+    if (view.run.phase == Phase::Delivering || now - view.progress_sent < settings_.progress_interval) return;
     send_progress(view, now);
 }
 
@@ -353,7 +351,7 @@ void ViewRunner::send_progress(ViewState& view, TimePoint now) {
 }
 
 TimePoint ViewRunner::next_event(const ViewState& view, TimePoint now) const {
-    if (view.is_complete() && view.run.phase != JobPhase::Filtering)
+    if (view.is_complete() && view.run.phase != Phase::Filtering)
         return now + Duration(std::chrono::seconds(1));
     TimePoint next = now + (view.shows_all() ? settings_.frame_interval : settings_.progress_interval);
     if (view.run.outcome) return next;

@@ -50,7 +50,7 @@ class ViewRunner {
     void unit_failed(ViewState& view, const std::string& problem, TimePoint now);
     // The film goes on with another filter; not for a change that restarts.
     void change_filter(ViewState& view, const FilterChange& change, TimePoint now);
-    void decide(ViewState& view, wire::JobOutcome outcome, std::string message, TimePoint now);
+    void decide(ViewState& view, session::Outcome outcome, std::string message, TimePoint now);
 
     void take(Reconstructed&& made, TimePoint now);
     void take(const Rehearsed& rehearsed);

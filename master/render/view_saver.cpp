@@ -11,13 +11,12 @@ const Scheduler* ViewSaver::accumulating(const ViewState& view) const {
 void ViewSaver::save(Hash128 scene_hash) {
     saving_.emplace();
     for (const auto& [id, view] : views_.all()) {
-        if (view.in_group() || !view.shows_all()) continue;
+        if (view.in_group()) continue;
         wire::SavedView& saved = saving_->views[id];
         saved = {.name = view.name,
                  .owner_user = view.owner.user,
                  .owner_key = view.owner.key,
-                 .view = view.request.view,
-                 .spp = view.request.stop.spp,
+                 .request = view.request,
                  .scene_hash_of_film = scene_hash,
                  .blocks = {}};
         const Scheduler* pass = accumulating(view);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "master/render/view_request.h"
+#include "mediator/session/view_summary.h"
 
 namespace tessera::master {
 
@@ -34,7 +35,7 @@ struct Shown {
 
 // Where a view is on its way to its end; starts over with its passes.
 struct Run {
-    wire::JobPhase phase = wire::JobPhase::WaitingForNodes;
+    session::Phase phase = session::Phase::WaitingForNodes;
     TimePoint started{}, rendering_since{};
     TimePoint without_nodes_since{};
     std::optional<TimePoint> ready_since;  // with a budget: the nodes are ready
@@ -43,19 +44,19 @@ struct Run {
     double predicted_seconds = 0.0;        // with a budget: from the deadline to the encoded picture
     bool rehearsing = false;
     std::uint32_t scale = 1;                  // rendered at this part of the size, and upsampled
-    std::optional<wire::JobOutcome> outcome;  // decided; units may still be on their way back
+    std::optional<session::Outcome> outcome;  // decided; units may still be on their way back
     TimePoint outcome_at{};
     std::string message;  // why, unless complete
     std::optional<TimePoint> first_picture, ended;
-    std::uint64_t samples = 0;                  // merged in the pass under way, of all pixels
-    TimePoint seen_at{};                        // when that was so
-    std::map<NodeId, wire::NodeSummary> nodes;  // all that took part, gone ones too
-    wire::UnitCounts units;                     // of the pass under way
+    std::uint64_t samples = 0;                     // merged in the pass under way, of all pixels
+    TimePoint seen_at{};                           // when that was so
+    std::map<NodeId, session::NodeSummary> nodes;  // all that took part, gone ones too
+    session::UnitCounts units;                     // of the pass under way
     std::uint64_t rays = 0, nonfinite_samples = 0;
-    wire::WireBytes bytes_before;  // the master's counters at the start
+    session::WireBytes bytes_before;  // the master's counters at the start
 
-    bool is_rendering() const { return phase == wire::JobPhase::Rendering; }
-    bool is_over() const { return phase == wire::JobPhase::Filtering || phase == wire::JobPhase::Delivering; }
+    bool is_rendering() const { return phase == session::Phase::Rendering; }
+    bool is_over() const { return phase == session::Phase::Filtering || phase == session::Phase::Delivering; }
 };
 
 // Who opened a view. Whoever has the same user and key is the same.
@@ -70,8 +71,8 @@ struct ViewState {
     ViewId id;  // passes have the ids from here on
     std::string name;
     ViewOwner owner;
-    view::View asked;     // as its owner said it
-    ViewRequest request;  // its view with the channels that its filter needs
+    view::View asked;              // as its owner said it
+    session::ViewRequest request;  // its view with the channels that its filter needs
     std::optional<std::uint32_t>
         group_priority;                // in lockstep with others (lockstep_group.h), without an owner
     std::uint64_t asked_revision = 0;  // of what was asked for, and of what the passes render
@@ -92,7 +93,7 @@ struct ViewState {
 
     bool in_group() const { return group_priority.has_value(); }
     std::uint32_t priority() const { return group_priority.value_or(1); }
-    bool shows_all() const { return request.frames == ViewRequest::Frames::All; }
+    bool shows_all() const { return request.frames == session::Frames::All; }
     Pass& pass() { return passes[current]; }
     const Pass& pass() const { return passes[current]; }
     bool is_last_pass() const { return current + 1 == passes.size(); }

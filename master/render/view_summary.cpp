@@ -2,13 +2,13 @@
 
 namespace tessera::master {
 
-bool has_picture(const ViewState& view, wire::PictureEncoding wanted) {
-    return wanted != wire::PictureEncoding::None && view.run.samples > 0 && view.is_last_pass();
+bool has_picture(const ViewState& view, session::PictureEncoding wanted) {
+    return wanted != session::PictureEncoding::None && view.run.samples > 0 && view.is_last_pass();
 }
 
-wire::JobProgress progress_of(const ViewState& view, JobId job, std::uint32_t nodes) {
-    wire::JobProgress progress{
-        .job = job, .phase = view.run.phase, .rays = view.run.rays, .nodes = nodes, .elapsed = {}};
+session::ViewProgress progress_of(const ViewState& view, std::uint32_t nodes) {
+    session::ViewProgress progress{
+        .phase = view.run.phase, .rays = view.run.rays, .nodes = nodes, .elapsed = {}};
     const view::View& last = view.passes.empty() ? view.request.view : view.passes.back().view;
     progress.samples = view.run.samples;
     progress.samples_expected = last.window.pixel_count() * view.request.stop.most_samples();
@@ -16,17 +16,18 @@ wire::JobProgress progress_of(const ViewState& view, JobId job, std::uint32_t no
     return progress;
 }
 
-wire::JobDone summary_of(const ViewState& view, const SceneFacts& facts, const wire::WireBytes& bytes) {
+session::ViewSummary summary_of(const ViewState& view, const SceneFacts& facts,
+                                const session::WireBytes& bytes) {
     const Run& run = view.run;
-    wire::JobDone done{.outcome = *run.outcome,
-                       .message = run.message,
-                       .version = view.version,
-                       .seed = view.request.view.seed,
-                       .rays = run.rays,
-                       .nonfinite_samples = run.nonfinite_samples,
-                       .triangles = facts.triangles,
-                       .instances = facts.instances,
-                       .lights = facts.lights};
+    session::ViewSummary done{.outcome = *run.outcome,
+                              .message = run.message,
+                              .version = view.version,
+                              .seed = view.request.view.seed,
+                              .rays = run.rays,
+                              .nonfinite_samples = run.nonfinite_samples,
+                              .triangles = facts.triangles,
+                              .instances = facts.instances,
+                              .lights = facts.lights};
     if (!view.passes.empty()) {
         done.seconds_render = seconds(*run.ended - run.rendering_since);
         done.samples = run.samples;
@@ -40,7 +41,7 @@ wire::JobDone summary_of(const ViewState& view, const SceneFacts& facts, const w
     return done;
 }
 
-void describe(const ViewState& view, wire::PictureSummary& picture) {
+void describe(const ViewState& view, session::PictureSummary& picture) {
     picture.seconds_predicted = view.run.predicted_seconds;
     picture.scale = view.run.scale;
     if (view.run.scale == 1) return;

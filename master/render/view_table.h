@@ -54,7 +54,7 @@ class ViewTable {
     const std::map<ViewId, ViewState>& all() const { return views_; }
 
     SceneFacts facts;
-    wire::WireBytes bytes_at_start;  // of the master, before the scene came: what views are charged with
+    session::WireBytes bytes_at_start;  // of the master, before the scene came: what views are charged with
     // Changes wait to be published: no pass begins meanwhile.
     bool passes_held = false;
 

@@ -34,22 +34,21 @@ Views::Views(const ViewSettings& settings, const RenderServices& services, Sessi
 
 // ---- clients ----
 
-std::string Views::share(SessionId session, std::uint64_t number, const std::string& name,
-                         const Delivery::Wish& wish) {
-    const ViewState* view = table_.named(name);
-    if (view == nullptr) return "no view is named '" + name + "': ask for the views that there are";
-    delivery_.watch(session, number, view->id, wish);
+std::string Views::share(SessionId session, std::uint64_t number, const session::ViewRequest& wanted) {
+    const ViewState* view = table_.named(wanted.name);
+    if (view == nullptr) return "no view is named '" + wanted.name + "': ask for the views that there are";
+    delivery_.watch(session, number, view->id, {wanted.picture, wanted.film, wanted.frames});
     return {};
 }
 
-std::string Views::open(const ViewOwner& owner, std::uint64_t number, ViewRequest request,
-                        const Delivery::Wish& wish, Version version, TimePoint now) {
+std::string Views::open(const ViewOwner& owner, std::uint64_t number, session::ViewRequest request,
+                        Version version, TimePoint now) {
     if (std::string problem = problem_of(request); !problem.empty()) return problem;
     view::View completed = request.view;
     complete(completed);
     const std::uint64_t film_bytes =
         4 * (1 + completed.channels.plane_count()) * completed.window.pixel_count();
-    if (request.film && request.frames == ViewRequest::Frames::All && film_bytes > MaxFilmBytes) {
+    if (request.film && request.frames == session::Frames::All && film_bytes > MaxFilmBytes) {
         return "the statistics of this view have " + std::to_string(film_bytes >> 20) +
                " MiB a frame, more than 128: ask for a picture, fewer channels or a smaller window";
     }
@@ -60,7 +59,7 @@ std::string Views::open(const ViewOwner& owner, std::uint64_t number, ViewReques
     view->owner = owner;
     view->name = request.name;
     view->orphaned.reset();
-    delivery_.watch(owner.session, number, view->id, wish);
+    delivery_.watch(owner.session, number, view->id, {request.picture, request.film, request.frames});
     change(*view, std::move(request), version, now);
     return {};
 }
@@ -88,15 +87,20 @@ ViewState* Views::find_or_add(const ViewOwner& owner, std::uint64_t number, cons
     return &table_.add();
 }
 
-void Views::change(ViewState& view, ViewRequest&& request, Version version, TimePoint now) {
+void Views::change(ViewState& view, session::ViewRequest&& request, Version version, TimePoint now) {
     const view::View asked = std::exchange(view.asked, request.view);
     complete(request.view);
     request.view.id = view.request.view.id;
     request.view.revision = view.request.view.revision;
     const bool is_new = view.asked_revision == 0;
-    const bool same_terms = !is_new && request.stop == view.request.stop;
+    const bool same_terms = !is_new && request.stop == view.request.stop &&
+                            request.frames == view.request.frames && request.policy == view.request.policy &&
+                            request.reproducible == view.request.reproducible &&
+                            request.tile == view.request.tile;
     view.request.picture = request.picture;
     view.request.film = request.film;
+    view.request.min_nodes = request.min_nodes;
+    view.request.wait_limit = request.wait_limit;
     if (same_terms && request.view == view.request.view) return;
     ++view.asked_revision;
     if (same_terms && !view.restart_wanted && differ_in_filter_alone(asked, view.asked)) {
@@ -118,42 +122,65 @@ void Views::change(ViewState& view, ViewRequest&& request, Version version, Time
     view.version = version;
 }
 
-void Views::close(SessionId session, std::uint64_t number) {
-    const auto view = delivery_.watched(session, number);
-    delivery_.leave(session, number);
-    if (view && delivery_.watchers(*view) == 0 && !table_.find(*view)->in_group()) remove(*view);
-}
-
-void Views::stop(SessionId session, std::uint64_t number, TimePoint now) {
-    const auto watched = delivery_.watched(session, number);
+void Views::end(SessionId session, const wire::EndView& request, TimePoint now) {
+    const auto watched = delivery_.watched(session, request.number);
+    if (!request.deliver) {
+        delivery_.leave(session, request.number);
+        if (watched && delivery_.watchers(*watched) == 0 && !table_.find(*watched)->in_group())
+            remove(*watched);
+        return;
+    }
     ViewState* view = watched ? table_.find(*watched) : nullptr;
-    if (view != nullptr && view->owner.session == session)
-        runner_.decide(*view, wire::JobOutcome::Stopped, "stopped by the client", now);
+    if (view != nullptr && view->owner.session == session && !view->in_group())
+        runner_.decide(*view, session::Outcome::Stopped, "stopped by the client", now);
 }
 
-bool Views::has_job() const {
-    return std::any_of(table_.all().begin(), table_.all().end(),
-                       [](const auto& entry) { return !entry.second.shows_all(); });
-}
-
-std::string Views::set_filter(const std::string& filter, TimePoint now) {
-    const auto refuse = [](const std::string& why) -> std::string { throw Error(ErrorCode::Refused, why); };
-    const auto choice = filter::parse_choice(filter, filter::catalog());
-    if (!choice) return refuse(choice.error().what());
+// The view of that name; without a name the one that there is, of those that somebody waits for first.
+ViewState& Views::view_to_filter(const std::string& name) {
+    const auto refuse = [](const std::string& why) { throw Error(ErrorCode::Refused, why); };
+    std::vector<ViewState*> waited, shown;
     for (auto& [id, view] : table_.all()) {
-        const bool has_features_first = !view.passes.empty() && !view.is_last_pass();
-        if (view.shows_all() || view.run.outcome || has_features_first) continue;
-        if (view.request.picture == wire::PictureEncoding::None) {
-            return refuse(
-                "the frame's client asked for the film alone: nothing would be filtered; start it with "
-                "--filter");
+        if (view.in_group() || (!name.empty() && view.name != name)) continue;
+        if (view.shows_all()) {
+            shown.push_back(&view);
+        } else if (!view.run.outcome) {
+            waited.push_back(&view);
         }
-        const FilterChange change = filter_change(view.request.view, filter);
-        if (change.effect == FilterChange::Effect::Restarted) return refuse(change.text);
-        runner_.change_filter(view, change, now);
+    }
+    const auto& candidates = waited.empty() ? shown : waited;
+    if (candidates.empty() && !name.empty())
+        refuse("no view named '" + name + "' is being rendered: ask for the views that there are");
+    if (candidates.empty()) refuse("no frame is being rendered: try again when one is");
+    if (candidates.size() > 1)
+        refuse("there are " + std::to_string(candidates.size()) + " views: name one of them with --view");
+    return *candidates.front();
+}
+
+std::string Views::set_filter(const std::string& name, const std::string& filter, TimePoint now) {
+    const auto refuse = [](const std::string& why) { throw Error(ErrorCode::Refused, why); };
+    const auto choice = filter::parse_choice(filter, filter::catalog());
+    if (!choice) refuse(choice.error().what());
+    ViewState& view = view_to_filter(name);
+    if (view.request.picture == session::PictureEncoding::None) {
+        refuse(
+            "the frame's client asked for the film alone: nothing would be filtered; start it with "
+            "--filter");
+    }
+    const FilterChange change = filter_change(view.request.view, filter);
+    if (view.shows_all()) {
+        session::ViewRequest wanted = view.request;
+        wanted.view = view.asked;
+        wanted.view.filter = filter;
+        this->change(view, std::move(wanted), view.version, now);
+        if (change.effect == FilterChange::Effect::Restarted)
+            return "filter " + change.view.filter + "; the view starts anew, since it works on other film";
         return change.text;
     }
-    return refuse("no frame is being rendered: try again when one is");
+    const bool has_features_first = !view.passes.empty() && !view.is_last_pass();
+    if (has_features_first) refuse("the frame has just begun: try again in a moment");
+    if (change.effect == FilterChange::Effect::Restarted) refuse(change.text);
+    runner_.change_filter(view, change, now);
+    return change.text;
 }
 
 void Views::pick(SessionId session, const wire::Pick& request, Version version) {
@@ -167,7 +194,7 @@ void Views::session_left(SessionId session, Departure departure, TimePoint now) 
     for (const std::uint64_t number : delivery_.numbers(session)) {
         ViewState& view = *table_.find(*delivery_.watched(session, number));
         if (departure == Departure::Goodbye || !view.shows_all()) {
-            close(session, number);
+            end(session, {.number = number}, now);
             continue;
         }
         delivery_.leave(session, number);
@@ -227,17 +254,17 @@ void Views::restore(std::vector<wire::SavedView>&& saved, Version version, Hash1
         ViewState& view = table_.add();
         view.name = old.name;
         view.owner = {.session = {}, .name = {}, .user = old.owner_user, .key = old.owner_key};
-        view.request.view = std::move(old.view);
+        view.request = std::move(old.request);
         view.request.view.id = {};
         view.request.view.revision = 1;
-        view.request.stop.spp = old.spp;
         view.asked = view.request.view;
         view.asked_revision = 1;
         view.version = version;
         view.waits_since = now;
         view.orphaned = now;
-        // Film of another scene is of no use.
-        if (old.blocks.empty() || old.scene_hash_of_film != scene_hash) continue;
+        // Film of another scene is of no use, and the time of one that has a clock began with it.
+        if (old.blocks.empty() || old.scene_hash_of_film != scene_hash || view.request.stop.has_clock())
+            continue;
         runner_.resume(view, std::move(old.blocks), now);
     }
 }
@@ -341,9 +368,7 @@ void Views::deliver(TimePoint now) {
         delivery_.offer(view, now, settings_.frame_interval);
         if (!view.shows_all()) runner_.show_progress(view, now);
     }
-    std::vector<ViewId> delivered;
-    delivery_.send(delivered);
-    for (const ViewId view : delivered) remove(view);
+    delivery_.send();
     picks_.tick();
 }
 

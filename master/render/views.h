@@ -31,17 +31,15 @@ class Views {
     // ---- clients ----
     // Again with the same number: another camera, size or quality; a filter alone keeps the film. "" or what
     // is wrong with it.
-    std::string open(const ViewOwner& owner, std::uint64_t number, ViewRequest request,
-                     const Delivery::Wish& wish, Version version, TimePoint now);
+    std::string open(const ViewOwner& owner, std::uint64_t number, session::ViewRequest request,
+                     Version version, TimePoint now);
     // Watches the view that has this name, whatever it shows.
-    std::string share(SessionId session, std::uint64_t number, const std::string& name,
-                      const Delivery::Wish& wish);
-    void close(SessionId session, std::uint64_t number);
-    // Ends the view with what there is.
-    void stop(SessionId session, std::uint64_t number, TimePoint now);
-    // Another filter for the view that somebody waits for; throws Error{Refused} with the reason.
-    std::string set_filter(const std::string& filter, TimePoint now);
-    bool has_job() const;
+    std::string share(SessionId session, std::uint64_t number, const session::ViewRequest& wanted);
+    // It is watched no more; or it ends with what there is.
+    void end(SessionId session, const wire::EndView& request, TimePoint now);
+    // Another filter for the view of that name; "" = the one there is. Says what it means for the frame; throws
+    // Error{Refused} with the reason.
+    std::string set_filter(const std::string& name, const std::string& filter, TimePoint now);
     void taken(SessionId session, const wire::FrameTaken& taken) { delivery_.taken(session, taken); }
     void pick(SessionId session, const wire::Pick& request, Version version);
     // Its views stay for a while when it only fell silent.
@@ -58,7 +56,7 @@ class Views {
     bool scene_changed(const scene::ChangeList& changes, const scene::Scene& after);
     void scene_facts(const SceneFacts& facts) { table_.facts = facts; }
     // The master's bytes so far: from here on views are charged with them.
-    void charge_from(const wire::WireBytes& bytes) { table_.bytes_at_start = bytes; }
+    void charge_from(const session::WireBytes& bytes) { table_.bytes_at_start = bytes; }
     // The views of a master before: they wait for their owners. Films go on where they show this scene.
     void restore(std::vector<wire::SavedView>&& saved, Version version, Hash128 scene_hash, TimePoint now);
 
@@ -87,7 +85,8 @@ class Views {
   private:
     ViewState* find_or_add(const ViewOwner& owner, std::uint64_t number, const std::string& name,
                            std::string& problem);
-    void change(ViewState& view, ViewRequest&& request, Version version, TimePoint now);
+    ViewState& view_to_filter(const std::string& name);
+    void change(ViewState& view, session::ViewRequest&& request, Version version, TimePoint now);
     void remove(ViewId view);
     void forget_orphans(TimePoint now);
     void deliver(TimePoint now);

@@ -62,7 +62,8 @@ CheckpointResult CheckpointWriter::write(CheckpointJob job) const {
     try {
         wire::CheckpointState state = recorded(job.authority);
         state.journal = job.number;
-        state.title = std::move(job.title);
+        state.title = std::move(job.scene.title);
+        state.owner = std::move(job.scene.owner);
         state.views = std::move(job.views);
         result.byte_size = write_checkpoint(checkpoint_path(folder_, job.number), job.number, state);
         remove_outdated(folder_);

@@ -16,7 +16,7 @@ namespace tessera::master {
 // the writer's.
 struct CheckpointJob {
     std::uint64_t number = 0;  // Journal::start_segment(), called right before the state was taken
-    std::string title;
+    wire::RecordedTitle scene;
     AuthorityState authority;  // SceneAuthority::save()
     std::vector<wire::SavedView> views;
 };

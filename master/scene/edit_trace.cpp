@@ -27,7 +27,7 @@ class Stage {
         if (from == 0 || to == 0) return;
         seconds_.push_back(std::max(0.0, (static_cast<double>(to) - static_cast<double>(from)) * 1e-9));
     }
-    wire::StageTimes summary() {
+    session::StageTimes summary() {
         std::sort(seconds_.begin(), seconds_.end());
         return {name_, seconds_.size(), rank(0.50), rank(0.99)};
     }
@@ -58,22 +58,22 @@ void EditTraceLog::submitted(const Submitted& edit) {
 }
 
 void EditTraceLog::for_each_up_to(Version version, std::uint64_t& next,
-                                  const std::function<void(wire::EditTrace&)>& visit) {
+                                  const std::function<void(session::EditTrace&)>& visit) {
     for (next = std::max(next, begin()); next < end(); ++next) {
-        wire::EditTrace& edit = edits_[next - begin()];
+        session::EditTrace& edit = edits_[next - begin()];
         if (edit.version.epoch == version.epoch && edit.version.number > version.number) return;
         if (edit.version.epoch == version.epoch) visit(edit);
     }
 }
 
 void EditTraceLog::published(Version version, TimePoint now) {
-    for_each_up_to(version, next_published_, [&](wire::EditTrace& edit) { edit.published = ns(now); });
+    for_each_up_to(version, next_published_, [&](session::EditTrace& edit) { edit.published = ns(now); });
 }
 
 void EditTraceLog::node_built(NodeId node, const std::string& name, Version version, std::int64_t received_at,
                               std::int64_t built_at, const std::optional<net::ClockOffset>& clock) {
     const auto [place, is_new] = nodes_.try_emplace(node, begin());
-    for_each_up_to(version, place->second, [&](wire::EditTrace& edit) {
+    for_each_up_to(version, place->second, [&](session::EditTrace& edit) {
         if (is_new) return;
         edit.nodes.push_back({.name = name,
                               .received = ours(received_at, clock),
@@ -83,22 +83,22 @@ void EditTraceLog::node_built(NodeId node, const std::string& name, Version vers
 }
 
 void EditTraceLog::merged(Version version, TimePoint now) {
-    for_each_up_to(version, next_merged_, [&](wire::EditTrace& edit) { edit.merged = ns(now); });
+    for_each_up_to(version, next_merged_, [&](session::EditTrace& edit) { edit.merged = ns(now); });
 }
 
-std::vector<wire::EditTrace> EditTraceLog::latest(std::size_t count) const {
+std::vector<session::EditTrace> EditTraceLog::latest(std::size_t count) const {
     const auto kept = static_cast<std::ptrdiff_t>(std::min(count, edits_.size()));
     return {edits_.end() - kept, edits_.end()};
 }
 
-std::vector<wire::StageTimes> EditTraceLog::stages() const {
+std::vector<session::StageTimes> EditTraceLog::stages() const {
     Stage to_master("client to master"), to_published("master to published"), to_node("published to node"),
         to_built("node to built"), to_picture("built to picture"), whole("whole");
-    for (const wire::EditTrace& edit : edits_) {
+    for (const session::EditTrace& edit : edits_) {
         to_master.add(edit.submitted, edit.received);
         to_published.add(edit.received, edit.published);
         std::int64_t first_built = 0;
-        for (const wire::NodeTrace& node : edit.nodes) {
+        for (const session::NodeTrace& node : edit.nodes) {
             to_node.add(edit.published, node.received);
             to_built.add(node.received, node.built);
             if (node.built != 0 && (first_built == 0 || node.built < first_built)) first_built = node.built;

@@ -11,7 +11,8 @@
 #include "mediator/base/clock.h"
 #include "mediator/base/ids.h"
 #include "mediator/net/clock_offset.h"
-#include "mediator/wire/live_messages.h"
+#include "mediator/session/edits.h"
+#include "mediator/session/status.h"
 
 namespace tessera::master {
 
@@ -45,11 +46,11 @@ class EditTraceLog {
     void nobody_looks() { next_merged_ = end(); }
 
     // The latest `count` edits in their order.
-    std::vector<wire::EditTrace> latest(std::size_t count) const;
+    std::vector<session::EditTrace> latest(std::size_t count) const;
     // p50 and p99 (nearest rank) over what is kept: "client to master", "master to published", "published to
     // node" and "node to built" (one value per edit and node), "built to picture" (from the first node),
     // "whole" (client to picture).
-    std::vector<wire::StageTimes> stages() const;
+    std::vector<session::StageTimes> stages() const;
     std::uint64_t edit_count() const { return count_; }
     std::uint64_t edit_bytes() const { return bytes_; }  // of all, since the start
 
@@ -58,9 +59,9 @@ class EditTraceLog {
     std::uint64_t begin() const { return count_ - edits_.size(); }
     std::uint64_t end() const { return count_; }
     void for_each_up_to(Version version, std::uint64_t& next,
-                        const std::function<void(wire::EditTrace&)>& visit);
+                        const std::function<void(session::EditTrace&)>& visit);
 
-    std::deque<wire::EditTrace> edits_;
+    std::deque<session::EditTrace> edits_;
     std::uint64_t count_ = 0, bytes_ = 0;
     std::uint64_t next_published_ = 0, next_merged_ = 0;  // the first edit that is not
     std::map<NodeId, std::uint64_t> nodes_;               // the first edit that each one has not built

@@ -76,8 +76,8 @@ void Journal::cleared() {
     kept_.clear();
 }
 
-Expected<void> Journal::opened(const std::string& title) {
-    return append(wire::RecordedTitle{title});
+Expected<void> Journal::opened(const wire::RecordedTitle& scene) {
+    return append(scene);
 }
 
 std::uint64_t Journal::start_segment() {

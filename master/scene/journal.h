@@ -23,7 +23,7 @@ class Journal final : public EditRecorder {
     Expected<void> joined(const wire::RecordedEditor& editor) override;
     Expected<void> edited(const RecordedEdit& edit) override;
     void cleared() override;
-    Expected<void> opened(const std::string& title);
+    Expected<void> opened(const wire::RecordedTitle& scene);
 
     // From now on into a new segment, whose number it returns: the checkpoint of that number holds all that
     // was recorded before. Throws Error{Io}; then it goes on as before.

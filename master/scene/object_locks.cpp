@@ -42,8 +42,8 @@ const std::string* ObjectLocks::held_by_other(ObjectId id, SessionId session) co
     return place == locks_.end() || place->second.session == session ? nullptr : &place->second.name;
 }
 
-std::vector<wire::ObjectLock> ObjectLocks::all() const {
-    std::vector<wire::ObjectLock> list;
+std::vector<session::ObjectLock> ObjectLocks::all() const {
+    std::vector<session::ObjectLock> list;
     for (const auto& [id, holder] : locks_) list.push_back({id, holder.name});
     return list;
 }

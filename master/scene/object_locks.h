@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mediator/scene/scene.h"
-#include "mediator/wire/live_messages.h"
+#include "mediator/session/people.h"
 
 namespace tessera::master {
 
@@ -22,7 +22,7 @@ class ObjectLocks {
 
     // The holder's name where it is another session; null: free.
     const std::string* held_by_other(ObjectId id, SessionId session) const;
-    std::vector<wire::ObjectLock> all() const;  // in id order
+    std::vector<session::ObjectLock> all() const;  // in id order
 
   private:
     struct Holder {

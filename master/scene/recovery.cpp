@@ -52,7 +52,7 @@ class Recoverer {
             const fs::path path = checkpoint_path(folder_, *number);
             auto state = read_checkpoint(path, *number);
             if (state) {
-                recovery_.title = state->title;
+                recovery_.scene = {state->title, state->owner};
                 recovery_.views = std::move(state->views);
                 check_films(path, state->render_revision);
                 auto authority = restored(std::move(*state));
@@ -76,7 +76,7 @@ class Recoverer {
                             "anew");
         }
         for (const fs::path& other : bad) set_aside(other);
-        recovery_.title.clear();
+        recovery_.scene = {};
         recovery_.views.clear();
         return 1;
     }
@@ -111,11 +111,11 @@ class Recoverer {
 
     Expected<void> use(const wire::JournalRecord& record) {
         if (auto replayed = authority_.replay(record); !replayed) return replayed;
-        if (const auto* title = std::get_if<wire::RecordedTitle>(&record)) recovery_.title = title->title;
+        if (const auto* title = std::get_if<wire::RecordedTitle>(&record)) recovery_.scene = *title;
         if (const auto* edit = std::get_if<RecordedEdit>(&record))
             recovery_.edits += edit->editor != 0 ? 1 : 0;
         if (std::holds_alternative<wire::RecordedClose>(record)) {
-            recovery_.title.clear();
+            recovery_.scene = {};
             recovery_.views.clear();
         }
         return {};

@@ -9,8 +9,8 @@
 namespace tessera::master {
 
 struct Recovery {
-    bool found = false;  // there was a session: the authority has it
-    std::string title;   // of its scene; empty = none was open
+    bool found = false;         // there was a session: the authority has it
+    wire::RecordedTitle scene;  // no title: none was open
     std::vector<wire::SavedView> views;
     std::uint64_t edits = 0;         // done again from the journal
     std::uint64_t next_segment = 1;  // for the Journal

@@ -331,8 +331,8 @@ std::vector<std::string> SceneAuthority::lock(SessionId session, const std::stri
     return locks_.lock(session, name, objects, scene_);
 }
 
-std::vector<wire::TransactionSummary> SceneAuthority::history(std::size_t count) const {
-    std::vector<wire::TransactionSummary> list;
+std::vector<session::TransactionSummary> SceneAuthority::history(std::size_t count) const {
+    std::vector<session::TransactionSummary> list;
     const auto& all = history_.all();
     for (auto entry = all.rbegin(); entry != all.rend() && list.size() < count; ++entry) {
         list.push_back({.number = entry->number,
@@ -347,8 +347,8 @@ std::vector<wire::TransactionSummary> SceneAuthority::history(std::size_t count)
     return list;
 }
 
-std::vector<wire::FieldWriter> SceneAuthority::writers(ObjectId object) const {
-    std::vector<wire::FieldWriter> list;
+std::vector<session::FieldWriter> SceneAuthority::writers(ObjectId object) const {
+    std::vector<session::FieldWriter> list;
     for (const auto& [field, writer] : writers_.of(object))
         list.push_back({field, writer->transaction, writer->name, writer->user, writer->time});
     return list;

@@ -14,6 +14,7 @@
 #include "master/scene/object_locks.h"
 #include "master/scene/version_log.h"
 #include "mediator/scene/referrers.h"
+#include "mediator/session/edits.h"
 
 namespace tessera::master {
 
@@ -78,10 +79,10 @@ class SceneAuthority {
                                   const std::vector<ObjectId>& objects);
     void unlock(SessionId session, const std::vector<ObjectId>& objects) { locks_.unlock(session, objects); }
     void release_all(SessionId session) { locks_.release_all(session); }
-    std::vector<wire::ObjectLock> locks() const { return locks_.all(); }
-    std::vector<wire::TransactionSummary> history(std::size_t count) const;  // youngest first
-    std::vector<wire::FieldWriter> writers(ObjectId object) const;           // of fields that were edited
-    std::uint64_t transactions() const { return history_.last(); }           // so many there were
+    std::vector<session::ObjectLock> locks() const { return locks_.all(); }
+    std::vector<session::TransactionSummary> history(std::size_t count) const;  // youngest first
+    std::vector<session::FieldWriter> writers(ObjectId object) const;           // of fields that were edited
+    std::uint64_t transactions() const { return history_.last(); }              // so many there were
 
     // ---- checkpoints ----
     // All that a restarted master needs: a copy that shares its objects, so it costs little; the rest of the

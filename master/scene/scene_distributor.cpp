@@ -70,8 +70,8 @@ void SceneDistributor::refused(NodeRecord& node, const wire::SceneRefused& refus
 
 void SceneDistributor::repair(NodeTable& nodes, TimePoint now, Duration patience) {
     for (auto& [id, node] : nodes.all()) {
-        const bool busy = node.state.phase == wire::NodePhase::Syncing ||
-                          node.state.phase == wire::NodePhase::Building || node.leaving;
+        const bool busy = node.state.phase == session::NodePhase::Syncing ||
+                          node.state.phase == session::NodePhase::Building || node.leaving;
         const bool settled = node.reported == authority_.version() || node.refused == authority_.version();
         if (settled || busy || now - node.sent_at < patience) continue;
         ++resyncs_;

@@ -15,8 +15,8 @@ SessionJournal::SessionJournal(const std::filesystem::path& folder, Duration int
     journal_.emplace(folder, std::move(blobs), recovery_.next_segment);
 }
 
-void SessionJournal::opened(const std::string& title) {
-    if (auto written = journal_->opened(title); !written) throw written.error();
+void SessionJournal::opened(const wire::RecordedTitle& scene) {
+    if (auto written = journal_->opened(scene); !written) throw written.error();
     authority_.record_to(&*journal_);
     is_open_ = true;
 }
@@ -41,7 +41,7 @@ bool SessionJournal::wants_checkpoint(std::uint64_t film_progress, TimePoint now
            saved_ != std::pair(authority_.transactions(), film_progress);
 }
 
-void SessionJournal::write_checkpoint(const std::string& title, std::vector<wire::SavedView>&& views,
+void SessionJournal::write_checkpoint(const wire::RecordedTitle& scene, std::vector<wire::SavedView>&& views,
                                       std::uint64_t film_progress, TimePoint now) {
     last_ = now;
     saved_ = {authority_.transactions(), film_progress};
@@ -49,7 +49,7 @@ void SessionJournal::write_checkpoint(const std::string& title, std::vector<wire
     try {
         const std::uint64_t number = journal_->start_segment();
         writer_.start(
-            {.number = number, .title = title, .authority = authority_.save(), .views = std::move(views)});
+            {.number = number, .scene = scene, .authority = authority_.save(), .views = std::move(views)});
     } catch (const Error& error) {
         events_({wire::Severity::Error, std::string("no checkpoint: ") + error.what()});
     }

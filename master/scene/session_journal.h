@@ -23,14 +23,14 @@ class SessionJournal {
 
     const Recovery& recovery() const { return recovery_; }
     // The scene is open: edits are recorded. Throws Error{Io} when they cannot be.
-    void opened(const std::string& title);
+    void opened(const wire::RecordedTitle& scene);
     void closed();
 
     void tick();
     // It is time for a checkpoint, and there is something new: edits, or film (`film_progress` differs).
     bool wants_checkpoint(std::uint64_t film_progress, TimePoint now) const;
     // The session as it is now goes to disk with these views, which were copied when `film_progress` was so.
-    void write_checkpoint(const std::string& title, std::vector<wire::SavedView>&& views,
+    void write_checkpoint(const wire::RecordedTitle& scene, std::vector<wire::SavedView>&& views,
                           std::uint64_t film_progress, TimePoint now);
 
     std::uint64_t byte_size() const { return journal_->byte_size(); }

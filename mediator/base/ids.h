@@ -21,7 +21,6 @@ using ViewId = Id<struct ViewTag>;
 using UnitId = Id<struct UnitTag>;
 using NodeId = Id<struct NodeTag>;
 using SessionId = Id<struct SessionTag>;
-using JobId = Id<struct JobTag>;
 
 // The scene's version: the epoch is new at every start of a master, the number grows by one per change list.
 struct Version {

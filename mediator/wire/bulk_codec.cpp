@@ -175,11 +175,25 @@ const char* FilmPart::malformed() const {
     return part < parts ? malformed_block(film) : "a part is not one of its parts";
 }
 
+// The film is put together in memory of this size: no larger than any view's.
+const char* FrameHeader::malformed() const {
+    constexpr std::uint64_t MaxFilmPixels = std::uint64_t{1} << 28;
+    constexpr std::int32_t MaxEdge = 65536;
+    if (scale == 0) return "a scale of 0";
+    if ((film_tiles == 0) != film_window.empty()) return "film without a window, or a window without film";
+    if (film_tiles == 0) return nullptr;
+    if (film_window.x < 0 || film_window.y < 0 || film_window.width > MaxEdge ||
+        film_window.height > MaxEdge || film_window.pixel_count() > MaxFilmPixels ||
+        film_tiles > film_window.pixel_count())
+        return "the film's window is absurd";
+    return nullptr;
+}
+
 const char* OutputPicture::malformed() const {
     if (eyes != 1 && eyes != 2) return "a frame for another number of eyes";
-    if (encoding != PictureEncoding::Bytes && encoding != PictureEncoding::Half)
+    if (encoding != session::PictureEncoding::Bytes && encoding != session::PictureEncoding::Half)
         return "an output's picture is neither bytes nor half floats";
-    const std::uint64_t bytes_per_pixel = encoding == PictureEncoding::Bytes ? 3 : 6;
+    const std::uint64_t bytes_per_pixel = encoding == session::PictureEncoding::Bytes ? 3 : 6;
     if (width == 0 || height == 0 || width > display::MaxEdge || height > display::MaxEdge ||
         total != bytes_per_pixel * width * height)
         return "an output's picture has another size than its header says";

@@ -8,8 +8,8 @@
 #include "mediator/base/hash.h"
 #include "mediator/base/ids.h"
 #include "mediator/frame/film_tile.h"
+#include "mediator/session/view_request.h"
 #include "mediator/view/view.h"
-#include "mediator/wire/live_messages.h"
 
 // What goes over the bulk link: a fixed little-endian header, whose fields are the rows in their order, then raw planes.
 namespace tessera::wire {
@@ -66,55 +66,55 @@ struct FilmPart {
     }
     const char* malformed() const;
 };
-// Master to client: the merged film of one tile.
-struct FrameTile {
-    JobId job;
-    std::uint32_t index = 0, count = 0;
-    frame::FilmTile film;  // block means nothing here: the counts say all
-    static constexpr auto describe(auto row) {
-        return std::tuple(row(1, "job", &FrameTile::job), row(2, "index", &FrameTile::index),
-                          row(3, "count", &FrameTile::count), row(4, "film", &FrameTile::film));
-    }
-    const char* malformed() const { return index < count ? nullptr : "a tile is not one of its frame"; }
-};
-// Master to client: a piece of the picture, as JobDone describes it.
-struct PictureChunk {
-    JobId job;
-    std::uint64_t total = 0, offset = 0;
-    std::vector<std::byte> data;  // at most 1 MiB
-    static constexpr auto describe(auto row) {
-        return std::tuple(row(1, "job", &PictureChunk::job), row(2, "total", &PictureChunk::total),
-                          row(3, "offset", &PictureChunk::offset), row(4, "data", &PictureChunk::data));
-    }
-    const char* malformed() const { return malformed_piece(total, offset, data.size()); }
-};
-// Master to client: a frame of a view that it opened, in front of its PictureChunks and FrameTiles, whose job
-// is the frame's number. One is on its way at a time: the next comes after FrameTaken.
-struct LiveFrame {
+// Master to client: a frame of a view, in front of its PictureChunks and FrameTiles, which have its number.
+struct FrameHeader {
     std::uint64_t view = 0, frame = 0;  // the client's number of the view; frames count from 1
     Version version;                    // of the scene that is seen
     std::uint64_t revision = 0;         // of the view: grows with every change of its camera
     std::uint32_t scale = 1;            // 8, 4, 2: a coarse picture of this part of the view's size
     std::uint32_t width = 0, height = 0, components = 0;
-    PictureEncoding encoding = PictureEncoding::None;
+    session::PictureEncoding encoding = session::PictureEncoding::None;
     std::uint64_t picture_bytes = 0;
+    Rect film_window;  // that the tiles cover; empty without film
     std::uint32_t film_tiles = 0;
     std::uint64_t samples_least = 0, samples_most = 0, spp = 0;  // of a pixel, and how many there will be
     bool complete = false;
-    Hash256 film_hash;  // when complete
+    Hash256 film_hash;  // when complete, of a view whose every frame is delivered
     static constexpr auto describe(auto row) {
-        using Self = LiveFrame;
+        using Self = FrameHeader;
         return std::tuple(
             row(1, "view", &Self::view), row(2, "frame", &Self::frame), row(3, "version", &Self::version),
             row(4, "revision", &Self::revision), row(5, "scale", &Self::scale), row(6, "width", &Self::width),
             row(7, "height", &Self::height), row(8, "components", &Self::components),
-            row(9, "encoding", &Self::encoding, UpTo{PictureEncoding::Exr}),
-            row(10, "picture_bytes", &Self::picture_bytes), row(11, "film_tiles", &Self::film_tiles),
-            row(12, "complete", &Self::complete), row(13, "samples_least", &Self::samples_least),
-            row(14, "samples_most", &Self::samples_most), row(15, "spp", &Self::spp),
-            row(16, "film_hash", &Self::film_hash));
+            row(9, "encoding", &Self::encoding, UpTo{session::PictureEncoding::Exr}),
+            row(10, "picture_bytes", &Self::picture_bytes), row(11, "film_window", &Self::film_window),
+            row(12, "film_tiles", &Self::film_tiles), row(13, "complete", &Self::complete),
+            row(14, "samples_least", &Self::samples_least), row(15, "samples_most", &Self::samples_most),
+            row(16, "spp", &Self::spp), row(17, "film_hash", &Self::film_hash));
     }
-    const char* malformed() const { return scale != 0 ? nullptr : "a scale of 0"; }
+    const char* malformed() const;
+};
+// Master to client: the merged film of one tile.
+struct FrameTile {
+    std::uint64_t frame = 0;
+    std::uint32_t index = 0, count = 0;
+    frame::FilmTile film;  // block means nothing here: the counts say all
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "frame", &FrameTile::frame), row(2, "index", &FrameTile::index),
+                          row(3, "count", &FrameTile::count), row(4, "film", &FrameTile::film));
+    }
+    const char* malformed() const { return index < count ? nullptr : "a tile is not one of its frame"; }
+};
+// Master to client: a piece of the picture that the frame's header describes.
+struct PictureChunk {
+    std::uint64_t frame = 0;
+    std::uint64_t total = 0, offset = 0;
+    std::vector<std::byte> data;  // at most 1 MiB
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "frame", &PictureChunk::frame), row(2, "total", &PictureChunk::total),
+                          row(3, "offset", &PictureChunk::offset), row(4, "data", &PictureChunk::data));
+    }
+    const char* malformed() const { return malformed_piece(total, offset, data.size()); }
 };
 // Master to output process: a piece of an eye's picture of a frame; pieces of one picture come in order.
 struct OutputPicture {
@@ -124,10 +124,10 @@ struct OutputPicture {
     Version version;          // of the scene that is seen
     view::CameraPose camera;  // in display space, that it was rendered with
     std::uint32_t width = 0, height = 0;
-    PictureEncoding encoding = PictureEncoding::Bytes;  // or Half
-    std::uint64_t samples = 0;                          // of a pixel, the least
-    std::uint64_t total = 0, offset = 0;                // bytes of the picture
-    std::vector<std::byte> data;                        // at most 1 MiB
+    session::PictureEncoding encoding = session::PictureEncoding::Bytes;  // or Half
+    std::uint64_t samples = 0;                                            // of a pixel, the least
+    std::uint64_t total = 0, offset = 0;                                  // bytes of the picture
+    std::vector<std::byte> data;                                          // at most 1 MiB
     static constexpr auto describe(auto row) {
         using Self = OutputPicture;
         return std::tuple(

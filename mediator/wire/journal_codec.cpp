@@ -84,7 +84,7 @@ Expected<CheckpointState> decode_checkpoint(std::span<const std::byte> bytes) {
 }
 
 std::vector<std::byte> encode_film(const frame::FilmTile& film) {
-    return encode(BulkMessage(FrameTile{.job = {}, .index = 0, .count = 1, .film = film}));
+    return encode(BulkMessage(FrameTile{.frame = 0, .index = 0, .count = 1, .film = film}));
 }
 
 Expected<frame::FilmTile> decode_film(std::span<const std::byte> bytes) {

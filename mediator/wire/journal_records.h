@@ -12,7 +12,7 @@
 #include "mediator/frame/film_tile.h"
 #include "mediator/frame/render_revision.h"
 #include "mediator/scene/change_list.h"
-#include "mediator/view/view.h"
+#include "mediator/session/view_request.h"
 
 // What a session folder holds, as plain values: see master/journal.h and master/checkpoint.h for what they
 // mean, journal_codec.h for the bytes.
@@ -70,9 +70,21 @@ struct RecordedEdit {
     }
 };
 
+// The one editor of an exclusive scene.
+struct RecordedOwner {
+    std::string user;
+    std::uint64_t key = 0;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "user", &RecordedOwner::user),
+                          row(2, "key", &RecordedOwner::key, FullWidth{}));
+    }
+};
 struct RecordedTitle {
     std::string title;
-    static constexpr auto describe(auto row) { return std::tuple(row(1, "title", &RecordedTitle::title)); }
+    std::optional<RecordedOwner> owner;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "title", &RecordedTitle::title), row(2, "owner", &RecordedTitle::owner));
+    }
 };
 struct RecordedClose {  // back to the empty scene, nobody edits
     static constexpr auto describe(auto) { return std::tuple(); }
@@ -159,8 +171,7 @@ struct RecordedTransaction {
 struct SavedView {
     std::string name, owner_user;
     std::uint64_t owner_key = 0, number = 0;
-    view::View view;
-    std::uint64_t spp = 0;
+    session::ViewRequest request;
     Hash128 scene_hash_of_film;
     std::vector<frame::FilmTile> blocks;
     std::uint64_t block_count = 0;  // of one that was decoded: so many follow in the file
@@ -168,13 +179,24 @@ struct SavedView {
         return std::tuple(
             row(1, "name", &SavedView::name), row(2, "owner_user", &SavedView::owner_user),
             row(3, "owner_key", &SavedView::owner_key, FullWidth{}), row(4, "number", &SavedView::number),
-            row(5, "view", &SavedView::view), row(6, "spp", &SavedView::spp),
+            // Of folders of before there were requests.
+            row(5, "view",
+                Computed{[](const SavedView&) { return std::optional<view::View>(); },
+                         [](SavedView& saved, std::optional<view::View>&& view) {
+                             saved.request.view = std::move(*view);
+                         }}),
+            row(6, "spp",
+                Computed{[](const SavedView&) { return std::uint64_t{0}; },
+                         [](SavedView& saved, std::uint64_t spp) {
+                             if (spp != 0) saved.request.stop.spp = spp;
+                         }}),
             row(7, "scene_hash_of_film", &SavedView::scene_hash_of_film),
             row(8, "blocks",
                 Computed{[](const SavedView& view) {
                              return std::max<std::uint64_t>(view.blocks.size(), view.block_count);
                          },
-                         [](SavedView& view, std::uint64_t count) { view.block_count = count; }}));
+                         [](SavedView& view, std::uint64_t count) { view.block_count = count; }}),
+            row(9, "request", &SavedView::request));
     }
 };
 
@@ -189,6 +211,7 @@ struct CheckpointState {
     std::vector<RecordedEditor> editors;
     std::vector<SavedView> views;                           // encoded without their blocks
     std::uint32_t render_revision = frame::RenderRevision;  // of the blocks; 0: of before there were any
+    std::optional<RecordedOwner> owner;
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "journal", &CheckpointState::journal),
                           row(2, "title", &CheckpointState::title), row(3, "scene", &CheckpointState::scene),
@@ -198,7 +221,8 @@ struct CheckpointState {
                           row(7, "transactions", &CheckpointState::transactions, Limit{MaxRecorded}),
                           row(8, "editors", &CheckpointState::editors, Limit{MaxRecorded}),
                           row(9, "views", &CheckpointState::views, Limit{MaxRecorded}),
-                          row(10, "render_revision", &CheckpointState::render_revision));
+                          row(10, "render_revision", &CheckpointState::render_revision),
+                          row(11, "owner", &CheckpointState::owner));
     }
 };
 

@@ -1,8 +1,11 @@
 #pragma once
 
 #include "mediator/wire/bulk_messages.h"
+#include "mediator/wire/display_messages.h"
 #include "mediator/wire/message_table.h"
+#include "mediator/wire/peer_messages.h"
 #include "mediator/wire/session_messages.h"
+#include "mediator/wire/view_messages.h"
 
 // What goes over the links, as plain values; `envelope.h` turns them into bytes and back. A message arrives complete and
 // checked, or as an Error, never half.
@@ -22,14 +25,10 @@ using Control = MessageTable<
     MessageRow<12, "work", Work, Master>, MessageRow<13, "cancel_units", CancelUnits, Master>,
     MessageRow<14, "unit_released", UnitReleased, Nodes>, MessageRow<15, "leave", Leave, Master>,
     MessageRow<16, "goodbye", Goodbye, Everybody>, MessageRow<17, "notice", Notice, Nodes>,
-    MessageRow<18, "open_scene", OpenScene, Editors>, MessageRow<19, "queue_place", QueuePlace, Master>,
-    MessageRow<20, "scene_opened", SceneOpened, Master>, MessageRow<21, "submit_edit", SubmitEdit, Editors>,
+    MessageRow<21, "submit_edit", SubmitEdit, Editors>,
     MessageRow<22, "submit_edit_by_blob", SubmitEditByBlob, Editors>,
-    MessageRow<23, "edit_reply", EditReply, Master>, MessageRow<24, "start_job", StartJob, Editors>,
-    MessageRow<25, "stop_job", StopJob, Editors>, MessageRow<26, "job_progress", JobProgress, Master>,
-    MessageRow<27, "job_done", JobDone, Master>, MessageRow<28, "status_request", StatusRequest, Clients>,
-    MessageRow<29, "status_reply", StatusReply, Master>, MessageRow<30, "set_filter", SetFilter, Editors>,
-    MessageRow<31, "filter_set", FilterSet, Master>, MessageRow<32, "scene_refused", SceneRefused, Nodes>,
+    MessageRow<23, "edit_reply", EditReply, Master>, MessageRow<28, "status_request", StatusRequest, Clients>,
+    MessageRow<29, "status_reply", StatusReply, Master>, MessageRow<32, "scene_refused", SceneRefused, Nodes>,
     MessageRow<33, "join_scene", JoinScene, Clients>, MessageRow<34, "scene_joined", SceneJoined, Master>,
     MessageRow<35, "request_done", RequestDone, Master>, MessageRow<36, "close_scene", CloseScene, Editors>,
     MessageRow<37, "read_scene", ReadScene, Clients>, MessageRow<38, "scene_content", SceneContent, Master>,
@@ -37,27 +36,30 @@ using Control = MessageTable<
     MessageRow<40, "set_presence", SetPresence, Clients>, MessageRow<41, "read_people", ReadPeople, Clients>,
     MessageRow<42, "people", People, Master>, MessageRow<43, "read_history", ReadHistory, Clients>,
     MessageRow<44, "history", History, Master>, MessageRow<45, "read_writers", ReadWriters, Clients>,
-    MessageRow<46, "writers", Writers, Master>, MessageRow<47, "open_live_view", OpenLiveView, Clients>,
-    MessageRow<48, "close_live_view", CloseLiveView, Clients>,
-    MessageRow<49, "frame_taken", FrameTaken, Clients>, MessageRow<50, "pick", Pick, Clients>,
-    MessageRow<51, "picked", Picked, Master>, MessageRow<52, "read_trace", ReadTrace, Clients>,
-    MessageRow<53, "trace", Trace, Master>, MessageRow<54, "open_display", OpenDisplay, Editors>,
+    MessageRow<46, "writers", Writers, Master>, MessageRow<49, "frame_taken", FrameTaken, Clients>,
+    MessageRow<50, "pick", Pick, Clients>, MessageRow<51, "picked", Picked, Master>,
+    MessageRow<52, "read_trace", ReadTrace, Clients>, MessageRow<53, "trace", Trace, Master>,
+    MessageRow<54, "open_display", OpenDisplay, Editors>,
     MessageRow<55, "close_display", CloseDisplay, Editors>,
     MessageRow<56, "adjust_display", AdjustDisplay, Editors>, MessageRow<57, "move_head", MoveHead, Editors>,
     MessageRow<58, "join_output", JoinOutput, Clients>, MessageRow<59, "output_opened", OutputOpened, Master>,
     MessageRow<60, "output_ready", OutputReady, Clients>,
-    MessageRow<61, "present_frame", PresentFrame, Master>>;
+    MessageRow<61, "present_frame", PresentFrame, Master>,
+    MessageRow<62, "request_view", RequestView, Clients>, MessageRow<63, "end_view", EndView, Clients>,
+    MessageRow<64, "view_progress", ViewProgress, Master>, MessageRow<65, "view_done", ViewDone, Master>,
+    MessageRow<66, "set_view_filter", SetViewFilter, Editors>>;
 
 // The number is the second word of a bulk message. Add retired ones to the check below.
 using Bulk = MessageTable<
     MessageRow<0, "bulk_hello", BulkHello, Everybody>, MessageRow<1, "blob_request", BlobRequest, Everybody>,
     MessageRow<2, "blob_chunk", BlobChunk, Editors>, MessageRow<3, "blob_absent", BlobAbsent, Editors>,
     MessageRow<4, "film_part", FilmPart, Nodes>, MessageRow<5, "frame_tile", FrameTile, Master>,
-    MessageRow<6, "picture_chunk", PictureChunk, Master>, MessageRow<7, "live_frame", LiveFrame, Master>,
-    MessageRow<8, "output_picture", OutputPicture, Master>>;
+    MessageRow<6, "picture_chunk", PictureChunk, Master>,
+    MessageRow<8, "output_picture", OutputPicture, Master>,
+    MessageRow<9, "frame_header", FrameHeader, Master>>;
 
-static_assert(Control::is_sound({}));
-static_assert(Bulk::is_sound({}));
+static_assert(Control::is_sound({18, 19, 20, 24, 25, 26, 27, 30, 31, 47, 48}));
+static_assert(Bulk::is_sound({7}));
 }  // namespace table
 
 using ControlMessage = table::Control::Message;

@@ -13,13 +13,14 @@
 #include "mediator/base/ids.h"
 #include "mediator/frame/render_revision.h"
 #include "mediator/scene/change_list.h"
+#include "mediator/session/node_phase.h"
 #include "mediator/view/view.h"
 #include "mediator/view/work_unit.h"
 
 // How peers greet and keep in touch, and what the master and its nodes say to each other.
 namespace tessera::wire {
 
-inline constexpr std::uint32_t ProtocolVersion = 1;
+inline constexpr std::uint32_t ProtocolVersion = 2;
 
 enum class PeerKind : std::uint8_t { Client, Node };
 constexpr auto enumerators(PeerKind) {
@@ -79,18 +80,13 @@ struct Unknown {
     static constexpr auto describe(auto) { return std::tuple(); }
 };
 
-enum class NodePhase : std::uint8_t { Idle, Syncing, Building, Rendering, Leaving };
-constexpr auto enumerators(NodePhase) {
-    return std::to_array<std::string_view>({"idle", "syncing", "building", "rendering", "leaving"});
-}
-
 // Both ways, every interval and whenever the state changes. Credits are absolute, so a lost one does no harm.
 struct Heartbeat {
     std::int64_t sent_at = 0;       // ns, sender's clock
     std::int64_t echo_sent_at = 0;  // the other's latest sent_at, and how long it lay here
     std::int64_t echo_delay = 0;
     // of nodes
-    NodePhase phase = NodePhase::Idle;
+    session::NodePhase phase = session::NodePhase::Idle;
     std::uint64_t progress = 0;  // samples finished since the start; grows while work goes on
     Version version;             // committed with all blobs
     std::vector<UnitId> in_hand;

@@ -12,26 +12,27 @@ namespace {
 
 using Json = nlohmann::json;
 
-wire::Trace two_edits() {
-    wire::EditTrace first{.transaction = 7,
-                          .name = "anna",
-                          .edit_bytes = 50,
-                          .submitted = 1'000'000,
-                          .bound = 2'000,
-                          .received = 1'500'000,
-                          .published = 2'000'000,
-                          .nodes = {{.name = "n1", .received = 2'100'000, .built = 2'600'000, .bound = 500},
-                                    {.name = "n2", .received = 2'200'000, .built = 0}},
-                          .merged = 9'000'000,
-                          .version = {1, 4}};
-    wire::EditTrace second = first;
+std::vector<session::EditTrace> two_edits() {
+    session::EditTrace first{
+        .transaction = 7,
+        .name = "anna",
+        .edit_bytes = 50,
+        .submitted = 1'000'000,
+        .bound = 2'000,
+        .received = 1'500'000,
+        .published = 2'000'000,
+        .nodes = {{.name = "n1", .received = 2'100'000, .built = 2'600'000, .bound = 500},
+                  {.name = "n2", .received = 2'200'000, .built = 0}},
+        .merged = 9'000'000,
+        .version = {1, 4}};
+    session::EditTrace second = first;
     second.name = "a \xff name \"of\" any bytes";
     second.submitted = 0;
     second.received = 1'600'000;
     second.published = 1'599'000;  // a clock's error
     second.nodes.clear();
     second.merged = 0;
-    return {.edits = {first, second}};
+    return {first, second};
 }
 
 struct Slice {

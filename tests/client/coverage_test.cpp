@@ -90,7 +90,7 @@ TEST(Coverage, OptionsSpreadTheViewAndNeedNoPicture) {
     ASSERT_TRUE(plan) << plan.error().what();
     EXPECT_EQ(plan->view.view.renderer, view::Renderer::Coverage);
     EXPECT_EQ(plan->view.view.width, 256u);
-    EXPECT_EQ(plan->job.spp, 1u);
+    EXPECT_EQ(plan->job.stop.spp, 1u);
     EXPECT_FALSE(plan->view.view.channels.contains(frame::Channel::Color));
     options.spp = 4096;
     EXPECT_TRUE(understand(options));

@@ -146,25 +146,25 @@ TEST(Sequences, NamesOfFrames) {
 }
 
 TEST(ProgressText, TellsShareSamplesRaysAndTimeLeft) {
-    client::JobRequest request;
+    session::ViewRequest request;
     request.view.window = {0, 0, 10, 10};
-    request.spp = 64;
-    const client::Progress progress{.phase = client::Phase::Rendering,
-                                    .samples = 1600,
-                                    .samples_expected = 6400,
-                                    .rays = 20'000'000,
-                                    .nodes = 2,
-                                    .elapsed = std::chrono::seconds(10)};
+    request.stop.spp = 64;
+    const session::ViewProgress progress{.phase = session::Phase::Rendering,
+                                         .samples = 1600,
+                                         .samples_expected = 6400,
+                                         .rays = 20'000'000,
+                                         .nodes = 2,
+                                         .elapsed = std::chrono::seconds(10)};
     EXPECT_EQ(describe(progress, request), " 25 %   16 of 64 spp   2.0 Mrays/s   2 nodes   30 s left");
 }
 
 TEST(ProgressText, BearsAStartWithoutAnySample) {
-    client::JobRequest request;
+    session::ViewRequest request;
     request.view.window = {};
-    request.spp = 1;
-    const client::Progress nothing{.phase = client::Phase::Rendering};
+    request.stop.spp = 1;
+    const session::ViewProgress nothing{.phase = session::Phase::Rendering};
     EXPECT_NE(describe(nothing, request).find("0 %"), std::string::npos);
-    EXPECT_NE(describe({.phase = client::Phase::WaitingForNodes}, request).find("waiting"),
+    EXPECT_NE(describe({.phase = session::Phase::WaitingForNodes}, request).find("waiting"),
               std::string::npos);
 }
 

@@ -92,8 +92,8 @@ TEST_F(Displays, LayersAreSwitchedAtRunTime) {
 }
 
 // Light of one colour over the part of the picture from `left` to `right` of it, -1 to 1, at a distance.
-std::vector<Entry> shining_quad(client::LiveSession& editor, BlobStore& blobs, const glm::vec3& light,
-                                float left, float right, float distance, ObjectId& quad) {
+std::vector<Entry> shining_quad(client::Session& editor, BlobStore& blobs, const glm::vec3& light, float left,
+                                float right, float distance, ObjectId& quad) {
     const std::array<glm::vec3, 4> corners{
         glm::vec3(left * distance, -distance, -distance), glm::vec3(right * distance, -distance, -distance),
         glm::vec3(right * distance, distance, -distance), glm::vec3(left * distance, distance, -distance)};
@@ -150,7 +150,7 @@ TEST_F(Displays, LayersMaySwitchFasterThanPicturesCome) {
         until([&] { return showers["left"].frames.size() > before; });
     }
     until([&] { return all_show(4); });
-    EXPECT_EQ(status().display.outputs.at(0).state, wire::OutputState::Locked);
+    EXPECT_EQ(status().display.outputs.at(0).state, session::OutputState::Locked);
 }
 
 TEST_F(Displays, TheDifferenceOfOneEyeIsNotAskedFor) {

@@ -25,9 +25,9 @@ void Shower::step() {
         if (auto* frame = std::get_if<client::OutputFrame>(&*event)) {
             if (answers) session->output_ready(frame->number);
             frames.push_back(std::move(*frame));
-        } else if (const auto* order = std::get_if<wire::PresentFrame>(&*event)) {
+        } else if (const auto* order = std::get_if<session::PresentFrame>(&*event)) {
             orders.push_back(*order);
-        } else if (const auto* open = std::get_if<wire::OutputOpened>(&*event)) {
+        } else if (const auto* open = std::get_if<session::OutputOpened>(&*event)) {
             if (opens) session->output_ready(0);
             opened.push_back(*open);
         } else {
@@ -64,7 +64,7 @@ bool Displays::all_show(std::uint64_t samples) const {
                        [&](const auto& entry) { return shows(entry.second, samples); });
 }
 
-client::ClusterStatus Displays::status() {
+session::ClusterStatus Displays::status() {
     return cluster.session(std::make_shared<BlobStore>())->status();
 }
 

@@ -20,10 +20,10 @@ display::Output part_of_wall(const std::string& name, double left, double right)
 
 // One output process: answers like tessera-display.
 struct Shower {
-    std::unique_ptr<client::LiveSession> session;
+    std::unique_ptr<client::Session> session;
     std::vector<client::OutputFrame> frames;
-    std::vector<wire::PresentFrame> orders;
-    std::vector<wire::OutputOpened> opened;
+    std::vector<session::PresentFrame> orders;
+    std::vector<session::OutputOpened> opened;
     std::string problem;
     bool answers = true, opens = true;
 
@@ -35,7 +35,7 @@ struct Shower {
 struct Displays : testing::Test {
     LoopbackCluster cluster;
     std::shared_ptr<scene::BlobStore> blobs = std::make_shared<scene::BlobStore>();
-    std::unique_ptr<client::LiveSession> ann = cluster.member("ann", blobs);
+    std::unique_ptr<client::Session> ann = cluster.member("ann", blobs);
     ObjectId first = ann->new_id();
     display::Display wall{.name = "wall"};
     std::map<std::string, Shower> showers;
@@ -59,7 +59,7 @@ struct Displays : testing::Test {
     // The latest frame that came is the one that is to be seen, and has so many samples.
     static bool shows(const Shower& shower, std::uint64_t samples);
     bool all_show(std::uint64_t samples) const;
-    client::ClusterStatus status();
+    session::ClusterStatus status();
     void submit(const std::vector<scene::Entry>& entries);
     void move_camera(double x);
 };

@@ -30,7 +30,7 @@ TEST_F(Displays, AllOutputsAreToldToShowTheSameFramesOfTheSameVersion) {
     std::map<std::uint64_t, int> seen;
     for (const auto& [name, shower] : showers) {
         std::uint64_t last = 0;
-        for (const wire::PresentFrame& order : shower.orders) {
+        for (const session::PresentFrame& order : shower.orders) {
             EXPECT_GT(order.frame, last) << "frames only ever get newer";
             last = order.frame;
             ++seen[order.frame];
@@ -49,7 +49,7 @@ TEST_F(Displays, AllOutputsAreToldToShowTheSameFramesOfTheSameVersion) {
     const auto now = status().display;
     EXPECT_EQ(now.name, "wall");
     ASSERT_EQ(now.outputs.size(), 2u);
-    EXPECT_EQ(now.outputs[0].state, wire::OutputState::Locked);
+    EXPECT_EQ(now.outputs[0].state, session::OutputState::Locked);
     EXPECT_EQ(now.outputs[0].samples, 4u);
 }
 
@@ -124,15 +124,15 @@ TEST_F(Displays, AnOutputThatStopsIsDroppedAndComesBack) {
     const std::size_t before = left.orders.size();
     until([&] { return left.orders.size() > before + 1 && shows(left, 4); });
     auto outputs = status().display.outputs;
-    EXPECT_EQ(outputs[0].state, wire::OutputState::Locked);
-    EXPECT_EQ(outputs[1].state, wire::OutputState::Late);
+    EXPECT_EQ(outputs[0].state, session::OutputState::Locked);
+    EXPECT_EQ(outputs[1].state, session::OutputState::Late);
     EXPECT_EQ(outputs[1].late, 1u);
     right.answers = true;
     const std::size_t right_before = right.orders.size();
     right.session->output_ready(right.frames.back().number);  // it goes on where it stopped
     until([&] { return right.orders.size() > right_before && shows(right, 4); });
     EXPECT_EQ(right.orders.back().frame, left.orders.back().frame);
-    EXPECT_EQ(status().display.outputs[1].state, wire::OutputState::Locked);
+    EXPECT_EQ(status().display.outputs[1].state, session::OutputState::Locked);
 }
 
 TEST_F(Displays, WhoComesLaterIsShownWhatTheOthersShow) {
@@ -147,7 +147,7 @@ TEST_F(Displays, WhoComesLaterIsShownWhatTheOthersShow) {
     EXPECT_EQ(left.orders.size(), before) << "the others are not bothered";
     right.session.reset();
     showers.erase("right");
-    until([&] { return status().display.outputs[1].state == wire::OutputState::Absent; });
+    until([&] { return status().display.outputs[1].state == session::OutputState::Absent; });
     move_camera(2.0);
     until([&] { return left.orders.size() > before && all_show(4); });
 }
@@ -163,7 +163,7 @@ TEST_F(Displays, NoPicturesComeBeforeTheDisplayIsTakenIn) {
     const std::size_t before = left.orders.size();
     until([&] { return left.orders.size() > before && shows(left, 4); });
     EXPECT_TRUE(right.frames.empty());
-    EXPECT_EQ(status().display.outputs[1].state, wire::OutputState::Joining);
+    EXPECT_EQ(status().display.outputs[1].state, session::OutputState::Joining);
     EXPECT_EQ(status().display.outputs[1].late, 0u) << "nobody waits for it";
     wall.name = "another";
     ann->open_display(wall);
@@ -249,12 +249,12 @@ TEST_F(Displays, TheCameraMayComeLaterAndGoAgain) {
     ann->open_display(wall);
     Shower& left = show("left");
     until([&] { return !left.opened.empty() && is_told(); });
-    EXPECT_EQ(status().live.views, 0u);
+    EXPECT_EQ(status().scene.views, 0u);
     EXPECT_TRUE(left.frames.empty());
     rename_camera("stage");
     until([&] { return all_show(4); });
     rename_camera("main");
-    until([&] { return status().live.views == 0; });
+    until([&] { return status().scene.views == 0; });
     const std::size_t before = left.frames.size();
     rename_camera("stage");
     until([&] { return left.frames.size() > before && all_show(4); });

@@ -13,12 +13,16 @@
 namespace tessera::test {
 namespace {
 
-using client::PictureEncoding;
-using client::Policy;
+using session::PictureEncoding;
+using session::Policy;
 using namespace std::chrono_literals;
 
-client::JobRequest picture_request(const std::string& filter, Policy policy = Policy::Mixed) {
-    client::JobRequest request{.spp = 6, .policy = policy, .picture = PictureEncoding::Planes, .film = false};
+session::ViewRequest picture_request(const std::string& filter, Policy policy = Policy::Mixed) {
+    session::ViewRequest request{.stop = {.spp = 6},
+                                 .policy = policy,
+                                 .min_nodes = 1,
+                                 .wait_limit = 60s,
+                                 .picture = PictureEncoding::Planes};
     request.view.width = 90;
     request.view.height = 60;
     request.view.window = {0, 0, 90, 60};
@@ -28,50 +32,48 @@ client::JobRequest picture_request(const std::string& filter, Policy policy = Po
     return request;
 }
 
-client::JobResult render(int nodes, const client::JobRequest& request, Duration cost = {}, int times = 1) {
+client::ViewResult render(int nodes, const session::ViewRequest& request, Duration cost = {}, int times = 1) {
     LoopbackCluster cluster;
     for (int i = 0; i < nodes; ++i) cluster.add_node("null", {}, cost);
     auto blobs = std::make_shared<scene::BlobStore>();
-    const auto session = cluster.session(blobs);
-    const auto opened = session->open_scene("test", client::WhenBusy::Queue, [](std::uint32_t) {}, {});
-    session->submit(scene_entries(std::get<client::OpenedScene>(opened).first_id, *blobs), {});
-    client::JobResult result;
-    for (int i = 0; i < times; ++i) result = session->render(request, [](const client::Progress&) {}, {});
+    const auto session = cluster.batch(blobs);
+    client::ViewResult result;
+    for (int i = 0; i < times; ++i) result = client::render(*session, request, {}, {});
     return result;
 }
 
 class FilteredPicture : public testing::TestWithParam<std::string> {};
 
 TEST_P(FilteredPicture, HasTheSameBitsForAnyCluster) {
-    const client::JobResult one = render(1, picture_request(GetParam(), Policy::Tiled));
-    ASSERT_EQ(one.outcome, client::Outcome::Complete) << one.message;
-    ASSERT_TRUE(one.picture);
-    EXPECT_EQ(one.picture->filter, GetParam());
-    EXPECT_EQ(one.picture->bytes.size(), std::size_t{90} * 60 * 3 * sizeof(float));
-    EXPECT_FALSE(one.film) << "nobody asked for it";
-    EXPECT_EQ(one.samples_least, 6u);
-    EXPECT_EQ(one.samples_most, 6u);
-    client::JobRequest three = picture_request(GetParam(), Policy::Cooperative);
-    three.wait_nodes = 3;
-    EXPECT_EQ(render(3, three).picture->bytes, one.picture->bytes);
+    const client::ViewResult one = render(1, picture_request(GetParam(), Policy::Tiled));
+    ASSERT_EQ(one.summary.outcome, session::Outcome::Complete) << one.summary.message;
+    ASSERT_TRUE(one.has_picture());
+    EXPECT_EQ(one.summary.picture.filter, GetParam());
+    EXPECT_EQ(one.frame.picture.size(), std::size_t{90} * 60 * 3 * sizeof(float));
+    EXPECT_FALSE(one.film()) << "nobody asked for it";
+    EXPECT_EQ(one.summary.samples_least, 6u);
+    EXPECT_EQ(one.summary.samples_most, 6u);
+    session::ViewRequest three = picture_request(GetParam(), Policy::Cooperative);
+    three.min_nodes = 3;
+    EXPECT_EQ(render(3, three).frame.picture, one.frame.picture);
 }
 
 // What comes over the wire is what the same film gives here.
 TEST_P(FilteredPicture, IsThatOfItsFilm) {
-    client::JobRequest request = picture_request(GetParam());
+    session::ViewRequest request = picture_request(GetParam());
     request.film = true;
-    const client::JobResult result = render(2, request);
-    ASSERT_TRUE(result.film && result.picture) << result.message;
+    const client::ViewResult result = render(2, request);
+    ASSERT_TRUE(result.film() && result.has_picture()) << result.summary.message;
     const auto choice = filter::parse_choice(GetParam(), filter::catalog());
     view::View view = request.view;
     view.path_class = choice->entry->description.path_class;
-    const filter::Inputs inputs = filter::make_inputs(*result.film, view);
+    const filter::Inputs inputs = filter::make_inputs(*result.film(), view);
     filter::Output output;
     tbb::task_arena arena(1);
     choice->entry->make(90, 60)->run(inputs, choice->values, output, {arena, {}});
     const auto values = output.picture.values();
-    ASSERT_EQ(values.size_bytes(), result.picture->bytes.size());
-    EXPECT_EQ(std::memcmp(values.data(), result.picture->bytes.data(), values.size_bytes()), 0);
+    ASSERT_EQ(values.size_bytes(), result.frame.picture.size());
+    EXPECT_EQ(std::memcmp(values.data(), result.frame.picture.data(), values.size_bytes()), 0);
 }
 
 std::vector<std::string> filter_names() {
@@ -83,27 +85,32 @@ INSTANTIATE_TEST_SUITE_P(Filters, FilteredPicture, testing::ValuesIn(filter_name
 
 TEST(PictureRequest, RefusesWhatCannotBeWithAReason) {
     const auto message = [](auto change) {
-        client::JobRequest request = picture_request("gauss");
+        session::ViewRequest request = picture_request("gauss");
         change(request);
-        const client::JobResult result = render(1, request);
-        EXPECT_EQ(result.outcome, client::Outcome::Failed);
-        return result.message;
+        try {
+            (void)render(1, request);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::Refused);
+            return std::string(error.what());
+        }
+        ADD_FAILURE() << "it was taken";
+        return std::string();
     };
     EXPECT_NE(message([](auto& r) { r.view.filter = "gaus"; }).find("gauss"), std::string::npos);
     EXPECT_NE(message([](auto& r) { r.view.filter = "gauss:sigma=-1"; }).find("0.1"), std::string::npos);
     EXPECT_NE(message([](auto& r) { r.picture = PictureEncoding::None; }).find("neither"), std::string::npos);
-    EXPECT_NE(message([](auto& r) { r.budget = -1s; }).find("negative"), std::string::npos);
+    EXPECT_NE(message([](auto& r) { r.stop.budget = -1s; }).find("negative"), std::string::npos);
 }
 
 TEST(PictureRequest, FilesAreWhatTheyAreCalled) {
     const auto starts_with = [](PictureEncoding encoding, std::initializer_list<int> magic) {
-        client::JobRequest request = picture_request("none");
+        session::ViewRequest request = picture_request("none");
         request.picture = encoding;
-        const client::JobResult result = render(1, request);
-        ASSERT_TRUE(result.picture) << result.message;
-        ASSERT_GT(result.picture->bytes.size(), magic.size());
+        const client::ViewResult result = render(1, request);
+        ASSERT_TRUE(result.has_picture()) << result.summary.message;
+        ASSERT_GT(result.frame.picture.size(), magic.size());
         std::size_t i = 0;
-        for (const int byte : magic) EXPECT_EQ(int(result.picture->bytes[i++]), byte);
+        for (const int byte : magic) EXPECT_EQ(int(result.frame.picture[i++]), byte);
     };
     starts_with(PictureEncoding::Png, {0x89, 'P', 'N', 'G'});
     starts_with(PictureEncoding::Jpeg, {0xff, 0xd8, 0xff});
@@ -112,50 +119,50 @@ TEST(PictureRequest, FilesAreWhatTheyAreCalled) {
 
 // Three planes on nodes, wire and master, and the picture made of them; no filter can do with that.
 TEST(PictureRequest, OfColorAloneKeepsNoSecondMoments) {
-    client::JobRequest request = picture_request("none");
+    session::ViewRequest request = picture_request("none");
     request.film = true;
     request.view.channels = {frame::Channel::Color};
-    const client::JobResult result = render(2, request);
-    ASSERT_TRUE(result.film) << result.message;
-    EXPECT_EQ(result.film->channels.plane_count(), 3u);
-    ASSERT_TRUE(result.picture);
-    const frame::Image picture = frame::resolve(*result.film, frame::Channel::Color);
+    const client::ViewResult result = render(2, request);
+    ASSERT_TRUE(result.film()) << result.summary.message;
+    EXPECT_EQ(result.film()->channels.plane_count(), 3u);
+    ASSERT_TRUE(result.has_picture());
+    const frame::Image picture = frame::resolve(*result.film(), frame::Channel::Color);
     std::vector<float> planes;
     for (std::uint32_t c = 0; c < 3; ++c) {
         for (std::size_t i = 0; i < picture.pixel_count(); ++i) planes.push_back(picture.pixel(i)[c]);
     }
     const auto bytes = std::as_bytes(std::span(planes));
-    EXPECT_TRUE(std::ranges::equal(result.picture->bytes, bytes));
+    EXPECT_TRUE(std::ranges::equal(result.frame.picture, bytes));
     request.view.filter = "gauss";
-    EXPECT_TRUE(render(1, request).film->channels.contains(frame::Channel::Radiance));
+    EXPECT_TRUE(render(1, request).film()->channels.contains(frame::Channel::Radiance));
 }
 
 // The clock decides how many samples there are; every pixel has at least the two that a variance takes.
 TEST(PictureRequest, WithABudgetEveryPixelHasTwoSamples) {
-    client::JobRequest request = picture_request("gauss");
+    session::ViewRequest request = picture_request("gauss");
     request.picture = PictureEncoding::Png;
-    request.budget = 400ms;
-    const client::JobResult result = render(2, request, 2us, 3);
-    ASSERT_TRUE(result.picture) << result.message;
-    EXPECT_EQ(result.outcome, client::Outcome::TimeUp);
-    EXPECT_GE(result.samples_least, 2u);
-    EXPECT_GT(result.picture->seconds_predicted, 0.0);
+    request.stop.budget = 400ms;
+    const client::ViewResult result = render(2, request, 2us, 3);
+    ASSERT_TRUE(result.has_picture()) << result.summary.message;
+    EXPECT_EQ(result.summary.outcome, session::Outcome::TimeUp);
+    EXPECT_GE(result.summary.samples_least, 2u);
+    EXPECT_GT(result.summary.picture.seconds_predicted, 0.0);
 }
 
 // Once the rate is known, a budget that is too small gives a smaller picture, brought back to size.
 TEST(PictureRequest, TooSmallABudgetGivesAnUpsampledPictureAndSaysSo) {
-    client::JobRequest request = picture_request("gauss");
-    request.budget = 150ms;
-    request.adapts_size = true;
-    const client::JobResult result =
+    session::ViewRequest request = picture_request("gauss");
+    request.stop.budget = 150ms;
+    request.stop.adapts_size = true;
+    const client::ViewResult result =
         render(1, request, 40us, 4);  // 2 samples of 5400 pixels: 0.4 s of one worker
-    ASSERT_TRUE(result.picture) << result.message;
-    EXPECT_GT(result.picture->scale, 1u);
-    EXPECT_EQ(result.picture->width, 90u);
-    EXPECT_EQ(result.picture->height, 60u);
-    EXPECT_GE(result.samples_least, 1u);
-    ASSERT_FALSE(result.picture->notes.empty());
-    EXPECT_NE(result.picture->notes.back().find("upsampled"), std::string::npos);
+    ASSERT_TRUE(result.has_picture()) << result.summary.message;
+    EXPECT_GT(result.summary.picture.scale, 1u);
+    EXPECT_EQ(result.frame.width, 90u);
+    EXPECT_EQ(result.frame.height, 60u);
+    EXPECT_GE(result.summary.samples_least, 1u);
+    ASSERT_FALSE(result.summary.picture.notes.empty());
+    EXPECT_NE(result.summary.picture.notes.back().find("upsampled"), std::string::npos);
 }
 
 // The film so far stays; what the new filter reads comes with the samples from then on.
@@ -163,41 +170,39 @@ TEST(PictureRequest, AnotherFilterInTheMiddleChangesNoSampleAndSaysWhatItAdds) {
     LoopbackCluster cluster;
     for (int i = 0; i < 2; ++i) cluster.add_node("null", {}, 5us);
     auto blobs = std::make_shared<scene::BlobStore>();
-    const auto session = cluster.session(blobs), other = cluster.session(blobs);
-    const auto opened = session->open_scene("test", client::WhenBusy::Queue, [](std::uint32_t) {}, {});
-    session->submit(scene_entries(std::get<client::OpenedScene>(opened).first_id, *blobs), {});
-    client::JobRequest request = picture_request("none");
-    request.spp = 64;
+    const auto session = cluster.batch(blobs), other = cluster.session(blobs);
+    session::ViewRequest request = picture_request("none");
+    request.stop.spp = 64;
     request.film = true;
     std::string answer, refusal;
-    const auto meddle = [&](const client::Progress& progress) {
-        if (progress.phase != client::Phase::Rendering || progress.samples == 0 || !answer.empty()) return;
+    const auto meddle = [&](const session::ViewProgress& progress) {
+        if (progress.phase != session::Phase::Rendering || progress.samples == 0 || !answer.empty()) return;
         try {
-            (void)other->set_filter("no such filter");
+            (void)other->set_filter("", "no such filter");
         } catch (const Error& error) {
             refusal = error.what();
         }
-        answer = other->set_filter("bilateral");
+        answer = other->set_filter("", "bilateral");
     };
-    const client::JobResult result = session->render(request, meddle, {});
-    ASSERT_EQ(result.outcome, client::Outcome::Complete) << result.message;
+    const client::ViewResult result = client::render(*session, request, meddle, {});
+    ASSERT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
     EXPECT_NE(refusal.find("no such filter"), std::string::npos);
     EXPECT_NE(answer.find("albedo"), std::string::npos) << answer;
     EXPECT_NE(answer.find("from now on"), std::string::npos) << answer;
-    EXPECT_EQ(result.picture->filter, "bilateral");
-    client::JobRequest plain = picture_request("none");
-    plain.spp = 64;
+    EXPECT_EQ(result.summary.picture.filter, "bilateral");
+    session::ViewRequest plain = picture_request("none");
+    plain.stop.spp = 64;
     plain.film = true;
-    const client::JobResult expected = session->render(plain, {}, {});
-    EXPECT_EQ(to_hex(frame::film_hash(*result.film)), to_hex(frame::film_hash(*expected.film)));
-    EXPECT_NE(result.picture->bytes, expected.picture->bytes) << "the filter had nothing to work on";
-    EXPECT_THROW((void)other->set_filter("gauss"), Error) << "no frame is being rendered";
+    const client::ViewResult expected = client::render(*session, plain, {}, {});
+    EXPECT_EQ(to_hex(frame::film_hash(*result.film())), to_hex(frame::film_hash(*expected.film())));
+    EXPECT_NE(result.frame.picture, expected.frame.picture) << "the filter had nothing to work on";
+    EXPECT_THROW((void)other->set_filter("", "gauss"), Error) << "no frame is being rendered";
 }
 
 TEST(PictureRequest, AdaptsItsSizeOnlyWithABudgetAndWithoutFilm) {
-    client::JobRequest request = picture_request("none");
-    request.adapts_size = true;
-    EXPECT_EQ(render(1, request).outcome, client::Outcome::Failed);
+    session::ViewRequest request = picture_request("none");
+    request.stop.adapts_size = true;
+    EXPECT_THROW((void)render(1, request), Error);
 }
 
 }  // namespace

@@ -15,8 +15,8 @@ struct LiveEditing : testing::Test {
     LoopbackCluster cluster;
     std::shared_ptr<BlobStore> ann_blobs = std::make_shared<BlobStore>(),
                                bob_blobs = std::make_shared<BlobStore>();
-    std::unique_ptr<client::LiveSession> ann = cluster.member("ann", ann_blobs),
-                                         bob = cluster.member("bob", bob_blobs);
+    std::unique_ptr<client::Session> ann = cluster.member("ann", ann_blobs),
+                                     bob = cluster.member("bob", bob_blobs);
     ObjectId first;
 
     void SetUp() override {
@@ -29,7 +29,7 @@ struct LiveEditing : testing::Test {
     Update paint(glm::vec4 color) const {
         return {material(), Fields<Material>(&Material::base_color).bits(), Material{.base_color = color}};
     }
-    static glm::vec4 color(client::LiveSession& of, ObjectId id) {
+    static glm::vec4 color(client::Session& of, ObjectId id) {
         of.refresh();
         return of.scene().find_as<Material>(id)->base_color;
     }
@@ -90,7 +90,7 @@ TEST_F(LiveEditing, NamesAreMadeUnique) {
     auto blobs = std::make_shared<BlobStore>();
     const auto other_ann = cluster.member("ann", blobs);
     std::vector<std::string> names;
-    for (const wire::Person& person : bob->people().people) names.push_back(person.name);
+    for (const session::Person& person : bob->people().people) names.push_back(person.name);
     EXPECT_EQ(names, (std::vector<std::string>{"ann", "bob", "ann (2)"}));
 }
 
@@ -143,7 +143,7 @@ TEST_F(LiveEditing, PresenceIsSeenUntilItsTimeIsOver) {
     (void)ann->people();
     const auto deadline = std::chrono::steady_clock::now() + 30s;
     while (std::chrono::steady_clock::now() < deadline) {
-        const wire::People people = bob->people();
+        const session::People people = bob->people();
         if (people.people.at(1).text.empty() && !people.people.at(0).text.empty()) {
             EXPECT_EQ(people.people[0].selection, std::vector<ObjectId>{material()});
             return;
@@ -161,22 +161,22 @@ TEST_F(LiveEditing, TheWriterOfAFieldIsKnown) {
     EXPECT_EQ(writers[0].transaction, result.transaction);
 }
 
-TEST_F(LiveEditing, ClosingTheSceneFreesTheStageForABatch) {
+TEST_F(LiveEditing, AfterTheSceneIsClosedABatchMayOpenOne) {
     cluster.add_node("null");
     ann->close_scene();
     auto blobs = std::make_shared<BlobStore>();
     const auto batch = cluster.session(blobs);
-    const auto opened = batch->open_scene(
-        "batch", client::WhenBusy::GiveUp, [](std::uint32_t) {}, std::stop_token());
-    EXPECT_TRUE(std::holds_alternative<client::OpenedScene>(opened));
+    const auto opened =
+        batch->join({.title = "batch", .exclusive = true, .when_busy = client::WhenBusy::GiveUp}, {});
+    EXPECT_TRUE(std::holds_alternative<client::Joined>(opened));
     EXPECT_THROW((void)bob->people(), Error) << "bob is in no scene any more";
 }
 
-TEST_F(LiveEditing, ABatchDoesNotGetTheStageOfALiveScene) {
+TEST_F(LiveEditing, ABatchDoesNotGetInWhileALiveSceneIsOpen) {
     auto blobs = std::make_shared<BlobStore>();
     const auto batch = cluster.session(blobs);
-    const auto outcome = batch->open_scene(
-        "batch", client::WhenBusy::GiveUp, [](std::uint32_t) {}, std::stop_token());
+    const auto outcome =
+        batch->join({.title = "batch", .exclusive = true, .when_busy = client::WhenBusy::GiveUp}, {});
     ASSERT_TRUE(std::holds_alternative<client::Busy>(outcome));
     EXPECT_NE(std::get<client::Busy>(outcome).reason.find("live scene"), std::string::npos);
 }

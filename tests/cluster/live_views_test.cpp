@@ -15,8 +15,8 @@ namespace {
 using namespace scene;
 using namespace std::chrono_literals;
 
-client::LiveViewRequest view_of(std::uint32_t width, std::uint32_t height, std::uint64_t spp) {
-    client::LiveViewRequest request{.spp = spp};
+session::ViewRequest view_of(std::uint32_t width, std::uint32_t height, std::uint64_t spp) {
+    session::ViewRequest request{.stop = {.spp = spp}};
     request.view.width = width;
     request.view.height = height;
     request.view.window = {0, 0, std::int32_t(width), std::int32_t(height)};
@@ -28,7 +28,7 @@ client::LiveViewRequest view_of(std::uint32_t width, std::uint32_t height, std::
 struct LiveViews : testing::Test {
     LoopbackCluster cluster;
     std::shared_ptr<BlobStore> blobs = std::make_shared<BlobStore>();
-    std::unique_ptr<client::LiveSession> ann = cluster.member("ann", blobs);
+    std::unique_ptr<client::Session> ann = cluster.member("ann", blobs);
     ObjectId first = ann->new_id();
 
     void SetUp() override {
@@ -40,7 +40,7 @@ struct LiveViews : testing::Test {
                 Material{.emission = emission}};
     }
     template <class Done>
-    static std::vector<client::Frame> frames_until(client::LiveSession& session, const Done& done) {
+    static std::vector<client::Frame> frames_until(client::Session& session, const Done& done) {
         std::vector<client::Frame> frames;
         const auto deadline = std::chrono::steady_clock::now() + 60s;
         while (auto frame = session.next_frame(deadline, {})) {
@@ -56,10 +56,10 @@ struct LiveViews : testing::Test {
 TEST_F(LiveViews, CoarseFirstAndInTheEndTheBitsOfABatch) {
     cluster.add_node("embree");
     cluster.add_node("embree");
-    client::LiveViewRequest request = view_of(160, 130, 13);
+    session::ViewRequest request = view_of(160, 130, 13);
     request.film = true;
-    request.picture = wire::PictureEncoding::Png;
-    ann->open_view(1, request);
+    request.picture = session::PictureEncoding::Png;
+    ann->request_view(1, request);
     const auto frames = frames_until(*ann, complete);
     std::vector<std::uint32_t> scales;
     for (const client::Frame& frame : frames) {
@@ -77,15 +77,16 @@ TEST_F(LiveViews, CoarseFirstAndInTheEndTheBitsOfABatch) {
     other.add_node("embree");
     auto other_blobs = std::make_shared<BlobStore>();
     const auto session = other.session(other_blobs);
-    (void)session->open_scene("batch", client::WhenBusy::Queue, [](std::uint32_t) {}, {});
-    ASSERT_TRUE(session->submit(scene_entries(first, *other_blobs), {})->accepted);
-    const auto batch = session->render({.view = request.view, .spp = 13}, [](const client::Progress&) {}, {});
-    EXPECT_EQ(to_hex(frame::film_hash(*batch.film)), to_hex(last.film_hash));
+    (void)session->join({.title = "batch", .exclusive = true}, {});
+    ASSERT_TRUE(session->submit(scene_entries(first, *other_blobs)).accepted);
+    const auto batch = client::render(
+        *session, {.view = request.view, .stop = {.spp = 13}, .min_nodes = 1, .film = true}, {}, {});
+    EXPECT_EQ(to_hex(frame::film_hash(*batch.film())), to_hex(last.film_hash));
 }
 
 TEST_F(LiveViews, OnlyWhatChangesThePictureStartsItAnew) {
     cluster.add_node("null");
-    ann->open_view(1, view_of(64, 48, 4));
+    ann->request_view(1, view_of(64, 48, 4));
     const client::Frame before = frames_until(*ann, complete).back();
     ASSERT_TRUE(
         ann->submit({Update{first, Fields<Transform>(&Transform::name).bits(), Transform{.name = "renamed"}}})
@@ -104,15 +105,15 @@ TEST_F(LiveViews, OnlyWhatChangesThePictureStartsItAnew) {
 // A slider of a filter costs a picture, no sample: not while samples come, not when all are there.
 TEST_F(LiveViews, AnotherFilterKeepsTheFilm) {
     cluster.add_node("null");
-    client::LiveViewRequest request = view_of(64, 48, 16);
+    session::ViewRequest request = view_of(64, 48, 16);
     request.view.filter = "gauss:sigma=1";
-    request.picture = wire::PictureEncoding::Planes;
-    ann->open_view(1, request);
+    request.picture = session::PictureEncoding::Planes;
+    ann->request_view(1, request);
     const client::Frame before = frames_until(*ann, complete).back();
     const auto units = [this] { return cluster.session(blobs)->status().units.issued; };
     const std::uint64_t issued = units();
     request.view.filter = "gauss:sigma=4";
-    ann->open_view(1, request);
+    ann->request_view(1, request);
     const auto frames =
         frames_until(*ann, [&](const client::Frame& frame) { return frame.picture != before.picture; });
     for (const client::Frame& frame : frames) EXPECT_TRUE(frame.complete) << "rendered again for a filter";
@@ -123,15 +124,15 @@ TEST_F(LiveViews, AnotherFilterKeepsTheFilm) {
 
 TEST_F(LiveViews, AFilterThatReadsMoreGetsItFromThenOn) {
     cluster.add_node("null", {}, 20us);
-    client::LiveViewRequest request = view_of(64, 48, 256);
+    session::ViewRequest request = view_of(64, 48, 256);
     request.view.filter = "none";
-    request.picture = wire::PictureEncoding::Planes;
-    ann->open_view(1, request);
+    request.picture = session::PictureEncoding::Planes;
+    ann->request_view(1, request);
     const client::Frame before = frames_until(*ann, [](const client::Frame& frame) {
                                      return frame.scale == 1 && frame.samples_least >= 8;
                                  }).back();
     request.view.filter = "bilateral";
-    ann->open_view(1, request);
+    ann->request_view(1, request);
     for (const client::Frame& frame : frames_until(*ann, complete)) {
         EXPECT_EQ(frame.scale, 1u) << "started anew";
         EXPECT_GE(frame.samples_least, before.samples_least);
@@ -140,8 +141,8 @@ TEST_F(LiveViews, AFilterThatReadsMoreGetsItFromThenOn) {
 
 TEST_F(LiveViews, WhileTheCameraIsDraggedPicturesGoOn) {
     cluster.add_node("null", {}, 2us);
-    client::LiveViewRequest request = view_of(320, 240, 1024);
-    ann->open_view(1, request);
+    session::ViewRequest request = view_of(320, 240, 1024);
+    ann->request_view(1, request);
     std::set<std::uint64_t> revisions;
     const auto end = std::chrono::steady_clock::now() + 3s;
     for (int i = 0; std::chrono::steady_clock::now() < end; ++i) {
@@ -155,7 +156,7 @@ TEST_F(LiveViews, WhileTheCameraIsDraggedPicturesGoOn) {
 
 TEST_F(LiveViews, WhileTheSceneIsEditedPicturesGoOn) {
     cluster.add_node("null", {}, 2us);
-    ann->open_view(1, view_of(320, 240, 1024));
+    ann->request_view(1, view_of(320, 240, 1024));
     std::set<std::uint64_t> versions;
     const auto end = std::chrono::steady_clock::now() + 3s;
     for (int i = 0; std::chrono::steady_clock::now() < end; ++i) {
@@ -169,8 +170,8 @@ TEST_F(LiveViews, WhileTheSceneIsEditedPicturesGoOn) {
 
 TEST_F(LiveViews, APickFindsObjectPlaceAndNormal) {
     cluster.add_node("embree");
-    ann->open_view(1, view_of(101, 101, 1));
-    const wire::Picked hit = ann->pick(1, 50, 50);
+    ann->request_view(1, view_of(101, 101, 1));
+    const session::Picked hit = ann->pick(1, 50, 50);
     ASSERT_TRUE(hit.hit);
     // Two in one place: which is met is the back-end's choice.
     EXPECT_TRUE(hit.object.value == first.value + 2 || hit.object.value == first.value + 3);
@@ -180,14 +181,14 @@ TEST_F(LiveViews, APickFindsObjectPlaceAndNormal) {
     EXPECT_NEAR(hit.distance, 3.0, 1e-6);
     EXPECT_NEAR(std::abs(hit.normal.z), 1.0, 1e-6);
     // tan(0.4) * 3 is half the picture's height at the triangle; pixel (50, 60) looks 10 pixels down.
-    const wire::Picked lower = ann->pick(1, 50, 60);
+    const session::Picked lower = ann->pick(1, 50, 60);
     EXPECT_NEAR(lower.position.y, -std::tan(0.4) * 3.0 * 10.0 / 50.5, 1e-6);
     EXPECT_FALSE(ann->pick(1, 0, 0).hit);
     EXPECT_THROW((void)ann->pick(1, 101, 0), Error);
     EXPECT_THROW((void)ann->pick(2, 0, 0), Error);
-    client::LiveViewRequest other_layers = view_of(101, 101, 1);
+    session::ViewRequest other_layers = view_of(101, 101, 1);
     other_layers.view.layers = 2;
-    ann->open_view(3, other_layers);
+    ann->request_view(3, other_layers);
     EXPECT_FALSE(ann->pick(3, 50, 50).hit) << "everything is in layer 0";
 }
 
@@ -195,10 +196,10 @@ TEST_F(LiveViews, ASlowWatcherDelaysNobodyAndSeesTheNewest) {
     cluster.add_node("null");
     auto slow_blobs = std::make_shared<BlobStore>();
     const auto slow = cluster.member("slow", slow_blobs);
-    client::LiveViewRequest request = view_of(64, 48, 4);
+    session::ViewRequest request = view_of(64, 48, 4);
     request.name = "main";
-    ann->open_view(1, request);
-    slow->open_view(1, {.name = "main", .share = true});
+    ann->request_view(1, request);
+    slow->share_view(1, {.name = "main"});
     for (int i = 1; i <= 20; ++i) {
         ASSERT_TRUE(ann->submit({paint({float(i), 0, 0})}).accepted);
         (void)frames_until(*ann, complete);
@@ -214,9 +215,9 @@ TEST_F(LiveViews, ASlowWatcherDelaysNobodyAndSeesTheNewest) {
 
 TEST_F(LiveViews, AWatcherThatTakesNothingIsSentOneFrame) {
     cluster.add_node("null");
-    client::LiveViewRequest request = view_of(64, 48, 4);
+    session::ViewRequest request = view_of(64, 48, 4);
     request.name = "main";
-    ann->open_view(1, request);
+    ann->request_view(1, request);
     const auto watcher = cluster.channel(net::Role::Viewer);
     const auto say = [&](const wire::ControlMessage& message) {
         (void)watcher->send(net::Link::Control, net::ServerPeer, wire::encode(message));
@@ -230,7 +231,7 @@ TEST_F(LiveViews, AWatcherThatTakesNothingIsSentOneFrame) {
             const net::Message& message = std::get<net::Message>(received);
             if (message.link == net::Link::Bulk) {
                 const auto bulk = wire::decode_bulk(message.bytes);
-                frames += bulk && std::holds_alternative<wire::LiveFrame>(*bulk) ? 1 : 0;
+                frames += bulk && std::holds_alternative<wire::FrameHeader>(*bulk) ? 1 : 0;
                 continue;
             }
             const auto control = wire::decode_control(message.bytes);
@@ -239,7 +240,7 @@ TEST_F(LiveViews, AWatcherThatTakesNothingIsSentOneFrame) {
             const wire::BulkMessage token = wire::BulkHello{welcome->token};
             (void)watcher->send(net::Link::Bulk, net::ServerPeer, wire::encode(token));
             say(wire::JoinScene{.title = "test", .name = "watcher"});
-            say(wire::OpenLiveView{.number = 1, .name = "main", .share = true});
+            say(wire::RequestView{.number = 1, .wanted = {.name = "main"}, .share = true});
         }
     };
     say(wire::Hello{.name = "watcher"});
@@ -257,29 +258,29 @@ TEST_F(LiveViews, AWatcherThatTakesNothingIsSentOneFrame) {
 }
 
 TEST_F(LiveViews, WhatIsWrongWithAViewIsSaid) {
-    client::LiveViewRequest request = view_of(64, 48, 4);
+    session::ViewRequest request = view_of(64, 48, 4);
     request.view.camera.left = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_THROW(ann->open_view(1, request), Error);
-    EXPECT_THROW(ann->open_view(1, {.name = "nowhere", .share = true}), Error);
+    EXPECT_THROW(ann->request_view(1, request), Error);
+    EXPECT_THROW(ann->share_view(1, {.name = "nowhere"}), Error);
     request = view_of(64, 48, 4);
     request.view.filter = "no-such-filter";
-    EXPECT_THROW(ann->open_view(1, request), Error);
+    EXPECT_THROW(ann->request_view(1, request), Error);
     request = view_of(64, 48, 0);
-    EXPECT_THROW(ann->open_view(1, request), Error);
+    EXPECT_THROW(ann->request_view(1, request), Error);
     request = view_of(8192, 8192, 1);
     request.film = true;
-    EXPECT_THROW(ann->open_view(1, request), Error) << "too much film for a watcher";
+    EXPECT_THROW(ann->request_view(1, request), Error) << "too much film for a watcher";
     request = view_of(64, 48, 1);
     request.name = "taken";
-    ann->open_view(1, request);
-    EXPECT_THROW(ann->open_view(2, request), Error);
+    ann->request_view(1, request);
+    EXPECT_THROW(ann->request_view(2, request), Error);
 }
 
 TEST_F(LiveViews, WhoWaitsForANodeIsToldWhy) {
     cluster.add_node("embree");
-    client::LiveViewRequest request = view_of(64, 48, 1);
+    session::ViewRequest request = view_of(64, 48, 1);
     request.view.renderer = view::Renderer::Raster;
-    ann->open_view(1, request);
+    ann->request_view(1, request);
     std::string notice;
     const auto deadline = std::chrono::steady_clock::now() + 30s;
     while (notice.empty() && std::chrono::steady_clock::now() < deadline) {
@@ -291,7 +292,7 @@ TEST_F(LiveViews, WhoWaitsForANodeIsToldWhy) {
 
 TEST_F(LiveViews, ManyViewsShareTheNodes) {
     cluster.add_node("null");
-    for (std::uint64_t number = 1; number <= 5; ++number) ann->open_view(number, view_of(64, 48, 8));
+    for (std::uint64_t number = 1; number <= 5; ++number) ann->request_view(number, view_of(64, 48, 8));
     std::set<std::uint64_t> done;
     frames_until(*ann, [&](const client::Frame& frame) {
         if (frame.complete) done.insert(frame.view);

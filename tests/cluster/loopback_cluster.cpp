@@ -1,6 +1,7 @@
 #include "tests/cluster/loopback_cluster.h"
 
 #include "mediator/backend/catalog.h"
+#include "tests/cluster/cluster_scene.h"
 
 namespace tessera::test {
 
@@ -58,17 +59,24 @@ void LoopbackCluster::start_node(const std::string& kind, std::unique_ptr<backen
 }
 
 std::unique_ptr<client::Session> LoopbackCluster::session(std::shared_ptr<scene::BlobStore> blobs) {
-    return std::make_unique<client::Session>(hub_.client(net::Role::Editor), nullptr, std::move(blobs),
-                                             clock_, client::SessionSettings{.name = "test"});
+    return client::make_session(hub_.client(net::Role::Editor), nullptr, std::move(blobs), clock_,
+                                {.name = "test"});
 }
 
-std::unique_ptr<client::LiveSession> LoopbackCluster::member(const std::string& name,
-                                                             std::shared_ptr<scene::BlobStore> blobs,
-                                                             net::Role role) {
-    auto session = std::make_unique<client::LiveSession>(hub_.client(role), nullptr, std::move(blobs), clock_,
-                                                         client::SessionSettings{.name = name});
-    session->join("test", client::WhenBusy::Queue, nullptr, {});
-    return session;
+std::unique_ptr<client::Session> LoopbackCluster::batch(const std::shared_ptr<scene::BlobStore>& blobs) {
+    auto made = session(blobs);
+    const auto joined = made->join({.title = "test", .exclusive = true}, {});
+    const auto edit = made->submit(scene_entries(std::get<client::Joined>(joined).first_id, *blobs));
+    if (!edit.accepted) throw Error(ErrorCode::Internal, edit.problems.front());
+    return made;
+}
+
+std::unique_ptr<client::Session> LoopbackCluster::member(const std::string& name,
+                                                         std::shared_ptr<scene::BlobStore> blobs,
+                                                         net::Role role) {
+    auto made = client::make_session(hub_.client(role), nullptr, std::move(blobs), clock_, {.name = name});
+    made->join({.title = "test"}, {});
+    return made;
 }
 
 std::vector<std::string> LoopbackCluster::events() const {

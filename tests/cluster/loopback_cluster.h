@@ -8,8 +8,8 @@
 #include <thread>
 #include <vector>
 
-#include "client/live_session.h"
-#include "client/session.h"
+#include "client/channel_session.h"
+#include "client/render.h"
 #include "master/render_master.h"
 #include "mediator/net/fault_plan.h"
 #include "mediator/net/loopback.h"
@@ -34,10 +34,11 @@ class LoopbackCluster {
         std::function<std::unique_ptr<backend::Backend>(const backend::BackendSettings& settings)>;
     void add_node(const MakeBackend& make);
     std::unique_ptr<client::Session> session(std::shared_ptr<scene::BlobStore> blobs);
-    // A member of the live scene "test", which it joins.
-    std::unique_ptr<client::LiveSession> member(const std::string& name,
-                                                std::shared_ptr<scene::BlobStore> blobs,
-                                                net::Role role = net::Role::Editor);
+    // With the scene of scene_entries() open for it alone.
+    std::unique_ptr<client::Session> batch(const std::shared_ptr<scene::BlobStore>& blobs);
+    // A member of the shared scene "test", which it joins.
+    std::unique_ptr<client::Session> member(const std::string& name, std::shared_ptr<scene::BlobStore> blobs,
+                                            net::Role role = net::Role::Editor);
     // A peer that speaks for itself.
     std::unique_ptr<net::Channel> channel(net::Role role) { return hub_.client(role); }
     std::vector<std::string> events() const;

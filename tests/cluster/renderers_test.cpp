@@ -41,22 +41,16 @@ class Drawing final : public backend::Backend {
 };
 
 struct RenderersTest : testing::Test {
-    client::JobResult render(view::Renderer renderer) {
-        client::JobRequest request{.spp = 16};
+    client::ViewResult render(view::Renderer renderer) {
+        session::ViewRequest request{.stop = {.spp = 16}, .min_nodes = 1, .film = true};
         request.view.width = request.view.height = 200;
         request.view.window = {0, 0, 200, 200};
         request.view.channels = {frame::Channel::Radiance};
         request.view.renderer = renderer;
         request.wait_limit = 500ms;
-        return session->render(request, [](const client::Progress&) {}, {});
+        return client::render(*session, request, {}, {});
     }
-    void open() {
-        session = cluster.session(blobs);
-        const auto opened = session->open_scene("test", client::WhenBusy::Queue, [](std::uint32_t) {}, {});
-        const ObjectId first = std::get<client::OpenedScene>(opened).first_id;
-        const auto done = session->submit(scene_entries(first, *blobs), {});
-        ASSERT_TRUE(done && done->accepted);
-    }
+    void open() { session = cluster.batch(blobs); }
 
     std::shared_ptr<scene::BlobStore> blobs = std::make_shared<scene::BlobStore>();
     LoopbackCluster cluster;
@@ -66,12 +60,12 @@ struct RenderersTest : testing::Test {
 TEST_F(RenderersTest, WithoutANodeThatDrawsAViewEndsWithTheRemedy) {
     cluster.add_node("null");
     open();
-    const client::JobResult none = render(view::Renderer::Raster);
-    EXPECT_EQ(none.outcome, client::Outcome::NoNodes);
-    EXPECT_NE(none.message.find("no node has the renderer raster: start one with --backend vulkan"),
+    const client::ViewResult none = render(view::Renderer::Raster);
+    EXPECT_EQ(none.summary.outcome, session::Outcome::NoNodes);
+    EXPECT_NE(none.summary.message.find("no node has the renderer raster: start one with --backend vulkan"),
               std::string::npos)
-        << none.message;
-    EXPECT_EQ(render(view::Renderer::PathTracing).outcome, client::Outcome::Complete);
+        << none.summary.message;
+    EXPECT_EQ(render(view::Renderer::PathTracing).summary.outcome, session::Outcome::Complete);
 }
 
 // From drawing to paths and back, on the same version of the scene.
@@ -80,15 +74,15 @@ TEST_F(RenderersTest, OnlyNodesThatDrawGetUnitsOfAViewThatDraws) {
     cluster.add_node(
         [](const backend::BackendSettings& settings) { return std::make_unique<Drawing>(settings); });
     open();
-    const client::JobResult drawn = render(view::Renderer::Raster);
-    ASSERT_EQ(drawn.outcome, client::Outcome::Complete) << drawn.message;
+    const client::ViewResult drawn = render(view::Renderer::Raster);
+    ASSERT_EQ(drawn.summary.outcome, session::Outcome::Complete) << drawn.summary.message;
     std::size_t taking_part = 0;
-    for (const auto& node : drawn.nodes) taking_part += node.samples > 0 ? 1 : 0;
+    for (const auto& node : drawn.summary.nodes) taking_part += node.samples > 0 ? 1 : 0;
     EXPECT_EQ(taking_part, 1u);
-    const client::JobResult traced = render(view::Renderer::PathTracing);
-    EXPECT_EQ(traced.outcome, client::Outcome::Complete);
-    EXPECT_EQ(traced.version, drawn.version);
-    EXPECT_EQ(render(view::Renderer::Raster).outcome, client::Outcome::Complete);
+    const client::ViewResult traced = render(view::Renderer::PathTracing);
+    EXPECT_EQ(traced.summary.outcome, session::Outcome::Complete);
+    EXPECT_EQ(traced.summary.version, drawn.summary.version);
+    EXPECT_EQ(render(view::Renderer::Raster).summary.outcome, session::Outcome::Complete);
 }
 
 }  // namespace

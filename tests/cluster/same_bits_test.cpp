@@ -13,14 +13,14 @@
 namespace tessera::test {
 namespace {
 
-using client::Policy;
+using session::Policy;
 using namespace scene;
 using namespace std::chrono_literals;
 
 constexpr std::uint64_t Spp = 13;  // no power of two: several roots per tile
 
-client::JobRequest request_for(Policy policy, std::uint64_t seed) {
-    client::JobRequest request{.spp = Spp, .policy = policy};
+session::ViewRequest request_for(Policy policy, std::uint64_t seed) {
+    session::ViewRequest request{.stop = {.spp = Spp}, .policy = policy, .wait_limit = 60s, .film = true};
     request.view.width = 100;
     request.view.height = 70;
     request.view.window = {0, 0, 100, 70};
@@ -31,20 +31,16 @@ client::JobRequest request_for(Policy policy, std::uint64_t seed) {
     return request;
 }
 
-client::JobResult render(LoopbackCluster& cluster, const client::JobRequest& request) {
+client::ViewResult render(LoopbackCluster& cluster, const session::ViewRequest& request) {
     auto blobs = std::make_shared<BlobStore>();
-    const auto session = cluster.session(blobs);
-    const auto opened = session->open_scene("test", client::WhenBusy::Queue, [](std::uint32_t) {}, {});
-    const auto submitted =
-        session->submit(scene_entries(std::get<client::OpenedScene>(opened).first_id, *blobs), {});
-    EXPECT_TRUE(submitted && submitted->accepted);
-    client::JobResult result = session->render(request, [](const client::Progress&) {}, {});
-    EXPECT_EQ(result.outcome, client::Outcome::Complete) << result.message;
+    const auto session = cluster.batch(blobs);
+    client::ViewResult result = client::render(*session, request, {}, {});
+    EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
     return result;
 }
 
-std::string hash_of(const client::JobResult& result) {
-    return to_hex(frame::film_hash(*result.film));
+std::string hash_of(const client::ViewResult& result) {
+    return to_hex(frame::film_hash(*result.film()));
 }
 
 std::string reference_hash(std::uint64_t seed, const std::string& backend = "null") {
@@ -82,12 +78,12 @@ TEST_P(SameBits, WhateverTheClusterAndItsTroubles) {
         faults.bulk.seed += 100 * static_cast<std::uint64_t>(i);
         cluster.add_node("null", faults);
     }
-    client::JobRequest request = request_for(policy, 1);
-    request.wait_nodes = static_cast<std::uint32_t>(nodes);
-    const client::JobResult result = render(cluster, request);
+    session::ViewRequest request = request_for(policy, 1);
+    request.min_nodes = static_cast<std::uint32_t>(nodes);
+    const client::ViewResult result = render(cluster, request);
     EXPECT_EQ(hash_of(result), reference_hash(1));
-    std::uint64_t counted = result.nonfinite_samples;
-    for (const std::uint32_t count : result.film->counts) counted += count;
+    std::uint64_t counted = result.summary.nonfinite_samples;
+    for (const std::uint32_t count : result.film()->counts) counted += count;
     EXPECT_EQ(counted, 100u * 70u * Spp);
 }
 
@@ -103,8 +99,8 @@ TEST(Cluster, AnotherSeedGivesOtherBits) {
 TEST(Cluster, EmbreeGivesTheSameBitsOnOneNodeAndOnThree) {
     LoopbackCluster cluster;
     for (int i = 0; i < 3; ++i) cluster.add_node("embree");
-    client::JobRequest request = request_for(Policy::Cooperative, 1);
-    request.wait_nodes = 3;
+    session::ViewRequest request = request_for(Policy::Cooperative, 1);
+    request.min_nodes = 3;
     EXPECT_EQ(hash_of(render(cluster, request)), reference_hash(1, "embree"));
 }
 
@@ -112,11 +108,12 @@ TEST(Cluster, ANodeCutOffInTheMiddleChangesNothing) {
     LoopbackCluster cluster;
     cluster.add_node("null", {}, 2us);
     cluster.add_node("null", {.control = {}, .bulk = {.cut_after_messages = 25}}, 2us);
-    client::JobRequest request = request_for(Policy::Mixed, 1);
-    request.wait_nodes = 2;
-    const client::JobResult result = render(cluster, request);
+    session::ViewRequest request = request_for(Policy::Mixed, 1);
+    request.min_nodes = 2;
+    const client::ViewResult result = render(cluster, request);
     EXPECT_EQ(hash_of(result), reference_hash(1));
-    EXPECT_GT(result.units.reissued, 0u) << "film of the cut node never came: somebody had to do it again";
+    EXPECT_GT(result.summary.units.reissued, 0u)
+        << "film of the cut node never came: somebody had to do it again";
 }
 
 TEST(Cluster, ANodeThatComesLateHelps) {
@@ -126,20 +123,20 @@ TEST(Cluster, ANodeThatComesLateHelps) {
         std::this_thread::sleep_for(300ms);
         cluster.add_node("null", {}, 20us);
     });
-    const client::JobResult result = render(cluster, request_for(Policy::Mixed, 1));
+    const client::ViewResult result = render(cluster, request_for(Policy::Mixed, 1));
     late.join();
     EXPECT_EQ(hash_of(result), reference_hash(1));
-    EXPECT_EQ(result.nodes.size(), 2u);
+    EXPECT_EQ(result.summary.nodes.size(), 2u);
 }
 
 TEST(Cluster, SaysThatNobodyCame) {
     LoopbackCluster cluster;
     auto blobs = std::make_shared<BlobStore>();
     const auto session = cluster.session(blobs);
-    session->open_scene("test", client::WhenBusy::Queue, [](std::uint32_t) {}, {});
-    client::JobRequest request = request_for(Policy::Mixed, 1);
+    session->join({.title = "test", .exclusive = true}, {});
+    session::ViewRequest request = request_for(Policy::Mixed, 1);
     request.wait_limit = 300ms;
-    EXPECT_EQ(session->render(request, [](const client::Progress&) {}, {}).outcome, client::Outcome::NoNodes);
+    EXPECT_EQ(client::render(*session, request, {}, {}).summary.outcome, session::Outcome::NoNodes);
 }
 
 TEST(Cluster, ANodeOfAnotherRenderRevisionIsRefused) {
@@ -161,17 +158,17 @@ TEST(Cluster, ANodeOfAnotherRenderRevisionIsRefused) {
 TEST(Cluster, ATimeLimitEndsTheFrameWithItsCounts) {
     LoopbackCluster cluster;
     cluster.add_node("null", {}, 2us);
-    client::JobRequest request = request_for(Policy::Mixed, 1);
-    request.spp = 1u << 20;
-    request.time_limit = 500ms;
+    session::ViewRequest request = request_for(Policy::Mixed, 1);
+    request.stop.spp = 1u << 20;
+    request.stop.time_limit = 500ms;
     auto blobs = std::make_shared<BlobStore>();
     const auto session = cluster.session(blobs);
-    session->open_scene("test", client::WhenBusy::Queue, [](std::uint32_t) {}, {});
-    const client::JobResult result = session->render(request, [](const client::Progress&) {}, {});
-    EXPECT_EQ(result.outcome, client::Outcome::TimeUp);
+    session->join({.title = "test", .exclusive = true}, {});
+    const client::ViewResult result = client::render(*session, request, {}, {});
+    EXPECT_EQ(result.summary.outcome, session::Outcome::TimeUp);
     std::uint64_t counted = 0;
-    for (const std::uint32_t count : result.film->counts) counted += count;
-    EXPECT_EQ(counted, result.samples);
+    for (const std::uint32_t count : result.film()->counts) counted += count;
+    EXPECT_EQ(counted, result.summary.samples);
     EXPECT_GT(counted, 0u);
 }
 

@@ -74,23 +74,23 @@ LoopbackCluster::MakeBackend with_room(std::size_t lamps) {
 }
 
 struct SmallRoomTest : testing::Test {
-    client::JobResult render() {
-        client::JobRequest request{.spp = 2};
+    client::ViewResult render() {
+        session::ViewRequest request{.stop = {.spp = 2}, .min_nodes = 1, .film = true};
         request.view.width = request.view.height = 40;
         request.view.window = {0, 0, 40, 40};
         request.view.channels = {frame::Channel::Radiance};
         request.wait_limit = 500ms;
-        return session->render(request, [](const client::Progress&) {}, {});
+        return client::render(*session, request, {}, {});
     }
     void open() {
         session = cluster.session(blobs);
-        const auto opened = session->open_scene("test", client::WhenBusy::Queue, [](std::uint32_t) {}, {});
-        first = std::get<client::OpenedScene>(opened).first_id;
+        const auto opened = session->join({.title = "test", .exclusive = true}, {});
+        first = std::get<client::Joined>(opened).first_id;
         submit(scene_entries(first, *blobs));
     }
     void submit(std::vector<Entry> entries) {
-        const auto done = session->submit(std::move(entries), {});
-        ASSERT_TRUE(done && done->accepted);
+        const auto done = session->submit(std::move(entries));
+        ASSERT_TRUE(done.accepted);
     }
     ObjectId lamp(std::uint64_t number) const { return ObjectId{first.value + 100 + number}; }
     bool was_told(const std::string& text) const {
@@ -109,18 +109,19 @@ TEST_F(SmallRoomTest, ANodeThatHasNoRoomSaysSoStaysAndTakesTheNextVersion) {
     cluster.add_node(with_room(1));
     open();
     submit({Create{lamp(0), Light{}}});
-    EXPECT_EQ(render().outcome, client::Outcome::Complete);
+    EXPECT_EQ(render().summary.outcome, session::Outcome::Complete);
 
     submit({Create{lamp(1), Light{}}});
-    const client::JobResult none = render();
-    EXPECT_EQ(none.outcome, client::Outcome::NoNodes);
-    EXPECT_NE(none.message.find("node-1: room for 1 lamps, not for 2"), std::string::npos) << none.message;
+    const client::ViewResult none = render();
+    EXPECT_EQ(none.summary.outcome, session::Outcome::NoNodes);
+    EXPECT_NE(none.summary.message.find("node-1: room for 1 lamps, not for 2"), std::string::npos)
+        << none.summary.message;
     EXPECT_TRUE(was_told("has no room for version"));
 
     submit({Create{lamp(2), Light{}}});  // worse still
-    EXPECT_EQ(render().outcome, client::Outcome::NoNodes);
+    EXPECT_EQ(render().summary.outcome, session::Outcome::NoNodes);
     submit({Remove{lamp(0)}, Remove{lamp(1)}});
-    EXPECT_EQ(render().outcome, client::Outcome::Complete);
+    EXPECT_EQ(render().summary.outcome, session::Outcome::Complete);
     EXPECT_FALSE(was_told("leaves"));
 }
 
@@ -129,10 +130,10 @@ TEST_F(SmallRoomTest, TheOthersRenderWithoutIt) {
     cluster.add_node(with_room(9));
     open();
     submit({Create{lamp(0), Light{}}});
-    const client::JobResult result = render();
-    EXPECT_EQ(result.outcome, client::Outcome::Complete);
+    const client::ViewResult result = render();
+    EXPECT_EQ(result.summary.outcome, session::Outcome::Complete);
     std::size_t taking_part = 0;
-    for (const auto& node : result.nodes) taking_part += node.samples > 0 ? 1 : 0;
+    for (const auto& node : result.summary.nodes) taking_part += node.samples > 0 ? 1 : 0;
     EXPECT_EQ(taking_part, 1u);
 }
 
@@ -140,10 +141,10 @@ TEST_F(SmallRoomTest, TheNextSceneIsForItAgain) {
     cluster.add_node(with_room(0));
     open();
     submit({Create{lamp(0), Light{}}});
-    EXPECT_EQ(render().outcome, client::Outcome::NoNodes);
+    EXPECT_EQ(render().summary.outcome, session::Outcome::NoNodes);
     session.reset();
     open();
-    EXPECT_EQ(render().outcome, client::Outcome::Complete);
+    EXPECT_EQ(render().summary.outcome, session::Outcome::Complete);
 }
 
 }  // namespace

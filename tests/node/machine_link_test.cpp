@@ -22,7 +22,7 @@ TEST_F(MachineLinkTest, SaysHelloFirstAndAnswersTheWelcomeWithItsTokenAndAHeartb
     ASSERT_EQ(bulk.size(), 1u);
     EXPECT_EQ(bulk[0].token, 101u);
     const wire::Heartbeat beat = last_heartbeat();
-    EXPECT_EQ(beat.phase, wire::NodePhase::Syncing);
+    EXPECT_EQ(beat.phase, session::NodePhase::Syncing);
     EXPECT_EQ(beat.free_places, 4u);
 }
 
@@ -138,7 +138,7 @@ TEST_F(MachineLinkTest, DrainingFinishesWhatIsRenderedAndHandsBackTheRest) {
     EXPECT_EQ(released[0].unit, UnitId{3});
     EXPECT_EQ(released[0].reason, wire::ReleaseReason::Leaving);
     const wire::Heartbeat beat = last_heartbeat();
-    EXPECT_EQ(beat.phase, wire::NodePhase::Leaving);
+    EXPECT_EQ(beat.phase, session::NodePhase::Leaving);
     EXPECT_EQ(beat.free_places, 0u);
     EXPECT_TRUE(take<StopUnit>().empty());
 

@@ -19,7 +19,7 @@ TEST_F(MachineSceneTest, ReportsAVersionWhenItIsBuilt) {
     welcome();
     tell(wire::Changes{builder.edit({scene::Create{scene::RootId, scene::Root{}}})});
     EXPECT_TRUE(sent<wire::VersionReport>().empty());
-    EXPECT_EQ(last_heartbeat().phase, wire::NodePhase::Building);
+    EXPECT_EQ(last_heartbeat().phase, session::NodePhase::Building);
     ASSERT_EQ(take<BuildScene>().size(), 1u);
     BuildOutcome outcome;
     outcome.report = backend::EditReport{.entries = 1, .triangles = 12, .problems = {"a", "b"}};
@@ -83,7 +83,7 @@ TEST_F(MachineSceneTest, HeartbeatsGoOnDuringABuild) {
     for (int i = 0; i < 5; ++i) {
         tell(wire::Heartbeat{.sent_at = 1});
         pass(seconds(1));
-        EXPECT_EQ(last_heartbeat().phase, wire::NodePhase::Building);
+        EXPECT_EQ(last_heartbeat().phase, session::NodePhase::Building);
     }
 }
 
@@ -210,7 +210,7 @@ TEST_F(MachineSceneTest, BlobsAreFetchedBeforeTheBuildAndTheOldVersionIsRendered
     const Version old = builder.scene().version();
     tell(wire::Changes{builder.edit({scene::Create{ObjectId{60}, geometry}})});
     EXPECT_TRUE(take<BuildScene>().empty());
-    EXPECT_EQ(last_heartbeat().phase, wire::NodePhase::Syncing);
+    EXPECT_EQ(last_heartbeat().phase, session::NodePhase::Syncing);
     const auto requests = take<SendBulk>();
     ASSERT_EQ(requests.size(), 1u);
     EXPECT_EQ(std::get<wire::BlobRequest>(requests[0].message).hash, blob->hash());

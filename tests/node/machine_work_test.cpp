@@ -33,7 +33,7 @@ TEST_F(MachineWorkTest, CreditsAreAbsolute) {
     EXPECT_EQ(beat.in_hand, (std::vector{UnitId{1}, UnitId{2}, UnitId{3}}));
     EXPECT_EQ(beat.free_places, 1u);
     EXPECT_EQ(beat.last_work_sequence, 3u);
-    EXPECT_EQ(beat.phase, wire::NodePhase::Rendering);
+    EXPECT_EQ(beat.phase, session::NodePhase::Rendering);
     EXPECT_EQ(take<Render>().size(), 2u);
     finish(1);
     beat = last_heartbeat();

@@ -13,7 +13,7 @@ namespace tessera::node {
 namespace {
 
 using namespace std::chrono_literals;
-using wire::NodePhase;
+using session::NodePhase;
 using wire::ReleaseReason;
 
 // The null back-end, with edits that take as long as the test wants.

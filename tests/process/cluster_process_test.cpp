@@ -182,6 +182,27 @@ TEST(RealProcesses, ASecondRenderWaitsItsTurnOrIsToldToComeBack) {
     EXPECT_EQ(second.wait(std::chrono::minutes(3)).value_or(-1), 0) << second.err();
 }
 
+// The journal has the scene and the checkpoint the film; client and nodes come back by themselves.
+TEST(RealProcesses, AMasterKilledInTheMiddleOfABatchChangesNothing) {
+    RealCluster cluster({"--heartbeat", "0.1", "--checkpoint", "0.3"}, RealCluster::Session::Kept);
+    const ChildProcess a = cluster.start_node("a", SlowNode);
+    ChildProcess render = cluster.start_render("frame", scene_file("still.glb"),
+                                               SlowFrame + std::vector<std::string>{"--json"});
+    for (int kill = 0; kill < 2; ++kill) {
+        ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_hand(status, "a") > 0; }))
+            << render.err();
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+        cluster.kill_master();
+        cluster.start_master();
+    }
+    ASSERT_EQ(render.wait(std::chrono::minutes(3)).value_or(-1), 0) << render.err();
+    const json result = json::parse(render.out());
+    EXPECT_EQ(result["film_hash"].get<std::string>(), expected_hash_of_slow_frame(cluster));
+    EXPECT_EQ(result["spp"], 32);
+    EXPECT_TRUE(cluster.wait_for([](const json& status) { return status["live"].is_null(); }))
+        << "its scene goes with it";
+}
+
 TEST(RealProcesses, AnUnknownKeyIsRefusedEverywhere) {
     RealCluster cluster;
     ChildProcess foreign_keys(cluster.folder().path(), "foreign", "tessera",

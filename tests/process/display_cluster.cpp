@@ -57,10 +57,10 @@ void DisplayCluster::begin_scene() {
     EXPECT_TRUE(made.accepted);
 }
 
-std::unique_ptr<client::LiveSession> DisplayCluster::member(const std::string& name) {
-    auto session = client::connect_live({cluster_.endpoint(), cluster_.keys()}, blobs_, clock_,
-                                        {.name = name, .connect_limit = 60s, .lost_limit = 60s});
-    session->join("wall", client::WhenBusy::Queue, nullptr, {});
+std::unique_ptr<client::Session> DisplayCluster::member(const std::string& name) {
+    auto session = client::connect({cluster_.endpoint(), cluster_.keys()}, blobs_, clock_,
+                                   {.name = name, .connect_limit = 60s, .lost_limit = 60s});
+    session->join({.title = "wall"}, {});
     return session;
 }
 

@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "client/live_session.h"
+#include "client/session.h"
 #include "mediator/display/display.h"
 #include "tests/process/real_cluster.h"
 
@@ -32,7 +32,7 @@ class DisplayCluster {
   public:
     explicit DisplayCluster(int nodes, RealCluster::Session kept = RealCluster::Session::None);
 
-    client::LiveSession& editor() { return *editor_; }
+    client::Session& editor() { return *editor_; }
     void begin_scene();  // with an editor and a camera, again after it was closed
     RealCluster& cluster() { return cluster_; }
     const TemporaryFolder& folder() const { return cluster_.folder(); }
@@ -54,12 +54,12 @@ class DisplayCluster {
 
   private:
     friend class MovingScene;
-    std::unique_ptr<client::LiveSession> member(const std::string& name);
+    std::unique_ptr<client::Session> member(const std::string& name);
 
     RealCluster cluster_;
     SteadyClock clock_;
     std::shared_ptr<scene::BlobStore> blobs_ = std::make_shared<scene::BlobStore>();
-    std::unique_ptr<client::LiveSession> editor_;
+    std::unique_ptr<client::Session> editor_;
     ObjectId place_;
     std::vector<ChildProcess> nodes_;
     int next_label_ = 0;

@@ -9,7 +9,7 @@
 
 #include "client/display_file/display_file.h"
 #include "client/import/import.h"
-#include "client/live_session.h"
+#include "client/session.h"
 #include "mediator/display/frustum.h"
 #include "tests/process/real_cluster.h"
 #include "tests/support/folders.h"
@@ -47,7 +47,7 @@ struct DisplayProcess : testing::Test {
     RealCluster cluster;
     SteadyClock clock;
     std::shared_ptr<scene::BlobStore> blobs = std::make_shared<scene::BlobStore>();
-    std::unique_ptr<client::LiveSession> ann, shower;
+    std::unique_ptr<client::Session> ann, shower;
     std::string file = cluster.folder() / "wall.toml";
     std::vector<client::OutputFrame> frames;
     bool pattern = false;
@@ -66,10 +66,9 @@ struct DisplayProcess : testing::Test {
         const auto code = process.wait(DisplayPatience);
         return {code.value_or(-1), process.out(), process.err()};
     }
-    std::unique_ptr<client::LiveSession> member(const std::string& name) {
-        auto session =
-            client::connect_live({cluster.endpoint(), cluster.keys()}, blobs, clock, {.name = name});
-        session->join("room", client::WhenBusy::Queue, nullptr, {});
+    std::unique_ptr<client::Session> member(const std::string& name) {
+        auto session = client::connect({cluster.endpoint(), cluster.keys()}, blobs, clock, {.name = name});
+        session->join({.title = "room"}, {});
         return session;
     }
     void load_scene() {
@@ -88,7 +87,7 @@ struct DisplayProcess : testing::Test {
                 << "it did not happen: " << cluster.master().err();
             auto event = shower->next_output_event(std::chrono::steady_clock::now() + 10ms, {});
             if (!event) continue;
-            if (const auto* opened = std::get_if<wire::OutputOpened>(&*event)) {
+            if (const auto* opened = std::get_if<session::OutputOpened>(&*event)) {
                 pattern = opened->pattern;
                 shower->output_ready(0);
             }

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "client/import/import.h"
-#include "client/live_session.h"
+#include "client/session.h"
 #include "mediator/base/hash.h"
 #include "mediator/scene/fields.h"
 #include "mediator/view/placed_cameras.h"
@@ -24,14 +24,14 @@ struct LiveProcess : testing::Test {
     std::optional<ChildProcess> node;
     SteadyClock clock;
     std::shared_ptr<BlobStore> blobs = std::make_shared<BlobStore>();
-    std::unique_ptr<client::LiveSession> session;
+    std::unique_ptr<client::Session> session;
     ObjectId material;
-    client::LiveViewRequest view{.spp = 64};
+    session::ViewRequest view{.stop = {.spp = 64}};
 
     void join() {
-        session = client::connect_live({cluster.endpoint(), cluster.keys()}, blobs, clock,
-                                       {.name = "ann", .lost_limit = 60s});
-        session->join("room", client::WhenBusy::Queue, nullptr, {});
+        session = client::connect({cluster.endpoint(), cluster.keys()}, blobs, clock,
+                                  {.name = "ann", .lost_limit = 60s});
+        session->join({.title = "room"}, {});
     }
     void SetUp() override {
         join();
@@ -86,20 +86,20 @@ TEST_F(LiveProcess, KilledAtRandomMomentsItHasEveryAcknowledgedEdit) {
         session->refresh();
         ASSERT_EQ(session->scene().find_as<Material>(material)->base_color.x, last) << "kill " << kill;
     }
-    const auto late = client::connect_live({cluster.endpoint(), cluster.keys()},
-                                           std::make_shared<BlobStore>(), clock, {.name = "late"});
-    late->join("room", client::WhenBusy::Queue, nullptr, {});
+    const auto late = client::connect({cluster.endpoint(), cluster.keys()}, std::make_shared<BlobStore>(),
+                                      clock, {.name = "late"});
+    late->join({.title = "room"}, {});
     EXPECT_EQ(late->scene().state_hash(), session->scene().state_hash());
     EXPECT_EQ(late->history(256).size(), 256u) << "of " << edits;
 }
 
 TEST_F(LiveProcess, TheFinishedFrameHasTheBitsOfOneThatWasNeverInterrupted) {
-    view.spp = 256;  // seconds on one thread: it is not finished before it is interrupted
-    session->open_view(1, view);
+    view.stop.spp = 256;  // seconds on one thread: it is not finished before it is interrupted
+    session->request_view(1, view);
     const Hash256 whole = finished_film();
     session->close_view(1);
     view.name = "interrupted";
-    session->open_view(2, view);
+    session->request_view(2, view);
     for (int kill = 0; kill < 3; ++kill) {
         std::this_thread::sleep_for(150ms);
         cluster.kill_master();
@@ -110,8 +110,8 @@ TEST_F(LiveProcess, TheFinishedFrameHasTheBitsOfOneThatWasNeverInterrupted) {
 }
 
 TEST_F(LiveProcess, WhatWasMergedBeforeTheDeathIsNotLost) {
-    view.spp = 1u << 20;
-    session->open_view(1, view);
+    view.stop.spp = 1u << 20;
+    session->request_view(1, view);
     std::uint64_t before = 0, after = 0;
     const auto deadline = std::chrono::steady_clock::now() + 60s;
     while (before < 256) {

@@ -61,6 +61,30 @@ class LiveMaster(unittest.TestCase):
         at = frame.height // 2 * frame.width + frame.width // 2
         return tuple(round(plane[at], 3) for plane in frame.planes())
 
+    def test_a_picture_that_is_waited_for(self):
+        self.glowing_wall(color=(0.25, 0.5, 0.75)).close()
+        phases = []
+        rendered = self.session.render(POSE, size=(64, 48), spp=8, picture="planes", film=True, filter="gauss",
+                                       on_progress=lambda progress: phases.append(progress.phase))
+        self.assertEqual(rendered.summary.outcome, "complete")
+        self.assertEqual(rendered.summary.samples, 64 * 48 * 8)
+        self.assertEqual(rendered.summary.nodes, ("n1",))
+        self.assertTrue(rendered.summary.filter.startswith("gauss"))
+        self.assertEqual([round(plane[64 * 24 + 32], 3) for plane in rendered.frame.planes()], [0.25, 0.5, 0.75])
+        self.assertEqual(set(rendered.frame.film().counts), {8})
+        self.assertLessEqual(set(phases), {"waiting_for_nodes", "syncing", "rendering", "filtering", "delivering"})
+        late = self.session.render(POSE, size=(64, 48), spp=1 << 20, budget=0.5)
+        self.assertEqual(late.summary.outcome, "time_up")
+        with self.cluster.connect(name="bob") as bob, self.assertRaises(tessera.Refused):
+            bob.join("another", exclusive=True, no_wait=True)
+
+    def test_another_filter_for_a_view_by_its_name(self):
+        view = self.glowing_wall()
+        view.wait(samples=8)
+        self.assertIn("gauss", self.session.set_filter("gauss", "anna/1"))
+        with self.assertRaisesRegex(tessera.Refused, "no view named 'nobody/9'"):
+            self.session.set_filter("gauss", "nobody/9")
+
     def test_the_picture_follows_edits_and_undo(self):
         view = self.glowing_wall()
         frame = view.wait(samples=8)

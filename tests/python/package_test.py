@@ -22,7 +22,7 @@ from tessera.frame import Assembly
 from tessera.mirror import Mirror
 from tessera.parsing import parsed
 from tessera.people import history_of, people_of, status_of
-from tessera.proto import control_pb2, live_pb2, scene_pb2, session_pb2
+from tessera.proto import control_pb2, scene_pb2, session_pb2, status_pb2
 from tessera.transaction import Transaction
 
 SOURCE = pathlib.Path(sys.argv.pop()).resolve() if len(sys.argv) > 1 else pathlib.Path(".")
@@ -138,7 +138,7 @@ class Bulk(unittest.TestCase):
     MESSAGES = [
         bulk.BulkHello(5), bulk.BlobRequest(bytes(32), 7), bulk.BlobChunk(bytes(32), 10, 3, b"abc"),
         bulk.BlobAbsent(bytes(32)), bulk.FrameTile(3, 0, 2, FILM), bulk.PictureChunk(3, 10, 3, b"abc"),
-        bulk.LiveFrame(1, 2, 3, 4, 5, 1, 8, 4, 3, 2, 10, 1, 0, 1, 2, 3, bytes(32)),
+        bulk.FrameHeader(1, 2, 3, 4, 5, 1, 8, 4, 3, 2, 10, 0, 0, 8, 4, 1, 0, 1, 2, 3, bytes(32)),
     ]
 
     def test_round_trip(self):
@@ -157,9 +157,10 @@ class Bulk(unittest.TestCase):
 
     def test_no_bytes_bring_the_decoders_down(self):
         source = random.Random(1)
-        people = control_pb2.Control(people=live_pb2.People(request=1, people=[live_pb2.Person(name=b"a")])
-                                     ).SerializeToString()
-        status = session_pb2.StatusReply(nodes=[session_pb2.NodeStatus(phase=1)]).SerializeToString()
+        people = control_pb2.Control(people=session_pb2.People(request=1, content=session_pb2.PeopleInScene(
+            people=[session_pb2.Person(name=b"a")]))).SerializeToString()
+        status = status_pb2.StatusReply(status=status_pb2.ClusterStatus(
+            nodes=[status_pb2.NodeStatus(phase=1)])).SerializeToString()
         changes = Mirrors.changes([Mirrors.entry(5, CREATE, "light", name=b"a"),
                                    Mirrors.entry(6, CREATE, "material", name=b"b")]).SerializeToString()
         kinds = {"malformed": 0, "fine": 0}
@@ -179,8 +180,8 @@ class Bulk(unittest.TestCase):
     @staticmethod
     def bulk_message(data):
         message = bulk.decode(data)
-        assembly = Assembly(bulk.LiveFrame(1, 3, 3, 4, 5, 1, 8, 4, 3, 2, 10, 2, 0, 1, 2, 3, bytes(32)), (8, 4), 0.0)
-        if isinstance(message, bulk.LiveFrame):
+        assembly = Assembly(bulk.FrameHeader(1, 3, 3, 4, 5, 1, 8, 4, 3, 2, 10, 0, 0, 8, 4, 2, 0, 1, 2, 3, bytes(32)), (8, 4), 0.0)
+        if isinstance(message, bulk.FrameHeader):
             assembly = Assembly(message, (8, 4), 0.0)
         if isinstance(message, (bulk.PictureChunk, bulk.FrameTile)):
             assembly.add(message, 0.0)
@@ -196,7 +197,7 @@ class Bulk(unittest.TestCase):
 
     @staticmethod
     def status_message(data):
-        status_of(parsed(session_pb2.StatusReply, data))
+        status_of(parsed(status_pb2.StatusReply, data))
 
     @staticmethod
     def change_list(data):
@@ -207,7 +208,8 @@ class Bulk(unittest.TestCase):
             mirror.path(number)
 
     def test_a_header_alone_costs_no_memory(self):
-        huge = bulk.LiveFrame(1, 1, 1, 1, 1, 1, 65536, 65536, 3, 2, 1 << 30, 1 << 20, 0, 1, 1, 1, bytes(32))
+        huge = bulk.FrameHeader(1, 1, 1, 1, 1, 1, 65536, 65536, 3, 2, 1 << 30, 0, 0, 65536, 65536, 1 << 20, 0, 1, 1, 1,
+                                bytes(32))
         assembly = Assembly(bulk.decode(bulk.encode(huge)), None, 0.0)
         self.assertLess(len(assembly.picture) + len(assembly.tiles), 1)
         with self.assertRaises(tessera.Malformed):

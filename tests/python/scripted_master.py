@@ -10,7 +10,7 @@ import zmq
 
 from tessera import blobs, bulk
 from tessera.film import FilmTile, plane_count
-from tessera.proto import common_pb2, control_pb2, live_pb2, scene_pb2
+from tessera.proto import common_pb2, control_pb2, scene_pb2, session_pb2, status_pb2, view_pb2
 
 PNG = b"\x89PNG\r\n\x1a\n" + b"picture" * 4
 
@@ -53,7 +53,7 @@ class ScriptedMaster:
         self.heartbeats = []
         self.refuse_edits = self.refuse_hello = self.is_mute = self.ignores_edits = False
         self.scene_by_blob = self.withholds_frames = False
-        self.views = {}
+        self.views, self.ended = {}, set()
         self.submitted = []
         self.heads, self.adjustments = [], []
         self._next = 1
@@ -194,7 +194,8 @@ class ScriptedMaster:
         self.by_control.pop(member.control, None)
 
     def _on_status_request(self, member, _):
-        self._say(member.control, "status_reply", software=b"scripted", version=self._version(), uptime_seconds=1.5)
+        self._say(member.control, "status_reply", status=status_pb2.ClusterStatus(
+            software=b"scripted", version=self._version(), uptime_seconds=1.5))
 
     def _on_join_scene(self, member, join):
         member.name, member.key = join.name, join.key
@@ -235,14 +236,14 @@ class ScriptedMaster:
         self.submitted.append(edit)
         editor = self.editors[member.key]
         if edit.sequence == editor[1]:
-            return self._say(member.control, "edit_reply", **editor[2])
+            return self._say(member.control, "edit_reply", sequence=edit.sequence, result=editor[2])
         refs = [getattr(e.object.geometry, name) for e in edit.entries if e.object.HasField("geometry")
                 for name in ("indices", "positions", "normals", "tangents", "tex_coords", "colors")]
         self._need(member, refs, lambda: self._apply(member, editor, edit))
 
     def _apply(self, member, editor, edit):
         if self.refuse_edits:
-            reply = dict(sequence=edit.sequence, accepted=False, problems=[b"material 'red' is locked by anna"])
+            reply = session_pb2.EditResult(accepted=False, problems=[b"material 'red' is locked by anna"])
         else:
             for entry in edit.entries:
                 if entry.action == scene_pb2.Entry.CREATE:
@@ -253,10 +254,10 @@ class ScriptedMaster:
                     self._update(entry)
             self.number += 1
             self.lists.append((self.number, list(edit.entries)))
-            reply = dict(sequence=edit.sequence, accepted=True, version=self._version(), transaction=edit.sequence,
-                         notes=[b"left as it is"] if edit.undo else [])
+            reply = session_pb2.EditResult(accepted=True, version=self._version(), transaction=edit.sequence,
+                                           notes=[b"left as it is"] if edit.undo else [])
         editor[1:] = [edit.sequence, reply]
-        self._say(member.control, "edit_reply", **reply)
+        self._say(member.control, "edit_reply", sequence=edit.sequence, result=reply)
 
     def _update(self, entry):
         word = entry.object.WhichOneof("kind")
@@ -296,61 +297,83 @@ class ScriptedMaster:
         return None
 
     def _on_adjust_display(self, member, change):
-        self.adjustments.append(change)
-        self._done(member, change, change.eye_separation <= 10.0, b"the eye separation is not within 0 and 10 m")
+        self.adjustments.append(change.adjustment)
+        self._done(member, change, change.adjustment.eye_separation <= 10.0, b"the eye separation is not within 0 and 10 m")
 
     def _on_set_presence(self, member, presence):
         self.presence = presence
 
     def _on_read_people(self, member, read):
-        self._say(member.control, "people", request=read.request, title=b"room", people=[
-            live_pb2.Person(session=m.number, name=m.name, user=b"editor", editor=True) for m in self.members.values()])
+        self._say(member.control, "people", request=read.request, content=session_pb2.PeopleInScene(
+            title=b"room", people=[session_pb2.Person(session=m.number, name=m.name, user=b"editor", editor=True)
+                                   for m in self.members.values()]))
 
     def _on_read_history(self, member, read):
         self._say(member.control, "history", request=read.request, transactions=[
-            live_pb2.TransactionSummary(number=2, name=b"anna", time=1_500_000_000, text=b"set materials/red")])
+            session_pb2.TransactionSummary(number=2, name=b"anna", time=1_500_000_000, text=b"set materials/red")])
 
     def _on_read_writers(self, member, read):
         self._say(member.control, "writers", request=read.request, fields=[
-            live_pb2.FieldWriter(field=1, transaction=2, name=b"anna", time=2_000_000_000),
-            live_pb2.FieldWriter(field=99, transaction=2)])
+            session_pb2.FieldWriter(field=1, transaction=2, name=b"anna", time=2_000_000_000),
+            session_pb2.FieldWriter(field=99, transaction=2)])
 
-    def _on_open_live_view(self, member, request):
+    def _on_request_view(self, member, request):
         known = self.views.get(request.number)
-        if request.spp == 0:
+        if request.wanted.stop.spp == 0:
             return self._done(member, request, False, b"a view needs samples")
-        changed = known and (known[0].view != request.view or known[0].spp != request.spp)
+        changed = known and (known[0].wanted != request.wanted)
         revision = known[1] + changed if known else 1
         self.views[request.number] = (request, revision)
         if request.request:
             self._done(member, request)
         if request.number not in member.frame or request.request == 0:
             member.frame[request.number] = member.frame.get(request.number, 0)
-            self.send_frame(member, request.number, 1)
+            if request.wanted.frames == 0:
+                self.send_frame(member, request.number, 1)
+            else:
+                self._render(member, request)
         return None
 
-    def _on_close_live_view(self, member, close):
-        self.views.pop(close.number, None)
+    def _render(self, member, request):
+        """The end alone; of a request without an end, once it is asked for."""
+        self._say(member.control, "view_progress", number=request.number, progress=view_pb2.Progress(
+            phase=2, samples=5, samples_expected=64, rays=9, nodes=1, elapsed=1_500_000_000))
+        if request.wanted.stop.spp < 1 << 20:
+            self._end(member, request.number, 0, request.wanted.stop.spp)
+
+    def _end(self, member, number, outcome, samples):
+        self.ended.add(number)
+        self.send_frame(member, number, samples, complete=1)
+        self._say(member.control, "view_done", number=number, frame=member.frame[number], summary=view_pb2.ViewSummary(
+            outcome=outcome, message=b"", version=self._version(), seconds_render=0.5, rays=7, samples=samples * 32,
+            samples_least=samples, samples_most=samples, nodes=[view_pb2.NodeSummary(name=b"n1")]))
+
+    def _on_end_view(self, member, end):
+        if end.deliver:
+            self._end(member, end.number, 2, 3)
+        else:
+            self.views.pop(end.number, None)
 
     def _on_frame_taken(self, member, taken):
         member.taken[taken.number] = taken.frame
-        if taken.number in self.views and not self.withholds_frames:
+        if taken.number in self.views and taken.number not in self.ended and not self.withholds_frames:
             samples = 2 ** taken.frame
-            spp = self.views[taken.number][0].spp
+            spp = self.views[taken.number][0].wanted.stop.spp
             if samples <= spp:
                 self.send_frame(member, taken.number, samples)
 
     def _on_pick(self, member, pick):
         if pick.x == 0:
-            return self._say(member.control, "picked", request=pick.request, hit=False)
+            return self._say(member.control, "picked", request=pick.request)
         if pick.x == 1:
             return self._say(member.control, "picked", request=pick.request, problem=b"the node is gone")
-        return self._say(member.control, "picked", request=pick.request, hit=True, object=65536,
-                         position=[1.0, 2.0, 3.0], normal=[0.0, 1.0, 0.0], distance=4.0)
+        return self._say(member.control, "picked", request=pick.request, seen=view_pb2.Seen(
+            hit=True, object=65536, position=[1.0, 2.0, 3.0], normal=[0.0, 1.0, 0.0], distance=4.0))
 
     def send_frame(self, member, number, samples, **changes):
         """The next frame of a view: header, picture in two pieces, film in two tiles."""
         request, revision = self.views[number]
+        request = request.wanted
         member.frame[number] += 1
         width, height = request.view.width, request.view.height
         encoding = bulk.ENCODINGS[request.picture]
@@ -359,12 +382,13 @@ class ScriptedMaster:
             picture = struct.pack(f"<{3 * width * height}f", *range(3 * width * height))
         fields = dict(view=number, frame=member.frame[number], epoch=self.epoch, number=self.number, revision=revision,
                       scale=1, width=width, height=height, components=3, encoding=request.picture,
-                      picture_bytes=len(picture), film_tiles=2 if request.film else 0,
-                      complete=int(samples == request.spp), samples_least=samples, samples_most=samples,
-                      spp=request.spp, film_hash=bytes(32))
+                      picture_bytes=len(picture), film_x=0, film_y=0, film_width=width if request.film else 0,
+                      film_height=height if request.film else 0, film_tiles=2 if request.film else 0,
+                      complete=int(samples == request.stop.spp), samples_least=samples, samples_most=samples,
+                      spp=request.stop.spp, film_hash=bytes(32))
         fields.update(changes)
         frame = fields["frame"]
-        messages = [bulk.LiveFrame(**fields)]
+        messages = [bulk.FrameHeader(**fields)]
         half = len(picture) // 2
         if picture:
             messages += [bulk.PictureChunk(frame, len(picture), 0, picture[:half]),

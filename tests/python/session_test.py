@@ -249,7 +249,7 @@ class Views(WithMaster):
             edit.create("transform", name="stand", matrix=tessera.translation(1, 2, 3), children=[camera])
         self.assertNotIn(camera.id, self.scene.root.children)  # it has its place already
         self.session.open_view("cameras/main", size=(200, 100))
-        view = self.master.views[1][0].view
+        view = self.master.views[1][0].wanted.view
         self.assertEqual(list(view.world_from_camera)[12:15], [1, 2, 3])
         self.assertAlmostEqual(view.frustum[1], 2 * view.frustum[3])
         with self.assertRaisesRegex(tessera.InvalidInput, "is no camera"):
@@ -258,7 +258,7 @@ class Views(WithMaster):
     def test_cameras_with_lenses_and_parallel_ones(self):
         self.session.open_view(tessera.look_at((0, 0, 5), (0, 0, 0), lens_radius=0.02, focus_distance=4.5,
                                                aperture="gaussian"), size=(200, 100))
-        view = self.master.views[1][0].view
+        view = self.master.views[1][0].wanted.view
         self.assertEqual((view.projection, view.lens_radius, view.focus_distance, view.aperture), (0, 0.02, 4.5, 1))
         self.assertAlmostEqual(view.frustum[3], math.tan(0.35))
         with self.session.transaction() as edit:
@@ -266,11 +266,11 @@ class Views(WithMaster):
                                  lens_radius=0.5, focus_distance=3.0)
             edit.create("transform", name="above", matrix=tessera.translation(0, 0, 9), children=[camera])
         opened = self.session.open_view("cameras/plan", size=(200, 100))
-        view = self.master.views[2][0].view
+        view = self.master.views[2][0].wanted.view
         self.assertEqual((view.projection, view.lens_radius, view.focus_distance, view.aperture), (1, 0.5, 3.0, 0))
         self.assertEqual(list(view.frustum), [-6, 6, -3, 3])
         opened.look(tessera.look_at((0, 0, 5), (0, 0, 0)))  # a pinhole again
-        view = self.master.views[2][0].view
+        view = self.master.views[2][0].wanted.view
         self.assertEqual((view.projection, view.lens_radius), (0, 0))
         for wrong in ({"projection": "fish-eye"}, {"aperture": "square"}, {"lens_radius": -1}, {"focus_distance": 0},
                       {"orthographic_height": 0}, {"vertical_fov": 4}):
@@ -280,11 +280,11 @@ class Views(WithMaster):
     def test_cameras_that_move_while_the_shutter_is_open(self):
         a, b, c = (tessera.look_at((x, 0, 5), (0, 0, 0)) for x in (0, 1, 2))
         opened = self.session.open_view(a.moving_to(b, c), size=(8, 4))
-        view = self.master.views[1][0].view
+        view = self.master.views[1][0].wanted.view
         self.assertEqual(tuple(view.world_from_camera), a.world_from_camera)
         self.assertEqual(tuple(view.camera_motion), b.world_from_camera + c.world_from_camera)
         opened.look(b)  # which stands still
-        self.assertEqual(len(self.master.views[1][0].view.camera_motion), 0)
+        self.assertEqual(len(self.master.views[1][0].wanted.view.camera_motion), 0)
         with self.assertRaisesRegex(tessera.InvalidInput, "16 steps: there may be 15"):
             a.moving_to(*[b] * 16)
         with self.assertRaisesRegex(tessera.InvalidInput, "16 finite numbers"):
@@ -294,7 +294,7 @@ class Views(WithMaster):
             lift = edit.create("transform", name="lift", children=[camera],
                                matrix=tessera.translation(0, 1, 0), motion=[tessera.translation(0, 2, 0)])
         opened = self.session.open_view("cameras/main", size=(8, 4))
-        view = self.master.views[opened.number][0].view
+        view = self.master.views[opened.number][0].wanted.view
         self.assertEqual([list(view.world_from_camera)[12:15], list(view.camera_motion)[12:15]], [[0, 1, 0], [0, 2, 0]])
         # Two that move: as many steps as there may be, 2 x 7, and scale is taken out.
         big = (2.0, 0.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 2.0, 0.0)
@@ -303,7 +303,7 @@ class Views(WithMaster):
                         motion=[(*big, 7.0, 0.0, 0.0, 1.0), (*big, 0.0, 0.0, 7.0, 1.0)])
             edit.detach(lift, "root")
         opened.look("cameras/main")
-        motion = list(self.master.views[opened.number][0].view.camera_motion)
+        motion = list(self.master.views[opened.number][0].wanted.view.camera_motion)
         self.assertEqual(len(motion), 16 * 14)
         for step in range(1, 15):
             matrix = motion[16 * step - 16:16 * step]
@@ -317,9 +317,9 @@ class Views(WithMaster):
             edit.create("transform", name="gui", layers=5)
         self.assertEqual(self.scene["transforms/gui"].layers, 5)
         self.session.open_view(self.POSE, size=(8, 4))
-        self.assertEqual(self.master.views[1][0].view.hidden_layers, 0)
+        self.assertEqual(self.master.views[1][0].wanted.view.hidden_layers, 0)
         self.session.open_view(self.POSE, size=(8, 4), layers=5)
-        self.assertEqual(self.master.views[2][0].view.hidden_layers, 0xFFFFFFFA)
+        self.assertEqual(self.master.views[2][0].wanted.view.hidden_layers, 0xFFFFFFFA)
         with self.assertRaisesRegex(tessera.InvalidInput, "32 bits"):
             self.session.open_view(self.POSE, layers=1 << 32)
 
@@ -334,6 +334,25 @@ class Views(WithMaster):
         view.close()
         with self.assertRaisesRegex(tessera.InvalidInput, "closed"):
             view.pick(2, 0)
+
+    def test_a_picture_that_is_waited_for(self):
+        heard = []
+        rendered = self.session.render(self.POSE, size=(8, 4), spp=16, film=True, budget=2.5, on_progress=heard.append)
+        self.assertEqual(rendered.frame.samples_least, 16)
+        self.assertEqual(len(rendered.frame.film().counts), 32)
+        self.assertEqual((rendered.summary.outcome, rendered.summary.rays, rendered.summary.nodes), ("complete", 7, ("n1",)))
+        self.assertEqual([(p.phase, p.seconds) for p in heard], [("rendering", 1.5)])
+        self.wait_for(lambda: self.master.received.count("end_view") == 1)
+        self.assertEqual(self.master.views, {})
+        with self.assertRaisesRegex(tessera.Refused, "needs samples"):
+            self.session.render(self.POSE, spp=0)
+
+    def test_a_view_that_is_stopped_ends_with_what_there_is(self):
+        view = self.session.open_view(self.POSE, size=(8, 4), spp=1 << 40)
+        self.assertEqual(view.wait(samples=1).samples_least, 1)
+        view.stop()
+        end = view.wait_for_end(timeout=10.0)
+        self.assertEqual((end.summary.outcome, end.frame.samples_least), ("stopped", 3))
 
     def test_a_refused_view(self):
         with self.assertRaisesRegex(tessera.Refused, "needs samples"):
@@ -427,7 +446,7 @@ class Breaks(WithMaster):
         view = self.session.open_view(Views.POSE, size=(8, 4), spp=1 << 40)
         view.wait(samples=1)
         member = self.master.members[1]
-        frame = bulk.encode(bulk.LiveFrame(1, 1, 7, 1, 1, 1, 8, 4, 3, 2, 10, 0, 0, 1, 1, 1, bytes(32)))
+        frame = bulk.encode(bulk.FrameHeader(1, 1, 7, 1, 1, 1, 8, 4, 3, 2, 10, 0, 0, 0, 0, 0, 0, 1, 1, 1, bytes(32)))
         chunk = bulk.encode(bulk.PictureChunk(2, 10, 0, bytes(5)))
         notice = control_pb2.Control(notice=control_pb2.Notice(text=b"text")).SerializeToString()
         beat = control_pb2.Control(heartbeat=control_pb2.Heartbeat(sent_at=5)).SerializeToString()

@@ -12,7 +12,7 @@ from functions import check_functions
 
 CORE = ["mediator/base", "mediator/scene", "mediator/view", "mediator/frame", "mediator/filter", "mediator/display"]
 KIT = CORE + ["mediator/backend", "mediator/shading"]
-LINK = ["mediator/net", "mediator/wire"]
+LINK = ["mediator/net", "mediator/session", "mediator/wire"]
 
 # Folder or file -> what its sources may include, besides their own folder. The longest match counts; "" is
 # the permission to include everything.
@@ -28,7 +28,8 @@ ARROWS = {
     "mediator/picture": CORE,
     "mediator/net": CORE,
     "mediator/program": ["mediator/base"],
-    "mediator/wire": CORE + ["proto"],
+    "mediator/session": CORE,
+    "mediator/wire": CORE + ["mediator/session", "proto"],
     "backends": KIT + ["backends"],
     "backends/null": KIT,
     "backends/embree": KIT,
@@ -41,7 +42,7 @@ ARROWS = {
     "master/filter": KIT + ["master/filter"],
     "master/peers": CORE + LINK,
     "master/scene": CORE + LINK + ["master/peers"],
-    "master/render/schedule": CORE + ["mediator/wire", "master/peers"],
+    "master/render/schedule": CORE + ["mediator/session", "mediator/wire", "master/peers"],
     "master/render/compose": CORE + ["master/filter"],
     "master/render": CORE + LINK + ["mediator/picture", "master/filter", "master/peers", "master/render"],
     "master/display": CORE + LINK + ["master/filter", "master/peers", "master/scene", "master/render"],
@@ -50,7 +51,10 @@ ARROWS = {
     "master/config.cpp": CORE + LINK + ["mediator/program"],
     "master/main.cpp": CORE + LINK + ["mediator/picture", "mediator/program"],
     "client": CORE + LINK + ["client/import", "mediator/picture"],
-    "client/session.h": CORE + ["client/import", "mediator/picture"],
+    "client/session.h": CORE + ["mediator/session", "client"],
+    "client/frame.h": CORE + ["mediator/session"],
+    "client/render.h": ["client"],
+    "client/output_event.h": CORE + ["mediator/session"],
     "client/import": CORE + ["mediator/picture", "mediator/wire"],
     "client/export": CORE + ["client/import", "mediator/picture", "mediator/wire"],
     "client/edit": CORE + ["client/import", "client/export"],
@@ -199,6 +203,31 @@ def files_below(root):
                 yield os.path.normpath(os.path.join(below, name)).replace(os.sep, "/")
 
 
+# What programs that use the client's library see: nothing of it, however deep, shows a type of the wire.
+PUBLIC_HEADERS = ["client/session.h", "client/frame.h", "client/render.h", "client/output_event.h"]
+HIDDEN_FROM_PUBLIC = ("mediator/wire/", "mediator/net/", "proto/")
+
+
+def check_public_headers(root):
+    """Follows the includes of the public headers; a hidden one is told with the way to it."""
+    for header in PUBLIC_HEADERS:
+        ways, seen = [[header]], {header}
+        while ways:
+            way = ways.pop()
+            path = os.path.join(root, way[-1])
+            if not os.path.isfile(path):
+                continue
+            with open(path, encoding="utf-8") as file:
+                included = [found.group(2) for found in map(INCLUDE.match, file) if found and found.group(1) == '"']
+            for target in included:
+                if target.startswith(HIDDEN_FROM_PUBLIC):
+                    if len(way) > 1:  # else the arrow says it
+                        yield f"{header}: shows {target} by way of {' -> '.join(way[1:])}"
+                elif target not in seen:
+                    seen.add(target)
+                    ways.append(way + [target])
+
+
 def check_tree(root):
     """All violations below `root`, and the number of files that were looked at."""
     violations, count = [], 0
@@ -206,6 +235,7 @@ def check_tree(root):
         with open(os.path.join(root, path), encoding="utf-8") as file:
             violations += check_file(path, file.read())
         count += 1
+    violations += check_public_headers(root)
     return violations, count
 
 

@@ -98,6 +98,11 @@ class CheckRules(unittest.TestCase):
                 self.assertIn(path, violations[0])
                 self.assertIn(word, violations[0])
 
+    def test_what_a_public_header_shows_by_way_of_another_is_found(self):
+        violations, _ = violations_of({**CLEAN, "client/frame.h": HEADER + '#include "client/a.h"\n',
+                                       "client/a.h": HEADER + '#include "mediator/wire/envelope.h"\n'})
+        self.assertEqual(violations, ["client/frame.h: shows mediator/wire/envelope.h by way of client/a.h"])
+
     def test_the_longest_files_that_are_allowed_pass(self):
         violations, _ = violations_of({"node/a.cpp": "\n" * 450, "tests/node/a.cpp": "\n" * 600})
         self.assertEqual(violations, [])

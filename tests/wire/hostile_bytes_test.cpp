@@ -62,7 +62,7 @@ scene::ChangeList some_changes() {
             .state_hash = {1, ~0ull}};
 }
 
-const NodeSummary node{NodeId{1}, "n", "host", "embree", "embree/avx2", 4711, 3, 4096, 1.5};
+const session::NodeSummary node{NodeId{1}, "n", "host", "embree", "embree/avx2", 4711, 3, 4096, 1.5};
 
 std::vector<ControlMessage> peer_messages() {
     const view::WorkUnit unit{UnitId{4}, ViewId{3}, 9, {5, 2}, {32, 64, 32, 32}, {8, 3}};
@@ -77,7 +77,7 @@ std::vector<ControlMessage> peer_messages() {
             Welcome{7, 8, 9, std::chrono::seconds(1), 3},
             Refusal{"no"},
             Unknown{},
-            Heartbeat{-5, 6, 7, NodePhase::Building, 8, {5, 2}, {UnitId{1}, UnitId{2}}, 3, 4},
+            Heartbeat{-5, 6, 7, session::NodePhase::Building, 8, {5, 2}, {UnitId{1}, UnitId{2}}, 3, 4},
             Changes{some_changes()},
             ChangesByBlob{{5, 1}, {5, 2}, {blake2b({}), 100}},
             VersionReport{{5, 2}, {1, 2}, 3, 4, 5, 6, 7, 8, 9, 10, 11, {"attachment"}, {"broken"}, -12, 13},
@@ -92,58 +92,45 @@ std::vector<ControlMessage> peer_messages() {
             Notice{Severity::Error, "text"}};
 }
 
-std::vector<ControlMessage> batch_messages() {
-    return {OpenScene{"title", true},
-            QueuePlace{2},
-            SceneOpened{{5, 1}, 65536, 100},
-            SubmitEdit{{SessionId{2}, 3, {5, 1}, some_changes().entries, 4, -5, 6}},
-            SubmitEditByBlob{SessionId{2}, 3, {5, 1}, {blake2b({}), 5}},
-            EditReply{3, true, {5, 2}, {"p"}, 7, {"n"}},
-            StartJob{.job = JobId{1},
-                     .view = some_view(),
-                     .spp = 5,
-                     .policy = Policy::Cooperative,
-                     .tile = 64,
-                     .picture = PictureEncoding::Png,
-                     .film = false,
-                     .budget = std::chrono::milliseconds(800),
-                     .adapts_size = true},
-            StopJob{JobId{1}},
-            JobProgress{JobId{1}, JobPhase::Delivering, 1, 2, 3, 4, std::chrono::milliseconds(5)},
-            JobDone{.job = JobId{1},
-                    .outcome = JobOutcome::TimeUp,
-                    .tiles = 3,
-                    .seconds_render = 0.25,
-                    .nodes = {node},
-                    .picture = {.encoding = PictureEncoding::Planes,
-                                .width = 3,
-                                .height = 2,
-                                .components = 4,
-                                .byte_size = 96,
-                                .filter = "gauss:sigma=3",
-                                .passes = {{"gauss", 0.5, 40.0}},
-                                .notes = {"upsampled"}},
-                    .samples_least = 3,
-                    .samples_most = 9},
-            StatusRequest{},
-            StatusReply{.software = "s",
-                        .nodes = {{.summary = node,
-                                   .phase = NodePhase::Leaving,
-                                   .stuck = true,
-                                   .clock_offset_seconds = -0.5,
-                                   .clock_bound_seconds = 0.25}},
-                        .live = {.title = "room",
-                                 .members = 2,
-                                 .edits = 7,
-                                 .stages = {{"first picture", 9, 0.02, 0.05}}}},
-            SetFilter{"fdf:radius=3"},
-            FilterSet{true, "from now on"},
-            SceneRefused{{5, 1}, "too large"}};
+session::ViewSummary some_summary() {
+    return {.outcome = session::Outcome::TimeUp,
+            .seconds_render = 0.25,
+            .nodes = {node},
+            .picture = {.encoding = session::PictureEncoding::Planes,
+                        .width = 3,
+                        .height = 2,
+                        .components = 4,
+                        .byte_size = 96,
+                        .filter = "gauss:sigma=3",
+                        .passes = {{"gauss", 0.5, 40.0}},
+                        .notes = {"upsampled"}},
+            .samples_least = 3,
+            .samples_most = 9};
 }
 
-std::vector<ControlMessage> live_messages() {
-    return {JoinScene{"room", "ann", 0xfedcba9876543210, true},
-            SceneJoined{{5, 1}, 65536, 100, 3, "room", "ann (2)"},
+session::ClusterStatus some_status() {
+    return {.software = "s",
+            .nodes = {{.summary = node,
+                       .phase = session::NodePhase::Leaving,
+                       .stuck = true,
+                       .clock_offset_seconds = -0.5,
+                       .clock_bound_seconds = 0.25}},
+            .scene = {.title = "room",
+                      .exclusive = true,
+                      .members = 2,
+                      .edits = 7,
+                      .stages = {{"first picture", 9, 0.02, 0.05}}}};
+}
+
+std::vector<ControlMessage> scene_messages() {
+    return {SubmitEdit{{SessionId{2}, 3, {5, 1}, some_changes().entries, 4, -5, 6}},
+            SubmitEditByBlob{SessionId{2}, 3, {5, 1}, {blake2b({}), 5}},
+            EditReply{3, {true, {5, 2}, {"p"}, 7, {"n"}}},
+            StatusRequest{},
+            StatusReply{some_status()},
+            SceneRefused{{5, 1}, "too large"},
+            JoinScene{"room", "ann", 0xfedcba9876543210, true, true},
+            SceneJoined{{5, 1}, 65536, 100, 3, "room", "ann (2)", 2},
             RequestDone{1, true, "why"},
             CloseScene{2},
             ReadScene{3, {5, 1}},
@@ -152,34 +139,51 @@ std::vector<ControlMessage> live_messages() {
             SetPresence{"looks", {ObjectId{7}}, std::chrono::seconds(5)},
             ReadPeople{6},
             People{6,
-                   "room",
-                   {{SessionId{1}, "ann", "editor", "looks", {ObjectId{7}}, true, -0.5, 0.25}},
-                   {{ObjectId{7}, "ann"}},
-                   {{"main", "ann", 64, 32, 5, 9, 2}}},
+                   {"room",
+                    {{SessionId{1}, "ann", "editor", "looks", {ObjectId{7}}, true, -0.5, 0.25}},
+                    {{ObjectId{7}, "ann"}},
+                    {{"main", "ann", 64, 32, 5, 9, 2}}}},
             ReadHistory{7, 20},
             History{7, {{3, "ann", "editor", -4, 5, "set", 2, 6}}},
             ReadWriters{8, ObjectId{7}},
-            Writers{8, {{2, 3, "ann", "editor", 4}}},
-            OpenLiveView{9, 1, "main", some_view(), 64, PictureEncoding::Jpeg, true, true},
-            CloseLiveView{1},
-            FrameTaken{1, 12},
+            Writers{8, {{2, 3, "ann", "editor", 4}}}};
+}
+
+std::vector<ControlMessage> view_and_display_messages() {
+    const session::ViewRequest wanted{.name = "main",
+                                      .view = some_view(),
+                                      .stop = {.spp = 5,
+                                               .time_limit = std::chrono::seconds(2),
+                                               .budget = std::chrono::milliseconds(800),
+                                               .adapts_size = true},
+                                      .policy = session::Policy::Cooperative,
+                                      .tile = 64,
+                                      .min_nodes = 2,
+                                      .frames = session::Frames::Last,
+                                      .picture = session::PictureEncoding::Png};
+    return {FrameTaken{1, 12},
             Pick{10, 1, 3, 4},
-            Picked{10, {5, 1}, true, ObjectId{7}, {1, 2, 3}, {0, 1, 0}, 4.5, "none"},
+            Picked{10, {{5, 1}, true, ObjectId{7}, {1, 2, 3}, {0, 1, 0}, 4.5}, "none"},
             ReadTrace{11, 10},
             Trace{11, {{3, "ann", 40, 1, 2, 3, 4, {{"node-1", 5, 6, 7}}, 8, {5, 2}}}},
             OpenDisplay{12, {blake2b({}), 100}},
             CloseDisplay{13},
-            AdjustDisplay{14, 0.06, 2.0, -1.0, true, 3},
+            AdjustDisplay{14, {0.06, 2.0, -1.0, true, 3}},
             MoveHead{{{0.1, 1.7, 0.0}, {1.0, 0.0, 0.0, 0.0}}},
             JoinOutput{15, "left"},
-            OutputOpened{15, {blake2b({}), 100}, 3, true},
+            OutputOpened{15, {{blake2b({}), 100}, 3, true}},
             OutputReady{9},
-            PresentFrame{9, {5, 3}, 1000, 10}};
+            PresentFrame{{9, {5, 3}, 1000, 10}},
+            RequestView{9, 1, wanted, true},
+            EndView{1, true},
+            ViewProgress{1, {session::Phase::Delivering, 1, 2, 3, 4, std::chrono::milliseconds(5)}},
+            ViewDone{1, 7, some_summary()},
+            SetViewFilter{16, "main", "fdf:radius=3"}};
 }
 
 std::vector<ControlMessage> control_messages() {
     std::vector<ControlMessage> all = peer_messages();
-    for (const auto& more : {batch_messages(), live_messages()})
+    for (const auto& more : {scene_messages(), view_and_display_messages()})
         all.insert(all.end(), more.begin(), more.end());
     return all;
 }
@@ -196,21 +200,36 @@ std::vector<BulkMessage> bulk_messages() {
             BlobAbsent{blake2b({})},
             FilmPart{UnitId{1}, ViewId{2}, 3, {4, 5}, 0, 2, 6, 7, film},
             FilmPart{UnitId{1}, ViewId{2}, 3, {4, 5}, 1, 2, 6, 7, uneven},
-            FrameTile{JobId{1}, 2, 3, uneven},
-            PictureChunk{JobId{1}, 100, 10, std::vector<std::byte>(50)},
-            LiveFrame{
-                1, 2, {5, 3}, 4, 8, 160, 90, 3, PictureEncoding::Jpeg, 1000, 4, 1, 2, 64, true, blake2b({})},
+            FrameTile{1, 2, 3, uneven},
+            PictureChunk{1, 100, 10, std::vector<std::byte>(50)},
             OutputPicture{.frame = 7,
                           .eye = view::Eye::Right,
                           .eyes = 2,
                           .version = {5, 3},
                           .width = 8,
                           .height = 4,
-                          .encoding = PictureEncoding::Half,
+                          .encoding = session::PictureEncoding::Half,
                           .samples = 2,
                           .total = 192,
                           .offset = 10,
-                          .data = std::vector<std::byte>(50)}};
+                          .data = std::vector<std::byte>(50)},
+            FrameHeader{.view = 1,
+                        .frame = 2,
+                        .version = {5, 3},
+                        .revision = 4,
+                        .scale = 8,
+                        .width = 160,
+                        .height = 90,
+                        .components = 3,
+                        .encoding = session::PictureEncoding::Jpeg,
+                        .picture_bytes = 1000,
+                        .film_window = {0, 0, 160, 90},
+                        .film_tiles = 4,
+                        .samples_least = 1,
+                        .samples_most = 2,
+                        .spp = 64,
+                        .complete = true,
+                        .film_hash = blake2b({})}};
 }
 
 TEST(ControlMessages, EveryKindIsHere) {

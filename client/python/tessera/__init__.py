@@ -23,17 +23,17 @@ from .frame import Frame
 from .link import LinkSettings as _LinkSettings
 from .objects import (Attachment, Background, Camera, Geometry, Light, Material, Medium, Root, SurfaceShader, Texture,
                       TextureSlot, Transform)
-from .people import Committed, Hit, People, Person, Status, Writer
+from .people import Committed, Hit, People, Person, Progress, Status, Summary, Writer
 from .scene import Scene
 from .session import Session
 from .transaction import Transaction
 from .values import ROOT_ID, Blob, Object
-from .view import View
+from .view import Rendered, View
 
 __all__ = [
     "connect", "look_at", "multiply", "translation", "floats", "Session", "Scene", "Transaction", "View", "Frame",
     "Film", "Pose", "Object", "Root", "Transform", "Geometry", "Material", "Texture", "TextureSlot", "Light", "Camera",
-    "Background", "Attachment", "SurfaceShader", "Medium", "Blob", "ROOT_ID", "Committed", "Hit", "People", "Person", "Status", "Writer", "Error",
+    "Background", "Attachment", "SurfaceShader", "Medium", "Blob", "ROOT_ID", "Committed", "Hit", "People", "Person", "Progress", "Rendered", "Status", "Summary", "Writer", "Error",
     "InvalidInput", "Malformed", "Refused", "Unavailable",
 ]
 

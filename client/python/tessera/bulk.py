@@ -13,7 +13,8 @@ MAGIC = 0x31525354  # "TSR1"
 MAX_CHUNK = 1 << 20
 _MAX_PIXELS = 1 << 16
 _MAX_EDGE = 65536
-_HELLO, _REQUEST, _CHUNK, _ABSENT, _FILM, _TILE, _PICTURE, _FRAME = range(8)
+_HELLO, _REQUEST, _CHUNK, _ABSENT, _FILM, _TILE, _PICTURE = range(7)
+_FRAME = 9
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,7 @@ class PictureChunk:
 
 
 @dataclass(frozen=True)
-class LiveFrame:
+class FrameHeader:
     view: int
     frame: int
     epoch: int
@@ -69,6 +70,10 @@ class LiveFrame:
     components: int
     encoding: int
     picture_bytes: int
+    film_x: int  # what the tiles cover
+    film_y: int
+    film_width: int
+    film_height: int
     film_tiles: int
     complete: int
     samples_least: int
@@ -77,7 +82,7 @@ class LiveFrame:
     film_hash: bytes
 
 
-BulkMessage = BulkHello | BlobRequest | BlobChunk | BlobAbsent | FrameTile | PictureChunk | LiveFrame
+BulkMessage = BulkHello | BlobRequest | BlobChunk | BlobAbsent | FrameTile | PictureChunk | FrameHeader
 
 _HEAD = struct.Struct("<II")
 _TOKEN = struct.Struct("<Q")
@@ -86,7 +91,7 @@ _BLOB_CHUNK = struct.Struct("<32sQQ")
 _HASH = struct.Struct("<32s")
 _TILE_HEAD = struct.Struct("<QII")
 _PICTURE_CHUNK = struct.Struct("<QQQ")
-_LIVE_FRAME = struct.Struct("<QQQQQIIIIIQIIQQQ32s")
+_FRAME_HEADER = struct.Struct("<QQQQQIIIIIQiiiiIIQQQ32s")
 _FILM_HEAD = struct.Struct("<iiiiQIIQB")
 
 
@@ -107,11 +112,11 @@ def encode(message: BulkMessage) -> bytes:
                     film.counts + film.planes)
         case PictureChunk(frame, total, offset, data):
             return _HEAD.pack(MAGIC, _PICTURE) + _PICTURE_CHUNK.pack(frame, total, offset) + data
-        case LiveFrame():
-            return _HEAD.pack(MAGIC, _FRAME) + _LIVE_FRAME.pack(
+        case FrameHeader():
+            return _HEAD.pack(MAGIC, _FRAME) + _FRAME_HEADER.pack(
                 message.view, message.frame, message.epoch, message.number, message.revision, message.scale,
                 message.width, message.height, message.components, message.encoding, message.picture_bytes,
-                message.film_tiles, message.complete, message.samples_least, message.samples_most, message.spp,
+                message.film_x, message.film_y, message.film_width, message.film_height, message.film_tiles, message.complete, message.samples_least, message.samples_most, message.spp,
                 message.film_hash)
 
 
@@ -141,12 +146,12 @@ def decode(data: bytes) -> BulkMessage:
         frame, total, offset = _front(_PICTURE_CHUNK, body)
         return PictureChunk(frame, total, offset, _piece(body[_PICTURE_CHUNK.size:], total, offset))
     if kind == _FRAME:
-        live = LiveFrame(*_whole(_LIVE_FRAME, body))
-        if live.scale == 0 or live.encoding >= len(ENCODINGS):
+        header = FrameHeader(*_whole(_FRAME_HEADER, body))
+        if header.scale == 0 or header.encoding >= len(ENCODINGS):
             raise Malformed("a frame's scale or encoding is unknown")
-        if live.width > _MAX_EDGE or live.height > _MAX_EDGE or live.components > 4:
+        if header.width > _MAX_EDGE or header.height > _MAX_EDGE or header.components > 4:
             raise Malformed("a frame's size is absurd")
-        return live
+        return header
     raise Malformed("a bulk message that no master sends to a client")
 
 

@@ -22,7 +22,8 @@ Message = Any
 _LOG = logging.getLogger("tessera")
 _MAX_BLOB = 4 << 30
 _ANSWERS = {
-    "adjust_display": "request_done", "close_scene": "request_done", "lock_objects": "request_done", "open_live_view": "request_done",
+    "adjust_display": "request_done", "close_scene": "request_done", "lock_objects": "request_done", "request_view": "request_done",
+    "set_view_filter": "request_done",
     "read_scene": "scene_content", "read_people": "people", "read_history": "history", "read_writers": "writers",
     "pick": "picked", "read_trace": "trace",
 }
@@ -33,13 +34,17 @@ class Watcher(Protocol):
 
     def reopened(self) -> Message: ...
 
-    def began(self, header: bulk.LiveFrame, now: float) -> None: ...
+    def began(self, header: bulk.FrameHeader, now: float) -> None: ...
 
     def awaits(self, part: bulk.PictureChunk | bulk.FrameTile) -> bool: ...
 
     def add(self, part: bulk.PictureChunk | bulk.FrameTile, now: float) -> None: ...
 
     def tick(self, now: float) -> None: ...
+
+    def progressed(self, progress: Message) -> None: ...
+
+    def ended(self, done: Message) -> None: ...
 
 
 @dataclass
@@ -66,7 +71,7 @@ class Connection:
         self.answered = 0  # sequence of the latest edit that has its answer
         self.locks: set[int] = set()
         self.views: dict[int, Watcher] = {}
-        self._title = ""
+        self._title, self._exclusive = "", False
         self._failure: Error | None = None
         self._rejoining = self._is_new = False
         self._calls: dict[object, _Call] = {}
@@ -89,9 +94,9 @@ class Connection:
 
     # ---- of the session ----
 
-    def join(self, title: str, no_wait: bool, timeout: float | None) -> None:
+    def join(self, title: str, exclusive: bool, no_wait: bool, timeout: float | None) -> None:
         with self.changed:
-            self._title = title
+            self._title, self._exclusive = title, exclusive
         self.ask("join", "scene_joined", lambda: self._join_request(no_wait), timeout)
 
     def leave_scene(self) -> None:
@@ -183,6 +188,7 @@ class Connection:
         request.join_scene.title = self._title.encode("utf-8", "surrogateescape")
         request.join_scene.name = self.name.encode("utf-8", "surrogateescape")
         request.join_scene.key, request.join_scene.no_wait = self._key, no_wait
+        request.join_scene.exclusive = self._exclusive
         return request
 
     # ---- of the link ----
@@ -211,6 +217,12 @@ class Connection:
                 self._answer("status", kind, content)
             elif kind == "refusal":
                 self._refused(text(content.reason))
+            elif kind == "view_progress":
+                if content.number in self.views:
+                    self.views[content.number].progressed(content.progress)
+            elif kind == "view_done":
+                if content.number in self.views:
+                    self.views[content.number].ended(content)
             elif kind == "notice":
                 _LOG.warning("%s", text(content.text))
             elif kind in _ANSWERS.values():
@@ -249,7 +261,7 @@ class Connection:
         elif isinstance(message, bulk.BlobAbsent):
             if message.hash in self._fetches:
                 self._fetches[message.hash].absent = True
-        elif isinstance(message, bulk.LiveFrame):
+        elif isinstance(message, bulk.FrameHeader):
             if message.view in self.views:
                 self.views[message.view].began(message, now)
         elif isinstance(message, (bulk.PictureChunk, bulk.FrameTile)):
@@ -264,6 +276,9 @@ class Connection:
                 self.link.send_bulk(request)
 
     def _scene_joined(self, joined: Message) -> None:
+        if joined.queue_place:
+            _LOG.info("the cluster is busy: place %d in the queue", joined.queue_place)
+            return
         if joined.last_sequence < self.answered:
             self.failed(Unavailable("the master has lost edits that it had accepted (was it started anew without its session "
                                     "folder?): connect anew and look what is there"))

@@ -31,7 +31,7 @@ def adjustment(eye_separation: float | None, zero_parallax: float | None, exposu
                shown_layers: Iterable[int] | None) -> Message:
     """Raises InvalidInput for layers that no display can have, and numbers that are none."""
     message = control_pb2.Control()
-    change = message.adjust_display
+    change = message.adjust_display.adjustment
     change.SetInParent()
     for name, value in (("eye_separation", eye_separation), ("zero_parallax", zero_parallax), ("exposure", exposure)):
         if value is not None:

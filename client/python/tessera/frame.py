@@ -74,7 +74,7 @@ class Frame:
 class Assembly:
     """A frame that is coming. Grows with what came, never ahead of it."""
 
-    header: bulk.LiveFrame
+    header: bulk.FrameHeader
     largest: tuple[int, int] | None  # the view's size, where it is known
     last_activity: float
     picture: bytearray = field(default_factory=bytearray)

@@ -35,7 +35,7 @@ _CURVE_OVERHEAD = 33
 _MAX_WAITING = 64  # bulk messages; the master asks again for what is dropped beyond
 _BURST = 256  # so that heartbeats never wait for a flood
 _MIN_BACKOFF, _MAX_BACKOFF = 0.1, 5.0
-_PROTOCOL, _CLIENT = 1, 0
+_PROTOCOL, _CLIENT = 2, 0
 
 Message = Any
 

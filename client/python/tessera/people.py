@@ -34,7 +34,7 @@ class Lock:
 
 
 @dataclass(frozen=True)
-class ViewSummary:
+class ViewEntry:
     name: str
     owner: str
     width: int
@@ -49,7 +49,7 @@ class People:
     title: str
     people: tuple[Person, ...]
     locks: tuple[Lock, ...]
-    views: tuple[ViewSummary, ...]
+    views: tuple[ViewEntry, ...]
 
 
 @dataclass(frozen=True)
@@ -111,21 +111,53 @@ class Status:
     uptime_seconds: float
     sessions: int
     queued: int
-    scene: str  # title of the live scene, "" = none
+    scene: str  # title of the scene that is open, "" = none
     members: int
     nodes: tuple[NodeState, ...]
 
 
+@dataclass(frozen=True)
+class Progress:
+    """Where a view is on its way to its end."""
+
+    phase: str  # "waiting_for_nodes", "syncing", "rendering", "delivering", "filtering"
+    samples: int  # of pixels
+    samples_expected: int
+    rays: int
+    nodes: int
+    seconds: float  # since rendering began
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What became of a view that its stop rule has ended."""
+
+    outcome: str  # "complete", "time_up", "stopped", "no_nodes", "failed"
+    message: str  # why, unless complete
+    version: Version
+    seconds_render: float
+    rays: int
+    samples: int  # of all pixels
+    samples_least: int  # of a pixel; with a picture
+    samples_most: int
+    nodes: tuple[str, ...]  # names of those that took part
+    filter: str  # as it ran: name and values
+    notes: tuple[str, ...]  # about the picture
+
+
+_VIEW_PHASES = ("waiting_for_nodes", "syncing", "rendering", "delivering", "filtering")
+_OUTCOMES = ("complete", "time_up", "stopped", "no_nodes", "failed")
 _PHASES = ("idle", "syncing", "building", "rendering", "leaving")
 
 
-def people_of(message: Message) -> People:
+def people_of(answer: Message) -> People:
+    message = answer.content
     return People(
         text(message.title),
         tuple(Person(p.session, text(p.name), text(p.user), text(p.text), tuple(p.selection), p.editor,
                      p.clock_offset_seconds, p.clock_bound_seconds) for p in message.people),
         tuple(Lock(lock.object, text(lock.name)) for lock in message.locks),
-        tuple(ViewSummary(text(v.name), text(v.owner), v.width, v.height, v.samples, v.spp, v.watchers)
+        tuple(ViewEntry(text(v.name), text(v.owner), v.width, v.height, v.samples, v.spp, v.watchers)
               for v in message.views))
 
 
@@ -134,12 +166,27 @@ def history_of(message: Message) -> list[HistoryEntry]:
                         t.undone_by) for t in message.transactions]
 
 
-def status_of(message: Message) -> Status:
+def status_of(answer: Message) -> Status:
+    message = answer.status
     return Status(
         text(message.software), (message.version.epoch, message.version.number), message.uptime_seconds,
-        message.sessions, message.queued, text(message.live.title), message.live.members,
+        message.sessions, message.queued, text(message.scene.title), message.scene.members,
         tuple(NodeState(text(n.summary.name), text(n.summary.host), text(n.summary.backend),
                         _PHASES[n.phase] if n.phase < len(_PHASES) else "unknown",
                         (n.version.epoch, n.version.number), n.units_in_hand, n.samples_per_second,
                         n.round_trip_seconds, n.stuck, n.clock_offset_seconds, n.clock_bound_seconds)
               for n in message.nodes))
+
+
+def progress_of(message: Message) -> Progress:
+    phase = _VIEW_PHASES[message.phase] if message.phase < len(_VIEW_PHASES) else "unknown"
+    return Progress(phase, message.samples, message.samples_expected, message.rays, message.nodes,
+                    message.elapsed * 1e-9)
+
+
+def summary_of(message: Message) -> Summary:
+    outcome = _OUTCOMES[message.outcome] if message.outcome < len(_OUTCOMES) else "unknown"
+    return Summary(outcome, text(message.message), (message.version.epoch, message.version.number),
+                   message.seconds_render, message.rays, message.samples, message.samples_least, message.samples_most,
+                   tuple(text(node.name) for node in message.nodes), text(message.picture.filter),
+                   tuple(text(note) for note in message.picture.notes))

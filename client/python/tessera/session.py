@@ -1,4 +1,4 @@
-"""One client of a master: a member of its live scene."""
+"""One client of a master: a member of its scene."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import logging
 import threading
 import time
 from contextlib import AbstractContextManager, contextmanager
-from typing import Any, Iterable, Iterator, Sequence
+from typing import Any, Callable, Iterable, Iterator, Sequence
 
 from . import bulk, camera, display
 from .blobs import BlobHeap
@@ -17,12 +17,13 @@ from .link import CONTROL_LIMIT
 from .mirror import Mirror, Version
 from .objects import Camera
 from .parsing import parsed
-from .people import Committed, HistoryEntry, People, Status, Writer, history_of, people_of, status_of, text
+from .people import (Committed, HistoryEntry, People, Progress, Status, Writer, history_of, people_of, status_of,
+                     text)
 from .proto import control_pb2, scene_pb2
 from .scene import Scene
 from .transaction import Transaction
 from .values import Blob, Object
-from .view import ALL_LAYERS, CameraLike, View, plain_view
+from .view import ALL_LAYERS, LAST_FRAME_ONLY, CameraLike, Rendered, View, plain_view
 
 Message = Any
 _LOG = logging.getLogger("tessera")
@@ -57,10 +58,12 @@ class Session:
 
     # ---- the scene ----
 
-    def join(self, title: str = "", *, no_wait: bool = False, timeout: float | None = None) -> Scene:
-        """Joins the live scene, or starts one called `title` when the stage is free. While a batch scene has the stage this
-        waits; with `no_wait` it raises Refused."""
-        self.connection.join(title, no_wait, timeout)
+    def join(self, title: str = "", *, exclusive: bool = False, no_wait: bool = False,
+             timeout: float | None = None) -> Scene:
+        """Joins the live scene, or opens one called `title` when there is none. An exclusive scene is this session's alone
+        and goes with it. While another scene is open that cannot be joined this waits; with `no_wait` it raises
+        Refused."""
+        self.connection.join(title, exclusive, no_wait, timeout)
         return Scene(self)
 
     @property
@@ -119,10 +122,11 @@ class Session:
 
             reply = self.connection.ask(("edit", sequence), "edit_reply", build, None, blobs)
             self.connection.answered = sequence
-            if not reply.accepted:
-                raise Refused([text(problem) for problem in reply.problems])
-            self._committed = (reply.version.epoch, reply.version.number)
-            return Committed(reply.transaction, self._committed, tuple(text(note) for note in reply.notes))
+            result = reply.result
+            if not result.accepted:
+                raise Refused([text(problem) for problem in result.problems])
+            self._committed = (result.version.epoch, result.version.number)
+            return Committed(result.transaction, self._committed, tuple(text(note) for note in result.notes))
 
     def _follow_joins(self) -> None:
         """Takes over what the latest SceneJoined says: ids, sequence, and where the scene is after a restart."""
@@ -281,31 +285,66 @@ class Session:
 
     def open_view(self, at: CameraLike, *, size: tuple[int, int] = (1280, 720), spp: int = 64, picture: str = "png",
                   film: bool = False, name: str = "", filter: str = "", renderer: str = "path", bounces: int = 8,
-                  seed: int = 0, channels: Sequence[str] = ("radiance",), layers: int = ALL_LAYERS) -> View:
+                  seed: int = 0, channels: Sequence[str] = ("radiance",), layers: int = ALL_LAYERS,
+                  budget: float | None = None) -> View:
         """A view from a camera of the scene (the object or its path) or a Pose (`look_at`). `picture`: "png", "jpeg", "exr",
         "planes" (filtered float32) or "none"; `film`: the statistics of `channels`, too. `layers`: a mask, bit i is
-        layer i; objects in none of them are not there."""
+        layer i; objects in none of them are not there. `budget`: seconds after which the picture is there, filter
+        included, with the samples that fit."""
         view = plain_view(size, channels=channels, renderer=renderer, bounces=bounces, seed=seed, filter=filter,
                           layers=layers)
         self.aim(view, at)
-        return self._open(view, spp, picture, film, name, share=False)
+        return self._open(self._request(view, spp, picture, film, name, budget))
+
+    def render(self, at: CameraLike, *, size: tuple[int, int] = (1280, 720), spp: int = 64, picture: str = "png",
+               film: bool = False, filter: str = "", renderer: str = "path", bounces: int = 8, seed: int = 0,
+               channels: Sequence[str] = ("radiance",), layers: int = ALL_LAYERS, budget: float | None = None,
+               min_nodes: int = 1, wait: float = 60.0, on_progress: Callable[[Progress], None] | None = None) -> Rendered:
+        """One picture, as `open_view` describes it: the last frame and what became of it. Begins when `min_nodes` are ready,
+        and gives up after `wait` seconds without nodes (the outcome is "no_nodes"). `on_progress` hears where it is."""
+        view = plain_view(size, channels=channels, renderer=renderer, bounces=bounces, seed=seed, filter=filter,
+                          layers=layers)
+        self.aim(view, at)
+        request = self._request(view, spp, picture, film, "", budget)
+        request.wanted.frames, request.wanted.min_nodes = LAST_FRAME_ONLY, min_nodes
+        request.wanted.wait_limit = int(wait * 1e9)
+        opened = self._open(request)
+        try:
+            return opened.wait_for_end(on_progress)
+        finally:
+            opened.close()
 
     def watch(self, name: str, *, picture: str = "png", film: bool = False) -> View:
         """The view of somebody else that has this name (see `people`), whatever its camera."""
         view = plain_view((1, 1), channels=("radiance",), renderer="path", bounces=8, seed=0, filter="",
                           layers=ALL_LAYERS)
         self.aim(view, camera.look_at((0, 0, 1), (0, 0, 0)))
-        return self._open(view, 1, picture, film, name, share=True)
+        request = self._request(view, 1, picture, film, name, None)
+        request.share = True
+        return self._open(request)
 
-    def _open(self, view: Message, spp: int, picture: str, film: bool, name: str, share: bool) -> View:
+    def set_filter(self, filter: str, view: str = "") -> str:
+        """Another filter for the view of that name, whoever opened it; without a name for the one there is. Returns what it
+        means for the picture."""
+        request = control_pb2.Control()
+        request.set_view_filter.view, request.set_view_filter.filter = view.encode(), filter.encode()
+        return text(self.connection.request(request).text)
+
+    def _request(self, view: Message, spp: int, picture: str, film: bool, name: str, budget: float | None) -> Message:
         if picture not in bulk.ENCODINGS:
             raise InvalidInput(f"there is no picture '{picture}': choose of {', '.join(bulk.ENCODINGS)}")
+        request = control_pb2.Control().request_view
+        wanted = request.wanted
+        wanted.name, wanted.stop.spp, wanted.picture, wanted.film = name.encode(), spp, bulk.ENCODINGS.index(picture), film
+        if budget is not None:
+            wanted.stop.budget = int(budget * 1e9)
+        wanted.view.CopyFrom(view)
+        return request
+
+    def _open(self, request: Message) -> View:
         with self.connection.changed:
             self._last_view += 1
-            request = control_pb2.Control().open_live_view
-            request.number, request.name, request.spp = self._last_view, name.encode(), spp
-            request.picture, request.film, request.share = bulk.ENCODINGS.index(picture), film, share
-            request.view.CopyFrom(view)
+            request.number = self._last_view
             opened = View(self, request)
             self.connection.views[opened.number] = opened
         try:
@@ -340,7 +379,7 @@ class Session:
             self.connection.views.pop(view.number, None)
             self.connection.changed.notify_all()
         message = control_pb2.Control()
-        message.close_live_view.number = view.number
+        message.end_view.number = view.number
         self.connection.post(message)
 
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Any, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Callable, Sequence
 
 from . import bulk, camera
 from .errors import InvalidInput, Malformed, Refused, Unavailable
 from .film import channel_bits
 from .frame import Assembly, Frame
 from .objects import Camera
-from .people import Hit, text
+from .people import Hit, Progress, Summary, progress_of, summary_of, text
 from .proto import control_pb2, work_pb2
 
 if TYPE_CHECKING:
@@ -20,7 +21,16 @@ Message = Any
 CameraLike = camera.Pose | Camera | str
 ALL_LAYERS = 0xFFFFFFFF
 RENDERERS = ("path", "whitted", "raster", "coverage")
+LAST_FRAME_ONLY = 1  # of the frames of a view, by its number on the wire
 STALL_SECONDS = 5.0  # without a further piece of a frame: the rest was lost
+
+
+@dataclass(frozen=True)
+class Rendered:
+    """A view that its stop rule has ended: its last frame and what became of it."""
+
+    frame: Frame
+    summary: Summary
 
 
 class View:
@@ -35,47 +45,49 @@ class View:
         self._waiting: Frame | None = None
         self._seen_revision = 0  # of the latest frame that came
         self._revision = 1  # that a wait asks for: grows by one with every change that the master takes
+        self._progress: Progress | None = None
+        self._end: tuple[int, Summary] | None = None  # with the number of the last frame
         self.is_open = True
 
     @property
     def size(self) -> tuple[int, int]:
-        return self._request.view.width, self._request.view.height
+        return self._request.wanted.view.width, self._request.wanted.view.height
 
     def look(self, at: CameraLike) -> None:
         """From somewhere else. Pictures of the old place are not waited for any more."""
         view = work_pb2.View()
-        view.CopyFrom(self._request.view)
+        view.CopyFrom(self._request.wanted.view)
         self._session.aim(view, at)
-        self._replace(view, self._request.spp)
+        self._replace(view, self._request.wanted.stop.spp)
 
     def change(self, *, size: tuple[int, int] | None = None, spp: int | None = None) -> None:
         """Another size or quality."""
         view = work_pb2.View()
-        view.CopyFrom(self._request.view)
+        view.CopyFrom(self._request.wanted.view)
         if size is not None:
             pose_height = view.frustum[3] - view.frustum[2]
             set_size(view, size)
             half = 0.5 * pose_height * size[0] / size[1]
             view.frustum[0], view.frustum[1] = -half, half
-        self._replace(view, self._request.spp if spp is None else spp)
+        self._replace(view, self._request.wanted.stop.spp if spp is None else spp)
 
     def _replace(self, view: Message, spp: int) -> None:
         self._require_open()
-        if view == self._request.view and spp == self._request.spp:
+        if view == self._request.wanted.view and spp == self._request.wanted.stop.spp:
             return
         with self._connection.changed:
             before = work_pb2.View()
-            before.CopyFrom(self._request.view)
-            revision, samples = self._revision, self._request.spp
+            before.CopyFrom(self._request.wanted.view)
+            revision, samples = self._revision, self._request.wanted.stop.spp
             self._revision = max(self._revision, self._seen_revision) + 1
-            self._request.view.CopyFrom(view)
-            self._request.spp = spp
+            self._request.wanted.view.CopyFrom(view)
+            self._request.wanted.stop.spp = spp
         try:
             self.open()
         except Refused:  # the master goes on with what it had
             with self._connection.changed:
-                self._revision, self._request.spp = revision, samples
-                self._request.view.CopyFrom(before)
+                self._revision, self._request.wanted.stop.spp = revision, samples
+                self._request.wanted.view.CopyFrom(before)
             raise
 
     def wait(self, samples: int = 1, timeout: float = 60.0) -> Frame:
@@ -112,9 +124,45 @@ class View:
         picked = self._connection.request(request)
         if picked.problem:
             raise Refused(text(picked.problem))
-        if not picked.hit:
+        seen = picked.seen
+        if not seen.hit:
             return None
-        return Hit(picked.object, tuple(picked.position), tuple(picked.normal), picked.distance)
+        return Hit(seen.object, tuple(seen.position), tuple(seen.normal), seen.distance)
+
+    def stop(self) -> None:
+        """No more samples: its end comes with what there is."""
+        self._require_open()
+        message = control_pb2.Control()
+        message.end_view.number, message.end_view.deliver = self.number, True
+        self._connection.post(message)
+
+    def wait_for_end(self, on_progress: Callable[[Progress], None] | None = None,
+                     timeout: float | None = None) -> Rendered:
+        """The last frame, once the stop rule has ended the view. Raises Unavailable at the timeout."""
+        deadline = None if timeout is None else time.monotonic() + timeout
+        while True:
+            self._require_open()
+            with self._connection.changed:
+                self._connection.wait_until(self._has_news, deadline)
+                progress, self._progress = self._progress, None
+                frame, end = self._waiting, self._end
+                if frame is not None and frame.complete and end is None:
+                    frame = None  # it may be the last: what became of the view is still on its way
+                elif frame is not None:
+                    self._waiting = None
+            if progress is not None and on_progress is not None:
+                on_progress(progress)
+            if frame is not None:
+                self._acknowledge(frame.number)
+                if end is not None and frame.number == end[0]:
+                    return Rendered(frame, end[1])
+            if deadline is not None and time.monotonic() >= deadline:
+                raise Unavailable(f"the view has not ended after {timeout:g} s: is a node connected?")
+
+    def _has_news(self) -> bool:
+        frame = self._waiting
+        return (not self.is_open or self._progress is not None or
+                (frame is not None and (not frame.complete or self._end is not None)))
 
     def close(self) -> None:
         """The master forgets it. Idempotent."""
@@ -129,7 +177,7 @@ class View:
     def open(self) -> None:
         """Says to the master what this view is now, and waits for its word."""
         request = control_pb2.Control()
-        request.open_live_view.CopyFrom(self._request)
+        request.request_view.CopyFrom(self._request)
         self._connection.request(request)
 
     # What follows is called by the session, under its lock, on the link's thread.
@@ -137,13 +185,20 @@ class View:
     def reopened(self) -> Message:
         """The request for a master that may have lost what was on its way."""
         self._assembly = None
+        self._end = None
         self._seen_revision, self._revision = 0, 1  # a master that was started anew counts anew
         request = control_pb2.Control()
-        request.open_live_view.CopyFrom(self._request)
-        request.open_live_view.request = 0
+        request.request_view.CopyFrom(self._request)
+        request.request_view.request = 0
         return request
 
-    def began(self, header: bulk.LiveFrame, now: float) -> None:
+    def progressed(self, progress: Message) -> None:
+        self._progress = progress_of(progress)
+
+    def ended(self, done: Message) -> None:
+        self._end = (done.frame, summary_of(done.summary))
+
+    def began(self, header: bulk.FrameHeader, now: float) -> None:
         """Raises Malformed; then the frame is passed over."""
         self._assembly = None
         try:

@@ -35,11 +35,11 @@ Expected<std::uint32_t> parse_output_layers(const std::string& text) {
 }
 
 int run(const AdjustOptions& options) {
-    wire::AdjustDisplay change{.eye_separation = options.eye_separation,
-                               .zero_parallax = options.zero_parallax,
-                               .exposure = options.exposure,
-                               .pattern = {},
-                               .shown_layers = {}};
+    session::DisplayAdjustment change{.eye_separation = options.eye_separation,
+                                      .zero_parallax = options.zero_parallax,
+                                      .exposure = options.exposure,
+                                      .pattern = {},
+                                      .shown_layers = {}};
     if (!options.pattern.empty()) change.pattern = options.pattern == "on";
     if (options.layers) {
         const auto layers = parse_output_layers(*options.layers);

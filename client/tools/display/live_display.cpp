@@ -8,11 +8,11 @@ DisplayMember join_display(const client::Address& address, const std::string& na
     const auto blobs = std::make_shared<scene::BlobStore>();
     client::SessionSettings settings = session_settings(name);
     settings.mirrors_scene = false;
-    const std::string display = client::connect(address, blobs, clock, settings)->status().display.name;
-    if (display.empty())
+    DisplayMember member{{}, client::connect(address, blobs, clock, settings)};
+    member.display = member.session->status().display.name;
+    if (member.display.empty())
         throw Error(ErrorCode::Refused, "no display is open: open one with tessera display open");
-    DisplayMember member{display, client::connect_live(address, blobs, clock, settings)};
-    const auto outcome = member.session->join("", client::WhenBusy::GiveUp, nullptr, {});
+    const auto outcome = member.session->join({.when_busy = client::WhenBusy::GiveUp}, {});
     if (const auto* busy = std::get_if<client::Busy>(&outcome)) throw Error(ErrorCode::Refused, busy->reason);
     return member;
 }

@@ -3,14 +3,14 @@
 #include <memory>
 #include <string>
 
-#include "client/live_session.h"
+#include "client/session.h"
 
 namespace tessera::tools {
 
 // A member of the live scene that has a display in front of it.
 struct DisplayMember {
     std::string display;  // its name
-    std::unique_ptr<client::LiveSession> session;
+    std::unique_ptr<client::Session> session;
 };
 
 // `name`: of the member, for others. Throws Error{Refused} when no display is open, and starts no scene then.

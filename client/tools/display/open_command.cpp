@@ -7,7 +7,7 @@
 #include <string>
 
 #include "client/display_file/display_file.h"
-#include "client/live_session.h"
+#include "client/session.h"
 #include "client/tools/cluster_options.h"
 #include "client/tools/interrupts.h"
 #include "mediator/view/placed_cameras.h"
@@ -54,13 +54,16 @@ int run(const OpenOptions& options) {
     const display_file::DisplayFile file = display_file::read_display(options.file, *blobs);
     const display::Display& display = file.display;
     const auto session =
-        client::connect_live(options.address, blobs, clock, session_settings("display " + display.name));
-    const auto joined = session->join(
-        options.title, options.no_wait ? client::WhenBusy::GiveUp : client::WhenBusy::Queue,
-        [](std::uint32_t place) {
-            std::cerr << "tessera display open: the cluster is busy: place " << place << " in the queue\n";
-        },
-        interrupts.token());
+        client::connect(options.address, blobs, clock, session_settings("display " + display.name));
+    const auto joined =
+        session->join({.title = options.title,
+                       .when_busy = options.no_wait ? client::WhenBusy::GiveUp : client::WhenBusy::Queue,
+                       .on_place =
+                           [](std::uint32_t place) {
+                               std::cerr << "tessera display open: the cluster is busy: place " << place
+                                         << " in the queue\n";
+                           }},
+                      interrupts.token());
     if (std::holds_alternative<client::Stopped>(joined)) return ExitInterrupted;
     if (const auto* busy = std::get_if<client::Busy>(&joined))
         return complain(OpenName, cli::ExitTryLater, busy->reason);

@@ -54,8 +54,8 @@ Plan::Plan(const PlanSettings& settings)
 }
 
 std::uint64_t Plan::share(const SampleBlock& round, std::uint32_t ways) const {
-    const bool split = settings_.policy == wire::Policy::Cooperative ||
-                       (settings_.policy == wire::Policy::Mixed && round.count() > 4);
+    const bool split = settings_.policy == session::Policy::Cooperative ||
+                       (settings_.policy == session::Policy::Mixed && round.count() > 4);
     if (!split) return round.count();
     return std::max<std::uint64_t>(1, round.count() / std::bit_ceil(std::max(ways, 2u)));
 }

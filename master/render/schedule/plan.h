@@ -15,7 +15,7 @@ struct PlanSettings {
     Rect window;
     std::uint32_t tile = 32;  // edge in pixels
     std::uint64_t spp = 64;
-    wire::Policy policy = wire::Policy::Mixed;
+    session::Policy policy = session::Policy::Mixed;
     std::uint32_t first_level = 0;  // the first round has 2^first_level samples
 };
 

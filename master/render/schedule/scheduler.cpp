@@ -190,7 +190,7 @@ std::vector<Cancellation> Scheduler::cancel_everything() {
     return cancellations;
 }
 
-void add(wire::UnitCounts& to, const wire::UnitCounts& from) {
+void add(session::UnitCounts& to, const session::UnitCounts& from) {
     to.issued += from.issued;
     to.reissued += from.reissued;
     to.merged += from.merged;

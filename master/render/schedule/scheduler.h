@@ -63,7 +63,7 @@ class Scheduler {
     const std::vector<Rect>& tiles() const { return plan_.tiles(); }
     std::uint64_t merged_samples() const { return merged_samples_; }  // pixel samples
     std::uint32_t tiles_without_samples() const { return tiles_without_samples_; }
-    const wire::UnitCounts& counts() const { return counts_; }
+    const session::UnitCounts& counts() const { return counts_; }
     void count_duplicate() { ++counts_.duplicate; }
     void count_refused() { ++counts_.refused; }
 
@@ -93,9 +93,9 @@ class Scheduler {
     std::vector<BlockSet> ledger_;  // per tile
     std::uint64_t merged_samples_ = 0;
     std::uint32_t tiles_without_samples_ = 0;
-    wire::UnitCounts counts_;
+    session::UnitCounts counts_;
 };
 
-void add(wire::UnitCounts& to, const wire::UnitCounts& from);
+void add(session::UnitCounts& to, const session::UnitCounts& from);
 
 }  // namespace tessera::master

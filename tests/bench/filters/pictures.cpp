@@ -9,7 +9,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "client/session.h"
+#include "client/channel_session.h"
+#include "client/render.h"
 #include "client/tools/embedded_cluster.h"
 #include "client/tools/interrupts.h"
 #include "client/tools/progress_line.h"
@@ -25,7 +26,7 @@ namespace tessera::tools::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using client::PictureEncoding;
+using session::PictureEncoding;
 
 struct PicturesOptions {
     ViewOptions view;
@@ -47,11 +48,11 @@ double quantile(std::vector<double> values, double part) {
     return values[static_cast<std::size_t>(std::lround(part * last))];
 }
 
-frame::Image linear(const client::Picture& picture) {
+frame::Image linear(const client::Frame& picture) {
     frame::Image image(picture.width, picture.height, 3);
     for (std::size_t i = 0; i < image.pixel_count(); ++i) {
         for (std::size_t c = 0; c < 3; ++c) {
-            std::memcpy(&image.values[3 * i + c], &picture.bytes[(c * image.pixel_count() + i) * 4], 4);
+            std::memcpy(&image.values[3 * i + c], &picture.picture[(c * image.pixel_count() + i) * 4], 4);
         }
     }
     return image;
@@ -75,9 +76,8 @@ class PicturesBench {
         request_.view = view_from(*plan, camera_);
         request_.view.channels = {frame::Channel::Radiance};
         request_.view.filter = filter::to_text(*choice);
-        request_.film = false;
-        request_.adapts_size = true;
-        request_.budget = *budget;
+        request_.stop.adapts_size = true;
+        request_.stop.budget = *budget;
         request_.picture = options_.format == "jpg"   ? PictureEncoding::Jpeg
                            : options_.format == "exr" ? PictureEncoding::Exr
                                                       : PictureEncoding::Png;
@@ -105,63 +105,60 @@ class PicturesBench {
         for (const scene::BlobPtr& blob : scene->blobs) blobs_->insert(blob);
         cluster_.emplace(EmbeddedSettings{.backend = backend::catalog().front().name}, blobs_, clock_,
                          [](const master::Event&) {});
-        session_ =
-            std::make_unique<client::Session>(cluster_->client(), std::function<void()>(), blobs_, clock_,
-                                              client::SessionSettings{.name = "tessera bench"});
-        session_->open_scene(
-            "bench", client::WhenBusy::Queue, [](std::uint32_t) {}, interrupts_.token());
-        const auto submitted =
-            session_->submit(entries(*scene, import::RootEntry::Update), interrupts_.token());
-        if (!submitted || !submitted->accepted)
+        session_ = client::make_session(cluster_->client(), {}, blobs_, clock_, {.name = "tessera bench"});
+        session_->join({.title = "bench", .exclusive = true}, interrupts_.token());
+        session_->submit_ahead(entries(*scene, import::RootEntry::Update));
+        if (!session_->settle(interrupts_.token()) || !session_->take_results().back().accepted)
             return complain("bench", ExitInternal, "the scene was not taken");
         return std::nullopt;
     }
 
-    client::JobResult render(const client::JobRequest& request) {
-        client::JobResult result = session_->render(request, {}, interrupts_.token());
-        if (result.outcome == client::Outcome::Failed || result.outcome == client::Outcome::NoNodes) {
-            throw Error(ErrorCode::Internal, result.message);
+    client::ViewResult render(const session::ViewRequest& request) {
+        client::ViewResult result = client::render(*session_, request, {}, interrupts_.token());
+        const session::Outcome outcome = result.summary.outcome;
+        if (outcome == session::Outcome::Failed || outcome == session::Outcome::NoNodes) {
+            throw Error(ErrorCode::Internal, result.summary.message);
         }
         return result;
     }
 
     Request ask(std::uint64_t seed) {
-        client::JobRequest request = request_;
+        session::ViewRequest request = request_;
         request.view.seed = seed;
         const TimePoint started = clock_.now();
-        const client::JobResult result = render(request);
+        const client::ViewResult result = render(request);
         Request done{.seconds = seconds(clock_.now() - started)};
-        if (!result.picture) return done;
-        done.samples_least = result.samples_least;
-        done.scale = result.picture->scale;
-        done.prediction_error = result.picture->seconds_filter + result.picture->seconds_encode -
-                                result.picture->seconds_predicted;
+        const session::PictureSummary& picture = result.summary.picture;
+        if (!result.has_picture()) return done;
+        done.samples_least = result.summary.samples_least;
+        done.scale = picture.scale;
+        done.prediction_error = picture.seconds_filter + picture.seconds_encode - picture.seconds_predicted;
         return done;
     }
 
     // The same budget with and without the filter, against one long picture of another seed.
     void compare() {
         line_.show("the reference");
-        client::JobRequest reference = request_;
+        session::ViewRequest reference = request_;
         reference.view.filter.clear();
         reference.view.seed = 1'000'003;
-        reference.budget = Duration{};
-        reference.adapts_size = false;
-        reference.spp = options_.reference_spp;
+        reference.stop.budget = Duration{};
+        reference.stop.adapts_size = false;
+        reference.stop.spp = options_.reference_spp;
         reference.film = true;
         reference.picture = PictureEncoding::None;
-        const frame::Image truth = frame::resolve(*render(reference).film, frame::Channel::Radiance);
+        const frame::Image truth = frame::resolve(*render(reference).film(), frame::Channel::Radiance);
         for (std::uint64_t i = 0; i < options_.compared && !stopped(); ++i) {
             line_.show("comparison " + std::to_string(i + 1) + " of " + std::to_string(options_.compared));
-            client::JobRequest request = request_;
+            session::ViewRequest request = request_;
             request.view.seed = 2'000'003 + i;
             request.picture = PictureEncoding::Planes;
-            const client::JobResult filtered = render(request);
+            const client::ViewResult filtered = render(request);
             request.view.filter = "none";
-            const client::JobResult raw = render(request);
-            if (!filtered.picture || !raw.picture) continue;
-            filtered_relmse_.push_back(picture::relmse(linear(*filtered.picture), truth));
-            raw_relmse_.push_back(picture::relmse(linear(*raw.picture), truth));
+            const client::ViewResult raw = render(request);
+            if (!filtered.has_picture() || !raw.has_picture()) continue;
+            filtered_relmse_.push_back(picture::relmse(linear(filtered.frame), truth));
+            raw_relmse_.push_back(picture::relmse(linear(raw.frame), truth));
         }
     }
 
@@ -222,7 +219,7 @@ class PicturesBench {
     import::CameraInfo camera_;
     std::optional<EmbeddedCluster> cluster_;
     std::unique_ptr<client::Session> session_;
-    client::JobRequest request_;
+    session::ViewRequest request_;
     std::vector<Request> requests_;
     std::vector<double> filtered_relmse_, raw_relmse_;
 };

@@ -112,7 +112,7 @@ class Wall {
             const bool all =
                 !status.outputs.empty() &&
                 std::all_of(status.outputs.begin(), status.outputs.end(), [&](const auto& output) {
-                    return output.state == wire::OutputState::Locked && output.frames >= frames;
+                    return output.state == session::OutputState::Locked && output.frames >= frames;
                 });
             if (all) return;
             if (clock_.now() > limit) {
@@ -206,7 +206,7 @@ class Wall {
     std::shared_ptr<scene::BlobStore> blobs_ = std::make_shared<scene::BlobStore>();
     LiveCluster cluster_;
     display::Display wall_;
-    std::unique_ptr<client::LiveSession> editor_;
+    std::unique_ptr<client::Session> editor_;
     std::vector<ChildProcess> processes_;
 };
 

@@ -41,18 +41,18 @@ class LiveBench {
         one_after_another();
         drag();
         flood();
-        const client::ClusterStatus status = cluster_.status(clock_);
-        for (const wire::StageTimes& stage : status.live.stages) {
+        const session::ClusterStatus status = cluster_.status(clock_);
+        for (const session::StageTimes& stage : status.scene.stages) {
             if (stage.name != "cancel to stopped") continue;
             results_.cancel_p50 = stage.p50_seconds;
             results_.cancel_p99 = stage.p99_seconds;
             results_.cancellations = stage.count;
         }
-        results_.versions = status.live.versions;
-        if (status.live.edits > 0)
-            results_.bytes_per_edit = double(status.live.edit_bytes) / double(status.live.edits);
-        if (status.live.versions > 0)
-            results_.bytes_per_version = double(status.live.change_bytes) / double(status.live.versions);
+        results_.versions = status.scene.versions;
+        if (status.scene.edits > 0)
+            results_.bytes_per_edit = double(status.scene.edit_bytes) / double(status.scene.edits);
+        if (status.scene.versions > 0)
+            results_.bytes_per_version = double(status.scene.change_bytes) / double(status.scene.versions);
         return std::move(results_);
     }
 
@@ -78,13 +78,13 @@ class LiveBench {
     void open_view() {
         const auto camera = view::choose_camera(watcher_->scene(), "");
         if (!camera) throw camera.error();
-        request_.spp = 1u << 20;
+        request_.stop.spp = 1u << 20;
         request_.view.width = options_.width;
         request_.view.height = options_.height;
         request_.view.window = {0, 0, std::int32_t(options_.width), std::int32_t(options_.height)};
         request_.view.camera = view::pose(*camera, options_.width, options_.height);
         request_.view.channels = {frame::Channel::Radiance};
-        watcher_->open_view(View, request_);
+        watcher_->request_view(View, request_);
     }
 
     void wait_for_frame(bool full) {
@@ -156,9 +156,9 @@ class LiveBench {
         const auto session =
             cluster_.join("editor " + std::to_string(editor), std::make_shared<scene::BlobStore>(), clock_);
         const auto take = [&] {
-            const std::vector<client::EditResult> answers = session->take_results();
+            const std::vector<session::EditResult> answers = session->take_results();
             const std::scoped_lock lock(known.mutex);
-            for (const client::EditResult& result : answers) {
+            for (const session::EditResult& result : answers) {
                 flood_accepted_ += result.accepted ? 1 : 0;
                 known.since.try_emplace(result.version.number, clock_.now());
             }
@@ -229,11 +229,11 @@ class LiveBench {
     void compare_replicas() {
         watcher_->refresh();
         const auto late = cluster_.join("late", std::make_shared<scene::BlobStore>(), clock_);
-        const auto all_are_there = [&](const client::ClusterStatus& status) {
+        const auto all_are_there = [&](const session::ClusterStatus& status) {
             return std::all_of(status.nodes.begin(), status.nodes.end(),
                                [&](const auto& node) { return node.version == status.version; });
         };
-        client::ClusterStatus status = cluster_.status(clock_);
+        session::ClusterStatus status = cluster_.status(clock_);
         const TimePoint deadline = clock_.now() + 10s;
         while (!all_are_there(status) && clock_.now() < deadline) status = cluster_.status(clock_);
         results_.replicas_agree = all_are_there(status) && status.resyncs == 0 &&
@@ -246,8 +246,8 @@ class LiveBench {
     std::stop_token stop_;
     SteadyClock clock_;
     LiveCluster cluster_;
-    std::unique_ptr<client::LiveSession> watcher_;
-    client::LiveViewRequest request_;
+    std::unique_ptr<client::Session> watcher_;
+    session::ViewRequest request_;
     std::vector<ObjectId> materials_;
     std::shared_ptr<scene::BlobStore> blobs_ = std::make_shared<scene::BlobStore>();
     std::atomic<std::uint64_t> flood_edits_ = 0, flood_accepted_ = 0;

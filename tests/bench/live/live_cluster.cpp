@@ -52,15 +52,15 @@ client::SessionSettings LiveCluster::settings(const std::string& name) const {
     return {.name = name, .connect_limit = std::chrono::seconds(30)};
 }
 
-std::unique_ptr<client::LiveSession> LiveCluster::join(const std::string& name,
-                                                       std::shared_ptr<scene::BlobStore> blobs,
-                                                       const Clock& clock) const {
-    auto session = client::connect_live(address(), std::move(blobs), clock, settings(name));
-    session->join("bench", client::WhenBusy::GiveUp, nullptr, {});
+std::unique_ptr<client::Session> LiveCluster::join(const std::string& name,
+                                                   std::shared_ptr<scene::BlobStore> blobs,
+                                                   const Clock& clock) const {
+    auto session = client::connect(address(), std::move(blobs), clock, settings(name));
+    session->join({.title = "bench", .when_busy = client::WhenBusy::GiveUp}, {});
     return session;
 }
 
-client::ClusterStatus LiveCluster::status(const Clock& clock) const {
+session::ClusterStatus LiveCluster::status(const Clock& clock) const {
     return client::connect(address(), std::make_shared<scene::BlobStore>(), clock, settings("status"))
         ->status();
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "client/live_session.h"
+#include "client/session.h"
 #include "client/tools/child_process.h"
 
 namespace tessera::tools::bench {
@@ -20,10 +20,9 @@ class LiveCluster {
     LiveCluster(std::uint32_t nodes, const std::string& backend, Encryption encryption = Encryption::Curve);
     ~LiveCluster();
 
-    std::unique_ptr<client::LiveSession> join(const std::string& name,
-                                              std::shared_ptr<scene::BlobStore> blobs,
-                                              const Clock& clock) const;
-    client::ClusterStatus status(const Clock& clock) const;
+    std::unique_ptr<client::Session> join(const std::string& name, std::shared_ptr<scene::BlobStore> blobs,
+                                          const Clock& clock) const;
+    session::ClusterStatus status(const Clock& clock) const;
     std::uint64_t master_memory() const;       // bytes in RAM
     std::uint64_t master_peak_memory() const;  // the most so far
     pid_t master_pid() const { return master_->pid(); }

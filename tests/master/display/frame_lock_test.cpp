@@ -8,7 +8,7 @@ namespace tessera::master {
 namespace {
 
 using namespace std::chrono_literals;
-using wire::OutputState;
+using session::OutputState;
 using Whom = FrameLock::Whom;
 
 struct Locked : testing::Test {

@@ -36,12 +36,12 @@ TEST_F(NodeTableTest, FindsUnitsThatGotLostOnlyAfterPatience) {
 }
 
 TEST_F(NodeTableTest, TellsStuckFromIdle) {
-    table.heartbeat(node, {.phase = wire::NodePhase::Rendering, .progress = 5}, TimePoint{1s});
-    table.heartbeat(node, {.phase = wire::NodePhase::Rendering, .progress = 5}, TimePoint{12s});
+    table.heartbeat(node, {.phase = session::NodePhase::Rendering, .progress = 5}, TimePoint{1s});
+    table.heartbeat(node, {.phase = session::NodePhase::Rendering, .progress = 5}, TimePoint{12s});
     EXPECT_TRUE(node.stuck);
-    table.heartbeat(node, {.phase = wire::NodePhase::Rendering, .progress = 6}, TimePoint{13s});
+    table.heartbeat(node, {.phase = session::NodePhase::Rendering, .progress = 6}, TimePoint{13s});
     EXPECT_FALSE(node.stuck);
-    table.heartbeat(node, {.phase = wire::NodePhase::Idle, .progress = 6}, TimePoint{60s});
+    table.heartbeat(node, {.phase = session::NodePhase::Idle, .progress = 6}, TimePoint{60s});
     EXPECT_FALSE(node.stuck);
 }
 

@@ -11,7 +11,7 @@ TEST(Roles, AViewerOnlyLooks) {
     EXPECT_TRUE(allowed(Role::Viewer, wire::ControlMessage(wire::StatusRequest{})));
     EXPECT_TRUE(allowed(Role::Viewer, wire::ControlMessage(wire::Hello{.peer = wire::PeerKind::Client})));
     EXPECT_FALSE(allowed(Role::Viewer, wire::ControlMessage(wire::Hello{.peer = wire::PeerKind::Node})));
-    EXPECT_FALSE(allowed(Role::Viewer, wire::ControlMessage(wire::OpenScene{})));
+    EXPECT_FALSE(allowed(Role::Viewer, wire::ControlMessage(wire::CloseScene{})));
     EXPECT_FALSE(allowed(Role::Viewer, wire::ControlMessage(wire::SubmitEdit{})));
     EXPECT_FALSE(allowed(Role::Viewer, wire::BulkMessage(wire::BlobChunk{})));
     EXPECT_FALSE(allowed(Role::Viewer, wire::BulkMessage(wire::FilmPart{})));
@@ -22,7 +22,7 @@ TEST(Roles, ANodeRendersAndDoesNotEdit) {
     EXPECT_FALSE(allowed(Role::Node, wire::ControlMessage(wire::Hello{.peer = wire::PeerKind::Client})));
     EXPECT_TRUE(allowed(Role::Node, wire::BulkMessage(wire::FilmPart{})));
     EXPECT_TRUE(allowed(Role::Node, wire::BulkMessage(wire::BlobRequest{})));
-    EXPECT_FALSE(allowed(Role::Node, wire::ControlMessage(wire::StartJob{})));
+    EXPECT_FALSE(allowed(Role::Node, wire::ControlMessage(wire::RequestView{})));
     EXPECT_FALSE(allowed(Role::Node, wire::ControlMessage(wire::SubmitEdit{})));
     EXPECT_FALSE(allowed(Role::Node, wire::BulkMessage(wire::BlobChunk{})));
 }

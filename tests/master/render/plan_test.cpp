@@ -41,7 +41,7 @@ TEST(TileGrid, CutsTheWindowWithoutGapOrOverlap) {
     for (const auto& [pixel, count] : hits) EXPECT_EQ(count, 1);
 }
 
-class PlanOf : public testing::TestWithParam<wire::Policy> {};
+class PlanOf : public testing::TestWithParam<session::Policy> {};
 
 // Whatever the sizes asked for, and whatever is given back: every sample of every tile is dealt exactly once
 // net.
@@ -72,14 +72,14 @@ TEST_P(PlanOf, DealsEverySampleOnce) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Policies, PlanOf,
-                         testing::Values(wire::Policy::Tiled, wire::Policy::Cooperative,
-                                         wire::Policy::Mixed));
+                         testing::Values(session::Policy::Tiled, session::Policy::Cooperative,
+                                         session::Policy::Mixed));
 
 TEST(Plan, CooperativeSharesATileAmongAllNodes) {
     Plan plan({.window = {0, 0, 64, 32},
                .tile = 32,
                .spp = 16,
-               .policy = wire::Policy::Cooperative,
+               .policy = session::Policy::Cooperative,
                .first_level = 4});
     const auto first = plan.next(1000, 4), second = plan.next(1000, 4);
     EXPECT_EQ(first->tile, second->tile);
@@ -88,16 +88,22 @@ TEST(Plan, CooperativeSharesATileAmongAllNodes) {
 }
 
 TEST(Plan, TiledGivesATileToOneNode) {
-    Plan plan(
-        {.window = {0, 0, 64, 32}, .tile = 32, .spp = 16, .policy = wire::Policy::Tiled, .first_level = 4});
+    Plan plan({.window = {0, 0, 64, 32},
+               .tile = 32,
+               .spp = 16,
+               .policy = session::Policy::Tiled,
+               .first_level = 4});
     const auto first = plan.next(1000, 4), second = plan.next(1000, 4);
     EXPECT_NE(first->tile, second->tile);
     EXPECT_EQ(first->block.count(), 16u);
 }
 
 TEST(Plan, ARoundInEighthsDealsAllTilesOfOneEighthFirst) {
-    Plan plan(
-        {.window = {0, 0, 64, 32}, .tile = 32, .spp = 16, .policy = wire::Policy::Tiled, .first_level = 4});
+    Plan plan({.window = {0, 0, 64, 32},
+               .tile = 32,
+               .spp = 16,
+               .policy = session::Policy::Tiled,
+               .first_level = 4});
     ASSERT_TRUE(plan.at_round_start());
     EXPECT_EQ(plan.round_samples(), 64u * 32u * 16u);
     plan.deal_round_in_eighths();

@@ -48,7 +48,7 @@ std::vector<std::byte> picture(Reconstructor& reconstructor, const view::View& v
                                Version version = Scene) {
     const frame::FilmTile film = noise(view, seed);
     const Reconstruction made =
-        reconstructor.reconstruct({.film = film}, view, version, wire::PictureEncoding::Planes);
+        reconstructor.reconstruct({.film = film}, view, version, session::PictureEncoding::Planes);
     EXPECT_EQ(made.error, "");
     return *made.bytes;
 }

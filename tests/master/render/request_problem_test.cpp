@@ -8,8 +8,8 @@
 namespace tessera::master {
 namespace {
 
-ViewRequest request_with(const view::CameraPose& camera) {
-    ViewRequest request;
+session::ViewRequest request_with(const view::CameraPose& camera) {
+    session::ViewRequest request;
     request.view.camera = camera;
     request.view.channels = {frame::Channel::Radiance};
     request.stop.spp = 1;

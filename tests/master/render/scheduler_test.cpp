@@ -121,11 +121,11 @@ class Simulation {
     std::map<std::size_t, double> started_;
 };
 
-PlanSettings picture(wire::Policy policy, std::uint64_t spp = 64) {
+PlanSettings picture(session::Policy policy, std::uint64_t spp = 64) {
     return {.window = {0, 0, 320, 200}, .tile = 32, .spp = spp, .policy = policy, .first_level = 2};
 }
 
-class SchedulerUnder : public testing::TestWithParam<wire::Policy> {};
+class SchedulerUnder : public testing::TestWithParam<session::Policy> {};
 
 TEST_P(SchedulerUnder, FinishesUnequalNodesTogether) {
     Simulation simulation({{.rate = 1e5}, {.rate = 1e6}, {.rate = 3e5}}, picture(GetParam()));
@@ -155,8 +155,8 @@ TEST_P(SchedulerUnder, DuplicatesTheLastUnitsOfAStuckNode) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Policies, SchedulerUnder,
-                         testing::Values(wire::Policy::Tiled, wire::Policy::Cooperative,
-                                         wire::Policy::Mixed));
+                         testing::Values(session::Policy::Tiled, session::Policy::Cooperative,
+                                         session::Policy::Mixed));
 
 TEST(Scheduler, CancelsTheOtherHolderOfADuplicate) {
     Scheduler scheduler({.window = {0, 0, 8, 8}, .tile = 8, .spp = 1}, ViewId{1}, 1, {1, 1}, UnitId{1},

@@ -1,6 +1,6 @@
-#include "master/render/stop_rule.h"
-
 #include <gtest/gtest.h>
+
+#include "mediator/session/view_request.h"
 
 namespace tessera::master {
 namespace {
@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 constexpr TimePoint Start{100s};
 
 TEST(StopRule, SamplesAloneKnowNoClock) {
-    const StopRule rule{.spp = 32};
+    const session::StopRule rule{.spp = 32};
     EXPECT_FALSE(rule.has_clock());
     EXPECT_EQ(rule.most_samples(), 32u);
     EXPECT_FALSE(rule.deadline(Start, Start, {}));
@@ -18,8 +18,8 @@ TEST(StopRule, SamplesAloneKnowNoClock) {
 }
 
 TEST(StopRule, ATimeLimitCountsFromNow) {
-    const StopRule rule{.spp = 0, .time_limit = 3s};
-    EXPECT_EQ(rule.most_samples(), MaxSamplesPerPixel);
+    const session::StopRule rule{.spp = 0, .time_limit = 3s};
+    EXPECT_EQ(rule.most_samples(), session::MaxSamplesPerPixel);
     const auto deadline = rule.deadline(Start, Start + 1s, 2s);
     EXPECT_EQ(deadline, Start + 4s) << "what comes afterwards is not its affair";
     EXPECT_FALSE(rule.time_is_up(deadline, false, Start + 3s));
@@ -27,8 +27,8 @@ TEST(StopRule, ATimeLimitCountsFromNow) {
 }
 
 TEST(StopRule, ABudgetLeavesTimeForThePicture) {
-    const StopRule rule{.spp = 16, .budget = 8s};
-    EXPECT_EQ(rule.most_samples(), MaxSamplesPerPixel);
+    const session::StopRule rule{.spp = 16, .budget = 8s};
+    EXPECT_EQ(rule.most_samples(), session::MaxSamplesPerPixel);
     const auto deadline = rule.deadline(Start, Start + 1s, 3s);
     EXPECT_EQ(deadline, Start + 5s);
     EXPECT_EQ(rule.deadline(Start, Start + 1s, 20s), Start + 1s) << "at once when there is no time";

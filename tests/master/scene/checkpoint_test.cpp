@@ -8,9 +8,9 @@ namespace {
 struct CheckpointTest : SessionFixture {
     static wire::SavedView film(std::uint64_t seed) {
         wire::SavedView view{.name = "main", .owner_user = "user 0", .owner_key = 100, .number = seed};
-        view.view.width = 64;
-        view.view.height = 32;
-        view.spp = 16;
+        view.request.view.width = 64;
+        view.request.view.height = 32;
+        view.request.stop.spp = 16;
         view.scene_hash_of_film = {seed, 5};
         CounterRandom random(seed);
         for (std::int32_t x = 0; x < 64; x += 32) {
@@ -26,7 +26,7 @@ struct CheckpointTest : SessionFixture {
     static CheckpointResult checkpoint(Master& master, const fs::path& folder, std::uint64_t seed) {
         CheckpointWriter writer(folder);
         const std::uint64_t number = master.journal->start_segment();
-        writer.start({number, "the room", master.authority.save(), {film(seed)}});
+        writer.start({number, {"the room", {}}, master.authority.save(), {film(seed)}});
         writer.wait();
         const auto result = writer.take_result();
         EXPECT_TRUE(result);
@@ -56,7 +56,7 @@ TEST_F(CheckpointTest, TheNewestAndTheJournalAfterItBringEverythingBack) {
     const auto again = start(2);
     EXPECT_TRUE(tells(again->recovery, "checkpoint-000003' was used"));
     EXPECT_LE(again->recovery.edits, 60u);
-    EXPECT_EQ(again->recovery.title, "the room");
+    EXPECT_EQ(again->recovery.scene.title, "the room");
     expect_same(before->authority, again->authority);
     ASSERT_EQ(again->recovery.views.size(), 1u);
     const wire::SavedView &saved = again->recovery.views[0], original = film(2);
@@ -64,8 +64,8 @@ TEST_F(CheckpointTest, TheNewestAndTheJournalAfterItBringEverythingBack) {
     EXPECT_EQ(saved.owner_user, "user 0");
     EXPECT_EQ(saved.owner_key, 100u);
     EXPECT_EQ(saved.number, 2u);
-    EXPECT_EQ(saved.spp, 16u);
-    EXPECT_EQ(saved.view.width, 64u);
+    EXPECT_EQ(saved.request.stop.spp, 16u);
+    EXPECT_EQ(saved.request.view.width, 64u);
     EXPECT_EQ(saved.scene_hash_of_film, original.scene_hash_of_film);
     ASSERT_EQ(saved.blocks.size(), 2u);
     for (std::size_t i = 0; i < 2; ++i) EXPECT_TRUE(identical_bits(saved.blocks[i], original.blocks[i]));
@@ -83,7 +83,7 @@ TEST_F(CheckpointTest, FilmOfAnotherRenderRevisionIsLeftOutAndItsViewKept) {
     EXPECT_TRUE(tells(again->recovery, "its views start anew"));
     expect_same(before->authority, again->authority);
     ASSERT_EQ(again->recovery.views.size(), 1u);
-    EXPECT_EQ(again->recovery.views[0].view.width, 64u);
+    EXPECT_EQ(again->recovery.views[0].request.view.width, 64u);
     EXPECT_TRUE(again->recovery.views[0].blocks.empty());
 }
 
@@ -211,7 +211,7 @@ TEST_F(CheckpointTest, HostileFilesAreRefusedAndNeverCrash) {
 TEST_F(CheckpointTest, AFolderThatIsGoneIsTold) {
     auto master = start(1);
     CheckpointWriter writer(folder / "nowhere");
-    writer.start({2, "", master->authority.save(), {}});
+    writer.start({2, {}, master->authority.save(), {}});
     writer.wait();
     EXPECT_NE(writer.take_result()->problem.find("cannot write"), std::string::npos);
     EXPECT_FALSE(writer.busy());

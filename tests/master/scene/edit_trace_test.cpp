@@ -35,8 +35,8 @@ struct EditTraceTest : testing::Test {
         log.node_built(NodeId{node}, "n" + std::to_string(node), version(number), ns(at(came) - 5s),
                        ns(at(ready) - 5s), node_clock);
     }
-    wire::StageTimes stage(const std::string& name) const {
-        for (const wire::StageTimes& stage : log.stages()) {
+    session::StageTimes stage(const std::string& name) const {
+        for (const session::StageTimes& stage : log.stages()) {
             if (stage.name == name) return stage;
         }
         ADD_FAILURE() << "no stage " << name;
@@ -52,7 +52,7 @@ TEST_F(EditTraceTest, FollowsAnEditInTheMastersClock) {
     log.merged(version(2), at(40ms));
     const auto trace = log.latest(10);
     ASSERT_EQ(trace.size(), 1u);
-    const wire::EditTrace& e = trace[0];
+    const session::EditTrace& e = trace[0];
     EXPECT_EQ(e.transaction, 1u);
     EXPECT_EQ(e.name, "anna");
     EXPECT_EQ(e.submitted, ns(at(0ms)));
@@ -131,7 +131,7 @@ TEST_F(EditTraceTest, WhatIsNotKnownCountsNowhere) {
     log.submitted(
         {.transaction = 2, .submitted_at = 77, .clock = {}, .received = at(0ms), .version = version(1)});
     log.merged(version(1), at(5ms));
-    for (const wire::EditTrace& e : log.latest(2)) EXPECT_EQ(e.submitted, 0);
+    for (const session::EditTrace& e : log.latest(2)) EXPECT_EQ(e.submitted, 0);
     EXPECT_EQ(stage("client to master").count, 0u);
     EXPECT_EQ(stage("client to master").p99_seconds, 0.0);
     EXPECT_EQ(stage("whole").count, 0u);
@@ -166,7 +166,7 @@ TEST_F(EditTraceTest, AnEndThatSeemsEarlierIsNoNegativeTimeAndLiesOverflowNothin
         log.submitted({.submitted_at = lie, .clock = client, .received = at(0ms), .version = version(1)});
         log.node_built(NodeId{1}, "n", version(1), lie, lie, node_clock);
     }
-    for (const wire::StageTimes& stage : log.stages()) EXPECT_GE(stage.p50_seconds, 0.0);
+    for (const session::StageTimes& stage : log.stages()) EXPECT_GE(stage.p50_seconds, 0.0);
 }
 
 TEST_F(EditTraceTest, AnotherEpochsReportsTouchNothing) {

@@ -125,7 +125,7 @@ TEST_F(JournalTest, ARestartedMasterHasTheSceneTheHistoryAndTheEditors) {
     auto master = start(1);
     EXPECT_FALSE(master->recovery.found);
     join_all(master->authority);
-    ASSERT_TRUE(master->journal->opened("the room"));
+    ASSERT_TRUE(master->journal->opened({"the room", {}}));
     int accepted = 0;
     for (std::uint64_t step = 1; step <= 400; ++step) accepted += act(master->authority, step).accepted;
     ASSERT_GT(accepted, 200);
@@ -139,7 +139,7 @@ TEST_F(JournalTest, ARestartedMasterHasTheSceneTheHistoryAndTheEditors) {
 
     auto again = start(2);
     EXPECT_TRUE(again->recovery.found);
-    EXPECT_EQ(again->recovery.title, "the room");
+    EXPECT_EQ(again->recovery.scene.title, "the room");
     EXPECT_EQ(again->authority.version(), (Version{2, 1}));
     EXPECT_FALSE(again->authority.has_unpublished());
     expect_same(old.authority, again->authority);
@@ -279,13 +279,13 @@ TEST_F(JournalTest, AClosedSceneStaysClosedAndARenderOriginStaysPut) {
     for (std::uint64_t step = 1; step <= 20; ++step) act(master->authority, step);
     master->authority.clear();
     join_all(master->authority);
-    ASSERT_TRUE(master->journal->opened("another"));
+    ASSERT_TRUE(master->journal->opened({"another", {}}));
     ASSERT_TRUE(master->authority.follow_camera({1e6, 0, 0}));
     for (std::uint64_t step = 21; step <= 30; ++step) act(master->authority, step);
     const Hash128 state = master->authority.scene().state_hash();
     master.reset();
     auto again = start(2);
-    EXPECT_EQ(again->recovery.title, "another");
+    EXPECT_EQ(again->recovery.scene.title, "another");
     EXPECT_EQ(again->authority.scene().state_hash(), state);
     EXPECT_EQ(again->recovery.notes.size(), 1u) << again->recovery.notes.at(0);
 }

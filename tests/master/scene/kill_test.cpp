@@ -19,7 +19,7 @@ struct KillTest : SessionFixture {
             const bool is_kept = act(master->authority, step).transaction != 0;
             if (is_kept && ::write(acknowledge, &step, sizeof step) != sizeof step) _exit(1);
             if (step % 50 == 0 && !writer.busy())
-                writer.start({master->journal->start_segment(), "", master->authority.save(), {}});
+                writer.start({master->journal->start_segment(), {}, master->authority.save(), {}});
         }
     }
 };

@@ -31,7 +31,7 @@ TEST_F(SessionLogTest, TellsWhoDidWhatWhileTheMasterRuns) {
     edit(master->authority, {Create{red, Material{.name = "red"}}});
     edit(master->authority, {Create{lamp, Light{.name = "lamp"}}});
     CheckpointWriter writer(folder);
-    writer.start({master->journal->start_segment(), "", master->authority.save(), {}});
+    writer.start({master->journal->start_segment(), {}, master->authority.save(), {}});
     writer.wait();
     for (int i = 1; i <= 5; ++i) edit(master->authority, {roughness(red, 0.1f * static_cast<float>(i))}, 7);
     std::ofstream(journal_path(folder, 2), std::ios::binary | std::ios::app) << "being wr";

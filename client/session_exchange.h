@@ -4,25 +4,24 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <set>
 
 #include "client/encoded_edit.h"
 #include "client/frame_collector.h"
 #include "client/link.h"
-#include "client/live_session.h"
 #include "client/output_collector.h"
+#include "client/session.h"
 #include "mediator/wire/blob_transfer.h"
 #include "mediator/wire/envelope.h"
 
-// Private to live_session.cpp and live_exchange.cpp.
+// Private to session*.cpp.
 namespace tessera::client {
 
 inline constexpr Duration Slice = std::chrono::milliseconds(200);  // of waiting, before looking at limits
 
-std::uint64_t random_key();
-
-// A member's side of the conversation with the master: what was asked and not answered, what has come, and
+// A client's side of the conversation with the master: what was asked and not answered, what has come, and
 // how to go on after a break. One thread.
-struct LiveSession::Implementation {
+struct Session::Implementation {
     struct SentEdit {
         std::uint64_t sequence = 0;
         EncodedEdit encoded;
@@ -33,18 +32,23 @@ struct LiveSession::Implementation {
     std::shared_ptr<scene::BlobStore> blobs;
     const Clock& clock;
     SessionSettings settings;
-    std::uint64_t key = random_key();
     SessionId id;
     State state = State::Outside;
     wire::JoinScene join_request;
+    std::function<void(std::uint32_t)> on_place;
     wire::SceneJoined joined;
     std::uint64_t next_id = 0, end_id = 0;
     scene::Scene scene;
-    std::uint64_t last_sequence = 0, last_request = 0;
+    std::uint64_t last_sequence = 0, last_answered = 0, last_request = 0;
     std::deque<SentEdit> unanswered;
-    std::deque<EditResult> results;
+    std::deque<session::EditResult> results;
     std::map<std::uint64_t, wire::ControlMessage> asked, answers;  // by request
-    std::map<std::uint64_t, LiveViewRequest> views;
+    bool asks_status = false;
+    std::optional<session::ClusterStatus> status;
+    std::map<std::uint64_t, wire::RequestView> views;  // as they were requested last
+    std::set<std::uint64_t> stopping;                  // views that are asked for their end
+    std::map<std::uint64_t, session::ViewProgress> progress;
+    std::map<std::uint64_t, wire::ViewDone> done;
     std::deque<std::string> refusals;
     std::vector<std::string> notices;
     std::map<std::uint64_t, Frame> frames;  // the newest of each view
@@ -56,70 +60,28 @@ struct LiveSession::Implementation {
     wire::BlobFetcher fetcher;
 
     Implementation(std::unique_ptr<net::Channel> channel, std::function<void()> reconnect,
-                   std::shared_ptr<scene::BlobStore> store, const Clock& time, SessionSettings how)
-        : link(std::move(channel), std::move(reconnect), store, time, how),
-          blobs(store),
-          clock(time),
-          settings(std::move(how)),
-          fetcher(store, wire::BlobLimits{}) {}
+                   std::shared_ptr<scene::BlobStore> store, const Clock& time, SessionSettings how);
 
     // ---- what has come ----
 
     // False: nothing came until the deadline.
-    bool take_in(TimePoint deadline, std::stop_token stop) {
-        auto incoming = link.next(deadline, stop);
-        if (!incoming) return false;
-        std::visit([this](auto&& body) { take(std::forward<decltype(body)>(body)); }, *std::move(incoming));
-        return true;
-    }
-
+    bool take_in(TimePoint deadline, std::stop_token stop);
     void take(Rejoined&& rejoined);
-
     void take(wire::ControlMessage&& message);
-
     void take(const wire::SceneJoined& welcome);
-
     void take(wire::EditReply&& reply);
-
-    void take(wire::LiveFrame&& header) {
-        collector.begin(header);
-        frame_may_be_here();
-    }
-    void take(wire::PictureChunk&& chunk) {
-        if (auto added = collector.add(std::move(chunk)); !added) throw added.error();
-        frame_may_be_here();
-    }
-    void take(wire::FrameTile&& tile) {
-        if (auto added = collector.add(std::move(tile)); !added) throw added.error();
-        frame_may_be_here();
-    }
-    void take(wire::OutputPicture&& picture) {
-        auto frame = output_collector.add(std::move(picture));
-        if (!frame) throw frame.error();
-        if (*frame) output_events.emplace_back(std::move(**frame));
-    }
-    bool take_for_output(wire::ControlMessage& message);
-    void ask_for_output();
+    void take(wire::FrameHeader&& header);
+    void take(wire::PictureChunk&& chunk);
+    void take(wire::FrameTile&& tile);
+    void take(wire::OutputPicture&& picture);
     void take(wire::BlobChunk&& chunk) { (void)fetcher.receive(std::move(chunk), clock.now()); }
     void take(const wire::BlobAbsent& absent) { fetcher.absent(absent.hash); }
-
+    bool take_for_view(wire::ControlMessage& message);
+    bool take_for_output(wire::ControlMessage& message);
     void frame_may_be_here();
-
     void resend();
 
     // ---- asking ----
-
-    static wire::OpenLiveView opening(std::uint64_t number, const LiveViewRequest& request,
-                                      std::uint64_t asking) {
-        return {.request = asking,
-                .number = number,
-                .name = request.name,
-                .view = request.view,
-                .spp = request.spp,
-                .picture = request.picture,
-                .film = request.film,
-                .share = request.share};
-    }
 
     template <class Answer, class Question>
     Answer ask(Question question) {
@@ -143,19 +105,21 @@ struct LiveSession::Implementation {
                     done ? done->text : "the master gave another answer than was asked for");
     }
 
+    // What it means, as the master says; throws Error{Refused} when it says no.
     template <class Question>
-    void tell(Question question) {
+    std::string tell(Question question) {
         const auto done = ask<wire::RequestDone>(std::move(question));
         if (!done.accepted) throw Error(ErrorCode::Refused, done.text);
+        return done.text;
     }
 
     void throw_refusals();
-
     void send_edit(scene::Edit edit);
-
-    void wait_for_answers(std::size_t at_most);
-
-    EditResult submit(scene::Edit edit);
+    bool wait_for_answers(std::size_t at_most, std::stop_token stop = {});  // false: stopped before
+    session::EditResult submit(scene::Edit edit);
+    void ask_for_output();
+    void request(std::uint64_t number, wire::RequestView&& request);
+    void forget_view(std::uint64_t number);
 };
 
 }  // namespace tessera::client

@@ -1,36 +1,35 @@
-// A member's part in displays: opens and adjusts one, or shows one of its outputs.
-#include "client/live_exchange.h"
-#include "client/live_session.h"
+// A session's part in displays: opens and adjusts one, or shows one of its outputs.
+#include "client/session_exchange.h"
 #include "mediator/wire/display_codec.h"
 
 namespace tessera::client {
 
-void LiveSession::open_display(const display::Display& display) {
+void Session::open_display(const display::Display& display) {
     Implementation& self = *implementation_;
     const scene::BlobPtr description =
         self.blobs->insert(wire::encode(display));  // kept until it is answered
     self.tell(wire::OpenDisplay{.description = scene::reference(*description)});
 }
 
-void LiveSession::close_display() {
+void Session::close_display() {
     implementation_->tell(wire::CloseDisplay{});
 }
 
-void LiveSession::adjust_display(const wire::AdjustDisplay& adjustment) {
-    implementation_->tell(adjustment);
+void Session::adjust_display(const session::DisplayAdjustment& adjustment) {
+    implementation_->tell(wire::AdjustDisplay{.adjustment = adjustment});
 }
 
-void LiveSession::move_head(const display::Head& head) {
+void Session::move_head(const display::Head& head) {
     Implementation& self = *implementation_;
     if (self.state == Implementation::State::Inside) self.link.send(wire::MoveHead{head});
 }
 
-void LiveSession::join_output(const std::string& name) {
+void Session::join_output(const std::string& name) {
     implementation_->output = name;
     implementation_->ask_for_output();
 }
 
-std::optional<OutputEvent> LiveSession::next_output_event(TimePoint deadline, std::stop_token stop) {
+std::optional<OutputEvent> Session::next_output_event(TimePoint deadline, std::stop_token stop) {
     Implementation& self = *implementation_;
     while (self.output_events.empty()) {
         self.throw_refusals();
@@ -41,23 +40,23 @@ std::optional<OutputEvent> LiveSession::next_output_event(TimePoint deadline, st
     return event;
 }
 
-void LiveSession::output_ready(std::uint64_t frame) {
+void Session::output_ready(std::uint64_t frame) {
     implementation_->link.send(wire::OutputReady{frame});
 }
 
-void LiveSession::Implementation::ask_for_output() {
+void Session::Implementation::ask_for_output() {
     output_request = ++last_request;
     if (state == State::Inside) link.send(wire::JoinOutput{output_request, output});
 }
 
 // Whether the message was about the output that this session shows.
-bool LiveSession::Implementation::take_for_output(wire::ControlMessage& message) {
+bool Session::Implementation::take_for_output(wire::ControlMessage& message) {
     if (auto* opened = std::get_if<wire::OutputOpened>(&message)) {
-        output_events.emplace_back(std::move(*opened));
+        output_events.emplace_back(std::move(opened->output));
         return true;
     }
     if (const auto* order = std::get_if<wire::PresentFrame>(&message)) {
-        output_events.emplace_back(*order);
+        output_events.emplace_back(order->order);
         return true;
     }
     const auto* done = std::get_if<wire::RequestDone>(&message);

@@ -1,0 +1,17 @@
+#include "client/render.h"
+
+namespace tessera::client {
+
+namespace {
+constexpr std::uint64_t ViewNumber = std::uint64_t{1} << 32;  // beyond those that callers choose
+}
+
+ViewResult render(Session& session, session::ViewRequest request,
+                  const std::function<void(const session::ViewProgress&)>& on_progress,
+                  std::stop_token stop) {
+    request.frames = session::Frames::Last;
+    session.request_view(ViewNumber, request);
+    return session.wait_for_end(ViewNumber, on_progress, stop);
+}
+
+}  // namespace tessera::client

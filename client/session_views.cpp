@@ -1,0 +1,132 @@
+// A session's views: requested, looked at, stopped, and how they end.
+#include "client/session_exchange.h"
+
+namespace tessera::client {
+
+void Session::Implementation::request(std::uint64_t number, wire::RequestView&& request) {
+    request.number = number;
+    progress.erase(number);
+    done.erase(number);
+    stopping.erase(number);
+    const bool is_new = !views.contains(number);
+    views.insert_or_assign(number, request);  // what comes of it may be here before the answer
+    try {
+        tell(request);
+    } catch (const Error&) {
+        if (is_new) forget_view(number);
+        throw;
+    }
+}
+
+void Session::Implementation::forget_view(std::uint64_t number) {
+    views.erase(number);
+    stopping.erase(number);
+    progress.erase(number);
+    done.erase(number);
+    frames.erase(number);
+}
+
+void Session::request_view(std::uint64_t number, const session::ViewRequest& request) {
+    implementation_->request(number, {.wanted = request});
+}
+
+void Session::share_view(std::uint64_t number, const session::ViewRequest& request) {
+    implementation_->request(number, {.wanted = request, .share = true});
+}
+
+void Session::look(std::uint64_t number, const view::CameraPose& camera) {
+    Implementation& self = *implementation_;
+    const auto known = self.views.find(number);
+    if (known == self.views.end() || known->second.share)
+        throw Error(ErrorCode::InvalidInput,
+                    "view " + std::to_string(number) + " is not one of this session's own: request it first");
+    known->second.wanted.view.camera = camera;
+    if (self.state == Implementation::State::Inside) self.link.send(known->second);
+}
+
+void Session::stop_view(std::uint64_t number) {
+    Implementation& self = *implementation_;
+    if (!self.views.contains(number)) return;
+    self.stopping.insert(number);
+    if (self.state == Implementation::State::Inside)
+        self.link.send(wire::EndView{.number = number, .deliver = true});
+}
+
+void Session::close_view(std::uint64_t number) {
+    Implementation& self = *implementation_;
+    self.forget_view(number);
+    if (self.state == Implementation::State::Inside) self.link.send(wire::EndView{.number = number});
+}
+
+std::optional<Frame> Session::next_frame(TimePoint deadline, std::stop_token stop) {
+    Implementation& self = *implementation_;
+    pump();
+    while (self.frames.empty()) {
+        self.throw_refusals();
+        if (stop.stop_requested() || !self.take_in(deadline, stop)) return std::nullopt;
+    }
+    Frame frame = std::move(self.frames.extract(self.frames.begin()).mapped());
+    self.link.send(wire::FrameTaken{frame.view, frame.number});
+    return frame;
+}
+
+std::optional<session::ViewProgress> Session::take_progress(std::uint64_t number) {
+    auto news = implementation_->progress.extract(number);
+    return news.empty() ? std::nullopt : std::optional(news.mapped());
+}
+
+std::optional<session::ViewSummary> Session::take_summary(std::uint64_t number) {
+    auto end = implementation_->done.extract(number);
+    return end.empty() ? std::nullopt : std::optional(std::move(end.mapped().summary));
+}
+
+ViewResult Session::wait_for_end(std::uint64_t number,
+                                 const std::function<void(const session::ViewProgress&)>& on_progress,
+                                 std::stop_token stop) {
+    Implementation& self = *implementation_;
+    TimePoint last_sign = self.clock.now();
+    while (true) {
+        if (stop.stop_requested() && !self.stopping.contains(number)) stop_view(number);
+        const auto done = self.done.find(number);
+        const auto frame = self.frames.find(number);
+        if (done != self.done.end() && frame != self.frames.end() &&
+            frame->second.number == done->second.frame) {
+            ViewResult result{std::move(done->second.summary), std::move(frame->second)};
+            close_view(number);
+            return result;
+        }
+        // The end may be here before the word that it is one.
+        const bool is_older =
+            frame != self.frames.end() && (!frame->second.complete || done != self.done.end());
+        if (is_older) {
+            self.link.send(wire::FrameTaken{number, frame->second.number});
+            self.frames.erase(frame);
+        }
+        const bool has_come =
+            self.take_in(self.clock.now() + Slice, stop.stop_requested() ? std::stop_token() : stop);
+        self.throw_refusals();
+        if (const auto news = take_progress(number); news && on_progress) on_progress(*news);
+        if (has_come || self.link.is_away()) last_sign = self.clock.now();
+        if (self.clock.now() - last_sign < self.settings.lost_limit) continue;
+        throw Error(ErrorCode::Unavailable,
+                    self.done.contains(number)
+                        ? "the picture did not arrive in full: start again"
+                        : "the master says nothing about the frame any more: start again");
+    }
+}
+
+std::string Session::set_filter(const std::string& view, const std::string& filter) {
+    return implementation_->tell(wire::SetViewFilter{.view = view, .filter = filter});
+}
+
+std::vector<std::string> Session::take_notices() {
+    return std::exchange(implementation_->notices, {});
+}
+
+session::Picked Session::pick(std::uint64_t number, std::uint32_t x, std::uint32_t y) {
+    auto picked = implementation_->ask<wire::Picked>(wire::Pick{.number = number, .x = x, .y = y});
+    if (!picked.problem.empty()) throw Error(ErrorCode::Refused, picked.problem);
+    return picked.seen;
+}
+
+}  // namespace tessera::client

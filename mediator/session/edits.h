@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "mediator/base/description.h"
+#include "mediator/base/ids.h"
+
+// What became of edits, who made them and how long they took, and what a picture shows at a pixel.
+namespace tessera::session {
+
+struct EditResult {
+    bool accepted = false;
+    Version version;                    // that holds it, or will when it is published
+    std::vector<std::string> problems;  // why not
+    std::uint64_t transaction = 0;      // that it is, or is part of
+    std::vector<std::string> notes;     // of an undo: what was left as later edits made it
+    static constexpr auto describe(auto row) {
+        using Self = EditResult;
+        return std::tuple(row(1, "accepted", &Self::accepted), row(2, "version", &Self::version),
+                          row(3, "problems", &Self::problems), row(4, "transaction", &Self::transaction),
+                          row(5, "notes", &Self::notes));
+    }
+};
+
+struct TransactionSummary {
+    std::uint64_t number = 0;
+    std::string name, user;
+    std::int64_t time = 0;    // ns since 1970
+    std::uint32_t edits = 0;  // in one gesture
+    std::string text;         // what it did, for people
+    std::uint64_t undoes = 0, undone_by = 0;
+    static constexpr auto describe(auto row) {
+        using Self = TransactionSummary;
+        return std::tuple(row(1, "number", &Self::number), row(2, "name", &Self::name),
+                          row(3, "user", &Self::user), row(4, "time", &Self::time),
+                          row(5, "edits", &Self::edits), row(6, "text", &Self::text),
+                          row(7, "undoes", &Self::undoes), row(8, "undone_by", &Self::undone_by));
+    }
+};
+struct FieldWriter {
+    std::uint32_t field = 0;
+    std::uint64_t transaction = 0;
+    std::string name, user;
+    std::int64_t time = 0;  // ns since 1970
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "field", &FieldWriter::field),
+                          row(2, "transaction", &FieldWriter::transaction),
+                          row(3, "name", &FieldWriter::name), row(4, "user", &FieldWriter::user),
+                          row(5, "time", &FieldWriter::time));
+    }
+};
+
+// What is seen in the middle of a pixel.
+struct Picked {
+    Version version;
+    bool hit = false;
+    ObjectId object;           // the Geometry
+    glm::dvec3 position{0.0};  // world
+    glm::vec3 normal{0.0f};    // shading normal, world
+    double distance = 0;       // from the eye
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "version", &Picked::version), row(2, "hit", &Picked::hit),
+                          row(3, "object", &Picked::object), row(4, "position", &Picked::position),
+                          row(5, "normal", &Picked::normal), row(6, "distance", &Picked::distance));
+    }
+};
+
+// How long the latest edits took. Times in ns of the master's clock, 0 = not known (yet).
+struct NodeTrace {
+    std::string name;
+    std::int64_t received = 0, built = 0;
+    std::int64_t bound = 0;  // of its clock's offset
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "name", &NodeTrace::name), row(2, "received", &NodeTrace::received),
+                          row(3, "built", &NodeTrace::built), row(4, "bound", &NodeTrace::bound));
+    }
+};
+struct EditTrace {
+    std::uint64_t transaction = 0;
+    std::string name;  // who
+    std::uint64_t edit_bytes = 0;
+    std::int64_t submitted = 0, bound = 0;  // bound: of the client's clock's offset
+    std::int64_t received = 0, published = 0;
+    std::vector<NodeTrace> nodes;
+    std::int64_t merged = 0;  // the first picture of its version
+    Version version;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "transaction", &EditTrace::transaction), row(2, "name", &EditTrace::name),
+                          row(3, "edit_bytes", &EditTrace::edit_bytes),
+                          row(4, "submitted", &EditTrace::submitted), row(5, "bound", &EditTrace::bound),
+                          row(6, "received", &EditTrace::received),
+                          row(7, "published", &EditTrace::published), row(8, "nodes", &EditTrace::nodes),
+                          row(9, "merged", &EditTrace::merged), row(10, "version", &EditTrace::version));
+    }
+};
+
+}  // namespace tessera::session
