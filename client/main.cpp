@@ -9,6 +9,7 @@
 #include "client/tools/doctor.h"
 #include "client/tools/edit.h"
 #include "client/tools/filter_tool.h"
+#include "client/tools/jobs.h"
 #include "client/tools/keys_tool.h"
 #include "client/tools/live_target.h"
 #include "client/tools/log_tool.h"
@@ -25,7 +26,8 @@ int main(int argc, char** argv) {
     cli::CommandLine line(
         "tessera", "Tessera, a distributed path tracer: one master owns scene and picture, nodes render.");
     const std::vector<tools::Command> commands{
-        tools::render_command(line),     tools::edit_command(line, tools::connect_scene),
+        tools::render_command(line),     tools::jobs_command(line),
+        tools::fetch_command(line),      tools::edit_command(line, tools::connect_scene),
         tools::watch_command(line),      tools::log_command(line),
         tools::status_command(line),     tools::probe_command(line),
         tools::keys_command(line),       tools::compare_command(line),

@@ -28,11 +28,15 @@ JoinOutcome Session::join(const JoinRequest& request, std::stop_token stop) {
     self.state = Implementation::State::Joining;
     self.link.send(self.join_request);
     while (self.state != Implementation::State::Inside) {
-        if (stop.stop_requested()) return Stopped{};
+        if (stop.stop_requested()) {
+            self.state = Implementation::State::Outside;
+            return Stopped{};
+        }
         auto incoming = self.link.next(self.clock.now() + Slice, stop);
         if (!incoming) continue;
         const auto* message = std::get_if<wire::ControlMessage>(&*incoming);
         if (const auto* refusal = message ? std::get_if<wire::Refusal>(message) : nullptr) {
+            self.state = Implementation::State::Outside;
             if (gives_up) return Busy{refusal->reason};
             throw Error(ErrorCode::Refused, "the master refuses: " + refusal->reason);
         }

@@ -18,6 +18,7 @@
 #include "mediator/scene/scene.h"
 #include "mediator/session/display.h"
 #include "mediator/session/edits.h"
+#include "mediator/session/jobs.h"
 #include "mediator/session/people.h"
 #include "mediator/session/status.h"
 #include "mediator/session/view_request.h"
@@ -136,6 +137,12 @@ class Session {
     void join_output(const std::string& name);
     std::optional<OutputEvent> next_output_event(TimePoint deadline, std::stop_token stop);
     void output_ready(std::uint64_t frame);
+
+    // ---- jobs: views that were requested as detached; of this user, for operators of all ----
+    std::vector<session::JobStatus> jobs();
+    // The end of one: its picture and what became of it. Error{Refused} while it is being rendered.
+    ViewResult fetch_job(const session::JobName& job);
+    void cancel_job(const session::JobName& job);  // ends it, and forgets its picture
 
     session::ClusterStatus status();
 

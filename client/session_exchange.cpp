@@ -144,11 +144,11 @@ void Session::Implementation::take(wire::OutputPicture&& picture) {
 // Whether the message was about where a view is.
 bool Session::Implementation::take_for_view(wire::ControlMessage& message) {
     if (const auto* news = std::get_if<wire::ViewProgress>(&message)) {
-        if (views.contains(news->number)) progress.insert_or_assign(news->number, news->progress);
+        if (awaits(news->number)) progress.insert_or_assign(news->number, news->progress);
         return true;
     }
     if (auto* end = std::get_if<wire::ViewDone>(&message)) {
-        if (views.contains(end->number)) done.insert_or_assign(end->number, std::move(*end));
+        if (awaits(end->number)) done.insert_or_assign(end->number, std::move(*end));
         return true;
     }
     return false;
@@ -158,7 +158,7 @@ void Session::Implementation::frame_may_be_here() {
     auto frame = collector.take();
     if (!frame) return;
     const std::uint64_t view = frame->view;
-    if (views.contains(view)) frames.insert_or_assign(view, std::move(*frame));
+    if (awaits(view)) frames.insert_or_assign(view, std::move(*frame));
 }
 
 void Session::Implementation::resend() {
@@ -167,6 +167,7 @@ void Session::Implementation::resend() {
     if (asks_status) link.send(wire::StatusRequest{});
     for (const auto& [number, view] : views) link.send(view);
     for (const std::uint64_t number : stopping) link.send(wire::EndView{.number = number, .deliver = true});
+    if (fetched) link.send(*fetched);
     if (!output.empty()) ask_for_output();
 }
 

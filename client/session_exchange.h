@@ -46,6 +46,7 @@ struct Session::Implementation {
     bool asks_status = false;
     std::optional<session::ClusterStatus> status;
     std::map<std::uint64_t, wire::RequestView> views;  // as they were requested last
+    std::optional<wire::FetchJob> fetched;             // whose picture is on its way
     std::set<std::uint64_t> stopping;                  // views that are asked for their end
     std::map<std::uint64_t, session::ViewProgress> progress;
     std::map<std::uint64_t, wire::ViewDone> done;
@@ -120,6 +121,9 @@ struct Session::Implementation {
     void ask_for_output();
     void request(std::uint64_t number, wire::RequestView&& request);
     void forget_view(std::uint64_t number);
+    bool awaits(std::uint64_t number) const {
+        return views.contains(number) || (fetched && fetched->number == number);
+    }
 };
 
 }  // namespace tessera::client

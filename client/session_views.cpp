@@ -115,6 +115,29 @@ ViewResult Session::wait_for_end(std::uint64_t number,
     }
 }
 
+std::vector<session::JobStatus> Session::jobs() {
+    return implementation_->ask<wire::Jobs>(wire::ReadJobs{}).jobs;
+}
+
+ViewResult Session::fetch_job(const session::JobName& job) {
+    constexpr std::uint64_t JobNumber = std::uint64_t{1} << 33;  // beyond those of views
+    Implementation& self = *implementation_;
+    self.fetched = wire::FetchJob{.number = JobNumber, .job = job};
+    try {
+        self.tell(*self.fetched);
+        ViewResult result = wait_for_end(JobNumber, {}, {});
+        self.fetched.reset();
+        return result;
+    } catch (const Error&) {
+        self.fetched.reset();
+        throw;
+    }
+}
+
+void Session::cancel_job(const session::JobName& job) {
+    implementation_->tell(wire::CancelJob{.job = job});
+}
+
 std::string Session::set_filter(const std::string& view, const std::string& filter) {
     return implementation_->tell(wire::SetViewFilter{.view = view, .filter = filter});
 }

@@ -42,6 +42,7 @@ RenderMaster::RenderMaster(std::unique_ptr<net::Channel> channel, std::shared_pt
       nodes_(settings.liveness, settings.stuck),
       outputs_(*channel_),
       film_(outputs_),
+      jobs_(events_),
       dispatcher_(settings.views.overdue_patience, clock, nodes_, outbox_, events_),
       scene_(settings.epoch != 0 ? settings.epoch : random_nonzero(), settings.views,
              {.blobs = blobs_,
@@ -49,6 +50,7 @@ RenderMaster::RenderMaster(std::unique_ptr<net::Channel> channel, std::shared_pt
               .sessions = sessions_,
               .outbox = outbox_,
               .render = {outputs_, film_, dispatcher_, view_ids_},
+              .jobs = jobs_,
               .events = events_}),
       service_(blobs_, sessions_, scene_, outbox_) {
     if (settings.session_folder.empty()) return;

@@ -79,6 +79,7 @@ class RenderMaster {
     SessionTable sessions_;
     RenderOutputs outputs_;
     FilmStore film_;
+    KeptJobs jobs_;
     Dispatcher dispatcher_;
     ViewIds view_ids_;
     SceneSession scene_;

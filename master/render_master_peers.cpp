@@ -51,6 +51,12 @@ void RenderMaster::from_client(SessionRecord& session, wire::ControlMessage& mes
         service_.submit(session, *long_edit, now);
     } else if (const auto* set = std::get_if<wire::SetViewFilter>(&message)) {
         scene_.asked(session, *set, now);
+    } else if (const auto* jobs = std::get_if<wire::ReadJobs>(&message)) {
+        scene_.asked(session, *jobs);
+    } else if (const auto* fetched = std::get_if<wire::FetchJob>(&message)) {
+        scene_.asked(session, *fetched);
+    } else if (const auto* cancelled = std::get_if<wire::CancelJob>(&message)) {
+        scene_.asked(session, *cancelled);
     } else if (std::holds_alternative<wire::StatusRequest>(message)) {
         outbox_.control(session.control, wire::StatusReply{status(now)});
     } else if (const auto* join = std::get_if<wire::JoinScene>(&message)) {

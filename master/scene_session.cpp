@@ -50,14 +50,21 @@ void SceneSession::open(wire::RecordedTitle scene) {
 void SceneSession::record_to(const std::filesystem::path& folder, Duration checkpoint_interval,
                              TimePoint now) {
     journal_.emplace(folder, checkpoint_interval, authority_, services_.blobs, services_.events);
+    services_.jobs.record_to(folder / "jobs");  // the journal has the folder to itself
     const Recovery& recovery = journal_->recovery();
     if (!recovery.found || recovery.scene.title.empty()) {
         (void)authority_.clear();
         return;
     }
     open(recovery.scene);
-    if (is_exclusive()) left_alone_ = now;
     std::vector<wire::SavedView> views = recovery.views;
+    std::erase_if(views, [this](const wire::SavedView& view) {  // it had ended before that could be recorded
+        return view.request.detached && services_.jobs.find({view.owner_user, view.name}) != nullptr;
+    });
+    const bool has_only_jobs =
+        !views.empty() &&
+        std::all_of(views.begin(), views.end(), [](const auto& view) { return view.request.detached; });
+    if (is_exclusive() && !has_only_jobs) left_alone_ = now;  // its owner may come back
     views_.restore(std::move(views), authority_.version(), authority_.state_hash(), now);
 }
 
@@ -127,7 +134,13 @@ void SceneSession::left(SessionId session, Views::Departure departure, TimePoint
     authority_.forget(session);
     members_.erase(member);
     std::erase_if(reads_, [&](const WaitingRead& read) { return read.session == session; });
-    if (is_exclusive() && members_.empty()) close(now);
+    close_when_left(now);
+}
+
+// An exclusive scene goes with its owner, but for jobs that go on. One of a master before is kept for a while.
+void SceneSession::close_when_left(TimePoint now) {
+    if (!open_ || !is_exclusive() || !members_.empty() || views_.has_jobs()) return;
+    if (!left_alone_ || now - *left_alone_ > owner_patience_) close(now);
 }
 
 void SceneSession::edited(const SessionRecord& session, const scene::Edit& edit, const EditAnswer& answer,
@@ -273,6 +286,8 @@ void SceneSession::asked(SessionRecord& session, wire::RequestView request, Time
     std::string problem;
     if (request.share) {
         problem = views_.share(session.id, request.number, wanted);
+    } else if (problem = wanted.detached ? submit_job(session, wanted) : ""; !problem.empty()) {
+        // it is said below
     } else if (problem = problem_of(wanted); problem.empty()) {
         // What was edited before is seen, and the render origin follows the camera while it is the only one.
         publish_if_due(now);
@@ -285,7 +300,9 @@ void SceneSession::asked(SessionRecord& session, wire::RequestView request, Time
             if (auto moved = authority_.follow_camera(eye)) publish(*moved, now);
         }
         const ViewOwner owner{session.id, name(session.id), session.user, members_.at(session.id).key};
+        const std::string job = wanted.detached ? wanted.name : "";
         problem = views_.open(owner, request.number, std::move(wanted), authority_.version(), now);
+        if (problem.empty() && !job.empty()) job_submitted(job);
     }
     if (request.request != 0 || !problem.empty()) done(session, request.request, std::move(problem));
 }
@@ -373,10 +390,7 @@ void SceneSession::take(RenderOutput& output, TimePoint now) {
 // units for the nodes and frames for the clients.
 void SceneSession::tick(TimePoint now) {
     keep_journal(now);
-    if (left_alone_ && now - *left_alone_ > owner_patience_) {
-        left_alone_.reset();
-        close(now);
-    }
+    close_when_left(now);
     if (open_) {
         publish_if_due(now);
         std::erase_if(reads_, [&](const WaitingRead& read) {
@@ -388,6 +402,7 @@ void SceneSession::tick(TimePoint now) {
     views_.advance(now);
     display_.tick(now);
     views_.deal(now);
+    keep_ended_jobs();
     for (const FirstPicture& first : views_.take_first_pictures()) traces_.merged(first.version, first.at);
 }
 
@@ -395,8 +410,10 @@ void SceneSession::keep_journal(TimePoint now) {
     if (!journal_) return;
     journal_->tick();
     ViewSaver& saver = views_.saver();
-    if (auto saved = saver.take_saved())
+    if (auto saved = saver.take_saved()) {
+        add_new_jobs(*saved);
         journal_->write_checkpoint(scene_, std::move(*saved), progress_being_saved_, now);
+    }
     const std::uint64_t progress = saver.film_progress();
     if (saver.is_saving() || !journal_->wants_checkpoint(progress, now)) return;
     progress_being_saved_ = progress;

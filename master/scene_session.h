@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "master/display/display_service.h"
+#include "master/kept_jobs.h"
 #include "master/peers/node_table.h"
 #include "master/peers/session_table.h"
 #include "master/render/views.h"
@@ -24,6 +25,7 @@ struct MasterServices {
     SessionTable& sessions;
     Outbox& outbox;
     RenderServices render;
+    KeptJobs& jobs;
     EventSink events;
 };
 
@@ -83,6 +85,11 @@ class SceneSession {
     void asked(SessionRecord& session, wire::RequestView request, TimePoint now);
     void asked(SessionRecord& session, const wire::SetViewFilter& request, TimePoint now);
 
+    // Jobs of the scene, and those that have ended, of any scene; for any client.
+    void asked(SessionRecord& session, const wire::ReadJobs& request);
+    void asked(SessionRecord& session, const wire::FetchJob& request);
+    void asked(SessionRecord& session, const wire::CancelJob& request);
+
     // "" or what is wrong.
     std::string open_display(const scene::BlobPtr& description, std::vector<scene::BlobPtr> content,
                              TimePoint now);
@@ -124,6 +131,12 @@ class SceneSession {
     void follow_display(TimePoint now);
     void publish_if_due(TimePoint now);
     void keep_journal(TimePoint now);
+    std::string submit_job(const SessionRecord& session, const session::ViewRequest& wanted) const;
+    void job_submitted(const std::string& name);
+    void add_new_jobs(std::vector<wire::SavedView>& saved) const;
+    void keep_ended_jobs();
+    void close_when_left(TimePoint now);
+    const ViewState* job_view(const session::JobName& job) const;
 
     MasterServices services_;
     Duration owner_patience_;

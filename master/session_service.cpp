@@ -9,10 +9,6 @@ namespace tessera::master {
 
 namespace {
 constexpr std::size_t MaxPendingEdits = 256;
-
-std::int64_t since_1970() {
-    return std::chrono::duration_cast<Duration>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
 }  // namespace
 
 std::string SessionService::busy_text() const {

@@ -54,6 +54,7 @@ class Render {
         connect();
         if (const auto code = bring_in_scene()) return *code;
         if (plan_.sequence) return render_sequence();
+        if (plan_.job.detached) return submit_job();
         render(plan_.view.view.seed);
         return plan_.coverage ? count() : finish(plan_.outputs);
     }
@@ -161,6 +162,16 @@ class Render {
         }
         for (const std::string& notice : scene_.notices) log_.info(title + ": " + notice);
         return submit(entries(scene_, import::RootEntry::Update));
+    }
+
+    int submit_job() {
+        plan_.job.view = view_from(plan_.view, camera_);
+        plan_.job.view.seed = plan_.view.view.seed;
+        session_->request_view(1, plan_.job);
+        std::cout << "job '" << plan_.job.name
+                  << "' is submitted: tessera jobs shows where it is, tessera fetch " << plan_.job.name
+                  << " brings the picture" << std::endl;
+        return 0;
     }
 
     void render(std::uint64_t seed) {

@@ -29,7 +29,7 @@ std::vector<std::string> backend_names() {
 }
 
 Expected<void> check_outputs(const RenderOptions& options) {
-    if (options.outputs.empty() && !options.coverage)
+    if (options.outputs.empty() && !options.coverage && !options.detach)
         return wrong("no output: say where the picture goes with -o FILE.exr or -o FILE.png");
     for (const std::string& output : options.outputs) {
         if (!picture_format(output)) {
@@ -135,6 +135,7 @@ Expected<void> set_filter(const RenderOptions& options, session::ViewRequest& jo
     const auto choice = filter::parse_choice(options.filter, filter::catalog());
     if (!choice) return wrong(std::string("--filter: ") + choice.error().what() + "; see tessera filters");
     job.view.filter = filter::to_text(*choice);
+    if (options.detach) return {};  // see set_detached()
     job.film = any_exr(options.outputs);
     const PictureFormat format = *picture_format(options.outputs.front());
     job.picture = options.outputs.size() > 1 || job.film ? session::PictureEncoding::Planes
@@ -144,6 +145,29 @@ Expected<void> set_filter(const RenderOptions& options, session::ViewRequest& jo
         job.stop.budget = job.stop.time_limit;
         job.stop.adapts_size = !job.film;
     }
+    return {};
+}
+
+// A picture that the master keeps: it encodes it, as the output would end.
+Expected<void> set_detached(const RenderOptions& options, RenderPlan& plan) {
+    plan.job.name = options.name;
+    if (!options.detach) return {};
+    if (options.name.empty()) return wrong("--detach: a job needs a name; add --name NAME");
+    if (!options.master) return wrong("--detach is for a running cluster; name it with --master");
+    if (options.frames) return wrong("--detach and --frames exclude each other");
+    if (options.save_statistics) return wrong("--detach and --save-statistics exclude each other");
+    if (options.json) return wrong("--detach and --json exclude each other; see tessera jobs --json");
+    if (options.outputs.size() > 1)
+        return wrong("--detach keeps one picture: give one -o, or none for a PNG");
+    session::ViewRequest& job = plan.job;
+    job.detached = true;
+    job.film = false;
+    job.frames = session::Frames::Last;
+    if (!options.wait_nodes) job.wait_limit = Duration::zero();  // nobody is there to start some
+    const auto format = options.outputs.empty() ? std::nullopt : picture_format(options.outputs.front());
+    job.picture = format == PictureFormat::Exr    ? session::PictureEncoding::Exr
+                  : format == PictureFormat::Jpeg ? session::PictureEncoding::Jpeg
+                                                  : session::PictureEncoding::Png;
     return {};
 }
 
@@ -229,15 +253,22 @@ void RenderOptions::add_to(cli::CommandLine& command) {
     command.choice("--policy", "how frames are cut into work", policy, {"tiled", "cooperative", "mixed"});
     command.flag("--reproducible", "the same bits on every x86-64-v3 machine: AVX2 only", reproducible);
     add_cluster_to(command, *this);
+    command.option("--name", "what others call the picture, as tessera set-filter --view NAME", name);
+    command.flag("--detach",
+                 "leave when the cluster has the scene; tessera jobs shows where it is, tessera fetch NAME "
+                 "brings the picture",
+                 detach);
     command.flag("--json", "print one JSON object with everything measured", json);
     add_log_to(command, *this);
-    command.examples({"tessera render room.glb -o room.exr -o room.png --spp 256",
-                      "tessera render room.glb -o room.exr --spp 8 --filter fdf",
-                      "tessera render still.glb --env studio.exr -o still.png --time 800ms --filter fdf",
-                      "tessera render robot.glb --at 1.5 --animation walk -o robot.exr",
-                      "tessera render robot.glb --frames 0:47 --fps 24 -o robot.%04d.exr",
-                      "tessera render room.glb -o room.exr --nodes 2 --policy cooperative --json",
-                      "tessera render room.glb -o room.exr --master tcp://render-1:7420 --keys ~/.tessera"});
+    command.examples(
+        {"tessera render room.glb -o room.exr -o room.png --spp 256",
+         "tessera render room.glb -o room.exr --spp 8 --filter fdf",
+         "tessera render still.glb --env studio.exr -o still.png --time 800ms --filter fdf",
+         "tessera render robot.glb --at 1.5 --animation walk -o robot.exr",
+         "tessera render robot.glb --frames 0:47 --fps 24 -o robot.%04d.exr",
+         "tessera render room.glb -o room.exr --nodes 2 --policy cooperative --json",
+         "tessera render room.glb -o room.exr --master tcp://render-1:7420 --keys ~/.tessera",
+         "tessera render room.glb --spp 4096 --name night --detach --master tcp://render-1:7420"});
 }
 
 Expected<RenderPlan> understand(const RenderOptions& options) {
@@ -287,6 +318,7 @@ Expected<RenderPlan> understand(const RenderOptions& options) {
                                                         : session::Policy::Mixed;
     plan.job.reproducible = options.reproducible;
     if (auto fine = set_filter(options, plan.job); !fine) return tl::unexpected(fine.error());
+    if (auto fine = set_detached(options, plan); !fine) return tl::unexpected(fine.error());
     plan.view.view.filter = plan.job.view.filter;
     plan.view.view.channels =
         frame::ChannelSet::from_bits(plan.view.view.channels.bits() | channels_for(options).bits());

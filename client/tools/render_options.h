@@ -22,7 +22,8 @@ struct RenderOptions {
     std::optional<double> fps;
     std::string user = "editor";
     std::string policy = "mixed";
-    std::string filter;
+    std::string filter, name;
+    bool detach = false;
     bool reproducible = false, no_wait = false, json = false, save_statistics = false, skip_existing = false;
     cli::LogSettings log{.program = "tessera"};
 

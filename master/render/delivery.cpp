@@ -184,6 +184,12 @@ void Delivery::ship(std::uint64_t frame, Making&& making, const Reconstructed& m
     for (const Key& key : making.receivers) {
         const auto watcher = watchers_.find(key);
         if (watcher == watchers_.end() || watcher->second.on_its_way != frame) continue;
+        if (key.first == Keeper) {
+            watcher->second.seen = making.shown;
+            ended_.push_back({making.view, header, end_of(*views_.find(making.view), made),
+                              made.picture.bytes ? made.picture.bytes : no_picture});
+            continue;
+        }
         const SessionRecord* session = sessions_.find(key.first);
         const bool has_failed = !made.picture.error.empty() && !making.is_end;
         const bool is_reachable = session != nullptr && (session->bulk || making.is_end);
@@ -196,7 +202,10 @@ void Delivery::ship(std::uint64_t frame, Making&& making, const Reconstructed& m
             continue;
         }
         header.view = key.second;
-        if (making.is_end) announce_end(*views_.find(making.view), *session, header, made);
+        if (making.is_end) {
+            outbox_.control(session->control, wire::ViewDone{header.view, header.frame,
+                                                             end_of(*views_.find(making.view), made)});
+        }
         shipments_.push_back({.to = key,
                               .view = making.view,
                               .frame = frame,
@@ -209,25 +218,36 @@ void Delivery::ship(std::uint64_t frame, Making&& making, const Reconstructed& m
     }
 }
 
-void Delivery::announce_end(const ViewState& view, const SessionRecord& session,
-                            const wire::FrameHeader& header, const Reconstructed& made) {
-    wire::ViewDone done{.number = header.view,
-                        .frame = header.frame,
-                        .summary = summary_of(view, views_.facts, outbox_.bytes)};
+session::ViewSummary Delivery::end_of(const ViewState& view, const Reconstructed& made) const {
+    session::ViewSummary summary = summary_of(view, views_.facts, outbox_.bytes);
     if (made.picture.bytes) {
-        done.summary.picture = made.picture.summary;
-        describe(view, done.summary.picture);
-        done.summary.samples_least = made.samples_least;
-        done.summary.samples_most = made.samples_most;
+        summary.picture = made.picture.summary;
+        describe(view, summary.picture);
+        summary.samples_least = made.samples_least;
+        summary.samples_most = made.samples_most;
     }
-    outbox_.control(session.control, std::move(done));
+    return summary;
+}
+
+void Delivery::send_kept(const SessionRecord& session, Ended kept) {
+    kept.header.frame = next_frame_++;
+    outbox_.control(session.control,
+                    wire::ViewDone{kept.header.view, kept.header.frame, std::move(kept.summary)});
+    shipments_.push_back({.to = {session.id, kept.header.view},
+                          .view = {},
+                          .frame = kept.header.frame,
+                          .header = kept.header,
+                          .picture = std::move(kept.picture),
+                          .tiles = {},
+                          .film = {}});
 }
 
 void Delivery::send() {
     std::set<SessionId> busy;
     std::erase_if(shipments_, [&](Shipment& shipment) {
         const SessionRecord* session = sessions_.find(shipment.to.first);
-        if (busy.contains(shipment.to.first) || session == nullptr || !session->bulk) return false;
+        if (session == nullptr) return true;  // it has gone
+        if (busy.contains(shipment.to.first) || !session->bulk) return false;
         send(shipment, *session);
         if (!shipment.is_done()) busy.insert(shipment.to.first);
         return shipment.is_done();

@@ -35,6 +35,20 @@ class Delivery {
     void resumed(SessionId session);  // what was on its way may be lost: it goes again
     void forget(ViewId view);         // closed: nobody watches it any more
 
+    // The end of a view that is kept for whoever comes for it.
+    struct Ended {
+        ViewId view;
+        wire::FrameHeader header;
+        session::ViewSummary summary;
+        std::shared_ptr<const std::vector<std::byte>> picture;  // never null
+    };
+    void keep(ViewId view, const Wish& wish) { watch(Keeper, view.value, view, wish); }
+    void release(ViewId view) { leave(Keeper, view.value); }
+    bool is_kept(ViewId view) const { return watched(Keeper, view.value).has_value(); }
+    std::vector<Ended> take_ended() { return std::exchange(ended_, {}); }
+    // Sends a picture that was kept, as the end of the session's view of that number.
+    void send_kept(const SessionRecord& session, Ended kept);
+
     std::optional<ViewId> watched(SessionId session, std::uint64_t number) const;
     std::uint64_t watchers(ViewId view) const;
     std::vector<std::uint64_t> numbers(SessionId session) const;
@@ -52,6 +66,7 @@ class Delivery {
     void send();
 
   private:
+    static constexpr SessionId Keeper{0};  // of no client
     using Key = std::pair<SessionId, std::uint64_t>;
     struct Watcher {
         ViewId view;
@@ -86,8 +101,7 @@ class Delivery {
     Making frame_of(const ViewState& view, const Wish& wish, std::uint64_t frame) const;
     void begin(const ViewState& view, const Wish& wish, std::vector<Key> receivers);
     void ship(std::uint64_t frame, Making&& making, const Reconstructed& made);
-    void announce_end(const ViewState& view, const SessionRecord& session, const wire::FrameHeader& header,
-                      const Reconstructed& made);
+    session::ViewSummary end_of(const ViewState& view, const Reconstructed& made) const;
     void send(Shipment& shipment, const SessionRecord& session);
 
     const ViewTable& views_;
@@ -97,6 +111,7 @@ class Delivery {
     std::map<Key, Watcher> watchers_;
     std::map<std::uint64_t, Making> making_;  // by frame
     std::list<Shipment> shipments_;
+    std::vector<Ended> ended_;
     struct Made {
         TimePoint started{};
         Duration cost{};  // of the latest

@@ -350,6 +350,10 @@ void ViewRunner::send_progress(ViewState& view, TimePoint now) {
     delivery_.report_progress(view, passes_.dispatcher.prospects(view.request.view, crew(view)).ready);
 }
 
+session::ViewProgress ViewRunner::progress(const ViewState& view) const {
+    return progress_of(view, passes_.dispatcher.prospects(view.request.view, crew(view)).ready);
+}
+
 TimePoint ViewRunner::next_event(const ViewState& view, TimePoint now) const {
     if (view.is_complete() && view.run.phase != Phase::Filtering)
         return now + Duration(std::chrono::seconds(1));

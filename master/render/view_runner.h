@@ -58,6 +58,7 @@ class ViewRunner {
     // Once, as long as it lasts.
     void tell_of_waiting(ViewState& view, TimePoint now);
     void show_progress(ViewState& view, TimePoint now);
+    session::ViewProgress progress(const ViewState& view) const;
     TimePoint next_event(const ViewState& view, TimePoint now) const;
     void is_first_picture(Version version, TimePoint now) { first_pictures_.push_back({version, now}); }
     std::vector<FirstPicture> take_first_pictures() { return std::exchange(first_pictures_, {}); }

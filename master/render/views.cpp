@@ -97,6 +97,7 @@ void Views::change(ViewState& view, session::ViewRequest&& request, Version vers
                             request.frames == view.request.frames && request.policy == view.request.policy &&
                             request.reproducible == view.request.reproducible &&
                             request.tile == view.request.tile;
+    view.request.detached = request.detached;
     view.request.picture = request.picture;
     view.request.film = request.film;
     view.request.min_nodes = request.min_nodes;
@@ -133,6 +134,29 @@ void Views::end(SessionId session, const wire::EndView& request, TimePoint now) 
     ViewState* view = watched ? table_.find(*watched) : nullptr;
     if (view != nullptr && view->owner.session == session && !view->in_group())
         runner_.decide(*view, session::Outcome::Stopped, "stopped by the client", now);
+}
+
+std::string Views::job_problem(const session::ViewRequest& request) {
+    if (request.name.empty()) return "a job needs a name";
+    if (request.frames != session::Frames::Last) return "a job has one frame, its last";
+    if (request.film) return "the film of a job is not kept: ask for its picture alone";
+    if (request.picture == session::PictureEncoding::None) return "a job without a picture: ask for one";
+    return {};
+}
+
+void Views::keep(const std::string& name) {
+    const ViewState& view = *table_.named(name);
+    delivery_.keep(view.id, {view.request.picture, view.request.film, view.request.frames});
+}
+
+void Views::release(ViewId view) {
+    delivery_.release(view);
+    if (delivery_.watchers(view) == 0) remove(view);
+}
+
+bool Views::has_jobs() const {
+    return std::any_of(table_.all().begin(), table_.all().end(),
+                       [this](const auto& entry) { return is_job(entry.first); });
 }
 
 // The view of that name; without a name the one that there is, of those that somebody waits for first.
@@ -262,6 +286,7 @@ void Views::restore(std::vector<wire::SavedView>&& saved, Version version, Hash1
         view.version = version;
         view.waits_since = now;
         view.orphaned = now;
+        if (view.request.detached) keep(view.name);
         // Film of another scene is of no use, and the time of one that has a clock began with it.
         if (old.blocks.empty() || old.scene_hash_of_film != scene_hash || view.request.stop.has_clock())
             continue;

@@ -40,6 +40,20 @@ class Views {
     // Another filter for the view of that name; "" = the one there is. Says what it means for the frame; throws
     // Error{Refused} with the reason.
     std::string set_filter(const std::string& name, const std::string& filter, TimePoint now);
+    // ---- jobs: views that go on without their client ----
+    // What is wrong with it as a job; "" = nothing.
+    static std::string job_problem(const session::ViewRequest& request);
+    void keep(const std::string& name);  // its end is for take_ended_jobs()
+    std::vector<Delivery::Ended> take_ended_jobs() { return delivery_.take_ended(); }
+    // It has ended, or is not wanted any more; whoever else watches it goes on.
+    void release(ViewId view);
+    bool is_job(ViewId view) const { return delivery_.is_kept(view); }
+    bool has_jobs() const;
+    session::ViewProgress progress(const ViewState& view) const { return runner_.progress(view); }
+    void send_kept(const SessionRecord& session, Delivery::Ended kept) {
+        delivery_.send_kept(session, std::move(kept));
+    }
+
     void taken(SessionId session, const wire::FrameTaken& taken) { delivery_.taken(session, taken); }
     void pick(SessionId session, const wire::Pick& request, Version version);
     // Its views stay for a while when it only fell silent.

@@ -80,6 +80,14 @@ Expected<void> Journal::opened(const wire::RecordedTitle& scene) {
     return append(scene);
 }
 
+Expected<void> Journal::job_started(wire::SavedView view) {
+    return append(wire::RecordedJob{std::move(view)});
+}
+
+Expected<void> Journal::job_ended(const session::JobName& job) {
+    return append(wire::RecordedJobEnd{job});
+}
+
 std::uint64_t Journal::start_segment() {
     JournalFile next(journal_path(folder_, number_ + 1), number_ + 1);
     earlier_bytes_ += segment_.byte_size();

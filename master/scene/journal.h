@@ -24,6 +24,8 @@ class Journal final : public EditRecorder {
     Expected<void> edited(const RecordedEdit& edit) override;
     void cleared() override;
     Expected<void> opened(const wire::RecordedTitle& scene);
+    Expected<void> job_started(wire::SavedView view);
+    Expected<void> job_ended(const session::JobName& job);
 
     // From now on into a new segment, whose number it returns: the checkpoint of that number holds all that
     // was recorded before. Throws Error{Io}; then it goes on as before.

@@ -114,11 +114,22 @@ class Recoverer {
         if (const auto* title = std::get_if<wire::RecordedTitle>(&record)) recovery_.scene = *title;
         if (const auto* edit = std::get_if<RecordedEdit>(&record))
             recovery_.edits += edit->editor != 0 ? 1 : 0;
+        if (const auto* job = std::get_if<wire::RecordedJob>(&record)) {
+            forget_job({job->view.owner_user, job->view.name});
+            recovery_.views.push_back(job->view);
+        }
+        if (const auto* end = std::get_if<wire::RecordedJobEnd>(&record)) forget_job(end->job);
         if (std::holds_alternative<wire::RecordedClose>(record)) {
             recovery_.scene = {};
             recovery_.views.clear();
         }
         return {};
+    }
+
+    void forget_job(const session::JobName& job) {
+        std::erase_if(recovery_.views, [&](const wire::SavedView& view) {
+            return view.request.detached && view.owner_user == job.user && view.name == job.name;
+        });
     }
 
     void cut(const fs::path& path, const JournalScan& scan) {

@@ -25,6 +25,9 @@ class SessionJournal {
     // The scene is open: edits are recorded. Throws Error{Io} when they cannot be.
     void opened(const wire::RecordedTitle& scene);
     void closed();
+    // A job of the open scene. Throws Error{Io} when it cannot be recorded.
+    void job_started(wire::SavedView view);
+    void job_ended(const session::JobName& job);
 
     void tick();
     // It is time for a checkpoint, and there is something new: edits, or film (`film_progress` differs).

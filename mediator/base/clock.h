@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 
 namespace tessera {
 
@@ -21,6 +22,11 @@ class SteadyClock final : public Clock {
 
 inline double seconds(Duration duration) {
     return std::chrono::duration<double>(duration).count();
+}
+
+// Of the calendar, for people: ns since 1970.
+inline std::int64_t since_1970() {
+    return std::chrono::duration_cast<Duration>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
 }  // namespace tessera

@@ -26,6 +26,7 @@ struct LoopbackHub::State {
     };
     struct Client {
         Role role = Role::None;
+        std::string user;
         Inbox inbox;
     };
 
@@ -125,8 +126,10 @@ class LoopbackClient final : public Channel {
         if (peer != ServerPeer || bytes.size() > limit(link)) return SendResult::Closed;
         const std::scoped_lock lock(state_->mutex);
         if (client_.inbox.closed) return SendResult::Closed;
-        return state_->put(state_->server,
-                           {.link = link, .peer = peer_of(number_, link), .role = client_.role}, bytes);
+        return state_->put(
+            state_->server,
+            {.link = link, .peer = peer_of(number_, link), .role = client_.role, .user = client_.user},
+            bytes);
     }
     Received receive(TimePoint deadline) override { return state_->take(client_.inbox, deadline); }
     void wake() override { state_->wake(client_.inbox); }
@@ -148,11 +151,12 @@ std::unique_ptr<Channel> LoopbackHub::server() {
     return std::make_unique<LoopbackServer>(state_);
 }
 
-std::unique_ptr<Channel> LoopbackHub::client(Role role) {
+std::unique_ptr<Channel> LoopbackHub::client(Role role, const std::string& user) {
     const std::scoped_lock lock(state_->mutex);
     const std::uint64_t number = state_->next_client++;
     State::Client& client = state_->clients[number];
     client.role = role;
+    client.user = user;
     return std::make_unique<LoopbackClient>(state_, number, client);
 }
 

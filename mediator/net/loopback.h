@@ -17,8 +17,9 @@ class LoopbackHub {
     explicit LoopbackHub(Limits limits);
     ~LoopbackHub();
 
-    std::unique_ptr<Channel> server();           // once
-    std::unique_ptr<Channel> client(Role role);  // any number
+    std::unique_ptr<Channel> server();  // once
+    std::unique_ptr<Channel> client(Role role,
+                                    const std::string& user = {});  // any number; `user`: of the key
 
     struct State;
 

@@ -87,15 +87,17 @@ struct ViewRequest {
     Duration wait_limit{0};       // give up after so long without nodes; 0 = never
     Frames frames = Frames::All;
     PictureEncoding picture = PictureEncoding::None;
-    bool film = false;  // the statistics, too
+    bool film = false;      // the statistics, too
+    bool detached = false;  // a job: it goes on, and the master keeps its picture, when the client leaves
     static constexpr auto describe(auto row) {
         using Self = ViewRequest;
-        return std::tuple(
-            row(1, "name", &Self::name), row(2, "view", &Self::view), row(3, "stop", &Self::stop),
-            row(4, "policy", &Self::policy), row(5, "reproducible", &Self::reproducible),
-            row(6, "tile", &Self::tile), row(7, "min_nodes", &Self::min_nodes),
-            row(8, "wait_limit", &Self::wait_limit), row(9, "frames", &Self::frames),
-            row(10, "picture", &Self::picture, UpTo{PictureEncoding::Exr}), row(11, "film", &Self::film));
+        return std::tuple(row(1, "name", &Self::name), row(2, "view", &Self::view),
+                          row(3, "stop", &Self::stop), row(4, "policy", &Self::policy),
+                          row(5, "reproducible", &Self::reproducible), row(6, "tile", &Self::tile),
+                          row(7, "min_nodes", &Self::min_nodes), row(8, "wait_limit", &Self::wait_limit),
+                          row(9, "frames", &Self::frames),
+                          row(10, "picture", &Self::picture, UpTo{PictureEncoding::Exr}),
+                          row(11, "film", &Self::film), row(12, "detached", &Self::detached));
     }
 };
 

@@ -70,6 +70,14 @@ Expected<JournalRecord> decode_journal_record(std::span<const std::byte> bytes) 
     return from_bytes<JournalRecord>(bytes);
 }
 
+std::vector<std::byte> encode(const KeptJob& job) {
+    return to_bytes(job);
+}
+
+Expected<KeptJob> decode_kept_job(std::span<const std::byte> bytes) {
+    return from_bytes<KeptJob>(bytes);
+}
+
 std::vector<std::byte> encode(const CheckpointState& state) {
     return to_bytes(state);
 }

@@ -14,6 +14,9 @@ namespace tessera::wire {
 std::vector<std::byte> encode(const JournalRecord& record);
 Expected<JournalRecord> decode_journal_record(std::span<const std::byte> bytes);
 
+std::vector<std::byte> encode(const KeptJob& job);
+Expected<KeptJob> decode_kept_job(std::span<const std::byte> bytes);
+
 // Everything but the blocks of film: those are encoded one by one, `views[i]` has the next
 // `block_counts[i]`.
 std::vector<std::byte> encode(const CheckpointState& state);

@@ -12,6 +12,7 @@
 #include "mediator/frame/film_tile.h"
 #include "mediator/frame/render_revision.h"
 #include "mediator/scene/change_list.h"
+#include "mediator/session/jobs.h"
 #include "mediator/session/view_request.h"
 
 // What a session folder holds, as plain values: see master/journal.h and master/checkpoint.h for what they
@@ -89,12 +90,6 @@ struct RecordedTitle {
 struct RecordedClose {  // back to the empty scene, nobody edits
     static constexpr auto describe(auto) { return std::tuple(); }
 };
-
-using JournalRecord = std::variant<RecordedEditor, RecordedEdit, RecordedTitle, RecordedClose>;
-constexpr auto alternatives(const JournalRecord*) {
-    return std::tuple(Alternative<RecordedEditor>{1, "joined"}, Alternative<RecordedEdit>{2, "edit"},
-                      Alternative<RecordedTitle>{3, "title"}, Alternative<RecordedClose>{4, "closed"});
-}
 
 struct RecordedWriter {
     std::uint64_t transaction = 0;
@@ -200,6 +195,26 @@ struct SavedView {
     }
 };
 
+// A job was requested: its view, without film.
+struct RecordedJob {
+    SavedView view;
+    static constexpr auto describe(auto row) { return std::tuple(row(1, "view", &RecordedJob::view)); }
+};
+// It has ended, or was cancelled.
+struct RecordedJobEnd {
+    session::JobName job;
+    static constexpr auto describe(auto row) { return std::tuple(row(1, "job", &RecordedJobEnd::job)); }
+};
+
+using JournalRecord =
+    std::variant<RecordedEditor, RecordedEdit, RecordedTitle, RecordedClose, RecordedJob, RecordedJobEnd>;
+constexpr auto alternatives(const JournalRecord*) {
+    return std::tuple(Alternative<RecordedEditor>{1, "joined"}, Alternative<RecordedEdit>{2, "edit"},
+                      Alternative<RecordedTitle>{3, "title"}, Alternative<RecordedClose>{4, "closed"},
+                      Alternative<RecordedJob>{5, "job_started"},
+                      Alternative<RecordedJobEnd>{6, "job_ended"});
+}
+
 struct CheckpointState {
     std::uint64_t journal = 0;  // the first segment that is not in it
     std::string title;
@@ -223,6 +238,16 @@ struct CheckpointState {
                           row(9, "views", &CheckpointState::views, Limit{MaxRecorded}),
                           row(10, "render_revision", &CheckpointState::render_revision),
                           row(11, "owner", &CheckpointState::owner));
+    }
+};
+
+// A job that has ended, in a file of its own; its picture follows.
+struct KeptJob {
+    session::JobStatus status;
+    std::uint32_t width = 0, height = 0, components = 0;  // of the picture
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "status", &KeptJob::status), row(2, "width", &KeptJob::width),
+                          row(3, "height", &KeptJob::height), row(4, "components", &KeptJob::components));
     }
 };
 

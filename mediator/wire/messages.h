@@ -2,6 +2,7 @@
 
 #include "mediator/wire/bulk_messages.h"
 #include "mediator/wire/display_messages.h"
+#include "mediator/wire/job_messages.h"
 #include "mediator/wire/message_table.h"
 #include "mediator/wire/peer_messages.h"
 #include "mediator/wire/session_messages.h"
@@ -47,7 +48,9 @@ using Control = MessageTable<
     MessageRow<61, "present_frame", PresentFrame, Master>,
     MessageRow<62, "request_view", RequestView, Clients>, MessageRow<63, "end_view", EndView, Clients>,
     MessageRow<64, "view_progress", ViewProgress, Master>, MessageRow<65, "view_done", ViewDone, Master>,
-    MessageRow<66, "set_view_filter", SetViewFilter, Editors>>;
+    MessageRow<66, "set_view_filter", SetViewFilter, Editors>, MessageRow<67, "read_jobs", ReadJobs, Clients>,
+    MessageRow<68, "jobs", Jobs, Master>, MessageRow<69, "fetch_job", FetchJob, Clients>,
+    MessageRow<70, "cancel_job", CancelJob, Editors>>;
 
 // The number is the second word of a bulk message. Add retired ones to the check below.
 using Bulk = MessageTable<

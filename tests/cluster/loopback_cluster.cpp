@@ -58,9 +58,9 @@ void LoopbackCluster::start_node(const std::string& kind, std::unique_ptr<backen
     });
 }
 
-std::unique_ptr<client::Session> LoopbackCluster::session(std::shared_ptr<scene::BlobStore> blobs) {
-    return client::make_session(hub_.client(net::Role::Editor), nullptr, std::move(blobs), clock_,
-                                {.name = "test"});
+std::unique_ptr<client::Session> LoopbackCluster::session(std::shared_ptr<scene::BlobStore> blobs,
+                                                          net::Role role, const std::string& user) {
+    return client::make_session(hub_.client(role, user), nullptr, std::move(blobs), clock_, {.name = "test"});
 }
 
 std::unique_ptr<client::Session> LoopbackCluster::batch(const std::shared_ptr<scene::BlobStore>& blobs) {

@@ -33,7 +33,9 @@ class LoopbackCluster {
     using MakeBackend =
         std::function<std::unique_ptr<backend::Backend>(const backend::BackendSettings& settings)>;
     void add_node(const MakeBackend& make);
-    std::unique_ptr<client::Session> session(std::shared_ptr<scene::BlobStore> blobs);
+    std::unique_ptr<client::Session> session(std::shared_ptr<scene::BlobStore> blobs,
+                                             net::Role role = net::Role::Editor,
+                                             const std::string& user = "editor");
     // With the scene of scene_entries() open for it alone.
     std::unique_ptr<client::Session> batch(const std::shared_ptr<scene::BlobStore>& blobs);
     // A member of the shared scene "test", which it joins.

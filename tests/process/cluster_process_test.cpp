@@ -203,6 +203,43 @@ TEST(RealProcesses, AMasterKilledInTheMiddleOfABatchChangesNothing) {
         << "its scene goes with it";
 }
 
+TEST(RealProcesses, AJobOutlivesItsClientAndItsMaster) {
+    RealCluster cluster({"--heartbeat", "0.1", "--checkpoint", "0.3"}, RealCluster::Session::Kept);
+    const ChildProcess a = cluster.start_node("a", SlowNode);
+    const auto tessera = [&](const std::string& label, std::vector<std::string> words) {
+        words.insert(words.end(), {"--master", cluster.endpoint(), "--keys", cluster.keys()});
+        ChildProcess process(cluster.folder().path(), label, "tessera", words);
+        EXPECT_EQ(process.wait(std::chrono::minutes(3)).value_or(-1), 0) << process.err();
+        return process.out();
+    };
+    const std::vector<std::string> submit{
+        "render", scene_file("still.glb"),       "--name", "night", "--detach",
+        "-o",     cluster.folder() / "night.exr"};
+    tessera("submit", submit + SlowFrame);
+    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_hand(status, "a") > 0; }));
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    cluster.kill_master();
+    cluster.start_master();
+    int asked = 0;
+    const auto job = [&] {
+        return json::parse(tessera("jobs" + std::to_string(asked++), {"jobs", "--json"})).at(0);
+    };
+    while (!job()["ended"].get<bool>() && asked < 600)
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    EXPECT_EQ(job()["outcome"], "complete");
+    cluster.kill_master();  // what is kept is on the disk
+    cluster.start_master();
+    tessera("fetch", {"fetch", "night", "-o", cluster.folder() / "night.exr", "--remove"});
+    const json expected = cluster.render("expected", scene_file("still.glb"), SlowFrame);
+    EXPECT_EQ(expected["spp"], 32);
+    ChildProcess compare(
+        cluster.folder().path(), "compare", "tessera",
+        {"compare", cluster.folder() / "night.exr", cluster.folder() / "expected.exr", "--json"});
+    (void)compare.wait(std::chrono::minutes(1));
+    EXPECT_LT(json::parse(compare.out())["relmse"].get<double>(), 1e-6) << compare.out() << compare.err();
+    EXPECT_TRUE(json::parse(tessera("none", {"jobs", "--json"})).empty());
+}
+
 TEST(RealProcesses, AnUnknownKeyIsRefusedEverywhere) {
     RealCluster cluster;
     ChildProcess foreign_keys(cluster.folder().path(), "foreign", "tessera",

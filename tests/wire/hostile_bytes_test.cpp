@@ -160,7 +160,8 @@ std::vector<ControlMessage> view_and_display_messages() {
                                       .tile = 64,
                                       .min_nodes = 2,
                                       .frames = session::Frames::Last,
-                                      .picture = session::PictureEncoding::Png};
+                                      .picture = session::PictureEncoding::Png,
+                                      .detached = true};
     return {FrameTaken{1, 12},
             Pick{10, 1, 3, 4},
             Picked{10, {{5, 1}, true, ObjectId{7}, {1, 2, 3}, {0, 1, 0}, 4.5}, "none"},
@@ -178,7 +179,17 @@ std::vector<ControlMessage> view_and_display_messages() {
             EndView{1, true},
             ViewProgress{1, {session::Phase::Delivering, 1, 2, 3, 4, std::chrono::milliseconds(5)}},
             ViewDone{1, 7, some_summary()},
-            SetViewFilter{16, "main", "fdf:radius=3"}};
+            SetViewFilter{16, "main", "fdf:radius=3"},
+            ReadJobs{17},
+            Jobs{17,
+                 {{.job = {"ann", "night"},
+                   .scene = "room",
+                   .has_ended = true,
+                   .progress = {.samples = 5},
+                   .summary = some_summary(),
+                   .ended_at = -6}}},
+            FetchJob{18, 2, {"ann", "night"}},
+            CancelJob{19, {"", "night"}}};
 }
 
 std::vector<ControlMessage> control_messages() {

@@ -38,6 +38,7 @@ TEST(ProtoContract, Displays) {
 // What a checkpoint says has to agree with itself, so any value will not do.
 TEST(ProtoContract, Checkpoints) {
     expect_same_message<CheckpointState>(*proto::Checkpoint::descriptor());
+    expect_same_message<KeptJob>(*proto::KeptJob::descriptor());
 }
 
 // The numbers of oneofs that are free are free for ever.

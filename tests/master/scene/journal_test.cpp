@@ -273,6 +273,33 @@ TEST_F(JournalTest, AFullDiskRefusesTheEditAndNothingElse) {
     EXPECT_EQ(start(2)->authority.scene().state_hash(), after);
 }
 
+TEST_F(JournalTest, JobsBeginAndEndInTheJournalToo) {
+    auto master = start(1);
+    join_all(master->authority);
+    ASSERT_TRUE(master->journal->opened({"room", wire::RecordedOwner{"ann", 7}}));
+    const auto job = [](const std::string& user, const std::string& name, std::uint64_t spp) {
+        wire::SavedView view{.name = name, .owner_user = user, .owner_key = 7};
+        view.request.name = name;
+        view.request.stop.spp = spp;
+        view.request.detached = true;
+        return view;
+    };
+    ASSERT_TRUE(master->journal->job_started(job("ann", "night", 5)));
+    ASSERT_TRUE(master->journal->job_started(job("bob", "night", 6)));
+    ASSERT_TRUE(master->journal->job_started(job("ann", "day", 7)));
+    ASSERT_TRUE(master->journal->job_started(job("ann", "night", 8)));  // said again
+    ASSERT_TRUE(master->journal->job_ended({"ann", "day"}));
+    master.reset();
+    auto again = start(2);
+    ASSERT_TRUE(again->recovery.scene.owner);
+    EXPECT_EQ(again->recovery.scene.owner->user, "ann");
+    EXPECT_EQ(again->recovery.scene.owner->key, 7u);
+    ASSERT_EQ(again->recovery.views.size(), 2u);
+    EXPECT_EQ(again->recovery.views[0].owner_user, "bob");
+    EXPECT_EQ(again->recovery.views[1].request.stop.spp, 8u);
+    EXPECT_TRUE(again->recovery.views[1].request.detached);
+}
+
 TEST_F(JournalTest, AClosedSceneStaysClosedAndARenderOriginStaysPut) {
     auto master = start(1);
     join_all(master->authority);

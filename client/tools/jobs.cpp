@@ -1,0 +1,179 @@
+#include "client/tools/jobs.h"
+
+#include <ctime>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "client/session.h"
+#include "client/tools/cluster_options.h"
+#include "client/tools/formatted.h"
+#include "client/tools/pictures.h"
+#include "mediator/picture/atomic_file.h"
+
+namespace tessera::tools {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr const char* JobsName = "jobs";
+constexpr const char* FetchName = "fetch";
+
+struct JobsOptions {
+    client::Address address{.endpoint = "tcp://127.0.0.1:7420"};
+    std::string cancel, of;
+    bool json = false;
+};
+
+struct FetchOptions {
+    client::Address address{.endpoint = "tcp://127.0.0.1:7420"};
+    std::string name, of, output;
+    bool remove = false;
+};
+
+double done_share(const session::JobStatus& job) {
+    if (job.has_ended) return 1.0;
+    return double(job.progress.samples) / double(std::max<std::uint64_t>(job.progress.samples_expected, 1));
+}
+
+Json job_value(const session::JobStatus& job) {
+    Json value{{"name", job.job.name},
+               {"user", job.job.user},
+               {"scene", job.scene},
+               {"ended", job.has_ended},
+               {"done", done_share(job)},
+               {"samples", job.progress.samples},
+               {"phase", job.has_ended ? Json() : Json(enumerator_name(job.progress.phase))}};
+    if (!job.has_ended) return value;
+    const session::ViewSummary& summary = job.summary;
+    value.update({{"outcome", enumerator_name(summary.outcome)},
+                  {"message", summary.message},
+                  {"samples", summary.samples},
+                  {"seconds_render", summary.seconds_render},
+                  {"picture", enumerator_name(summary.picture.encoding)},
+                  {"picture_bytes", summary.picture.byte_size},
+                  {"ended_at", double(job.ended_at) * 1e-9}});
+    return value;
+}
+
+std::string state_of(const session::JobStatus& job) {
+    if (!job.has_ended)
+        return formatted("%3.0f %%  %s", 100.0 * done_share(job),
+                         std::string(enumerator_name(job.progress.phase)).c_str());
+    const auto seconds = static_cast<std::time_t>(job.ended_at / 1'000'000'000);
+    std::tm local{};
+    ::localtime_r(&seconds, &local);
+    char when[32];
+    std::strftime(when, sizeof when, "%Y-%m-%d %H:%M", &local);
+    std::string text = std::string(enumerator_name(job.summary.outcome)) + " at " + when;
+    if (!job.summary.message.empty()) text += ": " + job.summary.message;
+    return text;
+}
+
+int show_jobs(const JobsOptions& options) {
+    const SteadyClock clock;
+    const auto session = client::connect(options.address, std::make_shared<scene::BlobStore>(), clock,
+                                         session_settings("tessera jobs"));
+    if (!options.cancel.empty()) {
+        session->cancel_job({.user = options.of, .name = options.cancel});
+        std::cout << "job '" << options.cancel << "' is gone" << std::endl;
+        return 0;
+    }
+    const auto jobs = session->jobs();
+    if (options.json) {
+        Json all = Json::array();
+        for (const session::JobStatus& job : jobs) all.push_back(job_value(job));
+        std::cout << all.dump(2) << std::endl;
+        return 0;
+    }
+    if (jobs.empty()) std::cout << "no jobs: submit one with tessera render ... --name NAME --detach\n";
+    for (const session::JobStatus& job : jobs) {
+        std::cout << formatted("%-20s %-12s %-20s ", job.job.name.c_str(), job.job.user.c_str(),
+                               job.scene.c_str())
+                  << state_of(job) << "\n";
+    }
+    return 0;
+}
+
+const char* extension(session::PictureEncoding encoding) {
+    switch (encoding) {
+        case session::PictureEncoding::Jpeg:
+            return "jpg";
+        case session::PictureEncoding::Exr:
+            return "exr";
+        default:
+            return "png";
+    }
+}
+
+int fetch(const FetchOptions& options) {
+    const SteadyClock clock;
+    const auto session = client::connect(options.address, std::make_shared<scene::BlobStore>(), clock,
+                                         session_settings("tessera fetch"));
+    const session::JobName job{.user = options.of, .name = options.name};
+    const client::ViewResult result = session->fetch_job(job);
+    const session::ViewSummary& summary = result.summary;
+    if (!result.has_picture()) {
+        return complain(
+            FetchName, cli::ExitUnavailable,
+            "job '" + options.name + "' has no picture: " +
+                (summary.message.empty() ? std::string(enumerator_name(summary.outcome)) : summary.message));
+    }
+    const std::string kind = extension(result.frame.encoding);
+    const std::string output = options.output.empty() ? options.name + "." + kind : options.output;
+    if (picture_format(output) != picture_format("x." + kind)) {
+        return complain(
+            FetchName, cli::ExitUsage,
+            "-o: the picture of job '" + options.name + "' is a file of kind ." + kind + ": end the name so");
+    }
+    picture::write_atomically(output,
+                              std::string_view(reinterpret_cast<const char*>(result.frame.picture.data()),
+                                               result.frame.picture.size()));
+    std::cout << formatted("%ux%u pixels, %s, %.2f s rendering\n", result.frame.width, result.frame.height,
+                           std::string(enumerator_name(summary.outcome)).c_str(), summary.seconds_render)
+              << "wrote " << output << std::endl;
+    if (options.remove) session->cancel_job(job);
+    return 0;
+}
+
+template <class Options, class Call>
+Command command(const char* name, const std::shared_ptr<Options>& options, const Call& call) {
+    return {name, [name, options, call](std::string_view) {
+                try {
+                    return call(*options);
+                } catch (const Error& error) {
+                    return complain(name, exit_code(error.code()), error.what());
+                }
+            }};
+}
+
+}  // namespace
+
+Command jobs_command(cli::CommandLine& program) {
+    const auto options = std::make_shared<JobsOptions>();
+    cli::CommandLine& line = program.command(
+        JobsName, "List the jobs of a cluster that this user has submitted; an operator sees all.");
+    line.option("--cancel", "end the job of this name, or forget its picture", options->cancel);
+    line.option("--of", "with --cancel, for operators: whose job it is", options->of);
+    line.flag("--json", "print one JSON array", options->json);
+    add_cluster_options(line, options->address);
+    line.examples({"tessera jobs --master tcp://render-1:7420 --keys ~/.tessera",
+                   "tessera jobs --cancel night --master tcp://127.0.0.1:7420"});
+    return command(JobsName, options, show_jobs);
+}
+
+Command fetch_command(cli::CommandLine& program) {
+    const auto options = std::make_shared<FetchOptions>();
+    cli::CommandLine& line =
+        program.command(FetchName, "Fetch the picture of a job that was submitted with render --detach.");
+    line.positional("NAME", "of the job; tessera jobs lists them", options->name);
+    line.option("-o,--output", "file to write (NAME.png, as it was asked for)", options->output);
+    line.option("--of", "for operators: whose job it is", options->of);
+    line.flag("--remove", "the master forgets it then", options->remove);
+    add_cluster_options(line, options->address);
+    line.examples({"tessera fetch night -o night.png --master tcp://render-1:7420 --keys ~/.tessera",
+                   "tessera fetch night --remove --master tcp://127.0.0.1:7420"});
+    return command(FetchName, options, fetch);
+}
+
+}  // namespace tessera::tools

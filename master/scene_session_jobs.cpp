@@ -1,0 +1,153 @@
+// The jobs of a scene: views that go on when their client leaves, and what is kept of them.
+#include <algorithm>
+
+#include "master/scene_session.h"
+#include "mediator/wire/envelope.h"
+
+namespace tessera::master {
+
+namespace {
+
+bool may_see(const SessionRecord& session, const std::string& user) {
+    return session.user == user || session.role == net::Role::Operator;
+}
+
+session::JobName named(const SessionRecord& session, session::JobName job) {
+    if (job.user.empty()) job.user = session.user;
+    return job;
+}
+
+wire::SavedView without_film(const ViewState& view) {
+    return {.name = view.name,
+            .owner_user = view.owner.user,
+            .owner_key = view.owner.key,
+            .request = view.request,
+            .scene_hash_of_film = {},
+            .blocks = {}};
+}
+
+std::string no_such(const session::JobName& job) {
+    return "there is no job named '" + job.name + "': tessera jobs lists them";
+}
+
+}  // namespace
+
+std::string SceneSession::submit_job(const SessionRecord& session, const session::ViewRequest& wanted) const {
+    if (session.role == net::Role::Viewer) return "a viewer cannot submit jobs: use an editor's key";
+    if (services_.jobs.find({session.user, wanted.name}) != nullptr) {
+        return "a job named '" + wanted.name +
+               "' has ended and is kept: fetch it with --remove, cancel it, or choose another name";
+    }
+    return Views::job_problem(wanted);
+}
+
+void SceneSession::job_submitted(const std::string& name) {
+    views_.keep(name);
+    if (!journal_) return;
+    for (const auto& [id, view] : views_.table().all()) {
+        if (view.name == name) journal_->job_started(without_film(view));
+    }
+}
+
+// Those that were submitted while the views of a checkpoint were being copied: their records lie before it.
+void SceneSession::add_new_jobs(std::vector<wire::SavedView>& saved) const {
+    for (const auto& [id, view] : views_.table().all()) {
+        const bool is_there = std::any_of(saved.begin(), saved.end(), [&](const wire::SavedView& other) {
+            return other.name == view.name;
+        });
+        if (views_.is_job(id) && !is_there) saved.push_back(without_film(view));
+    }
+}
+
+void SceneSession::keep_ended_jobs() {
+    for (Delivery::Ended& ended : views_.take_ended_jobs()) {
+        const ViewState* view = views_.table().find(ended.view);
+        if (view == nullptr) continue;
+        const session::JobName job{view->owner.user, view->name};
+        services_.events({wire::Severity::Info, "job '" + job.name + "' of " + job.user + " has ended: " +
+                                                    std::string(enumerator_name(ended.summary.outcome))});
+        services_.jobs.add({.status = {.job = job,
+                                       .scene = title(),
+                                       .has_ended = true,
+                                       .progress = {},
+                                       .summary = std::move(ended.summary),
+                                       .ended_at = since_1970()},
+                            .width = ended.header.width,
+                            .height = ended.header.height,
+                            .components = ended.header.components},
+                           std::move(ended.picture));
+        views_.release(ended.view);
+    }
+    // Only now may a master that is started anew forget that it was to render them.
+    for (const session::JobName& job : services_.jobs.take_written()) {
+        if (journal_) journal_->job_ended(job);
+    }
+}
+
+const ViewState* SceneSession::job_view(const session::JobName& job) const {
+    for (const auto& [id, view] : views_.table().all()) {
+        if (views_.is_job(id) && view.owner.user == job.user && view.name == job.name) return &view;
+    }
+    return nullptr;
+}
+
+void SceneSession::asked(SessionRecord& session, const wire::ReadJobs& request) {
+    wire::Jobs answer{.request = request.request, .jobs = {}};
+    for (const KeptJobs::Entry* kept : services_.jobs.all()) {
+        if (may_see(session, kept->job.status.job.user)) answer.jobs.push_back(kept->job.status);
+    }
+    for (const auto& [id, view] : views_.table().all()) {
+        if (!views_.is_job(id) || !may_see(session, view.owner.user)) continue;
+        answer.jobs.push_back({.job = {view.owner.user, view.name},
+                               .scene = title(),
+                               .progress = views_.progress(view),
+                               .summary = {}});
+    }
+    net::Bytes message = wire::encode(wire::ControlMessage(answer));
+    while (!wire::fits_control(message)) {  // the older ones go
+        answer.jobs.erase(answer.jobs.begin(),
+                          answer.jobs.begin() + static_cast<std::ptrdiff_t>((answer.jobs.size() + 1) / 2));
+        message = wire::encode(wire::ControlMessage(answer));
+    }
+    services_.outbox.control(session.control, std::move(message));
+}
+
+void SceneSession::asked(SessionRecord& session, const wire::FetchJob& request) {
+    const session::JobName job = named(session, request.job);
+    const KeptJobs::Entry* kept = may_see(session, job.user) ? services_.jobs.find(job) : nullptr;
+    if (kept == nullptr) {
+        const bool is_rendered = may_see(session, job.user) && job_view(job) != nullptr;
+        return done(
+            session, request.request,
+            is_rendered ? "job '" + job.name + "' is still being rendered: try again later" : no_such(job));
+    }
+    done(session, request.request, {});
+    const session::ViewSummary& summary = kept->job.status.summary;
+    views_.send_kept(session, {.view = {},
+                               .header = {.view = request.number,
+                                          .version = summary.version,
+                                          .width = kept->job.width,
+                                          .height = kept->job.height,
+                                          .components = kept->job.components,
+                                          .encoding = summary.picture.encoding,
+                                          .picture_bytes = kept->picture->size(),
+                                          .film_window = {},
+                                          .samples_least = summary.samples_least,
+                                          .samples_most = summary.samples_most,
+                                          .complete = true},
+                               .summary = summary,
+                               .picture = kept->picture});
+}
+
+void SceneSession::asked(SessionRecord& session, const wire::CancelJob& request) {
+    const session::JobName job = named(session, request.job);
+    if (!may_see(session, job.user)) return done(session, request.request, no_such(job));
+    const bool was_kept = services_.jobs.remove(job);
+    const ViewState* view = job_view(job);
+    if (view == nullptr) return done(session, request.request, was_kept ? "" : no_such(job));
+    if (journal_) journal_->job_ended(job);
+    views_.release(view->id);
+    done(session, request.request, {});
+}
+
+}  // namespace tessera::master

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <tuple>
+
+#include "mediator/session/view_summary.h"
+
+// Pictures that are rendered while nobody waits for them.
+namespace tessera::session {
+
+// Who submitted it, by the key, and what it is called: no two of one user have the same name.
+struct JobName {
+    std::string user;  // "" = the one who asks
+    std::string name;
+    friend auto operator<=>(const JobName&, const JobName&) = default;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "user", &JobName::user), row(2, "name", &JobName::name));
+    }
+};
+
+struct JobStatus {
+    JobName job;
+    std::string scene;          // its title
+    bool has_ended = false;     // the picture can be fetched, or why there is none
+    ViewProgress progress;      // until then
+    ViewSummary summary;        // from then on
+    std::int64_t ended_at = 0;  // ns since 1970
+    static constexpr auto describe(auto row) {
+        using Self = JobStatus;
+        return std::tuple(row(1, "job", &Self::job), row(2, "scene", &Self::scene),
+                          row(3, "has_ended", &Self::has_ended), row(4, "progress", &Self::progress),
+                          row(5, "summary", &Self::summary), row(6, "ended_at", &Self::ended_at));
+    }
+};
+
+}  // namespace tessera::session

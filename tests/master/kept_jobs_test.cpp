@@ -1,0 +1,151 @@
+// Jobs that have ended outlive the master, and nothing that lies in their folder brings it down.
+#include "master/kept_jobs.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "mediator/base/error.h"
+#include "mediator/base/random.h"
+
+namespace tessera::master {
+namespace {
+
+namespace fs = std::filesystem;
+
+wire::KeptJob job(const std::string& user, const std::string& name, std::int64_t ended_at = 1) {
+    return {.status = {.job = {user, name},
+                       .scene = "room",
+                       .has_ended = true,
+                       .progress = {},
+                       .summary = {.outcome = session::Outcome::TimeUp, .message = "late", .samples = 77},
+                       .ended_at = ended_at},
+            .width = 4,
+            .height = 2,
+            .components = 3};
+}
+
+std::shared_ptr<const std::vector<std::byte>> picture(std::size_t bytes, int value = 3) {
+    return std::make_shared<const std::vector<std::byte>>(bytes, std::byte(value));
+}
+
+struct KeptJobsTest : testing::Test {
+    fs::path folder = fs::temp_directory_path() / ("tessera-jobs-" + std::to_string(::getpid()));
+    std::vector<std::string> told;
+    EventSink events = [this](const Event& event) { told.push_back(event.text); };
+
+    void SetUp() override { fs::remove_all(folder); }
+    void TearDown() override { fs::remove_all(folder); }
+    static void wait_for_file_of(KeptJobs& jobs, const std::string& name) {
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+        for (bool written = false; !written && std::chrono::steady_clock::now() < deadline;) {
+            for (const session::JobName& job : jobs.take_written()) written |= job.name == name;
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    }
+    fs::path only_file() const { return fs::directory_iterator(folder)->path(); }
+};
+
+TEST_F(KeptJobsTest, ComeBackAsTheyWereInTheOrderOfTheirEnds) {
+    {
+        KeptJobs jobs(events);
+        jobs.record_to(folder);
+        jobs.add(job("ann", "b", 10), picture(5, 7));
+        jobs.add(job("ann", "a", 20), picture(0));
+        jobs.add(job("bob", "a", 30), picture(1));
+        wait_for_file_of(jobs, "a");
+    }
+    KeptJobs jobs(events);
+    jobs.record_to(folder);
+    ASSERT_EQ(jobs.all().size(), 3u);
+    EXPECT_EQ(jobs.all()[0]->job.status.job, (session::JobName{"ann", "b"}));
+    EXPECT_EQ(jobs.all()[2]->job.status.job, (session::JobName{"bob", "a"}));
+    const KeptJobs::Entry* kept = jobs.find({"ann", "b"});
+    ASSERT_NE(kept, nullptr);
+    EXPECT_EQ(*kept->picture, *picture(5, 7));
+    EXPECT_EQ(kept->job.status.summary.outcome, session::Outcome::TimeUp);
+    EXPECT_EQ(kept->job.status.summary.samples, 77u);
+    EXPECT_EQ(kept->job.width, 4u);
+    EXPECT_TRUE(told.empty());
+}
+
+TEST_F(KeptJobsTest, WhatIsRemovedStaysAway) {
+    {
+        KeptJobs jobs(events);
+        jobs.record_to(folder);
+        jobs.add(job("ann", "a"), picture(5));
+        EXPECT_TRUE(jobs.remove({"ann", "a"}));
+        EXPECT_FALSE(jobs.remove({"ann", "a"}));
+        EXPECT_EQ(jobs.find({"ann", "a"}), nullptr);
+        jobs.add(job("ann", "last"), picture(5));
+        wait_for_file_of(jobs, "last");
+    }
+    KeptJobs jobs(events);
+    jobs.record_to(folder);
+    EXPECT_EQ(jobs.all().size(), 1u);
+}
+
+TEST_F(KeptJobsTest, TheOldestGoWhenThereAreTooMany) {
+    KeptJobs jobs(events);
+    for (int i = 0; i < 300; ++i) jobs.add(job("ann", "job " + std::to_string(i)), picture(1));
+    EXPECT_EQ(jobs.all().size(), 256u);
+    EXPECT_EQ(jobs.find({"ann", "job 0"}), nullptr);
+    EXPECT_NE(jobs.find({"ann", "job 299"}), nullptr);
+    ASSERT_EQ(told.size(), 44u);
+    EXPECT_NE(told[0].find("no more room"), std::string::npos);
+}
+
+// The name of a job comes from the network.
+TEST_F(KeptJobsTest, NoNameLeadsOutOfTheFolder) {
+    KeptJobs jobs(events);
+    jobs.record_to(folder);
+    for (const std::string name :
+         {"../../outside", "/etc/passwd", "a/b", ".", std::string("a\0b", 3).c_str()})
+        jobs.add(job("../ann", name), picture(1));
+    jobs.add(job("ann", "last"), picture(1));
+    wait_for_file_of(jobs, "last");
+    for (const auto& file : fs::directory_iterator(folder)) {
+        EXPECT_TRUE(file.is_regular_file());
+        EXPECT_EQ(file.path().filename().string().find_first_not_of("0123456789abcdef"), 64u);
+    }
+}
+
+TEST_F(KeptJobsTest, DamagedFilesAreToldAndTheOthersUsed) {
+    {
+        KeptJobs jobs(events);
+        jobs.record_to(folder);
+        jobs.add(job("ann", "a"), picture(50));
+        wait_for_file_of(jobs, "a");
+    }
+    const fs::path path = only_file();
+    std::ifstream in(path, std::ios::binary);
+    const std::string whole((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    CounterRandom random(1);
+    for (int round = 0; round < 200; ++round) {
+        std::string damaged = whole;
+        if (round % 3 == 0) {
+            damaged.resize(random.below(static_cast<std::uint32_t>(whole.size())));
+        } else {
+            damaged[random.below(static_cast<std::uint32_t>(whole.size()))] ^= char(1 + random.below(255));
+        }
+        std::ofstream(path, std::ios::binary) << damaged;
+        told.clear();
+        KeptJobs jobs(events);
+        jobs.record_to(folder);
+        EXPECT_TRUE(jobs.all().empty());
+        ASSERT_EQ(told.size(), 1u);
+        EXPECT_NE(told[0].find(path.string()), std::string::npos) << told[0];
+    }
+    EXPECT_TRUE(fs::exists(path)) << "damaged files stay for whoever wants to look";
+}
+
+TEST_F(KeptJobsTest, AFolderThatCannotBeIsAnError) {
+    std::ofstream(folder) << "a file";
+    KeptJobs jobs(events);
+    EXPECT_THROW(jobs.record_to(folder / "jobs"), Error);
+}
+
+}  // namespace
+}  // namespace tessera::master
