@@ -20,7 +20,7 @@ std::optional<std::string> fault(const view::View& view, const backend::Capabili
     if (view.window.empty() || !(intersection(view.window, picture) == view.window))
         return "its window is not inside the picture";
     if (view.channels.empty()) return "it asks for no channel";
-    if ((view.channels.bits() & ~offered.channels.bits()) != 0)
+    if (!offered.channels.contains(view.channels))
         return "it asks for a channel that this back-end does not have";
     if (!offered.renderers.contains(view.renderer))
         return "it asks for the renderer " + std::string(view::renderer_name(view.renderer)) +

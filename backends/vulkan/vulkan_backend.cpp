@@ -18,7 +18,7 @@ namespace {
 
 using namespace backend;
 
-constexpr frame::ChannelSet AllChannels = frame::ChannelSet::from_bits((1u << frame::ChannelCount) - 1u);
+constexpr frame::ChannelSet AllChannels = frame::ChannelSet::all();
 constexpr int Attempts = 3;  // a device that is lost so often in a row does not come back
 
 class VulkanBackend final : public Backend {

@@ -57,6 +57,16 @@ void print_table(const filter::Description& filter) {
     }
 }
 
+// What filters read, and an EXR has as layers.
+void print_channels() {
+    std::cout << "\nchannels\n";
+    for (const frame::ChannelInfo& entry : frame::channel_table()) {
+        std::string head = "    " + std::string(entry.name);
+        head.resize(std::max<std::size_t>(head.size() + 2, 20), ' ');
+        std::cout << head << entry.meaning << "\n";
+    }
+}
+
 Json as_json(const filter::Description& filter) {
     Json parameters = Json::array();
     for (const filter::Parameter& parameter : filter.parameters) {
@@ -209,7 +219,7 @@ Command filters_command(cli::CommandLine& program) {
                         print_table(entry.description);
                     }
                 }
-                if (*json) std::cout << all.dump(2) << "\n";
+                *json ? void(std::cout << all.dump(2) << "\n") : print_channels();
                 return 0;
             }};
 }

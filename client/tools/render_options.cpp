@@ -117,7 +117,7 @@ bool any_exr(const std::vector<std::string>& outputs) {
 frame::ChannelSet channels_for(const RenderOptions& options) {
     using enum frame::Channel;
     if (options.save_statistics) {
-        auto all = frame::ChannelSet::from_bits(~0u);
+        auto all = frame::ChannelSet::all();
         all.erase(Color);  // Radiance says more
         return all;
     }
@@ -320,8 +320,7 @@ Expected<RenderPlan> understand(const RenderOptions& options) {
     if (auto fine = set_filter(options, plan.job); !fine) return tl::unexpected(fine.error());
     if (auto fine = set_detached(options, plan); !fine) return tl::unexpected(fine.error());
     plan.view.view.filter = plan.job.view.filter;
-    plan.view.view.channels =
-        frame::ChannelSet::from_bits(plan.view.view.channels.bits() | channels_for(options).bits());
+    plan.view.view.channels = plan.view.view.channels | channels_for(options);
     if (options.save_statistics) plan.statistics = picture::Statistics::Saved;
     return plan;
 }

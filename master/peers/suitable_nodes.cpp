@@ -15,16 +15,17 @@ std::string missing_renderer(const NodeTable& nodes, view::Renderer renderer) {
 
 // "the back-ends of 2 nodes do not give alpha, range; ", or nothing when channels are not the trouble.
 std::string missing_channels(const NodeTable& nodes, frame::ChannelSet channels) {
-    std::uint32_t lacking = 0, missing = 0;
+    std::uint32_t lacking = 0;
+    frame::ChannelSet missing;
     for (const auto& [id, node] : nodes.all()) {
-        const std::uint32_t lacks = channels.bits() & ~node.hello.channels.bits();
-        lacking += lacks != 0 ? 1 : 0;
-        missing |= lacks;
+        const frame::ChannelSet lacks = channels - node.hello.channels;
+        lacking += lacks.empty() ? 0 : 1;
+        missing = missing | lacks;
     }
     if (lacking == 0) return {};
     std::string names;
     for (const frame::ChannelInfo& entry : frame::channel_table()) {
-        if (!frame::ChannelSet::from_bits(missing).contains(entry.channel)) continue;
+        if (!missing.contains(entry.channel)) continue;
         names += (names.empty() ? "" : ", ") + std::string(entry.name);
     }
     return "the back-ends of " + std::to_string(lacking) + " nodes do not give " + names + "; ";
@@ -45,7 +46,7 @@ std::string missing_room(const NodeTable& nodes, Version version) {
 }  // namespace
 
 bool suits(const NodeRecord& node, const view::View& view, Version version) {
-    const bool has_channels = (view.channels.bits() & ~node.hello.channels.bits()) == 0;
+    const bool has_channels = node.hello.channels.contains(view.channels);
     return !node.leaving && !node.stuck && node.bulk && has_channels && node.refused != version &&
            node.hello.renderers.contains(view.renderer);
 }

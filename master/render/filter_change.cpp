@@ -25,7 +25,7 @@ FilterChange filter_change(const view::View& now, const std::string& filter) {
     FilterChange change{.view = now, .text = {}};
     change.view.filter = filter::to_text(*choice);
     complete(change.view);
-    const auto added = frame::ChannelSet::from_bits(change.view.channels.bits() & ~now.channels.bits());
+    const auto added = change.view.channels - now.channels;
     if (change.view.path_class != now.path_class) {
         change.effect = Effect::Restarted;
         change.text =

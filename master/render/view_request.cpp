@@ -83,8 +83,7 @@ std::string problem_of(const session::ViewRequest& request) {
 
 void complete(view::View& view) {
     const auto filter = filter::parse_choice(view.filter, filter::catalog());
-    view.channels =
-        frame::ChannelSet::from_bits(view.channels.bits() | filter::lacking(*filter, view.channels).bits());
+    view.channels = view.channels | filter::lacking(*filter, view.channels);
     if (view.transparent_background) view.channels.insert(frame::Channel::Alpha);
     const view::PathClass wanted = filter->entry->description.path_class;
     if (wanted != view::PathClass::Indirect) view.path_class = wanted;
@@ -121,7 +120,8 @@ view::View scaled_view(const view::View& view, std::uint32_t scale) {
 
 std::string way_of(const session::ViewRequest& request) {
     return request.view.filter + " as " + std::to_string(static_cast<int>(request.picture)) +
-           " of channels " + std::to_string(request.view.channels.bits());
+           " of channels " + std::to_string(request.view.channels.words()[0]) + " " +
+           std::to_string(request.view.channels.words()[1]);
 }
 
 std::uint32_t choose_tile_edge(const view::View& view, std::uint32_t asked) {

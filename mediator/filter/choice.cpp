@@ -100,7 +100,7 @@ Expected<Choice> parse_choice(std::string_view text, std::span<const FilterEntry
 frame::ChannelSet lacking(const Choice& choice, frame::ChannelSet there) {
     const bool is_none = choice.entry->description.name == "none";
     if (is_none && there.contains(frame::Channel::Color)) there.insert(frame::Channel::Radiance);
-    return frame::ChannelSet::from_bits(choice.channels().bits() & ~there.bits());
+    return choice.channels() - there;
 }
 
 std::string to_text(const Choice& choice) {

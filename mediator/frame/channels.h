@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
@@ -19,58 +21,144 @@ enum class MergeRule : std::uint8_t { Moments, Sum, Minimum, Maximum, Nearest, F
 
 // Values are on the wire: never renumber.
 enum class Channel : std::uint8_t {
-    Radiance = 0,      // all light that reaches the pixel
-    LowVariance = 1,   // paths outside the view's path class (Schwenk 3.3)
-    HighVariance = 2,  // paths of the view's path class; Radiance = LowVariance + HighVariance per sample
-    Albedo = 3,        // of the first non-delta hit times the weight of the way to it; misses count 0
-    Normal = 4,        // mapped shading normal of the first non-delta hit, world; misses count 0
-    Depth = 5,  // distance of the first hit along the view direction's axis (z), nearest sample; miss = +inf
-    ObjectIndex =
-        6,      // key = depth, value = scene object id of the nearest first hit (bits of a uint32), 0 = miss
-    Alpha = 7,  // 1 where the camera's ray hits something, 0 where it leaves the scene
-    Range = 8,  // head light and ambient at the first non-delta hits, in [0, 1] (Schwenk 3.3.3)
-    ShadingFeature = 9,  // light found by the path, in grey, without the surface's colour (Lardinoije 4.2)
-    Irradiance = 10,     // light of the diffuse lobe at the first non-delta hit: times albedo = its radiance
-    EvenHalf = 11,       // r, g, b of the samples of even index, and 1 for each of them
-    Color = 12,  // all light that reaches the pixel, without second moments: half of Radiance's planes, for
-                 // who only wants the picture
+    Radiance = 0,
+    LowVariance = 1,
+    HighVariance = 2,
+    Albedo = 3,
+    Normal = 4,
+    Depth = 5,
+    ObjectIndex = 6,
+    Alpha = 7,
+    Range = 8,
+    ShadingFeature = 9,
+    Irradiance = 10,
+    EvenHalf = 11,
+    Color = 12,
 };
-inline constexpr std::size_t ChannelCount = 13;
 
 struct ChannelInfo {
     Channel channel;
     std::string_view name;  // EXR layer and option name
     MergeRule rule;
     std::uint32_t components;
-    std::uint32_t plane_count() const { return rule == MergeRule::Moments ? 2 * components : components; }
+    std::string_view meaning;  // for people
+    constexpr std::uint32_t plane_count() const {
+        return rule == MergeRule::Moments ? 2 * components : components;
+    }
 };
 
-std::span<const ChannelInfo, ChannelCount> channel_table();
-const ChannelInfo& info(Channel channel);
+// One row a channel, in the order of their numbers, none of which is left out.
+inline constexpr auto ChannelTable = std::to_array<ChannelInfo>({
+    {Channel::Radiance, "radiance", MergeRule::Moments, 3, "all light that reaches the pixel"},
+    {Channel::LowVariance, "low_variance", MergeRule::Moments, 3,
+     "light of paths outside the view's path class (Schwenk 3.3)"},
+    {Channel::HighVariance, "high_variance", MergeRule::Moments, 3,
+     "light of paths of the view's path class: radiance less low_variance, sample by sample"},
+    {Channel::Albedo, "albedo", MergeRule::Sum, 3,
+     "of the first non-delta hit times the weight of the way to it; misses count 0"},
+    {Channel::Normal, "normal", MergeRule::Sum, 3,
+     "mapped shading normal of the first non-delta hit, world; misses count 0"},
+    {Channel::Depth, "depth", MergeRule::Minimum, 1,
+     "distance of the first hit along the view direction's axis (z), nearest sample; miss = +inf"},
+    {Channel::ObjectIndex, "object_id", MergeRule::Nearest, 2,
+     "depth, then the scene object id of the nearest first hit (bits of a uint32), 0 = miss"},
+    {Channel::Alpha, "alpha", MergeRule::Sum, 1,
+     "1 where the camera's ray hits something, 0 where it leaves the scene"},
+    {Channel::Range, "range", MergeRule::Sum, 3,
+     "head light and ambient at the first non-delta hits, in [0, 1] (Schwenk 3.3.3)"},
+    {Channel::ShadingFeature, "shading", MergeRule::Moments, 1,
+     "light found by the path, in grey, without the surface's colour (Lardinoije 4.2)"},
+    {Channel::Irradiance, "irradiance", MergeRule::Moments, 3,
+     "light of the diffuse lobe at the first non-delta hit: times albedo = its radiance"},
+    {Channel::EvenHalf, "even_half", MergeRule::Sum, 4,
+     "r, g, b of the samples of even index, and 1 for each of them"},
+    {Channel::Color, "color", MergeRule::Sum, 3,
+     "all light that reaches the pixel, without second moments: half of radiance's planes, for a picture "
+     "alone"},
+});
+inline constexpr std::size_t ChannelCount = ChannelTable.size();
+
+static_assert([] {
+    for (std::size_t i = 0; i < ChannelCount; ++i) {
+        if (static_cast<std::size_t>(ChannelTable[i].channel) != i) return false;
+    }
+    return true;
+}());
+
+constexpr std::span<const ChannelInfo, ChannelCount> channel_table() {
+    return ChannelTable;
+}
+constexpr const ChannelInfo& info(Channel channel) {
+    return ChannelTable[static_cast<std::size_t>(channel)];
+}
 std::optional<Channel> channel_by_name(std::string_view name);
 
+// Any of 128 channels. Planes of a film are in the order of their numbers.
 class ChannelSet {
   public:
+    using Words = std::array<std::uint64_t, 2>;  // bit i of word w: channel 64 w + i
+    static constexpr std::size_t Capacity = 128;
+
     constexpr ChannelSet() = default;
     constexpr ChannelSet(std::initializer_list<Channel> channels) {
         for (const Channel channel : channels) insert(channel);
     }
-    static constexpr ChannelSet from_bits(std::uint32_t bits) {
+    static constexpr ChannelSet all() {
         ChannelSet set;
-        set.bits_ = bits & ((1u << ChannelCount) - 1u);
+        for (const ChannelInfo& entry : ChannelTable) set.insert(entry.channel);
         return set;
     }
-    constexpr std::uint32_t bits() const { return bits_; }
-    constexpr bool contains(Channel channel) const { return (bits_ >> static_cast<unsigned>(channel)) & 1u; }
-    constexpr void insert(Channel channel) { bits_ |= 1u << static_cast<unsigned>(channel); }
-    constexpr void erase(Channel channel) { bits_ &= ~(1u << static_cast<unsigned>(channel)); }
-    constexpr bool empty() const { return bits_ == 0; }
-    std::uint32_t plane_count() const;                 // over all channels in the set
-    std::uint32_t first_plane(Channel channel) const;  // planes are in the order of the enum
-    friend constexpr bool operator==(ChannelSet, ChannelSet) = default;
+    // As they travel: may have bits that are no channel's.
+    static constexpr ChannelSet from_words(const Words& words) {
+        ChannelSet set;
+        set.words_ = words;
+        return set;
+    }
+    constexpr const Words& words() const { return words_; }
+    constexpr Words& words() { return words_; }
+    constexpr bool is_known() const { return (*this - all()).empty(); }
+    // As the shared text of kernels knows them, whose channels are all below 32.
+    constexpr std::uint32_t kernel_bits() const { return static_cast<std::uint32_t>(words_[0]); }
+
+    constexpr bool contains(Channel channel) const { return (word(channel) >> shift(channel)) & 1u; }
+    constexpr bool contains(const ChannelSet& others) const { return (others - *this).empty(); }
+    constexpr void insert(Channel channel) { word(channel) |= std::uint64_t{1} << shift(channel); }
+    constexpr void erase(Channel channel) { word(channel) &= ~(std::uint64_t{1} << shift(channel)); }
+    constexpr bool empty() const { return words_ == Words{}; }
+    std::uint32_t plane_count() const;  // over all channels in the set
+    std::uint32_t first_plane(Channel channel) const;
+
+    // In order; as long as `visit` does not return false, where it returns something. A loop over the bits: most sets
+    // have few.
+    template <class Visit>
+    constexpr bool for_each(const Visit& visit) const {
+        for (std::size_t word = 0; word < words_.size(); ++word) {
+            for (std::uint64_t rest = words_[word]; rest != 0; rest &= rest - 1) {
+                const std::size_t number = 64 * word + static_cast<std::size_t>(std::countr_zero(rest));
+                if (!visit(ChannelTable[number])) return false;
+            }
+        }
+        return true;
+    }
+
+    friend constexpr ChannelSet operator|(const ChannelSet& a, const ChannelSet& b) {
+        return from_words({a.words_[0] | b.words_[0], a.words_[1] | b.words_[1]});
+    }
+    friend constexpr ChannelSet operator-(const ChannelSet& a, const ChannelSet& b) {
+        return from_words({a.words_[0] & ~b.words_[0], a.words_[1] & ~b.words_[1]});
+    }
+    friend constexpr bool operator==(const ChannelSet&, const ChannelSet&) = default;
 
   private:
-    std::uint32_t bits_ = 0;
+    static constexpr unsigned shift(Channel channel) { return static_cast<unsigned>(channel) % 64; }
+    constexpr const std::uint64_t& word(Channel channel) const {
+        return words_[static_cast<std::size_t>(channel) / 64];
+    }
+    constexpr std::uint64_t& word(Channel channel) { return words_[static_cast<std::size_t>(channel) / 64]; }
+
+    Words words_{};
 };
+
+static_assert(ChannelCount <= ChannelSet::Capacity);
 
 }  // namespace tessera::frame

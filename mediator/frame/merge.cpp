@@ -103,11 +103,9 @@ void merge_channel(FilmTile& into, const FilmTile& later, const ChannelInfo& inf
     }
 }
 
-// Loops that run once a sample go over the bits of the set: most sets have few.
 bool acceptable(const ChannelSet& channels, std::span<const float> values) {
     std::size_t next = 0;
-    for (std::uint32_t rest = channels.bits(); rest != 0; rest &= rest - 1) {
-        const ChannelInfo& info = channel_table()[static_cast<std::size_t>(std::countr_zero(rest))];
+    return channels.for_each([&](const ChannelInfo& info) {
         for (std::uint32_t c = 0; c < info.components; ++c) {
             const float value = values[next++];
             if ((info.rule == MergeRule::Moments || info.rule == MergeRule::Sum) && !std::isfinite(value))
@@ -115,8 +113,8 @@ bool acceptable(const ChannelSet& channels, std::span<const float> values) {
             const bool is_payload = c > 0 || info.rule == MergeRule::First;
             if (!is_payload && std::isnan(value)) return false;
         }
-    }
-    return true;
+        return true;
+    });
 }
 
 }  // namespace
@@ -129,13 +127,13 @@ void put_sample(FilmTile& tile, std::size_t pixel, std::span<const float> values
     tile.counts[pixel] = 1;
     std::size_t next = 0;
     std::uint32_t plane = 0;
-    for (std::uint32_t rest = tile.channels.bits(); rest != 0; rest &= rest - 1) {
-        const ChannelInfo& info = channel_table()[static_cast<std::size_t>(std::countr_zero(rest))];
+    (void)tile.channels.for_each([&](const ChannelInfo& info) {
         for (std::uint32_t c = 0; c < info.components; ++c) {
             std::memcpy(&tile.plane(plane + c)[pixel], &values[next++], sizeof(float));
         }
         plane += info.plane_count();  // M2 of a single sample stays 0
-    }
+        return true;
+    });
 }
 
 void merge(FilmTile& into, const FilmTile& later) {

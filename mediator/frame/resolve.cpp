@@ -91,7 +91,10 @@ Hash256 film_hash(const FilmTile& film) {
     Blake2b hash;
     const auto add = [&](const auto& values) { hash.update(std::as_bytes(std::span(values))); };
     add(std::array{film.rect.width, film.rect.height});
-    add(std::array{film.channels.bits()});
+    // Films without later channels keep their hashes of before there were any.
+    const ChannelSet::Words& words = film.channels.words();
+    add(std::array{static_cast<std::uint32_t>(words[0])});
+    if (words[0] >> 32 != 0 || words[1] != 0) add(words);
     add(film.counts);
     for (const ChannelInfo& entry : channel_table()) {
         if (!film.channels.contains(entry.channel)) continue;

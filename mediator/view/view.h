@@ -162,6 +162,11 @@ struct View {
                 return view.pixel_filter.*member;
             };
         };
+        constexpr auto channels = [](std::size_t word) {
+            return [word](auto& view) -> auto& {
+                return view.channels.words()[word];
+            };
+        };
         constexpr Computed frustum{[](const View& view) { return view.camera.edges(); },
                                    [](View& view, const glm::dvec4& edges) { view.camera.set_edges(edges); }};
         constexpr Computed hidden{[](const View& view) { return ~view.layers; },
@@ -172,7 +177,7 @@ struct View {
             row(5, "eye", &View::eye), row(6, "width", &View::width), row(7, "height", &View::height),
             row(8, "window", &View::window), row(9, "seed", &View::seed),
             row(10, "max_bounces", &View::max_bounces), row(11, "pixel_filter", pixels(&PixelFilter::kind)),
-            row(12, "filter_radius", pixels(&PixelFilter::radius)), row(13, "channels", &View::channels),
+            row(12, "filter_radius", pixels(&PixelFilter::radius)), row(13, "channels", channels(0)),
             row(14, "renderer", &View::renderer), row(15, "path_class", &View::path_class),
             row(16, "feature_rule", &View::feature_rule),
             row(17, "transparent_background", &View::transparent_background),
@@ -181,8 +186,10 @@ struct View {
             row(21, "lens_radius", camera(&CameraPose::lens_radius)),
             row(22, "focus_distance", camera(&CameraPose::focus_distance)),
             row(23, "aperture", camera(&CameraPose::aperture)),
-            row(24, "camera_motion", camera(&CameraPose::motion), Limit{scene::MaxDecodedMotion}));
+            row(24, "camera_motion", camera(&CameraPose::motion), Limit{scene::MaxDecodedMotion}),
+            row(25, "later_channels", channels(1)));
     }
+    const char* malformed() const { return channels.is_known() ? nullptr : "a channel is unknown"; }
 };
 
 }  // namespace tessera::view

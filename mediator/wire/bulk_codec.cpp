@@ -1,14 +1,16 @@
 #include <algorithm>
 #include <concepts>
 
+#include "mediator/codec/byte_stream.h"
+#include "mediator/codec/field_types.h"
 #include "mediator/display/display.h"
-#include "mediator/wire/byte_stream.h"
 #include "mediator/wire/envelope.h"
-#include "mediator/wire/field_types.h"
 
 // Every bulk message: magic, number, then the fields of its rows, then raw data. Little-endian; enumerations and truths
 // have 4 bytes.
 namespace tessera::wire {
+
+using namespace codec;
 
 namespace {
 
@@ -19,11 +21,31 @@ constexpr std::uint8_t UniformCounts = 1;  // one count for all pixels instead o
 
 using Data = std::vector<std::byte>;
 
+// Channels below 31 as the bits of one number; with others its highest bit is set, and all of them follow.
+constexpr std::uint32_t AllChannelsFollow = 1u << 31;
+
+void put_channels(ByteWriter& out, const frame::ChannelSet& channels) {
+    const frame::ChannelSet::Words& words = channels.words();
+    if (words[0] < AllChannelsFollow && words[1] == 0) return out.put(static_cast<std::uint32_t>(words[0]));
+    out.put(AllChannelsFollow);
+    for (const std::uint64_t word : words) out.put(word);
+}
+
+frame::ChannelSet get_channels(ByteReader& in) {
+    frame::ChannelSet::Words words{in.get<std::uint32_t>(), 0};
+    if (words[0] == AllChannelsFollow) {
+        for (std::uint64_t& word : words) word = in.get<std::uint64_t>();
+    }
+    const auto channels = frame::ChannelSet::from_words(words);
+    if (channels.empty() || !channels.is_known()) in.fail("a channel is unknown");
+    return channels;
+}
+
 void put_film(ByteWriter& out, const frame::FilmTile& film) {
     out.put(film.rect);
     out.put(film.block.first);
     out.put(film.block.level);
-    out.put(film.channels.bits());
+    put_channels(out, film.channels);
     out.put(film.nonfinite_samples);
     const bool uniform =
         !film.counts.empty() && std::all_of(film.counts.begin(), film.counts.end(),
@@ -42,15 +64,13 @@ frame::FilmTile get_film(ByteReader& in) {
     frame::SampleBlock block;
     block.first = in.get<std::uint64_t>();
     block.level = in.get<std::uint32_t>();
-    const auto bits = in.get<std::uint32_t>();
+    const frame::ChannelSet channels = get_channels(in);
     const auto nonfinite = in.get<std::uint64_t>();
-    const auto channels = frame::ChannelSet::from_bits(bits);
     constexpr std::int32_t MaxEdge = 65536;
     if (rect.empty() || rect.x < 0 || rect.y < 0 || rect.width > MaxEdge || rect.height > MaxEdge ||
         rect.x > MaxEdge || rect.y > MaxEdge || rect.pixel_count() > MaxPixels) {
         in.fail("the tile's size is absurd");
     }
-    if (channels.bits() != bits || channels.empty()) in.fail("a channel is unknown");
     if (block.level >= 32 || !block.is_aligned()) in.fail("a block of samples is not aligned");
     const bool uniform = in.get<std::uint8_t>() == UniformCounts;
     // The size is known before anything is allocated.

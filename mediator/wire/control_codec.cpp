@@ -3,6 +3,8 @@
 
 namespace tessera::wire {
 
+using namespace codec;
+
 namespace {
 
 constexpr std::size_t ControlBytes = 64 * 1024;

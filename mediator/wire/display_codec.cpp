@@ -1,8 +1,10 @@
 #include "mediator/wire/display_codec.h"
 
-#include "mediator/wire/codec.h"
+#include "mediator/codec/codec.h"
 
 namespace tessera::wire {
+
+using namespace codec;
 
 namespace {
 constexpr std::size_t MaxDescription = std::size_t{16} << 20;

@@ -2,7 +2,7 @@
 
 #include "mediator/scene/fields.h"
 
-namespace tessera::wire {
+namespace tessera::codec {
 
 namespace {
 
@@ -80,4 +80,4 @@ void CustomCodec<scene::Entry>::read(FormatReader& in, scene::Entry& entry) {
     }
 }
 
-}  // namespace tessera::wire
+}  // namespace tessera::codec

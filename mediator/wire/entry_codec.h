@@ -1,11 +1,11 @@
 #pragma once
 
+#include "mediator/codec/codec.h"
 #include "mediator/scene/change_list.h"
-#include "mediator/wire/codec.h"
 
 // Private to wire/*.cpp: entries of change lists and edits. An update carries the fields of its mask only. What is
 // decoded may still be invalid as a scene.
-namespace tessera::wire {
+namespace tessera::codec {
 
 template <>
 struct CustomCodec<scene::Entry> {
@@ -13,4 +13,4 @@ struct CustomCodec<scene::Entry> {
     static void read(FormatReader& in, scene::Entry& entry);
 };
 
-}  // namespace tessera::wire
+}  // namespace tessera::codec

@@ -8,6 +8,8 @@
 
 namespace tessera::wire {
 
+using namespace codec;
+
 namespace {
 
 bool known(const std::vector<RecordedFieldWriter>& fields, std::size_t writers) {

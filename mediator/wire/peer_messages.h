@@ -44,16 +44,23 @@ struct Hello {
     // of a peer that reconnects: what it held in the same epoch, so that it is taken for the same
     std::uint64_t resume_token = 0;
     static constexpr auto describe(auto row) {
+        constexpr auto channels = [](std::size_t word) {
+            return [word](auto& hello) -> auto& {
+                return hello.channels.words()[word];
+            };
+        };
         return std::tuple(
             row(1, "protocol", &Hello::protocol), row(2, "peer", &Hello::peer), row(3, "name", &Hello::name),
             row(4, "host", &Hello::host), row(5, "software", &Hello::software), row(6, "pid", &Hello::pid),
-            row(7, "backend", &Hello::backend), row(8, "kind", &Hello::kind),
-            row(9, "channels", &Hello::channels), row(10, "preferred_tile", &Hello::preferred_tile),
+            row(7, "backend", &Hello::backend), row(8, "kind", &Hello::kind), row(9, "channels", channels(0)),
+            row(10, "preferred_tile", &Hello::preferred_tile),
             row(11, "concurrent_units", &Hello::concurrent_units),
             row(12, "reproducible", &Hello::reproducible),
             row(13, "resume_token", &Hello::resume_token, FullWidth{}),
-            row(14, "renderers", &Hello::renderers), row(15, "render_revision", &Hello::render_revision));
+            row(14, "renderers", &Hello::renderers), row(15, "render_revision", &Hello::render_revision),
+            row(16, "later_channels", channels(1)));
     }
+    const char* malformed() const { return channels.is_known() ? nullptr : "a channel is unknown"; }
 };
 
 struct Welcome {

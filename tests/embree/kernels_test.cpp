@@ -144,7 +144,7 @@ TEST_P(KernelsTest, AllThatMayBeTakenFindTheSameBits) {
          {view::Renderer::PathTracing, view::Renderer::Whitted, view::Renderer::Coverage}) {
         view::View view = small_view({0, 0, 4}, 0.9, 32);
         view.renderer = renderer;
-        view.channels = frame::ChannelSet::from_bits((1u << frame::ChannelCount) - 1u);
+        view.channels = frame::ChannelSet::all();
         const PathTracer tracer(world.tables(), world.scene(), view);
         EXPECT_EQ(&tracer.kernel(), GetParam().chosen);
         const std::vector<PathSample> all = samples(world, view, &FullKernel);

@@ -16,8 +16,7 @@ struct SyntheticSample {
 };
 using Sampler = std::function<SyntheticSample(std::uint32_t x, std::uint32_t y, std::uint64_t sample)>;
 
-inline constexpr frame::ChannelSet EveryChannel =
-    frame::ChannelSet::from_bits((1u << frame::ChannelCount) - 1u);
+inline constexpr frame::ChannelSet EveryChannel = frame::ChannelSet::all();
 
 // A film of n samples in every pixel through the real path: put_sample, block stack, merge.
 frame::FilmTile synthetic_film(std::uint32_t width, std::uint32_t height, std::uint64_t n,

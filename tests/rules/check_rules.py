@@ -18,6 +18,7 @@ LINK = ["mediator/net", "mediator/session", "mediator/wire"]
 # the permission to include everything.
 ARROWS = {
     "mediator/base": [],
+    "mediator/codec": ["mediator/base"],
     "mediator/scene": ["mediator/base"],
     "mediator/frame": ["mediator/base", "mediator/scene"],
     "mediator/view": ["mediator/base", "mediator/scene", "mediator/frame"],
@@ -29,7 +30,7 @@ ARROWS = {
     "mediator/net": CORE,
     "mediator/program": ["mediator/base"],
     "mediator/session": CORE,
-    "mediator/wire": CORE + ["mediator/session", "proto"],
+    "mediator/wire": CORE + ["mediator/codec", "mediator/session", "proto"],
     "backends": KIT + ["backends"],
     "backends/null": KIT,
     "backends/embree": KIT,

@@ -15,7 +15,7 @@ using view::FeatureRule;
 using view::PathClass;
 using view::View;
 
-constexpr frame::ChannelSet All = frame::ChannelSet::from_bits((1u << frame::ChannelCount) - 1u);
+constexpr frame::ChannelSet All = frame::ChannelSet::all();
 
 // A coloured corner under a lamp, with whatever stands in it; open to a sky.
 struct Corner : Model {
@@ -287,8 +287,7 @@ std::uint64_t rays_of(const World& world, const View& view) {
 }
 
 TEST(Channels, OnlyTheRangeThroughSpecularsCostsRays) {
-    constexpr auto WithoutRange =
-        frame::ChannelSet::from_bits(All.bits() & ~(1u << unsigned(Channel::Range)));
+    constexpr auto WithoutRange = All - frame::ChannelSet{Channel::Range};
     for (const scene::Material& thing : {glass(1.5f), chalk(glm::vec3(0.5f))}) {
         Corner corner(thing);
         World& world = corner.build();

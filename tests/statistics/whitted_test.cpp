@@ -124,7 +124,7 @@ TEST(Whitted, IsDirectLightWhereNothingIsPerfectlySpecular) {
     World& world = model.build();
     View view = from_above();
     view.max_bounces = 0;
-    view.channels = frame::ChannelSet::from_bits((1u << frame::ChannelCount) - 1u);
+    view.channels = frame::ChannelSet::all();
     std::vector<PathSample> paths;
     for_samples(world, view, 4, [&](const PathSample& sample) { paths.push_back(sample); });
     view.renderer = view::Renderer::Whitted;
@@ -152,7 +152,7 @@ TEST(Whitted, HasTheFeaturesOfPathTracing) {
         model.sky(glm::vec3(1.0f));
         World& world = model.build();
         View view = small_view({0.0, 0.0, 5.0}, 0.35);
-        view.channels = frame::ChannelSet::from_bits((1u << frame::ChannelCount) - 1u);
+        view.channels = frame::ChannelSet::all();
         View whitted = view;
         whitted.renderer = view::Renderer::Whitted;
         // What the tree does not follow: less than 1 / 512 at each of a handful of branches.

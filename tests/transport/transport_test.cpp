@@ -21,7 +21,7 @@ using test::Normals;
 using test::SceneModel;
 
 constexpr std::uint32_t Size = 32, SamplesPerPixel = 2;
-constexpr frame::ChannelSet AllChannels = frame::ChannelSet::from_bits((1u << frame::ChannelCount) - 1u);
+constexpr frame::ChannelSet AllChannels = frame::ChannelSet::all();
 
 scene::TextureSlot checker(SceneModel& model, std::uint32_t dark, std::uint32_t light, scene::Wrap wrap) {
     const scene::Texture texture{

@@ -15,7 +15,7 @@
 namespace tessera::vulkan {
 namespace {
 
-constexpr frame::ChannelSet AllChannels = frame::ChannelSet::from_bits((1u << frame::ChannelCount) - 1u);
+constexpr frame::ChannelSet AllChannels = frame::ChannelSet::all();
 
 // What the channels' values may be.
 using Draw = float (*)(CounterRandom&);

@@ -13,7 +13,7 @@ namespace {
 
 using namespace backend;
 
-constexpr frame::ChannelSet AllChannels = frame::ChannelSet::from_bits((1u << frame::ChannelCount) - 1u);
+constexpr frame::ChannelSet AllChannels = frame::ChannelSet::all();
 
 class ValidatedBackend : public testing::Test {
   protected:

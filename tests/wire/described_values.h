@@ -3,13 +3,16 @@
 #include <gtest/gtest.h>
 
 #include "mediator/base/random.h"
+#include "mediator/codec/codec.h"
 #include "mediator/scene/change_list.h"
 #include "mediator/scene/fields.h"
-#include "mediator/wire/codec.h"
 #include "mediator/wire/journal_records.h"
 
 // Values of described structures: any, by chance. tests/wire only.
 namespace tessera::wire::test {
+
+namespace detail = codec::detail;
+using codec::from_bytes, codec::to_bytes;
 
 template <class T>
 void fill(T& value, CounterRandom& random);
@@ -28,6 +31,8 @@ template <Described T>
         if (value.before) value.mask &= scene::all_fields(*value.before);
         if (value.after) value.mask &= scene::all_fields(*value.after);
     }
+    if constexpr (requires { value.channels.words(); })  // those that there are
+        value.channels = frame::ChannelSet::all() - (frame::ChannelSet::all() - value.channels);
     if (why_malformed(value) != nullptr) value = T{};  // members have to agree: as they do by default
 }
 

@@ -349,6 +349,24 @@ TEST(HostileBytes, RenderersThatNobodyKnowsAreRefused) {
     EXPECT_FALSE(with(hello, std::byte{4}, std::byte{16}));
 }
 
+// Also such as a later version may have: beyond 31 in a film's header, beyond 63 in a message.
+TEST(HostileBytes, ChannelsThatNobodyKnowsAreRefused) {
+    for (const unsigned number : {13u, 30u, 31u, 63u, 64u, 127u}) {
+        OpenView open{some_view()};
+        EXPECT_TRUE(decode_control(encode(ControlMessage(open))));
+        open.view.channels.insert(static_cast<frame::Channel>(number));
+        EXPECT_FALSE(decode_control(encode(ControlMessage(open)))) << number;
+        Hello hello{.peer = PeerKind::Node};
+        hello.channels.insert(static_cast<frame::Channel>(number));
+        EXPECT_FALSE(decode_control(encode(ControlMessage(hello)))) << number;
+        FilmPart part = std::get<FilmPart>(bulk_messages()[4]);
+        part.film.channels.insert(static_cast<frame::Channel>(number));
+        const auto refused = decode_bulk(encode(BulkMessage(part)));
+        ASSERT_FALSE(refused) << number;
+        EXPECT_NE(std::string(refused.error().what()).find("a channel is unknown"), std::string::npos);
+    }
+}
+
 // Film that would poison the frame does not decode.
 TEST(HostileBytes, FilmThatLiesIsRefused) {
     const auto refused = [](const std::function<void(FilmPart&)>& forge) {

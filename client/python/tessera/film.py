@@ -7,6 +7,7 @@ from array import array
 from dataclasses import dataclass
 from enum import Enum
 
+from .channels import CHANNEL_ROWS
 from .errors import InvalidInput, Malformed
 
 
@@ -16,25 +17,13 @@ class Rule(Enum):
     MOMENTS = "moments"  # means, then sums of squared deviations
     SUM = "sum"
     MINIMUM = "minimum"
+    MAXIMUM = "maximum"
     NEAREST = "nearest"  # the key, then the value
+    FIRST = "first"
 
 
 # By their number on the wire: name, rule, components.
-CHANNELS: tuple[tuple[str, Rule, int], ...] = (
-    ("radiance", Rule.MOMENTS, 3),
-    ("low_variance", Rule.MOMENTS, 3),
-    ("high_variance", Rule.MOMENTS, 3),
-    ("albedo", Rule.SUM, 3),
-    ("normal", Rule.SUM, 3),
-    ("depth", Rule.MINIMUM, 1),
-    ("object_id", Rule.NEAREST, 2),
-    ("alpha", Rule.SUM, 1),
-    ("range", Rule.SUM, 3),
-    ("shading", Rule.MOMENTS, 1),
-    ("irradiance", Rule.MOMENTS, 3),
-    ("even_half", Rule.SUM, 4),
-    ("color", Rule.SUM, 3),
-)
+CHANNELS: tuple[tuple[str, Rule, int], ...] = tuple((name, Rule(rule), n) for name, rule, n in CHANNEL_ROWS)
 
 
 def channel_bits(names: tuple[str, ...] | list[str]) -> int:

@@ -94,7 +94,7 @@ shading::View make_view(const view::View& view, const glm::dvec3& render_origin)
             .renderer = static_cast<std::uint32_t>(renderer_of(view)),
             .path_class = static_cast<std::uint32_t>(view.path_class),
             .feature_rule = static_cast<std::uint32_t>(view.feature_rule),
-            .channels = view.channels.bits(),
+            .channels = view.channels.kernel_bits(),
             .keeps = kept(view),
             .transparent_background = view.transparent_background ? 1u : 0u,
             .strategy = shading::StrategyBoth,

@@ -12,7 +12,7 @@ std::vector<FilmGroup> film_groups(const std::vector<filter::Choice>& filters) {
         auto group = std::find_if(groups.begin(), groups.end(),
                                   [&](const FilmGroup& g) { return g.path_class == path_class; });
         if (group == groups.end()) group = groups.insert(group, {.path_class = path_class});
-        group->channels = frame::ChannelSet::from_bits(group->channels.bits() | channels.bits());
+        group->channels = group->channels | channels;
         group->filters.push_back(i);
     }
     return groups;
@@ -21,7 +21,7 @@ std::vector<FilmGroup> film_groups(const std::vector<filter::Choice>& filters) {
 double SamplingCost::of(frame::ChannelSet channels, view::PathClass path_class, const std::stop_token& stop) {
     constexpr int Tries = 3;
     constexpr std::uint64_t Spp = 4;
-    const auto key = std::pair(channels.bits(), path_class);
+    const auto key = std::pair(channels.words(), path_class);
     if (const auto found = known_.find(key); found != known_.end()) return found->second;
     const view::View view = sampler_.view(size_.width, size_.height, channels, path_class, 0);
     double best = 0.0;

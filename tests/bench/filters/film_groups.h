@@ -26,7 +26,7 @@ class SamplingCost {
   private:
     const Sampler& sampler_;
     Size size_;
-    std::map<std::pair<std::uint32_t, view::PathClass>, double> known_;
+    std::map<std::pair<frame::ChannelSet::Words, view::PathClass>, double> known_;
 };
 
 }  // namespace tessera::tools::bench

@@ -37,7 +37,7 @@ std::optional<BenchResults> run_bench(const BenchPlan& plan, const BenchProgress
         .software = "tessera " + cli::version(), .backend = renderer.kind, .threads = plan.jobs};
     BenchPlan possible = plan;
     std::erase_if(possible.filters, [&](const filter::Choice& choice) {
-        if ((choice.channels().bits() & ~renderer.channels.bits()) == 0) return false;
+        if (renderer.channels.contains(choice.channels())) return false;
         results.notes.push_back("filter '" + to_text(choice) +
                                 "' is left out: the renderer lacks a channel that it reads");
         return true;

@@ -116,7 +116,7 @@ BENCHMARK(path_tracer_rays)->Unit(benchmark::kMillisecond);
 
 void path_tracer_all_channels(benchmark::State& state) {
     view::View view = bed().view;
-    view.channels = frame::ChannelSet::from_bits((1u << frame::ChannelCount) - 1u);
+    view.channels = frame::ChannelSet::all();
     trace_view(state, view);
 }
 BENCHMARK(path_tracer_all_channels)->Unit(benchmark::kMillisecond);

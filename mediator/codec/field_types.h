@@ -15,10 +15,10 @@
 #include "mediator/base/clock.h"
 #include "mediator/base/description.h"
 #include "mediator/base/ids.h"
-#include "mediator/wire/format.h"
+#include "mediator/codec/format.h"
 
-// Private to wire/*.cpp: which kinds of fields the codec knows, and how numbers travel.
-namespace tessera::wire {
+// Which kinds of fields the codec knows, and how numbers travel.
+namespace tessera::codec {
 
 // Specialised for what has a layout of its own: write(FormatWriter&, const T&) and read(FormatReader&, T&) of the message's
 // content.
@@ -143,4 +143,4 @@ inline std::uint64_t get_bits(FormatReader& in, WireType type) {
 
 }  // namespace detail
 
-}  // namespace tessera::wire
+}  // namespace tessera::codec

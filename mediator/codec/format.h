@@ -15,7 +15,7 @@
 
 // The encoding of Protocol Buffers, as far as proto3 needs it: tags, varints, fixed numbers and lengths. No allocation
 // follows a number that was read.
-namespace tessera::wire {
+namespace tessera::codec {
 
 static_assert(std::endian::native == std::endian::little, "numbers of fixed width are copied as they are");
 
@@ -132,4 +132,4 @@ class FormatReader {
     std::size_t entry_ = NoEntry;
 };
 
-}  // namespace tessera::wire
+}  // namespace tessera::codec

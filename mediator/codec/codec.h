@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "mediator/base/hash.h"
-#include "mediator/wire/field_types.h"
-#include "mediator/wire/format.h"
+#include "mediator/codec/field_types.h"
+#include "mediator/codec/format.h"
 
-// One codec for all described structures: the bytes are those of the messages in proto/. Private to wire/*.cpp.
+// One codec for all described structures: the bytes are those of the messages in proto/.
 //
 //     C++                                      proto3
 //     bool, unsigned, enumeration, id          bool, uint32, uint64; with FullWidth fixed64
@@ -27,7 +27,7 @@
 // structure's own initial value; an absent vector or structure keeps it. With InitialWhenAbsent numbers are always written,
 // and an absent one has the initial value. Unknown fields are skipped. A decoder throws
 // Error{InvalidInput}; on its way it allocates in proportion to the bytes that it has, never to a number in them.
-namespace tessera::wire {
+namespace tessera::codec {
 
 // Entries of a list without a Limit: as many as fit into a control message.
 inline constexpr Limit DefaultLimit{65536};
@@ -363,4 +363,4 @@ Expected<T> from_bytes(std::span<const std::byte> bytes) {
     }
 }
 
-}  // namespace tessera::wire
+}  // namespace tessera::codec

@@ -10,9 +10,9 @@
 
 #include "mediator/base/error.h"
 
-// Private to wire/*.cpp: little-endian numbers one after another. The reader checks before it looks; it
+// Little-endian numbers one after another. The reader checks before it looks; it
 // throws Error{InvalidInput}.
-namespace tessera::wire {
+namespace tessera::codec {
 
 class ByteWriter {
   public:
@@ -55,4 +55,4 @@ class ByteReader {
     std::span<const std::byte> bytes_;
 };
 
-}  // namespace tessera::wire
+}  // namespace tessera::codec

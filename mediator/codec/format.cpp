@@ -1,8 +1,8 @@
-#include "mediator/wire/format.h"
+#include "mediator/codec/format.h"
 
 #include <algorithm>
 
-namespace tessera::wire {
+namespace tessera::codec {
 
 namespace {
 
@@ -91,4 +91,4 @@ void FormatReader::fail(std::string_view what) const {
                 "malformed message: " + (place.empty() ? "" : place + ": ") + std::string(what));
 }
 
-}  // namespace tessera::wire
+}  // namespace tessera::codec

@@ -1,9 +1,10 @@
-// Writes the module tessera/objects.py from the rows of scene objects. Usage: tessera_objects_writer > FILE
+// Writes a module of the package from the rows of scene objects, or of channels. Usage: tessera_tables_writer objects|channels
 #include <cctype>
 #include <charconv>
 #include <cstdio>
 #include <string>
 
+#include "mediator/frame/channels.h"
 #include "mediator/scene/fields.h"
 #include "mediator/scene/validate_object.h"
 
@@ -163,9 +164,35 @@ void write_rows() {
     });
 }
 
-}  // namespace
+const char* rule_name(frame::MergeRule rule) {
+    switch (rule) {
+        case frame::MergeRule::Moments:
+            return "moments";
+        case frame::MergeRule::Sum:
+            return "sum";
+        case frame::MergeRule::Minimum:
+            return "minimum";
+        case frame::MergeRule::Maximum:
+            return "maximum";
+        case frame::MergeRule::Nearest:
+            return "nearest";
+        case frame::MergeRule::First:
+            break;
+    }
+    return "first";
+}
 
-int main() {
+void write_channels() {
+    std::printf("\"\"\"Channels of film by their number; written by the build.\"\"\"\n\n");
+    std::printf("# name, rule, components\nCHANNEL_ROWS: tuple[tuple[str, str, int], ...] = (\n");
+    for (const frame::ChannelInfo& entry : frame::channel_table()) {
+        std::printf("    (\"%s\", \"%s\", %u),  # %s\n", std::string(entry.name).c_str(),
+                    rule_name(entry.rule), entry.components, std::string(entry.meaning).c_str());
+    }
+    std::printf(")\n");
+}
+
+void write_objects() {
     std::printf("%s\n@dataclass(frozen=True)\nclass TextureSlot:\n", Head);
     std::printf(
         "    \"\"\"A texture as a material uses it: uv' = translate(offset) rotate(rotation) scale(scale) uv."
@@ -186,4 +213,10 @@ int main() {
         std::printf("    )),\n");
     }
     std::printf(")\n");
+}
+
+}  // namespace
+
+int main(int, char** argv) {
+    std::string_view(argv[1]) == "channels" ? write_channels() : write_objects();
 }
