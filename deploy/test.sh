@@ -4,8 +4,9 @@
 # Sets up, builds and runs the tests, but for those with the label `long`, which compile the tree once more or take many
 # minutes for another reason.
 #   --long  runs these, too
-#   --ci    what a submission has to pass (.ci/run): the same tests, with the tools of deploy/packages-ci.txt installed; a
-#           tool that is missing is a failure, while elsewhere the tests that need it are left out
+#   --ci    what a submission has to pass (.ci/run): also the tests of the benchmarks, with the tools of
+#           deploy/packages-ci.txt installed; a tool that is missing is a failure, while elsewhere the tests that need it are
+#           left out
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=deploy/progress.sh
