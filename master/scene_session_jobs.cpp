@@ -121,6 +121,9 @@ void SceneSession::asked(SessionRecord& session, const wire::FetchJob& request) 
             session, request.request,
             is_rendered ? "job '" + job.name + "' is still being rendered: try again later" : no_such(job));
     }
+    constexpr std::size_t MaxOnTheirWay = 16;
+    if (views_.frames_on_their_way(session.id) >= MaxOnTheirWay)
+        return done(session, request.request, "too many pictures are on their way to this client already");
     done(session, request.request, {});
     const session::ViewSummary& summary = kept->job.status.summary;
     views_.send_kept(session, {.view = {},

@@ -242,6 +242,12 @@ void Delivery::send_kept(const SessionRecord& session, Ended kept) {
                           .film = {}});
 }
 
+std::size_t Delivery::on_their_way(SessionId session) const {
+    return static_cast<std::size_t>(
+        std::count_if(shipments_.begin(), shipments_.end(),
+                      [&](const Shipment& shipment) { return shipment.to.first == session; }));
+}
+
 void Delivery::send() {
     std::set<SessionId> busy;
     std::erase_if(shipments_, [&](Shipment& shipment) {

@@ -48,6 +48,7 @@ class Delivery {
     std::vector<Ended> take_ended() { return std::exchange(ended_, {}); }
     // Sends a picture that was kept, as the end of the session's view of that number.
     void send_kept(const SessionRecord& session, Ended kept);
+    std::size_t on_their_way(SessionId session) const;  // shipments
 
     std::optional<ViewId> watched(SessionId session, std::uint64_t number) const;
     std::uint64_t watchers(ViewId view) const;

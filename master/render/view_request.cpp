@@ -13,6 +13,9 @@ namespace {
 
 constexpr std::uint32_t MaxEdge = 65536;
 constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 28;
+constexpr std::uint32_t SmallestTile = 8;  // so that no view has more than some millions of them
+constexpr std::size_t MaxName = 128;
+constexpr Duration LongestTime = std::chrono::hours(24 * 365);  // sums with it stay within a TimePoint
 
 bool finite(const view::CameraPose& camera) {
     for (int column = 0; column < 4; ++column) {
@@ -66,6 +69,9 @@ std::string problem_of(const session::ViewRequest& request) {
     const session::StopRule& stop = request.stop;
     if (stop.spp == 0 || stop.spp > session::MaxSamplesPerPixel)
         return "samples per pixel are not between 1 and 2^31";
+    if (request.name.size() > MaxName) return "the view's name is longer than 128 bytes";
+    if (request.tile != 0 && request.tile < SmallestTile)
+        return "tiles are at least 8 pixels wide: ask for larger ones";
     const auto filter = filter::parse_choice(view.filter, filter::catalog());
     if (!filter) return filter.error().what();
     const bool has_picture = request.picture != session::PictureEncoding::None;
@@ -73,6 +79,7 @@ std::string problem_of(const session::ViewRequest& request) {
         return "neither a picture nor the film is asked for: ask for one of them";
     }
     if (stop.budget < Duration::zero()) return "the time budget is negative";
+    if (std::max(stop.budget, stop.time_limit) > LongestTime) return "more than a year of time is asked for";
     if (stop.has_budget() && !has_picture) return "a time budget is for a picture: ask for one";
     if (stop.adapts_size && (request.film || !stop.has_budget())) {
         return "only a picture with a time budget and without its film can adapt its size";

@@ -53,6 +53,7 @@ class Views {
     void send_kept(const SessionRecord& session, Delivery::Ended kept) {
         delivery_.send_kept(session, std::move(kept));
     }
+    std::size_t frames_on_their_way(SessionId session) const { return delivery_.on_their_way(session); }
 
     void taken(SessionId session, const wire::FrameTaken& taken) { delivery_.taken(session, taken); }
     void pick(SessionId session, const wire::Pick& request, Version version);

@@ -43,5 +43,26 @@ TEST(RequestProblem, CamerasThatCannot) {
     EXPECT_TRUE(is_refused_for({.right = 1e16, .projection = scene::Projection::Orthographic}, "wider than"));
 }
 
+// Any client may ask: nothing that it says may cost memory without bound, or leave what numbers can hold.
+TEST(RequestProblem, WhatWouldCostTooMuchOrOverflow) {
+    const auto problem = [](const auto& change) {
+        session::ViewRequest request = request_with({});
+        change(request);
+        return problem_of(request);
+    };
+    EXPECT_NE(problem([](auto& r) { r.tile = 1; }).find("8 pixels"), std::string::npos);
+    EXPECT_EQ(problem([](auto& r) { r.tile = 8; }), "");
+    EXPECT_NE(problem([](auto& r) { r.stop.time_limit = Duration::max(); }).find("year"), std::string::npos);
+    EXPECT_NE(problem([](auto& r) {
+                  r.picture = session::PictureEncoding::Png;
+                  r.stop.budget = Duration::max();
+              }).find("year"),
+              std::string::npos);
+    EXPECT_NE(problem([](auto& r) { r.stop.time_limit = Duration::min(); }).find("negative"),
+              std::string::npos);
+    EXPECT_NE(problem([](auto& r) { r.name = std::string(129, 'n'); }).find("128"), std::string::npos);
+    EXPECT_NE(problem([](auto& r) { r.stop.spp = 0; }).find("2^31"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace tessera::master
