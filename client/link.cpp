@@ -247,7 +247,7 @@ void Link::watch(TimePoint now) {
 void Link::leave_for_a_while(TimePoint now) {
     outbox_.clear();  // belongs to the old sockets
     state_ = State::Away;
-    is_away_ = true;
+    if (number_ != 0 && !is_away_.exchange(true)) deliver(Interrupted{});
     return_at_ = now + liveness_.next_backoff();
 }
 

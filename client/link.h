@@ -19,13 +19,15 @@
 
 namespace tessera::client {
 
+// The connection is lost, and tried again.
+struct Interrupted {};
 // The connection was away and is back. Same session: the master kept everything, but messages may be lost.
 // Otherwise the master took us for somebody new.
 struct Rejoined {
     bool same_session = false;
 };
 using Incoming = std::variant<wire::ControlMessage, wire::FrameTile, wire::PictureChunk, wire::FrameHeader,
-                              wire::OutputPicture, wire::BlobChunk, wire::BlobAbsent, Rejoined>;
+                              wire::OutputPicture, wire::BlobChunk, wire::BlobAbsent, Interrupted, Rejoined>;
 
 // The session's thread: says hello, keeps heartbeats, reconnects after silence, serves blobs. What is meant
 // for the session waits in an inbox, in order per link. Its states:

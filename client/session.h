@@ -34,6 +34,8 @@ struct SessionSettings {
         std::chrono::seconds(30);  // of silence after it, while reconnecting; and of a delivery
     Duration heartbeat = std::chrono::seconds(1);  // until the master's welcome tells its own
     bool mirrors_scene = true;  // of a shared scene; else scene() stays empty until a refresh
+    // Hears, on the caller's thread, when the connection is lost and tried again, and when it is back.
+    std::function<void(bool is_away)> on_away = {};
 };
 
 // Where a cluster is, and who we are to it.

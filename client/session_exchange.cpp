@@ -48,6 +48,7 @@ bool Session::Implementation::take_in(TimePoint deadline, std::stop_token stop) 
 }
 
 void Session::Implementation::take(Rejoined&& rejoined) {
+    tell_away(false);
     if (state == State::Inside && !rejoined.same_session) state = State::Joining;
     if (state == State::Joining) {
         join_request.no_wait = false;

@@ -67,6 +67,7 @@ struct Session::Implementation {
 
     // False: nothing came until the deadline.
     bool take_in(TimePoint deadline, std::stop_token stop);
+    void take(Interrupted&&) const { tell_away(true); }
     void take(Rejoined&& rejoined);
     void take(wire::ControlMessage&& message);
     void take(const wire::SceneJoined& welcome);
@@ -79,6 +80,9 @@ struct Session::Implementation {
     void take(const wire::BlobAbsent& absent) { fetcher.absent(absent.hash); }
     bool take_for_view(wire::ControlMessage& message);
     bool take_for_output(wire::ControlMessage& message);
+    void tell_away(bool is_away) const {
+        if (settings.on_away) settings.on_away(is_away);
+    }
     void frame_may_be_here();
     void resend();
 

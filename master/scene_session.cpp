@@ -282,29 +282,31 @@ void SceneSession::asked(SessionRecord& session, const wire::ReadWriters& reques
 }
 
 void SceneSession::asked(SessionRecord& session, wire::RequestView request, TimePoint now) {
-    session::ViewRequest& wanted = request.wanted;
-    std::string problem;
-    if (request.share) {
-        problem = views_.share(session.id, request.number, wanted);
-    } else if (problem = wanted.detached ? submit_job(session, wanted) : ""; !problem.empty()) {
-        // it is said below
-    } else if (problem = problem_of(wanted); problem.empty()) {
-        // What was edited before is seen, and the render origin follows the camera while it is the only one.
-        publish_if_due(now);
-        const bool waits_for_end = wanted.frames == session::Frames::Last;
-        if (waits_for_end && authority_.has_unpublished() && views_.may_publish()) {
-            if (auto changes = authority_.publish()) publish(*changes, now);
-        }
-        if (views_.table().all().size() <= 1) {
-            const glm::dvec3 eye(wanted.view.camera.world_from_camera[3]);
-            if (auto moved = authority_.follow_camera(eye)) publish(*moved, now);
-        }
-        const ViewOwner owner{session.id, name(session.id), session.user, members_.at(session.id).key};
-        const std::string job = wanted.detached ? wanted.name : "";
-        problem = views_.open(owner, request.number, std::move(wanted), authority_.version(), now);
-        if (problem.empty() && !job.empty()) job_submitted(job);
-    }
+    std::string problem = request.share ? views_.share(session.id, request.number, request.wanted)
+                                        : open_view(session, request.number, request.wanted, now);
     if (request.request != 0 || !problem.empty()) done(session, request.request, std::move(problem));
+}
+
+std::string SceneSession::open_view(const SessionRecord& session, std::uint64_t number,
+                                    const session::ViewRequest& wanted, TimePoint now) {
+    if (wanted.detached) {
+        if (std::string problem = submission_problem(session, wanted); !problem.empty()) return problem;
+    }
+    if (std::string problem = problem_of(wanted); !problem.empty()) return problem;
+    // What was edited before is seen, and the render origin follows the camera while it is the only one.
+    publish_if_due(now);
+    const bool waits_for_end = wanted.frames == session::Frames::Last;
+    if (waits_for_end && authority_.has_unpublished() && views_.may_publish()) {
+        if (auto changes = authority_.publish()) publish(*changes, now);
+    }
+    if (views_.table().all().size() <= 1) {
+        const glm::dvec3 eye(wanted.view.camera.world_from_camera[3]);
+        if (auto moved = authority_.follow_camera(eye)) publish(*moved, now);
+    }
+    const ViewOwner owner{session.id, name(session.id), session.user, members_.at(session.id).key};
+    std::string problem = views_.open(owner, number, wanted, authority_.version(), now);
+    if (problem.empty() && wanted.detached) job_submitted(wanted.name);
+    return problem;
 }
 
 void SceneSession::asked(SessionRecord& session, const wire::SetViewFilter& request, TimePoint now) {

@@ -131,7 +131,9 @@ class SceneSession {
     void follow_display(TimePoint now);
     void publish_if_due(TimePoint now);
     void keep_journal(TimePoint now);
-    std::string submit_job(const SessionRecord& session, const session::ViewRequest& wanted) const;
+    std::string open_view(const SessionRecord& session, std::uint64_t number,
+                          const session::ViewRequest& wanted, TimePoint now);
+    std::string submission_problem(const SessionRecord& session, const session::ViewRequest& wanted) const;
     void job_submitted(const std::string& name);
     void add_new_jobs(std::vector<wire::SavedView>& saved) const;
     void keep_ended_jobs();

@@ -32,7 +32,8 @@ std::string no_such(const session::JobName& job) {
 
 }  // namespace
 
-std::string SceneSession::submit_job(const SessionRecord& session, const session::ViewRequest& wanted) const {
+std::string SceneSession::submission_problem(const SessionRecord& session,
+                                             const session::ViewRequest& wanted) const {
     if (session.role == net::Role::Viewer) return "a viewer cannot submit jobs: use an editor's key";
     if (services_.jobs.find({session.user, wanted.name}) != nullptr) {
         return "a job named '" + wanted.name +

@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <iostream>
+
 #include "client/tools/this_machine.h"
 
 namespace tessera::tools {
@@ -16,7 +18,13 @@ client::SessionSettings session_settings(const std::string& name) {
     return {.name = name,
             .host = host_name(),
             .software = "tessera " + cli::version(),
-            .pid = static_cast<std::uint64_t>(::getpid())};
+            .pid = static_cast<std::uint64_t>(::getpid()),
+            .on_away = [name](bool is_away) {
+                std::cerr << name
+                          << (is_away ? ": the master does not answer: waiting for it to come back"
+                                      : ": the master is back")
+                          << std::endl;
+            }};
 }
 
 }  // namespace tessera::tools

@@ -426,7 +426,8 @@ TEST_F(SessionTest, AMasterThatLeavesForGoodEndsTheCall) {
 }
 
 TEST_F(SessionTest, AfterSilenceItComesBackAsTheSameAndTheFrameGoesOn) {
-    const auto session = joined({}, quick_welcome());
+    std::vector<bool> away;
+    const auto session = joined({.on_away = [&](bool is_away) { away.push_back(is_away); }}, quick_welcome());
     auto rendered = in_background([&] { return render(*session, small_view(), {}, {}); });
     (void)view_requested();
     // Nothing is said: the next word is a greeting, over new sockets.
@@ -439,6 +440,7 @@ TEST_F(SessionTest, AfterSilenceItComesBackAsTheSameAndTheFrameGoesOn) {
     master_.send(tile(0, 1, {2, 1, 4, 3}));
     master_.send(done(request, {.samples = 24}));
     EXPECT_EQ(rendered.get().summary.samples, 24u);
+    EXPECT_EQ(away, (std::vector{true, false}));
 }
 
 TEST_F(SessionTest, AnEditUnderWayIsSentAgainAfterABreak) {
