@@ -203,8 +203,9 @@ void Delivery::ship(std::uint64_t frame, Making&& making, const Reconstructed& m
         }
         header.view = key.second;
         if (making.is_end) {
-            outbox_.control(session->control, wire::ViewDone{header.view, header.frame,
-                                                             end_of(*views_.find(making.view), made)});
+            outbox_.control(
+                session->control,
+                encoded(wire::ViewDone{header.view, header.frame, end_of(*views_.find(making.view), made)}));
         }
         shipments_.push_back({.to = key,
                               .view = making.view,
@@ -232,7 +233,7 @@ session::ViewSummary Delivery::end_of(const ViewState& view, const Reconstructed
 void Delivery::send_kept(const SessionRecord& session, Ended kept) {
     kept.header.frame = next_frame_++;
     outbox_.control(session.control,
-                    wire::ViewDone{kept.header.view, kept.header.frame, std::move(kept.summary)});
+                    encoded(wire::ViewDone{kept.header.view, kept.header.frame, std::move(kept.summary)}));
     shipments_.push_back({.to = {session.id, kept.header.view},
                           .view = {},
                           .frame = kept.header.frame,

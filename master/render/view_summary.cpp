@@ -1,5 +1,9 @@
 #include "master/render/view_summary.h"
 
+#include <algorithm>
+
+#include "mediator/wire/envelope.h"
+
 namespace tessera::master {
 
 bool has_picture(const ViewState& view, session::PictureEncoding wanted) {
@@ -39,6 +43,22 @@ session::ViewSummary summary_of(const ViewState& view, const SceneFacts& facts,
                        .blobs = bytes.blobs - run.bytes_before.blobs,
                        .film = bytes.film - run.bytes_before.film};
     return done;
+}
+
+net::Bytes encoded(wire::ViewDone done) {
+    net::Bytes message = wire::encode(wire::ControlMessage(done));
+    std::vector<session::NodeSummary>& nodes = done.summary.nodes;
+    const std::size_t all = nodes.size();
+    std::ranges::stable_sort(nodes, std::greater<>(), &session::NodeSummary::samples);
+    std::vector<std::string>& notes = done.summary.picture.notes;
+    notes.emplace_back();
+    while (!wire::fits_control(message) && !nodes.empty()) {
+        nodes.resize(nodes.size() / 2);
+        notes.back() =
+            std::to_string(all - nodes.size()) + " of " + std::to_string(all) + " nodes are not listed";
+        message = wire::encode(wire::ControlMessage(done));
+    }
+    return message;
 }
 
 void describe(const ViewState& view, session::PictureSummary& picture) {

@@ -199,6 +199,9 @@ TEST(RealProcesses, AMasterKilledInTheMiddleOfABatchChangesNothing) {
     const json result = json::parse(render.out());
     EXPECT_EQ(result["film_hash"].get<std::string>(), expected_hash_of_slow_frame(cluster));
     EXPECT_EQ(result["spp"], 32);
+    std::uint64_t samples = 0;  // since the last master was started
+    for (const json& node : result["nodes"]) samples += node["samples"].get<std::uint64_t>();
+    EXPECT_LT(samples, 160u * 120u * 32u) << "what was merged before its death was rendered once more";
     EXPECT_TRUE(cluster.wait_for([](const json& status) { return status["live"].is_null(); }))
         << "its scene goes with it";
 }
