@@ -94,7 +94,7 @@ TEST_P(EditedBackend, RendersTheSameBitsAsOneThatWasBuiltAnew) {
         return backend.render(view, unit, {});
     };
     // A software device compiles a kernel, for seconds, for each set of features that comes up.
-    const int steps = GetParam() == "vulkan" ? 100 : 200;
+    const int steps = GetParam() == "vulkan" ? 40 : 200;
     for (const std::uint64_t seed : {5u, 6u}) {
         test::RandomEdits edits(seed, *blobs);
         const auto edited = make();
