@@ -54,14 +54,14 @@ TEST_F(KeptJobsTest, ComeBackAsTheyWereInTheOrderOfTheirEnds) {
         jobs.record_to(folder);
         jobs.add(job("ann", "b", 10), picture(5, 7));
         jobs.add(job("ann", "a", 20), picture(0));
-        jobs.add(job("bob", "a", 30), picture(1));
-        wait_for_file_of(jobs, "a");
+        jobs.add(job("bob", "c", 30), picture(1));
+        wait_for_file_of(jobs, "c");
     }
     KeptJobs jobs(events);
     jobs.record_to(folder);
     ASSERT_EQ(jobs.all().size(), 3u);
     EXPECT_EQ(jobs.all()[0]->job.status.job, (session::JobName{"ann", "b"}));
-    EXPECT_EQ(jobs.all()[2]->job.status.job, (session::JobName{"bob", "a"}));
+    EXPECT_EQ(jobs.all()[2]->job.status.job, (session::JobName{"bob", "c"}));
     const KeptJobs::Entry* kept = jobs.find({"ann", "b"});
     ASSERT_NE(kept, nullptr);
     EXPECT_EQ(*kept->picture, *picture(5, 7));
