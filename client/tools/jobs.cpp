@@ -1,5 +1,6 @@
 #include "client/tools/jobs.h"
 
+#include <algorithm>
 #include <ctime>
 #include <iostream>
 #include <memory>

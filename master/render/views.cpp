@@ -56,6 +56,8 @@ std::string Views::open(const ViewOwner& owner, std::uint64_t number, session::V
     std::string problem;
     ViewState* view = find_or_add(owner, number, request.name, problem);
     if (view == nullptr) return problem;
+    if (view->asked_revision != 0 && view->request.detached != request.detached)
+        return "a view cannot become a job, or stop being one: close it, or cancel the job, first";
     view->owner = owner;
     view->name = request.name;
     view->orphaned.reset();
