@@ -6,8 +6,8 @@
 
 #include "mediator/display/frustum.h"
 #include "mediator/scene/fields.h"
-#include "mediator/wire/envelope.h"
 #include "tests/cluster/display_fixture.h"
+#include "tests/cluster/raw_peer.h"
 
 namespace tessera::test {
 namespace {
@@ -314,45 +314,26 @@ TEST_F(Displays, WhatCannotBeShownIsRefusedWithTheReason) {
 TEST_F(Displays, AnOutputWhoseBulkLinkIsLateIsSentItsFrames) {
     cluster.add_node("null");
     ann->open_display(wall);
-    const auto peer = cluster.channel(net::Role::Viewer);
-    const auto say = [&](const wire::ControlMessage& message) {
-        (void)peer->send(net::Link::Control, net::ServerPeer, wire::encode(message));
-    };
-    std::uint64_t token = 0;
-    bool is_opened = false, has_picture = false;
-    const auto listen_until = [&](const auto& done, Duration limit) {
-        const auto deadline = std::chrono::steady_clock::now() + limit;
+    RawPeer peer(cluster.channel(net::Role::Viewer));
+    const auto listen_until = [&](const auto& done) {
+        const auto deadline = std::chrono::steady_clock::now() + 30s;
         while (!done() && std::chrono::steady_clock::now() < deadline) {
             for (auto& [name, shower] : showers) shower.step();
-            say(wire::Heartbeat{.sent_at = 1});
-            const auto received = peer->receive(std::chrono::steady_clock::now() + 5ms);
-            const auto* message = std::get_if<net::Message>(&received);
-            if (message == nullptr) continue;
-            if (message->link == net::Link::Bulk) {
-                const auto bulk = wire::decode_bulk(message->bytes);
-                has_picture = has_picture || (bulk && std::holds_alternative<wire::OutputPicture>(*bulk));
-                continue;
-            }
-            const auto control = wire::decode_control(message->bytes);
-            if (!control) continue;
-            if (const auto* welcome = std::get_if<wire::Welcome>(&*control)) token = welcome->token;
-            if (!std::holds_alternative<wire::OutputOpened>(*control)) continue;
-            is_opened = true;
-            say(wire::OutputReady{});
+            peer.listen();
         }
         return done();
     };
-    say(wire::Hello{.name = "late"});
-    ASSERT_TRUE(listen_until([&] { return token != 0; }, 30s));
-    say(wire::JoinScene{.title = "test", .name = "late"});
-    say(wire::JoinOutput{.request = 1, .name = "left"});
-    ASSERT_TRUE(listen_until([&] { return is_opened; }, 30s));
+    peer.say(wire::Hello{.name = "late"});
+    ASSERT_TRUE(peer.wait_for<wire::Welcome>());
+    peer.say(wire::JoinScene{.title = "test", .name = "late"});
+    peer.say(wire::JoinOutput{.request = 1, .name = "left"});
+    ASSERT_TRUE(peer.wait_for<wire::OutputOpened>());
+    peer.say(wire::OutputReady{});
     Shower& right = show("right");  // so there are frames
-    ASSERT_TRUE(listen_until([&] { return shows(right, 4); }, 30s));
+    ASSERT_TRUE(listen_until([&] { return shows(right, 4); }));
     EXPECT_EQ(status().display.outputs[0].late, 0u) << "nobody waited for it";
-    (void)peer->send(net::Link::Bulk, net::ServerPeer,
-                     wire::encode(wire::BulkMessage(wire::BulkHello{token})));
-    EXPECT_TRUE(listen_until([&] { return has_picture; }, 30s));
+    peer.say(wire::BulkHello{peer.heard<wire::Welcome>()->token});
+    EXPECT_TRUE(listen_until([&] { return peer.heard<wire::OutputPicture>() != nullptr; }));
 }
 
 TEST_F(Displays, ThePatternIsSwitchedOnForAll) {

@@ -5,9 +5,9 @@
 
 #include "mediator/frame/resolve.h"
 #include "mediator/scene/fields.h"
-#include "mediator/wire/envelope.h"
 #include "tests/cluster/cluster_scene.h"
 #include "tests/cluster/loopback_cluster.h"
+#include "tests/cluster/raw_peer.h"
 
 namespace tessera::test {
 namespace {
@@ -218,43 +218,44 @@ TEST_F(LiveViews, AWatcherThatTakesNothingIsSentOneFrame) {
     session::ViewRequest request = view_of(64, 48, 4);
     request.name = "main";
     ann->request_view(1, request);
-    const auto watcher = cluster.channel(net::Role::Viewer);
-    const auto say = [&](const wire::ControlMessage& message) {
-        (void)watcher->send(net::Link::Control, net::ServerPeer, wire::encode(message));
-    };
-    std::size_t frames = 0;
-    const auto listen = [&] {
-        say(wire::Heartbeat{.sent_at = 1});
-        const auto now = std::chrono::steady_clock::now();
-        for (auto received = watcher->receive(now + 5ms); std::holds_alternative<net::Message>(received);
-             received = watcher->receive(now)) {
-            const net::Message& message = std::get<net::Message>(received);
-            if (message.link == net::Link::Bulk) {
-                const auto bulk = wire::decode_bulk(message.bytes);
-                frames += bulk && std::holds_alternative<wire::FrameHeader>(*bulk) ? 1 : 0;
-                continue;
-            }
-            const auto control = wire::decode_control(message.bytes);
-            const auto* welcome = control ? std::get_if<wire::Welcome>(&*control) : nullptr;
-            if (welcome == nullptr) continue;
-            const wire::BulkMessage token = wire::BulkHello{welcome->token};
-            (void)watcher->send(net::Link::Bulk, net::ServerPeer, wire::encode(token));
-            say(wire::JoinScene{.title = "test", .name = "watcher"});
-            say(wire::RequestView{.number = 1, .wanted = {.name = "main"}, .share = true});
-        }
-    };
-    say(wire::Hello{.name = "watcher"});
-    const auto deadline = std::chrono::steady_clock::now() + 30s;
-    while (frames == 0 && std::chrono::steady_clock::now() < deadline) listen();
+    RawPeer watcher(cluster.channel(net::Role::Viewer));
+    ASSERT_TRUE(watcher.greet("watcher"));
+    watcher.say(wire::JoinScene{.title = "test", .name = "watcher"});
+    watcher.say(wire::RequestView{.number = 1, .wanted = {.name = "main"}, .share = true});
+    ASSERT_TRUE(watcher.wait_for<wire::FrameHeader>());
     for (int i = 1; i <= 20; ++i) {
         ASSERT_TRUE(ann->submit({paint({float(i), 0, 0})}).accepted);
         (void)frames_until(*ann, complete);
-        listen();
+        watcher.listen();
     }
-    EXPECT_EQ(frames, 1u);
-    say(wire::FrameTaken{.number = 1, .frame = 0});  // not the one on its way
-    for (int i = 0; i < 20; ++i) listen();
-    EXPECT_EQ(frames, 1u);
+    EXPECT_FALSE(watcher.heard<wire::FrameHeader>(1));
+    watcher.say(wire::FrameTaken{.number = 1, .frame = 0});  // not the one on its way
+    for (int i = 0; i < 20; ++i) watcher.listen();
+    EXPECT_FALSE(watcher.heard<wire::FrameHeader>(1));
+}
+
+// What the master had sent when the link broke may be lost.
+TEST_F(LiveViews, TheEndOfAViewIsSentAgainAfterABreakOfTheLink) {
+    cluster.add_node("null");
+    session::ViewRequest request = view_of(64, 48, 4);
+    request.frames = session::Frames::Last;
+    request.picture = session::PictureEncoding::Png;
+    RawPeer first_link(cluster.channel(net::Role::Viewer));
+    ASSERT_TRUE(first_link.greet("watcher"));
+    first_link.say(wire::JoinScene{.title = "test", .name = "watcher"});
+    first_link.say(wire::RequestView{.number = 1, .wanted = request});
+    ASSERT_TRUE(first_link.wait_for<wire::ViewDone>());
+
+    RawPeer second_link(cluster.channel(net::Role::Viewer));
+    ASSERT_TRUE(second_link.greet("watcher", first_link.heard<wire::Welcome>()->token));
+    ASSERT_TRUE(second_link.wait_for<wire::ViewDone>());
+    EXPECT_EQ(second_link.heard<wire::Welcome>()->peer_number,
+              first_link.heard<wire::Welcome>()->peer_number);
+    const session::ViewSummary& once = first_link.heard<wire::ViewDone>()->summary;
+    const session::ViewSummary& again = second_link.heard<wire::ViewDone>()->summary;
+    EXPECT_EQ(again.outcome, session::Outcome::Complete);
+    EXPECT_EQ(again.samples, once.samples);
+    EXPECT_TRUE(second_link.wait_for<wire::FrameHeader>()) << "and its picture";
 }
 
 TEST_F(LiveViews, WhatIsWrongWithAViewIsSaid) {
