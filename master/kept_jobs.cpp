@@ -1,6 +1,7 @@
 #include "master/kept_jobs.h"
 
 #include <algorithm>
+#include <latch>
 #include <string>
 
 #include "master/scene/hashed_file.h"
@@ -57,6 +58,13 @@ void KeptJobs::record_to(const fs::path& folder) {
     folder_ = folder;
     disk_ = std::make_unique<TaskThread>();
     make_room();
+}
+
+KeptJobs::~KeptJobs() {
+    if (!disk_) return;
+    std::latch written(1);
+    disk_->post([&] { written.count_down(); });
+    written.wait();
 }
 
 fs::path KeptJobs::path_of(const session::JobName& job) const {

@@ -25,6 +25,7 @@ class KeptJobs {
     };
 
     explicit KeptJobs(EventSink events) : events_(std::move(events)) {}
+    ~KeptJobs();  // waits for the disk
 
     // Takes what lies in the folder, which is made when it is not there; damaged files stay and are told. Throws
     // Error{Io} when it cannot be used.
