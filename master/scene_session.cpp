@@ -305,7 +305,7 @@ std::string SceneSession::open_view(const SessionRecord& session, std::uint64_t 
     }
     const ViewOwner owner{session.id, name(session.id), session.user, members_.at(session.id).key};
     std::string problem = views_.open(owner, number, wanted, authority_.version(), now);
-    if (problem.empty() && wanted.detached) job_submitted(wanted.name);
+    if (problem.empty() && wanted.detached) record_job(wanted.name);
     return problem;
 }
 

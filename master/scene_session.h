@@ -134,7 +134,7 @@ class SceneSession {
     std::string open_view(const SessionRecord& session, std::uint64_t number,
                           const session::ViewRequest& wanted, TimePoint now);
     std::string submission_problem(const SessionRecord& session, const session::ViewRequest& wanted) const;
-    void job_submitted(const std::string& name);
+    void record_job(const std::string& name);
     void add_new_jobs(std::vector<wire::SavedView>& saved) const;
     void keep_ended_jobs();
     void close_when_left(TimePoint now);

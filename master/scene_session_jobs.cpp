@@ -42,8 +42,7 @@ std::string SceneSession::submission_problem(const SessionRecord& session,
     return Views::job_problem(wanted);
 }
 
-void SceneSession::job_submitted(const std::string& name) {
-    views_.keep(name);
+void SceneSession::record_job(const std::string& name) {
     if (!journal_) return;
     for (const auto& [id, view] : views_.table().all()) {
         if (view.name == name) journal_->job_started(without_film(view));

@@ -164,30 +164,13 @@ void write_rows() {
     });
 }
 
-const char* rule_name(frame::MergeRule rule) {
-    switch (rule) {
-        case frame::MergeRule::Moments:
-            return "moments";
-        case frame::MergeRule::Sum:
-            return "sum";
-        case frame::MergeRule::Minimum:
-            return "minimum";
-        case frame::MergeRule::Maximum:
-            return "maximum";
-        case frame::MergeRule::Nearest:
-            return "nearest";
-        case frame::MergeRule::First:
-            break;
-    }
-    return "first";
-}
-
 void write_channels() {
     std::printf("\"\"\"Channels of film by their number; written by the build.\"\"\"\n\n");
     std::printf("# name, rule, components\nCHANNEL_ROWS: tuple[tuple[str, str, int], ...] = (\n");
     for (const frame::ChannelInfo& entry : frame::channel_table()) {
         std::printf("    (\"%s\", \"%s\", %u),  # %s\n", std::string(entry.name).c_str(),
-                    rule_name(entry.rule), entry.components, std::string(entry.meaning).c_str());
+                    std::string(enumerator_name(entry.rule)).c_str(), entry.components,
+                    std::string(entry.meaning).c_str());
     }
     std::printf(")\n");
 }

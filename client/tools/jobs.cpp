@@ -57,16 +57,23 @@ Json job_value(const session::JobStatus& job) {
     return value;
 }
 
+// As people write it.
+std::string words(std::string_view enumerator) {
+    std::string text(enumerator);
+    std::ranges::replace(text, '_', ' ');
+    return text;
+}
+
 std::string state_of(const session::JobStatus& job) {
     if (!job.has_ended)
         return formatted("%3.0f %%  %s", 100.0 * done_share(job),
-                         std::string(enumerator_name(job.progress.phase)).c_str());
+                         words(enumerator_name(job.progress.phase)).c_str());
     const auto seconds = static_cast<std::time_t>(job.ended_at / 1'000'000'000);
     std::tm local{};
     ::localtime_r(&seconds, &local);
     char when[32];
     std::strftime(when, sizeof when, "%Y-%m-%d %H:%M", &local);
-    std::string text = std::string(enumerator_name(job.summary.outcome)) + " at " + when;
+    std::string text = words(enumerator_name(job.summary.outcome)) + " at " + when;
     if (!job.summary.message.empty()) text += ": " + job.summary.message;
     return text;
 }
@@ -118,7 +125,13 @@ int fetch(const FetchOptions& options) {
         return complain(
             FetchName, cli::ExitUnavailable,
             "job '" + options.name + "' has no picture: " +
-                (summary.message.empty() ? std::string(enumerator_name(summary.outcome)) : summary.message));
+                (summary.message.empty() ? words(enumerator_name(summary.outcome)) : summary.message));
+    }
+    if (result.frame.encoding == session::PictureEncoding::Planes) {
+        return complain(FetchName, ExitBadInput,
+                        "job '" + options.name +
+                            "' keeps numbers, no picture file: fetch it from the program that "
+                            "submitted it");
     }
     const std::string kind = extension(result.frame.encoding);
     const std::string output = options.output.empty() ? options.name + "." + kind : options.output;
@@ -131,7 +144,7 @@ int fetch(const FetchOptions& options) {
                               std::string_view(reinterpret_cast<const char*>(result.frame.picture.data()),
                                                result.frame.picture.size()));
     std::cout << formatted("%ux%u pixels, %s, %.2f s rendering\n", result.frame.width, result.frame.height,
-                           std::string(enumerator_name(summary.outcome)).c_str(), summary.seconds_render)
+                           words(enumerator_name(summary.outcome)).c_str(), summary.seconds_render)
               << "wrote " << output << std::endl;
     if (options.remove) session->cancel_job(job);
     return 0;

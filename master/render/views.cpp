@@ -61,7 +61,9 @@ std::string Views::open(const ViewOwner& owner, std::uint64_t number, session::V
     view->owner = owner;
     view->name = request.name;
     view->orphaned.reset();
-    delivery_.watch(owner.session, number, view->id, {request.picture, request.film, request.frames});
+    const Delivery::Wish wish{request.picture, request.film, request.frames};
+    delivery_.watch(owner.session, number, view->id, wish);
+    if (request.detached) delivery_.keep(view->id, wish);  // its end is for take_ended_jobs()
     change(*view, std::move(request), version, now);
     return {};
 }
@@ -144,11 +146,6 @@ std::string Views::job_problem(const session::ViewRequest& request) {
     if (request.film) return "the film of a job is not kept: ask for its picture alone";
     if (request.picture == session::PictureEncoding::None) return "a job without a picture: ask for one";
     return {};
-}
-
-void Views::keep(const std::string& name) {
-    const ViewState& view = *table_.named(name);
-    delivery_.keep(view.id, {view.request.picture, view.request.film, view.request.frames});
 }
 
 void Views::release(ViewId view) {
@@ -288,7 +285,8 @@ void Views::restore(std::vector<wire::SavedView>&& saved, Version version, Hash1
         view.version = version;
         view.waits_since = now;
         view.orphaned = now;
-        if (view.request.detached) keep(view.name);
+        const session::ViewRequest& request = view.request;
+        if (request.detached) delivery_.keep(view.id, {request.picture, request.film, request.frames});
         // Film of another scene is of no use, and the time of one that has a clock began with it.
         if (old.blocks.empty() || old.scene_hash_of_film != scene_hash || view.request.stop.has_clock())
             continue;

@@ -43,7 +43,6 @@ class Views {
     // ---- jobs: views that go on without their client ----
     // What is wrong with it as a job; "" = nothing.
     static std::string job_problem(const session::ViewRequest& request);
-    void keep(const std::string& name);  // its end is for take_ended_jobs()
     std::vector<Delivery::Ended> take_ended_jobs() { return delivery_.take_ended(); }
     // It has ended, or is not wanted any more; whoever else watches it goes on.
     void release(ViewId view);

@@ -18,6 +18,9 @@ namespace tessera::frame {
 //   Nearest  c planes, the first is the key: the record with the smaller key stays, ties to the lower sample
 //   First    c planes: the record of the lowest sample index stays
 enum class MergeRule : std::uint8_t { Moments, Sum, Minimum, Maximum, Nearest, First };
+constexpr auto enumerators(MergeRule) {
+    return std::to_array<std::string_view>({"moments", "sum", "minimum", "maximum", "nearest", "first"});
+}
 
 // Values are on the wire: never renumber.
 enum class Channel : std::uint8_t {

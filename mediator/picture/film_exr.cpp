@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <new>
 
+#include "mediator/base/description.h"
 #include "mediator/base/error.h"
 #include "mediator/frame/resolve.h"
 #include "mediator/picture/exr_header.h"
@@ -20,24 +21,6 @@ namespace tessera::picture {
 namespace {
 
 const std::string Prefix = "statistics";
-
-const char* text(frame::MergeRule rule) {
-    switch (rule) {
-        case frame::MergeRule::Moments:
-            return "moments";
-        case frame::MergeRule::Sum:
-            return "sum";
-        case frame::MergeRule::Minimum:
-            return "minimum";
-        case frame::MergeRule::Maximum:
-            return "maximum";
-        case frame::MergeRule::Nearest:
-            return "nearest";
-        case frame::MergeRule::First:
-            return "first";
-    }
-    return "";
-}
 
 Layer counts_layer(const frame::FilmTile& film) {
     Layer layer{"samples", {"count"}, frame::resolve_counts(film), true};
@@ -172,7 +155,7 @@ void write_film_exr(const std::string& path, const FilmFile& file,
     std::map<std::string, std::string> attributes = file.attributes;
     for (const frame::ChannelInfo& entry : frame::channel_table()) {
         if (!film.channels.contains(entry.channel)) continue;
-        attributes["tessera/merge/" + std::string(entry.name)] = text(entry.rule);
+        attributes["tessera/merge/" + std::string(entry.name)] = std::string(enumerator_name(entry.rule));
         if (statistics == Statistics::Saved) layers.push_back(statistics_layer(film, entry));
         if (entry.channel == Channel::ObjectIndex) {
             layers.push_back(object_layer(film));
