@@ -124,7 +124,7 @@ TEST_F(LiveViews, AnotherFilterKeepsTheFilm) {
 
 TEST_F(LiveViews, AFilterThatReadsMoreGetsItFromThenOn) {
     cluster.add_node("null", {}, 20us);
-    session::ViewRequest request = view_of(64, 48, 256);
+    session::ViewRequest request = view_of(64, 48, 64);
     request.view.filter = "none";
     request.picture = session::PictureEncoding::Planes;
     ann->request_view(1, request);

@@ -18,7 +18,7 @@ namespace {
 
 using frame::Channel, frame::FilmTile, frame::Image;
 
-constexpr std::uint32_t Size = 96, Spp = 16;
+constexpr std::uint32_t Size = 64, Spp = 16;
 constexpr float Tolerance = 1e-3f;  // of a value, absolute up to 1
 
 bool agree(float a, float b) {

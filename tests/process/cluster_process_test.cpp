@@ -55,7 +55,7 @@ TEST(RealProcesses, GiveTheBitsOfOneProcess) {
 
 // The null back-end with a fixed cost per sample makes the frame last long enough to pull plugs at leisure.
 const std::vector<std::string> SlowNode{"--backend", "null", "--simulate-cost", "20us"};
-const std::vector<std::string> SlowFrame{"--size", "160x120", "--spp", "32", "--seed", "5"};
+const std::vector<std::string> SlowFrame{"--size", "160x120", "--spp", "16", "--seed", "5"};
 
 std::string expected_hash_of_slow_frame(const RealCluster& cluster) {
     const auto result = render_embedded(cluster.folder(), "expected", scene_file("still.glb"),
@@ -198,10 +198,10 @@ TEST(RealProcesses, AMasterKilledInTheMiddleOfABatchChangesNothing) {
     ASSERT_EQ(render.wait(std::chrono::minutes(3)).value_or(-1), 0) << render.err();
     const json result = json::parse(render.out());
     EXPECT_EQ(result["film_hash"].get<std::string>(), expected_hash_of_slow_frame(cluster));
-    EXPECT_EQ(result["spp"], 32);
+    EXPECT_EQ(result["spp"], 16);
     std::uint64_t samples = 0;  // since the last master was started
     for (const json& node : result["nodes"]) samples += node["samples"].get<std::uint64_t>();
-    EXPECT_LT(samples, 160u * 120u * 32u) << "what was merged before its death was rendered once more";
+    EXPECT_LT(samples, 160u * 120u * 16u) << "what was merged before its death was rendered once more";
     EXPECT_TRUE(cluster.wait_for([](const json& status) { return status["live"].is_null(); }))
         << "its scene goes with it";
 }
@@ -234,7 +234,7 @@ TEST(RealProcesses, AJobOutlivesItsClientAndItsMaster) {
     cluster.start_master();
     tessera("fetch", {"fetch", "night", "-o", cluster.folder() / "night.exr", "--remove"});
     const json expected = cluster.render("expected", scene_file("still.glb"), SlowFrame);
-    EXPECT_EQ(expected["spp"], 32);
+    EXPECT_EQ(expected["spp"], 16);
     ChildProcess compare(
         cluster.folder().path(), "compare", "tessera",
         {"compare", cluster.folder() / "night.exr", cluster.folder() / "expected.exr", "--json"});
