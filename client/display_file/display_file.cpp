@@ -33,6 +33,10 @@ void read_settings(Section section, Display& display) {
     display.max_bounces = std::uint32_t(section.whole("max_bounces", 0, 1024).value_or(display.max_bounces));
     display.exposure = section.number("exposure", -60.0, 60.0).value_or(display.exposure);
     display.white = section.number("white", 0.0, 1e6).value_or(display.white);
+    if (display.white > 0.0) display.view_transform = view::ViewTransform::Reinhard;
+    const auto transforms = enumerators(view::ViewTransform{});
+    if (const auto index = section.choice("view_transform", transforms))
+        display.view_transform = static_cast<view::ViewTransform>(*index);
     display.stereo_difference = section.truth("stereo_difference").value_or(false);
     section.refuse_unknown();
 }

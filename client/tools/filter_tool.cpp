@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "client/tools/display_transform_options.h"
 #include "client/tools/pictures.h"
 #include "client/tools/view_attributes.h"
 #include "master/filter/catalog.h"
@@ -91,6 +92,7 @@ Json as_json(const filter::Description& filter) {
 
 struct FilterOptions {
     std::string input, output, filter;
+    DisplayTransformOptions display;
     bool json = false, maps = false;
 };
 
@@ -112,7 +114,8 @@ Expected<void> check(const filter::Choice& choice, const picture::FilmFile& file
     return {};
 }
 
-void write(const FilterOptions& options, const picture::FilmFile& file, const filter::Output& output) {
+void write(const FilterOptions& options, const view::DisplayTransform& transform,
+           const picture::FilmFile& file, const filter::Output& output) {
     const frame::Image picture = interleaved(output.picture);
     if (picture_format(options.output) == PictureFormat::Exr) {
         std::vector<picture::Layer> maps;
@@ -127,7 +130,7 @@ void write(const FilterOptions& options, const picture::FilmFile& file, const fi
         }
         picture::write_film_exr(options.output, file, picture, picture::Statistics::Left, maps);
     } else {
-        write_picture(options.output, picture);
+        write_picture(options.output, picture, transform);
     }
 }
 
@@ -136,6 +139,8 @@ int run_filter(const FilterOptions& options) {
     const auto choice = filter::parse_choice(options.filter, filter::catalog());
     if (!choice) return wrong(std::string("--filter: ") + choice.error().what() + "; see tessera filters");
     if (!picture_format(options.output)) return wrong("-o: end the picture's name with .exr, .png or .jpg");
+    const auto transform = understand(options.display);
+    if (!transform) return wrong(transform.error().what());
     picture::FilmFile file = picture::read_film_exr(options.input);
     const auto view = view_from_attributes(file.attributes);
     if (!view)
@@ -151,7 +156,7 @@ int run_filter(const FilterOptions& options) {
     const auto started = std::chrono::steady_clock::now();
     const filter::Report report = filter->run(inputs, choice->values, output, {arena, {}});
     const double total = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-    write(options, file, output);
+    write(options, *transform, file, output);
 
     if (options.json) {
         Json passes = Json::array();
@@ -190,6 +195,7 @@ Command filter_command(cli::CommandLine& program) {
     line.required("--output");
     line.option("--filter", "NAME[:key=value,...]; tessera filters lists them", options->filter);
     line.required("--filter");
+    options->display.add_to(line);
     line.flag("--maps", "write the filter's debug maps as layers of the EXR", options->maps);
     line.flag("--json", "print one JSON object with everything measured", options->json);
     line.examples({"tessera render room.glb -o film.exr --spp 4 --save-statistics",

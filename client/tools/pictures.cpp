@@ -11,6 +11,7 @@
 #include "client/tools/view_attributes.h"
 #include "mediator/frame/resolve.h"
 #include "mediator/picture/atomic_file.h"
+#include "mediator/picture/exposure.h"
 #include "mediator/picture/picture_encoder.h"
 #include "mediator/program/command_line.h"
 
@@ -114,6 +115,10 @@ void write_bytes(const std::string& path, std::span<const std::byte> bytes) {
                               std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
+bool is_encoded(const client::ViewResult& result) {
+    return result.has_picture() && result.frame.encoding != session::PictureEncoding::Planes;
+}
+
 }  // namespace
 
 std::optional<PictureFormat> picture_format(const std::string& path) {
@@ -126,21 +131,35 @@ std::optional<PictureFormat> picture_format(const std::string& path) {
     return std::nullopt;
 }
 
-void write_picture(const std::string& path, const frame::Image& image) {
+void write_picture(const std::string& path, const frame::Image& image,
+                   const view::DisplayTransform& transform) {
     using picture::FileFormat;
     const PictureFormat format = picture_format(path).value_or(PictureFormat::Exr);
-    write_bytes(path, picture::encode_picture(image, format == PictureFormat::Png    ? FileFormat::Png
-                                                     : format == PictureFormat::Jpeg ? FileFormat::Jpeg
-                                                                                     : FileFormat::Exr));
+    write_bytes(path, picture::encode_picture(image,
+                                              format == PictureFormat::Png    ? FileFormat::Png
+                                              : format == PictureFormat::Jpeg ? FileFormat::Jpeg
+                                                                              : FileFormat::Exr,
+                                              transform));
+}
+
+view::DisplayTransform used_transform(const std::vector<std::string>& paths,
+                                      const session::ViewRequest& request, const client::ViewResult& result) {
+    const bool none_shown = std::all_of(paths.begin(), paths.end(), [](const std::string& path) {
+        return picture_format(path) == PictureFormat::Exr;
+    });
+    if (none_shown || request.display_transform.exposure) return request.display_transform;
+    if (is_encoded(result)) return result.summary.picture.display_transform;
+    return picture::with_exposure(request.display_transform, result.has_picture()
+                                                                 ? interleaved(result.frame)
+                                                                 : unfiltered(*result.film()));
 }
 
 void write_pictures(const std::vector<std::string>& paths, const session::ViewRequest& request,
                     const client::ViewResult& result, const Origin& origin, picture::Statistics statistics) {
     std::optional<frame::Image> filtered;
-    if (result.has_picture() && result.frame.encoding == session::PictureEncoding::Planes)
-        filtered = interleaved(result.frame);
+    if (result.has_picture() && !is_encoded(result)) filtered = interleaved(result.frame);
     for (const std::string& path : paths) {
-        if (result.has_picture() && !filtered) {
+        if (is_encoded(result)) {
             write_bytes(path, result.frame.picture);  // encoded by the master
         } else if (picture_format(path) == PictureFormat::Exr) {
             picture::write_film_exr(path,
@@ -150,7 +169,7 @@ void write_pictures(const std::vector<std::string>& paths, const session::ViewRe
                                      .attributes = provenance(request, result, origin)},
                                     filtered, statistics);
         } else {
-            write_picture(path, filtered ? *filtered : unfiltered(*result.film()));
+            write_picture(path, filtered ? *filtered : unfiltered(*result.film()), request.display_transform);
         }
     }
 }

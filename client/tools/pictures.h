@@ -22,12 +22,18 @@ struct Origin {
 };
 
 // Writes what the result holds to every path: the master's picture where there is one, else the resolved
-// radiance; an EXR gets the film's channels, too, and its statistics if they are to be saved. A file is there
+// radiance, by request.display_transform; an EXR gets the film's channels, too, and its statistics if they are to be saved. A file is there
 // in full or not at all. Throws Error{Io}.
 void write_pictures(const std::vector<std::string>& paths, const session::ViewRequest& request,
                     const client::ViewResult& result, const Origin& origin, picture::Statistics statistics);
 
-// An EXR without a film or a tone-mapped file, of linear R, G, B (A).
-void write_picture(const std::string& path, const frame::Image& image);
+// An EXR without a film, a PNG or a JPEG, of linear R, G, B (A).
+void write_picture(const std::string& path, const frame::Image& image,
+                   const view::DisplayTransform& transform);
+
+// The transform of the request with the exposure of the result: the master's where it encoded the picture,
+// else measured of the picture that would be written. As it is when it has one, or all paths are EXR.
+view::DisplayTransform used_transform(const std::vector<std::string>& paths,
+                                      const session::ViewRequest& request, const client::ViewResult& result);
 
 }  // namespace tessera::tools

@@ -194,7 +194,8 @@ class Render {
             return fail(ExitInternal, "the frame failed: " + result_.summary.message);
         const SampleGrid grid = *plan_.coverage;
         for (const std::string& output : plan_.outputs)
-            write_picture(output, gather(frame::resolve_picture(*result_.film()), grid));
+            write_picture(output, gather(frame::resolve_picture(*result_.film()), grid),
+                          {view::ViewTransform::Linear, 0.0});
         const Coverage coverage = count_coverage(*result_.film(), scene_.objects);
         std::cout << (json_ ? as_json(coverage, grid.count()) : as_text(coverage, grid.count())) << std::endl;
         return 0;
@@ -216,6 +217,8 @@ class Render {
                                                   : result_.summary.message);
         }
         const std::string hash = result_.film() ? to_hex(frame::film_hash(*result_.film())) : std::string();
+        // A sequence has the exposure of its first frame.
+        plan_.job.display_transform = used_transform(outputs, plan_.job, result_);
         write_pictures(outputs, plan_.job, result_,
                        {std::filesystem::path(plan_.view.scene).filename().string(), camera_.name, hash},
                        plan_.statistics);

@@ -249,6 +249,7 @@ void RenderOptions::add_to(cli::CommandLine& command) {
         "--fps", "frames per second (24): frame K shows K / fps seconds, with the noise of --seed S+K", fps);
     command.flag("--skip-existing", "leave out frames whose pictures are there", skip_existing);
     command.option("--filter", "reconstruction, NAME[:key=value,...]; tessera filters lists them", filter);
+    display.add_to(command);
     command.flag("--save-statistics", "keep all channels in the EXR, for tessera filter", save_statistics);
     command.choice("--policy", "how frames are cut into work", policy, {"tiled", "cooperative", "mixed"});
     command.flag("--reproducible", "the same bits on every x86-64-v3 machine: AVX2 only", reproducible);
@@ -319,6 +320,9 @@ Expected<RenderPlan> understand(const RenderOptions& options) {
     plan.job.reproducible = options.reproducible;
     if (auto fine = set_filter(options, plan.job); !fine) return tl::unexpected(fine.error());
     if (auto fine = set_detached(options, plan); !fine) return tl::unexpected(fine.error());
+    const auto display = understand(options.display);
+    if (!display) return tl::unexpected(display.error());
+    plan.job.display_transform = *display;
     plan.view.view.filter = plan.job.view.filter;
     plan.view.view.channels = plan.view.view.channels | channels_for(options);
     if (options.save_statistics) plan.statistics = picture::Statistics::Saved;

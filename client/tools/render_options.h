@@ -6,6 +6,7 @@
 
 #include "client/session.h"
 #include "client/tools/coverage.h"
+#include "client/tools/display_transform_options.h"
 #include "client/tools/embedded_cluster.h"
 #include "client/tools/view_options.h"
 #include "mediator/picture/film_exr.h"
@@ -16,6 +17,7 @@ namespace tessera::tools {
 // The options of `tessera render` and `tessera coverage`, as typed.
 struct RenderOptions {
     ViewOptions view;
+    DisplayTransformOptions display;
     std::vector<std::string> outputs;
     std::optional<std::uint64_t> spp, nodes, threads;
     std::optional<std::string> time, backend, device, cache, master, keys, wait_nodes, frames;

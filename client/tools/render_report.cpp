@@ -7,6 +7,7 @@
 #include <set>
 
 #include "client/tools/this_machine.h"
+#include "mediator/picture/picture_encoder.h"
 
 namespace tessera::tools {
 
@@ -69,6 +70,7 @@ double samples_per_pixel(const session::ViewRequest& request, const session::Vie
 std::string as_json(const RenderReport& report) {
     const session::ViewSummary& result = report.summary;
     const session::UnitCounts& units = result.units;
+    const view::DisplayTransform& transform = report.request.display_transform;
     Json object{
         {"width", report.request.view.window.width},
         {"height", report.request.view.window.height},
@@ -99,6 +101,8 @@ std::string as_json(const RenderReport& report) {
           {"blobs", result.wire_bytes.blobs},
           {"film", result.wire_bytes.film}}},
         {"picture", picture_value(result)},
+        {"view_transform", std::string(enumerator_name(transform.view_transform))},
+        {"exposure", transform.exposure ? Json(*transform.exposure) : Json()},
     };
     if (!report.frame) return object.dump(2);
     object["frame"] = *report.frame;
@@ -135,6 +139,8 @@ std::string as_text(const RenderReport& report, const std::vector<std::string>& 
                  : "");
         for (const std::string& note : picture.notes) line("%s", note.c_str());
     }
+    if (const auto& transform = report.request.display_transform; transform.exposure)
+        line("view transform %s", picture::describe(transform).c_str());
     std::set<std::string> kinds;
     for (const session::NodeSummary& node : result.nodes) kinds.insert(node.kind);
     line("%zu node%s took part", result.nodes.size(), result.nodes.size() == 1 ? "" : "s");

@@ -11,13 +11,15 @@
 
 #include "client/session.h"
 #include "client/tools/cluster_options.h"
+#include "client/tools/display_transform_options.h"
 #include "client/tools/interrupts.h"
 #include "client/tools/pictures.h"
 #include "client/tools/terminal_picture.h"
 #include "client/tools/values.h"
 #include "master/filter/catalog.h"
 #include "mediator/filter/choice.h"
-#include "mediator/picture/tone_map.h"
+#include "mediator/picture/exposure.h"
+#include "mediator/picture/view_transform.h"
 #include "mediator/view/placed_cameras.h"
 
 namespace tessera::tools {
@@ -30,6 +32,7 @@ constexpr std::uint64_t View = 1;
 struct WatchOptions {
     client::Address address{.endpoint = "tcp://127.0.0.1:7420"};
     std::string title, name = "watch", view, camera, filter;
+    DisplayTransformOptions display;
     std::optional<std::string> size, output, time;
     std::uint64_t spp = 256;
     std::uint64_t frames = 0;
@@ -71,6 +74,9 @@ class Watch {
             const auto choice = filter::parse_choice(options_.filter, filter::catalog());
             if (!choice) return complain(WatchName, cli::ExitUsage, choice.error().what());
         }
+        const auto transform = understand(options_.display);
+        if (!transform) return complain(WatchName, cli::ExitUsage, transform.error().what());
+        transform_ = *transform;
         std::optional<Duration> limit;
         if (options_.time) {
             const auto parsed = parse_duration(*options_.time);
@@ -158,7 +164,9 @@ class Watch {
         const std::uint32_t width = options_.view.empty() ? size_.width : frame.width * frame.scale;
         const std::uint32_t height = options_.view.empty() ? size_.height : frame.height * frame.scale;
         const frame::Image image = image_of(frame, width, height);
-        if (options_.output) write_picture(*options_.output, image);
+        // Of the first frame with light in it, so that brightness does not pump while the scene is edited.
+        if (!transform_.exposure) transform_.exposure = picture::measured_exposure(image);
+        if (options_.output) write_picture(*options_.output, image, transform_);
         char text[160];
         std::snprintf(text, sizeof text, "frame %llu, version %llu, %ux%u%s, %llu of %llu samples%s",
                       static_cast<unsigned long long>(count),
@@ -167,7 +175,8 @@ class Watch {
                       static_cast<unsigned long long>(frame.samples_least),
                       static_cast<unsigned long long>(frame.spp), frame.complete ? ", complete" : "");
         if (to_terminal_) {
-            const auto rgb = picture::tone_map(image);
+            const auto rgb =
+                picture::srgb_bytes(image, {transform_.view_transform, transform_.exposure.value_or(0.0)});
             const std::string picture = terminal_picture(width, height, rgb);
             std::cout << picture << text << "\x1b[K" << std::flush;
         } else {
@@ -179,6 +188,7 @@ class Watch {
     WatchOptions options_;
     SteadyClock clock_;
     Size size_;
+    view::DisplayTransform transform_;
     bool to_terminal_ = false, told_ = false;
     std::unique_ptr<client::Session> session_;
 };
@@ -206,6 +216,7 @@ Command watch_command(cli::CommandLine& program) {
     line.option("--spp", "samples per pixel of the complete frame", options->spp);
     line.option("--filter", "reconstruction, NAME[:key=value,...]; tessera filters lists them",
                 options->filter);
+    options->display.add_to(line);
     line.option("-o,--output", "write every frame to this picture, .png, .jpg or .exr", options->output);
     line.flag("--once", "end when the frame is complete", options->once);
     line.option("--frames", "end after so many frames; 0 = never", options->frames);

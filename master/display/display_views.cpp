@@ -79,7 +79,7 @@ void DisplayService::take(const GroupStage& stage) {
         OutputOrder order{.frame = frame.number, .output = i, .version = stage.version, .eyes = {}};
         order.encoding = display::takes_linear_light(display.outputs[i]) ? session::PictureEncoding::Half
                                                                          : session::PictureEncoding::Bytes;
-        order.look = {display.exposure, display.white};
+        order.transform = {display.view_transform, display.exposure, display.white};
         order.stereo_difference = display.stereo_difference && eyes.size() == 2 && stage.scale == 1;
         for (const PlannedEye& eye : eyes) {
             const auto end = view + static_cast<std::ptrdiff_t>(eye.layers);

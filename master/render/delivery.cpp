@@ -131,7 +131,7 @@ void Delivery::begin(const ViewState& view, const Wish& wish, std::vector<Key> r
     const bool nothing_to_make = waited ? !has_picture(view, wish.picture) : view.run.samples == 0;
     if (making.is_end && nothing_to_make) return ship(frame, std::move(making), {});
     const bool hash = making.shown.complete && !waited;
-    film_.reconstruct(frame, pass.view, view.version, wish.picture,
+    film_.reconstruct(frame, pass.view, view.version, {wish.picture, wish.transform, view.id},
                       hash ? FilmStore::FilmHash::Wanted : FilmStore::FilmHash::NotWanted);
     making_.emplace(frame, std::move(making));
 }

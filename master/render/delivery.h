@@ -27,6 +27,7 @@ class Delivery {
         session::PictureEncoding picture = session::PictureEncoding::None;
         bool film = false;
         session::Frames frames = session::Frames::All;
+        view::DisplayTransform transform;
         friend auto operator<=>(const Wish&, const Wish&) = default;
     };
     void watch(SessionId session, std::uint64_t number, ViewId view, const Wish& wish);

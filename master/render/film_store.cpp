@@ -42,8 +42,8 @@ void FilmStore::copy(ViewId view) {
 }
 
 void FilmStore::reconstruct(std::uint64_t frame, const view::View& view, Version version,
-                            session::PictureEncoding encoding, FilmHash hash) {
-    enqueue(Reconstruct{frame, view, version, encoding, hash}, 0);
+                            const PictureFormat& format, FilmHash hash) {
+    enqueue(Reconstruct{frame, view, version, format, hash}, 0);
 }
 
 void FilmStore::make_output(OutputOrder order) {
@@ -160,7 +160,7 @@ void FilmStore::perform(Reconstruct& task) {
                     .features = opened->features,
                     .view = std::move(task.view),
                     .version = task.version,
-                    .encoding = task.encoding,
+                    .format = task.format,
                     .hash_film = task.hash == FilmHash::Wanted});
 }
 

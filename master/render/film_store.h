@@ -38,7 +38,7 @@ class FilmStore {
     enum class FilmHash { Wanted, NotWanted };
     // Of the film of view.id, which shows `version`. Nothing comes when there is no such film.
     void reconstruct(std::uint64_t frame, const view::View& view, Version version,
-                     session::PictureEncoding encoding, FilmHash hash);
+                     const PictureFormat& format, FilmHash hash);
     // Of the films of all layers of all eyes. Always comes; with an error when a film is gone.
     void make_output(OutputOrder order);
     void rehearse(const view::View& view, session::PictureEncoding encoding) {
@@ -82,7 +82,7 @@ class FilmStore {
         std::uint64_t frame;
         view::View view;
         Version version;
-        session::PictureEncoding encoding;
+        PictureFormat format;
         FilmHash hash;
     };
     using Task =

@@ -5,7 +5,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "master/render/compose/layers.h"
@@ -26,24 +25,9 @@ struct PictureLight {
     const std::uint32_t* counts = nullptr;  // not null: planes are sums over so many samples
 };
 
-// In display-referred light: exposure, then the curve on the luminance, so that colours keep their ratios.
-struct Tone {
-    explicit Tone(const Look& look)
-        : gain(static_cast<float>(std::exp2(look.exposure))),
-          inverse_white_square(look.white > 0.0 ? static_cast<float>(1.0 / (look.white * look.white)) : 0.0f),
-          has_curve(look.white > 0.0) {}
-    float gain, inverse_white_square;
-    bool has_curve;
-
-    float scale(float r, float g, float b) const {
-        if (!has_curve) return gain;
-        const float y = gain * (0.2126f * r + 0.7152f * g + 0.0722f * b);
-        return gain * (1.0f + y * inverse_white_square) / (1.0f + std::max(y, 0.0f));
-    }
-};
-
 template <class Store>
-void for_each_pixel(const PictureLight& light, const Tone& tone, tbb::task_arena& arena, const Store& store) {
+void for_each_pixel(const PictureLight& light, const picture::ViewTransform& transform,
+                    tbb::task_arena& arena, const Store& store) {
     arena.execute([&] {
         tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, light.height, 32), [&](const auto& rows) {
             for (std::size_t i = std::size_t{rows.begin()} * light.width,
@@ -56,22 +40,22 @@ void for_each_pixel(const PictureLight& light, const Tone& tone, tbb::task_arena
                     g *= weight;
                     b *= weight;
                 }
-                const float scale = tone.scale(r, g, b);
-                store(i, scale * r, scale * g, scale * b);
+                const auto shown = transform(r, g, b);
+                store(i, shown[0], shown[1], shown[2]);
             }
         });
     });
 }
 
-MadeOutput::Picture encoded(const PictureLight& light, const Tone& tone, session::PictureEncoding encoding,
-                            tbb::task_arena& arena) {
+MadeOutput::Picture encoded(const PictureLight& light, const picture::ViewTransform& transform,
+                            session::PictureEncoding encoding, tbb::task_arena& arena) {
     static const picture::SrgbBytes to_srgb;
     const std::size_t pixels = std::size_t{light.width} * light.height;
     auto bytes = std::make_shared<std::vector<std::byte>>();
     if (encoding == session::PictureEncoding::Bytes) {
         bytes->resize(3 * pixels);
         auto* const out = reinterpret_cast<std::uint8_t*>(bytes->data());
-        for_each_pixel(light, tone, arena, [&](std::size_t i, float r, float g, float b) {
+        for_each_pixel(light, transform, arena, [&](std::size_t i, float r, float g, float b) {
             out[3 * i] = to_srgb(r);
             out[3 * i + 1] = to_srgb(g);
             out[3 * i + 2] = to_srgb(b);
@@ -79,7 +63,7 @@ MadeOutput::Picture encoded(const PictureLight& light, const Tone& tone, session
     } else {
         bytes->resize(6 * pixels);
         auto* const out = reinterpret_cast<std::uint16_t*>(bytes->data());
-        for_each_pixel(light, tone, arena, [&](std::size_t i, float r, float g, float b) {
+        for_each_pixel(light, transform, arena, [&](std::size_t i, float r, float g, float b) {
             out[3 * i] = static_cast<std::uint16_t>(_cvtss_sh(r, _MM_FROUND_TO_NEAREST_INT));
             out[3 * i + 1] = static_cast<std::uint16_t>(_cvtss_sh(g, _MM_FROUND_TO_NEAREST_INT));
             out[3 * i + 2] = static_cast<std::uint16_t>(_cvtss_sh(b, _MM_FROUND_TO_NEAREST_INT));
@@ -183,7 +167,7 @@ MadeOutput make_output(OutputOrder order, const std::vector<frame::FilmTile>& fi
             made.samples_least, *std::min_element(film.counts.begin(), film.counts.end()));
     }
     try {
-        const Tone tone(made.order.look);
+        const picture::ViewTransform& transform = made.order.transform;
         std::span<const frame::FilmTile> rest(films);
         std::vector<Measured> measured;
         filter::Planes composed;
@@ -197,7 +181,7 @@ MadeOutput make_output(OutputOrder order, const std::vector<frame::FilmTile>& fi
                 lay_over(eye.layers, own, made.order.version, reconstructor, composed);
                 light = light_of(composed);
             }
-            made.eyes.push_back(encoded(light, tone, made.order.encoding, reconstructor.arena()));
+            made.eyes.push_back(encoded(light, transform, made.order.encoding, reconstructor.arena()));
             if (made.order.stereo_difference) measured.emplace_back(light, eye, own);
         }
         if (measured.size() == 2)

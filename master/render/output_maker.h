@@ -7,17 +7,11 @@
 
 #include "master/render/reconstruction.h"
 #include "mediator/frame/film_tile.h"
+#include "mediator/picture/view_transform.h"
 #include "mediator/view/view.h"
 #include "mediator/wire/messages.h"
 
 namespace tessera::master {
-
-// How light becomes what a device can show, the same for all outputs of a display.
-struct Look {
-    double exposure = 0.0;  // stops
-    double white = 0.0;  // the smallest luminance that becomes white (after exposure); 0 = 1, without a curve
-    friend bool operator==(const Look&, const Look&) = default;
-};
 
 // The pictures of one output for one frame: its eyes, each of one or more layers.
 struct OutputOrder {
@@ -30,7 +24,7 @@ struct OutputOrder {
     Version version;  // of the scene that the films show
     std::vector<EyePicture> eyes;
     session::PictureEncoding encoding = session::PictureEncoding::Bytes;  // or Half
-    Look look;
+    picture::ViewTransform transform{view::ViewTransform::Linear, 0.0};   // the same for all outputs
     bool stereo_difference = false;  // of two eyes whose films have depth
 };
 struct MadeOutput {

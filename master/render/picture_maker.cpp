@@ -37,11 +37,11 @@ Reconstructed PictureMaker::made(const PictureTask& task) {
     Reconstructed made{.frame = task.frame, .picture = {}, .samples_least = *least, .samples_most = *most};
     made.picture.bytes = std::make_shared<const std::vector<std::byte>>();
     if (task.hash_film) made.film_hash = frame::film_hash(task.film);
-    if (task.encoding != session::PictureEncoding::None) {
+    if (task.format.encoding != session::PictureEncoding::None) {
         made.picture = reconstructor_.reconstruct({.film = task.film,
                                                    .later = task.later ? &*task.later : nullptr,
                                                    .features = task.features.get()},
-                                                  task.view, task.version, task.encoding);
+                                                  task.view, task.version, task.format);
     }
     return made;
 }

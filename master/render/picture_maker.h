@@ -15,8 +15,8 @@ struct PictureTask {
     std::optional<frame::FilmTile> later;             // with channels that `film` lacks
     std::shared_ptr<const frame::FilmTile> features;  // of the full size, to upsample by; may be null
     view::View view;
-    Version version;                                                     // of the scene that the film shows
-    session::PictureEncoding encoding = session::PictureEncoding::None;  // None: only facts about the film
+    Version version;       // of the scene that the film shows
+    PictureFormat format;  // None: only facts about the film
     bool hash_film = false;
 };
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 
 #include "master/filter/catalog.h"
 #include "master/filter/upsample.h"
+#include "mediator/picture/exposure.h"
 #include "mediator/picture/picture_encoder.h"
 
 namespace tessera::master {
@@ -17,22 +19,21 @@ double since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-std::vector<std::byte> encode(const filter::Planes& picture, session::PictureEncoding encoding) {
+std::optional<picture::FileFormat> file_format(session::PictureEncoding encoding) {
     switch (encoding) {
         case session::PictureEncoding::Png:
-            return picture::encode_picture(interleaved(picture), picture::FileFormat::Png);
+            return picture::FileFormat::Png;
         case session::PictureEncoding::Jpeg:
-            return picture::encode_picture(interleaved(picture), picture::FileFormat::Jpeg);
+            return picture::FileFormat::Jpeg;
         case session::PictureEncoding::Exr:
-            return picture::encode_picture(interleaved(picture), picture::FileFormat::Exr);
+            return picture::FileFormat::Exr;
         case session::PictureEncoding::Planes:
         case session::PictureEncoding::None:
         case session::PictureEncoding::Bytes:  // of outputs: master/render/output_maker.h
         case session::PictureEncoding::Half:
             break;
     }
-    const auto bytes = std::as_bytes(picture.values());
-    return {bytes.begin(), bytes.end()};
+    return std::nullopt;
 }
 
 }  // namespace
@@ -59,10 +60,32 @@ filter::Filter& Reconstructor::instance(const filter::Choice& choice, const view
 
 void Reconstructor::forget(ViewId first, ViewId last) {
     instances_.erase(instances_.lower_bound(first), instances_.lower_bound(last));
+    exposures_.erase(exposures_.lower_bound(first), exposures_.lower_bound(last));
+}
+
+std::vector<std::byte> Reconstructor::encode(const filter::Planes& picture, const PictureFormat& format,
+                                             session::PictureSummary& summary) {
+    const auto file = file_format(format.encoding);
+    if (!file) {
+        const auto bytes = std::as_bytes(picture.values());
+        return {bytes.begin(), bytes.end()};
+    }
+    const frame::Image image = interleaved(picture);
+    if (*file != picture::FileFormat::Exr) {
+        view::DisplayTransform& transform = summary.display_transform;
+        transform = format.transform;
+        if (const auto known = exposures_.find(format.view); !transform.exposure && known != exposures_.end())
+            transform.exposure = known->second;
+        if (!transform.exposure) {
+            transform.exposure = picture::measured_exposure(image);
+            if (transform.exposure) exposures_[format.view] = *transform.exposure;
+        }
+    }
+    return picture::encode_picture(image, *file, summary.display_transform);
 }
 
 Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& view, Version version,
-                                          session::PictureEncoding encoding) {
+                                          const PictureFormat& format) {
     Reconstruction result{.bytes = std::make_shared<const std::vector<std::byte>>()};
     session::PictureSummary& summary = result.summary;
     const auto choice = filter::parse_choice(view.filter, filter::catalog());
@@ -88,9 +111,9 @@ Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& 
         }
         summary.notes.assign(report.notes.begin(), report.notes.end());
         const auto filtered = Clock::now();
-        result.bytes = std::make_shared<const std::vector<std::byte>>(encode(*picture, encoding));
+        result.bytes = std::make_shared<const std::vector<std::byte>>(encode(*picture, format, summary));
         summary.seconds_encode = since(filtered);
-        summary.encoding = encoding;
+        summary.encoding = format.encoding;
         summary.width = picture->width();
         summary.height = picture->height();
         summary.components = picture->components();
@@ -123,9 +146,9 @@ double Reconstructor::rehearse(const view::View& asked, session::PictureEncoding
         value = static_cast<float>(state >> 8) * 0x1p-24f;
     }
     const auto started = Clock::now();
-    reconstruct({.film = film}, view, {}, encoding);
+    reconstruct({.film = film}, view, {}, {.encoding = encoding, .transform = {}, .view = view.id});
     const double seconds = since(started);
-    instances_.erase(view.id);
+    forget(view.id, ViewId{view.id.value + 1});
     return seconds;
 }
 

@@ -25,6 +25,13 @@ struct Films {
         nullptr;  // of the full size, if `film` is smaller and is to be upsampled
 };
 
+// The file or the numbers that a picture becomes.
+struct PictureFormat {
+    session::PictureEncoding encoding = session::PictureEncoding::None;
+    view::DisplayTransform transform;
+    ViewId view;  // all of its pictures have the exposure that is measured of the first
+};
+
 // Filters whole films and encodes them. Every view has a filter of its own, which keeps its history from one
 // picture of the view to the next and hears what has changed between them. One thread calls; the work runs on
 // all cores.
@@ -32,7 +39,7 @@ class Reconstructor {
   public:
     // Of view.id; `version`: of the scene that the film shows.
     Reconstruction reconstruct(const Films& films, const view::View& view, Version version,
-                               session::PictureEncoding encoding);
+                               const PictureFormat& format);
 
     // The filtered picture alone, in memory of this object until the next call. Throws Error.
     const filter::Planes& filtered(const frame::FilmTile& film, const view::View& view, Version version);
@@ -42,7 +49,7 @@ class Reconstructor {
     double rehearse(const view::View& view, session::PictureEncoding encoding, std::uint32_t width,
                     std::uint32_t height);
 
-    void forget(ViewId first, ViewId last);  // the filters of the views [first, last)
+    void forget(ViewId first, ViewId last);  // filters and exposures of the views [first, last)
 
   private:
     // The filter of a view, and what it saw last.
@@ -56,9 +63,12 @@ class Reconstructor {
     // Ready for the picture; tells `inputs` what has changed since the one before.
     filter::Filter& instance(const filter::Choice& choice, const view::View& view, Version version,
                              filter::Inputs& inputs);
+    std::vector<std::byte> encode(const filter::Planes& picture, const PictureFormat& format,
+                                  session::PictureSummary& summary);
 
     tbb::task_arena arena_;
     std::map<ViewId, Instance> instances_;
+    std::map<ViewId, double> exposures_;   // EV, measured
     filter::Inputs inputs_, full_inputs_;  // kept for their memory
     filter::Output output_;
     filter::Planes upsampled_;

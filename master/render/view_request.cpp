@@ -50,6 +50,11 @@ std::string problem_of(const view::CameraPose& camera) {
 
 }  // namespace
 
+std::string problem_of(const view::DisplayTransform& transform) {
+    const bool is_fine = !transform.exposure || std::fabs(*transform.exposure) <= view::MaxExposure;
+    return is_fine ? std::string() : "the exposure is not between -60 and 60 EV";
+}
+
 std::string problem_of(const session::ViewRequest& request) {
     const view::View& view = request.view;
     if (view.width == 0 || view.height == 0 || view.width > MaxEdge || view.height > MaxEdge) {
@@ -62,6 +67,7 @@ std::string problem_of(const session::ViewRequest& request) {
     }
     if (view.window.pixel_count() > MaxPixels) return "the window has more than 2^28 pixels: crop it";
     if (std::string problem = problem_of(view.camera); !problem.empty()) return problem;
+    if (std::string problem = problem_of(request.display_transform); !problem.empty()) return problem;
     if (view.channels.empty()) return "no channel is asked for: ask for color at least";
     if (!(view.pixel_filter.radius > 0.0f) || view.pixel_filter.radius > 16.0f) {
         return "the pixel filter's radius is not between 0 and 16 pixels";

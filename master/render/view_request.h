@@ -9,6 +9,7 @@ namespace tessera::master {
 
 // Sizes, finite camera, window inside the picture, channels, counts. Empty = fine.
 std::string problem_of(const session::ViewRequest& request);
+std::string problem_of(const view::DisplayTransform& transform);
 
 // Adds what the view's filter needs: channels, and the path class where the filter is made for one.
 void complete(view::View& view);

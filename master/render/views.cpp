@@ -18,6 +18,11 @@ bool differ_in_filter_alone(view::View a, view::View b) {
     b.filter.clear();
     return a == b;
 }
+
+Delivery::Wish wish_of(const session::ViewRequest& request) {
+    return {request.picture, request.film, request.frames, request.display_transform};
+}
+
 }  // namespace
 
 Views::Views(const ViewSettings& settings, const RenderServices& services, SessionTable& sessions,
@@ -37,7 +42,8 @@ Views::Views(const ViewSettings& settings, const RenderServices& services, Sessi
 std::string Views::share(SessionId session, std::uint64_t number, const session::ViewRequest& wanted) {
     const ViewState* view = table_.named(wanted.name);
     if (view == nullptr) return "no view is named '" + wanted.name + "': ask for the views that there are";
-    delivery_.watch(session, number, view->id, {wanted.picture, wanted.film, wanted.frames});
+    if (std::string problem = problem_of(wanted.display_transform); !problem.empty()) return problem;
+    delivery_.watch(session, number, view->id, wish_of(wanted));
     return {};
 }
 
@@ -61,7 +67,7 @@ std::string Views::open(const ViewOwner& owner, std::uint64_t number, session::V
     view->owner = owner;
     view->name = request.name;
     view->orphaned.reset();
-    const Delivery::Wish wish{request.picture, request.film, request.frames};
+    const Delivery::Wish wish = wish_of(request);
     delivery_.watch(owner.session, number, view->id, wish);
     if (request.detached) delivery_.keep(view->id, wish);  // its end is for take_ended_jobs()
     change(*view, std::move(request), version, now);
@@ -104,6 +110,7 @@ void Views::change(ViewState& view, session::ViewRequest&& request, Version vers
     view.request.detached = request.detached;
     view.request.picture = request.picture;
     view.request.film = request.film;
+    view.request.display_transform = request.display_transform;
     view.request.min_nodes = request.min_nodes;
     view.request.wait_limit = request.wait_limit;
     if (same_terms && request.view == view.request.view) return;
@@ -286,7 +293,7 @@ void Views::restore(std::vector<wire::SavedView>&& saved, Version version, Hash1
         view.waits_since = now;
         view.orphaned = now;
         const session::ViewRequest& request = view.request;
-        if (request.detached) delivery_.keep(view.id, {request.picture, request.film, request.frames});
+        if (request.detached) delivery_.keep(view.id, wish_of(request));
         // Film of another scene is of no use, and the time of one that has a clock began with it.
         if (old.blocks.empty() || old.scene_hash_of_film != scene_hash || view.request.stop.has_clock())
             continue;

@@ -12,6 +12,7 @@
 
 #include "mediator/base/description.h"
 #include "mediator/scene/blob.h"
+#include "mediator/view/display_transform.h"
 #include "mediator/view/view.h"
 
 // What stands in front of people: screens in space, and outputs, each the picture of one device. Plain
@@ -176,10 +177,9 @@ struct Display {
     std::uint32_t max_bounces = 8;
     double rate = 60.0;     // frames a second, at most
     std::string filter;     // NAME[:key=value,...]
-    double exposure = 0.0;  // stops
-    // The smallest luminance that becomes white: L (1 + L / white^2) / (1 + L), as Reinhard et al. 2002 have
-    // it; 0 = light is shown as it is, up to 1. The same for all outputs, so that no seam shows.
-    double white = 0.0;
+    double exposure = 0.0;  // EV; of all outputs, so that no seam shows
+    view::ViewTransform view_transform = view::ViewTransform::Linear;  // of all outputs as well
+    double white = 0.0;              // of the view transform reinhard: the luminance that becomes 1; 0 = 4
     bool stereo_difference = false;  // measure how well the eyes fit together (costs the depth channel)
     std::vector<Layer> layers;       // none: one, of everything, path traced
     std::vector<Output> outputs;
@@ -194,7 +194,8 @@ struct Display {
             row(10, "rate", &Display::rate), row(11, "filter", &Display::filter),
             row(12, "layers", &Display::layers, Limit{MaxLayers}),
             row(13, "outputs", &Display::outputs, Limit{MaxOutputs}), row(14, "exposure", &Display::exposure),
-            row(15, "white", &Display::white), row(16, "stereo_difference", &Display::stereo_difference));
+            row(15, "white", &Display::white), row(16, "stereo_difference", &Display::stereo_difference),
+            row(17, "view_transform", &Display::view_transform, InitialWhenAbsent{}));
     }
 };
 

@@ -100,7 +100,7 @@ std::vector<std::string> problems(const Display& display) {
         found.emplace_back("the distance without parallax is not within 0 and 1e6 m");
     if (!is_within(display.rate, 0.1, 1000.0)) found.emplace_back("the rate is not within 0.1 and 1000 Hz");
     if (!is_within(display.exposure, -60.0, 60.0))
-        found.emplace_back("the exposure is not within -60 and 60 stops");
+        found.emplace_back("the exposure is not within -60 and 60 EV");
     if (display.white != 0.0 && !is_within(display.white, 1e-3, 1e6))
         found.emplace_back("white is neither 0 nor within 0.001 and 1e6");
     if (display.spp < 1 || display.spp > (std::uint64_t{1} << 24))

@@ -11,6 +11,7 @@
 
 #include "mediator/base/clock.h"
 #include "mediator/base/description.h"
+#include "mediator/view/display_transform.h"
 #include "mediator/view/view.h"
 
 // What a client asks to have rendered of the scene it is in.
@@ -89,15 +90,16 @@ struct ViewRequest {
     PictureEncoding picture = PictureEncoding::None;
     bool film = false;      // the statistics, too
     bool detached = false;  // a job: it goes on, and the master keeps its picture, when the client leaves
+    view::DisplayTransform display_transform;  // of a PNG or JPEG
     static constexpr auto describe(auto row) {
         using Self = ViewRequest;
-        return std::tuple(row(1, "name", &Self::name), row(2, "view", &Self::view),
-                          row(3, "stop", &Self::stop), row(4, "policy", &Self::policy),
-                          row(5, "reproducible", &Self::reproducible), row(6, "tile", &Self::tile),
-                          row(7, "min_nodes", &Self::min_nodes), row(8, "wait_limit", &Self::wait_limit),
-                          row(9, "frames", &Self::frames),
-                          row(10, "picture", &Self::picture, UpTo{PictureEncoding::Exr}),
-                          row(11, "film", &Self::film), row(12, "detached", &Self::detached));
+        return std::tuple(
+            row(1, "name", &Self::name), row(2, "view", &Self::view), row(3, "stop", &Self::stop),
+            row(4, "policy", &Self::policy), row(5, "reproducible", &Self::reproducible),
+            row(6, "tile", &Self::tile), row(7, "min_nodes", &Self::min_nodes),
+            row(8, "wait_limit", &Self::wait_limit), row(9, "frames", &Self::frames),
+            row(10, "picture", &Self::picture, UpTo{PictureEncoding::Exr}), row(11, "film", &Self::film),
+            row(12, "detached", &Self::detached), row(13, "display_transform", &Self::display_transform));
     }
 };
 

@@ -85,17 +85,18 @@ struct PictureSummary {
     double seconds_filter = 0, seconds_encode = 0;
     double seconds_predicted = 0;  // with a budget: what was set aside for filter and encoding
     std::vector<FilterPass> passes;
-    std::vector<std::string> notes;  // for a person
+    std::vector<std::string> notes;            // for a person
+    view::DisplayTransform display_transform;  // of a PNG or JPEG, with the exposure that was used
     static constexpr auto describe(auto row) {
         using Self = PictureSummary;
-        return std::tuple(row(1, "encoding", &Self::encoding, UpTo{PictureEncoding::Exr}),
-                          row(2, "width", &Self::width), row(3, "height", &Self::height),
-                          row(4, "components", &Self::components), row(5, "byte_size", &Self::byte_size),
-                          row(6, "filter", &Self::filter), row(7, "scale", &Self::scale),
-                          row(8, "seconds_filter", &Self::seconds_filter),
-                          row(9, "seconds_encode", &Self::seconds_encode),
-                          row(10, "seconds_predicted", &Self::seconds_predicted),
-                          row(11, "passes", &Self::passes), row(12, "notes", &Self::notes));
+        return std::tuple(
+            row(1, "encoding", &Self::encoding, UpTo{PictureEncoding::Exr}), row(2, "width", &Self::width),
+            row(3, "height", &Self::height), row(4, "components", &Self::components),
+            row(5, "byte_size", &Self::byte_size), row(6, "filter", &Self::filter),
+            row(7, "scale", &Self::scale), row(8, "seconds_filter", &Self::seconds_filter),
+            row(9, "seconds_encode", &Self::seconds_encode),
+            row(10, "seconds_predicted", &Self::seconds_predicted), row(11, "passes", &Self::passes),
+            row(12, "notes", &Self::notes), row(13, "display_transform", &Self::display_transform));
     }
 };
 

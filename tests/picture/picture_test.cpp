@@ -17,7 +17,7 @@
 #include "mediator/picture/film_exr.h"
 #include "mediator/picture/hdr_reader.h"
 #include "mediator/picture/png_writer.h"
-#include "mediator/picture/tone_map.h"
+#include "mediator/picture/view_transform.h"
 
 namespace tessera::picture {
 namespace {
@@ -124,9 +124,9 @@ TEST_F(PictureTest, WhatCannotBeWrittenLeavesNothing) {
     EXPECT_EQ(files(), 0u);
 }
 
-TEST_F(PictureTest, PngHoldsTheToneMappedBytes) {
+TEST_F(PictureTest, PngHoldsTheBytes) {
     const frame::Image image = noise(20, 10, 3);
-    const auto bytes = tone_map(image);
+    const auto bytes = srgb_bytes(image, {view::ViewTransform::Neutral, 0.0});
     write_png(file("a.png"), 20, 10, bytes);
     png_image png{};
     png.version = PNG_IMAGE_VERSION;
@@ -135,20 +135,6 @@ TEST_F(PictureTest, PngHoldsTheToneMappedBytes) {
     std::vector<std::uint8_t> read(PNG_IMAGE_SIZE(png));
     ASSERT_NE(png_image_finish_read(&png, nullptr, read.data(), 0, nullptr), 0);
     EXPECT_EQ(read, bytes);
-}
-
-TEST(ToneMap, BearsBlackAndInfinity) {
-    frame::Image image(2, 2, 3);
-    EXPECT_EQ(tone_map(image), std::vector<std::uint8_t>(12, 0));
-    image.values = {1, 1, 1, INFINITY, 1, 1, NAN, 0, 0, 1e30f, 1e30f, 1e30f};
-    const auto bytes = tone_map(image);
-    EXPECT_EQ(bytes[9], 255) << "the brightest is white";
-}
-
-TEST(ToneMap, DoesNotDependOnTheUnitOfLight) {
-    frame::Image image = noise(16, 16, 1), brighter = image;
-    for (float& value : brighter.values) value *= 1024.0f;
-    EXPECT_EQ(tone_map(image), tone_map(brighter));
 }
 
 }  // namespace

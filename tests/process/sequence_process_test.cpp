@@ -53,6 +53,33 @@ TEST(SequenceProcess, FramesOfAClusterHaveTheBitsOfFramesAlone) {
     EXPECT_NE(together.at(1), together.at(2));
 }
 
+// `auto` is measured once, of the first frame, so that brightness does not pump; whoever encodes the pictures.
+TEST(SequenceProcess, HasTheExposureOfItsFirstFrame) {
+    const import::TestFolder files;
+    const TemporaryFolder folder;
+    const std::string scene = moving_scene(files);
+    const auto exposures = [&](const std::string& frames, const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"render", scene, "--size",   "64x48", "--spp", "4",
+                                           "--fps",  "2",   "--frames", frames,  "-o",    folder / "f.%d.png",
+                                           "--json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        ChildProcess render(folder.path(), "frames", "tessera", arguments);
+        EXPECT_EQ(render.wait(SequencePatience).value_or(-1), 0) << render.err();
+        std::vector<double> found;
+        std::istringstream lines(render.out());
+        for (std::string line; std::getline(lines, line);)
+            found.push_back(json::parse(line)["exposure"].get<double>());
+        return found;
+    };
+    for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--filter", "none"}}) {
+        const auto together = exposures("0:3", more);
+        ASSERT_EQ(together.size(), 4u);
+        EXPECT_EQ(together, std::vector<double>(4, together.front()));
+        EXPECT_NE(exposures("3:3", more).at(0), together.front()) << "nothing has changed in the picture";
+    }
+    EXPECT_EQ(exposures("0:1", {"--exposure", "-1.5"}), (std::vector<double>{-1.5, -1.5}));
+}
+
 // Of more tiles than the master takes in one go.
 TEST(BigPictureProcess, ArrivesWhole) {
     const import::TestFolder files;

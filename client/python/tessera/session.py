@@ -23,7 +23,7 @@ from .proto import control_pb2, scene_pb2
 from .scene import Scene
 from .transaction import Transaction
 from .values import Blob, Object
-from .view import ALL_LAYERS, LAST_FRAME_ONLY, CameraLike, Rendered, View, plain_view
+from .view import ALL_LAYERS, LAST_FRAME_ONLY, VIEW_TRANSFORMS, CameraLike, Rendered, View, plain_view
 
 Message = Any
 _LOG = logging.getLogger("tessera")
@@ -286,26 +286,28 @@ class Session:
     def open_view(self, at: CameraLike, *, size: tuple[int, int] = (1280, 720), spp: int = 64, picture: str = "png",
                   film: bool = False, name: str = "", filter: str = "", renderer: str = "path", bounces: int = 8,
                   seed: int = 0, channels: Sequence[str] = ("radiance",), layers: int = ALL_LAYERS,
-                  budget: float | None = None) -> View:
+                  budget: float | None = None, exposure: float | None = None, view_transform: str = "neutral") -> View:
         """A view from a camera of the scene (the object or its path) or a Pose (`look_at`). `picture`: "png", "jpeg", "exr",
         "planes" (filtered float32) or "none"; `film`: the statistics of `channels`, too. `layers`: a mask, bit i is
         layer i; objects in none of them are not there. `budget`: seconds after which the picture is there, filter
-        included, with the samples that fit."""
+        included, with the samples that fit. `exposure` of "png" and "jpeg" in EV, None: measured once, of the first
+        picture; `view_transform`: "neutral", "agx", "reinhard" or "linear"."""
         view = plain_view(size, channels=channels, renderer=renderer, bounces=bounces, seed=seed, filter=filter,
                           layers=layers)
         self.aim(view, at)
-        return self._open(self._request(view, spp, picture, film, name, budget))
+        return self._open(self._request(view, spp, picture, film, name, budget, exposure, view_transform))
 
     def render(self, at: CameraLike, *, size: tuple[int, int] = (1280, 720), spp: int = 64, picture: str = "png",
                film: bool = False, filter: str = "", renderer: str = "path", bounces: int = 8, seed: int = 0,
                channels: Sequence[str] = ("radiance",), layers: int = ALL_LAYERS, budget: float | None = None,
-               min_nodes: int = 1, wait: float = 60.0, on_progress: Callable[[Progress], None] | None = None) -> Rendered:
+               exposure: float | None = None, view_transform: str = "neutral", min_nodes: int = 1, wait: float = 60.0,
+               on_progress: Callable[[Progress], None] | None = None) -> Rendered:
         """One picture, as `open_view` describes it: the last frame and what became of it. Begins when `min_nodes` are ready,
         and gives up after `wait` seconds without nodes (the outcome is "no_nodes"). `on_progress` hears where it is."""
         view = plain_view(size, channels=channels, renderer=renderer, bounces=bounces, seed=seed, filter=filter,
                           layers=layers)
         self.aim(view, at)
-        request = self._request(view, spp, picture, film, "", budget)
+        request = self._request(view, spp, picture, film, "", budget, exposure, view_transform)
         request.wanted.frames, request.wanted.min_nodes = LAST_FRAME_ONLY, min_nodes
         request.wanted.wait_limit = int(wait * 1e9)
         opened = self._open(request)
@@ -314,12 +316,13 @@ class Session:
         finally:
             opened.close()
 
-    def watch(self, name: str, *, picture: str = "png", film: bool = False) -> View:
+    def watch(self, name: str, *, picture: str = "png", film: bool = False, exposure: float | None = None,
+              view_transform: str = "neutral") -> View:
         """The view of somebody else that has this name (see `people`), whatever its camera."""
         view = plain_view((1, 1), channels=("radiance",), renderer="path", bounces=8, seed=0, filter="",
                           layers=ALL_LAYERS)
         self.aim(view, camera.look_at((0, 0, 1), (0, 0, 0)))
-        request = self._request(view, 1, picture, film, name, None)
+        request = self._request(view, 1, picture, film, name, None, exposure, view_transform)
         request.share = True
         return self._open(request)
 
@@ -330,11 +333,17 @@ class Session:
         request.set_view_filter.view, request.set_view_filter.filter = view.encode(), filter.encode()
         return text(self.connection.request(request).text)
 
-    def _request(self, view: Message, spp: int, picture: str, film: bool, name: str, budget: float | None) -> Message:
+    def _request(self, view: Message, spp: int, picture: str, film: bool, name: str, budget: float | None,
+                 exposure: float | None, view_transform: str) -> Message:
         if picture not in bulk.ENCODINGS:
             raise InvalidInput(f"there is no picture '{picture}': choose of {', '.join(bulk.ENCODINGS)}")
+        if view_transform not in VIEW_TRANSFORMS:
+            raise InvalidInput(f"there is no view transform '{view_transform}': choose of {', '.join(VIEW_TRANSFORMS)}")
         request = control_pb2.Control().request_view
         wanted = request.wanted
+        wanted.display_transform.view_transform = VIEW_TRANSFORMS.index(view_transform)
+        if exposure is not None:
+            wanted.display_transform.exposure = exposure
         wanted.name, wanted.stop.spp, wanted.picture, wanted.film = name.encode(), spp, bulk.ENCODINGS.index(picture), film
         if budget is not None:
             wanted.stop.budget = int(budget * 1e9)

@@ -21,6 +21,7 @@ Message = Any
 CameraLike = camera.Pose | Camera | str
 ALL_LAYERS = 0xFFFFFFFF
 RENDERERS = ("path", "whitted", "raster", "coverage")
+VIEW_TRANSFORMS = ("neutral", "agx", "reinhard", "linear")
 LAST_FRAME_ONLY = 1  # of the frames of a view, by its number on the wire
 STALL_SECONDS = 5.0  # without a further piece of a frame: the rest was lost
 

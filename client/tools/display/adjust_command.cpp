@@ -68,7 +68,7 @@ Command adjust_display_command(cli::CommandLine& display) {
     line.option("--eye-separation", "metres between the eyes", options->eye_separation);
     line.option("--zero-parallax", "metres from the head where nothing has parallax; 0 = on the screens",
                 options->zero_parallax);
-    line.option("--exposure", "stops", options->exposure);
+    line.option("--exposure", "EV: each step doubles the light", options->exposure);
     line.choice("--pattern", "show the test pattern instead of the scene", options->pattern, {"on", "off"});
     line.option("--layers",
                 "the layers that are shown, as 0,2: numbers, counted from 0 as the display's file names them",

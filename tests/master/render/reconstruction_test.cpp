@@ -47,8 +47,9 @@ frame::FilmTile noise(const view::View& view, std::uint64_t seed) {
 std::vector<std::byte> picture(Reconstructor& reconstructor, const view::View& view, std::uint64_t seed,
                                Version version = Scene) {
     const frame::FilmTile film = noise(view, seed);
-    const Reconstruction made =
-        reconstructor.reconstruct({.film = film}, view, version, session::PictureEncoding::Planes);
+    const Reconstruction made = reconstructor.reconstruct(
+        {.film = film}, view, version,
+        {.encoding = session::PictureEncoding::Planes, .transform = {}, .view = {}});
     EXPECT_EQ(made.error, "");
     return *made.bytes;
 }
@@ -80,6 +81,35 @@ TEST(Reconstructor, ForgottenViewsBeginAnew) {
     (void)picture(used, psvgf_view(8, 1), 1);
     used.forget(ViewId{8}, ViewId{16});
     EXPECT_EQ(picture(used, psvgf_view(8, 2), 2), alone);
+}
+
+// Else brightness would pump while a live scene is edited, and from one coarse picture to the next.
+TEST(Reconstructor, AllPicturesOfAViewHaveTheExposureOfItsFirst) {
+    Reconstructor reconstructor;
+    const auto exposure = [&](ViewId of, float light, std::optional<double> asked = {}) {
+        view::View view = psvgf_view(8, 1);
+        view.filter = "none";
+        frame::FilmTile film = noise(view, 1);
+        for (std::uint32_t c = 0; c < 3; ++c) {
+            const auto values = film.plane(film.channels.first_plane(frame::Channel::Radiance) + c);
+            std::fill(values.begin(), values.end(), light);
+        }
+        const Reconstruction made =
+            reconstructor.reconstruct({.film = film}, view, Scene,
+                                      {.encoding = session::PictureEncoding::Png,
+                                       .transform = {view::ViewTransform::Neutral, asked},
+                                       .view = of});
+        EXPECT_EQ(made.error, "");
+        return made.summary.display_transform.exposure;
+    };
+    EXPECT_FALSE(exposure(ViewId{16}, 0.0f)) << "nothing is lit yet";
+    EXPECT_NEAR(exposure(ViewId{16}, 0.36f).value(), -1.0, 1e-5);
+    EXPECT_NEAR(exposure(ViewId{16}, 18.0f).value(), -1.0, 1e-5);
+    EXPECT_EQ(exposure(ViewId{16}, 18.0f, 2.0).value(), 2.0);
+    EXPECT_NEAR(exposure(ViewId{32}, 0.72f).value(), -2.0, 1e-5);
+    reconstructor.forget(ViewId{16}, ViewId{32});
+    EXPECT_NEAR(exposure(ViewId{16}, 0.18f).value(), 0.0, 1e-5);
+    EXPECT_NEAR(exposure(ViewId{32}, 0.18f).value(), -2.0, 1e-5);
 }
 
 }  // namespace
