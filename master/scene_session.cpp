@@ -27,10 +27,10 @@ std::string SceneSession::unique_name(const std::string& wanted) const {
         return std::any_of(members_.begin(), members_.end(),
                            [&](const auto& entry) { return entry.second.name == name; });
     };
-    const std::string base = wanted.empty() ? "client" : wanted.substr(0, MaxNameLength);
+    std::string base = wanted.empty() ? "client" : wanted.substr(0, MaxNameLength);
     if (!taken(base)) return base;
     for (int number = 2;; ++number) {
-        const std::string name = base + " (" + std::to_string(number) + ")";
+        std::string name = base + " (" + std::to_string(number) + ")";
         if (!taken(name)) return name;
     }
 }

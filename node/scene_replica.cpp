@@ -79,7 +79,7 @@ Expected<void> SceneReplica::advance() {
         }
         refused_ = item.to;
         announced_lists_.pop_front();
-        const Expected<void> done = list ? apply(std::move(*list)) : tl::unexpected(list.error());
+        Expected<void> done = list ? apply(std::move(*list)) : tl::unexpected(list.error());
         if (!done) {
             discard();
             return done;

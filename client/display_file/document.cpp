@@ -27,12 +27,11 @@ Value converted(const toml::node& node, const std::string& path, std::size_t dep
     if (depth > MaxDepth) throw error_at(path, value.place, "tables and lists are nested too deeply");
     if (const auto* table = node.as_table()) {
         for (const auto& [key, inner] : *table) {
-            value.table.emplace_back(std::string(key.str()), converted(inner, path, depth + 1));
+            value.table.push_back({std::string(key.str()), converted(inner, path, depth + 1)});
             // A list of tables has no place of its own, and a key says better where a value stands.
-            value.table.back().second.place = place_of(key.source());
+            value.table.back().value.place = place_of(key.source());
         }
-        std::ranges::stable_sort(value.table, is_before,
-                                 [](const auto& entry) { return entry.second.place; });
+        std::ranges::stable_sort(value.table, is_before, [](const auto& entry) { return entry.value.place; });
     } else if (const auto* array = node.as_array()) {
         value.kind = Value::Kind::List;
         for (const toml::node& element : *array) value.list.push_back(converted(element, path, depth + 1));

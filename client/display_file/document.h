@@ -15,6 +15,8 @@ struct Place {
     std::uint32_t line = 0, column = 0;
 };
 
+struct TableEntry;
+
 // One value of the file, of the kind that it was written as.
 struct Value {
     enum class Kind { Table, List, Text, Number, Truth, Date };
@@ -24,7 +26,12 @@ struct Value {
     bool is_whole = false;
     std::string text;
     std::vector<Value> list;
-    std::vector<std::pair<std::string, Value>> table;  // in the file's order
+    std::vector<TableEntry> table;  // in the file's order
+};
+
+struct TableEntry {
+    std::string key;
+    Value value;
 };
 
 std::string_view kind_name(Value::Kind kind);  // "a table", "a number", ...

@@ -57,7 +57,7 @@ std::string MpcdiXml::text(pugi::xml_node node, const char* attribute) const {
 }
 
 std::string MpcdiXml::required(pugi::xml_node node, const char* attribute) const {
-    const std::string value = text(node, attribute);
+    std::string value = text(node, attribute);
     if (value.empty()) refuse(node, std::string("<") + node.name() + "> needs '" + attribute + "'");
     return value;
 }

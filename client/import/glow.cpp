@@ -29,12 +29,13 @@ double linear(unsigned srgb_byte) {
 glm::dvec3 mean_color(std::span<const std::byte> rgba) {
     std::array<double, 256> levels;
     for (unsigned i = 0; i < levels.size(); ++i) levels[i] = linear(i);
+    const std::size_t pixels = rgba.size() / 4;
     glm::dvec3 sum(0.0);
     for (std::size_t i = 0; i + 3 < rgba.size(); i += 4) {
         for (std::size_t k = 0; k < 3; ++k)
             sum[static_cast<glm::length_t>(k)] += levels[std::to_integer<unsigned>(rgba[i + k])];
     }
-    return sum / std::max(static_cast<double>(rgba.size() / 4), 1.0);
+    return sum / std::max(static_cast<double>(pixels), 1.0);
 }
 
 struct Emission {

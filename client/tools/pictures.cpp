@@ -82,7 +82,7 @@ std::map<std::string, std::string> provenance(const session::ViewRequest& reques
 
 // The picture as sampled, with alpha where the film has it.
 frame::Image unfiltered(const frame::FilmTile& film) {
-    const frame::Image light = frame::resolve_picture(film);
+    frame::Image light = frame::resolve_picture(film);
     if (!film.channels.contains(frame::Channel::Alpha)) return light;
     const frame::Image alpha = frame::resolve(film, frame::Channel::Alpha);
     frame::Image image(light.width, light.height, 4);

@@ -37,9 +37,11 @@ void Outbox::put(net::Link link, net::PeerId peer, net::Bytes&& message) {
                 break;
         }
     }
+    // NOLINTBEGIN(bugprone-use-after-move): a send that would block takes nothing
     Queue& waiting = queues_[{link, peer}];
     waiting.bytes += message.size();
     waiting.messages.push_back(std::move(message));
+    // NOLINTEND(bugprone-use-after-move)
     if (waiting.bytes > OutboxLimit) {
         lost_.emplace_back(link, peer);
         queues_.erase({link, peer});

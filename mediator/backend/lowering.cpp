@@ -43,7 +43,7 @@ class Counting {
                 std::holds_alternative<scene::Light>(*object)) {
                 sum.placements += 1;
             } else if (std::holds_alternative<scene::Transform>(*object)) {
-                const Expected<Below> child = transform(id, std::get<scene::Transform>(*object), level + 1);
+                Expected<Below> child = transform(id, std::get<scene::Transform>(*object), level + 1);
                 if (!child) return child;
                 sum.placements += child->placements;
                 sum.path_ids += child->path_ids + child->placements;
@@ -71,7 +71,7 @@ class Counting {
                                                         transform.name +
                                                         "' contains itself; remove one link of the cycle");
         }
-        const Expected<Below> below = children(transform.children, level);
+        Expected<Below> below = children(transform.children, level);
         if (below) known_[id] = *below;
         return below;
     }

@@ -61,6 +61,8 @@ template <class E>
 struct UpTo {
     E last;
 };
+template <class E>
+UpTo(E) -> UpTo<E>;  // clang 16 does not find it by itself
 
 // A member that is computed: `get(const T&)` gives the value that is described, `set(T&, value)` takes it.
 template <class Get, class Set>
@@ -68,6 +70,8 @@ struct Computed {
     Get get;
     Set set;
 };
+template <class Get, class Set>
+Computed(Get, Set) -> Computed<Get, Set>;
 
 // `Access` is a pointer to a member, a function from T& or const T& to a reference, or Computed.
 template <class Access, class... Notes>

@@ -19,6 +19,8 @@ template <class... Functions>
 struct Overloaded : Functions... {
     using Functions::operator()...;
 };
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;
 
 void check_pass(const Pass& pass, const DeviceInfo& info) {
     require(pass.pipeline != nullptr && pass.pipeline->get() != VK_NULL_HANDLE, "a pass without a pipeline");

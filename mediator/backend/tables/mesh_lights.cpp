@@ -93,8 +93,9 @@ struct Glow {
         for (unsigned row = 0; row < n; ++row) {
             for (unsigned i = 0; i < 2 * (n - row) - 1; ++i) {
                 const float shift = i % 2 == 0 ? 1.0f / 3.0f : 2.0f / 3.0f;
+                const unsigned column = i / 2;
                 const glm::vec2 b =
-                    (glm::vec2(float(i / 2), float(row)) + glm::vec2(shift)) / static_cast<float>(n);
+                    (glm::vec2(float(column), float(row)) + glm::vec2(shift)) / static_cast<float>(n);
                 sum += brightness(shading::emission_at(scene, material, mesh, corners, b));
             }
         }
