@@ -7,8 +7,7 @@
 namespace tessera::tools {
 
 void DisplayTransformOptions::add_to(cli::CommandLine& command) {
-    command.option("--exposure",
-                   "of PNG and JPEG, in EV: each step doubles the light; auto measures it once (auto)",
+    command.option("--exposure", "of PNG and JPEG, in EV: each step doubles the light; auto measures it once",
                    exposure);
     const auto names = enumerators(view::ViewTransform{});
     command.choice("--view-transform", "of PNG and JPEG: the curve from light to the screen", view_transform,

@@ -10,6 +10,7 @@ namespace tessera::picture {
 
 std::optional<double> measured_exposure(const frame::Image& image) {
     constexpr double MiddleGrey = 0.18, Darkest = 0.1, Brightest = 0.05;
+    constexpr double Highlight = 0.8, Highlights = 0.2;
     std::vector<float> logs;
     logs.reserve(image.pixel_count());
     for (std::size_t i = 0; i < image.pixel_count(); ++i) {
@@ -26,7 +27,10 @@ std::optional<double> measured_exposure(const frame::Image& image) {
     if (last != logs.end()) std::nth_element(first, last, logs.end());
     double sum = 0.0;
     for (auto log = first; log != last; ++log) sum += double{*log};
-    const double exposure = std::log2(MiddleGrey) - sum / static_cast<double>(last - first);
+    const double of_mean = std::log2(MiddleGrey) - sum / static_cast<double>(last - first);
+    const auto highlight = logs.end() - 1 - static_cast<std::ptrdiff_t>(Highlights * count);
+    std::nth_element(logs.begin(), highlight, logs.end());
+    const double exposure = std::min(of_mean, std::log2(Highlight) - double{*highlight});
     return std::clamp(exposure, -view::MaxExposure, view::MaxExposure);
 }
 

@@ -118,17 +118,17 @@ TEST_F(FilmExr, NumbersThatNoSampleCanGiveAreDamage) {
 TEST_F(FilmExr, EncodedPicturesKeepAlpha) {
     frame::Image image(2, 1, 4);
     image.values = {0.25f, 0.5f, 0.125f, 0.5f, 0.0f, 0.0f, 0.0f, 0.0f};
-    const std::vector<std::byte> exr = encode_picture(image, FileFormat::Exr);
+    const std::vector<std::byte> exr = encode_picture(image, FileFormat::Exr, {});
     std::ofstream(file("c.exr"), std::ios::binary)
         .write(reinterpret_cast<const char*>(exr.data()), static_cast<std::streamsize>(exr.size()));
     const Picture back = read_exr(file("c.exr"));
     EXPECT_EQ(back.image.pixel(0)[1], 0.5f);
     EXPECT_EQ(read_exr(file("c.exr")).image.components, 3u) << "alpha is left out of comparisons";
     for (const FileFormat format : {FileFormat::Png, FileFormat::Jpeg}) {
-        EXPECT_GT(encode_picture(image, format).size(), 20u);
+        EXPECT_GT(encode_picture(image, format, {}).size(), 20u);
     }
     image.values[0] = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_GT(encode_picture(image, FileFormat::Png).size(), 20u) << "what is no number is black";
+    EXPECT_GT(encode_picture(image, FileFormat::Png, {}).size(), 20u) << "what is no number is black";
 }
 
 }  // namespace

@@ -131,6 +131,16 @@ TEST(Exposure, LampsAndDarkCornersHardlyMoveIt) {
     EXPECT_NEAR(*measured_exposure(with_holes), reference, 0.1);
 }
 
+TEST(Exposure, AWhiteFloorBeforeADarkBackdropDoesNotBurnOut) {
+    frame::Image image(10, 10, 3);
+    for (std::size_t i = 0; i < image.pixel_count(); ++i)
+        std::fill_n(image.pixel(i).begin(), 3, i < 45 ? 0.01f : 1.0f);
+    EXPECT_NEAR(*measured_exposure(image), std::log2(0.8), 1e-6);
+    for (std::size_t i = 0; i < image.pixel_count(); ++i)  // a window: less than a fifth may be white
+        std::fill_n(image.pixel(i).begin(), 3, i < 81 ? 0.18f : 100.0f);
+    EXPECT_GT(*measured_exposure(image), -1.6);
+}
+
 TEST(Exposure, OfWhatIsTransparentOrBlackThereIsNone) {
     EXPECT_FALSE(measured_exposure(frame::Image(8, 8, 3)));
     frame::Image hidden(2, 1, 4);
