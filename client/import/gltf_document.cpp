@@ -95,6 +95,28 @@ Expected<void> check_extensions(const tinygltf::Model& model, std::vector<std::s
     return {};
 }
 
+constexpr std::size_t MostNames = 256;
+
+std::vector<std::string> extension_names(const tinygltf::Model& model) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < std::min(model.extensionsUsed.size(), MostNames); ++i)
+        names.push_back(shortened(model.extensionsUsed[i]));
+    return names;
+}
+
+std::vector<std::string> variant_names(const tinygltf::Model& model) {
+    std::vector<std::string> names;
+    const auto extension = model.extensions.find("KHR_materials_variants");
+    if (extension == model.extensions.end() || !extension->second.Has("variants")) return names;
+    const tinygltf::Value& variants = extension->second.Get("variants");
+    for (std::size_t i = 0; i < std::min(variants.ArrayLen(), MostNames); ++i) {
+        const tinygltf::Value& variant = variants.Get(i);
+        const bool has_name = variant.Has("name") && variant.Get("name").IsString();
+        names.push_back(has_name ? shortened(variant.Get("name").Get<std::string>()) : "");
+    }
+    return names;
+}
+
 }  // namespace
 
 Expected<GltfDocument> load_gltf(const std::filesystem::path& file) {
@@ -139,6 +161,8 @@ Expected<GltfDocument> load_gltf(const std::filesystem::path& file) {
     if (const auto checked = check_extensions(*model, document.notices); !checked) {
         return tl::unexpected<Error>(checked.error());
     }
+    document.extensions = extension_names(*model);
+    document.variants = variant_names(*model);
     document.model = std::move(model);
     return document;
 }

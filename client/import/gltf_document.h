@@ -19,6 +19,7 @@ namespace tessera::import {
 // next to nothing: every number in here is still the file's word.
 struct GltfDocument {
     std::shared_ptr<const tinygltf::Model> model;
+    std::vector<std::string> extensions, variants;  // names, as ImportedScene has them
     std::vector<std::string> notices;  // files that could not be read, values that were taken out, and why
 };
 

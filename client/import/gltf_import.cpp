@@ -33,6 +33,8 @@ void import_gltf(const std::filesystem::path& file, SceneBuilder& builder) {
     const Expected<GltfDocument> document = load_gltf(file);
     if (!document) throw document.error();
     for (const std::string& notice : document->notices) builder.notice(notice);
+    builder.result().extensions = document->extensions;
+    builder.result().variants = document->variants;
     builder.result().animations = survey_animations(*document->model, builder);
     tell_of_animations(builder);
     builder.result().root.children = GltfNodes(*document->model, builder).build();

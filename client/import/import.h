@@ -80,6 +80,8 @@ struct ImportedScene {
     std::vector<std::string> notices;    // what was added, replaced or ignored; lower-case phrases, each once
     ImportCounts counts;
     std::vector<AnimationInfo> animations;  // of the file, played or not
+    std::vector<std::string> extensions;  // of glTF that the file uses; those that are not read have a notice
+    std::vector<std::string> variants;    // names of KHR_materials_variants; the default look is imported
     // Geometries that are not among the children of a transform while it leaves them no volume.
     std::map<ObjectId, std::vector<ObjectId>> without_volume;
     std::optional<double> seconds;             // the time it shows; none = at rest

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "client/tools/command.h"
+
+namespace tessera::tools {
+
+// tessera info: what is in a scene file.
+Command info_command(cli::CommandLine& program);
+
+}  // namespace tessera::tools
