@@ -7,6 +7,7 @@
 
 #include "mediator/base/error.h"
 #include "mediator/base/nearest.h"
+#include "mediator/program/commit.h"
 
 namespace tessera::cli {
 
@@ -232,7 +233,8 @@ std::string CommandLine::chosen() const {
 }
 
 std::string version() {
-    return TESSERA_VERSION;
+    const std::string commit = Commit;
+    return TESSERA_VERSION + (commit.empty() ? std::string() : " (" + commit + ")");
 }
 
 }  // namespace tessera::cli

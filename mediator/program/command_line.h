@@ -61,7 +61,7 @@ class CommandLine {
     std::unique_ptr<Implementation> implementation_;
 };
 
-std::string version();  // of this software
+std::string version();  // of this software, with its commit: "0.2.0 (1a2b3c4)"
 
 // The options of a TOML file as words of a command line: [first] for the program itself, then per table (dots
 // become spaces) its own. Throws Error{InvalidInput, NotFound} with file, line and reason.
