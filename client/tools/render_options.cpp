@@ -6,10 +6,8 @@
 
 #include "client/tools/frame_names.h"
 #include "client/tools/pictures.h"
-#include "master/filter/catalog.h"
 #include "mediator/backend/catalog.h"
 #include "mediator/base/nearest.h"
-#include "mediator/filter/choice.h"
 
 namespace tessera::tools {
 
@@ -131,10 +129,10 @@ Expected<void> set_filter(const RenderOptions& options, session::ViewRequest& jo
     if (options.save_statistics && !any_exr(options.outputs)) {
         return wrong("--save-statistics needs an EXR to save them in: add -o FILE.exr");
     }
-    if (options.filter.empty()) return {};
-    const auto choice = filter::parse_choice(options.filter, filter::catalog());
-    if (!choice) return wrong(std::string("--filter: ") + choice.error().what() + "; see tessera filters");
-    job.view.filter = filter::to_text(*choice);
+    const auto filter = understand(options.filter);
+    if (!filter) return tl::unexpected(filter.error());
+    job.view.filter = *filter;
+    if (filter->empty()) return {};
     if (options.detach) return {};  // see set_detached()
     job.film = any_exr(options.outputs);
     const PictureFormat format = *picture_format(options.outputs.front());
@@ -241,14 +239,14 @@ void RenderOptions::add_to(cli::CommandLine& command) {
     command.option("-o,--output", "picture to write, .exr, .png or .jpg; may be given several times",
                    outputs);
     command.option("--spp", "samples per pixel (64)", spp);
-    command.option("--time",
-                   "render for so long instead, as 800ms or 10s; with --filter, filter and encoding included",
-                   time);
+    command.option(
+        "--time",
+        "render for so long instead, as 800ms or 10s; with --denoise, denoising and encoding included", time);
     command.option("--frames", "render frames A:B of the animation, each to its own -o out.%04d.exr", frames);
     command.option(
         "--fps", "frames per second (24): frame K shows K / fps seconds, with the noise of --seed S+K", fps);
     command.flag("--skip-existing", "leave out frames whose pictures are there", skip_existing);
-    command.option("--filter", "reconstruction, NAME[:key=value,...]; tessera filters lists them", filter);
+    filter.add_to(command);
     display.add_to(command);
     command.flag("--save-statistics", "keep all channels in the EXR, for tessera filter", save_statistics);
     command.choice("--policy", "how frames are cut into work", policy, {"tiled", "cooperative", "mixed"});
@@ -263,8 +261,8 @@ void RenderOptions::add_to(cli::CommandLine& command) {
     add_log_to(command, *this);
     command.examples(
         {"tessera render room.glb -o room.exr -o room.png --spp 256",
-         "tessera render room.glb -o room.exr --spp 8 --filter fdf",
-         "tessera render still.glb --env studio.exr -o still.png --time 800ms --filter fdf",
+         "tessera render room.glb -o room.png --spp 8 --denoise",
+         "tessera render still.glb --env studio.exr -o still.png --time 800ms --denoise",
          "tessera render robot.glb --at 1.5 --animation walk -o robot.exr",
          "tessera render robot.glb --frames 0:47 --fps 24 -o robot.%04d.exr",
          "tessera render room.glb -o room.exr --nodes 2 --policy cooperative --json",

@@ -8,6 +8,7 @@
 #include "client/tools/coverage.h"
 #include "client/tools/display_transform_options.h"
 #include "client/tools/embedded_cluster.h"
+#include "client/tools/filter_options.h"
 #include "client/tools/view_options.h"
 #include "mediator/picture/film_exr.h"
 #include "mediator/program/log.h"
@@ -24,7 +25,8 @@ struct RenderOptions {
     std::optional<double> fps;
     std::string user = "editor";
     std::string policy = "mixed";
-    std::string filter, name;
+    FilterOption filter;
+    std::string name;
     bool detach = false;
     bool reproducible = false, no_wait = false, json = false, save_statistics = false, skip_existing = false;
     cli::LogSettings log{.program = "tessera"};

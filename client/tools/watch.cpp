@@ -12,12 +12,11 @@
 #include "client/session.h"
 #include "client/tools/cluster_options.h"
 #include "client/tools/display_transform_options.h"
+#include "client/tools/filter_options.h"
 #include "client/tools/interrupts.h"
 #include "client/tools/pictures.h"
 #include "client/tools/terminal_picture.h"
 #include "client/tools/values.h"
-#include "master/filter/catalog.h"
-#include "mediator/filter/choice.h"
 #include "mediator/picture/exposure.h"
 #include "mediator/picture/view_transform.h"
 #include "mediator/view/placed_cameras.h"
@@ -31,7 +30,8 @@ constexpr std::uint64_t View = 1;
 
 struct WatchOptions {
     client::Address address{.endpoint = "tcp://127.0.0.1:7420"};
-    std::string title, name = "watch", view, camera, filter;
+    std::string title, name = "watch", view, camera;
+    FilterOption filter;
     DisplayTransformOptions display;
     std::optional<std::string> size, output, time;
     std::uint64_t spp = 256;
@@ -70,10 +70,9 @@ class Watch {
                             "nowhere to show the frames: standard output is no terminal; add -o FILE");
         if (options_.output && !picture_format(*options_.output))
             return complain(WatchName, cli::ExitUsage, "-o: end the name with .exr, .png or .jpg");
-        if (!options_.filter.empty()) {
-            const auto choice = filter::parse_choice(options_.filter, filter::catalog());
-            if (!choice) return complain(WatchName, cli::ExitUsage, choice.error().what());
-        }
+        const auto filter = understand(options_.filter);
+        if (!filter) return complain(WatchName, cli::ExitUsage, filter.error().what());
+        filter_ = *filter;
         const auto transform = understand(options_.display);
         if (!transform) return complain(WatchName, cli::ExitUsage, transform.error().what());
         transform_ = *transform;
@@ -134,7 +133,7 @@ class Watch {
                                    static_cast<std::int32_t>(size_.height)};
             request.view.camera = view::pose(*camera, size_.width, size_.height);
             request.view.channels = {frame::Channel::Radiance};
-            request.view.filter = options_.filter;
+            request.view.filter = filter_;
         }
         shares ? session_->share_view(View, request) : session_->request_view(View, request);
     }
@@ -189,6 +188,7 @@ class Watch {
     SteadyClock clock_;
     Size size_;
     view::DisplayTransform transform_;
+    std::string filter_;
     bool to_terminal_ = false, told_ = false;
     std::unique_ptr<client::Session> session_;
 };
@@ -214,8 +214,7 @@ Command watch_command(cli::CommandLine& program) {
     line.option("--camera", "camera of the scene: its name, or its number from 0", options->camera);
     line.option("--size", "picture size in pixels (1280x720, or that of the terminal)", options->size);
     line.option("--spp", "samples per pixel of the complete frame", options->spp);
-    line.option("--filter", "reconstruction, NAME[:key=value,...]; tessera filters lists them",
-                options->filter);
+    options->filter.add_to(line);
     options->display.add_to(line);
     line.option("-o,--output", "write every frame to this picture, .png, .jpg or .exr", options->output);
     line.flag("--once", "end when the frame is complete", options->once);
@@ -223,7 +222,7 @@ Command watch_command(cli::CommandLine& program) {
     line.option("--time", "end after so long, as 10s or 5m", options->time);
     line.flag("--no-wait", "exit with 75 when a batch has the cluster, instead of waiting", options->no_wait);
     line.examples({"tessera watch --master tcp://render-1:7420 --keys ~/.tessera",
-                   "tessera watch --master tcp://127.0.0.1:7420 -o now.png --once --spp 64 --filter fdf",
+                   "tessera watch --master tcp://127.0.0.1:7420 -o now.png --once --spp 64 --denoise",
                    "tessera watch --master tcp://127.0.0.1:7420 --view ann/1"});
     return {WatchName, [options](std::string_view) { return run(*options); }};
 }

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <ostream>
 
 #include "mediator/base/error.h"
@@ -16,6 +17,7 @@ struct CommandLine::Implementation {
     std::unique_ptr<CLI::App> owned;  // of the program itself
     std::vector<std::unique_ptr<CommandLine>> commands;
     std::string config;
+    std::map<std::string, std::string> alone;  // options that need no value, and what they mean without
 };
 
 namespace {
@@ -174,6 +176,12 @@ void CommandLine::choice(const std::string& names, const std::string& help, std:
         ->type_name(list);
 }
 
+void CommandLine::option_with_default(const std::string& name, const std::string& help,
+                                      std::optional<std::string>& value, const std::string& alone) {
+    single(implementation_->app->add_option(name, value, help))->type_name("[=NAME]");
+    implementation_->alone[name] = alone;
+}
+
 void CommandLine::flag(const std::string& names, const std::string& help, bool& value) {
     implementation_->app->add_flag(names, value, help);
 }
@@ -209,6 +217,7 @@ std::optional<int> CommandLine::parse(int argc, const char* const* argv, std::os
         if (const std::optional<std::string> path = config_path(words)) {
             words = with_config(app, words, read_config(*path));
         }
+        complete(words);
         app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes them last first
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
@@ -219,6 +228,18 @@ std::optional<int> CommandLine::parse(int argc, const char* const* argv, std::os
         return wrong(error.what());
     }
     return std::nullopt;
+}
+
+// "--denoise" becomes "--denoise=fdf": CLI11 would take the next word.
+void CommandLine::complete(std::vector<std::string>& words) const {
+    for (std::string& word : words) {
+        if (const auto found = implementation_->alone.find(word); found != implementation_->alone.end())
+            word += "=" + found->second;
+    }
+    for (const auto& command : implementation_->commands) {
+        if (std::ranges::find(words, command->implementation_->app->get_name()) != words.end())
+            command->complete(words);
+    }
 }
 
 std::string CommandLine::chosen() const {

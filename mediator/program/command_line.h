@@ -41,6 +41,9 @@ class CommandLine {
                 std::vector<std::string>& values);  // repeatable
     void choice(const std::string& names, const std::string& help, std::string& value,
                 const std::vector<std::string>& choices);
+    // --name=VALUE, or --name alone for the value `alone`: the next word is never taken.
+    void option_with_default(const std::string& name, const std::string& help,
+                             std::optional<std::string>& value, const std::string& alone);
     void flag(const std::string& names, const std::string& help, bool& value);
     void positional(const std::string& name, const std::string& help, std::string& value);  // required
     void optional_positional(const std::string& name, const std::string& help,
@@ -58,6 +61,7 @@ class CommandLine {
   private:
     struct Implementation;
     explicit CommandLine(std::unique_ptr<Implementation> implementation);
+    void complete(std::vector<std::string>& words) const;
     std::unique_ptr<Implementation> implementation_;
 };
 

@@ -61,7 +61,7 @@ Strip make_strip(const BenchResults& results) {
     strip.table =
         formatted("%s at %ux%u, %llu samples per pixel, %u threads.\n\n", scene->name.c_str(), size.width,
                   size.height, spp, results.threads) +
-        "| filter | relMSE, trimmed | relMSE | FLIP | ms | worth in samples |\n|---|---|---|---|---|---|\n";
+        "| filter | relMSE, trimmed | relMSE | FLIP | ms | equivalent spp |\n|---|---|---|---|---|---|\n";
     for (const Row* row : rows) {
         const double ms = row->time.seconds * 1e3;
         cells.push_back({row->crop, row->filter,

@@ -1,0 +1,29 @@
+#include "client/tools/filter_options.h"
+
+#include "master/filter/catalog.h"
+#include "mediator/filter/choice.h"
+
+namespace tessera::tools {
+
+void FilterOption::add_to(cli::CommandLine& command) {
+    command.option_with_default(
+        "--denoise",
+        "denoise the picture: --denoise for the best choice (fdf), --denoise=NAME[:key=value,...]", denoise,
+        "fdf");
+    command.option("--filter", "the same: NAME[:key=value,...]; tessera filters lists them", filter);
+}
+
+Expected<std::string> understand(const FilterOption& option) {
+    if (option.denoise && !option.filter.empty())
+        return failure(ErrorCode::InvalidInput, "--denoise and --filter mean the same: give one of them");
+    const std::string& text = option.denoise ? *option.denoise : option.filter;
+    if (text.empty()) return std::string();
+    const auto choice = filter::parse_choice(text, filter::catalog());
+    if (!choice) {
+        return failure(ErrorCode::InvalidInput, std::string(option.denoise ? "--denoise: " : "--filter: ") +
+                                                    choice.error().what() + "; see tessera filters");
+    }
+    return filter::to_text(*choice);
+}
+
+}  // namespace tessera::tools
