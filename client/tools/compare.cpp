@@ -90,7 +90,8 @@ int run_compare(const CompareOptions& options, std::ostream& out) {
 
 Command compare_command(cli::CommandLine& program) {
     const auto options = std::make_shared<CompareOptions>();
-    cli::CommandLine& line = program.command(CompareName, "how far a picture is from a reference");
+    cli::CommandLine& line =
+        program.command(CompareName, "Compare a picture with a reference: mse, relMSE, PSNR, SSIM, FLIP.");
     line.positional("picture", "OpenEXR file", options->picture);
     line.positional("reference", "OpenEXR file of the same size", options->reference);
     line.option("--layer", "layer to compare, as albedo or raw (default: R G B)", options->layer);

@@ -114,12 +114,26 @@ const char* extension(session::PictureEncoding encoding) {
     }
 }
 
+bool is_under_way(client::Session& session, const session::JobName& job) {
+    return std::ranges::any_of(session.jobs(), [&](const session::JobStatus& listed) {
+        const bool is_meant =
+            listed.job.name == job.name && (job.user.empty() || listed.job.user == job.user);
+        return is_meant && !listed.has_ended;
+    });
+}
+
 int fetch(const FetchOptions& options) {
     const SteadyClock clock;
     const auto session = client::connect(options.address, std::make_shared<scene::BlobStore>(), clock,
                                          session_settings("tessera fetch"));
     const session::JobName job{.user = options.of, .name = options.name};
-    const client::ViewResult result = session->fetch_job(job);
+    client::ViewResult result;
+    try {
+        result = session->fetch_job(job);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::Refused || !is_under_way(*session, job)) throw;
+        return complain(FetchName, cli::ExitTryLater, error.what());
+    }
     const session::ViewSummary& summary = result.summary;
     if (!result.has_picture()) {
         return complain(

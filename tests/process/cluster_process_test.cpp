@@ -221,6 +221,9 @@ TEST(RealProcesses, AJobOutlivesItsClientAndItsMaster) {
     tessera("submit", submit + SlowFrame);
     ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_hand(status, "a") > 0; }));
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    ChildProcess hasty(cluster.folder().path(), "hasty", "tessera",
+                       {"fetch", "night", "--master", cluster.endpoint(), "--keys", cluster.keys()});
+    EXPECT_EQ(hasty.wait(std::chrono::minutes(1)).value_or(-1), 75) << hasty.err();
     cluster.kill_master();
     cluster.start_master();
     int asked = 0;

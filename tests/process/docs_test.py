@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Keeps the documents true: runs the commands of README.md and docs/getting-started.md, and finds options that do not exist.
+"""Keeps the documents true: runs the commands of README.md and docs/getting-started.md, finds options that do not exist, and
+makes docs/cli.md again.
 
 Usage: docs_test.py SOURCE_FOLDER BIN_FOLDER
 """
@@ -93,9 +94,17 @@ def options_exist(source: pathlib.Path, programs: pathlib.Path) -> bool:
     return not wrong
 
 
+def cli_is_current(source: pathlib.Path, programs: pathlib.Path) -> bool:
+    made = subprocess.run([sys.executable, str(source / "docs" / "make_cli.py"), str(programs)], capture_output=True, text=True,
+                          check=True).stdout
+    fine = made == (source / "docs" / "cli.md").read_text()
+    print("ok   docs/cli.md" if fine else "FAIL docs/cli.md is not what --help says: docs/make_cli.py build/release/bin > docs/cli.md")
+    return fine
+
+
 def main() -> int:
     source, programs = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-    fine = [options_exist(source, programs), run_page(source, programs, "README.md"),
+    fine = [options_exist(source, programs), cli_is_current(source, programs), run_page(source, programs, "README.md"),
             run_page(source, programs, "docs/getting-started.md")]
     return 0 if all(fine) else 1
 
