@@ -35,8 +35,8 @@ inline constexpr bool is_raw<Hash256> = true;
 template <class T>
 bool same_bits(const T& a, const T& b) {
     if constexpr (is_raw<T>) {
-        return std::memcmp(&a, &b, sizeof a) ==
-               0;  // NOLINT(bugprone-suspicious-memory-comparison): bits count
+        // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): it is the bits that count
+        return std::memcmp(&a, &b, sizeof a) == 0;
     } else if constexpr (Described<T>) {
         bool same = true;
         for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
