@@ -58,7 +58,7 @@ echo "demo: rendering tests/scenes/studio-1.glb with an Embree and a Vulkan node
 rm -f out/demo.exr out/demo.png out/demo.json
 # In the background, so that a signal is answered at once.
 "$bin/tessera" render tests/scenes/studio-1.glb --master "$endpoint" --keys "$keys" --wait-nodes 2:60 \
-    --env tests/scenes/env-studio.exr --size 1280x720 --spp "${TESSERA_DEMO_SPP:-64}" --policy mixed \
+    --env tests/scenes/env-studio.exr --size 1280x720 --spp "${TESSERA_DEMO_SPP:-64}" --denoise --policy mixed \
     -o out/demo.exr -o out/demo.png --json "$@" >"$folder/demo.json" &
 render=$!
 children+=("$render")
