@@ -149,9 +149,10 @@ view::DisplayTransform used_transform(const std::vector<std::string>& paths,
     });
     if (none_shown || request.display_transform.exposure) return request.display_transform;
     if (is_encoded(result)) return result.summary.picture.display_transform;
-    return picture::with_exposure(request.display_transform, result.has_picture()
-                                                                 ? interleaved(result.frame)
-                                                                 : unfiltered(*result.film()));
+    view::DisplayTransform transform = request.display_transform;
+    transform.exposure = picture::measured_exposure(result.has_picture() ? interleaved(result.frame)
+                                                                         : unfiltered(*result.film()));
+    return transform;
 }
 
 void write_pictures(const std::vector<std::string>& paths, const session::ViewRequest& request,

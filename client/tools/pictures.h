@@ -22,8 +22,8 @@ struct Origin {
 };
 
 // Writes what the result holds to every path: the master's picture where there is one, else the resolved
-// radiance, by request.display_transform; an EXR gets the film's channels, too, and its statistics if they are to be saved. A file is there
-// in full or not at all. Throws Error{Io}.
+// radiance, by request.display_transform; an EXR gets the film's channels, too, and its statistics if they are
+// to be saved. A file is there in full or not at all. Throws Error{Io}.
 void write_pictures(const std::vector<std::string>& paths, const session::ViewRequest& request,
                     const client::ViewResult& result, const Origin& origin, picture::Statistics statistics);
 
@@ -32,7 +32,8 @@ void write_picture(const std::string& path, const frame::Image& image,
                    const view::DisplayTransform& transform);
 
 // The transform of the request with the exposure of the result: the master's where it encoded the picture,
-// else measured of the picture that would be written. As it is when it has one, or all paths are EXR.
+// else measured of the picture that would be written; none if that is black, so that a sequence which fades in
+// takes the exposure of its first frame with light. As it is when it has one, or all paths are EXR.
 view::DisplayTransform used_transform(const std::vector<std::string>& paths,
                                       const session::ViewRequest& request, const client::ViewResult& result);
 

@@ -85,6 +85,7 @@ TEST(DisplayFile, EveryKeyArrives) {
     EXPECT_EQ(d.max_bounces, 3u);
     EXPECT_EQ(d.exposure, -1.5);
     EXPECT_EQ(d.white, 4.0);
+    EXPECT_EQ(d.view_transform, view::ViewTransform::Reinhard) << "a white luminance is of that curve";
     EXPECT_TRUE(d.stereo_difference);
     EXPECT_EQ(d.eye_separation, 0.06);
     EXPECT_EQ(d.zero_parallax, 2.5);
