@@ -125,34 +125,6 @@ TEST(GltfHostile, AnUnknownRequiredExtensionIsNamed) {
     EXPECT_THAT(error_of("scene.glb", file.glb()).what(), HasSubstr("(ACME_rockets, ACME_glue)"));
 }
 
-TEST(GltfHostile, AnUnknownOptionalExtensionIsNoticed) {
-    SceneFile file;
-    file.add_triangle();
-    file.set("extensionsUsed", R"(["ACME_rockets"])");
-    const TestFolder folder;
-    EXPECT_TRUE(
-        has_notice(loaded(folder.write("scene.glb", file.glb())), "extension ACME_rockets is ignored"));
-}
-
-TEST(GltfHostile, VariantsAreListedWhateverTheyAre) {
-    const TestFolder folder;
-    const auto variants = [&](const std::string& extension) {
-        SceneFile file;
-        file.add_triangle();
-        file.set("extensionsUsed", R"(["KHR_materials_variants","KHR_materials_ior"])");
-        file.set("extensions", R"({"KHR_materials_variants":)" + extension + "}");
-        const ImportedScene scene = loaded(folder.write("scene.glb", file.glb()));
-        EXPECT_EQ(scene.extensions,
-                  (std::vector<std::string>{"KHR_materials_variants", "KHR_materials_ior"}));
-        return scene.variants;
-    };
-    using Names = std::vector<std::string>;
-    EXPECT_EQ(variants(R"({"variants":[{"name":"red"},{"name":"blue"}]})"), (Names{"red", "blue"}));
-    EXPECT_EQ(variants(R"({"variants":[{"name":7},{"name":"blue"}]})"), (Names{"", "blue"}));
-    for (const char* nothing : {"{}", R"({"variants":7})", R"({"variants":{"name":"red"}})"})
-        EXPECT_EQ(variants(nothing), Names{}) << nothing;
-}
-
 TEST(GltfHostile, IndicesOutOfRangeAreAPlaceholder) {
     SceneFile file;
     const int at = file.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
