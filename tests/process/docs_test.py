@@ -8,10 +8,12 @@ import os
 import pathlib
 import re
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+from ports import free_port  # noqa: E402
 
 PATIENCE = 240  # seconds a whole page may take on a busy machine
 # Options of scripts, CMake, CTest and others that the documents name.
@@ -20,19 +22,6 @@ FOREIGN = {"--ci", "--fix", "--live", "--long", "--once", "--preset", "--wall", 
 
 def blocks(page: pathlib.Path, language: str) -> list[str]:
     return re.findall(rf"^```{language}\n(.*?)^```", page.read_text(), re.M | re.S)
-
-
-def free_ports() -> int:
-    """The first of two ports in a row that nobody has."""
-    while True:
-        with socket.socket() as first, socket.socket() as second:
-            first.bind(("127.0.0.1", 0))
-            port = first.getsockname()[1]
-            try:
-                second.bind(("127.0.0.1", port + 1))
-            except OSError:
-                continue
-            return port
 
 
 def script_of(page: pathlib.Path, port: int) -> str:
@@ -48,7 +37,7 @@ def script_of(page: pathlib.Path, port: int) -> str:
 
 
 def run_page(source: pathlib.Path, programs: pathlib.Path, name: str) -> bool:
-    script = script_of(source / name, free_ports())
+    script = script_of(source / name, free_port())
     with tempfile.TemporaryDirectory() as folder:
         (pathlib.Path(folder) / "tests").symlink_to(source / "tests")
         environment = {**os.environ, "PATH": f"{programs}:{os.environ['PATH']}", "HOME": folder}

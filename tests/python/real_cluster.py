@@ -5,7 +5,7 @@ import subprocess
 import tempfile
 
 import tessera
-from scripted_master import free_port
+from ports import free_port
 
 
 class RealCluster:

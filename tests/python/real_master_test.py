@@ -12,7 +12,7 @@ import unittest
 
 import tessera
 from real_cluster import RealCluster
-from scripted_master import free_port
+from ports import free_port
 
 PROGRAMS = pathlib.Path(sys.argv.pop()).resolve()
 

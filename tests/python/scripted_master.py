@@ -1,31 +1,18 @@
 """A master as far as a member can see it: ROUTER sockets, one scene, frames on demand. Tests look into it and make it
 forget, fall silent or lie."""
 
-import socket
 import struct
 import threading
 import time
 
 import zmq
+from ports import free_port
 
 from tessera import blobs, bulk
 from tessera.film import FilmTile, plane_count
 from tessera.proto import common_pb2, control_pb2, scene_pb2, session_pb2, status_pb2, view_pb2
 
 PNG = b"\x89PNG\r\n\x1a\n" + b"picture" * 4
-
-
-def free_port():
-    """Two ports in a row that nobody uses right now."""
-    while True:
-        with socket.socket() as first, socket.socket() as second:
-            first.bind(("127.0.0.1", 0))
-            port = first.getsockname()[1]
-            try:
-                second.bind(("127.0.0.1", port + 1))
-            except OSError:
-                continue
-            return port
 
 
 class Member:

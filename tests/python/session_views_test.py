@@ -172,6 +172,16 @@ class Views(WithMaster):
         end = view.wait_for_end(timeout=10.0)
         self.assertEqual((end.summary.outcome, end.frame.samples_least), ("stopped", 3))
 
+    def test_exposure_and_view_transform(self):
+        def wanted(view):
+            return view._request.wanted.display_transform
+
+        self.assertFalse(wanted(self.session.open_view(self.POSE, size=(8, 4))).HasField("exposure"))
+        chosen = wanted(self.session.open_view(self.POSE, size=(8, 4), exposure=-1.5, view_transform="agx"))
+        self.assertEqual((chosen.exposure, chosen.view_transform), (-1.5, 1))
+        with self.assertRaisesRegex(tessera.InvalidInput, "no view transform 'filmic': choose of neutral, agx"):
+            self.session.open_view(self.POSE, size=(8, 4), view_transform="filmic")
+
     def test_a_refused_view(self):
         with self.assertRaisesRegex(tessera.Refused, "needs samples"):
             self.session.open_view(self.POSE, spp=0)
