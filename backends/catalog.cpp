@@ -34,10 +34,10 @@ const BackendEntry& find_backend(std::string_view name) {
     std::string names;
     for (const BackendEntry& entry : entries) names += (names.empty() ? "" : ", ") + entry.name;
     throw Error(ErrorCode::InvalidInput,
-                "there is no back-end '" + std::string(name) + "'; choose one of " + names);
+                "unknown back-end '" + std::string(name) + "'; choose one of " + names);
 }
 
-bool offers_devices() {
+bool has_device_choice() {
     const std::span<const BackendEntry> entries = catalog();
     return std::any_of(entries.begin(), entries.end(),
                        [](const BackendEntry& entry) { return entry.chooses_device; });
@@ -46,7 +46,7 @@ bool offers_devices() {
 Expected<void> check_device(const BackendEntry& entry, std::string_view device) {
     if (device.empty() || entry.chooses_device) return {};
     return failure(ErrorCode::InvalidInput,
-                   "back-end '" + entry.name + "' has no choice of devices: leave --device out");
+                   "back-end '" + entry.name + "' does not support device selection: omit --device");
 }
 
 }  // namespace tessera::backend

@@ -6,7 +6,7 @@
 
 namespace tessera::client {
 
-// An edit as it is sent, and as often as it is sent: its message, or one that names a blob which has it.
+// An encoded edit, kept for resending: its message, or a message that refers to a blob with its contents.
 struct EncodedEdit {
     net::Bytes message;
     scene::BlobPtr content;  // not null: kept until the master has it

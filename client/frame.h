@@ -12,7 +12,7 @@
 
 namespace tessera::client {
 
-// A frame of a view, as the master had it when it was sent.
+// A frame of a view, as sent by the master.
 struct Frame {
     std::uint64_t view = 0, number = 0;
     Version version;
@@ -22,9 +22,9 @@ struct Frame {
     session::PictureEncoding encoding = session::PictureEncoding::None;
     std::vector<std::byte> picture;  // Planes: float32, one component after another, each in raster order
     std::optional<frame::FilmTile> film;  // of the whole window; pixels without samples have count 0
-    std::uint64_t samples_least = 0, samples_most = 0, spp = 0;  // of a pixel
+    std::uint64_t samples_least = 0, samples_most = 0, spp = 0;  // per pixel
     bool complete = false;
-    Hash256 film_hash;  // when complete, of a view whose every frame is delivered
+    Hash256 film_hash;  // if complete, and if the view delivers every frame
 };
 
 // A view that its stop rule has ended.

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint64_t MaxPictureBytes = std::uint64_t{1}
                                           << 33;  // 2^28 pixels of four floats and room for a header
-constexpr std::size_t FilmAhead = 8;              // the whole film is at most so many times what has come
+constexpr std::size_t FilmAhead = 8;              // the whole film is allocated once 1/8 of it has arrived
 
 tl::unexpected<Error> unfit(const char* what) {
     return failure(ErrorCode::InvalidInput, std::string("the master sent ") + what +
@@ -26,7 +26,7 @@ void FrameCollector::begin(const wire::FrameHeader& header) {
 Expected<void> FrameCollector::add(wire::PictureChunk&& chunk) {
     if (!header_ || chunk.frame != header_->frame) return {};
     if (chunk.total != header_->picture_bytes || chunk.total > MaxPictureBytes)
-        return unfit("a picture of another size than it said");
+        return unfit("a picture whose size differs from its header");
     if (chunk.offset != picture_.size()) return unfit("a picture with a gap");
     picture_.insert(picture_.end(), chunk.data.begin(), chunk.data.end());
     return {};
@@ -49,7 +49,7 @@ Expected<void> FrameCollector::add(wire::FrameTile&& tile) {
     const std::size_t whole = header_->film_window.pixel_count();
     const bool is_last = tile_count_ == header_->film_tiles;
     if (pixel_count_ > whole || (is_last && pixel_count_ != whole))
-        return unfit("tiles that do not fit together");
+        return unfit("overlapping or missing tiles");
     if (film_) {
         frame::paste(*film_, film);
         return {};

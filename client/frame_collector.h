@@ -9,21 +9,21 @@
 
 namespace tessera::client {
 
-// Puts one frame together: header, then its picture and tiles, which one link brings in order. Memory is taken for
-// what has come, not for what a header says.
+// Assembles a frame from its header, picture chunks and tiles, which arrive in order. Memory is allocated for received
+// data only, not by the sizes in the header.
 class FrameCollector {
   public:
-    void begin(const wire::FrameHeader& header);  // whatever was not complete is dropped: its rest is lost
-    // InvalidInput: it does not fit the header, or what came before. Pieces of other frames are ignored.
+    void begin(const wire::FrameHeader& header);  // drops an incomplete frame
+    // InvalidInput: it contradicts the header or earlier parts. Parts of other frames are ignored.
     Expected<void> add(wire::PictureChunk&& chunk);
     Expected<void> add(wire::FrameTile&& tile);
-    // Once all of it is here.
+    // The frame, once it is complete.
     std::optional<Frame> take();
 
   private:
     std::optional<wire::FrameHeader> header_;
     std::vector<std::byte> picture_;
-    std::vector<frame::FilmTile> tiles_;  // until there are enough of them to make room for the whole film
+    std::vector<frame::FilmTile> tiles_;  // until there are enough to allocate the whole film
     std::optional<frame::FilmTile> film_;
     std::vector<bool> seen_;  // tiles, by index
     std::uint32_t tile_count_ = 0;

@@ -10,7 +10,7 @@ namespace tessera::client {
 
 namespace {
 
-// Chunks that wait for a slow line; the master asks again for what is dropped beyond.
+// Limit of queued chunks on a slow connection; the master requests dropped ones again.
 constexpr std::size_t MaxWaitingMessages = 64;
 
 net::LivenessSettings liveness_settings(Duration interval, std::uint32_t missed) {
@@ -95,11 +95,11 @@ void Link::run(std::stop_token stop) {
 }
 
 bool Link::step(std::stop_token stop) {
-    constexpr int BurstLimit = 256;  // so that heartbeats never wait for a flood
+    constexpr int BurstLimit = 256;  // so that a flood of messages does not delay heartbeats
     TimePoint deadline = next_wake(clock_.now());
     for (int i = 0; i < BurstLimit; ++i) {
         const net::Received received = channel_->receive(deadline);
-        deadline = clock_.now();  // after the first only what is there already
+        deadline = clock_.now();  // after the first message, do not wait
         if (const auto* nothing = std::get_if<net::NoMessage>(&received)) {
             if (*nothing != net::NoMessage::Closed) break;
             fail(Error(ErrorCode::Unavailable, "the connection to the master was closed"));
@@ -113,7 +113,7 @@ bool Link::step(std::stop_token stop) {
     {
         const std::scoped_lock lock(mutex_);
         if (failure_) return false;
-        if (state_ == State::Joined) {  // what nobody can take yet stays
+        if (state_ == State::Joined) {  // otherwise keep them queued
             to_send.swap(to_send_);
             to_ask.swap(to_ask_);
         }
@@ -127,9 +127,9 @@ bool Link::step(std::stop_token stop) {
 }
 
 void Link::receive(const net::Message& message, TimePoint now) {
-    liveness_.heard(now);
+    liveness_.on_message(now);
     last_heard_ = now;
-    // What cannot be read is as good as lost; the calls that wait for it have their own deadlines.
+    // Malformed messages count as lost; calls that wait for them have deadlines.
     if (message.link == net::Link::Control) {
         if (auto decoded = wire::decode_control(message.bytes)) control(std::move(*decoded), now);
         return;
@@ -158,7 +158,7 @@ void Link::control(wire::ControlMessage&& message, TimePoint now) {
     }
     if (auto* goodbye = std::get_if<wire::Goodbye>(&message)) {
         goodbye_ = std::move(goodbye->reason);
-        return leave_for_a_while(now);
+        return enter_away(now);
     }
     if (const auto* refusal = std::get_if<wire::Refusal>(&message); refusal && number_ == 0) {
         return fail(Error(ErrorCode::Refused, "the master refuses: " + refusal->reason));
@@ -168,7 +168,7 @@ void Link::control(wire::ControlMessage&& message, TimePoint now) {
 
 void Link::welcome(const wire::Welcome& welcome, TimePoint now) {
     const bool first = number_ == 0;
-    // The number alone may be the same by chance at a master that was started anew.
+    // A restarted master may assign the same number by chance.
     const bool same = welcome.peer_number == number_ && welcome.token == token_;
     const bool repeated = same && state_ == State::Joined;
     number_ = welcome.peer_number;
@@ -207,8 +207,7 @@ void Link::greet(TimePoint now) {
                      .resume_token = token_});
 }
 
-// The token on the bulk link goes with every heartbeat: it is harmless when known, and heals when it got
-// lost.
+// The token is sent on the bulk link with every heartbeat, in case an earlier one was lost.
 void Link::beat(TimePoint now) {
     wire::Heartbeat heartbeat{.sent_at = now.time_since_epoch().count()};
     if (master_sent_at_ != 0) {
@@ -229,7 +228,7 @@ void Link::watch(TimePoint now) {
                           : never_joined
                               ? "the master does not answer: is it running there, and is this key in "
                                 "its allow-list?"
-                              : "the master has fallen silent: is it still running?"));
+                              : "the master does not respond any more: is it still running?"));
     }
     if (state_ == State::Away) {
         if (now < return_at_) return;
@@ -237,14 +236,14 @@ void Link::watch(TimePoint now) {
         liveness_.restarted(now);
         return greet(now);
     }
-    if (liveness_.dead(now)) {
-        leave_for_a_while(now);
+    if (liveness_.timed_out(now)) {
+        enter_away(now);
     } else if (state_ == State::Joined && liveness_.heartbeat_due(now)) {
         beat(now);
     }
 }
 
-void Link::leave_for_a_while(TimePoint now) {
+void Link::enter_away(TimePoint now) {
     outbox_.clear();  // belongs to the old sockets
     state_ = State::Away;
     if (number_ != 0 && !is_away_.exchange(true)) deliver(Interrupted{});

@@ -19,37 +19,37 @@
 
 namespace tessera::client {
 
-// The connection is lost, and tried again.
+// The connection is lost and is being re-established.
 struct Interrupted {};
-// The connection was away and is back. Same session: the master kept everything, but messages may be lost.
-// Otherwise the master took us for somebody new.
+// The connection is back. Same session: the master kept its state, but messages may be lost. Otherwise the master
+// created a new session.
 struct Rejoined {
     bool same_session = false;
 };
 using Incoming = std::variant<wire::ControlMessage, wire::FrameTile, wire::PictureChunk, wire::FrameHeader,
                               wire::OutputPicture, wire::BlobChunk, wire::BlobAbsent, Interrupted, Rejoined>;
 
-// The session's thread: says hello, keeps heartbeats, reconnects after silence, serves blobs. What is meant
-// for the session waits in an inbox, in order per link. Its states:
+// The session's thread: sends hello and heartbeats, reconnects after a timeout, serves blobs. Messages for the session
+// wait in an inbox, in order per link. Its states:
 //
 //   Greeting   hello sent                 Welcome → Joined · silence → Away · Refusal → Over
-//   Joined     everything goes            silence, Goodbye → Away · Unknown → Greeting
-//   Away       until the back-off ends    → new sockets → Greeting
+//   Joined     all messages are sent      silence, Goodbye → Away · Unknown → Greeting
+//   Away       back-off before a retry    → new sockets → Greeting
 //   Over       failed for good: every call throws the reason
 //
-// Over also after `connect_limit` without a first welcome, later after `lost_limit` without a sign of life.
+// Also Over after `connect_limit` without a first welcome, or later after `lost_limit` without any message.
 class Link {
   public:
     Link(std::unique_ptr<net::Channel> channel, std::function<void()> reconnect,
          std::shared_ptr<scene::BlobStore> blobs, const Clock& clock, const SessionSettings& settings);
     ~Link();
 
-    // Any thread. `send` takes what waits for the connection, too.
+    // Any thread. Messages are queued while the connection is down.
     void send(const wire::ControlMessage& message);
     void send(net::Bytes encoded);  // a control message
     void ask(const wire::BlobRequest& request);
-    std::uint64_t served_requests() const { return served_; }  // of the master, for blobs
-    bool is_away() const { return is_away_; }                  // the connection is tried again
+    std::uint64_t served_requests() const { return served_; }  // blob requests of the master
+    bool is_away() const { return is_away_; }                  // reconnecting
     std::uint64_t join();  // blocks until welcome; the session's number. Throws Error.
     // The next one; nothing at the deadline or when stopped. Throws Error when the link is over.
     std::optional<Incoming> next(TimePoint deadline, std::stop_token stop);
@@ -69,15 +69,15 @@ class Link {
     void serve(const wire::BlobRequest& request);
     void greet(TimePoint now);
     void beat(TimePoint now);
-    void watch(TimePoint now);  // silence, back-off, limits
-    void leave_for_a_while(TimePoint now);
+    void watch(TimePoint now);  // timeouts and back-off
+    void enter_away(TimePoint now);
     void push(const wire::ControlMessage& message);
     void flush();
     TimePoint next_wake(TimePoint now) const;
     void deliver(Incoming incoming);
     void fail(Error error);
 
-    // Of the thread alone:
+    // Used by the thread only:
     std::unique_ptr<net::Channel> channel_;
     std::function<void()> reconnect_;
     std::shared_ptr<scene::BlobStore> blobs_;
@@ -95,7 +95,7 @@ class Link {
     std::atomic<std::uint64_t> served_ = 0;
     std::atomic<bool> is_away_ = false;
 
-    std::mutex mutex_;  // protects what stands below
+    std::mutex mutex_;  // protects the members below
     std::condition_variable_any changed_;
     std::vector<net::Bytes> to_send_;  // control messages
     std::vector<wire::BlobRequest> to_ask_;
@@ -103,7 +103,7 @@ class Link {
     std::optional<Error> failure_;
     std::uint64_t joined_ = 0;  // number of the first welcome
 
-    std::jthread thread_;  // last: starts when everything else is there
+    std::jthread thread_;  // last member: starts after all others are constructed
 };
 
 }  // namespace tessera::client

@@ -56,6 +56,6 @@ int main(int argc, char** argv) {
     try {
         return command->run(chosen);
     } catch (const std::exception& error) {
-        return tools::complain(first, tools::ExitInternal, error.what());
+        return tools::report_error(first, tools::ExitInternal, error.what());
     }
 }

@@ -8,8 +8,8 @@
 
 namespace tessera::client {
 
-// Puts the pieces of a frame's pictures together; they come in order. A piece of a newer frame drops what was
-// not complete: its rest is lost.
+// Assembles the pictures of an output's frame from parts, which arrive in order. A part of a newer frame drops an
+// incomplete one.
 class OutputCollector {
   public:
     // The frame, with its last piece. An Error when pieces contradict each other.
@@ -17,7 +17,7 @@ class OutputCollector {
 
   private:
     std::optional<OutputFrame> frame_;
-    std::uint64_t missing_ = 0;  // bytes of the picture under way
+    std::uint64_t missing_ = 0;  // bytes still missing of the current picture
 };
 
 }  // namespace tessera::client

@@ -12,7 +12,7 @@
 
 namespace tessera::client {
 
-// All pictures of one frame of an output. To be answered with output_ready() when it could be shown.
+// All pictures of one frame of an output. Answer with output_ready() when it is ready to be shown.
 struct OutputFrame {
     struct Picture {
         view::Eye eye = view::Eye::Mono;
@@ -23,11 +23,11 @@ struct OutputFrame {
     };
     std::uint64_t number = 0;
     Version version;
-    std::uint64_t samples = 0;      // of a pixel, the least
+    std::uint64_t samples = 0;      // minimum per pixel
     std::vector<Picture> pictures;  // left eye first
 };
 
-// The master has no such output now, and why; it is to be asked for again.
+// The master currently has no such output; retry later.
 struct OutputUnavailable {
     std::string reason;
 };

@@ -9,7 +9,7 @@
 namespace tessera::client {
 
 namespace {
-constexpr std::size_t MaxAhead = 256;  // edits without an answer
+constexpr std::size_t MaxAhead = 256;  // unanswered edits
 }
 
 Session::Session(std::unique_ptr<Implementation> implementation)
@@ -27,20 +27,21 @@ JoinOutcome Session::join(const JoinRequest& request, std::stop_token stop) {
     self.on_place = request.on_place;
     self.state = Implementation::State::Joining;
     self.link.send(self.join_request);
-    while (self.state != Implementation::State::Inside) {
+    while (self.state != Implementation::State::Joined) {
         if (stop.stop_requested()) {
-            self.state = Implementation::State::Outside;
+            self.state = Implementation::State::NotJoined;
             return Stopped{};
         }
         auto incoming = self.link.next(self.clock.now() + Slice, stop);
         if (!incoming) continue;
         const auto* message = std::get_if<wire::ControlMessage>(&*incoming);
         if (const auto* refusal = message ? std::get_if<wire::Refusal>(message) : nullptr) {
-            self.state = Implementation::State::Outside;
+            self.state = Implementation::State::NotJoined;
             if (gives_up) return Busy{refusal->reason};
             throw Error(ErrorCode::Refused, "the master refuses: " + refusal->reason);
         }
-        std::visit([&](auto&& body) { self.take(std::forward<decltype(body)>(body)); }, *std::move(incoming));
+        std::visit([&](auto&& content) { self.take(std::forward<decltype(content)>(content)); },
+                   *std::move(incoming));
     }
     if (self.settings.mirrors_scene && !request.exclusive) refresh();
     const wire::SceneJoined& joined = self.joined;
@@ -49,7 +50,7 @@ JoinOutcome Session::join(const JoinRequest& request, std::stop_token stop) {
 }
 
 void Session::close_scene() {
-    implementation_->tell(wire::CloseScene{});
+    implementation_->send_and_confirm(wire::CloseScene{});
 }
 
 const scene::Scene& Session::scene() const {
@@ -69,16 +70,17 @@ void Session::refresh() {
         }
         if (list.to == self.scene.version() && list.entries.empty()) return;
         if (self.scene.apply(list)) return;
-        self.scene = {};  // what we have is of no use: all of it, then
+        self.scene = {};  // discard the mirror and fetch the whole scene
     }
-    throw Error(ErrorCode::Internal,
-                "the master's scene cannot be mirrored: check that both are one version");
+    throw Error(
+        ErrorCode::Internal,
+        "the master's scene cannot be mirrored: check that master and client are of the same version");
 }
 
 ObjectId Session::new_id() {
     Implementation& self = *implementation_;
     if (self.next_id >= self.end_id)
-        throw Error(ErrorCode::Refused, "all ids lent to this session are used up: connect anew");
+        throw Error(ErrorCode::Refused, "all object ids allocated to this session are used: reconnect");
     return ObjectId{self.next_id++};
 }
 
@@ -96,7 +98,7 @@ scene::BlobPtr Session::fetch(const scene::BlobRef& blob) {
             self.fetcher.forget_all();
             throw Error(ErrorCode::NotFound, "the master no longer has blob " + to_hex(blob.hash));
         }
-        self.take_in(self.clock.now() + Slice, {});
+        self.receive_next(self.clock.now() + Slice, {});
         self.throw_refusals();
         if (self.fetcher.received_bytes() != received) last_sign = self.clock.now();
         received = self.fetcher.received_bytes();
@@ -105,14 +107,14 @@ scene::BlobPtr Session::fetch(const scene::BlobRef& blob) {
     }
 }
 
-session::EditResult Session::submit(std::vector<scene::Entry> entries, std::uint64_t gesture) {
-    return implementation_->submit({.entries = std::move(entries), .gesture = gesture});
+session::EditResult Session::submit(std::vector<scene::Entry> entries, std::uint64_t edit_group) {
+    return implementation_->submit({.entries = std::move(entries), .edit_group = edit_group});
 }
 
-void Session::submit_ahead(std::vector<scene::Entry> entries, std::uint64_t gesture) {
+void Session::submit_ahead(std::vector<scene::Entry> entries, std::uint64_t edit_group) {
     Implementation& self = *implementation_;
     self.wait_for_answers(MaxAhead - 1);
-    self.send_edit({.entries = std::move(entries), .gesture = gesture});
+    self.send_edit({.entries = std::move(entries), .edit_group = edit_group});
 }
 
 std::vector<session::EditResult> Session::take_results() {
@@ -130,11 +132,11 @@ session::EditResult Session::undo(std::uint64_t transaction) {
 }
 
 void Session::lock(const std::vector<ObjectId>& objects) {
-    implementation_->tell(wire::LockObjects{.objects = objects});
+    implementation_->send_and_confirm(wire::LockObjects{.objects = objects});
 }
 
 void Session::unlock(const std::vector<ObjectId>& objects) {
-    implementation_->tell(wire::LockObjects{.objects = objects, .release = true});
+    implementation_->send_and_confirm(wire::LockObjects{.objects = objects, .release = true});
 }
 
 void Session::set_presence(const std::string& text, const std::vector<ObjectId>& selection,
@@ -142,8 +144,8 @@ void Session::set_presence(const std::string& text, const std::vector<ObjectId>&
     implementation_->link.send(wire::SetPresence{text, selection, time_to_live});
 }
 
-session::People Session::people() {
-    return implementation_->ask<wire::People>(wire::ReadPeople{}).content;
+session::Members Session::members() {
+    return implementation_->ask<wire::Members>(wire::ReadMembers{}).content;
 }
 
 std::vector<session::TransactionSummary> Session::history(std::uint32_t count) {
@@ -165,7 +167,7 @@ session::ClusterStatus Session::status() {
     self.link.send(wire::StatusRequest{});
     const TimePoint deadline = self.clock.now() + self.settings.lost_limit;
     while (!self.status && self.clock.now() < deadline) {
-        self.take_in(std::min(self.clock.now() + Slice, deadline), {});
+        self.receive_next(std::min(self.clock.now() + Slice, deadline), {});
         self.throw_refusals();
     }
     self.asks_status = false;
@@ -175,7 +177,7 @@ session::ClusterStatus Session::status() {
 
 void Session::pump() {
     Implementation& self = *implementation_;
-    while (self.take_in(self.clock.now(), {})) {
+    while (self.receive_next(self.clock.now(), {})) {
     }
     self.throw_refusals();
 }

@@ -19,7 +19,7 @@
 #include "mediator/session/display.h"
 #include "mediator/session/edits.h"
 #include "mediator/session/jobs.h"
-#include "mediator/session/people.h"
+#include "mediator/session/members.h"
 #include "mediator/session/status.h"
 #include "mediator/session/view_request.h"
 #include "mediator/session/view_summary.h"
@@ -31,31 +31,31 @@ struct SessionSettings {
     std::uint64_t pid = 0;
     Duration connect_limit = std::chrono::seconds(10);  // until the first welcome
     Duration lost_limit =
-        std::chrono::seconds(30);  // of silence after it, while reconnecting; and of a delivery
-    Duration heartbeat = std::chrono::seconds(1);  // until the master's welcome tells its own
-    bool mirrors_scene = true;  // of a shared scene; else scene() stays empty until a refresh
-    // Hears, on the caller's thread, when the connection is lost and tried again, and when it is back.
+        std::chrono::seconds(30);  // later: without a message while reconnecting or waiting for a delivery
+    Duration heartbeat = std::chrono::seconds(1);  // until the master's welcome sets it
+    bool mirrors_scene = true;  // mirror live scenes on join; otherwise scene() is empty until a refresh
+    // Called on the caller's thread when the connection is lost (and being re-established) and when it is back.
     std::function<void(bool is_away)> on_away = {};
 };
 
-// Where a cluster is, and who we are to it.
+// The endpoint of a cluster and the key to use.
 struct Address {
     std::string endpoint;         // "tcp://host:port"
     std::string keys;             // folder or exported file; "" = not encrypted
-    std::string user = "editor";  // whose pair in that folder
+    std::string user = "editor";  // name of the key pair in that folder
 };
 
 enum class WhenBusy { Queue, GiveUp };
 struct JoinRequest {
-    std::string title;       // of a scene that is opened; one that is there keeps its own
-    bool exclusive = false;  // a scene of this client alone, which goes with it
+    std::string title;       // of the scene, if it is opened by this join
+    bool exclusive = false;  // a scene for this client only, closed when it leaves
     WhenBusy when_busy = WhenBusy::Queue;
-    std::function<void(std::uint32_t place)> on_place = {};  // hears the place in the queue; 1 = next
+    std::function<void(std::uint32_t place)> on_place = {};  // called with the queue position; 1 = next
 };
 struct Joined {
-    std::string title, name;  // as the master has them
+    std::string title, name;  // as assigned by the master
     Version version;
-    ObjectId first_id, end_id;  // new objects take their ids from [first, end); the Root is there already
+    ObjectId first_id, end_id;  // ids for new objects: [first, end); the Root exists already
 };
 struct Busy {
     std::string reason;
@@ -63,12 +63,12 @@ struct Busy {
 struct Stopped {};
 using JoinOutcome = std::variant<Joined, Busy, Stopped>;  // Busy only with GiveUp
 
-// One client of a master: a member of a scene, which it edits, views and displays. A thread of its own keeps the
-// link, its heartbeats and the blobs that the master asks for, so the caller may be away for long; the calls
-// below come from one thread. They throw Error{Unavailable} when the master is gone for longer than the settings
-// allow, Error{Refused} when it says no. A break of the connection is bridged by itself, also when the master
-// was started anew: the session joins again under its key, sends again what was not answered and requests its
-// views again. An exclusive scene that the master has lost is an Error{Unavailable}.
+// A client of a master: a member of a scene, which it edits, views and displays. A background thread handles the
+// link, heartbeats and blob requests of the master; the calls below must come from one thread. They throw
+// Error{Unavailable} if the master is unreachable for longer than the settings allow, Error{Refused} if it rejects a
+// request. Interruptions are recovered automatically, including a restart of the master: the session joins again
+// under its key, resends unanswered messages and requests its views again. If the master has lost an exclusive scene,
+// calls throw Error{Unavailable}.
 class Session {
   public:
     struct Implementation;
@@ -76,20 +76,20 @@ class Session {
     ~Session();                                                        // says goodbye
 
     JoinOutcome join(const JoinRequest& request, std::stop_token stop);
-    void close_scene();  // for everybody
+    void close_scene();  // for all members
 
     // ---- scene ----
-    // As of the last refresh(), which brings all edits that were answered before.
+    // As of the last refresh(), which includes all edits answered before it.
     const scene::Scene& scene() const;
     void refresh();
     ObjectId new_id();
     scene::BlobPtr fetch(const scene::BlobRef& blob);  // from the store, else from the master
 
-    // All entries are one transaction, or refused. Edits in a row with the same gesture, not 0, are one, too.
-    session::EditResult submit(std::vector<scene::Entry> entries, std::uint64_t gesture = 0);
-    // Without waiting for the answer, but not further ahead than 256 edits. take_results() brings the answers
-    // in order, those there are; settle() waits until none is missing: false when it was stopped before.
-    void submit_ahead(std::vector<scene::Entry> entries, std::uint64_t gesture = 0);
+    // All entries are one transaction, or rejected. Consecutive edits with the same edit_group, not 0, are one, too.
+    session::EditResult submit(std::vector<scene::Entry> entries, std::uint64_t edit_group = 0);
+    // Does not wait for the answer; at most 256 edits may be unanswered. take_results() returns the answers received
+    // so far, in order; settle() waits for all of them, and returns false if it was stopped.
+    void submit_ahead(std::vector<scene::Entry> entries, std::uint64_t edit_group = 0);
     std::vector<session::EditResult> take_results();
     bool settle(std::stop_token stop = {});
     session::EditResult undo(std::uint64_t transaction = scene::UndoLatest);
@@ -98,57 +98,58 @@ class Session {
     void lock(const std::vector<ObjectId>& objects);
     void unlock(const std::vector<ObjectId>& objects);
     void set_presence(const std::string& text, const std::vector<ObjectId>& selection, Duration time_to_live);
-    session::People people();
+    session::Members members();
     std::vector<session::TransactionSummary> history(std::uint32_t count);
     std::vector<session::FieldWriter> writers(ObjectId object);
-    // Where the time of the latest edits went, oldest first.
+    // Latency traces of the latest edits, oldest first.
     std::vector<session::EditTrace> trace(std::uint32_t count);
 
-    // ---- views; `number` is the caller's ----
-    // Again with the same number: other values, the latest wins.
+    // ---- views; `number` is chosen by the caller ----
+    // A request with the same number replaces the earlier one.
     void request_view(std::uint64_t number, const session::ViewRequest& request);
-    // Watches the view that has this name; of the request, what is delivered means something.
+    // Watches the existing view with this name; only the delivery settings of the request are used.
     void share_view(std::uint64_t number, const session::ViewRequest& request);
-    void look(std::uint64_t number, const view::CameraPose& camera);  // of a view of ours; does not wait
-    void stop_view(std::uint64_t number);   // its last frame comes, with what there is
-    void close_view(std::uint64_t number);  // no more of it
-    // The newest frame that has come, and tells the master to send the next one.
+    // Of a view requested by this session; asynchronous.
+    void set_camera(std::uint64_t number, const view::CameraPose& camera);
+    void stop_view(std::uint64_t number);   // ends rendering; the last frame is delivered
+    void close_view(std::uint64_t number);  // discards the view
+    // The newest frame received; acknowledges it, so that the master sends the next one.
     std::optional<Frame> next_frame(TimePoint deadline, std::stop_token stop);
-    // Its latest news; nothing when there are none since the last call.
+    // The latest progress, if any since the last call.
     std::optional<session::ViewProgress> take_progress(std::uint64_t number);
-    // What became of a view that its stop rule has ended, once.
+    // The summary of a view that has ended; returned once.
     std::optional<session::ViewSummary> take_summary(std::uint64_t number);
-    // Waits for the end of a view and closes it; a stop asks for what there is. See client/render.h.
+    // Waits for the end of a view and closes it; a stop requests the samples merged so far. See client/render.h.
     ViewResult wait_for_end(std::uint64_t number,
                             const std::function<void(const session::ViewProgress&)>& on_progress,
                             std::stop_token stop);
-    // Another filter for the view of that name, whoever requested it; "" = the one that there is. Returns what it
-    // means for the frame.
+    // Changes the filter of the view with this name, of any client; "" = the only view. Returns a description of
+    // the effect.
     std::string set_filter(const std::string& view, const std::string& filter);
-    // What the master had to say since the last call: that a view waits for nodes, or cannot be rendered.
+    // Notices of the master since the last call: e.g. that a view waits for nodes, or cannot be rendered.
     std::vector<std::string> take_notices();
-    session::Picked pick(std::uint64_t number, std::uint32_t x, std::uint32_t y);
+    session::PickResult pick(std::uint64_t number, std::uint32_t x, std::uint32_t y);
 
-    // ---- the display in front of the scene ----
-    // Its description and arrays go through the session's blob store.
+    // ---- the display of the scene ----
+    // Its description and arrays are transferred as blobs.
     void open_display(const display::Display& display);
     void close_display();
     void adjust_display(const session::DisplayAdjustment& adjustment);
-    void move_head(const display::Head& head);  // the latest wins; does not wait
-    // Shows an output of it from now on, also after a break: next_output_event() brings what is to be done.
+    void move_head(const display::Head& head);  // asynchronous; the latest position is used
+    // Makes this client show an output, also after reconnecting; next_output_event() returns its frames and orders.
     void join_output(const std::string& name);
     std::optional<OutputEvent> next_output_event(TimePoint deadline, std::stop_token stop);
     void output_ready(std::uint64_t frame);
 
-    // ---- jobs: views that were requested as detached; of this user, for operators of all ----
+    // ---- jobs: views requested as detached, of this user; operators see those of all users ----
     std::vector<session::JobStatus> jobs();
-    // The end of one: its picture and what became of it. Error{Refused} while it is being rendered.
+    // The picture and summary of a finished job. Error{Refused} while it is being rendered.
     ViewResult fetch_job(const session::JobName& job);
-    void cancel_job(const session::JobName& job);  // ends it, and forgets its picture
+    void cancel_job(const session::JobName& job);  // stops it and deletes its picture
 
     session::ClusterStatus status();
 
-    // Takes in what has come, so that an idle caller notices an end of the link; next_frame() does it, too.
+    // Processes received messages, so that an idle caller notices a lost link. next_frame() does so as well.
     void pump();
 
   private:

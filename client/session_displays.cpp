@@ -1,4 +1,4 @@
-// A session's part in displays: opens and adjusts one, or shows one of its outputs.
+// Displays: opening, adjusting, and showing an output.
 #include "client/session_exchange.h"
 #include "mediator/wire/display_codec.h"
 
@@ -8,20 +8,20 @@ void Session::open_display(const display::Display& display) {
     Implementation& self = *implementation_;
     const scene::BlobPtr description =
         self.blobs->insert(wire::encode(display));  // kept until it is answered
-    self.tell(wire::OpenDisplay{.description = scene::reference(*description)});
+    self.send_and_confirm(wire::OpenDisplay{.description = scene::reference(*description)});
 }
 
 void Session::close_display() {
-    implementation_->tell(wire::CloseDisplay{});
+    implementation_->send_and_confirm(wire::CloseDisplay{});
 }
 
 void Session::adjust_display(const session::DisplayAdjustment& adjustment) {
-    implementation_->tell(wire::AdjustDisplay{.adjustment = adjustment});
+    implementation_->send_and_confirm(wire::AdjustDisplay{.adjustment = adjustment});
 }
 
 void Session::move_head(const display::Head& head) {
     Implementation& self = *implementation_;
-    if (self.state == Implementation::State::Inside) self.link.send(wire::MoveHead{head});
+    if (self.state == Implementation::State::Joined) self.link.send(wire::MoveHead{head});
 }
 
 void Session::join_output(const std::string& name) {
@@ -33,7 +33,7 @@ std::optional<OutputEvent> Session::next_output_event(TimePoint deadline, std::s
     Implementation& self = *implementation_;
     while (self.output_events.empty()) {
         self.throw_refusals();
-        if (stop.stop_requested() || !self.take_in(deadline, stop)) return std::nullopt;
+        if (stop.stop_requested() || !self.receive_next(deadline, stop)) return std::nullopt;
     }
     OutputEvent event = std::move(self.output_events.front());
     self.output_events.pop_front();
@@ -46,7 +46,7 @@ void Session::output_ready(std::uint64_t frame) {
 
 void Session::Implementation::ask_for_output() {
     output_request = ++last_request;
-    if (state == State::Inside) link.send(wire::JoinOutput{output_request, output});
+    if (state == State::Joined) link.send(wire::JoinOutput{output_request, output});
 }
 
 // Whether the message was about the output that this session shows.

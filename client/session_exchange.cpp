@@ -13,11 +13,11 @@ std::uint64_t random_key() {
     return key;
 }
 
-// The request's number where a message answers one; 0 where it does not.
+// The number of the request that a message answers; 0 for other messages.
 std::uint64_t request_of(const wire::ControlMessage& message) {
     return std::visit(
-        [](const auto& body) -> std::uint64_t {
-            if constexpr (requires { body.request; }) return body.request;
+        [](const auto& content) -> std::uint64_t {
+            if constexpr (requires { content.request; }) return content.request;
             return 0;
         },
         message);
@@ -38,18 +38,19 @@ Session::Implementation::Implementation(std::unique_ptr<net::Channel> channel,
     id = SessionId{link.join()};
 }
 
-// ---- what has come ----
+// ---- received messages ----
 
-bool Session::Implementation::take_in(TimePoint deadline, std::stop_token stop) {
+bool Session::Implementation::receive_next(TimePoint deadline, std::stop_token stop) {
     auto incoming = link.next(deadline, stop);
     if (!incoming) return false;
-    std::visit([this](auto&& body) { take(std::forward<decltype(body)>(body)); }, *std::move(incoming));
+    std::visit([this](auto&& content) { take(std::forward<decltype(content)>(content)); },
+               *std::move(incoming));
     return true;
 }
 
 void Session::Implementation::take(Rejoined&& rejoined) {
-    tell_away(false);
-    if (state == State::Inside && !rejoined.same_session) state = State::Joining;
+    notify_away(false);
+    if (state == State::Joined && !rejoined.same_session) state = State::Joining;
     if (state == State::Joining) {
         join_request.no_wait = false;
         return link.send(join_request);
@@ -63,7 +64,7 @@ void Session::Implementation::take(wire::ControlMessage&& message) {
         status = std::move(reply->status);
         return;
     }
-    // Whatever went out between the new greeting and the new joining was refused; it is sent again.
+    // Messages sent between the new hello and the new join were refused; they are sent again.
     if (state == State::Joining) return;
     if (auto* reply = std::get_if<wire::EditReply>(&message)) return take(std::move(*reply));
     if (auto* notice = std::get_if<wire::Notice>(&message)) {
@@ -77,7 +78,7 @@ void Session::Implementation::take(wire::ControlMessage&& message) {
     if (take_for_output(message) || take_for_view(message)) return;
     const std::uint64_t request = request_of(message);
     if (request == 0) {
-        // A camera drag that nobody waits for was refused.
+        // An asynchronous camera change was refused.
         if (const auto* done = std::get_if<wire::RequestDone>(&message)) refusals.push_back(done->text);
         return;
     }
@@ -89,25 +90,24 @@ void Session::Implementation::take(const wire::SceneJoined& welcome) {
         if (on_place) on_place(welcome.queue_place);
         return;
     }
-    // Of a shared scene there may be more than our edits; an exclusive one is what we made of it.
+    // A live scene may contain edits of others; an exclusive one contains only ours.
     if (join_request.exclusive && welcome.last_sequence < last_answered) {
-        throw Error(
-            ErrorCode::Unavailable,
-            "the master has lost this session's scene (it was started anew, or the connection was away "
-            "for too long): start again");
+        throw Error(ErrorCode::Unavailable,
+                    "the master has lost this session's scene (it was restarted, or the connection was lost "
+                    "for too long): start again");
     }
     joined = welcome;
     const bool again = state == State::Joining && last_sequence > 0;
-    state = State::Inside;
+    state = State::Joined;
     next_id = std::max(next_id, welcome.first_id);
     end_id = welcome.first_id + welcome.id_count;
     if (next_id > end_id) next_id = welcome.first_id;
     if (!again) last_sequence = std::max(last_sequence, welcome.last_sequence);
-    // Older ones were answered before the master was lost, with an answer that was lost with it.
+    // Older ones were answered before the master was lost, but their answers were lost.
     while (unanswered.size() > 1 && unanswered.front().sequence < welcome.last_sequence) {
         results.push_back({.accepted = true,
                            .version = welcome.version,
-                           .notes = {"the master was started anew and has this edit; its answer was lost"}});
+                           .notes = {"the master was restarted and has this edit; its answer was lost"}});
         unanswered.pop_front();
     }
     resend();
@@ -123,17 +123,17 @@ void Session::Implementation::take(wire::EditReply&& reply) {
 
 void Session::Implementation::take(wire::FrameHeader&& header) {
     collector.begin(header);
-    frame_may_be_here();
+    collect_frame();
 }
 
 void Session::Implementation::take(wire::PictureChunk&& chunk) {
     if (auto added = collector.add(std::move(chunk)); !added) throw added.error();
-    frame_may_be_here();
+    collect_frame();
 }
 
 void Session::Implementation::take(wire::FrameTile&& tile) {
     if (auto added = collector.add(std::move(tile)); !added) throw added.error();
-    frame_may_be_here();
+    collect_frame();
 }
 
 void Session::Implementation::take(wire::OutputPicture&& picture) {
@@ -142,7 +142,7 @@ void Session::Implementation::take(wire::OutputPicture&& picture) {
     if (*frame) output_events.emplace_back(std::move(**frame));
 }
 
-// Whether the message was about where a view is.
+// Whether the message was about the progress or end of a view.
 bool Session::Implementation::take_for_view(wire::ControlMessage& message) {
     if (const auto* news = std::get_if<wire::ViewProgress>(&message)) {
         if (awaits(news->number)) progress.insert_or_assign(news->number, news->progress);
@@ -155,7 +155,7 @@ bool Session::Implementation::take_for_view(wire::ControlMessage& message) {
     return false;
 }
 
-void Session::Implementation::frame_may_be_here() {
+void Session::Implementation::collect_frame() {
     auto frame = collector.take();
     if (!frame) return;
     const std::uint64_t view = frame->view;
@@ -172,7 +172,7 @@ void Session::Implementation::resend() {
     if (!output.empty()) ask_for_output();
 }
 
-// ---- asking ----
+// ---- requests ----
 
 void Session::Implementation::throw_refusals() {
     if (refusals.empty()) return;
@@ -187,7 +187,7 @@ void Session::Implementation::send_edit(scene::Edit edit) {
     edit.base = scene.version();
     edit.submitted_at = clock.now().time_since_epoch().count();
     unanswered.push_back({last_sequence, encode_edit(std::move(edit), *blobs)});
-    if (state == State::Inside) link.send(net::Bytes(unanswered.back().encoded.message));
+    if (state == State::Joined) link.send(net::Bytes(unanswered.back().encoded.message));
 }
 
 bool Session::Implementation::wait_for_answers(std::size_t at_most, std::stop_token stop) {
@@ -195,9 +195,9 @@ bool Session::Implementation::wait_for_answers(std::size_t at_most, std::stop_to
     std::uint64_t served = link.served_requests();
     while (unanswered.size() > at_most) {
         if (stop.stop_requested()) return false;
-        const bool has_come = take_in(clock.now() + Slice, stop);
+        const bool has_come = receive_next(clock.now() + Slice, stop);
         const std::uint64_t served_now = link.served_requests();
-        // While it fetches the blobs of an edit it says nothing else.
+        // It sends no other messages while it fetches the blobs of an edit.
         if (has_come || served_now != served) last_sign = clock.now();
         served = served_now;
         throw_refusals();

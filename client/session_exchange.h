@@ -17,23 +17,24 @@
 // Private to session*.cpp.
 namespace tessera::client {
 
-inline constexpr Duration Slice = std::chrono::milliseconds(200);  // of waiting, before looking at limits
+inline constexpr Duration Slice =
+    std::chrono::milliseconds(200);  // how long to wait before checking timeouts
 
-// A client's side of the conversation with the master: what was asked and not answered, what has come, and
-// how to go on after a break. One thread.
+// The client's protocol state: unanswered requests, received messages, and recovery after a lost connection.
+// Not thread-safe.
 struct Session::Implementation {
     struct SentEdit {
         std::uint64_t sequence = 0;
         EncodedEdit encoded;
     };
-    enum class State { Outside, Joining, Inside };
+    enum class State { NotJoined, Joining, Joined };
 
     Link link;
     std::shared_ptr<scene::BlobStore> blobs;
     const Clock& clock;
     SessionSettings settings;
     SessionId id;
-    State state = State::Outside;
+    State state = State::NotJoined;
     wire::JoinScene join_request;
     std::function<void(std::uint32_t)> on_place;
     wire::SceneJoined joined;
@@ -45,9 +46,9 @@ struct Session::Implementation {
     std::map<std::uint64_t, wire::ControlMessage> asked, answers;  // by request
     bool asks_status = false;
     std::optional<session::ClusterStatus> status;
-    std::map<std::uint64_t, wire::RequestView> views;  // as they were requested last
-    std::optional<wire::FetchJob> fetched;             // whose picture is on its way
-    std::set<std::uint64_t> stopping;                  // views that are asked for their end
+    std::map<std::uint64_t, wire::RequestView> views;  // the latest request of each
+    std::optional<wire::FetchJob> fetched;             // the job being fetched
+    std::set<std::uint64_t> stopping;                  // views that were asked to end
     std::map<std::uint64_t, session::ViewProgress> progress;
     std::map<std::uint64_t, wire::ViewDone> done;
     std::deque<std::string> refusals;
@@ -55,7 +56,7 @@ struct Session::Implementation {
     std::map<std::uint64_t, Frame> frames;  // the newest of each view
     FrameCollector collector;
     std::string output;                // shown by this session; "" = none
-    std::uint64_t output_request = 0;  // the latest question for it
+    std::uint64_t output_request = 0;  // request number of the latest JoinOutput
     OutputCollector output_collector;
     std::deque<OutputEvent> output_events;
     wire::BlobFetcher fetcher;
@@ -63,11 +64,11 @@ struct Session::Implementation {
     Implementation(std::unique_ptr<net::Channel> channel, std::function<void()> reconnect,
                    std::shared_ptr<scene::BlobStore> store, const Clock& time, SessionSettings how);
 
-    // ---- what has come ----
+    // ---- received messages ----
 
-    // False: nothing came until the deadline.
-    bool take_in(TimePoint deadline, std::stop_token stop);
-    void take(Interrupted&&) const { tell_away(true); }
+    // False: no message until the deadline.
+    bool receive_next(TimePoint deadline, std::stop_token stop);
+    void take(Interrupted&&) const { notify_away(true); }
     void take(Rejoined&& rejoined);
     void take(wire::ControlMessage&& message);
     void take(const wire::SceneJoined& welcome);
@@ -80,13 +81,13 @@ struct Session::Implementation {
     void take(const wire::BlobAbsent& absent) { fetcher.absent(absent.hash); }
     bool take_for_view(wire::ControlMessage& message);
     bool take_for_output(wire::ControlMessage& message);
-    void tell_away(bool is_away) const {
+    void notify_away(bool is_away) const {
         if (settings.on_away) settings.on_away(is_away);
     }
-    void frame_may_be_here();
+    void collect_frame();
     void resend();
 
-    // ---- asking ----
+    // ---- requests ----
 
     template <class Answer, class Question>
     Answer ask(Question question) {
@@ -96,7 +97,7 @@ struct Session::Implementation {
         link.send(std::move(question));
         const TimePoint deadline = clock.now() + settings.lost_limit;
         while (!answers.contains(request)) {
-            take_in(std::min(clock.now() + Slice, deadline), {});
+            receive_next(std::min(clock.now() + Slice, deadline), {});
             throw_refusals();
             if (clock.now() >= deadline) {
                 asked.erase(request);
@@ -106,13 +107,16 @@ struct Session::Implementation {
         const wire::ControlMessage message = std::move(answers.extract(request).mapped());
         if (const auto* answer = std::get_if<Answer>(&message)) return *answer;
         const auto* done = std::get_if<wire::RequestDone>(&message);
-        throw Error(ErrorCode::Refused,
-                    done ? done->text : "the master gave another answer than was asked for");
+        throw Error(
+            ErrorCode::Refused,
+            done ? done->text
+                 : "the master sent an unexpected answer: check that master and client are of the same "
+                   "version");
     }
 
-    // What it means, as the master says; throws Error{Refused} when it says no.
+    // Returns the master's description of the effect; throws Error{Refused} if it rejects the request.
     template <class Question>
-    std::string tell(Question question) {
+    std::string send_and_confirm(Question question) {
         const auto done = ask<wire::RequestDone>(std::move(question));
         if (!done.accepted) throw Error(ErrorCode::Refused, done.text);
         return done.text;

@@ -1,4 +1,4 @@
-// A session's views: requested, looked at, stopped, and how they end.
+// The views of a session: requests, cameras, frames and results.
 #include "client/session_exchange.h"
 
 namespace tessera::client {
@@ -9,9 +9,9 @@ void Session::Implementation::request(std::uint64_t number, wire::RequestView&& 
     done.erase(number);
     stopping.erase(number);
     const bool is_new = !views.contains(number);
-    views.insert_or_assign(number, request);  // what comes of it may be here before the answer
+    views.insert_or_assign(number, request);  // its first messages may arrive before the answer
     try {
-        tell(request);
+        send_and_confirm(request);
     } catch (const Error&) {
         if (is_new) forget_view(number);
         throw;
@@ -34,28 +34,28 @@ void Session::share_view(std::uint64_t number, const session::ViewRequest& reque
     implementation_->request(number, {.wanted = request, .share = true});
 }
 
-void Session::look(std::uint64_t number, const view::CameraPose& camera) {
+void Session::set_camera(std::uint64_t number, const view::CameraPose& camera) {
     Implementation& self = *implementation_;
     const auto known = self.views.find(number);
     if (known == self.views.end() || known->second.share)
-        throw Error(ErrorCode::InvalidInput,
-                    "view " + std::to_string(number) + " is not one of this session's own: request it first");
+        throw Error(ErrorCode::InvalidInput, "view " + std::to_string(number) +
+                                                 " was not requested by this session: request it first");
     known->second.wanted.view.camera = camera;
-    if (self.state == Implementation::State::Inside) self.link.send(known->second);
+    if (self.state == Implementation::State::Joined) self.link.send(known->second);
 }
 
 void Session::stop_view(std::uint64_t number) {
     Implementation& self = *implementation_;
     if (!self.views.contains(number)) return;
     self.stopping.insert(number);
-    if (self.state == Implementation::State::Inside)
+    if (self.state == Implementation::State::Joined)
         self.link.send(wire::EndView{.number = number, .deliver = true});
 }
 
 void Session::close_view(std::uint64_t number) {
     Implementation& self = *implementation_;
     self.forget_view(number);
-    if (self.state == Implementation::State::Inside) self.link.send(wire::EndView{.number = number});
+    if (self.state == Implementation::State::Joined) self.link.send(wire::EndView{.number = number});
 }
 
 std::optional<Frame> Session::next_frame(TimePoint deadline, std::stop_token stop) {
@@ -63,7 +63,7 @@ std::optional<Frame> Session::next_frame(TimePoint deadline, std::stop_token sto
     pump();
     while (self.frames.empty()) {
         self.throw_refusals();
-        if (stop.stop_requested() || !self.take_in(deadline, stop)) return std::nullopt;
+        if (stop.stop_requested() || !self.receive_next(deadline, stop)) return std::nullopt;
     }
     Frame frame = std::move(self.frames.extract(self.frames.begin()).mapped());
     self.link.send(wire::FrameTaken{frame.view, frame.number});
@@ -95,7 +95,7 @@ ViewResult Session::wait_for_end(std::uint64_t number,
             close_view(number);
             return result;
         }
-        // The end may be here before the word that it is one.
+        // The last frame may arrive before the ViewDone message.
         const bool is_older =
             frame != self.frames.end() && (!frame->second.complete || done != self.done.end());
         if (is_older) {
@@ -103,15 +103,14 @@ ViewResult Session::wait_for_end(std::uint64_t number,
             self.frames.erase(frame);
         }
         const bool has_come =
-            self.take_in(self.clock.now() + Slice, stop.stop_requested() ? std::stop_token() : stop);
+            self.receive_next(self.clock.now() + Slice, stop.stop_requested() ? std::stop_token() : stop);
         self.throw_refusals();
         if (const auto news = take_progress(number); news && on_progress) on_progress(*news);
         if (has_come || self.link.is_away()) last_sign = self.clock.now();
         if (self.clock.now() - last_sign < self.settings.lost_limit) continue;
-        throw Error(ErrorCode::Unavailable,
-                    self.done.contains(number)
-                        ? "the picture did not arrive in full: start again"
-                        : "the master says nothing about the frame any more: start again");
+        throw Error(ErrorCode::Unavailable, self.done.contains(number)
+                                                ? "the picture did not arrive in full: start again"
+                                                : "the master stopped reporting on the frame: start again");
     }
 }
 
@@ -120,11 +119,11 @@ std::vector<session::JobStatus> Session::jobs() {
 }
 
 ViewResult Session::fetch_job(const session::JobName& job) {
-    constexpr std::uint64_t JobNumber = std::uint64_t{1} << 33;  // beyond those of views
+    constexpr std::uint64_t JobNumber = std::uint64_t{1} << 33;  // above the numbers of views
     Implementation& self = *implementation_;
     self.fetched = wire::FetchJob{.number = JobNumber, .job = job};
     try {
-        self.tell(*self.fetched);
+        self.send_and_confirm(*self.fetched);
         ViewResult result = wait_for_end(JobNumber, {}, {});
         self.fetched.reset();
         return result;
@@ -135,21 +134,21 @@ ViewResult Session::fetch_job(const session::JobName& job) {
 }
 
 void Session::cancel_job(const session::JobName& job) {
-    implementation_->tell(wire::CancelJob{.job = job});
+    implementation_->send_and_confirm(wire::CancelJob{.job = job});
 }
 
 std::string Session::set_filter(const std::string& view, const std::string& filter) {
-    return implementation_->tell(wire::SetViewFilter{.view = view, .filter = filter});
+    return implementation_->send_and_confirm(wire::SetViewFilter{.view = view, .filter = filter});
 }
 
 std::vector<std::string> Session::take_notices() {
     return std::exchange(implementation_->notices, {});
 }
 
-session::Picked Session::pick(std::uint64_t number, std::uint32_t x, std::uint32_t y) {
+session::PickResult Session::pick(std::uint64_t number, std::uint32_t x, std::uint32_t y) {
     auto picked = implementation_->ask<wire::Picked>(wire::Pick{.number = number, .x = x, .y = y});
     if (!picked.problem.empty()) throw Error(ErrorCode::Refused, picked.problem);
-    return picked.seen;
+    return picked.result;
 }
 
 }  // namespace tessera::client

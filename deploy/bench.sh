@@ -1,29 +1,58 @@
 #!/usr/bin/env bash
-# Usage: deploy/bench.sh [Google Benchmark options]
+# Usage: deploy/bench.sh [--docs]
 #
-# Sets up, builds and runs the benchmarks, one after the other; each figure stands next to the limit that bounds it.
+# Sets up, builds and runs the benchmarks one after the other (about 15 minutes on 2 cores) and writes them as one page,
+# out/bench/benchmarks.md. Each figure is next to the limit that bounds it. Run it on an otherwise idle machine.
+#   --docs  writes docs/benchmarks.md instead
 set -euo pipefail
 cd "$(dirname "$0")/.."
+# shellcheck source=deploy/progress.sh
+. deploy/progress.sh
+page=out/bench/benchmarks.md
 case ${1:-} in
+"") ;;
+--docs) page=docs/benchmarks.md ;;
 -h | --help)
-    . deploy/progress.sh
     help_of deploy/bench.sh
     exit
     ;;
+*)
+    echo "bench: unknown option $1; see --help" >&2
+    exit 64
+    ;;
 esac
 deploy/setup.sh bench
-for bench in film embree filter compose display; do
-    echo "== $bench"
-    "build/release/bin/tessera_${bench}_bench" "$@"
+bin=build/release/bin
+out=out/bench
+mkdir -p "$out"
+
+# run NAME COMMAND...: its output becomes the file NAME; what it says on the error stream is shown if it fails.
+run() {
+    local name=$1
+    shift
+    progress "bench  ${name%.*}"
+    "$@" >"$out/$name" 2>"$out/errors" || {
+        cat "$out/errors" >&2
+        echo "bench: ${name%.*} failed: $*" >&2
+        exit 1
+    }
+}
+
+for bench in embree film filter compose display; do
+    run "$bench.json" "$bin/tessera_${bench}_bench" --benchmark_format=json
 done
-for bench in kernel update light; do
-    echo "== $bench"
-    "build/release/bin/tessera_${bench}_bench"
+for bench in kernel update texture; do
+    run "$bench.txt" "$bin/tessera_${bench}_bench"
 done
-echo "== back-ends"
-build/release/bin/tessera bench backends --scenes room-1,balls:1000000 --repeat 3
-echo "== live"
-build/release/bin/tessera bench live
-echo "== displays"
-build/release/bin/tessera bench displays
-PYTHONPATH=build/release/python /usr/bin/python3 deploy/bench_join.py build/release/bin
+run light.txt "$bin/tessera_light_bench" trees
+run fog.txt "$bin/tessera_light_bench" fog
+run filters.json "$bin/tessera" bench filters -o "$out/filters" --scenes room-1,studio-1,still --spp 4 --large none \
+    --reference-spp 512 --json
+run backends.txt "$bin/tessera" bench backends --scenes room-1,studio-1,balls:1000000 --spp 4 --repeat 3
+run live.txt "$bin/tessera" bench live
+run displays.txt "$bin/tessera" bench displays
+PYTHONPATH=build/release/python run join.txt /usr/bin/python3 deploy/bench_join.py "$bin"
+
+python3 docs/make_benchmarks.py "$out" "$("$bin/tessera" --version)" >"$out/page"
+mv "$out/page" "$page"
+echo "bench: wrote $page"

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """How long a node needs to join a scene of 100 MB over a line of 1 Gbit/s: cold, then again with its cache.
 
-The node runs in a network namespace of its own behind a rate limit (tbf), so this needs root and iproute2. Its back-end
-is `null`: what is measured is the way of the scene, not the building of a tree. Run by deploy/bench.sh, or:
+The node runs in its own network namespace behind a rate limit (tbf), so this needs root and iproute2. Its back-end
+is `null`: the transfer of the scene is measured, not the build of a BVH. Run by deploy/bench.sh, or:
 
     PYTHONPATH=build/release/python /usr/bin/python3 deploy/bench_join.py build/release/bin
 """
@@ -43,7 +43,7 @@ def sent_bytes():
 
 
 def join(programs, folder, endpoint, session, version):
-    """Seconds from the node's start until it has the version, and the bytes that went over the line."""
+    """Seconds from the node's start until it has the version, and the bytes sent over the line."""
     before, start = sent_bytes(), time.monotonic()
     node = subprocess.Popen(
         ["ip", "netns", "exec", NAMESPACE, programs / "tessera-node", "--master", endpoint, "--keys", folder / "keys",
@@ -64,7 +64,7 @@ def join(programs, folder, endpoint, session, version):
 def main():
     programs = pathlib.Path(sys.argv[1]).resolve()
     if os.geteuid() != 0:
-        print("join: needs root for a network namespace; left out")
+        print("join: skipped: needs root for a network namespace")
         return
     endpoint = f"tcp://{HERE}:{20000 + random.randrange(5000) * 2}"
     with tempfile.TemporaryDirectory() as name:
@@ -81,7 +81,7 @@ def main():
                 positions[3::4] = b"\x3f" * (len(positions) // 4)  # floats near 1
                 with session.transaction() as edit:
                     edit.create("geometry", name="cloud", indices=[(0, 1, 2)], positions=bytes(positions))
-                session.refresh()  # then it is published
+                session.refresh()  # the scene is published now
                 version = session.status().version
                 ideal = 8 * len(positions) / RATE
                 for label in ("cold", "with its cache"):

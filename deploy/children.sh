@@ -2,11 +2,11 @@
 # shellcheck disable=SC2154 # folder and children are the caller's
 # For scripts that start programs: start NAME COMMAND..., fail TEXT, stop_everything. Wants: folder, children=().
 
-# Whatever was started ends here, asked first and then made to.
+# Ends all started processes: with SIGTERM, and with SIGKILL after five seconds.
 stop_everything() {
     trap '' INT TERM
     local i child waited
-    # Nodes before the master, so that they can say goodbye.
+    # Nodes before the master, so that they can deregister.
     for ((i = ${#children[@]} - 1; i >= 0; --i)); do kill -TERM "${children[i]}" 2>/dev/null || true; done
     for child in "${children[@]}"; do
         for ((waited = 0; waited < 50; ++waited)); do

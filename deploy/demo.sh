@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Usage: deploy/demo.sh [options of `tessera render`] | --live [--once] | --wall
 #
-# Sets up and does the main job: a master, an Embree node and a Vulkan node as processes of their own (TCP on
-# loopback, CURVE keys made for this run) render a glTF scene by tiles and cooperative samples into out/demo.exr and out/demo.png.
-# Arguments go to the render, as in: deploy/demo.sh --spp 16
-#   --live  a tour of live editing instead (deploy/tour.sh); with --once it ends after it
-#   --wall  a stereo wall of six projectors instead, without one being there (deploy/wall.sh)
-# Only what is run is built.
+# Builds Tessera and renders a glTF scene with a master, an Embree node and a Vulkan node as separate processes (TCP on
+# loopback, CURVE keys generated for this run). Work is split by tiles and samples; the pictures are out/demo.exr and
+# out/demo.png. Options are passed to the render: deploy/demo.sh --spp 16
+#   --live  a tour of live editing instead (deploy/tour.sh); with --once it exits afterwards
+#   --wall  simulates a stereo wall of six projectors instead (deploy/wall.sh)
+# Only the programs that are needed are built.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 case ${1:-} in
@@ -38,7 +38,7 @@ mkdir -p out
 keys=$folder/keys
 "$bin/tessera" keys "$keys" >"$folder/keys.log"
 
-# Two ports in a row that nobody has; another program may be quicker, then the next are tried.
+# Two free consecutive ports; if another program takes them first, the next are tried.
 for ((attempt = 0; ; ++attempt)); do
     [ "$attempt" -lt 20 ] || fail "found no free port"
     endpoint=tcp://127.0.0.1:${TESSERA_DEMO_PORT:-$((20000 + RANDOM % 12000))}
@@ -50,7 +50,7 @@ for ((attempt = 0; ; ++attempt)); do
     done
     fail "the master does not answer"
 done
-# One with Embree, one with Vulkan: on the software device where there is no GPU.
+# One Embree node, one Vulkan node (on the software device if there is no GPU).
 start node-1 "$bin/tessera-node" --master "$endpoint" --keys "$keys" --name node-1 --threads 1 --backend embree
 start node-2 "$bin/tessera-node" --master "$endpoint" --keys "$keys" --name node-2 --threads 1 --backend vulkan
 
@@ -72,7 +72,7 @@ jq -r '
     def mib: . / 1048576 | rounded(1);
     "",
     "  picture     \(.width) x \(.height), \(.spp) samples per pixel, \(.triangles) triangles, \(.instances) instances, \(.lights) lights",
-    "  time        \(.seconds_render | rounded(2)) s rendering, \(.seconds_total | rounded(2)) s in all, first picture after \(.first_picture_seconds | rounded(2)) s",
+    "  time        \(.seconds_render | rounded(2)) s rendering, \(.seconds_total | rounded(2)) s in total, first picture after \(.first_picture_seconds | rounded(2)) s",
     "  speed       \(.mrays_per_second | rounded(2)) Mray/s, \(.samples_per_second / 1e6 | rounded(3)) Msamples/s",
     (.samples_total = ([.nodes[].samples] | add) | .samples_total as $all | .nodes[] |
     "  node \(.id)      pid \(.pid), \(.kind): \(.units) units, \(100 * .samples / ([$all, 1] | max) | rounded(1)) % of the samples"),

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Usage: deploy/docs.sh [FOLDER]
 #
-# Writes man pages of all programs and commands, from their --help, and the reference of the C++ client, from its headers, into
-# FOLDER/man and FOLDER/cpp (build/docs). Needs a build, and Debian's help2man and doxygen.
+# Generates man pages of all programs and commands from their --help, and the reference of the C++ client from its headers, in
+# FOLDER/man and FOLDER/cpp (default: build/docs). Needs a build, and Debian's help2man and doxygen.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=deploy/progress.sh
@@ -16,12 +16,12 @@ esac
 folder=${1:-build/docs}
 bin=${TESSERA_BIN:-build/release/bin}
 for tool in help2man doxygen; do
-    command -v "$tool" >/dev/null || { echo "docs: $tool is missing: apt-get install $tool" >&2; exit 1; }
+    command -v "$tool" >/dev/null || { echo "docs: $tool not found: apt-get install $tool" >&2; exit 1; }
 done
-[ -x "$bin/tessera" ] || { echo "docs: there is no $bin/tessera: run deploy/setup.sh first" >&2; exit 1; }
+[ -x "$bin/tessera" ] || { echo "docs: $bin/tessera not found: run deploy/setup.sh first" >&2; exit 1; }
 mkdir -p "$folder/man/man1" "$folder/cpp"
 
-# The man page of a command, and those of its sub-commands. `tessera bench` needs the benchmarks.
+# Writes the man pages of a command and its sub-commands, except `tessera bench`, which needs the benchmarks.
 page() {
     local help summary name inner
     help=$("$@" --help)

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# For scripts that take a while: help_of SCRIPT, progress TEXT, progress_done TEXT, quietly COMMAND..., build PRESET TARGET....
-# One line that moves on a terminal; elsewhere a plain line now and then.
+# Helpers for long-running scripts: help_of SCRIPT, progress TEXT, progress_done TEXT, quietly COMMAND..., build PRESET TARGET....
+# Updates one line on a terminal; otherwise prints a line every 20 seconds.
 
 progress_shown=
 progress_at=-1000
 
-# The comment at the top of a script.
+# Prints the comment at the top of a script.
 help_of() { sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$1"; }
 
 progress() {
@@ -49,14 +49,14 @@ minutes_left() {
     fi
 }
 
-# Builds targets (none: all) of a preset, and shows how far it is.
+# Builds targets (none: all) of a preset and shows the progress.
 build() {
     local preset=$1 log line begin=$SECONDS built=0 total=0 elapsed state
     shift
     log=$(mktemp)
     local command=(cmake --build --preset "$preset" --parallel "${TESSERA_BUILD_JOBS:-$(nproc)}")
     [ "$#" -eq 0 ] || command+=(--target "$@")
-    # Ninja writes a line for each file, with what NINJA_STATUS asks for in front.
+    # Ninja prints a line for each file, prefixed by NINJA_STATUS.
     while IFS= read -r line; do
         printf '%s\n' "$line" >>"$log"
         [[ $line =~ ^@([0-9]+)/([0-9]+)@ ]] || continue
@@ -69,7 +69,7 @@ build() {
     done < <(NINJA_STATUS='@%f/%t@ ' "${command[@]}" 2>&1 || echo "@failed@")
     if tail -n 1 "$log" | grep -qx '@failed@'; then
         [ -z "$progress_shown" ] || printf '\n'
-        # What failed, and what it said; warnings of others are left out.
+        # The failed commands and their output, without warnings of others.
         sed -e '/^@failed@$/d' -e 's/^@\([0-9]*\/[0-9]*\)@ /[\1] /' "$log" | grep -n -A 200 '^FAILED:' | head -n 300 >&2 ||
             tail -n 50 "$log" >&2
         rm -f "$log"

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Usage: deploy/setup.sh [PRESET [TARGET...]]
 #
-# Installs the Debian packages that are missing, then configures the preset (default: release) and builds the targets
-# (default: all that its options choose). A second run installs and builds nothing.
+# Installs missing Debian packages, then configures the preset (default: release) and builds the targets
+# (default: all that its options enable). A second run does nothing if nothing has changed.
 #
-# Presets: release (everything once, quickly: sources are compiled in batches), dev (each source on its own: less to compile
-# after a change), bench (release with the benchmarks), debug, asan, tsan. CMakePresets.json has them.
+# Presets: release (unity build: fastest full build), dev (each source on its own: fast incremental builds), bench (release with
+# the benchmarks), debug, asan, tsan; see CMakePresets.json.
 #
-# TESSERA_BUILD_JOBS: how many compilers run at a time (default: one for each core).
+# TESSERA_BUILD_JOBS: number of parallel compilers (default: number of cores).
 # TESSERA_PACKAGES: files that list packages (default: deploy/packages.txt).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -19,7 +19,7 @@ case ${1:-} in
     exit
     ;;
 -*)
-    echo "setup: there is no option $1; see --help" >&2
+    echo "setup: unknown option $1; see --help" >&2
     exit 64
     ;;
 esac
@@ -48,14 +48,14 @@ as_root() {
 }
 
 if ! command -v dpkg-query >/dev/null; then
-    echo "setup: this is no Debian: install what deploy/packages.txt lists in your system's way" >&2
+    echo "setup: this system is not Debian: install the packages of deploy/packages.txt with your package manager" >&2
     exit 1
 fi
 mapfile -t missing < <(missing_packages)
 if [ "${#missing[@]}" -gt 0 ]; then
     progress "packages  reading the lists"
     quietly as_root apt-get -qq update
-    # One by one would take longer; in groups there is something to see.
+    # In groups, to show progress without installing one by one.
     group=8
     for ((first = 0; first < ${#missing[@]}; first += group)); do
         progress "packages  $first of ${#missing[@]} installed"
@@ -66,6 +66,6 @@ if [ "${#missing[@]}" -gt 0 ]; then
 fi
 
 progress "configuring"
-# Configuring tells of a Python library that Imath's package names and nobody here needs; only errors matter.
+# Quiet, since Imath's package warns about a Python library that is not needed here.
 quietly cmake --preset "$preset"
 build "$preset" "$@"

@@ -1,12 +1,11 @@
 #!/usr/bin/env bash
 # Usage: deploy/test.sh [--long] [--ci] [ctest options], for example: deploy/test.sh -L numerics
 #
-# Sets up, builds and runs the tests, but for those with the labels `slow` and `long`: the former take long for what they add
-# to the others, the latter compile the tree once more or take many minutes for another reason.
+# Sets up, builds and runs the tests, except those with the labels `slow` and `long`: slow tests add little to the others for
+# their time, long tests rebuild the tree or take many minutes for other reasons.
 #   --ci    what a submission has to pass (.ci/run): also the slow tests and those of the benchmarks, with the tools of
-#           deploy/packages-ci.txt installed; a tool that is missing is a failure, while elsewhere the tests that need it are
-#           left out
-#   --long  runs all there are
+#           deploy/packages-ci.txt installed; a missing tool is a failure, while otherwise the tests that need it are skipped
+#   --long  runs all tests
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=deploy/progress.sh

@@ -1,4 +1,4 @@
-"""The Python client of deploy/tour.sh: drags a colour, adds a lamp, looks. Usage: tour.py ENDPOINT KEYS PICTURE"""
+"""The Python client of deploy/tour.sh: drags a colour, adds a lamp, renders a picture. Usage: tour.py ENDPOINT KEYS PICTURE"""
 
 import math
 import sys
@@ -16,9 +16,9 @@ with tessera.connect(endpoint, keys=keys, name="python") as session:
             edit.set(paint, base_color=(wave, 0.2, 1.0 - wave, 1.0))
     with session.transaction() as edit:
         lamp = edit.create("light", name="lamp", kind="point", intensity=(20.0, 16.0, 10.0))
-        place = (1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1.5, 2.0, 1.5, 1)
-        edit.create("transform", name="lamp place", matrix=place, children=[lamp])
+        matrix = (1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1.5, 2.0, 1.5, 1)
+        edit.create("transform", name="lamp position", matrix=matrix, children=[lamp])
     view = session.open_view("cameras/camera", size=(640, 360), spp=32)
     view.wait(samples=32).save(picture)
     hit = view.pick(320, 180)
-    print("in the middle:", f"object {hit.object} at {hit.position}" if hit else "nothing")
+    print("at the centre:", f"object {hit.object} at {hit.position}" if hit else "nothing")

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Usage: deploy/demo.sh --live [--once]
 #
-# The tour of deploy/demo.sh --live: a master that keeps its session on disk, two nodes, edits from the command line and from
-# Python side by side, undo, the loss of a node, the death of the master. Its pictures go to out/tour/. Afterwards the cluster
-# stays, to be joined, until Ctrl-C; with --once it ends.
+# The tour of deploy/demo.sh --live: a master with its session on disk, two nodes, concurrent edits from the command line and
+# from Python, undo, loss of a node, and a killed and restarted master. Its pictures are written to out/tour/. Afterwards the
+# cluster keeps running for other clients until Ctrl-C; with --once it exits.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -17,7 +17,7 @@ for argument in "$@"; do
         exit
         ;;
     *)
-        echo "demo: --live knows only --once, not '$argument'" >&2
+        echo "demo: --live accepts only --once, not '$argument'" >&2
         exit 64
         ;;
     esac
@@ -62,7 +62,7 @@ start node-1 "$bin/tessera-node" "${here[@]}" --name node-1 --threads 1
 start node-2 "$bin/tessera-node" "${here[@]}" --name node-2 --threads 1
 node_2=${children[-1]}
 
-# One picture of what is there now; the first one starts the count.
+# Saves one picture of the current scene.
 shot() {
     "$bin/tessera" watch "${here[@]}" --name photographer --size 640x360 --spp "${TESSERA_DEMO_SPP:-32}" --filter fdf --once \
         -o "$tour/$1.png" >"$folder/$1.log" || fail "no picture $1"
@@ -72,23 +72,23 @@ shot() {
 "$bin/tessera" edit "${here[@]}" --name loader --scene studio -c "load tests/scenes/studio-1.glb" >"$folder/load.log"
 shot 1-loaded "a scene, loaded with 'tessera edit'"
 
-# Two editors at the same time: a script of the text language, and Python.
+# Two concurrent editors: an edit script, and Python.
 printf 'set materials/sweep.base_color 0.15 0.25 0.5 1\nset materials/gold.roughness 0.4\n' >"$folder/blue.txt"
 "$bin/tessera" edit "$folder/blue.txt" "${here[@]}" --name ann >"$folder/ann.log" 2>&1 &
 ann=$!
 PYTHONPATH=build/release/python /usr/bin/python3 deploy/tour.py "$endpoint" "$keys" "$tour/2-python.png" >"$folder/python.log" 2>&1 ||
     fail "the Python client failed"
-wait "$ann" || fail "the script was refused"
+wait "$ann" || fail "the script was rejected"
 echo "tour: out/tour/2-python.png  a drag of 40 edits and a new lamp, seen from Python"
 shot 2-edited "what both edited at the same time"
 
 "$bin/tessera" status "${here[@]}" --chrome-trace "$tour/trace.json" >"$folder/times.log"
-echo "tour: out/tour/trace.json  where the time of these edits went, for ui.perfetto.dev; in short:"
+echo "tour: out/tour/trace.json  the times of these edits, for ui.perfetto.dev; in short:"
 sed -n '/^live scene/,/cancel/p' "$folder/times.log"
 
 transaction=$("$bin/tessera" edit "${here[@]}" -c "log 20" | awk '$4 == "ann" { print $1; exit }')
 "$bin/tessera" edit "${here[@]}" --name ann -c "undo $transaction" >"$folder/undo.log"
-shot 3-undone "ann's edits taken back (transaction $transaction), Python's kept"
+shot 3-undone "ann's edits undone (transaction $transaction), Python's kept"
 
 "$bin/tessera" watch "${here[@]}" --name photographer --size 640x360 --spp 64 --filter fdf --once -o "$tour/4-node-lost.png" >"$folder/4.log" &
 watcher=$!
@@ -104,9 +104,9 @@ sleep 2
 kill -KILL "$master"
 wait "$master" 2>/dev/null || true
 start_master
-answers || fail "the master does not come back"
-wait "$watcher" || fail "no picture after the master's death"
-echo "tour: out/tour/5-master-killed.png  the master was killed and started again while this was rendered"
+answers || fail "the master did not restart"
+wait "$watcher" || fail "no picture after the restart of the master"
+echo "tour: out/tour/5-master-killed.png  the master was killed and restarted while this was rendered"
 echo
 "$bin/tessera" log "$folder/session"
 echo
@@ -115,12 +115,12 @@ echo
 [ -z "$once" ] || exit 0
 cat <<END
 
-The cluster goes on. Join it from other terminals:
+The cluster is still running. Join it from other terminals:
 
   $bin/tessera watch --master $endpoint --keys $keys
   $bin/tessera edit  --master $endpoint --keys $keys
   $bin/tessera status --master $endpoint --keys $keys
 
-Ctrl-C ends it.
+Ctrl-C stops it.
 END
 wait "$master" || true

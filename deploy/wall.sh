@@ -2,8 +2,8 @@
 # Usage: deploy/demo.sh --wall
 #
 # The wall of deploy/demo.sh --wall: a master, two nodes, and six headless output processes, one for each projector of
-# deploy/wall.toml (3 x 2, keystoned, overlapping, both eyes), all in step. What each projector shows, and what people in
-# front of the screen see of it, goes to out/wall/.
+# deploy/wall.toml (3 x 2, keystoned, overlapping, both eyes), frame-locked. The pictures of each projector, and a preview of
+# what viewers see on the screen, are written to out/wall/.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 case ${1:-} in
@@ -31,7 +31,7 @@ trap 'exit 143' TERM
 wall=out/wall
 rm -rf "$wall"
 mkdir -p "$wall/patterns"
-echo "demo: the wall as deploy/wall.toml describes it"
+echo "demo: checking the wall described by deploy/wall.toml"
 "$bin/tessera" display check deploy/wall.toml -o "$wall/plan.png"
 "$bin/tessera" display pattern deploy/wall.toml -o "$wall/patterns" >"$folder/pattern.log"
 "$bin/tessera" display audience deploy/wall.toml --pictures "$wall/patterns" -o "$wall/pattern.png" >"$folder/pattern.log"
@@ -61,17 +61,17 @@ for output in "${outputs[@]}"; do
     start "output-$output" "$bin/tessera-display" "${here[@]}" --output "$output" --headless --png "$wall" --log "$wall/$output.log"
 done
 
-echo "demo: ${#outputs[@]} output processes, in step"
+echo "demo: ${#outputs[@]} frame-locked output processes"
 for ((waited = 0; ; ++waited)); do
     "$bin/tessera" status "${here[@]}" --json >"$folder/status.json" || fail "the master does not answer"
     least=$(jq '[.display.outputs[] | if .state == "locked" then .samples else 0 end] | min' "$folder/status.json")
     ((least >= 16)) && break
-    ((waited < 1200)) || fail "the wall is not complete"
+    ((waited < 1200)) || fail "not all outputs became locked"
     sleep 0.25
 done
-sleep 0.5 # the last frame is on its way
+sleep 0.5 # wait for the last frame
 "$bin/tessera" display audience deploy/wall.toml --pictures "$wall" --black 0.002 -o "$wall/audience.png" >"$folder/audience.log" ||
-    fail "no picture of what the audience sees"
+    fail "no viewer preview"
 
 "$bin/tessera" status "${here[@]}" | sed -n "/^display/,/^node/p" | sed '/^node/d'
 cat "$wall"/*.log | jq -rs '
@@ -79,4 +79,4 @@ cat "$wall"/*.log | jq -rs '
     group_by(.frame) | map(select(length == 6)) |
     "  frames      \(length) shown by all six projectors; \(map(select([.[].version] | unique | length > 1)) | length) with mixed versions",
     "  in step     within \(map(([.[].shown] | max) - ([.[].shown] | min)) | sort | .[length / 2 | floor] / 1e6 | rounded(2)) ms (median of the frames)"'
-echo "  files       $wall/audience-left.png, -right.png: what people see; $wall/plan.png; $wall/OUTPUT-left.png, -right.png: what each projector shows"
+echo "  files       $wall/audience-left.png, -right.png: viewer preview; $wall/plan.png; $wall/OUTPUT-left.png, -right.png: what each projector shows"

@@ -1,27 +1,51 @@
 #!/usr/bin/env bash
-# Renders the README's pictures of renderers and materials anew, into docs/ or the folder that is named:
-#   docs/make_pictures.sh [FOLDER]
-# TESSERA is the program (build/release/bin/tessera), TESSERA_SPP the samples per pixel (128).
+# Usage: docs/make_pictures.sh [FOLDER]
+#
+# Renders all pictures of the documents again, into docs/ or the given folder (about 20 minutes on 2 cores).
+#   TESSERA_SPP  samples per pixel of the charts (default: 128)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+# shellcheck source=deploy/progress.sh
+. deploy/progress.sh
+case ${1:-} in
+-h | --help)
+    help_of docs/make_pictures.sh
+    exit
+    ;;
+esac
 out=${1:-docs}
-tessera=${TESSERA:-build/release/bin/tessera}
 spp=${TESSERA_SPP:-128}
-[ -x "$tessera" ] || { echo "make_pictures: there is no '$tessera': build it, or set TESSERA" >&2; exit 2; }
+deploy/setup.sh bench
+tessera=build/release/bin/tessera
 mkdir -p "$out"
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
+progress "pictures  demo"
+quietly deploy/demo.sh
+cp out/demo.png "$out/demo.png"
+
+progress "pictures  wall"
+quietly deploy/demo.sh --wall
+cp out/wall/preview-left.png "$out/wall.png"
+
+progress "pictures  renderers"
 for renderer in path whitted raster coverage; do
     backend=embree
     [ $renderer != raster ] || backend=vulkan
-    "$tessera" render tests/scenes/still.glb --env tests/scenes/env-studio.exr --renderer $renderer --backend $backend \
+    quietly "$tessera" render tests/scenes/still.glb --env tests/scenes/env-studio.exr --renderer $renderer --backend $backend \
         --size 320x240 --spp "$spp" -o "$out/renderer-$renderer.png"
 done
 
-# What the rows show is in docs/material_chart.py. Pictures of four rows stay small.
+progress "pictures  denoisers"
+quietly "$tessera" bench filters -o "$folder/filters" --scenes room-1 --spp 4 --size 96x54 --large 480x270 --reference-spp 256
+cp "$folder/filters/crops.png" "$out/filters.png"
+
+# docs/material_chart.py says what the rows show. Pictures of four rows stay small.
 python3 docs/material_chart.py "$folder" >"$folder/scenes"
 while read -r scene rows; do
-    "$tessera" render "$folder/$scene" --background 0.12,0.13,0.15 --bounces 12 --spp "$spp" --filter fdf \
+    progress "pictures  ${scene%.*}"
+    quietly "$tessera" render "$folder/$scene" --background 0.12,0.13,0.15 --bounces 12 --spp "$spp" --denoise \
         --size "512x$((64 * rows))" -o "$out/${scene%.*}.png" </dev/null
 done <"$folder/scenes"
+progress_done "pictures  all are in $out"

@@ -14,15 +14,15 @@ std::optional<int> parse_options(int argc, const char* const* argv, MasterOption
     line.option("--keys", "folder of CURVE keys with the allow-list (made by: tessera keys DIR)",
                 options.keys);
     line.flag("--insecure", "no encryption and no roles; only on a loopback address", options.insecure);
-    line.option("--heartbeat", "seconds between heartbeats; three missed ones mean a peer is gone",
+    line.option("--heartbeat", "seconds between heartbeats; a peer that misses three is removed",
                 options.heartbeat_seconds);
     line.option("--blob-quota", "MiB of meshes and textures one session may send", options.blob_quota_mib);
     line.option("--session",
-                "folder that keeps the live scene: its edits as they come, and checkpoints with the films; a "
-                "master started on it goes on where the last one was",
+                "folder that stores the live scene: edits, and checkpoints with the films; a "
+                "master started with it resumes the session",
                 options.session);
     line.option("--checkpoint", "seconds between checkpoints of the session", options.checkpoint_seconds);
-    line.choice("--log-level", "how much to tell", options.log.level, cli::log_levels());
+    line.choice("--log-level", "log verbosity", options.log.level, cli::log_levels());
     line.option("--log-file", "write the log there instead of standard error", options.log.file);
     line.examples({"tessera keys ~/.tessera && tessera-master --keys ~/.tessera",
                    "tessera-master --listen tcp://0.0.0.0:7420 --keys ~/.tessera",
@@ -40,10 +40,10 @@ std::optional<int> parse_options(int argc, const char* const* argv, MasterOption
     }
     if (!options.keys.empty() && options.insecure) return usage("--keys and --insecure exclude each other");
     if (!(options.heartbeat_seconds >= 0.05 && options.heartbeat_seconds <= 60.0)) {
-        return usage("--heartbeat must lie between 0.05 and 60 seconds");
+        return usage("--heartbeat must be between 0.05 and 60 seconds");
     }
     if (!(options.checkpoint_seconds >= 0.1 && options.checkpoint_seconds <= 3600.0)) {
-        return usage("--checkpoint must lie between 0.1 and 3600 seconds");
+        return usage("--checkpoint must be between 0.1 and 3600 seconds");
     }
     return std::nullopt;
 }

@@ -20,7 +20,7 @@ struct MasterOptions {
     cli::LogSettings log{.program = "tessera-master"};
 };
 
-// Nothing: go on with `options`. Else the exit code.
+// Returns nothing to continue with `options`, else the exit code.
 std::optional<int> parse_options(int argc, const char* const* argv, MasterOptions& options, std::ostream& out,
                                  std::ostream& err);
 

@@ -6,7 +6,7 @@
 
 #include "master/config.h"
 #include "master/render_master.h"
-#include "mediator/base/freed_memory.h"
+#include "mediator/base/malloc_trim.h"
 #include "mediator/net/zmq_channel.h"
 #include "mediator/program/command_line.h"
 
@@ -60,7 +60,7 @@ int serve(const master::MasterOptions& options, const sigset_t& signals) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    keep_freed_memory();
+    disable_malloc_trim();
     // Before any thread starts, so that none of them is interrupted: one thread waits for signals.
     sigset_t signals;
     sigemptyset(&signals);

@@ -68,11 +68,11 @@ void RenderMaster::post(std::function<void(net::Channel&)> task) {
 void RenderMaster::run(std::stop_token stop) {
     const std::stop_callback wake_on_stop(stop, [this] { channel_->wake(); });
     while (!stop.stop_requested()) step(clock_.now(), stop);
-    say_goodbye();
+    send_goodbye();
 }
 
 void RenderMaster::step(TimePoint now, std::stop_token stop) {
-    // A burst is taken in one go, but never so long that heartbeats wait.
+    // Handles a burst of messages at once, but bounded, so that heartbeats are not delayed.
     constexpr int BurstLimit = 256;
     TimePoint deadline = next_wake(now);
     for (int i = 0; i < BurstLimit; ++i) {
@@ -81,7 +81,7 @@ void RenderMaster::step(TimePoint now, std::stop_token stop) {
         if (message == nullptr) break;
         receive(std::move(*message), clock_.now());
         if (stop.stop_requested()) return;
-        deadline = now;  // after the first only what is there already
+        deadline = now;  // after the first one take only messages that have already arrived
     }
     now = clock_.now();
     std::vector<std::function<void(net::Channel&)>> posted;
@@ -98,7 +98,7 @@ void RenderMaster::step(TimePoint now, std::stop_token stop) {
     heartbeats(now);
     outbox_.flush();
     drop_lost_peers(now);
-    bury_the_dead(now);
+    remove_timed_out_peers(now);
 }
 
 TimePoint RenderMaster::next_wake(TimePoint now) const {
@@ -115,7 +115,7 @@ void RenderMaster::drop(const net::Message& message, const std::string& why) {
 }
 
 void RenderMaster::receive(net::Message&& message, TimePoint now) {
-    // Whatever a message leads to, the master goes on: the policy for what handlers throw is here.
+    // The policy for exceptions of message handlers: the master always continues.
     try {
         if (message.link == net::Link::Control) {
             control(message, now);
@@ -134,17 +134,17 @@ void RenderMaster::control(net::Message& message, TimePoint now) {
     if (!allowed(message.role, *decoded)) {
         outbox_.control(message.peer, wire::Refusal{std::string("the role ") + net::name(message.role) +
                                                     " may not do this: use a key with another role"});
-        return drop(message, "its role does not allow it");
+        return drop(message, "not allowed for its role");
     }
     if (auto* greeting = std::get_if<wire::Hello>(&*decoded))
         return hello(message, std::move(*greeting), now);
     if (NodeRecord* node = nodes_.by_control(message.peer); node && node->user == message.user) {
-        node->liveness.heard(now);
+        node->liveness.on_message(now);
         return from_node(*node, *decoded, now);
     }
     if (SessionRecord* session = sessions_.by_control(message.peer);
         session && session->user == message.user) {
-        session->liveness.heard(now);
+        session->liveness.on_message(now);
         return from_client(*session, *decoded, message.bytes.size(), now);
     }
     if (!std::holds_alternative<wire::Goodbye>(*decoded)) outbox_.control(message.peer, wire::Unknown{});
@@ -156,24 +156,24 @@ void RenderMaster::bulk(net::Message& message, TimePoint now) {
         NodeRecord* node = nodes_.by_bulk(message.peer);
         if (!allowed(message.role, wire::BulkMessage(wire::FilmPart{})) || !node ||
             node->user != message.user) {
-            return drop(message, "film of a peer that is no node here");
+            return drop(message, "film from a peer that is not a registered node");
         }
         outbox_.bytes.film += message.bytes.size();
-        node->liveness.heard(now);
+        node->liveness.on_message(now);
         return film_.push(message.peer, std::move(message.bytes));
     }
     auto decoded = wire::decode_bulk(message.bytes);
     if (!decoded) return drop(message, decoded.error().what());
-    if (!allowed(message.role, *decoded)) return drop(message, "its role does not allow it");
+    if (!allowed(message.role, *decoded)) return drop(message, "not allowed for its role");
     if (const auto* greeting = std::get_if<wire::BulkHello>(&*decoded)) return bulk_hello(message, *greeting);
     if (NodeRecord* node = nodes_.by_bulk(message.peer); node && node->user == message.user) {
-        node->liveness.heard(now);
+        node->liveness.on_message(now);
         const auto* request = std::get_if<wire::BlobRequest>(&*decoded);
-        if (request == nullptr) return drop(message, "a node has no business sending this");
+        if (request == nullptr) return drop(message, "nodes may not send this kind of message");
         return outbox_.bulk(message.peer, wire::answer(*request, *blobs_));
     }
     if (SessionRecord* session = sessions_.by_bulk(message.peer); session && session->user == message.user) {
-        session->liveness.heard(now);
+        session->liveness.on_message(now);
         if (auto* chunk = std::get_if<wire::BlobChunk>(&*decoded)) {
             return service_.chunk(*session, std::move(*chunk), now);
         }
@@ -183,9 +183,9 @@ void RenderMaster::bulk(net::Message& message, TimePoint now) {
         if (const auto* request = std::get_if<wire::BlobRequest>(&*decoded)) {
             return outbox_.bulk(message.peer, wire::answer(*request, *blobs_));
         }
-        return drop(message, "a client has no business sending this");
+        return drop(message, "clients may not send this kind of message");
     }
-    drop(message, "bulk link of nobody: it has to start with its token");
+    drop(message, "unauthenticated bulk connection: its first message must carry the session token");
 }
 
 void RenderMaster::bulk_hello(const net::Message& message, const wire::BulkHello& greeting) {
@@ -198,7 +198,7 @@ void RenderMaster::bulk_hello(const net::Message& message, const wire::BulkHello
         session->bulk = message.peer;
         return;
     }
-    drop(message, "its token is not known");
+    drop(message, "unknown session token");
 }
 
 void RenderMaster::welcome(net::PeerId peer, std::uint64_t number, std::uint64_t token) {
@@ -246,10 +246,10 @@ void RenderMaster::hello(const net::Message& message, wire::Hello hello, TimePoi
         scene_.views().session_resumed(session->id);
         return welcome(message.peer, session->id.value, session->token);
     }
-    // A repeated hello of a known peer (its first one was answered, the answer got lost) starts it afresh.
-    if (NodeRecord* node = nodes_.by_control(message.peer)) remove_node(node->id, "said hello again");
+    // A repeated Hello of a known peer (the reply to its first one was lost) starts a new session.
+    if (NodeRecord* node = nodes_.by_control(message.peer)) remove_node(node->id, "it reconnected");
     if (SessionRecord* session = sessions_.by_control(message.peer))
-        remove_session(session->id, Views::Departure::Silence, now);
+        remove_session(session->id, Views::DisconnectReason::Timeout, now);
     if (is_node ? nodes_.all().size() >= settings_.max_nodes
                 : sessions_.all().size() >= settings_.max_sessions) {
         return refuse("the master is full: try again later");
@@ -292,7 +292,7 @@ void RenderMaster::heartbeats(TimePoint now) {
     }
 }
 
-void RenderMaster::say_goodbye() {
+void RenderMaster::send_goodbye() {
     for (auto& [id, node] : nodes_.all())
         outbox_.control(node.control, wire::Goodbye{"the master stops", {}});
     for (auto& [id, session] : sessions_.all()) {

@@ -30,15 +30,15 @@ struct MasterSettings {
     std::size_t max_sessions = 256, max_nodes = 1024;
 };
 
-// The event loop: one thread that owns the channel, keeps heartbeats and hands messages to the parts. It
-// never renders and never merges (FilmStore does, on a thread of its own).
+// The event loop: one thread that owns the channel, sends heartbeats and dispatches messages. It never renders
+// and never merges film (FilmStore does that on another thread).
 class RenderMaster {
   public:
-    // Throws Error when the session folder cannot be used.
+    // Throws Error if the session folder cannot be used.
     RenderMaster(std::unique_ptr<net::Channel> channel, std::shared_ptr<scene::BlobStore> blobs,
                  const Clock& clock, const MasterSettings& settings, EventSink events);
 
-    // Until the stop: then tells everybody goodbye.
+    // Runs until stopped, then sends Goodbye to all peers.
     void run(std::stop_token stop);
 
     // Thread-safe: `task` runs in the loop soon (for example to re-read keys after SIGHUP).
@@ -58,14 +58,14 @@ class RenderMaster {
     void from_member(SessionRecord& session, wire::ControlMessage& message, TimePoint now);
     void bulk_hello(const net::Message& message, const wire::BulkHello& hello);
     void remove_node(NodeId id, const std::string& why);
-    void remove_session(SessionId id, Views::Departure departure, TimePoint now);
+    void remove_session(SessionId id, Views::DisconnectReason reason, TimePoint now);
     void heartbeats(TimePoint now);
-    void bury_the_dead(TimePoint now);
+    void remove_timed_out_peers(TimePoint now);
     void drop_lost_peers(TimePoint now);
     void drop(const net::Message& message, const std::string& why);
     session::ClusterStatus status(TimePoint now) const;
     TimePoint next_wake(TimePoint now) const;
-    void say_goodbye();
+    void send_goodbye();
 
     std::unique_ptr<net::Channel> channel_;
     std::shared_ptr<scene::BlobStore> blobs_;
@@ -79,7 +79,7 @@ class RenderMaster {
     SessionTable sessions_;
     RenderOutputs outputs_;
     FilmStore film_;
-    KeptJobs jobs_;
+    JobStore jobs_;
     Dispatcher dispatcher_;
     ViewIds view_ids_;
     SceneSession scene_;
@@ -87,7 +87,7 @@ class RenderMaster {
     std::uint64_t next_number_ = 1;
     std::uint64_t dropped_messages_ = 0;
 
-    std::mutex mutex_;  // protects what stands below
+    std::mutex mutex_;  // protects the members below
     std::vector<std::function<void(net::Channel&)>> posted_;
 };
 

@@ -1,4 +1,4 @@
-// What nodes and clients say on the control link, and how they leave.
+// Control messages of nodes and clients, and their removal.
 #include <algorithm>
 
 #include "master/render_master.h"
@@ -10,18 +10,18 @@ void RenderMaster::from_node(NodeRecord& node, wire::ControlMessage& message, Ti
         nodes_.heartbeat(node, *beat, now);
     } else if (const auto* report = std::get_if<wire::VersionReport>(&message)) {
         switch (scene_.distributor().reported(node, *report, now)) {
-            case SceneDistributor::Verdict::Good:
+            case SceneDistributor::CheckResult::Good:
                 scene_.views().scene_facts({report->triangles, report->instances, report->lights});
                 scene_.node_built(node, *report, now);
                 for (const std::string& problem : report->problems)
                     events_({wire::Severity::Warning, problem});
                 break;
-            case SceneDistributor::Verdict::Behind:
+            case SceneDistributor::CheckResult::Behind:
                 break;
-            case SceneDistributor::Verdict::TakeOut:
+            case SceneDistributor::CheckResult::RemoveNode:
                 outbox_.control(node.control,
                                 wire::Refusal{"your scene differs from the master's: check the build"});
-                return remove_node(node.id, "its scene differs");
+                return remove_node(node.id, "its scene differs from the master's");
         }
     } else if (const auto* resync = std::get_if<wire::Resync>(&message)) {
         scene_.distributor().resync(node, *resync, now);
@@ -34,7 +34,7 @@ void RenderMaster::from_node(NodeRecord& node, wire::ControlMessage& message, Ti
         events_({notice->severity, "node " + node.hello.name + ": " + notice->text});
     } else if (const auto* goodbye = std::get_if<wire::Goodbye>(&message)) {
         dispatcher_.goodbye(node, *goodbye);
-        node.leaving = true;  // stays in the table until it falls silent, since film may be on its way
+        node.leaving = true;  // stays in the table until its timeout, since film may still arrive
         events_({wire::Severity::Info, "node " + node.hello.name + " leaves: " + goodbye->reason});
     }
 }
@@ -50,31 +50,31 @@ void RenderMaster::from_client(SessionRecord& session, wire::ControlMessage& mes
     } else if (const auto* long_edit = std::get_if<wire::SubmitEditByBlob>(&message)) {
         service_.submit(session, *long_edit, now);
     } else if (const auto* set = std::get_if<wire::SetViewFilter>(&message)) {
-        scene_.asked(session, *set, now);
+        scene_.handle(session, *set, now);
     } else if (const auto* jobs = std::get_if<wire::ReadJobs>(&message)) {
-        scene_.asked(session, *jobs);
+        scene_.handle(session, *jobs);
     } else if (const auto* fetched = std::get_if<wire::FetchJob>(&message)) {
-        scene_.asked(session, *fetched);
+        scene_.handle(session, *fetched);
     } else if (const auto* cancelled = std::get_if<wire::CancelJob>(&message)) {
-        scene_.asked(session, *cancelled);
+        scene_.handle(session, *cancelled);
     } else if (std::holds_alternative<wire::StatusRequest>(message)) {
         outbox_.control(session.control, wire::StatusReply{status(now)});
     } else if (const auto* join = std::get_if<wire::JoinScene>(&message)) {
         service_.join_scene(session, *join, now);
     } else if (std::holds_alternative<wire::Goodbye>(message)) {
-        remove_session(session.id, Views::Departure::Goodbye, now);
+        remove_session(session.id, Views::DisconnectReason::Graceful, now);
     } else if (const auto* traced = std::get_if<wire::ReadTrace>(&message)) {
         outbox_.control(session.control, scene_.trace(*traced));
     } else if (scene_.is_member(session.id)) {
         from_member(session, message, now);
     } else {
-        outbox_.control(session.control, wire::Refusal{"this client is in no scene: join one first"});
+        outbox_.control(session.control, wire::Refusal{"this client has not joined a scene: join one first"});
     }
 }
 
 void RenderMaster::from_member(SessionRecord& session, wire::ControlMessage& message, TimePoint now) {
     if (auto* view = std::get_if<wire::RequestView>(&message)) {
-        scene_.asked(session, std::move(*view), now);
+        scene_.handle(session, std::move(*view), now);
     } else if (const auto* ended = std::get_if<wire::EndView>(&message)) {
         scene_.views().end(session.id, *ended, now);
     } else if (const auto* taken = std::get_if<wire::FrameTaken>(&message)) {
@@ -82,17 +82,17 @@ void RenderMaster::from_member(SessionRecord& session, wire::ControlMessage& mes
     } else if (const auto* pick = std::get_if<wire::Pick>(&message)) {
         scene_.views().pick(session.id, *pick, scene_.authority().version());
     } else if (const auto* read = std::get_if<wire::ReadScene>(&message)) {
-        scene_.asked(session, *read);
+        scene_.handle(session, *read);
     } else if (const auto* lock = std::get_if<wire::LockObjects>(&message)) {
-        scene_.asked(session, *lock);
+        scene_.handle(session, *lock);
     } else if (auto* presence = std::get_if<wire::SetPresence>(&message)) {
-        scene_.asked(session, std::move(*presence), now);
-    } else if (const auto* people = std::get_if<wire::ReadPeople>(&message)) {
-        scene_.asked(session, *people, now);
+        scene_.handle(session, std::move(*presence), now);
+    } else if (const auto* members = std::get_if<wire::ReadMembers>(&message)) {
+        scene_.handle(session, *members, now);
     } else if (const auto* history = std::get_if<wire::ReadHistory>(&message)) {
-        scene_.asked(session, *history);
+        scene_.handle(session, *history);
     } else if (const auto* writers = std::get_if<wire::ReadWriters>(&message)) {
-        scene_.asked(session, *writers);
+        scene_.handle(session, *writers);
     } else if (const auto* end = std::get_if<wire::CloseScene>(&message)) {
         service_.close_scene(session, *end, now);
     } else if (const auto* ready = std::get_if<wire::OutputReady>(&message)) {
@@ -100,13 +100,13 @@ void RenderMaster::from_member(SessionRecord& session, wire::ControlMessage& mes
     } else if (const auto* head = std::get_if<wire::MoveHead>(&message)) {
         scene_.display().move_head(head->head);
     } else if (const auto* output = std::get_if<wire::JoinOutput>(&message)) {
-        scene_.asked(session, *output, now);
+        scene_.handle(session, *output, now);
     } else if (const auto* shown = std::get_if<wire::OpenDisplay>(&message)) {
         service_.open_display(session, *shown, now);
     } else if (const auto* hidden = std::get_if<wire::CloseDisplay>(&message)) {
-        scene_.asked(session, *hidden);
+        scene_.handle(session, *hidden);
     } else if (const auto* adjusted = std::get_if<wire::AdjustDisplay>(&message)) {
-        scene_.asked(session, *adjusted);
+        scene_.handle(session, *adjusted);
     }
 }
 
@@ -121,21 +121,21 @@ void RenderMaster::remove_node(NodeId id, const std::string& why) {
     nodes_.remove(id);
 }
 
-void RenderMaster::remove_session(SessionId id, Views::Departure departure, TimePoint now) {
+void RenderMaster::remove_session(SessionId id, Views::DisconnectReason reason, TimePoint now) {
     const SessionRecord* session = sessions_.find(id);
     if (session == nullptr) return;
     outbox_.forget(net::Link::Control, session->control);
     if (session->bulk) outbox_.forget(net::Link::Bulk, *session->bulk);
-    service_.closed(id, departure, now);
+    service_.closed(id, reason, now);
 }
 
-void RenderMaster::bury_the_dead(TimePoint now) {
-    for (const NodeId id : nodes_.dead(now)) remove_node(id, "silent for too long");
-    std::vector<SessionId> silent;
+void RenderMaster::remove_timed_out_peers(TimePoint now) {
+    for (const NodeId id : nodes_.timed_out(now)) remove_node(id, "silent for too long");
+    std::vector<SessionId> timed_out;
     for (const auto& [id, session] : sessions_.all()) {
-        if (session.liveness.dead(now)) silent.push_back(id);
+        if (session.liveness.timed_out(now)) timed_out.push_back(id);
     }
-    for (const SessionId id : silent) remove_session(id, Views::Departure::Silence, now);
+    for (const SessionId id : timed_out) remove_session(id, Views::DisconnectReason::Timeout, now);
 }
 
 void RenderMaster::drop_lost_peers(TimePoint now) {
@@ -145,7 +145,7 @@ void RenderMaster::drop_lost_peers(TimePoint now) {
             remove_node(node->id, "its connection broke");
         } else if (SessionRecord* session =
                        is_control ? sessions_.by_control(peer) : sessions_.by_bulk(peer)) {
-            remove_session(session->id, Views::Departure::Silence, now);
+            remove_session(session->id, Views::DisconnectReason::Timeout, now);
         }
     }
 }
@@ -174,7 +174,7 @@ session::ClusterStatus RenderMaster::status(TimePoint now) const {
                         .pid = node.hello.pid},
             .phase = node.state.phase,
             .version = node.state.version,
-            .units_in_hand = static_cast<std::uint32_t>(node.state.in_hand.size()),
+            .units_in_flight = static_cast<std::uint32_t>(node.state.in_flight.size()),
             .samples_per_second = dispatcher_.rate(id) * std::max(1u, node.hello.concurrent_units),
             .round_trip_seconds = node.round_trip_seconds,
             .stuck = node.stuck};

@@ -16,7 +16,7 @@ constexpr Duration MaxPresence = std::chrono::minutes(10);
 
 SceneSession::SceneSession(std::uint64_t epoch, const ViewSettings& settings, const MasterServices& services)
     : services_(services),
-      owner_patience_(settings.orphan_patience),
+      owner_timeout_(settings.orphan_patience),
       authority_(epoch, services.blobs),
       distributor_(authority_, *services.blobs, services.outbox, services.events),
       views_(settings, services.render, services.sessions, services.outbox, services.events),
@@ -39,7 +39,7 @@ void SceneSession::open(wire::RecordedTitle scene) {
     if (journal_) journal_->opened(scene);
     open_ = true;
     scene_ = std::move(scene);
-    left_alone_.reset();
+    owner_missing_since_.reset();
     views_.charge_from(services_.outbox.bytes);
     counts_ = {};
     traces_ = {};
@@ -50,7 +50,7 @@ void SceneSession::open(wire::RecordedTitle scene) {
 void SceneSession::record_to(const std::filesystem::path& folder, Duration checkpoint_interval,
                              TimePoint now) {
     journal_.emplace(folder, checkpoint_interval, authority_, services_.blobs, services_.events);
-    services_.jobs.record_to(folder / "jobs");  // the journal has the folder to itself
+    services_.jobs.record_to(folder / "jobs");  // the journal has locked the folder
     const Recovery& recovery = journal_->recovery();
     if (!recovery.found || recovery.scene.title.empty()) {
         (void)authority_.clear();
@@ -58,13 +58,13 @@ void SceneSession::record_to(const std::filesystem::path& folder, Duration check
     }
     open(recovery.scene);
     std::vector<wire::SavedView> views = recovery.views;
-    std::erase_if(views, [this](const wire::SavedView& view) {  // it had ended before that could be recorded
+    std::erase_if(views, [this](const wire::SavedView& view) {  // ended before its end was recorded
         return view.request.detached && services_.jobs.find({view.owner_user, view.name}) != nullptr;
     });
     const bool has_only_jobs =
         !views.empty() &&
         std::all_of(views.begin(), views.end(), [](const auto& view) { return view.request.detached; });
-    if (is_exclusive() && !has_only_jobs) left_alone_ = now;  // its owner may come back
+    if (is_exclusive() && !has_only_jobs) owner_missing_since_ = now;  // its owner may return
     views_.restore(std::move(views), authority_.version(), authority_.state_hash(), now);
 }
 
@@ -77,20 +77,21 @@ bool SceneSession::admits(const SessionRecord& session, const wire::JoinScene& r
 void SceneSession::join(SessionRecord& session, const wire::JoinScene& request, TimePoint now) {
     const bool may_edit = session.role != net::Role::Viewer;
     if (may_edit && request.key == 0)
-        throw Error(ErrorCode::Refused, "a member needs a key that it has chosen, not 0");
+        throw Error(ErrorCode::Refused, "a member key of 0 is not valid: choose a random one");
     if (!may_edit && request.exclusive)
-        throw Error(ErrorCode::Refused, "a viewer cannot open a scene of its own: use an editor's key");
+        throw Error(ErrorCode::Refused, "a viewer cannot open a scene: use an editor's key");
     if (!open_) {
         open({.title = request.title.empty() ? "untitled" : request.title,
               .owner = request.exclusive ? std::optional(wire::RecordedOwner{session.user, request.key})
                                          : std::nullopt});
     }
-    left_alone_.reset();
-    // Who only looks needs neither ids nor a place in the journal.
+    owner_missing_since_.reset();
+    // Viewers need neither ids nor a journal record.
     const IdRange ids = may_edit ? authority_.join(session.id, session.user, request.key) : IdRange{};
     if (may_edit && ids.count == 0) {
-        throw Error(ErrorCode::Refused,
-                    "no ids are left to lend, or the session folder cannot be written: see the master's log");
+        throw Error(
+            ErrorCode::Refused,
+            "all object ids are allocated, or the session folder cannot be written: see the master's log");
     }
     if (!members_.contains(session.id)) {
         Member& member = members_[session.id];
@@ -124,11 +125,11 @@ void SceneSession::close(TimePoint now) {
     scene_ = {};
 }
 
-void SceneSession::left(SessionId session, Views::Departure departure, TimePoint now) {
+void SceneSession::left(SessionId session, Views::DisconnectReason reason, TimePoint now) {
     const auto member = members_.find(session);
     if (member == members_.end()) return;
     services_.events({wire::Severity::Info, member->second.name + " left '" + title() + "'"});
-    views_.session_left(session, departure, now);
+    views_.session_left(session, reason, now);
     display_.left(session, now);
     authority_.release_all(session);
     authority_.forget(session);
@@ -137,10 +138,10 @@ void SceneSession::left(SessionId session, Views::Departure departure, TimePoint
     close_when_left(now);
 }
 
-// An exclusive scene goes with its owner, but for jobs that go on. One of a master before is kept for a while.
+// An exclusive scene is closed when its owner leaves, unless jobs continue. A recovered one is kept for a while.
 void SceneSession::close_when_left(TimePoint now) {
     if (!open_ || !is_exclusive() || !members_.empty() || views_.has_jobs()) return;
-    if (!left_alone_ || now - *left_alone_ > owner_patience_) close(now);
+    if (!owner_missing_since_ || now - *owner_missing_since_ > owner_timeout_) close(now);
 }
 
 void SceneSession::edited(const SessionRecord& session, const scene::Edit& edit, const EditAnswer& answer,
@@ -166,7 +167,7 @@ void SceneSession::node_built(const NodeRecord& node, const wire::VersionReport&
 net::Bytes SceneSession::trace(const wire::ReadTrace& request) const {
     wire::Trace trace{request.request, traces_.latest(request.count)};
     net::Bytes message = wire::encode(wire::ControlMessage(trace));
-    while (!wire::fits_control(message)) {  // the older ones go
+    while (!wire::fits_control(message)) {  // drop the oldest
         trace.edits.erase(trace.edits.begin(),
                           trace.edits.begin() + static_cast<std::ptrdiff_t>((trace.edits.size() + 1) / 2));
         message = wire::encode(wire::ControlMessage(trace));
@@ -179,11 +180,11 @@ void SceneSession::done(const SessionRecord& session, std::uint64_t request, std
     services_.outbox.control(session.control, wire::RequestDone{request, accepted, std::move(problem)});
 }
 
-void SceneSession::asked(SessionRecord& session, const wire::ReadScene& request) {
+void SceneSession::handle(SessionRecord& session, const wire::ReadScene& request) {
     reads_.push_back({session.id, request, authority_.pending()});
 }
 
-// Members that follow a scene read the same lists: the latest is encoded once.
+// Members that follow a scene read the same change lists: the latest one is encoded once.
 scene::BlobPtr SceneSession::encoded(const scene::ChangeList& list) {
     scene::BlobPtr blob = latest_content_.blob.lock();
     if (!blob || latest_content_.from != list.from || latest_content_.to != list.to) {
@@ -193,7 +194,7 @@ scene::BlobPtr SceneSession::encoded(const scene::ChangeList& list) {
     return blob;
 }
 
-// At most one content a member is kept; a second question before the first content was fetched gets a newer
+// At most one content per member is kept; a second request before the first content was fetched gets a newer
 // one.
 void SceneSession::answer(const WaitingRead& read) {
     const SessionRecord* session = services_.sessions.find(read.session);
@@ -213,7 +214,7 @@ void SceneSession::answer(const WaitingRead& read) {
     services_.outbox.control(session->control, std::move(message));
 }
 
-void SceneSession::asked(SessionRecord& session, const wire::LockObjects& request) {
+void SceneSession::handle(SessionRecord& session, const wire::LockObjects& request) {
     if (request.release) {
         authority_.unlock(session.id, request.objects);
         return done(session, request.request, {});
@@ -225,7 +226,7 @@ void SceneSession::asked(SessionRecord& session, const wire::LockObjects& reques
     done(session, request.request, problems);
 }
 
-void SceneSession::asked(SessionRecord& session, wire::SetPresence request, TimePoint now) {
+void SceneSession::handle(SessionRecord& session, wire::SetPresence request, TimePoint now) {
     Member& member = members_.at(session.id);
     request.text.resize(std::min(request.text.size(), MaxPresenceText));
     request.selection.resize(std::min(request.selection.size(), MaxSelection));
@@ -233,27 +234,27 @@ void SceneSession::asked(SessionRecord& session, wire::SetPresence request, Time
     member.presence = std::move(request);
 }
 
-void SceneSession::asked(SessionRecord& session, const wire::ReadPeople& request, TimePoint now) {
-    session::People people{.title = title(), .locks = authority_.locks()};
+void SceneSession::handle(SessionRecord& session, const wire::ReadMembers& request, TimePoint now) {
+    session::Members members{.title = title(), .locks = authority_.locks()};
     for (const auto& [id, member] : members_) {
         const SessionRecord* other = services_.sessions.find(id);
         if (other == nullptr) continue;
-        session::Person person{.session = id,
-                               .name = member.name,
-                               .user = other->user,
-                               .editor = other->role != net::Role::Viewer};
+        session::Member entry{.session = id,
+                              .name = member.name,
+                              .user = other->user,
+                              .editor = other->role != net::Role::Viewer};
         if (const auto clock = other->clock.offset(now)) {
-            person.clock_offset_seconds = seconds(clock->offset);
-            person.clock_bound_seconds = seconds(clock->bound);
+            entry.clock_offset_seconds = seconds(clock->offset);
+            entry.clock_bound_seconds = seconds(clock->bound);
         }
         if (now < member.presence_until) {
-            person.text = member.presence.text;
-            person.selection = member.presence.selection;
+            entry.text = member.presence.text;
+            entry.selection = member.presence.selection;
         }
-        people.people.push_back(std::move(person));
+        members.members.push_back(std::move(entry));
     }
     for (const auto& [id, live] : views_.table().all()) {
-        people.views.push_back(
+        members.views.push_back(
             {.name = live.name,
              .owner = live.owner.name,
              .width = live.request.view.width,
@@ -262,12 +263,12 @@ void SceneSession::asked(SessionRecord& session, const wire::ReadPeople& request
              .spp = live.request.stop.spp,
              .watchers = views_.watchers(id)});
     }
-    services_.outbox.control(session.control, wire::People{request.request, std::move(people)});
+    services_.outbox.control(session.control, wire::Members{request.request, std::move(members)});
 }
 
-void SceneSession::asked(SessionRecord& session, const wire::ReadHistory& request) {
-    constexpr std::uint32_t MaxTold = 256;
-    wire::History history{request.request, authority_.history(std::min(request.count, MaxTold))};
+void SceneSession::handle(SessionRecord& session, const wire::ReadHistory& request) {
+    constexpr std::uint32_t MaxListed = 256;
+    wire::History history{request.request, authority_.history(std::min(request.count, MaxListed))};
     net::Bytes message = wire::encode(wire::ControlMessage(history));
     while (!wire::fits_control(message)) {
         history.transactions.resize(history.transactions.size() / 2);
@@ -276,12 +277,12 @@ void SceneSession::asked(SessionRecord& session, const wire::ReadHistory& reques
     services_.outbox.control(session.control, std::move(message));
 }
 
-void SceneSession::asked(SessionRecord& session, const wire::ReadWriters& request) {
+void SceneSession::handle(SessionRecord& session, const wire::ReadWriters& request) {
     services_.outbox.control(session.control,
                              wire::Writers{request.request, authority_.writers(request.object)});
 }
 
-void SceneSession::asked(SessionRecord& session, wire::RequestView request, TimePoint now) {
+void SceneSession::handle(SessionRecord& session, wire::RequestView request, TimePoint now) {
     std::string problem = request.share ? views_.share(session.id, request.number, request.wanted)
                                         : open_view(session, request.number, request.wanted, now);
     if (request.request != 0 || !problem.empty()) done(session, request.request, std::move(problem));
@@ -293,7 +294,7 @@ std::string SceneSession::open_view(const SessionRecord& session, std::uint64_t 
         if (std::string problem = submission_problem(session, wanted); !problem.empty()) return problem;
     }
     if (std::string problem = problem_of(wanted); !problem.empty()) return problem;
-    // What was edited before is seen, and the render origin follows the camera while it is the only one.
+    // Earlier edits are visible in the view, and the render origin follows the camera while it is the only one.
     publish_if_due(now);
     const bool waits_for_end = wanted.frames == session::Frames::Last;
     if (waits_for_end && authority_.has_unpublished() && views_.may_publish()) {
@@ -309,7 +310,7 @@ std::string SceneSession::open_view(const SessionRecord& session, std::uint64_t 
     return problem;
 }
 
-void SceneSession::asked(SessionRecord& session, const wire::SetViewFilter& request, TimePoint now) {
+void SceneSession::handle(SessionRecord& session, const wire::SetViewFilter& request, TimePoint now) {
     wire::RequestDone done{.request = request.request, .accepted = true, .text = {}};
     try {
         done.text = views_.set_filter(request.view, request.filter, now);
@@ -327,22 +328,22 @@ std::string SceneSession::open_display(const scene::BlobPtr& description, std::v
     return problem;
 }
 
-void SceneSession::asked(SessionRecord& session, const wire::CloseDisplay& request) {
+void SceneSession::handle(SessionRecord& session, const wire::CloseDisplay& request) {
     const std::string problem = display_.is_open() ? "" : "no display is open";
     display_.close();
     done(session, request.request, problem);
 }
 
-void SceneSession::asked(SessionRecord& session, const wire::AdjustDisplay& request) {
+void SceneSession::handle(SessionRecord& session, const wire::AdjustDisplay& request) {
     done(session, request.request, display_.adjust(request.adjustment));
 }
 
-void SceneSession::asked(SessionRecord& session, const wire::JoinOutput& request, TimePoint now) {
+void SceneSession::handle(SessionRecord& session, const wire::JoinOutput& request, TimePoint now) {
     if (std::string problem = display_.join(session, request, now); !problem.empty())
         done(session, request.request, std::move(problem));
 }
 
-// The render origin follows the display while nobody else looks.
+// The render origin follows the display while there are no other views.
 void SceneSession::follow_display(TimePoint now) {
     const auto& views = views_.table().all();
     if (!std::all_of(views.begin(), views.end(), [](const auto& entry) { return entry.second.in_group(); }))
@@ -355,7 +356,7 @@ void SceneSession::follow_display(TimePoint now) {
 void SceneSession::publish(const scene::ChangeList& changes, TimePoint now) {
     published_at_ = now;
     ++counts_.versions;
-    // What is out of date is cancelled before the nodes hear of the change: they build sooner.
+    // Outdated work is cancelled before the change is sent to the nodes, so that they build sooner.
     const bool restarts = views_.scene_changed(changes, authority_.scene());
     const std::uint64_t before = services_.outbox.bytes.control;
     distributor_.published(services_.nodes, changes, now);
@@ -363,33 +364,33 @@ void SceneSession::publish(const scene::ChangeList& changes, TimePoint now) {
     traces_.published(changes.to, now);
     if (display_.scene_changed(changes)) follow_display(now);
     if (views_.table().all().empty()) {
-        traces_.nobody_looks();
+        traces_.no_open_views();
     } else if (!restarts) {
-        traces_.merged(changes.to, now);  // the pictures that there are show it
+        traces_.merged(changes.to, now);  // the existing pictures show it
     }
 }
 
 void SceneSession::publish_if_due(TimePoint now) {
     const bool waits = authority_.has_unpublished();
-    views_.hold_passes(waits);
+    views_.pause_passes(waits);
     if (!waits || now - published_at_ < VersionInterval || !views_.may_publish()) return;
     if (auto changes = authority_.publish()) publish(*changes, now);
-    views_.hold_passes(false);
+    views_.pause_passes(false);
 }
 
 void SceneSession::take(RenderOutput& output, TimePoint now) {
     if (const auto* report = std::get_if<MergeReport>(&output)) {
         const Dispatcher::Taken taken = services_.render.dispatcher.take(*report, now);
         if (taken != Dispatcher::Taken::Dropped) views_.took(*report, taken, now);
-    } else if (auto* made = std::get_if<MadeOutput>(&output)) {
-        display_.made(std::move(*made), now);
+    } else if (auto* made = std::get_if<OutputResult>(&output)) {
+        display_.add_output(std::move(*made), now);
     } else {
         views_.take(output, now);
     }
 }
 
-// The one story: what was published, then passes with their new samples, then whoever consumes pictures, then
-// units for the nodes and frames for the clients.
+// The order of a tick: published versions, passes with new samples, consumers of pictures, then work units for
+// nodes and frames for clients.
 void SceneSession::tick(TimePoint now) {
     keep_journal(now);
     close_when_left(now);
@@ -404,7 +405,7 @@ void SceneSession::tick(TimePoint now) {
     views_.advance(now);
     display_.tick(now);
     views_.deal(now);
-    keep_ended_jobs();
+    store_finished_jobs();
     for (const FirstPicture& first : views_.take_first_pictures()) traces_.merged(first.version, first.at);
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "master/display/display_service.h"
-#include "master/kept_jobs.h"
+#include "master/job_store.h"
 #include "master/peers/node_table.h"
 #include "master/peers/session_table.h"
 #include "master/render/views.h"
@@ -18,29 +18,29 @@
 
 namespace tessera::master {
 
-// What a scene session shares with all others of its master.
+// Services of the master that a scene session uses.
 struct MasterServices {
     std::shared_ptr<scene::BlobStore> blobs;
     NodeTable& nodes;
     SessionTable& sessions;
     Outbox& outbox;
     RenderServices render;
-    KeptJobs& jobs;
+    JobStore& jobs;
     EventSink events;
 };
 
-// All that belongs to one scene: its content and history, the nodes' copies, its views, its display, its files
-// on disk, who is in it and what they ask, and when their edits become a version. Told of messages by the
-// render master; what happens below comes up as values that are taken in tick().
+// Everything that belongs to one scene: content, edit history, replicas on nodes, views, display, files on disk,
+// members and their requests. RenderMaster passes messages to it; results of the rendering threads are taken
+// in tick().
 //
-// Edits are taken and answered at once. A version is published at once when no first picture is on its way
-// and the last version is 16 ms old, else as soon as both are so.
+// Edits are applied and answered immediately. A version is published as soon as no first picture is pending and
+// the last version is at least 16 ms old.
 class SceneSession {
   public:
     SceneSession(std::uint64_t epoch, const ViewSettings& settings, const MasterServices& services);
 
-    // From now on edits are recorded in the folder. What it recovers is open again. Throws Error when it cannot
-    // be used.
+    // Records edits in the folder from now on, after reopening the session stored there. Throws Error if the
+    // folder cannot be used.
     void record_to(const std::filesystem::path& folder, Duration checkpoint_interval, TimePoint now);
 
     SceneAuthority& authority() { return authority_; }
@@ -59,47 +59,47 @@ class SceneSession {
     const std::string& title() const { return scene_.title; }
 
     bool is_exclusive() const { return scene_.owner.has_value(); }
-    // Whether it would be let in at once: to the open scene, that is.
+    // Whether the session could join the open scene immediately.
     bool admits(const SessionRecord& session, const wire::JoinScene& request) const;
-    // Opens a scene where none is open. Throws Error when the session cannot be let in.
+    // Opens a scene if none is open. Throws Error if the session may not join.
     void join(SessionRecord& session, const wire::JoinScene& request, TimePoint now);
-    // Everybody is out, and the scene is empty.
+    // Removes all members and empties the scene.
     void close(TimePoint now);
-    // A member has gone; an exclusive scene goes with it.
-    void left(SessionId session, Views::Departure departure, TimePoint now);
+    // A member has left; an exclusive scene is closed.
+    void left(SessionId session, Views::DisconnectReason reason, TimePoint now);
 
-    // To the nodes and everything that looks at the scene.
+    // Distributes the changes to nodes, views and display.
     void publish(const scene::ChangeList& changes, TimePoint now);
-    // A member's edit was answered.
+    // Called when a member's edit was answered.
     void edited(const SessionRecord& session, const scene::Edit& edit, const EditAnswer& answer,
                 std::uint64_t message_bytes, TimePoint now);
     void node_built(const NodeRecord& node, const wire::VersionReport& report, TimePoint now);
     void node_gone(NodeId node) { traces_.node_gone(node); }
 
-    void asked(SessionRecord& session, const wire::ReadScene& request);
-    void asked(SessionRecord& session, const wire::LockObjects& request);
-    void asked(SessionRecord& session, wire::SetPresence request, TimePoint now);
-    void asked(SessionRecord& session, const wire::ReadPeople& request, TimePoint now);
-    void asked(SessionRecord& session, const wire::ReadHistory& request);
-    void asked(SessionRecord& session, const wire::ReadWriters& request);
-    void asked(SessionRecord& session, wire::RequestView request, TimePoint now);
-    void asked(SessionRecord& session, const wire::SetViewFilter& request, TimePoint now);
+    void handle(SessionRecord& session, const wire::ReadScene& request);
+    void handle(SessionRecord& session, const wire::LockObjects& request);
+    void handle(SessionRecord& session, wire::SetPresence request, TimePoint now);
+    void handle(SessionRecord& session, const wire::ReadMembers& request, TimePoint now);
+    void handle(SessionRecord& session, const wire::ReadHistory& request);
+    void handle(SessionRecord& session, const wire::ReadWriters& request);
+    void handle(SessionRecord& session, wire::RequestView request, TimePoint now);
+    void handle(SessionRecord& session, const wire::SetViewFilter& request, TimePoint now);
 
-    // Jobs of the scene, and those that have ended, of any scene; for any client.
-    void asked(SessionRecord& session, const wire::ReadJobs& request);
-    void asked(SessionRecord& session, const wire::FetchJob& request);
-    void asked(SessionRecord& session, const wire::CancelJob& request);
+    // Jobs of this scene, and finished jobs of any scene; for any client.
+    void handle(SessionRecord& session, const wire::ReadJobs& request);
+    void handle(SessionRecord& session, const wire::FetchJob& request);
+    void handle(SessionRecord& session, const wire::CancelJob& request);
 
-    // "" or what is wrong.
+    // Returns "" or an error message.
     std::string open_display(const scene::BlobPtr& description, std::vector<scene::BlobPtr> content,
                              TimePoint now);
-    void asked(SessionRecord& session, const wire::CloseDisplay& request);
-    void asked(SessionRecord& session, const wire::AdjustDisplay& request);
-    void asked(SessionRecord& session, const wire::JoinOutput& request, TimePoint now);
+    void handle(SessionRecord& session, const wire::CloseDisplay& request);
+    void handle(SessionRecord& session, const wire::AdjustDisplay& request);
+    void handle(SessionRecord& session, const wire::JoinOutput& request, TimePoint now);
 
-    net::Bytes trace(const wire::ReadTrace& request) const;  // the encoded answer, with as many as fit
+    net::Bytes trace(const wire::ReadTrace& request) const;  // the encoded reply, with as many edits as fit
 
-    // What the rendering threads brought forth; what is another scene's is left alone.
+    // Takes results of the rendering threads; results of other scenes are ignored.
     void take(RenderOutput& output, TimePoint now);
     void tick(TimePoint now);
     TimePoint next_event(TimePoint now) const;
@@ -111,16 +111,16 @@ class SceneSession {
         std::uint64_t key = 0;
         wire::SetPresence presence;
         TimePoint presence_until{};
-        scene::BlobPtr content;  // the scene as it was read last: kept until the client has it
+        scene::BlobPtr content;  // the scene as last read: kept until the client has received it
     };
     struct LatestContent {
         Version from, to;
-        std::weak_ptr<const scene::Blob> blob;  // an encoded change list; members keep it
+        std::weak_ptr<const scene::Blob> blob;  // an encoded change list, owned by members
     };
     struct WaitingRead {
         SessionId session;
         wire::ReadScene request;
-        Version wanted;  // that has all edits made before the question
+        Version wanted;  // the version that has all edits made before the request
     };
 
     void open(wire::RecordedTitle scene);
@@ -136,12 +136,12 @@ class SceneSession {
     std::string submission_problem(const SessionRecord& session, const session::ViewRequest& wanted) const;
     void record_job(const std::string& name);
     void add_new_jobs(std::vector<wire::SavedView>& saved) const;
-    void keep_ended_jobs();
+    void store_finished_jobs();
     void close_when_left(TimePoint now);
     const ViewState* job_view(const session::JobName& job) const;
 
     MasterServices services_;
-    Duration owner_patience_;
+    Duration owner_timeout_;
     SceneAuthority authority_;
     SceneDistributor distributor_;
     Views views_;
@@ -149,7 +149,8 @@ class SceneSession {
     std::optional<SessionJournal> journal_;
     bool open_ = false;
     wire::RecordedTitle scene_;
-    std::optional<TimePoint> left_alone_;  // an exclusive scene of a master before: its owner is waited for
+    std::optional<TimePoint>
+        owner_missing_since_;  // a recovered exclusive scene: since when it waits for its owner
     std::map<SessionId, Member> members_;
     LatestContent latest_content_;
     std::vector<WaitingRead> reads_;

@@ -1,4 +1,4 @@
-// The jobs of a scene: views that go on when their client leaves, and what is kept of them.
+// The jobs of a scene: views that continue when their client leaves, and their stored results.
 #include <algorithm>
 
 #include "master/scene_session.h"
@@ -37,7 +37,7 @@ std::string SceneSession::submission_problem(const SessionRecord& session,
     if (session.role == net::Role::Viewer) return "a viewer cannot submit jobs: use an editor's key";
     if (services_.jobs.find({session.user, wanted.name}) != nullptr) {
         return "a job named '" + wanted.name +
-               "' has ended and is kept: fetch it with --remove, cancel it, or choose another name";
+               "' has ended and is stored: fetch it with --remove, cancel it, or choose another name";
     }
     return Views::job_problem(wanted);
 }
@@ -49,7 +49,7 @@ void SceneSession::record_job(const std::string& name) {
     }
 }
 
-// Those that were submitted while the views of a checkpoint were being copied: their records lie before it.
+// Jobs submitted while the views of a checkpoint were being copied: their journal records are before it.
 void SceneSession::add_new_jobs(std::vector<wire::SavedView>& saved) const {
     for (const auto& [id, view] : views_.table().all()) {
         const bool is_there = std::any_of(saved.begin(), saved.end(), [&](const wire::SavedView& other) {
@@ -59,7 +59,7 @@ void SceneSession::add_new_jobs(std::vector<wire::SavedView>& saved) const {
     }
 }
 
-void SceneSession::keep_ended_jobs() {
+void SceneSession::store_finished_jobs() {
     for (Delivery::Ended& ended : views_.take_ended_jobs()) {
         const ViewState* view = views_.table().find(ended.view);
         if (view == nullptr) continue;
@@ -78,7 +78,7 @@ void SceneSession::keep_ended_jobs() {
                            std::move(ended.picture));
         views_.release(ended.view);
     }
-    // Only now may a master that is started anew forget that it was to render them.
+    // From now on a restarted master need not render them again.
     for (const session::JobName& job : services_.jobs.take_written()) {
         if (journal_) journal_->job_ended(job);
     }
@@ -91,10 +91,10 @@ const ViewState* SceneSession::job_view(const session::JobName& job) const {
     return nullptr;
 }
 
-void SceneSession::asked(SessionRecord& session, const wire::ReadJobs& request) {
+void SceneSession::handle(SessionRecord& session, const wire::ReadJobs& request) {
     wire::Jobs answer{.request = request.request, .jobs = {}};
-    for (const KeptJobs::Entry* kept : services_.jobs.all()) {
-        if (may_see(session, kept->job.status.job.user)) answer.jobs.push_back(kept->job.status);
+    for (const JobStore::Entry* stored : services_.jobs.all()) {
+        if (may_see(session, stored->job.status.job.user)) answer.jobs.push_back(stored->job.status);
     }
     for (const auto& [id, view] : views_.table().all()) {
         if (!views_.is_job(id) || !may_see(session, view.owner.user)) continue;
@@ -104,7 +104,7 @@ void SceneSession::asked(SessionRecord& session, const wire::ReadJobs& request) 
                                .summary = {}});
     }
     net::Bytes message = wire::encode(wire::ControlMessage(answer));
-    while (!wire::fits_control(message)) {  // the older ones go
+    while (!wire::fits_control(message)) {  // drop the oldest
         answer.jobs.erase(answer.jobs.begin(),
                           answer.jobs.begin() + static_cast<std::ptrdiff_t>((answer.jobs.size() + 1) / 2));
         message = wire::encode(wire::ControlMessage(answer));
@@ -112,37 +112,38 @@ void SceneSession::asked(SessionRecord& session, const wire::ReadJobs& request) 
     services_.outbox.control(session.control, std::move(message));
 }
 
-void SceneSession::asked(SessionRecord& session, const wire::FetchJob& request) {
+void SceneSession::handle(SessionRecord& session, const wire::FetchJob& request) {
     const session::JobName job = named(session, request.job);
-    const KeptJobs::Entry* kept = may_see(session, job.user) ? services_.jobs.find(job) : nullptr;
-    if (kept == nullptr) {
+    const JobStore::Entry* stored = may_see(session, job.user) ? services_.jobs.find(job) : nullptr;
+    if (stored == nullptr) {
         const bool is_rendered = may_see(session, job.user) && job_view(job) != nullptr;
         return done(
             session, request.request,
             is_rendered ? "job '" + job.name + "' is still being rendered: try again later" : no_such(job));
     }
     constexpr std::size_t MaxOnTheirWay = 16;
-    if (views_.frames_on_their_way(session.id) >= MaxOnTheirWay)
-        return done(session, request.request, "too many pictures are on their way to this client already");
+    if (views_.frames_in_flight(session.id) >= MaxOnTheirWay)
+        return done(session, request.request,
+                    "too many pictures are already in flight to this client: fetch them first");
     done(session, request.request, {});
-    const session::ViewSummary& summary = kept->job.status.summary;
+    const session::ViewSummary& summary = stored->job.status.summary;
     views_.send_kept(session, {.view = {},
                                .header = {.view = request.number,
                                           .version = summary.version,
-                                          .width = kept->job.width,
-                                          .height = kept->job.height,
-                                          .components = kept->job.components,
+                                          .width = stored->job.width,
+                                          .height = stored->job.height,
+                                          .components = stored->job.components,
                                           .encoding = summary.picture.encoding,
-                                          .picture_bytes = kept->picture->size(),
+                                          .picture_bytes = stored->picture->size(),
                                           .film_window = {},
                                           .samples_least = summary.samples_least,
                                           .samples_most = summary.samples_most,
                                           .complete = true},
                                .summary = summary,
-                               .picture = kept->picture});
+                               .picture = stored->picture});
 }
 
-void SceneSession::asked(SessionRecord& session, const wire::CancelJob& request) {
+void SceneSession::handle(SessionRecord& session, const wire::CancelJob& request) {
     const session::JobName job = named(session, request.job);
     if (!may_see(session, job.user)) return done(session, request.request, no_such(job));
     const bool was_kept = services_.jobs.remove(job);

@@ -13,7 +13,7 @@ constexpr std::size_t MaxPendingEdits = 256;
 
 std::string SessionService::busy_text() const {
     if (scene_.is_open() && !scene_.is_exclusive()) {
-        return "the cluster serves the live scene '" + scene_.title() +
+        return "the cluster is busy with the live scene '" + scene_.title() +
                "': wait in the queue without --no-wait, or close that scene with: tessera edit -c close";
     }
     return "the cluster is rendering another scene: try again later, or wait in the queue without --no-wait";
@@ -21,10 +21,10 @@ std::string SessionService::busy_text() const {
 
 void SessionService::join_scene(SessionRecord& session, const wire::JoinScene& request, TimePoint now) {
     const bool is_free = !scene_.is_open() && sessions_.queue().empty();
-    if (is_free || scene_.admits(session, request)) return let_in(session, request, now);
+    if (is_free || scene_.admits(session, request)) return admit(session, request, now);
     if (scene_.is_member(session.id)) {
         outbox_.control(session.control,
-                        wire::Refusal{"this client is in a scene of another kind: connect anew"});
+                        wire::Refusal{"this client has joined a scene of another kind: reconnect first"});
         return;
     }
     if (request.no_wait) {
@@ -32,12 +32,12 @@ void SessionService::join_scene(SessionRecord& session, const wire::JoinScene& r
         return;
     }
     session.joining = request;
-    session.told_place = 0;
+    session.reported_place = 0;
     sessions_.enqueue(session.id);
     tick(now);
 }
 
-void SessionService::let_in(SessionRecord& session, const wire::JoinScene& request, TimePoint now) {
+void SessionService::admit(SessionRecord& session, const wire::JoinScene& request, TimePoint now) {
     try {
         scene_.join(session, request, now);
     } catch (const Error& error) {
@@ -54,7 +54,7 @@ void SessionService::close_scene(SessionRecord& session, const wire::CloseScene&
 
 void SessionService::submit(SessionRecord& session, scene::Edit edit, std::uint64_t message_bytes,
                             TimePoint now) {
-    edit.session = session.id;  // whatever the message claims
+    edit.session = session.id;  // overrides the message's value
     if (session.edits.size() >= MaxPendingEdits) {
         return refuse_edit(session, "too many edits wait for their blobs: send the blobs first");
     }
@@ -92,7 +92,7 @@ bool SessionService::blobs_are_here(SessionRecord& session, SessionRecord::Pendi
         }
         auto decoded = wire::decode_edit(blob->bytes());
         if (!decoded) throw decoded.error();
-        decoded->session = pending.edit.session;  // whatever the blob claims
+        decoded->session = pending.edit.session;  // overrides the blob's value
         decoded->sequence = pending.edit.sequence;
         pending.edit = std::move(*decoded);
         pending.bytes += blob->bytes().size();
@@ -107,7 +107,7 @@ void SessionService::advance(SessionRecord& session, TimePoint now) {
     while (!session.edits.empty()) {
         SessionRecord::PendingEdit& pending = session.edits.front();
         if (!scene_.is_member(session.id)) {
-            refuse_edit(session, "this session has no scene open: open one first");
+            refuse_edit(session, "this session has no open scene: open one first");
             session.edits.pop_front();
             continue;
         }
@@ -173,7 +173,7 @@ void SessionService::advance_display(SessionRecord& session, TimePoint now) {
 
 void SessionService::chunk(SessionRecord& session, wire::BlobChunk&& chunk, TimePoint now) {
     outbox_.bytes.blobs += chunk.data.size();
-    // A wrong chunk is asked for again; a session that keeps sending them only delays itself.
+    // A wrong chunk is requested again; a session that keeps sending them only delays itself.
     (void)session.fetcher.receive(std::move(chunk), now);
     advance(session, now);
 }
@@ -195,32 +195,32 @@ void SessionService::absent(SessionRecord& session, const wire::BlobAbsent& abse
     advance(session, now);
 }
 
-void SessionService::closed(SessionId id, Views::Departure departure, TimePoint now) {
-    scene_.left(id, departure, now);
+void SessionService::closed(SessionId id, Views::DisconnectReason reason, TimePoint now) {
+    scene_.left(id, reason, now);
     sessions_.remove(id);
     scene_.authority().forget(id);
     tick(now);
 }
 
 void SessionService::tick(TimePoint now) {
-    const auto let_in_from_queue = [&](SessionId id) {
+    const auto admit_from_queue = [&](SessionId id) {
         SessionRecord& session = *sessions_.find(id);
         sessions_.leave_queue(id);
         const wire::JoinScene request = *std::exchange(session.joining, std::nullopt);
-        let_in(session, request, now);
+        admit(session, request, now);
     };
-    while (!scene_.is_open() && !sessions_.queue().empty()) let_in_from_queue(sessions_.queue().front());
-    // Whoever waits to join does not wait for those in front who want a scene for themselves.
+    while (!scene_.is_open() && !sessions_.queue().empty()) admit_from_queue(sessions_.queue().front());
+    // A client that would join a live scene does not wait for those ahead that want an exclusive scene.
     const std::deque<SessionId> waiting = sessions_.queue();
     for (const SessionId id : waiting) {
         const SessionRecord& session = *sessions_.find(id);
-        if (scene_.admits(session, *session.joining)) let_in_from_queue(id);
+        if (scene_.admits(session, *session.joining)) admit_from_queue(id);
     }
     for (const SessionId id : sessions_.queue()) {
         SessionRecord& session = *sessions_.find(id);
         const std::uint32_t place = sessions_.place(id);
-        if (place == session.told_place) continue;
-        session.told_place = place;
+        if (place == session.reported_place) continue;
+        session.reported_place = place;
         outbox_.control(session.control, wire::SceneJoined{.version = {}, .queue_place = place});
     }
     for (auto& [id, session] : sessions_.all()) {

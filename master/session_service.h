@@ -5,7 +5,7 @@
 
 namespace tessera::master {
 
-// Serves clients: the queue for the scene, edits with their blobs. Told of messages by the render master.
+// Serves clients: the queue for the scene, edits and their blobs. RenderMaster passes messages to it.
 class SessionService {
   public:
     SessionService(std::shared_ptr<scene::BlobStore> blobs, SessionTable& sessions, SceneSession& scene,
@@ -19,17 +19,17 @@ class SessionService {
     void open_display(SessionRecord& session, const wire::OpenDisplay& request, TimePoint now);
     void chunk(SessionRecord& session, wire::BlobChunk&& chunk, TimePoint now);
     void absent(SessionRecord& session, const wire::BlobAbsent& absent, TimePoint now);
-    // It is no longer a member of the scene.
-    void closed(SessionId session, Views::Departure departure, TimePoint now);
+    // The session is no longer a member of the scene.
+    void closed(SessionId session, Views::DisconnectReason reason, TimePoint now);
 
-    void tick(TimePoint now);  // who is next, chunks to ask for
+    void tick(TimePoint now);  // admits queued clients, requests chunks
 
   private:
-    void advance(SessionRecord& session, TimePoint now);  // edits whose blobs are here
+    void advance(SessionRecord& session, TimePoint now);  // applies edits whose blobs have arrived
     bool blobs_are_here(SessionRecord& session, SessionRecord::PendingEdit& edit);
     void advance_display(SessionRecord& session, TimePoint now);
     void refuse_edit(SessionRecord& session, std::string problem);
-    void let_in(SessionRecord& session, const wire::JoinScene& request, TimePoint now);
+    void admit(SessionRecord& session, const wire::JoinScene& request, TimePoint now);
     std::string busy_text() const;
 
     std::shared_ptr<scene::BlobStore> blobs_;

@@ -12,34 +12,34 @@
 
 namespace tessera::node {
 
-// What the loop has to do for the machine. Order matters.
+// Actions that the event loop executes for the state machine, in order.
 struct SendControl {
     wire::ControlMessage message;
 };
 struct SendBulk {
     wire::BulkMessage message;
 };
-struct SendFilm {  // then tell film_sent()
+struct SendFilm {  // then call film_sent()
     UnitId unit;
     std::vector<wire::FilmPart> parts;
 };
-struct HoldBulk {};  // the master does not know who is at its end
-struct OpenBulk {    // ends the hold; before anything else
+struct PauseBulk {};  // the master has not authenticated the bulk link yet
+struct OpenBulk {     // resumes it; the token is sent first
     std::uint64_t token = 0;
 };
-struct DropFilm {};   // what waits to be sent belongs to nobody any more
-struct Reconnect {};  // new sockets; what was said on the old ones is void
-struct Render {       // then tell finished()
+struct DiscardPendingFilm {};  // queued film is no longer wanted
+struct Reconnect {};           // new sockets; messages queued on the old ones are lost
+struct Render {                // then call finished()
     view::View view;
     view::WorkUnit unit;
 };
 struct StopUnit {
     UnitId unit;
 };
-struct BuildScene {  // then tell built()
+struct BuildScene {  // then call built()
     SceneReplica::Build build;
 };
-struct LoadBlobs {  // from the cache, if they are there; then tell looked_up()
+struct LoadBlobs {  // from the disk cache, if present; then call looked_up()
     std::vector<scene::BlobRef> blobs;
 };
 struct SaveBlob {
@@ -49,14 +49,14 @@ struct Report {
     wire::Severity severity = wire::Severity::Info;
     std::string text;
 };
-using Action = std::variant<SendControl, SendBulk, SendFilm, HoldBulk, OpenBulk, DropFilm, Reconnect, Render,
-                            StopUnit, BuildScene, LoadBlobs, SaveBlob, Report>;
+using Action = std::variant<SendControl, SendBulk, SendFilm, PauseBulk, OpenBulk, DiscardPendingFilm,
+                            Reconnect, Render, StopUnit, BuildScene, LoadBlobs, SaveBlob, Report>;
 
-// What the parts of the machine want done, in the order in which they want it, and what they count.
+// Actions requested by the parts of the state machine, in order, and their counters.
 struct Effects {
     std::vector<Action> actions;
     NodeCounters counters;
-    bool state_changed = false;  // the master is to hear of it at once, by a heartbeat
+    bool state_changed = false;  // send a heartbeat immediately
 
     void add(Action action) { actions.push_back(std::move(action)); }
     void send(wire::ControlMessage message) { add(SendControl{std::move(message)}); }

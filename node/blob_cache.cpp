@@ -22,7 +22,7 @@ BlobCache::BlobCache(fs::path folder, std::uint64_t byte_limit)
     std::error_code error;
     fs::create_directories(folder_, error);
     if (error) {
-        throw Error(ErrorCode::Io, "cannot make the cache folder '" + folder_.string() +
+        throw Error(ErrorCode::Io, "cannot create the cache folder '" + folder_.string() +
                                        "': " + error.message() + "; choose another with --cache");
     }
     shrink();

@@ -7,13 +7,12 @@
 
 namespace tessera::node {
 
-// Blobs on disk, so that a node that starts again need not fetch them again. A file is named after its hash,
-// written under another name first, and verified when it is read; what fails is removed. The least recently
-// used go first when there is too much. A cache that cannot be written is a smaller cache, never an error.
-// One thread.
+// Blobs on disk, so that a restarted node need not fetch them again. Files are named by their hash, written under a
+// temporary name and renamed, and verified when read; damaged ones are removed. The least recently used are evicted.
+// Write failures only make the cache smaller. Single-threaded.
 class BlobCache {
   public:
-    // Makes the folder; throws Error{Io} when it cannot.
+    // Creates the folder; throws Error{Io}.
     BlobCache(std::filesystem::path folder, std::uint64_t byte_limit);
 
     scene::BlobPtr load(const scene::BlobRef& blob);  // null when absent or damaged
@@ -24,7 +23,7 @@ class BlobCache {
 
     std::filesystem::path folder_;
     std::uint64_t byte_limit_;
-    std::uint64_t byte_size_ = 0;  // as far as we know; shrink() counts anew
+    std::uint64_t byte_size_ = 0;  // estimate; shrink() recounts
 };
 
 }  // namespace tessera::node

@@ -33,7 +33,8 @@ Expected<Duration> parse_duration(const std::string& text) {
             return Duration(static_cast<Duration::rep>(total));
         }
     }
-    return failure(ErrorCode::InvalidInput, "'" + text + "' is no duration; write it like 20us, 1.5ms or 2s");
+    return failure(ErrorCode::InvalidInput,
+                   "'" + text + "' is not a duration; write it like 20us, 1.5ms or 2s");
 }
 
 std::optional<int> parse_options(int argc, const char* const* argv, NodeOptions& options, std::ostream& out,
@@ -44,27 +45,27 @@ std::optional<int> parse_options(int argc, const char* const* argv, NodeOptions&
     options.host = host_name();
     std::string cost = "0s";
 
-    cli::CommandLine line("tessera-node", "Renders for a master, with a back-end of its own.");
+    cli::CommandLine line("tessera-node", "Renders for a master with one back-end.");
     line.option("--master", "the master's address: tcp://host:port", options.master);
-    line.choice("--backend", "what renders", options.backend, backends);
+    line.choice("--backend", "rendering back-end", options.backend, backends);
     line.option("--keys", "folder with this node's CURVE pair and the master's public key", options.keys);
-    line.option("--user", "whose pair in that folder", options.user);
+    line.option("--user", "name of the key pair in that folder", options.user);
     line.flag("--insecure", "no encryption; only to a master on this machine", options.insecure);
     line.option("--threads", "units rendered at a time; 0 = one per core", options.threads);
     line.choice("--isa", "instruction set of the back-end; avx2 gives the same bits on every node",
                 options.isa, {"avx2", "avx512"});
-    if (backend::offers_devices()) {
+    if (backend::has_device_choice()) {
         line.option("--device", "index or part of a name, as tessera doctor lists them; default: the best",
                     options.device);
     }
     line.option("--cache", "keep blobs, built trees and kernels in this folder, for the next start",
                 options.cache);
-    line.option("--cache-size", "MiB of blobs that the cache folder may hold; of all else, it is 320",
+    line.option("--cache-size", "MiB of blobs that the cache folder may hold; all other caches may hold 320",
                 options.cache_mib);
-    line.option("--memory", "MiB of blobs in memory above which unused ones are dropped", options.memory_mib);
-    line.option("--name", "what the master calls this node; default: the host's name", options.name);
+    line.option("--memory", "MiB of blobs in memory; above it unused ones are dropped", options.memory_mib);
+    line.option("--name", "name of this node in logs and status; default: the host's name", options.name);
     line.option("--simulate-cost", "back-end null only: time per sample of a pixel, like 20us", cost);
-    line.choice("--log-level", "how much to tell", options.log.level, cli::log_levels());
+    line.choice("--log-level", "log verbosity", options.log.level, cli::log_levels());
     line.option("--log-file", "write the log there instead of standard error", options.log.file);
     line.required("--master");
     line.examples(
@@ -79,7 +80,7 @@ std::optional<int> parse_options(int argc, const char* const* argv, NodeOptions&
         return cli::ExitUsage;
     };
     if (!options.master.starts_with("tcp://")) {
-        return usage("'" + options.master + "' is no address; write it like tcp://127.0.0.1:7420");
+        return usage("'" + options.master + "' is not an address; write it like tcp://127.0.0.1:7420");
     }
     if (options.keys.empty() && !options.insecure) {
         return usage(

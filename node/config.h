@@ -14,7 +14,7 @@ struct NodeOptions {
     std::string master;  // tcp://host:port
     std::string backend;
     std::string keys;           // a folder; "" only with `insecure`
-    std::string user = "node";  // whose pair in that folder
+    std::string user = "node";  // name of the key pair in that folder
     bool insecure = false;
     std::uint32_t threads = 0;
     std::string isa, device;
@@ -25,7 +25,7 @@ struct NodeOptions {
     cli::LogSettings log{.program = "tessera-node"};
 };
 
-// Nothing: go on with `options`. Else the exit code.
+// Returns nothing to continue with `options`, else the exit code.
 std::optional<int> parse_options(int argc, const char* const* argv, NodeOptions& options, std::ostream& out,
                                  std::ostream& err);
 

@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "mediator/backend/catalog.h"
-#include "mediator/base/freed_memory.h"
+#include "mediator/base/malloc_trim.h"
 #include "mediator/net/zmq_channel.h"
 #include "mediator/program/command_line.h"
 #include "node/config.h"
@@ -15,7 +15,7 @@ namespace {
 
 using namespace tessera;
 
-void tell(const cli::Log& log, const node::Report& report) {
+void log_report(const cli::Log& log, const node::Report& report) {
     switch (report.severity) {
         case wire::Severity::Info:
             return log.info(report.text);
@@ -40,7 +40,7 @@ node::NodeSettings node_settings(const node::NodeOptions& options) {
     return settings;
 }
 
-// First signal: drain. Second: leave at once. Our own SIGUSR1 ends the waiting.
+// First signal: drain. Second: leave at once. SIGUSR1, sent by this program, ends the wait.
 class SignalThread {
   public:
     explicit SignalThread(const sigset_t& signals) : thread_([this, signals] { wait(signals); }) {}
@@ -80,7 +80,7 @@ int serve(const node::NodeOptions& options, const sigset_t& signals) {
 
     const SteadyClock clock;
     node::RenderNode node(std::move(channel), std::move(backend), blobs, clock, node_settings(options),
-                          {.event = [&log](const node::Report& report) { tell(log, report); },
+                          {.event = [&log](const node::Report& report) { log_report(log, report); },
                            .reconnect = [sockets] { sockets->reconnect(); }});
     SignalThread waiting(signals);
     const node::NodeResult result = node.run(waiting.drain.get_token(), waiting.at_once.get_token());
@@ -91,7 +91,7 @@ int serve(const node::NodeOptions& options, const sigset_t& signals) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    tessera::keep_freed_memory();
+    tessera::disable_malloc_trim();
     // Before any thread starts, so that none of them is interrupted: one thread waits for signals.
     sigset_t signals;
     sigemptyset(&signals);

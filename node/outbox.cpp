@@ -18,7 +18,7 @@ void Outbox::open(net::Bytes&& greeting) {
     bulk_.push_front({std::move(greeting), {}, {}});
 }
 
-void Outbox::drop_film() {
+void Outbox::discard_pending_film() {
     std::erase_if(bulk_, [](const Item& item) { return item.film_of.has_value(); });
 }
 
@@ -31,8 +31,7 @@ std::vector<UnitId> Outbox::flush() {
 
 void Outbox::flush(net::Link link, std::deque<Item>& queue, std::vector<UnitId>& sent) {
     while (!queue.empty()) {
-        // Closed: nobody is there, or it is too long for the link; liveness and the master's patience deal
-        // with both.
+        // Closed: no peer, or the message is too long for the link; timeouts on either side handle both.
         if (channel_.send(link, net::ServerPeer, std::move(queue.front().bytes)) ==
             net::SendResult::WouldBlock)
             return;

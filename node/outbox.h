@@ -9,8 +9,8 @@
 
 namespace tessera::node {
 
-// What could not be sent yet, in order, per link. The bulk link is held while the master does not know who is
-// at its end. Bounded by the work in hand and the requests in flight.
+// Unsent messages, in order, per link. The bulk link is paused until the master has authenticated it. Bounded by the
+// units and requests in flight.
 class Outbox {
   public:
     explicit Outbox(net::Channel& channel) : channel_(channel) {}
@@ -18,11 +18,11 @@ class Outbox {
     void control(net::Bytes&& bytes) { control_.push_back({std::move(bytes), {}, {}}); }
     void bulk(net::Bytes&& bytes) { bulk_.push_back({std::move(bytes), {}, {}}); }
     void film(UnitId unit, std::vector<net::Bytes>&& parts);
-    void hold();                       // new sockets: only film is worth keeping
-    void open(net::Bytes&& greeting);  // goes first; ends the hold
-    void drop_film();
+    void hold();                       // new sockets: keeps only film
+    void open(net::Bytes&& greeting);  // sent first; resumes the bulk link
+    void discard_pending_film();
 
-    // Sends what goes; the units whose film is out completely.
+    // Sends as much as possible; returns the units whose film was sent completely.
     std::vector<UnitId> flush();
     bool blocked() const { return !control_.empty() || (!held_ && !bulk_.empty()); }
 

@@ -14,7 +14,7 @@ namespace tessera::node {
 
 namespace {
 
-constexpr int BurstLimit = 256;  // messages before heartbeats are looked after again
+constexpr int BurstLimit = 256;  // messages handled between checks of the heartbeats
 constexpr Duration BlockedPause = std::chrono::milliseconds(2);
 constexpr Duration FlushLimit = std::chrono::seconds(1);
 
@@ -45,7 +45,7 @@ BuildOutcome build(backend::Backend& backend, const scene::BlobStore& blobs,
 
 }  // namespace
 
-// One run: the machine, what it drives, and the way between them.
+// One run: the state machine, the threads it drives, and the events between them.
 class RenderNode::Loop {
   public:
     Loop(RenderNode& node, const backend::Capabilities& capabilities)
@@ -63,17 +63,17 @@ class RenderNode::Loop {
 
     NodeResult run(const std::stop_token& drain, const std::stop_token& at_once) {
         bool asked = false;
-        while (machine_.state() != NodeMachine::State::Left) {
+        while (machine_.state() != NodeStateMachine::State::Left) {
             if (drain.stop_requested() && !std::exchange(asked, true)) {
                 machine_.leave("asked to stop", node_.clock_.now());
             }
             if (at_once.stop_requested()) {
-                for (int i = 0; i < 2; ++i) machine_.leave("told to stop at once", node_.clock_.now());
+                for (int i = 0; i < 2; ++i) machine_.leave("asked to stop immediately", node_.clock_.now());
                 asked = true;
             }
             take_events();
             act();
-            if (machine_.state() != NodeMachine::State::Left) receive();
+            if (machine_.state() != NodeStateMachine::State::Left) receive();
         }
         act();
         flush_before_leaving();
@@ -115,10 +115,10 @@ class RenderNode::Loop {
         for (int i = 0; i < BurstLimit; ++i) {
             net::Received received = node_.channel_->receive(deadline);
             now = node_.clock_.now();
-            deadline = now;  // after the first only what is there already
+            deadline = now;  // after the first one take only messages that have already arrived
             if (const auto* none = std::get_if<net::NoMessage>(&received)) {
                 if (*none == net::NoMessage::Closed)
-                    std::this_thread::sleep_for(BlockedPause);  // until liveness acts
+                    std::this_thread::sleep_for(BlockedPause);  // until the liveness timeout
                 return;
             }
             take(std::get<net::Message>(received), now);
@@ -148,8 +148,8 @@ class RenderNode::Loop {
     void perform(OpenBulk& open) {
         outbox_.open(wire::encode(wire::BulkMessage(wire::BulkHello{open.token})));
     }
-    void perform(DropFilm&) { outbox_.drop_film(); }
-    void perform(HoldBulk&) { outbox_.hold(); }
+    void perform(DiscardPendingFilm&) { outbox_.discard_pending_film(); }
+    void perform(PauseBulk&) { outbox_.hold(); }
     void perform(Reconnect&) {
         outbox_.hold();
         if (node_.callbacks_.reconnect) node_.callbacks_.reconnect();
@@ -176,7 +176,7 @@ class RenderNode::Loop {
         if (node_.callbacks_.event) node_.callbacks_.event(report);
     }
 
-    // Nobody but the back-end holds what the present scene does not name; a store of our own is kept small.
+    // Only the back-end may still use blobs that the current scene does not refer to; a private store is kept small.
     void trim_store() {
         const std::uint64_t limit = node_.settings_.store_limit;
         if (limit == 0 || node_.blobs_->byte_size() <= limit || machine_.replica().is_behind()) return;
@@ -196,11 +196,11 @@ class RenderNode::Loop {
     }
 
     RenderNode& node_;
-    NodeMachine machine_;
+    NodeStateMachine machine_;
     Outbox outbox_;
     TaskThread builder_;
-    TaskThread cache_thread_;  // the disk's: no build waits for what is being saved
-    WorkerPool workers_;       // ends first: a build waits for what is being rendered
+    TaskThread cache_thread_;  // for disk access, so that builds do not wait for saves
+    WorkerPool workers_;       // destroyed first: a build waits for the units being rendered
 };
 
 RenderNode::RenderNode(std::unique_ptr<net::Channel> channel, std::unique_ptr<backend::Backend> backend,

@@ -11,7 +11,7 @@
 #include "mediator/backend/backend.h"
 #include "mediator/base/clock.h"
 #include "mediator/net/channel.h"
-#include "node/machine.h"
+#include "node/node_state_machine.h"
 #include "node/settings.h"
 
 namespace tessera::node {
@@ -22,22 +22,22 @@ struct NodeCallbacks {
 };
 
 struct NodeResult {
-    std::string failure;  // why it had to leave; "" when it was asked to
+    std::string failure;  // why it had to leave; "" if it was asked to
     NodeCounters counters;
 };
 
-// A node of the cluster, in a process of its own or inside another one: the machine's loop, its workers and
-// its builder. The thread of run() owns the channel; it neither renders nor builds, so heartbeats go on.
+// A node of the cluster, in its own process or embedded: the event loop of the state machine, its workers and the
+// scene builder. The thread of run() owns the channel and neither renders nor builds, so heartbeats continue.
 class RenderNode {
   public:
-    // `blobs` is the store that the back-end was made with. Throws Error when the disk cache cannot be used.
+    // `blobs` is the back-end's store. Throws Error if the disk cache cannot be used.
     RenderNode(std::unique_ptr<net::Channel> channel, std::unique_ptr<backend::Backend> backend,
                std::shared_ptr<scene::BlobStore> blobs, const Clock& clock, const NodeSettings& settings,
                NodeCallbacks callbacks);
     ~RenderNode();
 
-    // Until the node has left. `drain`: finish what is being rendered, hand back the rest, say goodbye.
-    // `at_once`: leave without finishing. Once per object.
+    // Runs until the node has left. `drain`: finish the units being rendered, return the others, send Goodbye.
+    // `at_once`: leave without finishing. Call once.
     NodeResult run(std::stop_token drain, std::stop_token at_once = {});
 
   private:

@@ -22,44 +22,45 @@ void SceneReplica::start_epoch(std::uint64_t epoch) {
     built_hash_ = {};
     announced_lists_.clear();
     applied_lists_.clear();
-    building_target_.reset();  // what is being built is of the old epoch
+    building_target_.reset();  // the current build is of the old epoch
     awaits_snapshot_ = scene_lost_ = false;
 }
 
-SceneReplica::Verdict SceneReplica::judge(Version from, Version to) const {
-    if (to.epoch != epoch_ || to.number == 0) return Verdict::Gap;
-    if (to.number < announced_.number) return Verdict::Duplicate;
+SceneReplica::CheckResult SceneReplica::check(Version from, Version to) const {
+    if (to.epoch != epoch_ || to.number == 0) return CheckResult::Gap;
+    if (to.number < announced_.number) return CheckResult::Duplicate;
     if (from.number == 0) {
-        return to.number > announced_.number || scene_lost_ ? Verdict::Accepted : Verdict::Duplicate;
+        return to.number > announced_.number || scene_lost_ ? CheckResult::Accepted : CheckResult::Duplicate;
     }
-    if (to.number == announced_.number && !scene_lost_) return Verdict::Duplicate;
+    if (to.number == announced_.number && !scene_lost_) return CheckResult::Duplicate;
     const bool follows = from == announced_ && to.number == from.number + 1;
-    return follows && !awaits_snapshot_ ? Verdict::Accepted : Verdict::Gap;
+    return follows && !awaits_snapshot_ ? CheckResult::Accepted : CheckResult::Gap;
 }
 
-SceneReplica::Verdict SceneReplica::announce(Announced item) {
-    const Verdict verdict = judge(item.from, item.to);
+SceneReplica::CheckResult SceneReplica::announce(Announced item) {
+    const CheckResult result = check(item.from, item.to);
     const bool snapshot = item.from.number == 0;
-    if (snapshot && verdict != Verdict::Gap) awaits_snapshot_ = scene_lost_ && verdict == Verdict::Duplicate;
-    if (verdict != Verdict::Accepted) return verdict;
-    if (snapshot) {  // nothing before it matters any more
+    if (snapshot && result != CheckResult::Gap)
+        awaits_snapshot_ = scene_lost_ && result == CheckResult::Duplicate;
+    if (result != CheckResult::Accepted) return result;
+    if (snapshot) {  // supersedes everything before it
         announced_lists_.clear();
         applied_lists_.clear();
         scene_lost_ = false;
     } else if (announced_lists_.size() + applied_lists_.size() >= MaxListsUnderWay) {
-        return Verdict::Gap;
+        return CheckResult::Gap;
     }
     announced_ = item.to;
     announced_lists_.push_back(std::move(item));
-    return Verdict::Accepted;
+    return CheckResult::Accepted;
 }
 
-SceneReplica::Verdict SceneReplica::offer(scene::ChangeList list) {
+SceneReplica::CheckResult SceneReplica::receive(scene::ChangeList list) {
     const Version from = list.from, to = list.to;
     return announce({from, to, std::move(list)});
 }
 
-SceneReplica::Verdict SceneReplica::offer(const wire::ChangesByBlob& announced) {
+SceneReplica::CheckResult SceneReplica::receive(const wire::ChangesByBlob& announced) {
     return announce({announced.from, announced.to, announced.blob});
 }
 
@@ -74,7 +75,8 @@ Expected<void> SceneReplica::advance() {
             if (!blob) break;
             list = wire::decode_change_list(blob->bytes());
             if (list && (list->from.number != item.from.number || list->to != item.to)) {
-                list = failure(ErrorCode::InvalidInput, "the change list leads elsewhere than was announced");
+                list = failure(ErrorCode::InvalidInput,
+                               "the change list has other versions than were announced");
             }
         }
         refused_ = item.to;
@@ -94,7 +96,7 @@ Expected<void> SceneReplica::apply(scene::ChangeList list) {
     for (const scene::Entry& entry : list.entries) {
         const scene::Object* object = scene_.find(scene::id(entry));
         if (object && std::holds_alternative<scene::Transform>(*object))
-            continue;  // most, and none has blobs
+            continue;  // the most frequent kind, without blobs
         applied.objects.emplace_back(
             scene::id(entry), object ? scene::referenced_blobs(*object) : std::vector<scene::BlobRef>());
     }
@@ -121,7 +123,7 @@ std::vector<scene::BlobRef> SceneReplica::missing() const {
     return {missing.begin(), missing.end()};
 }
 
-// How many of the applied lists, from the first on, lead to a scene all of whose blobs are here.
+// How many of the applied lists, from the first, give a scene whose blobs are all in the store.
 std::size_t SceneReplica::buildable() const {
     std::size_t count = 0, lacking = 0;
     std::map<ObjectId, bool> lacks;
@@ -183,7 +185,7 @@ bool SceneReplica::failed() {
     return true;
 }
 
-bool SceneReplica::declined() {
+bool SceneReplica::rejected_out_of_memory() {
     building_ = false;
     if (!building_target_) return false;
     discard();

@@ -11,58 +11,57 @@
 
 namespace tessera::node {
 
-// The node's own copy of the scene and the way of change lists into the back-end. Every list passes four
-// stations, in order: announced (it may still be a blob that has to come) -> applied here (state hash
-// checked) -> all blobs it brought are in the store -> built by the back-end. A blob that a later list lets
-// go of is needed no more: both lists are built together. Pure; one thread.
+// The node's copy of the scene, and the pipeline of change lists into the back-end. Every list passes four stages in
+// order: announced (it may be a blob that has not arrived) -> applied here (state hash checked) -> all its blobs are in
+// the store -> built by the back-end. If a later list releases a blob that has not arrived, both lists are built
+// together without it. Pure; single-threaded.
 class SceneReplica {
   public:
     explicit SceneReplica(std::shared_ptr<scene::BlobStore> blobs) : blobs_(std::move(blobs)) {}
 
-    void start_epoch(std::uint64_t epoch);  // forgets the scene unless the epoch is the same; blobs stay
+    void start_epoch(std::uint64_t epoch);  // resets the scene unless the epoch is the same; blobs stay
 
-    enum class Verdict {
+    enum class CheckResult {
         Accepted,
         Duplicate,  // the same epoch and not newer: harmless
-        Gap,        // does not follow on what is here: resync() is due
+        Gap,        // does not follow the current version: a resync is needed
     };
-    Verdict offer(scene::ChangeList list);
-    Verdict offer(const wire::ChangesByBlob& announced);
+    CheckResult receive(scene::ChangeList list);
+    CheckResult receive(const wire::ChangesByBlob& announced);
 
-    // Takes what has arrived one station further. A list that cannot be read or applied, or leads to another
-    // hash, throws away everything not built;
-    // refused_version() tells where it led.
+    // Moves lists that have arrived to the next stage. A list that cannot be decoded or applied, or whose state hash
+    // differs, discards everything that is not built; refused_version() is its version.
     Expected<void> advance();
     Version refused_version() const { return refused_; }
 
-    // What has to be fetched for the lists that are here, as they end: each once.
+    // Blobs to fetch for the announced and applied lists, each once.
     std::vector<scene::BlobRef> missing() const;
 
-    // The lists that the back-end can be given now, handed out once, each with the scene that it makes.
+    // The lists that the back-end can build now, returned once, each with the scene after it.
     struct Step {
         scene::ChangeList list;
         scene::Scene after;
     };
     struct Build {
         std::vector<Step> steps;
-        std::vector<ObjectId> unchecked;  // geometries and textures whose blobs were never looked into
+        std::vector<ObjectId> unchecked;  // geometries and textures whose blobs were not validated yet
         // Of the last step.
         const scene::Scene& scene() const { return steps.back().after; }
     };
     std::optional<Build> take_build();
     bool is_building() const { return building_; }
-    bool built();     // the back-end is at the build's version now
-    bool failed();    // nobody knows what it holds: nothing that was built counts, a snapshot is due.
-    bool declined();  // it holds what it held, and that version will not do: the next snapshot may.
-    // All: false when the build was of another epoch, so that its end means nothing.
+    bool built();                   // the back-end is at the build's version now
+    bool failed();                  // the back-end's state is unknown: a snapshot is needed
+    bool rejected_out_of_memory();  // the back-end kept its previous version; the next snapshot may fit
+    // All three return false if the build was of another epoch and its result is meaningless.
 
-    // Starts over from the next snapshot; lists that follow on the present version are gaps until then.
+    // Waits for the next snapshot; lists that follow the current version are gaps until then.
     void await_snapshot();
     bool awaits_snapshot() const { return awaits_snapshot_; }
 
-    Version version() const { return built_; }  // of the back-end: committed with all blobs
+    Version version() const { return built_; }  // built by the back-end with all blobs
     Hash128 state_hash() const { return built_hash_; }
-    Version announced() const { return announced_; }  // where the lists lead that are on their way
+    Version announced() const { return announced_; }  // the version of the latest announced list
     bool is_behind() const { return announced_ != built_ || awaits_snapshot_; }
     const scene::Scene& scene() const { return scene_; }
 
@@ -73,12 +72,12 @@ class SceneReplica {
     };
     struct Applied {
         Step step;
-        // What the objects refer to that it touched, as it left them; nothing where it removed one.
+        // The blobs that each touched object refers to after the list; none for removed objects.
         std::vector<std::pair<ObjectId, std::vector<scene::BlobRef>>> objects;
     };
 
-    Verdict judge(Version from, Version to) const;
-    Verdict announce(Announced item);
+    CheckResult check(Version from, Version to) const;
+    CheckResult announce(Announced item);
     Expected<void> apply(scene::ChangeList list);
     std::size_t buildable() const;
     void discard();
@@ -94,7 +93,7 @@ class SceneReplica {
     std::optional<std::pair<Version, Hash128>> building_target_;
     bool building_ = false;
     bool awaits_snapshot_ = false;
-    bool scene_lost_ = false;  // scene_ is not at announced_: only a snapshot helps
+    bool scene_lost_ = false;  // scene_ is not at announced_: a snapshot is needed
 };
 
 }  // namespace tessera::node

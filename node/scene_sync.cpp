@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t MaxReportedTexts = 64;  // of problems, so that a report fits the control link
 constexpr std::size_t MaxTextLength = 400;
-constexpr Duration FetchPause = std::chrono::milliseconds(100);  // between looks at what is due
+constexpr Duration FetchPause = std::chrono::milliseconds(100);  // between checks for due requests
 
 std::vector<std::string> trimmed(std::vector<std::string> texts) {
     const std::size_t count = texts.size();
@@ -44,28 +44,28 @@ void SceneSync::welcomed(std::uint64_t epoch, Duration heartbeat_interval) {
 
 void SceneSync::changes(wire::Changes& changes, TimePoint now) {
     const Version from = changes.list.from, to = changes.list.to;
-    judged(replica_.offer(std::move(changes.list)), from, to, now);
+    on_checked(replica_.receive(std::move(changes.list)), from, to, now);
 }
 
 void SceneSync::changes(const wire::ChangesByBlob& changes, TimePoint now) {
-    judged(replica_.offer(changes), changes.from, changes.to, now);
+    on_checked(replica_.receive(changes), changes.from, changes.to, now);
 }
 
-void SceneSync::judged(SceneReplica::Verdict verdict, Version from, Version to, TimePoint now) {
+void SceneSync::on_checked(SceneReplica::CheckResult result, Version from, Version to, TimePoint now) {
     if (!linked_) return;
-    switch (verdict) {
-        case SceneReplica::Verdict::Accepted:
+    switch (result) {
+        case SceneReplica::CheckResult::Accepted:
             snapshot_retry_at_.reset();
             too_large_.reset();
-            if (from.number == 0) lists_received_.clear();  // nothing before a snapshot matters
+            if (from.number == 0) lists_received_.clear();  // a snapshot supersedes everything before it
             lists_received_.emplace_back(to, now);
             effects_.state_changed = true;
             break;
-        case SceneReplica::Verdict::Duplicate:
+        case SceneReplica::CheckResult::Duplicate:
             if (!replica_.awaits_snapshot()) snapshot_retry_at_.reset();
-            if (to == replica_.version()) send_version_report();  // the last one may have got lost
+            if (to == replica_.version()) send_version_report();  // the last one may have been lost
             break;
-        case SceneReplica::Verdict::Gap:
+        case SceneReplica::CheckResult::Gap:
             if (too_large_ && to != *too_large_) {
                 too_large_.reset();
                 ask_for_snapshot("version " + std::to_string(to.number) + " may fit", now);
@@ -79,7 +79,7 @@ void SceneSync::judged(SceneReplica::Verdict verdict, Version from, Version to, 
     }
 }
 
-// Of the first list of those that were built together.
+// When the first of the lists that were built together was received.
 std::int64_t SceneSync::received_at(Version to) {
     std::int64_t first = 0;
     while (!lists_received_.empty() && lists_received_.front().first <= to) {
@@ -100,18 +100,18 @@ void SceneSync::ask_for_snapshot(const std::string& reason, TimePoint now) {
 
 void SceneSync::failed(const std::string& reason, Version at, TimePoint now) {
     if (failed_at_ == at) {
-        failure_ = "the scene went wrong twice at version " + std::to_string(at.number) + ": " + reason +
+        failure_ = "the scene failed twice at version " + std::to_string(at.number) + ": " + reason +
                    "; check that master and node are the same build";
         return;
     }
     failed_at_ = at;
     effects_.report(wire::Severity::Warning,
-                    "version " + std::to_string(at.number) + " could not be taken over: " + reason);
+                    "version " + std::to_string(at.number) + " could not be applied: " + reason);
     ask_for_snapshot(reason, now);
 }
 
-// The back-end has kept its last version. The next one may be smaller: until it comes, there is nothing to
-// ask for.
+// The back-end has kept its previous version. The next version may be smaller; until it arrives no snapshot is
+// requested.
 void SceneSync::too_large(const std::string& reason, Version at) {
     too_large_ = at;
     effects_.report(wire::Severity::Warning, "version " + std::to_string(at.number) + ": " + reason +
@@ -138,7 +138,7 @@ bool SceneSync::built(BuildOutcome&& built, TimePoint now) {
         const Error& error = built.report.error();
         const Version at = replica_.announced();
         if (error.code() == ErrorCode::OutOfMemory) {
-            if (replica_.declined()) too_large(error.what(), at);
+            if (replica_.rejected_out_of_memory()) too_large(error.what(), at);
         } else if (replica_.failed()) {
             failed("the back-end failed: " + std::string(error.what()), at, now);
         }
@@ -202,7 +202,7 @@ void SceneSync::looked_up(const std::vector<scene::BlobRef>& blobs) {
 
 bool SceneSync::chunk(wire::BlobChunk&& chunk, TimePoint now) {
     const Hash256 hash = chunk.hash;
-    if (!wanted_.contains(hash)) return false;  // an answer to a question asked twice
+    if (!wanted_.contains(hash)) return false;  // a duplicate reply to a repeated request
     if (const Expected<void> taken = fetcher_.receive(std::move(chunk), now); !taken) {
         effects_.malformed(taken.error().what());
         return false;

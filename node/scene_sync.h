@@ -10,14 +10,14 @@
 
 namespace tessera::node {
 
-// How a build ended.
+// The result of a build.
 struct BuildOutcome {
     Expected<backend::EditReport> report = backend::EditReport{};
-    std::vector<std::string> problems;  // of what the network brought
+    std::vector<std::string> problems;  // found while validating received blobs
 };
 
-// Keeps the scene in step with the master's: judges change lists, fetches the blobs that they name, has the
-// back-end build what is complete, and reports the version that it holds. Pure; one thread.
+// Keeps the scene in sync with the master's: checks change lists, fetches their blobs, has the back-end build complete
+// lists, and reports the built version. Pure; single-threaded.
 class SceneSync {
   public:
     SceneSync(const NodeSettings& settings, std::shared_ptr<scene::BlobStore> blobs, Effects& effects);
@@ -30,20 +30,20 @@ class SceneSync {
     bool chunk(wire::BlobChunk&& chunk, TimePoint now);  // true: a blob is complete
     void absent(const wire::BlobAbsent& absent, TimePoint now);
     void looked_up(const std::vector<scene::BlobRef>& blobs);  // in the cache
-    // True: units are to be judged anew, since the version that they may run on is another one.
+    // True: waiting units have to be rechecked, since the built version has changed.
     bool built(BuildOutcome&& built, TimePoint now);
-    // Takes what is here one station further. True: a build has begun, so the present version ends.
+    // Advances the replica. True: a build has begun, so no more units of the current version may start.
     bool advance(TimePoint now);
     void keep_fetching(TimePoint now);
 
-    // Not empty: the scene went wrong twice at one version, and the node has to leave.
+    // Not empty: the scene failed twice at one version, and the node has to leave.
     const std::string& failure() const { return failure_; }
     const SceneReplica& replica() const { return replica_; }
     std::optional<TimePoint> next_event(TimePoint now) const;
 
   private:
-    void judged(SceneReplica::Verdict verdict, Version from, Version to, TimePoint now);
-    std::int64_t received_at(Version to);  // and forgets what led there
+    void on_checked(SceneReplica::CheckResult result, Version from, Version to, TimePoint now);
+    std::int64_t received_at(Version to);  // and forgets the lists up to `to`
     void failed(const std::string& reason, Version at, TimePoint now);
     void too_large(const std::string& reason, Version at);
     void ask_for_snapshot(const std::string& reason, TimePoint now);
@@ -61,10 +61,10 @@ class SceneSync {
     Duration heartbeat_interval_;
     std::set<Hash256> wanted_, looked_up_;
     std::optional<TimePoint> snapshot_retry_at_, absent_retry_at_;
-    Version failed_at_;                 // where the scene went wrong last
-    std::optional<Version> too_large_;  // the device has no room for it
+    Version failed_at_;                 // the version of the last failure
+    std::optional<Version> too_large_;  // does not fit into device memory
     std::deque<std::pair<Version, TimePoint>>
-        lists_received_;  // where those lead that are not built, and when
+        lists_received_;  // versions of lists that are not built, and when they arrived
     wire::VersionReport latest_report_;
     std::string failure_;
 };

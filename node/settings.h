@@ -15,9 +15,9 @@ struct NodeSettings {
     std::uint64_t pid = 0;
     std::string backend{};             // its name in the catalog
     bool reproducible = false;         // pinned to AVX2, or needs no pinning (design 1.6)
-    std::uint32_t workers = 0;         // units at a time; 0 = as many as the back-end recommends
-    net::LivenessSettings liveness{};  // until the master's welcome tells its own
-    wire::BlobLimits blob_limits{.bytes_total = std::uint64_t{1} << 60};  // of a lifetime
+    std::uint32_t workers = 0;         // concurrent units; 0 = as many as the back-end recommends
+    net::LivenessSettings liveness{};  // until the master's Welcome sets its interval
+    wire::BlobLimits blob_limits{.bytes_total = std::uint64_t{1} << 60};  // total quota
     std::optional<std::filesystem::path> cache{};  // folder for blobs; none = no disk cache
     std::uint64_t cache_limit = 4ull << 30;        // bytes
     std::uint64_t store_limit =

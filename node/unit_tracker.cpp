@@ -19,11 +19,11 @@ std::optional<std::string> fault(const view::View& view, const backend::Capabili
         return "its size is out of range";
     if (view.window.empty() || !(intersection(view.window, picture) == view.window))
         return "its window is not inside the picture";
-    if (view.channels.empty()) return "it asks for no channel";
+    if (view.channels.empty()) return "it requests no channel";
     if (!offered.channels.contains(view.channels))
-        return "it asks for a channel that this back-end does not have";
+        return "it requests a channel that this back-end does not have";
     if (!offered.renderers.contains(view.renderer))
-        return "it asks for the renderer " + std::string(view::renderer_name(view.renderer)) +
+        return "it requests the renderer " + std::string(view::renderer_name(view.renderer)) +
                ", which this back-end does not have";
     return std::nullopt;
 }
@@ -51,7 +51,8 @@ void UnitTracker::open(const wire::OpenView& open) {
         return effects_.report(wire::Severity::Error, "the master opened more than " +
                                                           std::to_string(MaxViews) + " views; close some");
     }
-    if (known != views_.end() && known->second.revision >= open.view.revision) return;  // older: a late one
+    if (known != views_.end() && known->second.revision >= open.view.revision)
+        return;  // a delayed older revision
     views_[open.view.id] = open.view;
     release_waiting(wire::ReleaseReason::Cancelled, "the view has a newer revision", open.view.id);
     stop_of(open.view.id);
@@ -64,16 +65,16 @@ void UnitTracker::close(const wire::CloseView& close) {
 }
 
 void UnitTracker::work(const wire::Work& work, bool leaving) {
-    switch (queue_.offer(work.sequence, work.unit)) {
-        case WorkQueue::Verdict::Duplicate:
+    switch (queue_.admit(work.sequence, work.unit)) {
+        case WorkQueue::AdmitResult::Duplicate:
             effects_.state_changed = true;  // the sequence number may be new
             return;
-        case WorkQueue::Verdict::Full:
+        case WorkQueue::AdmitResult::Full:
             effects_.state_changed = true;
             ++effects_.counters.units_released;
             return effects_.send(
-                wire::UnitReleased{work.unit.id, wire::ReleaseReason::Cancelled, "no place is free"});
-        case WorkQueue::Verdict::Taken:
+                wire::UnitReleased{work.unit.id, wire::ReleaseReason::Cancelled, "no free slot"});
+        case WorkQueue::AdmitResult::Accepted:
             effects_.state_changed = true;
             break;
     }
@@ -83,29 +84,31 @@ void UnitTracker::work(const wire::Work& work, bool leaving) {
 
 std::optional<std::pair<wire::ReleaseReason, std::string>> UnitTracker::objection(
     const view::WorkUnit& unit) const {
-    using Objection = std::pair<wire::ReleaseReason, std::string>;
+    using ReleaseCause = std::pair<wire::ReleaseReason, std::string>;
     const auto view = views_.find(unit.view);
-    if (view == views_.end()) return Objection{wire::ReleaseReason::UnknownView, "the view was never opened"};
+    if (view == views_.end())
+        return ReleaseCause{wire::ReleaseReason::UnknownView, "the view was never opened"};
     if (view->second.revision != unit.revision) {
-        return Objection{wire::ReleaseReason::UnknownView,
-                         "the view is at revision " + std::to_string(view->second.revision)};
+        return ReleaseCause{wire::ReleaseReason::UnknownView,
+                            "the view is at revision " + std::to_string(view->second.revision)};
     }
     const bool is_present = unit.version == replica_.version() && !replica_.is_building();
     const bool will_come = unit.version.epoch == epoch_ && unit.version.number > replica_.version().number &&
                            unit.version.number <= replica_.announced().number;
     if (!is_present && !will_come) {
-        return Objection{wire::ReleaseReason::OtherVersion,
-                         "the node is at version " + std::to_string(replica_.version().number)};
+        return ReleaseCause{wire::ReleaseReason::OtherVersion,
+                            "the node is at version " + std::to_string(replica_.version().number)};
     }
     const std::size_t film = unit.tile.pixel_count() * 4 * (1 + view->second.channels.plane_count());
     if (unit.tile.empty() || !(intersection(unit.tile, view->second.window) == unit.tile) ||
         film > FilmLimit) {
-        return Objection{wire::ReleaseReason::Failed,
-                         "its tile is empty, outside the view, or too large for one message of film"};
+        return ReleaseCause{wire::ReleaseReason::Failed,
+                            "its tile is empty, outside the view, or too large for one message of film"};
     }
     if (!unit.block.is_aligned() || unit.block.level > MaxBlockLevel) {
-        return Objection{wire::ReleaseReason::Failed,
-                         "its samples are no aligned block of at most 2^" + std::to_string(MaxBlockLevel)};
+        return ReleaseCause{
+            wire::ReleaseReason::Failed,
+            "its samples are not an aligned block of at most 2^" + std::to_string(MaxBlockLevel)};
     }
     return std::nullopt;
 }
@@ -146,19 +149,19 @@ void UnitTracker::stop_all() {
 void UnitTracker::version_ends() {
     for (const view::WorkUnit& unit : queue_.waiting()) {
         if (unit.version == replica_.version()) {
-            release(unit.id, wire::ReleaseReason::OtherVersion, "the node goes on to another version");
+            release(unit.id, wire::ReleaseReason::OtherVersion, "the node moves on to another version");
         }
     }
 }
 
-void UnitTracker::judge_waiting() {
+void UnitTracker::recheck_waiting() {
     for (const view::WorkUnit& unit : queue_.waiting()) {
         if (const auto why = objection(unit)) release(unit.id, why->first, why->second);
     }
 }
 
-std::vector<UnitId> UnitTracker::in_hand() const {
-    std::vector<UnitId> units = queue_.in_hand();
+std::vector<UnitId> UnitTracker::in_flight() const {
+    std::vector<UnitId> units = queue_.in_flight();
     std::erase_if(units, [&](UnitId unit) { return abandoned_.contains(unit); });
     return units;
 }
@@ -173,13 +176,13 @@ void UnitTracker::abandon() {
         abandoned_.insert(unit.id);
         stop(unit.id, wire::ReleaseReason::Cancelled);
     }
-    for (const UnitId unit : queue_.in_hand()) {
+    for (const UnitId unit : queue_.in_flight()) {
         if (!queue_.is_rendering(unit)) queue_.release(unit);
     }
     release_after_film_.clear();
     sent_.clear();
     views_.clear();
-    effects_.add(DropFilm{});
+    effects_.add(DiscardPendingFilm{});
 }
 
 void UnitTracker::dispatch() {

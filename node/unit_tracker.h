@@ -11,15 +11,15 @@
 
 namespace tessera::node {
 
-// How a unit ended on its worker.
+// The result of a unit on its worker.
 struct UnitOutcome {
     backend::RenderResult result;
-    std::string error;  // not empty: the back-end gave up, and how to replay it
+    std::string error;  // not empty: the back-end's error, and how to reproduce it
     Duration busy{};
 };
 
-// Units in, film out: takes what the open views and the scene's version allow, has it rendered, sends its film
-// or hands it back with a reason. Every unit that was taken is answered once. Pure; one thread.
+// Accepts units that match the open views and the scene's version, has them rendered and sends their film, or releases
+// them with a reason. Every accepted unit is answered exactly once. Pure; single-threaded.
 class UnitTracker {
   public:
     UnitTracker(std::uint32_t workers, const backend::Capabilities& capabilities, const SceneReplica& replica,
@@ -32,18 +32,18 @@ class UnitTracker {
     void finished(UnitId unit, UnitOutcome&& outcome);
     void film_sent(UnitId unit);
 
-    void dispatch();       // to free workers, unless the scene is being built
-    void version_ends();   // what waits for the present version is handed back
-    void judge_waiting();  // what cannot be rendered any more is handed back
+    void dispatch();         // to free workers, unless the scene is being built
+    void version_ends();     // releases units that wait for the current version
+    void recheck_waiting();  // releases units that can no longer be rendered
     void release_waiting(wire::ReleaseReason reason, const std::string& message, ViewId of_view = {});
     void stop_all();                     // without an answer
-    void abandon();                      // the master knows nothing of units and views any more
-    void welcomed(std::uint64_t epoch);  // numbers of work begin anew
+    void abandon();                      // the master has forgotten all units and views
+    void welcomed(std::uint64_t epoch);  // sequence numbers restart
 
     bool empty() const { return queue_.empty(); }
-    std::uint32_t free_places() const { return queue_.free_places(); }
+    std::uint32_t free_slots() const { return queue_.free_slots(); }
     std::uint64_t last_sequence() const { return queue_.last_sequence(); }
-    std::vector<UnitId> in_hand() const;  // without those that were abandoned
+    std::vector<UnitId> in_flight() const;  // without those that were abandoned
     std::vector<UnitId> latest_sent() const { return {sent_.begin(), sent_.end()}; }
 
   private:
@@ -59,10 +59,10 @@ class UnitTracker {
     WorkQueue queue_;
     std::uint64_t epoch_ = 0;
     std::map<ViewId, view::View> views_;
-    std::map<UnitId, wire::ReleaseReason> stopping_;           // being rendered, told to stop, and why
-    std::map<UnitId, wire::UnitReleased> release_after_film_;  // its parts are on their way
-    std::set<UnitId> abandoned_;                               // being rendered for nobody
-    std::deque<UnitId> sent_;                                  // the latest, for the goodbye
+    std::map<UnitId, wire::ReleaseReason> stopping_;           // being rendered and stopping, with the reason
+    std::map<UnitId, wire::UnitReleased> release_after_film_;  // film parts are still queued
+    std::set<UnitId> abandoned_;                               // being rendered, result unwanted
+    std::deque<UnitId> sent_;                                  // the latest, for Goodbye
 };
 
 }  // namespace tessera::node

@@ -6,7 +6,8 @@ namespace tessera::node {
 
 namespace {
 
-constexpr std::size_t Overrun = 64;  // units beyond the places that are borne: credits under way at a change
+constexpr std::size_t Overrun =
+    64;  // units accepted beyond the slots: credits may be in transit when the slots change
 
 auto with_id(UnitId id) {
     return [id](const view::WorkUnit& unit) { return unit.id == id; };
@@ -14,13 +15,14 @@ auto with_id(UnitId id) {
 
 }  // namespace
 
-WorkQueue::Verdict WorkQueue::offer(std::uint64_t sequence, const view::WorkUnit& unit) {
-    if (sequence <= last_sequence_) return Verdict::Duplicate;
+WorkQueue::AdmitResult WorkQueue::admit(std::uint64_t sequence, const view::WorkUnit& unit) {
+    if (sequence <= last_sequence_) return AdmitResult::Duplicate;
     last_sequence_ = sequence;
-    if (is_waiting(unit.id) || is_rendering(unit.id) || sending_.contains(unit.id)) return Verdict::Duplicate;
-    if (waiting_.size() >= places_ + Overrun) return Verdict::Full;
+    if (is_waiting(unit.id) || is_rendering(unit.id) || sending_.contains(unit.id))
+        return AdmitResult::Duplicate;
+    if (waiting_.size() >= slots_ + Overrun) return AdmitResult::Full;
     waiting_.push_back(unit);
-    return Verdict::Taken;
+    return AdmitResult::Accepted;
 }
 
 std::optional<view::WorkUnit> WorkQueue::next(Version version) {
@@ -55,7 +57,7 @@ bool WorkQueue::is_rendering(UnitId id) const {
     return std::any_of(rendering_.begin(), rendering_.end(), with_id(id));
 }
 
-std::vector<UnitId> WorkQueue::in_hand() const {
+std::vector<UnitId> WorkQueue::in_flight() const {
     std::vector<UnitId> ids(sending_.begin(), sending_.end());
     for (const view::WorkUnit& unit : waiting_) ids.push_back(unit.id);
     for (const view::WorkUnit& unit : rendering_) ids.push_back(unit.id);
@@ -63,9 +65,9 @@ std::vector<UnitId> WorkQueue::in_hand() const {
     return ids;
 }
 
-std::uint32_t WorkQueue::free_places() const {
+std::uint32_t WorkQueue::free_slots() const {
     const std::size_t held = waiting_.size() + rendering_.size() + sending_.size();
-    return held >= places_ ? 0 : places_ - static_cast<std::uint32_t>(held);
+    return held >= slots_ ? 0 : slots_ - static_cast<std::uint32_t>(held);
 }
 
 }  // namespace tessera::node

@@ -10,23 +10,23 @@
 
 namespace tessera::node {
 
-// The units a node has in hand: waiting, being rendered, or rendered with film still to be sent. Credits are
-// absolute: places less what is in hand, so a lost message does no harm. Pure; one thread.
+// The units in flight on a node: waiting, being rendered, or rendered with film still to be sent. Credits are absolute
+// (slots less units in flight), so a lost message does no harm. Pure; single-threaded.
 class WorkQueue {
   public:
-    // One place per worker and as many prefetched, so that no worker waits for the network.
-    explicit WorkQueue(std::uint32_t workers) : workers_(workers), places_(2 * workers) {}
+    // One slot per worker and as many for prefetched units, so that no worker waits for the network.
+    explicit WorkQueue(std::uint32_t workers) : workers_(workers), slots_(2 * workers) {}
 
-    enum class Verdict {
-        Taken,
-        Duplicate,  // its sequence number, or a younger one, was here before: what was skipped counts as lost
-        Full,       // the sender ran over the credits by far
+    enum class AdmitResult {
+        Accepted,
+        Duplicate,  // its sequence number or a later one was seen before: skipped numbers count as lost
+        Full,       // the sender exceeded the credits by far
     };
-    Verdict offer(std::uint64_t sequence, const view::WorkUnit& unit);
+    AdmitResult admit(std::uint64_t sequence, const view::WorkUnit& unit);
 
-    // The oldest waiting unit of `version`, if a worker is free; it is being rendered from then on.
+    // The oldest waiting unit of `version`, if a worker is free; it counts as being rendered from then on.
     std::optional<view::WorkUnit> next(Version version);
-    // The worker is free again; the unit stays in hand until released.
+    // The worker is free again; the unit stays in flight until released.
     std::optional<view::WorkUnit> rendered(UnitId unit);
     void release(UnitId unit);
 
@@ -35,14 +35,14 @@ class WorkQueue {
     bool is_waiting(UnitId unit) const;
     bool is_rendering(UnitId unit) const;
 
-    std::vector<UnitId> in_hand() const;  // ascending
+    std::vector<UnitId> in_flight() const;  // ascending
     bool empty() const { return waiting_.empty() && rendering_.empty() && sending_.empty(); }
-    std::uint32_t free_places() const;
+    std::uint32_t free_slots() const;
     std::uint64_t last_sequence() const { return last_sequence_; }
     void restart_sequence() { last_sequence_ = 0; }  // after every welcome
 
   private:
-    std::uint32_t workers_, places_;
+    std::uint32_t workers_, slots_;
     std::uint64_t last_sequence_ = 0;
     std::deque<view::WorkUnit> waiting_;
     std::vector<view::WorkUnit> rendering_;

@@ -10,12 +10,12 @@
 
 #include "mediator/backend/backend.h"
 #include "mediator/base/clock.h"
-#include "node/machine.h"
+#include "node/node_state_machine.h"
 
 namespace tessera::node {
 
-// Threads that render one unit at a time each. `done` is called on their threads, once per started unit;
-// whatever a back-end throws becomes text. The destructor stops what is being rendered and waits for it.
+// Threads that render one unit at a time each. `done` is called on these threads, once per started unit; exceptions of
+// the back-end become text. The destructor stops the units being rendered and waits for them.
 class WorkerPool {
   public:
     using Done = std::function<void(UnitId, UnitOutcome&&)>;
@@ -24,7 +24,7 @@ class WorkerPool {
 
     // Thread-safe.
     void start(const view::View& view, const view::WorkUnit& unit);
-    void stop(UnitId unit);  // one that waits ends without blocks
+    void stop(UnitId unit);  // a waiting unit ends without blocks
 
   private:
     struct Job {
@@ -41,7 +41,7 @@ class WorkerPool {
     std::mutex mutex_;  // protects waiting_ and stops_
     std::condition_variable_any wake_;
     std::deque<Job> waiting_;
-    std::map<UnitId, std::stop_source> stops_;  // of what waits or is being rendered
+    std::map<UnitId, std::stop_source> stops_;  // of waiting and running units
     std::vector<std::jthread> threads_;
 };
 

@@ -8,15 +8,16 @@
 
 namespace tessera::embree {
 
-// What the filter has to know of the ray; handed to Embree with every ray.
+// Per-ray data for the filter function, passed to Embree with every ray.
 struct TraceContext {
-    RTCIntersectContext embree;  // first, so that Embree's pointer is ours
+    RTCIntersectContext embree;  // first, so that Embree's pointer can be cast
     const shading::Scene* scene = nullptr;
     std::uint32_t seed = 0;  // of (pixel, sample, bounce, kind of ray)
     shading::Skip skip = shading::skip_nothing();
 };
 
-// Stops or passes rays at a surface with alpha, by shading::stops_at, or that was just passed.
+// Embree filter function: rejects hits that the ray has already passed (Skip) or that alpha lets pass
+// (stops_at).
 void alpha_filter(const RTCFilterFunctionNArguments* arguments);
 
 }  // namespace tessera::embree

@@ -1,8 +1,8 @@
-// What lies over a surface: cars, wood, cloth. Extras tell of it, and of anisotropy.
+// Layers over a surface (coat, sheen) and anisotropy: cars, wood, cloth.
 #define SHADING_KERNEL coated
 #define SHADING_FEATURES \
     (PLAIN_FEATURES | shading::FeatureExtras | shading::FeatureCoat | shading::FeatureSheen)
-#include "backends/embree/kernel_text.h"
+#include "backends/embree/kernel_impl.h"
 
 namespace tessera::embree {
 

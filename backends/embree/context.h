@@ -1,11 +1,11 @@
 #pragma once
 
 #include "backends/embree/rays.h"
-#include "mediator/backend/story.h"
+#include "mediator/backend/path_log.h"
 
 namespace tessera::embree {
 
-// What the shared transport asks of this back-end (mediator/shading/transport.h), when it is told of.
-struct Context : backend::Teller, Rays {};
+// The context of the shared transport (mediator/shading/transport.h), with a path log.
+struct Context : backend::PathLogger, Rays {};
 
 }  // namespace tessera::embree

@@ -21,10 +21,10 @@ using DeviceHandle = std::unique_ptr<RTCDeviceTy, Releaser<rtcReleaseDevice>>;
 using SceneHandle = std::unique_ptr<RTCSceneTy, Releaser<rtcReleaseScene>>;
 using GeometryHandle = std::unique_ptr<RTCGeometryTy, Releaser<rtcReleaseGeometry>>;
 
-// Throws Error when the CPU lacks the instruction set that was asked for.
+// Throws Error when the CPU lacks the requested instruction set.
 DeviceHandle make_device(const backend::BackendSettings& settings);
 
-// "embree-3.13.5/avx512/GenuineIntel/g++-12.2/r1": what has to be equal for equal bits.
+// "embree-3.13.5/avx512/GenuineIntel/g++-12.2/r1": must be equal for equal bits.
 std::string kind_of(const backend::BackendSettings& settings);
 
 // Throws Error with Embree's reason if a call failed since the last check.

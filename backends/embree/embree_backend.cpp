@@ -5,9 +5,9 @@
 #include <thread>
 
 #include "backends/embree/path_tracer.h"
-#include "backends/embree/world.h"
+#include "backends/embree/scene_adapter.h"
+#include "mediator/backend/path_log.h"
 #include "mediator/backend/sample_loop.h"
-#include "mediator/backend/story.h"
 #include "mediator/frame/merge.h"
 #include "mediator/shading/sample_values.h"
 
@@ -22,7 +22,7 @@ constexpr frame::ChannelSet AllChannels = frame::ChannelSet::all();
 class EmbreeBackend final : public Backend {
   public:
     explicit EmbreeBackend(const BackendSettings& settings)
-        : settings_(settings), device_(make_device(settings)), world_(device_.get(), settings.blobs) {}
+        : settings_(settings), device_(make_device(settings)), adapter_(device_.get(), settings.blobs) {}
 
     Capabilities capabilities() const override {
         const std::uint32_t cores = std::max(1u, std::thread::hardware_concurrency());
@@ -35,7 +35,7 @@ class EmbreeBackend final : public Backend {
 
     Version version() const override {
         const std::shared_lock lock(mutex_);
-        return world_.version();
+        return adapter_.version();
     }
 
     std::unique_ptr<EditScope> begin_edit() override { return std::make_unique<Edit>(*this); }
@@ -43,8 +43,8 @@ class EmbreeBackend final : public Backend {
     RenderResult render(const view::View& view, const view::WorkUnit& unit, std::stop_token stop) override {
         require_renderer(view::TracingRenderers, view);
         const std::shared_lock lock(mutex_);
-        if (unit.version != world_.version()) return {};
-        const PathTracer tracer(world_.tables(), world_.scene(), view);
+        if (unit.version != adapter_.version()) return {};
+        const PathTracer tracer(adapter_.tables(), adapter_.scene(), view);
         return render_samples(unit, view.channels, [&](frame::FilmTile& tile, std::uint64_t& rays) {
             return fill(tile, tracer, rays, stop);
         });
@@ -54,26 +54,26 @@ class EmbreeBackend final : public Backend {
                                    std::uint64_t sample) override {
         require_renderer(view::TracingRenderers, view);
         const std::shared_lock lock(mutex_);
-        const PathTracer tracer(world_.tables(), world_.scene(), view);
-        std::vector<std::string> story;
+        const PathTracer tracer(adapter_.tables(), adapter_.scene(), view);
+        std::vector<std::string> path_log;
         std::uint64_t rays = 0;
-        const PathSample found = tracer.trace(x, y, sample, rays, &story);
+        const PathSample found = tracer.trace(x, y, sample, rays, &path_log);
         const glm::vec3 radiance = shading::radiance_of(found);
-        write_end(story, radiance, rays);
-        return story;
+        write_end(path_log, radiance, rays);
+        return path_log;
     }
 
   private:
     class Edit final : public EditScope {
       public:
         explicit Edit(EmbreeBackend& backend) : backend_(backend), lock_(backend.mutex_) {}
-        ~Edit() override { backend_.world_.rollback(); }  // what was committed stays
-        const scene::Scene& scene() const override { return backend_.world_.content(); }
+        ~Edit() override { backend_.adapter_.rollback(); }  // committed changes are kept
+        const scene::Scene& scene() const override { return backend_.adapter_.content(); }
         using EditScope::apply;
         Expected<void> apply(const scene::ChangeList& changes, const scene::Scene& after) override {
-            return backend_.world_.apply(changes, after);
+            return backend_.adapter_.apply(changes, after);
         }
-        Expected<EditReport> commit() override { return backend_.world_.commit(); }
+        Expected<EditReport> commit() override { return backend_.adapter_.commit(); }
 
       private:
         EmbreeBackend& backend_;
@@ -98,8 +98,8 @@ class EmbreeBackend final : public Backend {
 
     const BackendSettings settings_;
     DeviceHandle device_;
-    mutable std::shared_mutex mutex_;  // renders share it, an edit owns it; protects the world
-    World world_;
+    mutable std::shared_mutex mutex_;  // shared by renders, exclusive for edits; protects the adapter
+    SceneAdapter adapter_;
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
-// Soap and oil. A film is part of what every surface reflects: no other kernel is to have it.
+// Iridescence. It affects the Fresnel term of every surface, so no other kernel but the full one includes it.
 #define SHADING_KERNEL film
 #define SHADING_FEATURES (PLAIN_FEATURES | shading::FeatureExtras | shading::FeatureIridescence)
-#include "backends/embree/kernel_text.h"
+#include "backends/embree/kernel_impl.h"
 
 namespace tessera::embree {
 

@@ -1,9 +1,9 @@
-// Fog, smoke and clouds: rays that stop between surfaces, and look for light through open boundaries.
+// Fog, smoke and clouds: scattering between surfaces, and shadow rays through index-matched boundaries.
 #define SHADING_KERNEL foggy
-#define SHADING_FEATURES                                                                               \
-    (PLAIN_FEATURES | shading::FeatureMedia | shading::FeatureOpenMedia | shading::FeatureScattering | \
-     shading::FeatureMediaTextures)
-#include "backends/embree/kernel_text.h"
+#define SHADING_FEATURES                                                          \
+    (PLAIN_FEATURES | shading::FeatureMedia | shading::FeatureIndexMatchedMedia | \
+     shading::FeatureScattering | shading::FeatureMediaTextures)
+#include "backends/embree/kernel_impl.h"
 
 namespace tessera::embree {
 

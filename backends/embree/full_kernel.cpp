@@ -1,8 +1,8 @@
-// In one piece it would take three times as long to compile, and be no faster.
-#define KERNEL_PIECES
+// All features. Not flattened: it would take three times as long to compile without being faster.
+#define KERNEL_INLINING
 #define SHADING_KERNEL full
 #define SHADING_FEATURES 0xffffffffu
-#include "backends/embree/kernel_text.h"
+#include "backends/embree/kernel_impl.h"
 
 namespace tessera::embree {
 

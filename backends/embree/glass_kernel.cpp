@@ -1,8 +1,8 @@
-// Frosted glass, and glass that has a colour by its thickness: often the same.
+// Rough glass and absorbing glass, which often occur together.
 #define SHADING_KERNEL glass
 #define SHADING_FEATURES \
     (PLAIN_FEATURES | shading::FeatureRoughGlass | shading::FeatureMedia | shading::FeatureNestedGlass)
-#include "backends/embree/kernel_text.h"
+#include "backends/embree/kernel_impl.h"
 
 namespace tessera::embree {
 

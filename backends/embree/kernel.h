@@ -6,24 +6,23 @@
 
 namespace tessera::embree {
 
-// What traces samples (mediator/shading/trace.h), compiled for scenes and views with no other features than
-// its own: what the others would cost, it does not. Where several kernels may be taken, they find the same
-// bits.
+// The path tracer (mediator/shading/trace.h), compiled for scenes and views with no other features than
+// these, without the cost of others. All kernels that support a scene compute the same bits.
 struct Kernel {
     std::uint32_t features;
-    // Of a pixel and the index of a sample; `rays` is raised by the rays traced. Any thread.
+    // Traces one sample of a pixel; adds the number of rays traced to `rays`. Thread-safe.
     shading::PathSample (*trace)(const shading::Scene& scene, const shading::View& view, RTCScene top,
                                  std::uint32_t x, std::uint32_t y, std::uint64_t sample, std::uint64_t& rays);
 };
 
-// Plain: what is in most scenes. The next have that and one thing that is seldom, with what goes with it:
-// Lights spheres, quads and shadow catchers; Coated layers over surfaces and anisotropy; Glass rough glass and
-// glass whose colour grows with its thickness; Film iridescence; Shader CommonSurfaceShader and what Lights
-// has; Moving motion; Foggy media with and without a surface. Full: all there is, for whatever mixes them.
+// Plain: common features only. The next add one rarely used feature each. Lights: sphere and quad lights,
+// shadow catchers; Coated: coat, sheen and anisotropy; Glass: rough glass and absorption in glass; Film:
+// iridescence; Shader: CommonSurfaceShader and the features of Lights; Moving: motion; Foggy: media with and
+// without a surface. Full: all features, for scenes that combine rare ones.
 extern const Kernel PlainKernel, LightsKernel, CoatedKernel, GlassKernel, FilmKernel, ShaderKernel,
     MovingKernel, FoggyKernel, FullKernel;
 
-// The first of them that has all of these.
+// The first kernel that supports all of these features.
 const Kernel& kernel_for(std::uint32_t features);
 
 }  // namespace tessera::embree

@@ -1,7 +1,7 @@
-// Spheres and quads that shine, and what catches their shadows in a photograph.
+// Sphere and quad lights, and shadow catchers.
 #define SHADING_KERNEL lights
-#define SHADING_FEATURES (PLAIN_FEATURES | shading::FeatureShapedLights | shading::FeatureShadowCatcher)
-#include "backends/embree/kernel_text.h"
+#define SHADING_FEATURES (PLAIN_FEATURES | shading::FeatureAreaLights | shading::FeatureShadowCatcher)
+#include "backends/embree/kernel_impl.h"
 
 namespace tessera::embree {
 

@@ -31,12 +31,12 @@ void MeshScenes::update(const backend::MeshCatalog& catalog, const backend::Mesh
     for (const auto& change : edit.changes) {
         const backend::Mesh& mesh = *catalog.find(change.id);
         switch (change.step) {
-            case backend::MeshStep::ShadingData:
+            case backend::MeshUpdate::ShadingData:
                 break;
-            case backend::MeshStep::Refit:
+            case backend::MeshUpdate::Refit:
                 refit(meshes_.at(change.id), mesh);
                 break;
-            case backend::MeshStep::Rebuild:
+            case backend::MeshUpdate::Rebuild:
                 meshes_[change.id] = build(mesh);
                 break;
         }
@@ -49,7 +49,7 @@ MeshScenes::MeshScene MeshScenes::build(const backend::Mesh& mesh) const {
     built.scene.reset(rtcNewScene(device_));
     rtcSetSceneFlags(built.scene.get(),
                      mesh.refits ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_ROBUST);
-    // In scenes of other quality Embree builds anew what it is asked to refit.
+    // With other build qualities Embree rebuilds instead of refitting.
     if (mesh.refits) rtcSetSceneBuildQuality(built.scene.get(), RTC_BUILD_QUALITY_LOW);
     const GeometryHandle handle(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE));
     built.geometry = handle.get();
@@ -65,9 +65,9 @@ MeshScenes::MeshScene MeshScenes::build(const backend::Mesh& mesh) const {
     return built;
 }
 
-// Same triangles, other places: the tree stays, its boxes follow.
+// Same triangles, moved vertices: the tree is kept, its boxes are updated.
 void MeshScenes::refit(MeshScene& built, const backend::Mesh& mesh) {
-    // The same triangles may be under another address by now; Embree takes whatever is attached for others.
+    // Equal triangles may have moved to another address; Embree treats any newly attached buffer as a change.
     if (built.triangles != mesh.triangles) attach_triangles(built.geometry, mesh);
     built.triangles = mesh.triangles;
     attach_positions(built.geometry, mesh);

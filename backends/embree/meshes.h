@@ -9,14 +9,14 @@ namespace tessera::embree {
 
 enum class AlphaTest { Off, On };
 
-// Embree's bottom level: a scene for each mesh, shared by all its instances. Vertices stay in their blobs.
+// Embree's bottom level: one scene per mesh, shared by all its instances. Vertices stay in their blobs.
 class MeshScenes {
   public:
     explicit MeshScenes(RTCDevice device) : device_(device) {}
 
-    // Does what the catalog has found to do. The blobs of its meshes have to live as long as the scenes.
+    // Applies the catalog's changes. The blobs of its meshes must outlive the scenes.
     void update(const backend::MeshCatalog& catalog, const backend::MeshCatalog::Result& edit);
-    void set_alpha_tested(ObjectId id, AlphaTest test);  // whether rays ask the filter in alpha.h
+    void set_alpha_tested(ObjectId id, AlphaTest test);  // whether hits call the filter function in alpha.h
 
     RTCScene find(ObjectId id) const { return meshes_.at(id).scene.get(); }
 
@@ -24,7 +24,7 @@ class MeshScenes {
     struct MeshScene {
         SceneHandle scene;
         RTCGeometry geometry = nullptr;  // owned by the scene
-        scene::BlobPtr triangles;        // that are attached
+        scene::BlobPtr triangles;        // currently attached
         bool alpha_tested = false;
     };
     MeshScene build(const backend::Mesh& mesh) const;

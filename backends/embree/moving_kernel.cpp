@@ -1,7 +1,7 @@
-// Whatever moves while the shutter is open.
+// Motion while the shutter is open.
 #define SHADING_KERNEL moving
 #define SHADING_FEATURES (PLAIN_FEATURES | shading::FeatureMotion | shading::FeatureCameraMotion)
-#include "backends/embree/kernel_text.h"
+#include "backends/embree/kernel_impl.h"
 
 namespace tessera::embree {
 

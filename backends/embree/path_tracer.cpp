@@ -1,7 +1,7 @@
 #include "backends/embree/path_tracer.h"
 
 #include "backends/embree/context.h"
-#include "mediator/backend/tables/bodies.h"
+#include "mediator/backend/tables/media.h"
 #include "mediator/backend/tables/view_record.h"
 #include "mediator/shading/trace.h"
 
@@ -10,22 +10,22 @@ namespace tessera::embree {
 PathTracer::PathTracer(const backend::SceneTables& tables, RTCScene top, const view::View& view,
                        Strategy strategy)
     : scene_(backend::on_host(tables)),
-      camera_places_(backend::camera_places(view.camera, tables.render_origin)),
+      camera_keys_(backend::camera_keys(view.camera, tables.render_origin)),
       view_(backend::make_view(view, tables.render_origin)),
       top_(top) {
-    view_.inside = backend::bodies_around(tables, view_);
-    view_.camera_places.items = camera_places_.data();
+    view_.containing_media = backend::media_around(tables, view_);
+    view_.camera_keys.items = camera_keys_.data();
     scene_.features = backend::features_for(tables, view_);
     view_.strategy = static_cast<std::uint32_t>(strategy);
     kernel_ = &kernel_for(scene_.features);
 }
 
 PathSample PathTracer::trace(std::uint32_t x, std::uint32_t y, std::uint64_t sample, std::uint64_t& rays,
-                             std::vector<std::string>* story) const {
-    if (story == nullptr) return kernel_->trace(scene_, view_, top_, x, y, sample, rays);
+                             std::vector<std::string>* path_log) const {
+    if (path_log == nullptr) return kernel_->trace(scene_, view_, top_, x, y, sample, rays);
     const float time = shading::sample_time(scene_.features, view_, x, y, sample);
     const shading::Path path =
-        shading::trace_sample(Context{{story}, {scene_, view_, top_, time}}, x, y, sample);
+        shading::trace_sample(Context{{path_log}, {scene_, view_, top_, time}}, x, y, sample);
     rays += path.rays;
     return path.found;
 }

@@ -12,7 +12,7 @@ namespace tessera::embree {
 
 using shading::PathSample;
 
-// How light is found; the estimates agree in expectation. Only tests choose other than Both.
+// Light sampling strategies; all have the same expectation. Only tests use others than Both.
 enum class Strategy : std::uint32_t {
     Both = shading::StrategyBoth,
     LightsOnly = shading::StrategyLightsOnly,
@@ -22,27 +22,27 @@ enum class Strategy : std::uint32_t {
 };
 
 // Traces the samples of one view (mediator/shading/trace.h), with Embree's rays. Stateless between samples:
-// each is a pure function of (scene, view, pixel, index). The tables have to outlive it, at their place.
+// each is a pure function of (scene, view, pixel, index). The tables must outlive it at the same address.
 class PathTracer {
   public:
     PathTracer(const backend::SceneTables& tables, RTCScene top, const view::View& view,
                Strategy strategy = Strategy::Both);
-    PathTracer(const PathTracer&) = delete;  // its view points into it
+    PathTracer(const PathTracer&) = delete;  // its view points to its members
     PathTracer& operator=(const PathTracer&) = delete;
 
-    // Any thread. `rays` is raised by the rays traced; `story`, if given, gets a line per vertex.
+    // Any thread. `rays` is raised by the rays traced; `path_log`, if given, gets a line per vertex.
     PathSample trace(std::uint32_t x, std::uint32_t y, std::uint64_t sample, std::uint64_t& rays,
-                     std::vector<std::string>* story = nullptr) const;
+                     std::vector<std::string>* path_log = nullptr) const;
 
     const shading::View& view() const { return view_; }
-    // Chosen by what occurs in the scene and the view; only tests choose another, which has to have all of
-    // it.
+    // Selected by the features of the scene and the view. Tests may set another one, which must support all
+    // of them.
     const Kernel& kernel() const { return *kernel_; }
     void set_kernel(const Kernel& kernel) { kernel_ = &kernel; }
 
   private:
     shading::Scene scene_;
-    std::vector<shading::Place> camera_places_;
+    std::vector<shading::Affine3x4> camera_keys_;
     shading::View view_;
     RTCScene top_;
     const Kernel* kernel_;

@@ -1,7 +1,7 @@
-// What most scenes are made of, and nothing else (kernel_text.h).
+// Common features only (kernel_impl.h).
 #define SHADING_KERNEL plain
 #define SHADING_FEATURES PLAIN_FEATURES
-#include "backends/embree/kernel_text.h"
+#include "backends/embree/kernel_impl.h"
 
 namespace tessera::embree {
 

@@ -7,7 +7,7 @@
 // The rays of the shared transport (mediator/shading/transport.h).
 namespace tessera::embree {
 
-// What they go through, and for whom.
+// The scene that rays are traced through, and the view and time that they are traced for.
 struct Rays {
     const shading::Scene& scene;
     const shading::View& view;

@@ -1,8 +1,9 @@
-// X3D's surface, by lights with a shape or in a photograph as well.
+// X3D's CommonSurfaceShader, with area lights and shadow catchers.
 #define SHADING_KERNEL shader
-#define SHADING_FEATURES \
-    (PLAIN_FEATURES | shading::FeatureShader | shading::FeatureShapedLights | shading::FeatureShadowCatcher)
-#include "backends/embree/kernel_text.h"
+#define SHADING_FEATURES                                                           \
+    (PLAIN_FEATURES | shading::FeatureSurfaceShader | shading::FeatureAreaLights | \
+     shading::FeatureShadowCatcher)
+#include "backends/embree/kernel_impl.h"
 
 namespace tessera::embree {
 

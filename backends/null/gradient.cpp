@@ -26,10 +26,10 @@ std::uint64_t mixed(std::uint64_t key, const glm::dmat4& matrix) {
 
 std::uint64_t content_key(const backend::ShadowScene& shadow) {
     std::uint64_t key = mixed(shadow.scene().state_hash().high, shadow.scene().state_hash().low);
-    for (const backend::Instance& instance : shadow.lowered().instances) {
+    for (const backend::Instance& instance : shadow.flat_scene().instances) {
         key = mixed(mixed(key, instance.geometry.value), instance.world_from_object);
     }
-    for (const backend::PlacedLight& light : shadow.lowered().lights) {
+    for (const backend::PlacedLight& light : shadow.flat_scene().lights) {
         key = mixed(mixed(key, light.light.value), light.world_from_light);
     }
     return key;
@@ -48,12 +48,12 @@ std::uint64_t view_key(std::uint64_t content, const view::View& view) {
     return mixed(key, (std::uint64_t{view.width} << 32) | view.height);
 }
 
-Gradient gradient(const view::View& view, const backend::Lowered& lowered, std::uint64_t key, std::int32_t x,
-                  std::int32_t y, std::uint64_t sample) {
+Gradient gradient(const view::View& view, const backend::FlatScene& flat_scene, std::uint64_t key,
+                  std::int32_t x, std::int32_t y, std::uint64_t sample) {
     const Colors light = colors(view, key, x, y, sample);
     const float u = static_cast<float>(x) / static_cast<float>(view.width);
     const float v = static_cast<float>(y) / static_cast<float>(view.height);
-    const auto& instances = lowered.instances;
+    const auto& instances = flat_scene.instances;
     const std::uint32_t cell = static_cast<std::uint32_t>(x / 16 + y / 16 * 7) %
                                static_cast<std::uint32_t>(instances.size() + 1);  // the last one is a miss
     const bool hit = cell < instances.size() && (instances[cell].layers & view.layers) != 0;
@@ -85,10 +85,10 @@ void append_values(const Gradient& sample, std::uint64_t index, frame::ChannelSe
         values.push_back(std::bit_cast<float>(static_cast<std::uint32_t>(object.value)));
     }
     if (channels.contains(Channel::Alpha)) values.push_back(object.value != 0 ? 1.0f : 0.0f);
-    add(Channel::Range, albedo);
+    add(Channel::Headlight, albedo);
     if (channels.contains(Channel::ShadingFeature)) values.push_back(direct[1] + indirect[1]);
     add(Channel::Irradiance, direct);
-    if (channels.contains(Channel::EvenHalf)) {
+    if (channels.contains(Channel::HalfBufferA)) {
         const bool even = index % 2 == 0;
         for (const float value : radiance) values.push_back(even ? value : 0.0f);
         values.push_back(even ? 1.0f : 0.0f);

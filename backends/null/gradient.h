@@ -17,14 +17,14 @@ struct Colors {
     float noise;
 };
 
-// One sample of one pixel, as a path tracer would find it.
+// One sample of one pixel, with all values that a path tracer returns.
 struct Gradient {
     std::array<float, 3> direct, indirect, albedo, normal;
     float depth;
     ObjectId object;
 };
 
-// Numbers for everything in the scene, and then in the view, that a picture may depend on.
+// Hashes of everything in the scene, and then in the view, that a picture may depend on.
 std::uint64_t content_key(const backend::ShadowScene& shadow);
 std::uint64_t view_key(std::uint64_t content, const view::View& view);
 
@@ -40,10 +40,10 @@ inline Colors colors(const view::View& view, std::uint64_t key, std::int32_t x, 
             .indirect = {0.1f * static_cast<float>(random.uniform()), 0.05f, 0.025f * noise},
             .noise = noise};
 }
-Gradient gradient(const view::View& view, const backend::Lowered& lowered, std::uint64_t key, std::int32_t x,
-                  std::int32_t y, std::uint64_t sample);
+Gradient gradient(const view::View& view, const backend::FlatScene& flat_scene, std::uint64_t key,
+                  std::int32_t x, std::int32_t y, std::uint64_t sample);
 
-// In the order in which frame::put_sample wants them; `index` is the sample's.
+// In the order of frame::put_sample; `index` is the sample index.
 void append_values(const Gradient& sample, std::uint64_t index, frame::ChannelSet channels,
                    std::vector<float>& values);
 

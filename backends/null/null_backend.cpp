@@ -55,7 +55,7 @@ class NullBackend final : public Backend {
                                    std::uint64_t sample) override {
         require_renderer(view::TracingRenderers, view);
         const std::shared_lock lock(mutex_);
-        const Gradient values = gradient(view, shadow_.lowered(), view_key(content_, view),
+        const Gradient values = gradient(view, shadow_.flat_scene(), view_key(content_, view),
                                          static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), sample);
         return {"hit object " + std::to_string(values.object.value) + " at depth " +
                 std::to_string(values.depth)};
@@ -65,7 +65,7 @@ class NullBackend final : public Backend {
     class Edit final : public EditScope {
       public:
         explicit Edit(NullBackend& backend) : backend_(backend), lock_(backend.mutex_) {}
-        ~Edit() override { backend_.shadow_.rollback(); }  // what was committed stays
+        ~Edit() override { backend_.shadow_.rollback(); }  // committed changes are kept
 
         const scene::Scene& scene() const override { return backend_.shadow_.scene(); }
         using EditScope::apply;
@@ -75,11 +75,11 @@ class NullBackend final : public Backend {
 
         Expected<EditReport> commit() override {
             SceneDelta delta = backend_.shadow_.take_delta();
-            const Lowered& lowered = backend_.shadow_.lowered();
+            const FlatScene& flat_scene = backend_.shadow_.flat_scene();
             backend_.content_ = content_key(backend_.shadow_);
             std::uint64_t triangles = 0;
             ObjectId previous;
-            for (const Instance& instance : lowered.instances) {  // ascending by geometry
+            for (const Instance& instance : flat_scene.instances) {  // ascending by geometry
                 const auto* geometry = backend_.shadow_.scene().find_as<scene::Geometry>(instance.geometry);
                 if (instance.geometry != previous) triangles += geometry->indices.byte_size / 12;
                 previous = instance.geometry;
@@ -88,8 +88,8 @@ class NullBackend final : public Backend {
                               .relevant = delta.relevant,
                               .retransformed = static_cast<std::uint32_t>(delta.moved_instances.size()),
                               .triangles = triangles,
-                              .instances = lowered.instances.size(),
-                              .lights = lowered.lights.size(),
+                              .instances = flat_scene.instances.size(),
+                              .lights = flat_scene.lights.size(),
                               .ignored_kinds = std::move(delta.ignored_kinds)};
         }
 
@@ -107,7 +107,7 @@ class NullBackend final : public Backend {
         for (std::int32_t y = tile.rect.y; y < tile.rect.bottom(); ++y) {
             if (stop.stop_requested()) return false;
             for (std::int32_t x = tile.rect.x; x < tile.rect.right(); ++x, ++pixel) {
-                const Gradient sample = gradient(view, shadow_.lowered(), key, x, y, tile.block.first);
+                const Gradient sample = gradient(view, shadow_.flat_scene(), key, x, y, tile.block.first);
                 append_values(sample, tile.block.first, tile.channels, values);
                 frame::put_sample(tile, pixel, values);
                 values.clear();
@@ -116,7 +116,7 @@ class NullBackend final : public Backend {
         return true;
     }
 
-    // The same for the picture alone, which walls are fed with: nothing on the way that it does not need.
+    // Fast path for colour only, as display walls use it.
     bool fill_color(frame::FilmTile& tile, const view::View& view, std::uint64_t key,
                     const std::stop_token& stop) const {
         std::fill(tile.counts.begin(), tile.counts.end(), 1u);
@@ -132,7 +132,7 @@ class NullBackend final : public Backend {
         return true;
     }
 
-    // The simulated cost, asleep, so that many nodes can pretend on few cores. False: stopped.
+    // Sleeps for the simulated cost, so that many nodes can be simulated on few cores. False: stopped.
     bool spend_time(std::size_t samples, const std::stop_token& stop) const {
         if (settings_.simulated_sample_cost.count() == 0) return true;
         std::mutex mutex;
@@ -143,7 +143,7 @@ class NullBackend final : public Backend {
     }
 
     const BackendSettings settings_;
-    mutable std::shared_mutex mutex_;  // renders share it, an edit owns it; protects everything below
+    mutable std::shared_mutex mutex_;  // shared by renders, exclusive for edits; protects everything below
     ShadowScene shadow_;
     std::uint64_t content_ = 0;
 };

@@ -7,14 +7,14 @@
 
 namespace tessera::vulkan {
 
-// The blobs that a scene's records point into, each once on the device.
+// The blobs that scene records point into, one buffer per blob on the device.
 class BlobBuffers final {
   public:
     explicit BlobBuffers(Device& device) : device_(device) {}
 
-    // Where the blob lies, sent there if it is new. Throws Error{OutOfMemory} with the sizes.
+    // The device address of the blob, which is uploaded if it is new. Throws Error{OutOfMemory} with the sizes.
     std::uint64_t address_of(const scene::BlobPtr& blob);
-    // Between two calls of it, what nobody asked for is dropped.
+    // Drops all blobs that were not requested since the previous call.
     void drop_unused();
 
   private:

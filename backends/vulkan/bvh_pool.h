@@ -15,58 +15,58 @@
 namespace tessera::vulkan {
 
 // The acceleration structures of a scene in one pool of 16-byte items on the device
-// (mediator/shading/bvh_layout.h), in step with its meshes and instances at the cheapest level.
+// (mediator/shading/bvh_layout.h), updated by the cheapest operation: refit or rebuild.
 class BvhPool final {
   public:
     BvhPool(Device& device, TreeCache& trees) : device_(device), trees_(trees) {}
 
     struct Work {
-        std::uint32_t rebuilt = 0, refitted = 0;  // trees that the cache had are neither
+        std::uint32_t rebuilt = 0, refitted = 0;  // without trees loaded from the cache
     };
-    // Brings the meshes in step with the catalog, then the top level with the instances. A refit that would
-    // make a tree bad is a rebuild. Throws Error{OutOfMemory} and DeviceLost; the pool is to be dropped then.
+    // Updates the BVHs of meshes to the catalog, then the top level to the instances. A tree whose refit would
+    // be too expensive to trace is rebuilt. Throws Error{OutOfMemory} and DeviceLost; then drop the pool.
     Work update(const backend::MeshCatalog& meshes, const backend::MeshCatalog::Result& changes,
                 const backend::SceneTables& tables);
 
     const Buffer& buffer() const { return buffer_; }
-    // What each instance can be hit in; empty: it is left out and never hit.
+    // World bounds of each instance; empty: it is left out and never hit.
     const std::vector<Box>& boxes() const { return boxes_; }
-    std::uint32_t top() const { return top_row_.item(); }  // where the top level's root is, in items
+    std::uint32_t top() const { return top_range_.item(); }  // where the top level's root is, in items
 
   private:
-    // A row of items.
-    struct Row {
+    // A range of items.
+    struct PoolRange {
         std::uint64_t offset = 0, bytes = 0;
-        bool placed = false;
+        bool allocated = false;
         std::uint32_t item() const { return static_cast<std::uint32_t>(offset / 16); }
     };
-    struct MeshRows {
+    struct MeshRanges {
         WideTree tree;
         double built_cost = 0.0;
-        Row nodes, triangles;
-        std::uint32_t steps = 0;  // of its motion, after the beginning
-        bool dirty = true;        // the device does not have it yet
+        PoolRange nodes, triangles;
+        std::uint32_t key_intervals = 0;  // of a deforming mesh
+        bool dirty = true;                // not uploaded yet
     };
 
-    bool refit(MeshRows& rows, const backend::Mesh& mesh);
-    void insert(ObjectId id, WideTree&& tree, std::size_t steps);
+    bool refit(MeshRanges& ranges, const backend::Mesh& mesh);
+    void insert(ObjectId id, WideTree&& tree, std::size_t key_intervals);
     void update_top(const backend::SceneTables& tables);
-    // Places all rows that have no place, in a larger pool if need be.
-    void place_rows(std::uint64_t top_bytes);
-    bool try_place();
-    bool try_place(Row& row);
-    void release(Row& row);
-    void send(MeshRows& rows, const backend::Mesh& mesh);
+    // Allocates all ranges that are not allocated yet, in a larger pool if needed.
+    void allocate_ranges(std::uint64_t top_bytes);
+    bool try_allocate();
+    bool try_allocate(PoolRange& range);
+    void release(PoolRange& range);
+    void send(MeshRanges& ranges, const backend::Mesh& mesh);
 
     Device& device_;
     TreeCache& trees_;
     BinaryTreeBuilder builder_;
-    std::map<ObjectId, MeshRows> meshes_;
+    std::map<ObjectId, MeshRanges> meshes_;
     Buffer buffer_;
     std::optional<RangeAllocator> ranges_;
     TopBvh top_;
     double top_built_cost_ = 0.0;
-    Row top_row_;
+    PoolRange top_range_;
     std::vector<Box> boxes_;
 };
 

@@ -16,7 +16,7 @@ void DeviceTable::update(std::span<const std::byte> bytes) {
         if (first == static_cast<std::ptrdiff_t>(bytes.size())) return;
         std::size_t end = bytes.size();
         while (bytes[end - 1] == content_[end - 1]) --end;
-        // Words: what a device copies in.
+        // Copies are in units of 4-byte words.
         const std::size_t begin = static_cast<std::size_t>(first) / 4 * 4;
         const std::size_t words_end = std::min(bytes.size(), (end + 3) / 4 * 4);
         upload_bytes(device_, buffer_, bytes.subspan(begin, words_end - begin), begin);

@@ -8,13 +8,13 @@
 
 namespace tessera::vulkan {
 
-// An array of the host mirrored on the device: only what changed is sent.
+// A host array mirrored on the device: only the changed part is uploaded.
 class DeviceTable final {
   public:
     explicit DeviceTable(Device& device) : device_(device) {}
 
-    // Afterwards the buffer holds these bytes. Another size makes another buffer, at another address. Throws
-    // Error{OutOfMemory} and DeviceLost; what is on the device is unknown then.
+    // Copies these bytes to the buffer. A different size allocates a new buffer at a new address. Throws
+    // Error{OutOfMemory} and DeviceLost; the contents of the buffer are undefined then.
     void update(std::span<const std::byte> bytes);
     template <class T>
     void update(const std::vector<T>& values) {

@@ -34,26 +34,26 @@ GpuScene::GpuScene(Device& device, TreeCache& cache, Trees trees)
       textures_(device),
       materials_(device),
       extras_(device),
-      shaders_(device),
+      surface_shaders_(device),
       meshes_(device),
-      mesh_steps_(device),
-      places_(device),
+      mesh_keys_(device),
+      transform_keys_(device),
       motions_(device),
-      bodies_(device),
+      media_(device),
       instances_(device),
       lights_(device),
       emitters_(device),
       light_nodes_(device),
-      sums_(device),
+      cdfs_(device),
       srgb_(device),
       energy_(device),
       scene_(device),
       bounds_(device) {
-    if (trees == Trees::Plain) plain_.emplace(device);
+    if (trees == Trees::Bvh2) bvh2_.emplace(device);
 }
 
 Traversal GpuScene::traversal() const {
-    if (plain_) return Traversal::Plain;
+    if (bvh2_) return Traversal::Bvh2;
     return pool().size() / 16 <= device_.info().texel_elements ? Traversal::Texels : Traversal::Address;
 }
 
@@ -63,45 +63,45 @@ BvhPool::Work GpuScene::update(const backend::MeshCatalog& meshes,
     backend::SceneTables there = tables;
     backend::set_addresses(there, [&](const scene::BlobPtr& blob) { return blobs_.address_of(blob); });
     BvhPool::Work work;
-    if (plain_) {
-        work.rebuilt = plain_->update(meshes, tables.instances);
+    if (bvh2_) {
+        work.rebuilt = bvh2_->update(meshes, tables.instances);
     } else {
         work = bvh_.update(meshes, changes, tables);
     }
     textures_.update(there.textures);
     materials_.update(there.materials);
     extras_.update(there.extras);
-    shaders_.update(there.shaders);
+    surface_shaders_.update(there.surface_shaders);
     meshes_.update(there.meshes);
-    mesh_steps_.update(there.mesh_steps);
-    places_.update(there.places);
+    mesh_keys_.update(there.mesh_keys);
+    transform_keys_.update(there.transform_keys);
     motions_.update(there.motions);
-    bodies_.update(there.bodies);
+    media_.update(there.media);
     instances_.update(there.instances);
     lights_.update(there.lights);
     emitters_.update(there.emitters);
     light_nodes_.update(there.light_nodes);
-    sums_.update(there.sums);
+    cdfs_.update(there.cdfs);
     srgb_.update(std::as_bytes(backend::srgb_values()));
     energy_.update(std::as_bytes(backend::energy_values()));
     set_address(there.scene.textures, textures_);
     set_address(there.scene.materials, materials_);
     set_address(there.scene.extras, extras_);
-    set_address(there.scene.shaders, shaders_);
+    set_address(there.scene.surface_shaders, surface_shaders_);
     set_address(there.scene.meshes, meshes_);
-    set_address(there.scene.mesh_steps, mesh_steps_);
-    set_address(there.scene.places, places_);
+    set_address(there.scene.mesh_keys, mesh_keys_);
+    set_address(there.scene.transform_keys, transform_keys_);
     set_address(there.scene.motions, motions_);
-    set_address(there.scene.bodies, bodies_);
+    set_address(there.scene.media, media_);
     set_address(there.scene.instances, instances_);
     set_address(there.scene.lights, lights_);
     set_address(there.scene.emitters, emitters_);
     set_address(there.scene.light_nodes, light_nodes_);
-    set_address(there.scene.sums, sums_);
+    set_address(there.scene.cdfs, cdfs_);
     set_address(there.scene.srgb, srgb_);
     set_address(there.scene.energy, energy_);
     scene_.update(std::as_bytes(std::span(&there.scene, 1)));
-    if (!plain_) bounds_.update(bounds_of(bvh_.boxes(), tables));
+    if (!bvh2_) bounds_.update(bounds_of(bvh_.boxes(), tables));
     features_ = there.scene.features;
     instance_count_ = there.scene.instance_count;
     blobs_.drop_unused();

@@ -16,8 +16,7 @@ struct Job {
     std::uint32_t pixels = 0;  // of the tile
     std::uint32_t first_item = 0, item_count = 0;
     std::uint32_t unused = 0;
-    // Of RASTERISED alone, an address: instance and triangle of each item from the dispatch's first sample
-    // on.
+    // RASTERISED only: address of instance and triangle per item, from the first sample of the dispatch on.
     std::uint64_t seen = 0;
 };
 
@@ -28,14 +27,14 @@ static_assert(offsetof(Job, pixels) == 56 && offsetof(Job, first_item) == 60);
 static_assert(offsetof(Job, item_count) == 64);
 
 // The push constants of shaders/merge.comp: 2^level samples of each pixel become one block. Value k of sample
-// s of pixel i stands at values[((k << level) + s) * pixels + i]; plane p of it goes to planes[p * pixels +
-// i]. The word behind the planes is 0, and stays so unless the host has to merge instead.
+// s of pixel i is stored at values[((k << level) + s) * pixels + i]; plane p of it goes to planes[p * pixels +
+// i]. The word after the planes is 0 unless the host has to merge instead.
 struct MergeJob {
     std::uint64_t columns = 0, values = 0, planes = 0;  // addresses
     std::uint32_t pixels = 0, level = 0;
     std::uint32_t column_count = 0, plane_count = 0;
 };
-constexpr int MaxMergedLevel = 8;  // a pixel's partial sums lie in registers
+constexpr int MaxMergedLevel = 8;  // partial sums of a pixel are kept in registers
 
 static_assert(sizeof(MergeJob) == 40);
 static_assert(offsetof(MergeJob, planes) == 16 && offsetof(MergeJob, pixels) == 24);

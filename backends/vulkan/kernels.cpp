@@ -7,7 +7,7 @@
 #include "backends/vulkan/job.h"
 #include "backends/vulkan/shaders/merge.comp.h"
 #include "backends/vulkan/shaders/trace.comp.h"
-#include "backends/vulkan/shaders/trace_plain.comp.h"
+#include "backends/vulkan/shaders/trace_bvh2.comp.h"
 #include "backends/vulkan/shaders/trace_raster.comp.h"
 #include "backends/vulkan/shaders/trace_raster_texels.comp.h"
 #include "backends/vulkan/shaders/trace_texels.comp.h"
@@ -19,9 +19,9 @@ namespace tessera::vulkan {
 
 namespace {
 
-std::span<const std::uint32_t> code_of(const KernelKind& kind) {
+std::span<const std::uint32_t> code_of(const KernelVariant& kind) {
     const bool texels = kind.traversal == Traversal::Texels;
-    if (kind.traversal == Traversal::Plain) return shaders::trace_plain_comp();
+    if (kind.traversal == Traversal::Bvh2) return shaders::trace_bvh2_comp();
     if (kind.rasterised) return texels ? shaders::trace_raster_texels_comp() : shaders::trace_raster_comp();
     if (kind.specular_trees) {
         return texels ? shaders::trace_trees_texels_comp() : shaders::trace_trees_comp();
@@ -29,7 +29,7 @@ std::span<const std::uint32_t> code_of(const KernelKind& kind) {
     return texels ? shaders::trace_texels_comp() : shaders::trace_comp();
 }
 
-Kernel made(Device& device, PipelineSettings settings) {
+Kernel compile_async(Device& device, PipelineSettings settings) {
     return std::async(std::launch::async, [&device, settings = std::move(settings)] {
         return ComputePipeline(device, settings);
     });
@@ -37,16 +37,16 @@ Kernel made(Device& device, PipelineSettings settings) {
 
 }  // namespace
 
-// 64 is a multiple of every subgroup there is, and small enough for kernels with many registers.
+// 64 is a multiple of every known subgroup size, and small enough for kernels with many registers.
 Kernels::Kernels(Device& device)
     : device_(device), group_size_(std::min(64u, device.info().max_workgroup_size)) {}
 
-// Made for exactly what the scene has: without textures and kinds of lights that it lacks, the shared code
-// loads half as much, which lavapipe does lane by lane (1.1 to 1.25 times the samples). An edit that brings a
-// scene its first light of a kind waits for the driver once.
-Kernel Kernels::find(KernelKind kind) {
+// Specialised for exactly the features of the scene: without code for textures and lights that it lacks, the
+// kernel loads half as much, which lavapipe does lane by lane (1.1 to 1.25 times the samples). An edit that adds the
+// first light of a kind waits once for the driver's compiler.
+Kernel Kernels::find(KernelVariant kind) {
     const std::scoped_lock lock(mutex_);
-    Kernel& kernel = made_[kind];
+    Kernel& kernel = trace_kernels_[kind];
     if (!kernel.valid()) {
         PipelineSettings settings{.name = kind.rasterised ? "shading" : "path tracing",
                                   .code = code_of(kind),
@@ -54,20 +54,20 @@ Kernel Kernels::find(KernelKind kind) {
                                   .push_bytes = sizeof(Job)};
         if (kind.traversal == Traversal::Texels)
             settings.bindings = {{.index = 0, .kind = Binding::Kind::Texels}};
-        kernel = made(device_, std::move(settings));
+        kernel = compile_async(device_, std::move(settings));
     }
     return kernel;
 }
 
-Kernel Kernels::merging() {
+Kernel Kernels::merge_kernel() {
     const std::scoped_lock lock(mutex_);
-    if (!merging_.valid()) {
-        merging_ = made(device_, {.name = "merging of samples",
-                                  .code = shaders::merge_comp(),
-                                  .constants = {{0, group_size_}},
-                                  .push_bytes = sizeof(MergeJob)});
+    if (!merge_kernel_.valid()) {
+        merge_kernel_ = compile_async(device_, {.name = "sample merge",
+                                                .code = shaders::merge_comp(),
+                                                .constants = {{0, group_size_}},
+                                                .push_bytes = sizeof(MergeJob)});
     }
-    return merging_;
+    return merge_kernel_;
 }
 
 }  // namespace tessera::vulkan

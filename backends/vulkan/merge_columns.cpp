@@ -32,7 +32,7 @@ std::vector<MergeColumn> merge_columns(frame::ChannelSet channels) {
         const ColumnRule rule = column_rule(info.rule);
         const bool is_record = rule == ColumnRule::Nearest || rule == ColumnRule::First;
         for (std::uint32_t c = 0; c < (is_record ? 1u : info.components); ++c) {
-            // Of one key each, but for records.
+            // Columns of one value each, except for records.
             const bool one_by_one = rule == ColumnRule::Minimum || rule == ColumnRule::Maximum;
             columns.push_back({rule, value + c, one_by_one ? 1u : info.components, plane + c});
         }

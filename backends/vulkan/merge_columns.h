@@ -7,13 +7,12 @@
 
 namespace tessera::vulkan {
 
-// What shaders/merge.comp makes of the values of a pixel's samples: frame::MergeRule, or the sum of whole
-// numbers.
+// How shaders/merge.comp combines the values of the samples of a pixel: frame::MergeRule, or an integer sum.
 enum class ColumnRule : std::uint32_t { Moments, Sum, Minimum, Maximum, Nearest, First, Count };
 
 // Values that are merged together: `components` of them from the one numbered `value` on become planes from
-// `plane` on. Values of Moments and Sum are merged one by one: `components` is then how far the plane of M2
-// lies behind the one of the mean.
+// `plane` on. Values of Moments and Sum are merged one by one: `components` is then the offset from
+// the plane of the mean to the plane of M2.
 struct MergeColumn {
     ColumnRule rule = ColumnRule::Count;
     std::uint32_t value = 0, components = 1, plane = 0;

@@ -9,7 +9,7 @@ inline MeshData data_of(const backend::Mesh& mesh) {
     MeshData data{backend::elements<glm::vec3>(mesh.positions),
                   backend::elements<glm::uvec3>(mesh.triangles)};
     for (const scene::BlobPtr& step : mesh.motion_positions) {
-        data.steps.push_back(backend::elements<glm::vec3>(step));
+        data.later_positions.push_back(backend::elements<glm::vec3>(step));
     }
     return data;
 }

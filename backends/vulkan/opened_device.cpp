@@ -7,7 +7,7 @@ namespace tessera::vulkan {
 DeviceOpener::DeviceOpener(const backend::BackendSettings& settings, const DeviceSettings& device)
     : wanted_(settings.device), settings_(device) {
     settings_.cache_folder = settings.cache_folder;
-    // Mesa's software device reads it when it is opened.
+    // lavapipe reads this variable when the device is opened.
     if (settings.threads != 0) ::setenv("LP_NUM_THREADS", std::to_string(settings.threads).c_str(), 0);
 }
 

@@ -4,20 +4,20 @@
 #include <string>
 
 #include "backends/vulkan/device/device.h"
+#include "backends/vulkan/dispatch_budget.h"
 #include "backends/vulkan/kernels.h"
-#include "backends/vulkan/pace.h"
 #include "backends/vulkan/raster/raster_kernels.h"
 #include "backends/vulkan/raster/raster_target.h"
 #include "mediator/backend/backend.h"
 
 namespace tessera::vulkan {
 
-// A device with all that lives no longer than it.
+// A device and everything that has its lifetime.
 struct OpenedDevice {
     Instance instance;
     Device device;
     Kernels kernels;
-    Pace pace, raster_pace;
+    DispatchBudget dispatch_budget, raster_dispatch_budget;
     RasterKernels raster;
     RasterTargets targets;
 
@@ -29,13 +29,13 @@ struct OpenedDevice {
           targets(device) {}
 };
 
-// Opens the device that the settings name, again if need be. `threads` of the settings are those of a
-// software device, for the whole process.
+// Opens (and reopens) the device named by the settings. `threads` sets the threads of a software device, for
+// the whole process.
 class DeviceOpener {
   public:
     DeviceOpener(const backend::BackendSettings& settings, const DeviceSettings& device);
 
-    // Throws Error{Unavailable} or Error{InvalidInput} with the devices there are.
+    // Throws Error{Unavailable} or Error{InvalidInput} with a list of the available devices.
     std::unique_ptr<OpenedDevice> open() const;
 
   private:

@@ -1,7 +1,7 @@
 #include "backends/vulkan/probe.h"
 
 #include "backends/vulkan/device/transfer.h"
-#include "mediator/backend/story.h"
+#include "mediator/backend/path_log.h"
 #include "mediator/shading/bvh_trace.h"
 #include "mediator/shading/raster.h"
 #include "mediator/shading/trace.h"
@@ -11,7 +11,7 @@ namespace tessera::vulkan {
 namespace {
 
 // What the shared transport asks for, as in shaders/trace.comp.
-struct HostContext : backend::Teller {
+struct HostContext : backend::PathLogger {
     const shading::Scene& scene;
     const shading::View& view;
     float time;
@@ -45,7 +45,7 @@ bool trace_occluded(const HostContext& context, const glm::vec3& origin, const g
                .instance != shading::NoInstance;
 }
 
-// As if the rasteriser saw what a ray sees: but at edges, it does.
+// Assumes that the rasteriser finds the same hit as a ray, which holds except at edges.
 shading::Path trace_drawn(const HostContext& context, glm::uvec2 pixel, std::uint64_t sample) {
     const shading::Path start =
         shading::start_path(shading::make_sampler(pixel.x, pixel.y, context.view.seed, sample));
@@ -61,14 +61,14 @@ std::vector<std::string> replay(Device& device, const GpuScene& scene, const bac
     const auto pool = download<glm::uvec4>(device, scene.pool());
     shading::Scene on_host = backend::on_host(tables);
     on_host.features = backend::features_for(tables, view);
-    backend::Story story;
+    backend::PathLog path_log;
     const float time = shading::sample_time(on_host.features, view, pixel.x, pixel.y, sample);
-    const HostContext context{{&story}, on_host, view, time, {pool.data()}, scene.top()};
+    const HostContext context{{&path_log}, on_host, view, time, {pool.data()}, scene.top()};
     const shading::Path path = view.renderer == shading::RendererRaster
                                    ? trace_drawn(context, pixel, sample)
                                    : shading::trace_sample(context, pixel.x, pixel.y, sample);
-    backend::write_end(story, shading::radiance_of(path.found), path.rays);
-    return story;
+    backend::write_end(path_log, shading::radiance_of(path.found), path.rays);
+    return path_log;
 }
 
 }  // namespace tessera::vulkan

@@ -8,8 +8,8 @@
 
 namespace tessera::vulkan {
 
-// Replays one sample on the host, by the same text as the device's, on what the device holds: the rows of its
-// acceleration structure are fetched. A line per vertex, then the radiance. Throws DeviceLost.
+// Replays one sample on the host with the same shading code, using the acceleration structure downloaded from
+// the device. Returns a line per path vertex, then the radiance. Throws DeviceLost.
 std::vector<std::string> replay(Device& device, const GpuScene& scene, const backend::SceneTables& tables,
                                 const shading::View& view, glm::uvec2 pixel, std::uint64_t sample);
 

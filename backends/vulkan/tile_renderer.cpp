@@ -15,21 +15,21 @@ namespace tessera::vulkan {
 
 namespace {
 
-// One dispatch on its way: single samples, or whole ones of the tile that are merged behind it.
+// One dispatch in flight: individual samples, or whole samples of the tile that are merged after it.
 struct Batch {
-    Buffer values;   // of the samples, where the host reads them
+    Buffer values;   // of the samples, readable by the host
     Buffer scratch;  // the same for samples that are merged
-    Buffer merged;   // planes, those of the rays, and a word that is not 0 where the host has to merge
+    Buffer merged;   // planes, ray counts, and a word that is not 0 if the host has to merge
     Submission submission;
     std::uint32_t items = 0;
     std::optional<frame::SampleBlock> block;
 };
 
-void make_room(Device& device, Buffer& buffer, std::uint64_t bytes, MemoryKind kind) {
+void ensure_size(Device& device, Buffer& buffer, std::uint64_t bytes, MemoryKind kind) {
     if (buffer.size() < bytes) buffer = Buffer(device, bytes, kind);
 }
 
-// False: stopped before the kernel was made.
+// False: stopped before the kernel was compiled.
 bool ready(const Kernel& kernel, const std::stop_token& stop) {
     while (kernel.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready) {
         if (stop.stop_requested()) return false;
@@ -37,7 +37,7 @@ bool ready(const Kernel& kernel, const std::stop_token& stop) {
     return true;
 }
 
-// What the next dispatch takes: the largest block that may be merged on the device, if any.
+// The block of the next dispatch: the largest that can be merged on the device, if any.
 std::optional<frame::SampleBlock> next_block(std::uint64_t sample, std::uint64_t end, std::uint64_t most) {
     if (most < 2 || end - sample < 2) return std::nullopt;
     const int aligned = sample == 0 ? 63 : std::countr_zero(sample);
@@ -54,7 +54,7 @@ class UnitRun {
             frame::ChannelSet channels)
         : device_(with.device),
           kernels_(with.kernels),
-          pace_(with.pace),
+          dispatch_budget_(with.dispatch_budget),
           scene_(with.scene),
           unit_(unit),
           pixels_(static_cast<std::uint32_t>(unit.tile.pixel_count())),
@@ -62,14 +62,14 @@ class UnitRun {
           planes_(channels.plane_count()),
           all_(unit.block.count() * pixels_),
           film_(unit, channels) {
-        if (!with.camera_places.empty()) {
-            camera_places_ = make_buffer(device_, with.camera_places);
-            view.camera_places.items = reinterpret_cast<const shading::Place*>(camera_places_.address());
+        if (!with.camera_keys.empty()) {
+            camera_keys_ = make_buffer(device_, with.camera_keys);
+            view.camera_keys.items = reinterpret_cast<const shading::Affine3x4*>(camera_keys_.address());
         }
         view_ = make_buffer(device_, std::vector<shading::View>{view});
         const bool trees = view.renderer == shading::RendererWhitted ||
                            view.renderer == shading::RendererRaster ||
-                           (view.keeps & shading::KeepsRange) != 0;
+                           (view.recorded_quantities & shading::RecordsHeadlight) != 0;
         kernel_ = kernels_.find({.features = with.features,
                                  .specular_trees = trees,
                                  .rasterised = with.raster != nullptr,
@@ -77,29 +77,29 @@ class UnitRun {
         if (with.raster != nullptr) {
             raster_.emplace(device_, *with.raster, scene_, view, view_.address(), unit.tile);
         }
-        merges_ = unit.block.level > 0 && device_.info().rounds_to_even;
+        merges_ = unit.block.level > 0 && device_.info().supports_round_to_even;
         if (merges_) {
             const std::vector<MergeColumn> columns = merge_columns(channels);
             column_count_ = static_cast<std::uint32_t>(columns.size());
             columns_ = make_buffer(device_, columns);
-            merging_ = kernels_.merging();
+            merge_kernel_ = kernels_.merge_kernel();
         }
     }
 
-    backend::RenderResult finish(const std::stop_token& stop) {
-        if (!ready(kernel_, stop) || (merges_ && !ready(merging_, stop))) {
+    backend::RenderResult run(const std::stop_token& stop) {
+        if (!ready(kernel_, stop) || (merges_ && !ready(merge_kernel_, stop))) {
             return film_.take(backend::RenderStatus::Stopped);
         }
         std::array<Batch, 2> batches;
         for (Batch& batch : batches) send(batch);
         for (std::size_t turn = 0; batches[turn].items > 0; turn = 1 - turn) {
             Batch& batch = batches[turn];
-            // What still runs is abandoned: a first dispatch may wait for the driver's compiler.
+            // Running dispatches are abandoned: a first one may wait for the driver's compiler.
             while (!batch.submission.wait_for(std::chrono::milliseconds(5)) && !stop.stop_requested()) {
             }
             if (stop.stop_requested()) return film_.take(backend::RenderStatus::Stopped);
             const std::vector<double> seconds = batch.submission.seconds();
-            if (!seconds.empty()) pace_.learn(batch.items, seconds.front());
+            if (!seconds.empty()) dispatch_budget_.update(batch.items, seconds.front());
             receive(batch);
             send(batch);
         }
@@ -109,69 +109,69 @@ class UnitRun {
   private:
     void send(Batch& batch) {
         const std::uint64_t begun = sent_ % pixels_;
-        std::uint64_t most = pace_.samples();
-        if (raster_) most = std::min(most, std::uint64_t{RasterRun::MostSamples} * pixels_);
+        std::uint64_t most = dispatch_budget_.samples();
+        if (raster_) most = std::min(most, std::uint64_t{RasterRun::MaxSamples} * pixels_);
         batch.block.reset();
         if (merges_ && begun == 0 && sent_ < all_) {
             batch.block = next_block(unit_.block.first + sent_ / pixels_, unit_.block.end(), most / pixels_);
         }
         std::uint64_t items = std::min(most, all_ - sent_);
         if (batch.block) items = batch.block->count() * pixels_;
-        // To the end of a sample, from where on blocks can be merged.
+        // Up to the end of a sample, after which blocks can be merged.
         if (merges_ && begun != 0 && most >= 2 * std::uint64_t{pixels_}) items = pixels_ - begun;
         if (raster_) items = of_whole_draws(items, begun);
         batch.items = static_cast<std::uint32_t>(items);
         if (items == 0) return;
         const std::uint64_t bytes = (std::uint64_t{values_} + 1) * items * sizeof(float);
         Buffer& values = batch.block ? batch.scratch : batch.values;
-        make_room(device_, values, bytes, batch.block ? MemoryKind::Device : MemoryKind::Readback);
+        ensure_size(device_, values, bytes, batch.block ? MemoryKind::Device : MemoryKind::Readback);
         std::vector<Step> steps;
         if (raster_ && begun == 0) {
             const auto samples = static_cast<std::uint32_t>((items + pixels_ - 1) / pixels_);
             raster_->draw(steps, unit_.block.first + sent_ / pixels_, samples);
         }
-        steps.emplace_back(traced(values, batch.items));
+        steps.emplace_back(trace_dispatch(values, batch.items));
         if (batch.block) {
             const std::uint64_t words = (std::uint64_t{planes_} + 1) * pixels_ + 1;
-            make_room(device_, batch.merged, words * sizeof(float), MemoryKind::Readback);
+            ensure_size(device_, batch.merged, words * sizeof(float), MemoryKind::Readback);
             steps.emplace_back(
                 Fill{.buffer = &batch.merged, .offset = (words - 1) * sizeof(float), .bytes = sizeof(float)});
-            steps.emplace_back(merged(batch));
+            steps.emplace_back(merge_dispatch(batch));
         }
         batch.submission = device_.queue().submit(steps, Timing::Total);
         sent_ += items;
     }
 
-    // A sample is drawn whole; what is drawn together ends together.
+    // Rasterises whole samples: dispatches end at the end of a drawn batch.
     std::uint64_t of_whole_draws(std::uint64_t items, std::uint64_t begun) const {
         if (begun != 0) return std::min(items, pixels_ - begun);
         return items > pixels_ ? items / pixels_ * pixels_ : items;
     }
 
-    Pass traced(const Buffer& values, std::uint32_t items) const {
-        Pass pass{.pipeline = &kernel_.get(),
-                  .arguments = Job{.scene = scene_.record(),
-                                   .view = view_.address(),
-                                   .pool = scene_.pool().address(),
-                                   .values = values.address(),
-                                   .first_sample = unit_.block.first + sent_ / pixels_,
-                                   .top = scene_.top(),
-                                   .x = static_cast<std::uint32_t>(unit_.tile.x),
-                                   .y = static_cast<std::uint32_t>(unit_.tile.y),
-                                   .width = static_cast<std::uint32_t>(unit_.tile.width),
-                                   .pixels = pixels_,
-                                   .first_item = static_cast<std::uint32_t>(sent_ % pixels_),
-                                   .item_count = items,
-                                   .seen = raster_ ? raster_->seen().address() : 0},
-                  .groups = {groups_of(items)},
-                  .writes = {&values}};
-        if (raster_) pass.reads = {&raster_->seen()};
-        if (scene_.traversal() == Traversal::Texels) pass.bound = {&scene_.pool()};
-        return pass;
+    Dispatch trace_dispatch(const Buffer& values, std::uint32_t items) const {
+        Dispatch dispatch{.pipeline = &kernel_.get(),
+                          .arguments = Job{.scene = scene_.record(),
+                                           .view = view_.address(),
+                                           .pool = scene_.pool().address(),
+                                           .values = values.address(),
+                                           .first_sample = unit_.block.first + sent_ / pixels_,
+                                           .top = scene_.top(),
+                                           .x = static_cast<std::uint32_t>(unit_.tile.x),
+                                           .y = static_cast<std::uint32_t>(unit_.tile.y),
+                                           .width = static_cast<std::uint32_t>(unit_.tile.width),
+                                           .pixels = pixels_,
+                                           .first_item = static_cast<std::uint32_t>(sent_ % pixels_),
+                                           .item_count = items,
+                                           .seen = raster_ ? raster_->seen().address() : 0},
+                          .groups = {groups_of(items)},
+                          .writes = {&values}};
+        if (raster_) dispatch.reads = {&raster_->seen()};
+        if (scene_.traversal() == Traversal::Texels) dispatch.bound = {&scene_.pool()};
+        return dispatch;
     }
 
-    Pass merged(const Batch& batch) const {
-        return {.pipeline = &merging_.get(),
+    Dispatch merge_dispatch(const Batch& batch) const {
+        return {.pipeline = &merge_kernel_.get(),
                 .arguments = MergeJob{.columns = columns_.address(),
                                       .values = batch.scratch.address(),
                                       .planes = batch.merged.address(),
@@ -205,15 +205,15 @@ class UnitRun {
 
     Device& device_;
     Kernels& kernels_;
-    Pace& pace_;
+    DispatchBudget& dispatch_budget_;
     const GpuScene& scene_;
     const view::WorkUnit& unit_;
     std::uint32_t pixels_, values_, planes_;
     std::uint64_t all_, sent_ = 0;  // items
-    Buffer camera_places_, view_, columns_;
+    Buffer camera_keys_, view_, columns_;
     std::uint32_t column_count_ = 0;
     bool merges_ = false;
-    Kernel kernel_, merging_;
+    Kernel kernel_, merge_kernel_;
     UnitFilm film_;
     std::optional<RasterRun> raster_;
 };
@@ -222,7 +222,7 @@ class UnitRun {
 
 backend::RenderResult TileRenderer::run(const shading::View& view, const view::WorkUnit& unit,
                                         frame::ChannelSet channels, const std::stop_token& stop) const {
-    return UnitRun(*this, view, unit, channels).finish(stop);
+    return UnitRun(*this, view, unit, channels).run(stop);
 }
 
 }  // namespace tessera::vulkan

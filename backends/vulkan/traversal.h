@@ -4,7 +4,7 @@ namespace tessera::vulkan {
 
 // How kernels find hits.
 enum class Traversal {
-    Plain,    // trees of two children, by address: the baseline that benches measure
+    Bvh2,     // binary BVHs, by address: the baseline of benchmarks
     Address,  // wide nodes by address
     Texels    // wide nodes as texels: faster, where the pool fits into a texel buffer
 };

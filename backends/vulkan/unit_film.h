@@ -8,7 +8,7 @@
 
 namespace tessera::vulkan {
 
-// How many floats one sample has.
+// The number of floats per sample.
 std::uint32_t value_count(frame::ChannelSet channels);
 
 // The film of a unit, filled in the order of its samples: by single ones, or by merged blocks of the whole
@@ -17,14 +17,14 @@ class UnitFilm {
   public:
     UnitFilm(const view::WorkUnit& unit, frame::ChannelSet channels);
 
-    // values[k * count + i]: value k of item i, which is the next sample of the next pixel; behind the values
-    // the rays, as bits.
+    // values[k * count + i]: value k of item i, which is the next sample of the next pixel; after the values
+    // the ray count, as bits.
     void add(std::span<const float> values, std::uint32_t count);
 
-    // planes: those of a film tile and one for the rays, as bits. Only where no sample is begun.
+    // `planes`: those of a film tile and one of ray counts, as bits. Only at the start of a sample.
     void add_block(std::span<const float> planes, frame::SampleBlock block);
 
-    // A sample that is not whole is dropped.
+    // Drops an incomplete sample.
     backend::RenderResult take(backend::RenderStatus status);
 
   private:

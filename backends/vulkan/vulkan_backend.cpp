@@ -6,9 +6,9 @@
 
 #include "backends/vulkan/opened_device.h"
 #include "backends/vulkan/probe.h"
+#include "backends/vulkan/scene_adapter.h"
 #include "backends/vulkan/tile_renderer.h"
-#include "backends/vulkan/world.h"
-#include "mediator/backend/tables/bodies.h"
+#include "mediator/backend/tables/media.h"
 #include "mediator/backend/tables/view_record.h"
 #include "mediator/frame/render_revision.h"
 
@@ -19,32 +19,32 @@ namespace {
 using namespace backend;
 
 constexpr frame::ChannelSet AllChannels = frame::ChannelSet::all();
-constexpr int Attempts = 3;  // a device that is lost so often in a row does not come back
+constexpr int Attempts = 3;  // gives up after this many losses in a row
 
 class VulkanBackend final : public Backend {
   public:
     VulkanBackend(const BackendSettings& settings, const DeviceSettings& device, Trees trees)
-        : opener_(settings, device), world_(settings.blobs, settings.cache_folder, trees) {
+        : opener_(settings, device), adapter_(settings.blobs, settings.cache_folder, trees) {
         opened_ = opener_.open();
-        world_.move_to(&opened_->device);
+        adapter_.move_to(&opened_->device);
         const DeviceInfo& info = opened_->device.info();
-        // A card needs many samples at a time.
+        // GPUs need many samples at a time.
         view::RendererSet renderers = view::TracingRenderers;
         if (info.draws && trees == Trees::Wide) renderers.insert(view::Renderer::Raster);
         capabilities_ = {.channels = AllChannels,
                          .renderers = renderers,
                          .preferred_tile = info.kind == DeviceKind::Cpu ? 32u : 128u,
-                         .concurrent_units = 2,  // one merges while the other one's samples are traced
+                         .concurrent_units = 2,  // one is merged while the other is traced
                          .deterministic = true,
                          .kind = frame::with_render_revision("vulkan " + info.name + ", " + info.driver)};
     }
-    ~VulkanBackend() override { world_.move_to(nullptr); }
+    ~VulkanBackend() override { adapter_.move_to(nullptr); }
 
     Capabilities capabilities() const override { return capabilities_; }
 
     Version version() const override {
         const std::shared_lock lock(mutex_);
-        return world_.version();
+        return adapter_.version();
     }
 
     std::unique_ptr<EditScope> begin_edit() override { return std::make_unique<Edit>(*this); }
@@ -52,17 +52,17 @@ class VulkanBackend final : public Backend {
     RenderResult render(const view::View& view, const view::WorkUnit& unit, std::stop_token stop) override {
         require_renderer(capabilities_.renderers, view);
         return on_device([&]() -> RenderResult {
-            if (unit.version != world_.version()) return {};
+            if (unit.version != adapter_.version()) return {};
             const shading::View record = record_of(view);
             const bool rasters = record.renderer == shading::RendererRaster;
             const RasterTools tools{opened_->raster, opened_->targets, {}};
             const TileRenderer renderer{opened_->device,
                                         opened_->kernels,
-                                        rasters ? opened_->raster_pace : opened_->pace,
-                                        world_.scene(),
-                                        features_for(world_.tables(), record),
+                                        rasters ? opened_->raster_dispatch_budget : opened_->dispatch_budget,
+                                        adapter_.scene(),
+                                        features_for(adapter_.tables(), record),
                                         rasters ? &tools : nullptr,
-                                        camera_places(view.camera, world_.tables().render_origin)};
+                                        camera_keys(view.camera, adapter_.tables().render_origin)};
             return renderer.run(record, unit, view.channels, stop);
         });
     }
@@ -71,11 +71,11 @@ class VulkanBackend final : public Backend {
                                    std::uint64_t sample) override {
         require_renderer(capabilities_.renderers, view);
         return on_device([&] {
-            const std::vector<shading::Place> places =
-                camera_places(view.camera, world_.tables().render_origin);
+            const std::vector<shading::Affine3x4> places =
+                camera_keys(view.camera, adapter_.tables().render_origin);
             shading::View record = record_of(view);
-            record.camera_places.items = places.data();
-            return replay(opened_->device, world_.scene(), world_.tables(), record, {x, y}, sample);
+            record.camera_keys.items = places.data();
+            return replay(opened_->device, adapter_.scene(), adapter_.tables(), record, {x, y}, sample);
         });
     }
 
@@ -83,11 +83,11 @@ class VulkanBackend final : public Backend {
     class Edit final : public EditScope {
       public:
         explicit Edit(VulkanBackend& backend) : backend_(backend), lock_(backend.mutex_) {}
-        ~Edit() override { backend_.world_.rollback(); }  // what was committed stays
-        const scene::Scene& scene() const override { return backend_.world_.content(); }
+        ~Edit() override { backend_.adapter_.rollback(); }  // committed changes are kept
+        const scene::Scene& scene() const override { return backend_.adapter_.content(); }
         using EditScope::apply;
         Expected<void> apply(const scene::ChangeList& changes, const scene::Scene& after) override {
-            return backend_.world_.apply(changes, after);
+            return backend_.adapter_.apply(changes, after);
         }
         Expected<EditReport> commit() override { return backend_.commit(); }
 
@@ -96,17 +96,17 @@ class VulkanBackend final : public Backend {
         std::unique_lock<std::shared_mutex> lock_;
     };
 
-    // What moves is seen by rays.
+    // Moving objects are traced: the rasteriser does not support motion blur.
     shading::View record_of(const view::View& view) const {
-        shading::View record = make_view(view, world_.tables().render_origin);
-        record.inside = bodies_around(world_.tables(), record);
-        const bool moves = (world_.tables().scene.features & shading::FeatureMotion) != 0;
+        shading::View record = make_view(view, adapter_.tables().render_origin);
+        record.containing_media = media_around(adapter_.tables(), record);
+        const bool moves = (adapter_.tables().scene.features & shading::FeatureMotion) != 0;
         if (moves && record.renderer == shading::RendererRaster) record.renderer = shading::RendererWhitted;
         return record;
     }
 
-    // `work` with the scene on the device, under the lock of renders; on another device where this one is
-    // lost. A device that could not be had the last time is asked for again.
+    // Runs `work` with the scene on the device, under the shared lock. Reopens a device that was lost, or that
+    // could not be opened the last time, and retries.
     template <class Work>
     auto on_device(const Work& work) -> decltype(work()) {
         for (int attempt = 1;; ++attempt) {
@@ -114,7 +114,7 @@ class VulkanBackend final : public Backend {
             try {
                 const std::shared_lock lock(mutex_);
                 seen = recoveries_;
-                if (world_.is_on_device()) return work();
+                if (adapter_.is_on_device()) return work();
             } catch (const DeviceLost&) {
                 if (attempt == Attempts) throw;
             }
@@ -127,31 +127,30 @@ class VulkanBackend final : public Backend {
     Expected<EditReport> commit() {
         for (int attempt = 1;; ++attempt) {
             try {
-                if (!world_.is_on_device()) reopen();
-                return world_.commit();
+                if (!adapter_.is_on_device()) reopen();
+                return adapter_.commit();
             } catch (const DeviceLost&) {
                 if (attempt == Attempts) throw;
-                world_.move_to(nullptr);
+                adapter_.move_to(nullptr);
             }
         }
     }
 
-    // A new device, and the scene on it as it was. Throws what opening throws; the scene is on no device
-    // then.
+    // Opens a new device and uploads the scene. Throws what opening throws; the scene is on no device then.
     void reopen() {
         ++recoveries_;
-        world_.move_to(nullptr);
+        adapter_.move_to(nullptr);
         opened_.reset();
         opened_ = opener_.open();
-        world_.move_to(&opened_->device);
+        adapter_.move_to(&opened_->device);
     }
 
     const DeviceOpener opener_;
     Capabilities capabilities_;
-    mutable std::shared_mutex mutex_;  // renders share it, an edit owns it; protects all below
+    mutable std::shared_mutex mutex_;  // shared by renders, exclusive for edits; protects everything below
     std::uint64_t recoveries_ = 0;
     std::unique_ptr<OpenedDevice> opened_;
-    World world_;
+    SceneAdapter adapter_;
 };
 
 }  // namespace

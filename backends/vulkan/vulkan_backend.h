@@ -8,8 +8,8 @@ namespace tessera::vulkan {
 
 backend::BackendEntry entry();
 
-// The same with settings of the device layer, which tests make fail, and on the trees that benches compare.
-// The cache folder is that of `settings`.
+// The same with settings of the device layer (for fault injection in tests) and a choice of BVH (for
+// benchmarks). The cache folder is taken from `settings`.
 std::unique_ptr<backend::Backend> make_backend(const backend::BackendSettings& settings,
                                                const DeviceSettings& device, Trees trees = Trees::Wide);
 

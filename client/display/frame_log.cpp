@@ -22,7 +22,7 @@ void FrameLog::add(const Line& line) {
                                 {"shown", line.shown},
                                 {"bound", line.bound},
                                 {"samples", line.samples}};
-    // In one piece, and there when the process is stopped the moment after.
+    // Written at once and flushed, so that it is complete if the process is killed.
     std::fputs((object.dump() + "\n").c_str(), file_.get());
     std::fflush(file_.get());
 }

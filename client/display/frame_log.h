@@ -8,12 +8,12 @@
 
 namespace tessera::client_display {
 
-// What was shown when, a JSON object a line: output, frame, epoch and version of the scene, at (when it was
-// to be shown; 0 = at once), shown (when it was), bound (of the clock's offset to the master's), samples of a
-// pixel. Times in ns of this machine's monotonic clock.
+// Log of presented frames, one JSON object per line: output, frame, epoch and version of the scene, at (scheduled time;
+// 0 = immediately), shown (actual time), bound (of the clock offset to the master), samples per pixel. Times in ns of
+// the local monotonic clock.
 class FrameLog {
   public:
-    FrameLog() = default;                        // tells nobody
+    FrameLog() = default;                        // logs nothing
     explicit FrameLog(const std::string& path);  // appends; throws Error{Io}
 
     struct Line {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr Duration AskAgain = std::chrono::milliseconds(500);
 
-// On the clock that the master's orders are in.
+// On the clock of the master's present times.
 void sleep_until(std::int64_t nanoseconds) {
     const timespec when{.tv_sec = nanoseconds / 1'000'000'000, .tv_nsec = nanoseconds % 1'000'000'000};
     while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &when, nullptr) == EINTR) {
@@ -34,14 +34,14 @@ display::EyePicture as_picture(const client::OutputFrame::Picture& picture) {
 
 OutputPlayer::OutputPlayer(client::Session& session, scene::BlobStore& blobs, const Clock& clock,
                            std::string output, MakePresenter make_presenter, FrameLog& log,
-                           std::function<void(const std::string&)> tell)
+                           std::function<void(const std::string&)> report)
     : session_(session),
       blobs_(blobs),
       clock_(clock),
       name_(std::move(output)),
       make_presenter_(std::move(make_presenter)),
       log_(log),
-      tell_(std::move(tell)) {}
+      report_(std::move(report)) {}
 
 void OutputPlayer::run(std::uint64_t frames, std::stop_token stop) {
     session_.join_output(name_);
@@ -53,7 +53,7 @@ void OutputPlayer::run(std::uint64_t frames, std::stop_token stop) {
                              clock_.now() + std::chrono::milliseconds(presenter_->attention_milliseconds()));
         if (auto event = session_.next_output_event(until, stop))
             std::visit([this](auto&& body) { take(std::forward<decltype(body)>(body)); }, *std::move(event));
-        for (const std::string& notice : session_.take_notices()) tell_(notice);
+        for (const std::string& notice : session_.take_notices()) report_(notice);
         if (ask_again_ && clock_.now() >= *ask_again_) {
             ask_again_.reset();
             session_.join_output(name_);
@@ -63,8 +63,8 @@ void OutputPlayer::run(std::uint64_t frames, std::stop_token stop) {
 }
 
 void OutputPlayer::take(const client::OutputUnavailable& unavailable) {
-    if (told_ != unavailable.reason) tell_(unavailable.reason + "; waiting");
-    told_ = unavailable.reason;
+    if (reported_ != unavailable.reason) report_(unavailable.reason + "; waiting");
+    reported_ = unavailable.reason;
     ask_again_ = clock_.now() + AskAgain;
 }
 
@@ -73,18 +73,19 @@ void OutputPlayer::take(const session::OutputOpened& opened) {
         open(opened);
     } catch (const Error& error) {
         if (error.code() != ErrorCode::NotFound) throw;
-        return take(client::OutputUnavailable{"the display was closed"});  // while it was asked for
+        return take(client::OutputUnavailable{"the display was closed"});  // while joining
     }
-    session_.output_ready(0);  // pictures may come
+    session_.output_ready(0);  // ready for pictures
 }
 
 void OutputPlayer::open(const session::OutputOpened& opened) {
-    told_.clear();
+    reported_.clear();
     if (!pipeline_ || opened.description != description_ || output_.name != name_) {
         auto display = wire::decode_display(session_.fetch(opened.description)->bytes());
         if (!display) throw display.error();
         if (opened.index >= display->outputs.size())
-            throw Error(ErrorCode::InvalidInput, "the master opened an output that its display has not");
+            throw Error(ErrorCode::InvalidInput,
+                        "the master opened an output that its display does not have");
         const display::Output output = display->outputs[opened.index];
         std::vector<scene::BlobPtr> arrays;
         for (const display::Grid& grid : {output.points, output.blend.weights, output.blend.lift}) {
@@ -106,8 +107,8 @@ void OutputPlayer::open(const session::OutputOpened& opened) {
         }
         prepared_.reset();
         latest_.reset();
-        tell_("shows output '" + name_ + "', " + std::to_string(output_.width) + "x" +
-              std::to_string(output_.height));
+        report_("shows output '" + name_ + "', " + std::to_string(output_.width) + "x" +
+                std::to_string(output_.height));
     }
     const bool was_pattern = std::exchange(pattern_, opened.pattern);
     if (pattern_ && !was_pattern) show_pattern();
@@ -134,7 +135,7 @@ void OutputPlayer::show_pattern() {
 }
 
 void OutputPlayer::take(client::OutputFrame&& frame) {
-    if (!pipeline_ || frame.pictures.size() != pipeline_->eye_count()) return;  // of a display before
+    if (!pipeline_ || frame.pictures.size() != pipeline_->eye_count()) return;  // of an earlier display
     if (!pattern_) {
         std::vector<display::EyePicture> pictures;
         for (const client::OutputFrame::Picture& picture : frame.pictures) {

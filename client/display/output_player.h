@@ -16,20 +16,20 @@
 
 namespace tessera::client_display {
 
-// Shows one output of the display in front of a live scene: makes the device's picture of what the master
-// sends, says ready, presents when it is told to. When there is no such output (yet) it asks again.
+// Shows one output of the display of a live scene: computes the device's picture from the master's pictures, reports
+// ready, presents at the given time. If there is no such output yet it retries.
 class OutputPlayer {
   public:
-    // `tell`: what a person should know. All must outlive the player.
+    // `report`: receives messages for the user. All references must outlive the player.
     OutputPlayer(client::Session& session, scene::BlobStore& blobs, const Clock& clock, std::string output,
-                 MakePresenter make_presenter, FrameLog& log, std::function<void(const std::string&)> tell);
+                 MakePresenter make_presenter, FrameLog& log, std::function<void(const std::string&)> report);
 
-    // Until the stop, the end of the window or so many frames (0 = without end). Throws Error when the master
-    // is gone for good.
+    // Runs until a stop, the closing of the window or this many frames (0 = unlimited). Throws Error when the connection to
+    // the master is lost.
     void run(std::uint64_t frames, std::stop_token stop);
 
   private:
-    // A frame that is ready.
+    // A prepared frame.
     struct Prepared {
         std::uint64_t frame = 0;
         std::uint64_t samples = 0;
@@ -49,7 +49,7 @@ class OutputPlayer {
     std::string name_;
     MakePresenter make_presenter_;
     FrameLog& log_;
-    std::function<void(const std::string&)> tell_;
+    std::function<void(const std::string&)> report_;
     tbb::task_arena arena_;
     display::Display display_;
     display::Output output_;
@@ -60,9 +60,9 @@ class OutputPlayer {
     std::unique_ptr<Presenter> presenter_;
     std::vector<std::vector<std::uint8_t>> devices_;
     std::optional<Prepared> prepared_;
-    std::optional<client::OutputFrame> latest_;  // to go back to after the pattern
+    std::optional<client::OutputFrame> latest_;  // shown again after the pattern
     std::optional<TimePoint> ask_again_;
-    std::string told_;
+    std::string reported_;
     std::uint64_t shown_ = 0;
 };
 

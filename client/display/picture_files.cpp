@@ -40,14 +40,14 @@ class PictureFiles final : public Presenter {
 
 std::unique_ptr<Presenter> make_picture_files(const std::filesystem::path& folder,
                                               const display::Output& output) {
-    // Names come from the master: they name no file elsewhere.
+    // Names come from the master: must not point outside of the folder.
     if (output.name.find_first_of("/\\") != std::string::npos || output.name.starts_with("."))
         throw Error(
             ErrorCode::InvalidInput,
-            "output '" + output.name + "' cannot be the name of a file: rename it in the display file");
+            "output '" + output.name + "' cannot be used as a file name: rename it in the display file");
     std::error_code failed;
     std::filesystem::create_directories(folder, failed);
-    if (failed) throw Error(ErrorCode::Io, folder.string() + " cannot be made: " + failed.message());
+    if (failed) throw Error(ErrorCode::Io, folder.string() + " cannot be created: " + failed.message());
     return std::make_unique<PictureFiles>(folder, output);
 }
 

@@ -10,21 +10,20 @@
 
 namespace tessera::client_display {
 
-// What a device is to show: 8-bit red, green and blue, rows from the top. Two for Stereo::Separate, left eye
-// first.
+// The pictures of a device: 8-bit red, green and blue, rows from the top. Two for Stereo::Separate, left eye first.
 using DevicePictures = std::span<const std::vector<std::uint8_t>>;
 
-// Where an output's pictures go. Two phases, so that the moment of showing costs nothing: prepare() does the
-// work, present() shows what was prepared. One thread.
+// Presents an output's pictures in two phases: prepare() does the work, present() is cheap and shows the prepared
+// pictures. Single-threaded.
 class Presenter {
   public:
     virtual ~Presenter() = default;
     // Throws Error{Io}.
     virtual void prepare(DevicePictures pictures) = 0;
     virtual void present(std::uint64_t frame) = 0;
-    // Looks after the window; false when it was closed.
+    // Handles window events; false when the window was closed.
     virtual bool attend() { return true; }
-    // How often attend() wants to be called; 0 = never.
+    // Interval at which attend() should be called; 0 = never.
     virtual int attention_milliseconds() const { return 0; }
 };
 

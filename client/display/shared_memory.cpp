@@ -14,7 +14,7 @@ namespace tessera::client_display {
 
 namespace {
 
-// While one is written, two remain whole: the one that is shown, and the one before for who still reads it.
+// While one is written, two remain intact: the presented one, and the previous one for slow readers.
 constexpr std::size_t Buffers = std::tuple_size_v<decltype(SharedHeader::frames)>;
 
 class SharedMemory final : public Presenter {
@@ -24,16 +24,16 @@ class SharedMemory final : public Presenter {
           picture_bytes_(std::size_t{3} * output.width * output.height),
           picture_count_(output.stereo == display::Stereo::Separate ? 2 : 1),
           byte_size_(sizeof(SharedHeader) + Buffers * picture_count_ * picture_bytes_) {
-        ::shm_unlink(name.c_str());  // of a process that was killed
+        ::shm_unlink(name.c_str());  // left by a killed process
         const int file = ::shm_open(name.c_str(), O_RDWR | O_CREAT | O_EXCL, 0600);
-        if (file < 0) fail("cannot be made");
+        if (file < 0) fail("cannot be created");
         void* place = MAP_FAILED;
         if (::ftruncate(file, static_cast<off_t>(byte_size_)) == 0)
             place = ::mmap(nullptr, byte_size_, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
         ::close(file);
         if (place == MAP_FAILED) {
             ::shm_unlink(name.c_str());
-            fail("has no room");
+            fail("cannot be resized");
         }
         header_ = new (place) SharedHeader{.width = output.width,
                                            .height = output.height,

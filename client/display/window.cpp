@@ -12,14 +12,14 @@ namespace {
 
 [[noreturn]] void fail(const std::string& what) {
     throw Error(ErrorCode::Unavailable,
-                what + ": " + SDL_GetError() + "; where there is no display, use --headless");
+                what + ": " + SDL_GetError() + "; use --headless if there is no display");
 }
 
 struct Video {
     Video() {
         SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
         if (SDL_Init(SDL_INIT_VIDEO) != 0) fail("no window can be opened");
-        // What SDL falls back to where there is no display: nobody would see it.
+        // SDL's fallback drivers without a display: invisible.
         const std::string driver = SDL_GetCurrentVideoDriver();
         if (driver == "offscreen" || driver == "dummy") {
             SDL_Quit();
@@ -43,12 +43,12 @@ class Window final : public Presenter {
         if (!window_) fail("no window can be opened");
         renderer_.reset(SDL_CreateRenderer(window_.get(), -1, SDL_RENDERER_PRESENTVSYNC));
         if (!renderer_) renderer_.reset(SDL_CreateRenderer(window_.get(), -1, SDL_RENDERER_SOFTWARE));
-        if (!renderer_) fail("nothing can be drawn in the window");
+        if (!renderer_) fail("the window's renderer cannot be created");
         SDL_RenderSetLogicalSize(renderer_.get(), width_, height);
         for (Texture* texture : {&shown_, &next_}) {
             texture->reset(SDL_CreateTexture(renderer_.get(), SDL_PIXELFORMAT_RGB24,
                                              SDL_TEXTUREACCESS_STREAMING, width_, height));
-            if (!*texture) fail("the picture is too large for the window's device");
+            if (!*texture) fail("the picture is too large for the GPU");
         }
         if (mode == WindowMode::FullScreen) SDL_ShowCursor(SDL_DISABLE);
         show();
@@ -66,7 +66,7 @@ class Window final : public Presenter {
     bool attend() override {
         for (SDL_Event event; SDL_PollEvent(&event) != 0;) {
             if (event.type == SDL_QUIT) return false;
-            // Another window lay over it: what was there is lost, and no frame may be due for long.
+            // The window was covered: draws again, since the next frame may be far away.
             if (event.type == SDL_WINDOWEVENT && event.window.event == SDL_WINDOWEVENT_EXPOSED) show();
             if (event.type == SDL_KEYDOWN &&
                 (event.key.keysym.sym == SDLK_ESCAPE || event.key.keysym.sym == SDLK_q))
@@ -94,7 +94,7 @@ class Window final : public Presenter {
 
     int width_;
     bool has_picture_ = false;
-    std::shared_ptr<Video> video_;  // last to end
+    std::shared_ptr<Video> video_;  // destroyed last
     std::unique_ptr<SDL_Window, Ends<SDL_DestroyWindow>> window_;
     std::unique_ptr<SDL_Renderer, Ends<SDL_DestroyRenderer>> renderer_;
     Texture shown_, next_;

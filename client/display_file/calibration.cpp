@@ -29,21 +29,21 @@ LoadedGrid three_components(const std::string& path, const Section& section, con
     return grid;
 }
 
-display::PointGrid on_nodes(const LoadedGrid& grid) {
+display::WarpMap on_nodes(const LoadedGrid& grid) {
     return {.columns = grid.columns, .rows = grid.rows, .nodes = display::Grid::Nodes::Centres, .points = {}};
 }
 
-// x, y, z as it is.
-display::PointGrid pointed(const LoadedGrid& grid) {
-    display::PointGrid points = on_nodes(grid);
+// x, y, z as stored.
+display::WarpMap pointed(const LoadedGrid& grid) {
+    display::WarpMap points = on_nodes(grid);
     for (std::size_t i = 0; i + 2 < grid.values.size(); i += grid.components)
         points.points.emplace_back(grid.values[i], grid.values[i + 1], grid.values[i + 2]);
     return points;
 }
 
-// Where u, v are; what are no numbers are nowhere.
-display::PointGrid pointed_places(const LoadedGrid& grid, const display::PointAt& point_at) {
-    display::PointGrid points = on_nodes(grid);
+// The points at u, v; NaN stays NaN.
+display::WarpMap points_at_uv(const LoadedGrid& grid, const display::PointAt& point_at) {
+    display::WarpMap points = on_nodes(grid);
     for (std::size_t i = 0; i + 1 < grid.values.size(); i += grid.components) {
         const float u = grid.values[i], v = grid.values[i + 1];
         points.points.push_back(std::isnan(u) || std::isnan(v)
@@ -64,24 +64,24 @@ display::Grid stored(const LoadedGrid& loaded, scene::BlobStore& blobs) {
             .values = scene::reference(*blobs.insert(bytes))};
 }
 
-display::PointGrid read_points(Section& section, const ReadContext& context) {
+display::WarpMap read_points(Section& section, const ReadContext& context) {
     const std::string path = path_of(section.text("points").value_or(""), context);
     return pointed(three_components(path, section, "points"));
 }
 
-display::PointGrid read_warp(Section& section, ReadContext& context, const display::Screen& screen,
-                             display::Output& output) {
+display::WarpMap read_warp(Section& section, ReadContext& context, const display::Screen& screen,
+                           display::Output& output) {
     const std::string path = path_of(section.text("warp").value_or(""), context);
-    LoadedGrid places;
+    LoadedGrid uv;
     if (path.ends_with(".pfm")) {
-        places = three_components(path, section, "warp");
+        uv = three_components(path, section, "warp");
     } else {
         LoadedMesh mesh = taken(load_mesh(path, output.width, output.height), section, "warp");
-        places = std::move(mesh.places);
+        uv = std::move(mesh.source_uv);
         const bool is_even = std::ranges::all_of(mesh.weights.values, [](float w) { return w == 1.0f; });
         if (!is_even) output.blend.weights = stored(mesh.weights, context.blobs);
     }
-    return pointed_places(places, [&](double u, double v) { return display::point(screen, u, v); });
+    return points_at_uv(uv, [&](double u, double v) { return display::point(screen, u, v); });
 }
 
 bool read_light_files(Section& section, ReadContext& context, display::Output& output) {

@@ -29,7 +29,8 @@ void read_settings(Section section, Display& display) {
     display.filter = section.text("filter").value_or("");
     display.coarsest = std::uint32_t(section.whole("coarsest", 1, 8).value_or(display.coarsest));
     if (display.coarsest != 1 && display.coarsest != 2 && display.coarsest != 4 && display.coarsest != 8)
-        section.refuse("coarsest", "'coarsest' must be 1, 2, 4 or 8: the part of the size that comes first");
+        section.refuse("coarsest",
+                       "'coarsest' must be 1, 2, 4 or 8: the first picture has 1/coarsest of the size");
     display.max_bounces = std::uint32_t(section.whole("max_bounces", 0, 1024).value_or(display.max_bounces));
     display.exposure = section.number("exposure", -60.0, 60.0).value_or(display.exposure);
     display.white = section.number("white", 0.0, 1e6).value_or(display.white);
@@ -41,7 +42,7 @@ void read_settings(Section section, Display& display) {
     section.refuse_unknown();
 }
 
-// That turns -z to `look` and keeps the head upright.
+// Rotation that turns -z to `look` and keeps the head upright.
 glm::dquat looking(const glm::dvec3& look) {
     const glm::dvec3 side = glm::cross(look, glm::dvec3(0.0, 1.0, 0.0));
     const glm::dvec3 right = glm::length(side) > 1e-6 ? glm::normalize(side) : glm::dvec3(1.0, 0.0, 0.0);
@@ -110,7 +111,8 @@ std::map<std::string, NamedScreen> read_screens(Section& document) {
             section.refuse("needs lower_left, lower_right and upper_left, or cylinder, or dome");
         const NamedScreen screen{.surface = read_screen(section, 1.0),
                                  .black = section.number("black", 0.0, 0.5).value_or(0.0)};
-        if (!screens.emplace(*name, screen).second) section.refuse("name", "two screens are called so");
+        if (!screens.emplace(*name, screen).second)
+            section.refuse("name", "two screens have this name: rename one");
         section.refuse_unknown();
     }
     return screens;
@@ -130,7 +132,7 @@ void adjust(Section section, std::vector<ReadOutput>& outputs) {
                        "there is no such output" + (meant ? "; did you mean '" + *meant + "'?" : ""));
     }
     if (section.has("turn"))
-        section.refuse("turn", "'turn' is of a whole wall: write this output as an [[output]] of its own");
+        section.refuse("turn", "'turn' applies to a whole wall: write this output as a separate [[output]]");
     found->has_own_blend = found->has_own_blend || section.has("blend");
     read_output_keys(section, found->output);
     section.refuse_unknown();
@@ -143,8 +145,8 @@ void check(const ReadOutput& read) {
     };
     if (output.stereo == display::Stereo::InterlacedRows && !output.points.empty())
         refuse("stereo",
-               "has interlaced rows and a warp or points: rows of both eyes lie on a panel's own "
-               "rows, so nothing may bend them; use another stereo mode");
+               "has interlaced rows and a warp or points: interlaced rows must match the panel's "
+               "rows and cannot be warped; use another stereo mode");
     if (output.stereo == display::Stereo::SideBySide && output.width % 2 != 0)
         refuse("size", "shares its width between the eyes: it must be even");
     if (output.stereo == display::Stereo::TopBottom && output.height % 2 != 0)
@@ -163,7 +165,7 @@ void check_names(const std::vector<ReadOutput>& outputs) {
     }
 }
 
-// What the master would refuse: said where its output stands.
+// What the master would reject, reported at the output in the file.
 void check_all(const Section& document, const std::vector<ReadOutput>& outputs, const Display& display) {
     const std::vector<std::string> problems = display::problems(display);
     if (problems.empty()) return;

@@ -13,25 +13,26 @@ namespace {
 constexpr std::uintmax_t MaxBytes = 4 << 20;
 constexpr std::size_t MaxDepth = 16;
 
-bool is_before(const Place& a, const Place& b) {
+bool is_before(const SourcePosition& a, const SourcePosition& b) {
     return a.line != b.line ? a.line < b.line : a.column < b.column;
 }
 
-Place place_of(const toml::source_region& region) {
+SourcePosition source_position(const toml::source_region& region) {
     return {region.begin.line, region.begin.column};
 }
 
 Value converted(const toml::node& node, const std::string& path, std::size_t depth) {
     Value value;
-    value.place = place_of(node.source());
-    if (depth > MaxDepth) throw error_at(path, value.place, "tables and lists are nested too deeply");
+    value.position = source_position(node.source());
+    if (depth > MaxDepth) throw error_at(path, value.position, "tables and lists are nested too deeply");
     if (const auto* table = node.as_table()) {
         for (const auto& [key, inner] : *table) {
             value.table.push_back({std::string(key.str()), converted(inner, path, depth + 1)});
-            // A list of tables has no place of its own, and a key says better where a value stands.
-            value.table.back().value.place = place_of(key.source());
+            // A list of tables has no source position, and the key's position is clearer than the value's.
+            value.table.back().value.position = source_position(key.source());
         }
-        std::ranges::stable_sort(value.table, is_before, [](const auto& entry) { return entry.value.place; });
+        std::ranges::stable_sort(value.table, is_before,
+                                 [](const auto& entry) { return entry.value.position; });
     } else if (const auto* array = node.as_array()) {
         value.kind = Value::Kind::List;
         for (const toml::node& element : *array) value.list.push_back(converted(element, path, depth + 1));
@@ -74,9 +75,9 @@ std::string_view kind_name(Value::Kind kind) {
     return "a date";
 }
 
-Error error_at(const std::string& file, const Place& place, const std::string& what) {
+Error error_at(const std::string& file, const SourcePosition& position, const std::string& what) {
     return {ErrorCode::InvalidInput,
-            file + ":" + std::to_string(place.line) + ":" + std::to_string(place.column) + ": " + what};
+            file + ":" + std::to_string(position.line) + ":" + std::to_string(position.column) + ": " + what};
 }
 
 Value parse_document(std::string_view text, const std::string& path) {
@@ -84,8 +85,8 @@ Value parse_document(std::string_view text, const std::string& path) {
         const toml::table table = toml::parse(text, path);
         return converted(table, path, 0);
     } catch (const toml::parse_error& error) {
-        throw error_at(path, place_of(error.source()),
-                       "this is no TOML: " + std::string(error.description()));
+        throw error_at(path, source_position(error.source()),
+                       "this is not valid TOML: " + std::string(error.description()));
     }
 }
 
@@ -94,7 +95,7 @@ std::string read_text(const std::string& path) {
     if (!std::filesystem::is_regular_file(path, error))
         throw Error(ErrorCode::NotFound, "no display file '" + path + "'; check the name");
     if (std::filesystem::file_size(path, error) > MaxBytes)
-        throw Error(ErrorCode::InvalidInput, "'" + path + "' has more than 4 MiB: it is no display file");
+        throw Error(ErrorCode::InvalidInput, "'" + path + "' has more than 4 MiB: it is not a display file");
     std::ifstream file(path, std::ios::binary);
     std::string text(std::istreambuf_iterator<char>(file), {});
     if (!file) throw Error(ErrorCode::Io, "cannot read '" + path + "'; check its permissions");

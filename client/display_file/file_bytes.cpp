@@ -9,13 +9,13 @@ Expected<std::vector<std::byte>> read_file(const std::string& path, std::size_t 
     std::error_code code;
     const auto status = std::filesystem::status(path, code);
     if (!std::filesystem::exists(status))
-        return failure(ErrorCode::NotFound, "'" + path + "' is not there: check the name");
+        return failure(ErrorCode::NotFound, "'" + path + "' does not exist: check the name");
     if (!std::filesystem::is_regular_file(status))
         return failure(ErrorCode::InvalidInput, "'" + path + "' is not a file");
     const auto size = std::filesystem::file_size(path, code);
     if (code || size > most)
         return failure(ErrorCode::InvalidInput, "'" + path + "' has more than " + std::to_string(most) +
-                                                    " bytes: it is not what it should be");
+                                                    " bytes: it is not a calibration file");
     std::vector<std::byte> bytes(size);
     std::ifstream file(path, std::ios::binary);
     if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))

@@ -5,9 +5,8 @@
 
 namespace tessera::display_file {
 
-// What a calibration file says about an output's picture, node by node, rows from the top, components
-// interleaved. Which of the picture's places the nodes stand for is the file format's matter: the loaders say
-// so.
+// Values of a calibration file over an output's picture, node by node, rows from the top, components interleaved. The
+// positions of the nodes depend on the file format and are documented by the loaders.
 struct LoadedGrid {
     std::uint32_t columns = 0, rows = 0, components = 0;
     std::vector<float> values;  // columns x rows x components

@@ -25,7 +25,7 @@ struct Node {
     }
 };
 
-// Line by line; empty ones are passed over.
+// Reads line by line, skipping empty lines.
 class Lines {
   public:
     explicit Lines(std::string_view text) : rest_(text) {}
@@ -66,14 +66,15 @@ void draw(const std::array<Node, 4>& nodes, std::uint32_t width, std::uint32_t h
     for (const Node& node : nodes)
         if (!node.is_shown()) return;
     const display::BilinearPatch patch{{nodes[0].at, nodes[1].at, nodes[2].at, nodes[3].at}};
-    patch.for_each_pixel(width, height, [&](std::size_t x, std::size_t y, const glm::dvec2& way) {
+    patch.for_each_pixel(width, height, [&](std::size_t x, std::size_t y, const glm::dvec2& uv) {
         const auto mixed = [&](const auto& of) {
-            return (1 - way.y) * ((1 - way.x) * of(nodes[0]) + way.x * of(nodes[1])) +
-                   way.y * ((1 - way.x) * of(nodes[2]) + way.x * of(nodes[3]));
+            return (1 - uv.y) * ((1 - uv.x) * of(nodes[0]) + uv.x * of(nodes[1])) +
+                   uv.y * ((1 - uv.x) * of(nodes[2]) + uv.x * of(nodes[3]));
         };
         const std::size_t pixel = y * width + x;
-        mesh.places.values[2 * pixel] = static_cast<float>(mixed([](const Node& n) { return n.source.x; }));
-        mesh.places.values[2 * pixel + 1] =
+        mesh.source_uv.values[2 * pixel] =
+            static_cast<float>(mixed([](const Node& n) { return n.source.x; }));
+        mesh.source_uv.values[2 * pixel + 1] =
             static_cast<float>(1.0 - mixed([](const Node& n) { return n.source.y; }));
         mesh.weights.values[pixel] =
             static_cast<float>(std::min(mixed([](const Node& n) { return n.brightness; }), 1.0));
@@ -89,14 +90,14 @@ Expected<LoadedMesh> parse_mesh(std::string_view text, const std::string& name, 
         return failure(ErrorCode::InvalidInput, name + ":" + std::to_string(lines.number()) + ": " + why);
     };
     std::array<double, 1> kind{};
-    if (!lines.read(kind)) return refuse("the first line must be the kind of the mesh: 2, for example");
+    if (!lines.read(kind)) return refuse("the first line must be the type of the mesh: 2, for example");
     std::array<double, 2> counts{};
     if (!lines.read(counts) || !is_count(counts[0]) || !is_count(counts[1]))
         return refuse("the second line must be the columns and rows of nodes, 2 to " +
                       std::to_string(MostNodes));
     const auto columns = std::size_t(counts[0]), rows = std::size_t(counts[1]);
-    // A node takes ten bytes at least: a count that the text cannot hold is not worth the memory.
-    if (columns * rows > text.size() / 9) return refuse("says that it has more nodes than there are lines");
+    // A node takes at least ten bytes: rejects counts that exceed the text before allocating memory.
+    if (columns * rows > text.size() / 9) return refuse("states more nodes than it has lines");
     const double aspect = double(width) / height;
     std::vector<Node> nodes(columns * rows);
     for (Node& node : nodes) {

@@ -24,7 +24,7 @@ constexpr float NoPoint = std::numeric_limits<float>::quiet_NaN();
 
 class Reader {
   public:
-    // Without an archive: of the text alone.
+    // Without an archive: only the text.
     Reader(const ZipArchive* archive, std::span<const std::byte> text, const std::string& name)
         : archive_(archive), xml_(text, name) {}
 
@@ -34,11 +34,11 @@ class Reader {
         if (!display) xml_.refuse(xml_.root(), "has no <display>");
         for (const pugi::xml_node buffer : xml_.all(display, "buffer"))
             for (const pugi::xml_node region : xml_.all(buffer, "region")) read_region(buffer, region);
-        if (mpcdi_.regions.empty()) xml_.refuse(display, "has no regions: nothing is shown");
+        if (mpcdi_.regions.empty()) xml_.refuse(display, "has no regions");
         if (mpcdi_.regions.size() > MostRegions)
             xml_.refuse(display, "has more than " + std::to_string(MostRegions) + " regions");
         for (const pugi::xml_node fileset : xml_.all(xml_.root(), "fileset")) read_files(fileset);
-        for (std::size_t i = 0; i < mpcdi_.regions.size(); ++i) check(mpcdi_.regions[i], places_[i]);
+        for (std::size_t i = 0; i < mpcdi_.regions.size(); ++i) check(mpcdi_.regions[i], nodes_[i]);
         return std::move(mpcdi_);
     }
 
@@ -75,7 +75,7 @@ class Reader {
             region.frame = read_frame(frame);
         if (!ids_.insert(region.id).second) xml_.refuse(node, "two regions are called '" + region.id + "'");
         mpcdi_.regions.push_back(std::move(region));
-        places_.push_back(node);
+        nodes_.push_back(node);
     }
 
     MpcdiFrustum read_frustum(pugi::xml_node node) const {
@@ -121,13 +121,13 @@ class Reader {
         return frame;
     }
 
-    // The region that a set of files is of: by its name, or the one around it.
+    // The region that a set of files belongs to: by its name, or the enclosing one.
     MpcdiRegion& region_of(pugi::xml_node fileset) {
         std::string id = xml_.text(fileset, "region");
         if (id.empty()) id = xml_.text(fileset.parent(), "id");
         const auto found = std::ranges::find(mpcdi_.regions, id, &MpcdiRegion::id);
         if (found == mpcdi_.regions.end())
-            xml_.refuse(fileset, "files of a region '" + id + "' that is not there");
+            xml_.refuse(fileset, "names files for region '" + id + "', which does not exist");
         return *found;
     }
 
@@ -135,7 +135,8 @@ class Reader {
         const std::string path = xml_.text_in(of, "path");
         if (path.empty()) return std::nullopt;
         if (archive_ == nullptr)
-            xml_.refuse(of, "names '" + path + "', but stands alone: take the archive that has both");
+            xml_.refuse(of,
+                        "names '" + path + "', but is not in an archive: import the archive that has both");
         const auto bytes = archive_->read(path);
         if (!bytes) xml_.refuse(of, bytes.error().what());
         return *bytes;
@@ -167,7 +168,7 @@ class Reader {
                                                                             {"unknown", 1.0}}};
         for (const auto& [word, length] : Units)
             if (unit == word) return length;
-        if (unit.empty() || unit == "unkown") return 1.0;  // as some tools write it
+        if (unit.empty() || unit == "unkown") return 1.0;  // misspelled by some tools
         xml_.refuse(warp, "the geometricUnit '" + unit + "' is not one of mm, cm, dm, m, in, ft, yd");
     }
 
@@ -181,7 +182,7 @@ class Reader {
         const double unit = metres(of);
         for (std::size_t i = 0; i < region.warp.values.size(); i += 3) {
             float* point = region.warp.values.data() + i;
-            // Tools write 0, 0, 0 where a pixel is seen nowhere.
+            // Tools write 0, 0, 0 for pixels that are not visible.
             const bool is_nowhere = point[0] == 0.0f && point[1] == 0.0f && point[2] == 0.0f;
             for (int axis = 0; axis < 3; ++axis)
                 point[axis] = is_nowhere ? NoPoint : static_cast<float>(unit * double{point[axis]});
@@ -189,7 +190,7 @@ class Reader {
         const std::string origin = xml_.text_in(of, "originOf3DData");
         if (origin == "centerOfMass" || origin == "floorCenter")
             mpcdi_.notices.push_back("region '" + region.id + "': points are measured from the " + origin +
-                                     "; set [head] position where people's eyes are from there");
+                                     "; set [head] position relative to it");
     }
 
     void read_files(pugi::xml_node fileset) {
@@ -199,10 +200,10 @@ class Reader {
         if (const auto node = xml_.child(fileset, "betaMap")) region.lift = light(node);
         if (const auto node = xml_.child(fileset, "distortionMap");
             node && !xml_.text_in(node, "path").empty())
-            mpcdi_.notices.push_back("region '" + region.id + "': the distortion of its lens is left out");
+            mpcdi_.notices.push_back("region '" + region.id + "': its lens distortion is ignored");
     }
 
-    // Each profile has what its pictures are made from.
+    // Each profile requires certain elements.
     void check(const MpcdiRegion& region, pugi::xml_node at) const {
         const std::string name = "region '" + region.id + "' ";
         const bool has_warp = !region.warp.values.empty();
@@ -217,7 +218,7 @@ class Reader {
     const ZipArchive* archive_;
     MpcdiXml xml_;
     Mpcdi mpcdi_;
-    std::vector<pugi::xml_node> places_;  // of the regions in the text
+    std::vector<pugi::xml_node> nodes_;  // of the regions in the text
     std::set<std::string> ids_;
 };
 

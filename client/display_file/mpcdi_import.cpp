@@ -12,7 +12,7 @@ namespace tessera::display_file {
 
 namespace {
 
-constexpr double ScreenWidth = 2.0, ScreenDistance = 2.0;  // metres, of screens that nobody has measured
+constexpr double ScreenWidth = 2.0, ScreenDistance = 2.0;  // metres, of screens without measurements
 
 std::string number(double value) {
     char text[32];
@@ -24,7 +24,7 @@ std::string list(const glm::dvec3& v) {
     return "[" + number(v.x) + ", " + number(v.y) + ", " + number(v.z) + "]";
 }
 
-// That display files take: see docs/displays.md.
+// A name that display files accept: docs/displays.md.
 std::string plain_name(const std::string& id, std::set<std::string>& used) {
     std::string name = id.substr(0, 48);
     for (char& c : name)
@@ -45,7 +45,7 @@ std::vector<std::byte> as_pfm(const LoadedGrid& grid) {
     return bytes;
 }
 
-// The way a frustum looks, as axes of display space: right, up, back.
+// The orientation of a frustum, as axes in display space: right, up, back.
 glm::dmat3 axes_of(const MpcdiFrustum& frustum) {
     glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), -frustum.yaw, glm::dvec3(0, 1, 0));
     turn = glm::rotate(turn, frustum.pitch, glm::dvec3(1, 0, 0));
@@ -58,8 +58,8 @@ glm::dvec3 in_display(const MpcdiRegion& region, const glm::dvec3& point) {
             -glm::dot(point, region.frame->forward)};
 }
 
-// The region's warp, or that of a picture that fills it: two nodes a side carry on to its edges.
-LoadedGrid places(const MpcdiRegion& region) {
+// The region's warp, or the identity: two nodes a side are extrapolated to its edges.
+LoadedGrid uv_grid(const MpcdiRegion& region) {
     if (!region.warp.values.empty()) return region.warp;
     return {2, 2, 3, {0.25f, 0.25f, 0, 0.75f, 0.25f, 0, 0.25f, 0.75f, 0, 0.75f, 0.75f, 0}};
 }
@@ -81,7 +81,8 @@ class Importer {
         result_.notices = mpcdi_.notices;
         for (const MpcdiRegion& region : mpcdi_.regions) add(region);
         result_.text =
-            "# Lengths are metres; screens that are said to be measured are guesses.\n" + screens_ + outputs_;
+            "# Lengths are in metres; replace the screens marked 'to be measured' by measured ones.\n" +
+            screens_ + outputs_;
         return std::move(result_);
     }
 
@@ -113,7 +114,7 @@ class Importer {
         result_.files.push_back({file, as_pfm(grid)});
     }
 
-    // A screen, once: two metres wide, two metres away.
+    // Defines a screen on first use: two metres wide, two metres away.
     void use_screen(const std::string& name, double aspect) {
         outputs_ += "screen = \"" + name + "\"\n";
         if (!screens_made_.insert(name).second) return;
@@ -131,8 +132,8 @@ class Importer {
                                   ? double(region.buffer_width) / region.buffer_height
                                   : region.width / region.across / (region.height / region.down);
         use_screen("screen-" + plain_name(region.buffer, unused), aspect);
-        put("warp", mapped(places(region), [&](const glm::dvec3& place) {
-                return glm::dvec3(region.x + place.x * region.across, region.y + place.y * region.down, 0.0);
+        put("warp", mapped(uv_grid(region), [&](const glm::dvec3& uv) {
+                return glm::dvec3(region.x + uv.x * region.across, region.y + uv.y * region.down, 0.0);
             }));
     }
 
@@ -141,9 +142,9 @@ class Importer {
         const glm::dmat3 axes = axes_of(frustum);
         const double left = std::tan(frustum.left), right = std::tan(frustum.right),
                      down = std::tan(frustum.down), up = std::tan(frustum.up);
-        put("points", mapped(places(region), [&](const glm::dvec3& place) {
-                const glm::dvec3 way(left + place.x * (right - left), up + place.y * (down - up), -1.0);
-                return ScreenDistance * (axes * way);
+        put("points", mapped(uv_grid(region), [&](const glm::dvec3& uv) {
+                const glm::dvec3 direction(left + uv.x * (right - left), up + uv.y * (down - up), -1.0);
+                return ScreenDistance * (axes * direction);
             }));
     }
 
@@ -161,7 +162,7 @@ class Importer {
         const double aspect = (right - left) / (up - down);
         if (std::abs(aspect * region.height / region.width - 1.0) > 0.005)
             result_.notices.push_back("region '" + region.id +
-                                      "': its pixels are not square; a projector's are taken to be");
+                                      "': its pixels are not square; square ones are assumed");
     }
 
     const Mpcdi& mpcdi_;

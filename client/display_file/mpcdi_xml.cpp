@@ -27,9 +27,9 @@ pugi::xml_attribute attribute_of(pugi::xml_node node, const char* name) {
 MpcdiXml::MpcdiXml(std::span<const std::byte> text, std::string name)
     : text_(reinterpret_cast<const char*>(text.data()), text.size()), name_(std::move(name)) {
     const pugi::xml_parse_result result = document_.load_buffer(text_.data(), text_.size());
-    if (!result) refuse_at(result.offset, std::string("the XML is broken: ") + result.description());
+    if (!result) refuse_at(result.offset, std::string("the XML is malformed: ") + result.description());
     if (!is_same(root().name(), "MPCDI"))
-        refuse(root(), std::string("is about '") + root().name() + "', not MPCDI");
+        refuse(root(), std::string("has the root element <") + root().name() + ">, not <MPCDI>");
 }
 
 std::vector<pugi::xml_node> MpcdiXml::all(pugi::xml_node below, const char* name) const {

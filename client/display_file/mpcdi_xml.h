@@ -7,8 +7,8 @@
 
 namespace tessera::display_file {
 
-// mpcdi.xml: tools do not agree on upper and lower case of its words. What is wrong is thrown as
-// Error{InvalidInput}: "NAME: mpcdi.xml:LINE: why".
+// mpcdi.xml, case-insensitive, since tools disagree on case. Throws Error{InvalidInput}:
+// "NAME: mpcdi.xml:LINE: cause".
 class MpcdiXml {
   public:
     MpcdiXml(std::span<const std::byte> text, std::string name);
@@ -17,11 +17,11 @@ class MpcdiXml {
     std::vector<pugi::xml_node> all(pugi::xml_node below, const char* name) const;  // at any depth
     pugi::xml_node child(pugi::xml_node node, const char* name) const;              // none: a null node
 
-    std::string text(pugi::xml_node node, const char* attribute) const;  // "" when it is not there
+    std::string text(pugi::xml_node node, const char* attribute) const;  // "" if missing
     std::string required(pugi::xml_node node, const char* attribute) const;
     double number(pugi::xml_node node, const char* attribute, double otherwise) const;
     std::uint32_t pixels(pugi::xml_node node, const char* attribute) const;  // 1 to 16384
-    // Of a child, as text between its tags.
+    // The text of a child element.
     double number_in(pugi::xml_node node, const char* name, double otherwise) const;
     double number_in(pugi::xml_node node, const char* name) const;
     std::string text_in(pugi::xml_node node, const char* name) const;

@@ -39,7 +39,7 @@ display::Color read_color(Section section) {
         if (color.gamma != 0.0) section.refuse("curve", "has both 'gamma' and 'curve': give one of them");
         if (curve->size() < 2 || curve->size() > display::MaxCurve)
             section.refuse("curve", "'curve' must have from 2 to " + std::to_string(display::MaxCurve) +
-                                        " values: what the device is sent for light from 0 to 1");
+                                        " values: device values for light from 0 to 1");
         color.curve.assign(curve->begin(), curve->end());
     }
     section.refuse_unknown();
@@ -68,8 +68,7 @@ void read_output_keys(Section& section, display::Output& output) {
     }
     if (const auto priority = section.whole("priority", 1, 8)) {
         if (*priority != 1 && *priority != 2 && *priority != 4 && *priority != 8)
-            section.refuse("priority",
-                           "'priority' must be 1, 2, 4 or 8: samples compared with other outputs");
+            section.refuse("priority", "'priority' must be 1, 2, 4 or 8: samples relative to other outputs");
         output.priority = std::uint32_t(*priority);
     }
     if (const auto blend = section.section("blend")) read_blend(*blend, output.blend);

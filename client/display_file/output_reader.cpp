@@ -11,9 +11,9 @@ namespace tessera::display_file {
 
 namespace {
 
-constexpr std::uint64_t MaxBentPixels = std::uint64_t{1} << 25;  // 8K; each may get a point, 12 bytes
+constexpr std::uint64_t MaxWarpedPixels = std::uint64_t{1} << 25;  // 8K; each may need a point of 12 bytes
 
-void place(ReadOutput& read, ReadContext& context) {
+void locate_pixels(ReadOutput& read, ReadContext& context) {
     Section& section = read.section;
     display::Output& output = read.output;
     OutputGeometry& geometry = read.geometry;
@@ -21,7 +21,8 @@ void place(ReadOutput& read, ReadContext& context) {
     const double aspect_ratio = double(size.width) / size.height;
     if (int(section.has("points")) + int(section.has("warp")) + int(section.has("projector")) > 1)
         section.refuse(
-            "has several of 'points', 'warp' and 'projector': each says where its pixels are seen");
+            "has several of 'points', 'warp' and 'projector': each defines where its pixels are seen; give "
+            "one of them");
     section.knows({"points", "warp"});
     if (section.has("points")) {
         if (has_screen(section) || section.has("screen"))
@@ -34,11 +35,11 @@ void place(ReadOutput& read, ReadContext& context) {
     const auto* wall = std::get_if<display::Wall>(&screen);
     auto projector = section.section("projector");
     if (wall && !projector && !section.has("warp")) return lay_flat(*wall, {}, read);
-    if (std::uint64_t{output.width} * output.height > MaxBentPixels)
-        section.refuse("size", "is bent and has more than 33 megapixels: split the output");
+    if (std::uint64_t{output.width} * output.height > MaxWarpedPixels)
+        section.refuse("size", "is warped and has more than 33 megapixels: split the output");
     if (projector) {
         geometry.projector = read_projector(*projector, aspect_ratio);
-        geometry.points = thrown(*geometry.projector, screen, output);
+        geometry.points = projected_points(*geometry.projector, screen, output);
     } else if (section.has("warp")) {
         geometry.points = read_warp(section, context, screen, output);
     } else {
@@ -53,7 +54,7 @@ void place(ReadOutput& read, ReadContext& context) {
 std::string read_name(Section& section, const char* what) {
     const auto name = section.text("name");
     if (!name) section.require("name");
-    // Names become files of pictures and words of command lines.
+    // Names are used in file names and command lines.
     const auto is_fine = [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
                c == '_' || c == '.';
@@ -77,7 +78,7 @@ ReadOutput read_output(Section section, ReadContext& context) {
     read.has_own_blend = keys.has("blend");
     read_output_keys(keys, output);
     try {
-        place(read, context);
+        locate_pixels(read, context);
         read.has_own_blend = read_light_files(keys, context, output) || read.has_own_blend;
     } catch (const Error& error) {
         if (std::string_view(error.what()).starts_with(keys.file() + ":")) throw;

@@ -11,26 +11,26 @@ namespace tessera::display_file {
 // [[screen]]
 struct NamedScreen {
     display::Screen surface;
-    double black = 0.0;  // light of a projector that is sent black, as a part of its white
+    double black = 0.0;  // black level of its projectors, as a fraction of white
 };
 
-// What outputs are read with.
+// Shared by all outputs while reading.
 struct ReadContext {
-    std::string folder;  // that names of files are relative to
+    std::string folder;  // paths are relative to it
     std::map<std::string, NamedScreen> screens;
     display::Head head;
     scene::BlobStore& blobs;
 };
 
-// An output with the place in the file that errors about it name.
+// An output and its section, for errors.
 struct ReadOutput {
     display::Output output;
     OutputGeometry geometry;
     Section section;
-    bool has_own_blend = false;  // the file says something about its soft edges
+    bool has_own_blend = false;  // the file has soft edges for it
 };
 
-// Takes the key `name`, after which errors call the section: `what` 'NAME'.
+// Reads the key `name`; errors then call the section `what` 'NAME'.
 std::string read_name(Section& section, const char* what);
 
 // [[output]]

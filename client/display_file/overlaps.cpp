@@ -18,18 +18,18 @@ LoadedGrid on_pixels(std::vector<float> values, const display::Output& output) {
 void blend_overlaps(std::span<ReadOutput> outputs, ReadContext& context) {
     for (const auto& [name, screen] : context.screens) {
         std::vector<ReadOutput*> projectors;
-        std::vector<display::Thrower> throwers;
+        std::vector<display::ProjectorOutput> projector_outputs;
         for (ReadOutput& read : outputs) {
             if (read.geometry.screen != name || !read.geometry.projector || read.has_own_blend) continue;
             projectors.push_back(&read);
-            throwers.push_back({.projector = *read.geometry.projector,
-                                .points = read.geometry.points,
-                                .width = read.output.width,
-                                .height = read.output.height});
+            projector_outputs.push_back({.projector = *read.geometry.projector,
+                                         .points = read.geometry.points,
+                                         .width = read.output.width,
+                                         .height = read.output.height});
         }
-        if (throwers.size() < 2) continue;
+        if (projectors.size() < 2) continue;
         tbb::task_arena arena;
-        std::vector<display::OverlapMaps> maps = display::overlap(throwers, screen.black, arena);
+        std::vector<display::OverlapMaps> maps = display::overlap(projector_outputs, screen.black, arena);
         for (std::size_t i = 0; i < maps.size(); ++i) {
             display::Output& output = projectors[i]->output;
             const bool is_alone = std::ranges::all_of(maps[i].weights, [](float w) { return w == 1.0f; });

@@ -6,8 +6,8 @@
 
 namespace tessera::display_file {
 
-// Projectors that throw onto one named screen, and for which the file says nothing about soft edges, get
-// weights from where their pictures overlap, and a lift when the screen names their `black`.
+// Computes blend weights from the overlaps of projectors that share a named screen and have no soft edges in the file,
+// and a lift when the screen has `black`.
 void blend_overlaps(std::span<ReadOutput> outputs, ReadContext& context);
 
 }  // namespace tessera::display_file

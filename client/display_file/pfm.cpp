@@ -23,7 +23,7 @@ bool is_space(char c) {
     return c == ' ' || c == '\n' || c == '\r' || c == '\t';
 }
 
-// The next word of the header, with the one white space behind it taken, too; empty at the end.
+// The next word of the header, also consuming one white space after it; empty at the end.
 std::string_view next_word(std::string_view& rest) {
     while (!rest.empty() && is_space(rest.front())) rest.remove_prefix(1);
     const auto end = std::ranges::find_if(rest, is_space);
@@ -65,8 +65,8 @@ Expected<LoadedGrid> parse_pfm(std::span<const std::byte> bytes, const std::stri
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const std::optional<Header> header = parse_header(text);
     if (!header)
-        return refuse(name,
-                      "is no PFM: it must begin with 'PF' or 'Pf', width, height and a scale other than 0");
+        return refuse(
+            name, "is not a PFM: it must begin with 'PF' or 'Pf', width, height and a scale other than 0");
     if (header->columns == 0 || header->rows == 0 || header->columns > display::MaxEdge ||
         header->rows > display::MaxEdge)
         return refuse(name, "has " + std::to_string(header->columns) + " x " + std::to_string(header->rows) +
@@ -74,7 +74,7 @@ Expected<LoadedGrid> parse_pfm(std::span<const std::byte> bytes, const std::stri
     const std::size_t count = std::size_t{header->columns} * header->rows * header->components;
     if (bytes.size() - header->begin != 4 * count)
         return refuse(name, "has " + std::to_string(bytes.size() - header->begin) +
-                                " bytes of numbers instead of " + std::to_string(4 * count) +
+                                " bytes of values instead of " + std::to_string(4 * count) +
                                 ": write it again");
     LoadedGrid grid{header->columns, header->rows, header->components, std::vector<float>(count)};
     std::memcpy(grid.values.data(), bytes.data() + header->begin, 4 * count);
@@ -84,12 +84,12 @@ Expected<LoadedGrid> parse_pfm(std::span<const std::byte> bytes, const std::stri
     const auto endless = std::ranges::find_if(grid.values, [](float value) { return std::isinf(value); });
     if (endless != grid.values.end()) {
         const auto node = std::size_t(endless - grid.values.begin()) / header->components;
-        return refuse(name, "holds a number without end at column " + std::to_string(node % header->columns) +
+        return refuse(name, "holds an infinite number at column " + std::to_string(node % header->columns) +
                                 ", row " + std::to_string(node / header->columns) +
-                                ": a place that is not seen must be NaN");
+                                ": use NaN for points that are not visible");
     }
     if (std::ranges::all_of(grid.values, [](float value) { return std::isnan(value); }))
-        return refuse(name, "holds no number at all");
+        return refuse(name, "holds only NaN");
     return grid;
 }
 

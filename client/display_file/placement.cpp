@@ -9,8 +9,8 @@ namespace tessera::display_file {
 
 namespace {
 
-display::PointGrid corners(const display::Wall& wall, const display::Part& part) {
-    display::PointGrid grid{.columns = 2, .rows = 2, .nodes = display::Grid::Nodes::Edges, .points = {}};
+display::WarpMap corners(const display::Wall& wall, const display::Part& part) {
+    display::WarpMap grid{.columns = 2, .rows = 2, .nodes = display::Grid::Nodes::Edges, .points = {}};
     for (const double v : {1.0 - part.top, 1.0 - part.bottom}) {
         for (const double u : {part.left, part.right}) grid.points.push_back(display::point(wall, u, v));
     }
@@ -42,7 +42,7 @@ void find_screen(Section& section, const ReadContext& context, double aspect_rat
 
 void lay_flat(const display::Wall& wall, const display::Part& part, ReadOutput& read) {
     const Pixels size = picture_size(read.output);
-    read.output.plane = display::view_plane(wall, part);
+    read.output.plane = display::projection_plane(wall, part);
     read.output.view_width = size.width;
     read.output.view_height = size.height;
     read.geometry.points = corners(wall, part);
@@ -54,13 +54,13 @@ void lay_out(ReadOutput& read, ReadContext& context) {
         read.section.refuse("turn",
                             "has points or a warp and 'turn': these are of the device's own pixels, "
                             "so they hold the turn already; leave 'turn' out");
-    const display::PointGrid& grid = read.geometry.points;
+    const display::WarpMap& grid = read.geometry.points;
     if (read.geometry.surface && std::holds_alternative<display::Wall>(*read.geometry.surface)) {
         // One plane for all outputs on it.
-        output.plane = display::view_plane(std::get<display::Wall>(*read.geometry.surface));
+        output.plane = display::projection_plane(std::get<display::Wall>(*read.geometry.surface));
         output.plane.hull = display::hull(grid);
     } else {
-        output.plane = display::view_plane(grid, context.head.position);
+        output.plane = display::projection_plane(grid, context.head.position);
     }
     const display::Size size =
         display::view_size(grid, output.plane, context.head.position, output.width, output.height);
@@ -78,8 +78,8 @@ void lay_out(ReadOutput& read, ReadContext& context) {
                      .values = scene::reference(*context.blobs.insert(std::as_bytes(std::span(values))))};
 }
 
-display::PointGrid thrown(const view::CameraPose& projector, const display::Screen& screen,
-                          const display::Output& output) {
+display::WarpMap projected_points(const view::CameraPose& projector, const display::Screen& screen,
+                                  const display::Output& output) {
     const glm::dvec3 lens(projector.world_from_camera[3]);
     const auto point_at = [&](double u, double v) {
         const auto point = display::hit(screen, lens, display::ray(projector, u, v));

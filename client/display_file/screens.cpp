@@ -19,9 +19,9 @@ bool has_corners(const Section& section) {
 }
 
 glm::dvec3 corner(Section& section, const std::string& key) {
-    const auto place = section.point(key);
-    if (!place) section.require(key);
-    return *place;
+    const auto position = section.point(key);
+    if (!position) section.require(key);
+    return *position;
 }
 
 double needed(Section& section, const std::string& key, double least, double most) {

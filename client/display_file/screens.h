@@ -8,14 +8,14 @@
 
 namespace tessera::display_file {
 
-// Whether the section says where a screen is.
+// Whether the section defines a screen.
 bool has_screen(const Section& section);
 
 // From the keys of a flat screen (corners, or fov and distance), `cylinder` or `dome`. `aspect_ratio` is of
 // the picture that a fov is for. Without any of these: straight ahead, 50 degrees high, 0.7 m away.
 display::Screen read_screen(Section& section, double aspect_ratio);
 
-// Four corners alone.
+// Only four corners.
 display::Wall read_wall(Section& section);
 
 // In display space.

@@ -48,8 +48,7 @@ const Value* Section::take(const std::string& key, Value::Kind kind) {
 
 double Section::checked(const std::string& key, const Value& value, double least, double most) const {
     if (value.kind != Value::Kind::Number) {
-        refuse(key,
-               "'" + key + "' holds " + std::string(kind_name(value.kind)) + " where a number must stand");
+        refuse(key, "'" + key + "' holds " + std::string(kind_name(value.kind)) + " instead of a number");
     }
     if (!(value.number >= least && value.number <= most)) {
         refuse(key, "'" + key + "' is " + shown(value.number) + "; it must be from " + shown(least) + " to " +
@@ -112,11 +111,11 @@ std::optional<glm::dvec3> Section::point(const std::string& key) {
 }
 
 std::optional<glm::dvec3> Section::direction(const std::string& key) {
-    const auto way = point(key);
-    if (!way) return std::nullopt;
-    const double length = glm::length(*way);
+    const auto direction = point(key);
+    if (!direction) return std::nullopt;
+    const double length = glm::length(*direction);
     if (!(length > 1e-9)) refuse(key, "'" + key + "' has no length: it must be a direction");
-    return *way / length;
+    return *direction / length;
 }
 
 std::optional<std::array<std::uint32_t, 2>> Section::counts(const std::string& key, std::uint32_t least,
@@ -187,12 +186,12 @@ void Section::refuse_unknown() const {
 
 void Section::refuse(const std::string& key, const std::string& why) const {
     const Value* value = entry(key);
-    throw error_at(file_, value ? value->place : value_->place,
+    throw error_at(file_, value ? value->position : value_->position,
                    (object_.empty() ? "" : object_ + ": ") + why);
 }
 
 void Section::refuse(const std::string& why) const {
-    throw error_at(file_, value_->place, (object_.empty() ? "" : object_ + ": ") + why);
+    throw error_at(file_, value_->position, (object_.empty() ? "" : object_ + ": ") + why);
 }
 
 void Section::require(const std::string& key) const {

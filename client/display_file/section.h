@@ -14,13 +14,13 @@
 
 namespace tessera::display_file {
 
-// One table of the file as it is read key by key. Whatever is wrong is thrown as Error{InvalidInput} that
-// says file, line, column, the object ("output 'left'") and what to do. The value outlives the section.
+// One table of the file, read key by key. Throws Error{InvalidInput} with file, line, column, the object
+// ("output 'left'") and the remedy. The value must outlive the section.
 class Section {
   public:
     Section(const Value& value, std::string file, std::string object);
 
-    // What the errors call it, once its name is known.
+    // Sets its name in errors, once known.
     void call(std::string object) { object_ = std::move(object); }
     const std::string& object() const { return object_; }
     const std::string& file() const { return file_; }
@@ -42,15 +42,15 @@ class Section {
     // The index of the word among the choices.
     std::optional<std::size_t> choice(const std::string& key, std::span<const std::string_view> words);
     std::optional<Section> section(const std::string& key);
-    std::vector<Section> sections(const std::string& key);  // [[key]]; one table does, too
+    std::vector<Section> sections(const std::string& key);  // [[key]], or a single table
     std::optional<Value::Kind> kind(const std::string& key) const;
 
-    // Keys that are asked for only in some tables.
+    // Registers keys that are read only in some cases.
     void knows(std::initializer_list<const char*> keys);
-    // After all keys were asked for: complains of the first that nobody wanted, with the nearest that was.
+    // Call after all keys were read: reports the first unknown key, with the closest known one.
     void refuse_unknown() const;
 
-    // At the key, or at the table when it is not there.
+    // Reports at the key, or at the table if the key is missing.
     [[noreturn]] void refuse(const std::string& key, const std::string& why) const;
     [[noreturn]] void refuse(const std::string& why) const;
     [[noreturn]] void require(const std::string& key) const;  // "needs ..."
@@ -64,7 +64,7 @@ class Section {
 
     const Value* value_;
     std::string file_, object_;
-    std::vector<std::string> known_;  // keys that were asked for
+    std::vector<std::string> known_;  // keys that were read
 };
 
 }  // namespace tessera::display_file

@@ -8,7 +8,7 @@ namespace tessera::display_file {
 
 namespace {
 
-// Soft edges along the edges of the picture, on those of the device as it hangs.
+// Maps soft edges of the picture to the edges of the mounted device.
 void set_ramps(double left, double right, double top, double bottom, display::Output& output) {
     display::Blend& blend = output.blend;
     const auto set = [&](double l, double r, double t, double b) {
@@ -20,7 +20,7 @@ void set_ramps(double left, double right, double top, double bottom, display::Ou
     switch (output.turn) {
         case display::Turn::None:
             return set(left, right, top, bottom);
-        case display::Turn::Quarter:  // the device's top is on the right
+        case display::Turn::Quarter:  // the device's top edge is on the right
             return set(top, bottom, right, left);
         case display::Turn::Half:
             return set(right, left, bottom, top);

@@ -40,7 +40,7 @@ Expected<ZipArchive> ZipArchive::open(std::span<const std::byte> bytes, const st
     zip_error_fini(&error);
     if (!archive) {
         if (source != nullptr) zip_source_free(source);
-        return refuse("is no ZIP archive, or a damaged one: " + why);
+        return refuse("is not a ZIP archive, or is damaged: " + why);
     }
     const auto count =
         static_cast<std::uint64_t>(std::max<zip_int64_t>(zip_get_num_entries(archive.get(), 0), 0));
@@ -55,7 +55,7 @@ Expected<ZipArchive> ZipArchive::open(std::span<const std::byte> bytes, const st
             return refuse("entry " + std::to_string(i + 1) + " is damaged");
         if (leads_out(entry.name))
             return refuse(std::string("the entry '") + entry.name +
-                          "' leads out of the archive: names must be relative, without '..'");
+                          "' points outside of the archive: names must be relative, without '..'");
         if (entry.size > MostBytes || (total += entry.size) > MostBytes)
             return refuse("unpacks to more than " + std::to_string(MostBytes >> 30) + " GiB");
     }
@@ -77,7 +77,7 @@ Expected<std::vector<std::byte>> ZipArchive::read(const std::string& entry) cons
     const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(
         zip_fopen_index(archive_.get(), static_cast<zip_uint64_t>(index), 0), zip_fclose);
     if (!file) return refuse();
-    // In pieces: the size is what the archive says, memory is for what is there.
+    // In pieces: the stated size is untrusted, memory grows with the actual data.
     constexpr std::size_t Piece = std::size_t{1} << 20;
     std::vector<std::byte> bytes;
     while (bytes.size() < stat.size) {

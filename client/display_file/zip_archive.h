@@ -12,15 +12,15 @@ struct zip;
 
 namespace tessera::display_file {
 
-// A ZIP archive in memory, that comes from anywhere: nothing of it ever becomes a name of this machine's, and
-// it unpacks to no more than a fixed number of bytes.
+// An untrusted ZIP archive in memory: its entry names are never used as file names on this machine, and the unpacked
+// size is limited.
 class ZipArchive {
   public:
-    // `bytes` outlive the archive. InvalidInput, beginning with `name`: not an archive, damaged, an entry
-    // whose name leads out of it (.., absolute, a drive), or too many entries or bytes.
+    // `bytes` must outlive the archive. InvalidInput, beginning with `name`: not an archive, damaged, an entry
+    // whose name points outside of it (.., absolute, a drive), or too many entries or bytes.
     static Expected<ZipArchive> open(std::span<const std::byte> bytes, const std::string& name);
 
-    // A file by its name, upper and lower case alike when no other fits. NotFound or InvalidInput.
+    // A file by its name, ignoring case if there is no exact match. NotFound or InvalidInput.
     Expected<std::vector<std::byte>> read(const std::string& entry) const;
 
     static constexpr std::size_t MostEntries = 4096;

@@ -38,12 +38,11 @@ std::optional<Word> take_keyword(std::vector<Word>& arguments, std::string_view 
         if (!arguments[i].is(keyword)) continue;
         if (i + 1 == arguments.size()) {
             throw ScriptError(end_column,
-                              "'" + std::string(keyword) + "' lacks the path of a transform behind it");
+                              "'" + std::string(keyword) + "' needs the path of a transform after it");
         }
         if (i + 2 < arguments.size()) {
-            throw ScriptError(arguments[i + 2].column(), "nothing may stand behind '" + std::string(keyword) +
-                                                             " PARENT': '" + arguments[i + 2].text() +
-                                                             "' does");
+            throw ScriptError(arguments[i + 2].column(), "unexpected '" + arguments[i + 2].text() +
+                                                             "' after '" + std::string(keyword) + " PARENT'");
         }
         const Word path = arguments[i + 1];
         arguments.resize(i);
@@ -52,7 +51,7 @@ std::optional<Word> take_keyword(std::vector<Word>& arguments, std::string_view 
     return std::nullopt;
 }
 
-void run_line(Rehearsal& rehearsal, std::string_view line) {
+void run_line(DryRun& dry_run, std::string_view line) {
     std::vector<Word> words = split(line);
     if (words.empty()) return;
     const Command& command = read_command(words[0]);
@@ -64,15 +63,16 @@ void run_line(Rehearsal& rehearsal, std::string_view line) {
             if (words[i].is(command.keyword)) count = std::min(count, i);
         }
     }
-    if (count < command.least) {
-        throw ScriptError(end,
-                          "'" + std::string(command.name) + "' needs more: " + std::string(command.usage));
+    if (count < command.min_arguments) {
+        throw ScriptError(
+            end, "'" + std::string(command.name) + "' needs more arguments: " + std::string(command.usage));
     }
-    if (count > command.most) {
-        throw ScriptError(words[command.most].column(),
-                          "'" + words[command.most].text() + "' is too much: " + std::string(command.usage));
+    if (count > command.max_arguments) {
+        throw ScriptError(words[command.max_arguments].column(), "unexpected argument '" +
+                                                                     words[command.max_arguments].text() +
+                                                                     "': " + std::string(command.usage));
     }
-    command.run(rehearsal, words, end);
+    command.run(dry_run, words, end);
 }
 
 }  // namespace tessera::edit

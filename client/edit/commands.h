@@ -5,11 +5,11 @@
 #include <string_view>
 #include <vector>
 
-#include "client/edit/rehearsal.h"
+#include "client/edit/dry_run.h"
 
 namespace tessera::edit {
 
-// What may stand at a place behind a command; completion goes by it.
+// The kind of an argument; used for completion.
 enum class Argument {
     Path,       // of an object
     Transform,  // path of a transform
@@ -25,25 +25,25 @@ enum class Argument {
     Topic      // a command, a kind or a topic of help
 };
 
-// One command, in one place: what is read, what help says, what is completed, what it does.
+// Everything about one command: syntax, help, completion and implementation.
 struct Command {
     std::string_view name, usage, summary, details;
-    std::size_t least = 0, most = 0;  // arguments, without the keyword's
-    std::vector<Argument> arguments;  // the last one repeats
-    std::string_view keyword;         // "in" or "from", and a parent's path behind it, both optional
-    void (*run)(Rehearsal&, const std::vector<Word>& arguments, std::size_t end_column) = nullptr;
+    std::size_t min_arguments = 0, max_arguments = 0;  // not counting the keyword and its path
+    std::vector<Argument> arguments;                   // the last one repeats
+    std::string_view keyword;                          // optional "in" or "from", followed by a parent's path
+    void (*run)(DryRun&, const std::vector<Word>& arguments, std::size_t end_column) = nullptr;
 };
 
 const std::vector<Command>& commands();
 const Command* find_command(std::string_view name);
-const Command& read_command(const Word& word);  // throws ScriptError with the nearest one
+const Command& read_command(const Word& word);  // throws ScriptError, suggesting the nearest name
 
-// Splits a keyword and its path off: the path, or nothing. Throws ScriptError when there is no path, or more
-// than one.
+// Removes a keyword and its path from the arguments; returns the path, if any. Throws ScriptError if the path is
+// missing or followed by further arguments.
 std::optional<Word> take_keyword(std::vector<Word>& arguments, std::string_view keyword,
                                  std::size_t end_column);
 
 // Checks the number of arguments and runs the line; throws ScriptError.
-void run_line(Rehearsal& rehearsal, std::string_view line);
+void run_line(DryRun& dry_run, std::string_view line);
 
 }  // namespace tessera::edit

@@ -5,7 +5,7 @@
 
 #include "client/edit/commands.h"
 #include "client/edit/help.h"
-#include "client/edit/path_book.h"
+#include "client/edit/path_index.h"
 #include "client/edit/script_error.h"
 #include "client/edit/values.h"
 #include "mediator/scene/fields.h"
@@ -16,15 +16,15 @@ namespace {
 namespace fs = std::filesystem;
 using scene::ObjectKind;
 
-constexpr std::size_t MostCandidates = 1000;
+constexpr std::size_t MaxCandidates = 1000;
 
 class Completer {
   public:
-    Completer(std::string_view before, const scene::Scene& scene) : scene_(scene), book_(scene) {
-        SplitLine line = split_tolerantly(before);
+    Completer(std::string_view before, const scene::Scene& scene) : scene_(scene), path_index_(scene) {
+        SplitLine line = split_lenient(before);
         words_ = std::move(line.words);
         if (words_.empty() || !line.ends_with_word) words_.emplace_back();
-        // Where the word at the cursor begins in the text: behind the last blank outside of quotes.
+        // Start of the word at the cursor: after the last blank outside of quotes.
         begin_ = before.size();
         if (line.ends_with_word && !words_.empty()) begin_ = start_of_last_word(before);
         start_ = std::string(before.substr(begin_));
@@ -33,7 +33,7 @@ class Completer {
     Completion run() {
         const std::size_t index = words_.size() - 1;
         if (index == 0) {
-            for (const Command& command : commands()) offer(std::string(command.name) + " ");
+            for (const Command& command : commands()) add_candidate(std::string(command.name) + " ");
         } else if (const Command* command = find_command(words_[0].text())) {
             argument(*command, index - 1);
         }
@@ -58,22 +58,23 @@ class Completer {
         return start;
     }
 
-    void offer(std::string candidate) {
-        if (candidate.starts_with(start_) && found_.size() < MostCandidates)
+    void add_candidate(std::string candidate) {
+        if (candidate.starts_with(start_) && found_.size() < MaxCandidates)
             found_.push_back(std::move(candidate));
     }
 
     void argument(const Command& command, std::size_t index) {
         if (!command.keyword.empty() && index > 0 && words_[index].is(command.keyword)) {
             paths(ObjectKind::Transform, " ");
-            return offer("root ");
+            return add_candidate("root ");
         }
-        if (!command.keyword.empty() && index >= command.least) offer(std::string(command.keyword) + " ");
-        if (command.arguments.empty() || index >= command.most) return;
+        if (!command.keyword.empty() && index >= command.min_arguments)
+            add_candidate(std::string(command.keyword) + " ");
+        if (command.arguments.empty() || index >= command.max_arguments) return;
         const Argument kind = command.arguments[std::min(index, command.arguments.size() - 1)];
         switch (kind) {
             case Argument::Path:
-                offer("root ");
+                add_candidate("root ");
                 return all_paths(" ");
             case Argument::Transform:
                 return paths(ObjectKind::Transform, " ");
@@ -83,11 +84,11 @@ class Completer {
                 return value();
             case Argument::Kind:
                 for (const scene::KindRow& row : scene::Kinds) {
-                    if (row.kind != ObjectKind::Root) offer(std::string(row.name) + " ");
+                    if (row.kind != ObjectKind::Root) add_candidate(std::string(row.name) + " ");
                 }
                 return;
             case Argument::KindOrPath:
-                for (const std::string& word : kind_words()) offer(word + " ");
+                for (const std::string& word : kind_words()) add_candidate(word + " ");
                 return all_paths(" ");
             case Argument::Assignments:
                 return assignments();
@@ -96,9 +97,9 @@ class Completer {
             case Argument::SaveFile:
                 return files({".glb", ".tessera"});
             case Argument::Topic:
-                for (const Command& one : commands()) offer(std::string(one.name) + " ");
-                for (const std::string& word : kind_words()) offer(word + " ");
-                for (const std::string& word : help_topics()) offer(word + " ");
+                for (const Command& one : commands()) add_candidate(std::string(one.name) + " ");
+                for (const std::string& word : kind_words()) add_candidate(word + " ");
+                for (const std::string& word : help_topics()) add_candidate(word + " ");
                 return;
             case Argument::NewName:
             case Argument::Free:
@@ -107,28 +108,28 @@ class Completer {
     }
 
     void paths(ObjectKind kind, const std::string& end, const std::string& before = {}) {
-        for (const auto& [name, ids] : book_.names(kind)) {
-            for (const ObjectId id : ids) offer(before + book_.path(scene_, id) + end);
-            if (found_.size() >= MostCandidates) return;
+        for (const auto& [name, ids] : path_index_.names(kind)) {
+            for (const ObjectId id : ids) add_candidate(before + path_index_.path(scene_, id) + end);
+            if (found_.size() >= MaxCandidates) return;
         }
     }
 
-    // Of everything but the root. Kinds first, so that a scene of a million objects is not listed at once.
+    // Of all objects but the root. Kinds first, so that a scene of a million objects is not listed at once.
     void all_paths(const std::string& end, const std::string& before = {}) {
         for (const scene::KindRow& row : scene::Kinds) {
             const std::string prefix = before + row.plural + "/";
             if (row.kind == ObjectKind::Root) continue;
             if (start_.starts_with(prefix)) {
                 paths(row.kind, end, before);
-            } else if (!book_.names(row.kind).empty()) {
-                offer(prefix);
+            } else if (!path_index_.names(row.kind).empty()) {
+                add_candidate(prefix);
             }
         }
     }
 
     void fields() {
         const Word& word = words_.back();
-        // Behind any dot that follows a path of something: names may hold dots.
+        // After any dot that follows the path of an object: names may contain dots.
         for (std::size_t dot = word.find('.'); dot != Word::None; dot = word.find('.', dot + 1)) {
             const ObjectId id = object_of(word.part(0, dot));
             if (!id) continue;
@@ -136,21 +137,21 @@ class Completer {
             const std::string path = start_.substr(0, shown + 1);
             field_words(scene::kind(*scene_.find(id)), path, " ");
         }
-        offer("root.");
+        add_candidate("root.");
         all_paths(".");
     }
 
     void field_words(ObjectKind kind, const std::string& before, const std::string& end) {
         for (const unsigned field : fields_of(kind)) {
             if (value_form(kind, field).is_settable)
-                offer(before + std::string(scene::field_name(kind, field)) + end);
+                add_candidate(before + std::string(scene::field_name(kind, field)) + end);
         }
-        if (kind == ObjectKind::Material) offer(before + "diffuse" + end);
+        if (kind == ObjectKind::Material) add_candidate(before + "diffuse" + end);
     }
 
     ObjectId object_of(const Word& path) const {
         try {
-            return book_.read(scene_, path);
+            return path_index_.read(scene_, path);
         } catch (const ScriptError&) {
             return {};
         }
@@ -168,7 +169,8 @@ class Completer {
     }
 
     void value_of(const ValueForm& form, const std::string& before, const std::string& end) {
-        for (const std::string& word : form.words) offer(before + word + (word.ends_with('=') ? "" : end));
+        for (const std::string& word : form.words)
+            add_candidate(before + word + (word.ends_with('=') ? "" : end));
         if (form.takes_paths) all_paths(end, before);
     }
 
@@ -193,10 +195,10 @@ class Completer {
             const bool is_folder = entries->is_directory(unreadable);
             const bool fits =
                 std::find(endings.begin(), endings.end(), entries->path().extension()) != endings.end();
-            // Quotes change the start of the word: what was typed need not be a prefix of it any more.
+            // Quoting changes the start of the word, so the typed text need not be a prefix any more.
             if (is_folder) found_.push_back(unclosed(in_quotes(name + "/")));
             if (!is_folder && fits) found_.push_back(in_quotes(name) + " ");
-            if (found_.size() >= MostCandidates) return;
+            if (found_.size() >= MaxCandidates) return;
         }
     }
     static std::string unclosed(std::string text) {
@@ -205,7 +207,7 @@ class Completer {
     }
 
     const scene::Scene& scene_;
-    PathBook book_;
+    PathIndex path_index_;
     std::vector<Word> words_;
     std::size_t begin_ = 0;
     std::string start_;

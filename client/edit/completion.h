@@ -9,9 +9,8 @@
 
 namespace tessera::edit {
 
-// What may stand at the cursor: each candidate takes the place of text[begin, cursor). Sorted. A candidate
-// that ends a word has a blank behind it. Looks into folders for 'load' and 'save', else only at its
-// arguments.
+// The candidates at the cursor, sorted; each replaces text[begin, cursor). A candidate that completes a word ends with
+// a blank. Reads folders for 'load' and 'save' only.
 struct Completion {
     std::size_t begin = 0;
     std::vector<std::string> candidates;

@@ -1,10 +1,10 @@
 #include "client/edit/help.h"
 
+#include "client/edit/command_functions.h"
 #include "client/edit/commands.h"
-#include "client/edit/path_book.h"
+#include "client/edit/path_index.h"
 #include "client/edit/script_error.h"
 #include "client/edit/values.h"
-#include "client/edit/verbs.h"
 #include "mediator/base/nearest.h"
 #include "mediator/scene/fields.h"
 
@@ -14,41 +14,41 @@ namespace {
 constexpr std::string_view Paths =
     R"(Paths
   KIND/NAME      materials/red, transforms/wheel, lights/key
-  KIND/NAME@ID   the same object whatever others are named: materials/red@70012
+  KIND/NAME@ID   unambiguous even if several objects share the name: materials/red@70012
   KIND/@ID       an object without a name
-  root           where the tree starts
+  root           the root of the scene graph
   none           no object, as a value
 Kinds: transforms, geometries, materials, textures, lights, cameras, backgrounds, attachments ('material' works as
-well as 'materials'). Paths with an id always work and never change their meaning; the short ones are shown where
-they are unique. Names with blanks or " \ # @ = , * ? go into quotes: materials/"my red". Inside and outside of
-quotes \ takes the meaning from the next character; \n, \t and \xHH are a new line, a tab and a byte.
+well as 'materials'). Paths with an id always work and never change their meaning; short paths are printed where
+they are unique. Quote names that contain blanks or " \ # @ = , * ?, as in materials/"my red". Inside and outside of
+quotes, \ escapes the next character; \n, \t and \xHH are a new line, a tab and a byte.
 )";
 
 constexpr std::string_view Values =
     R"(Values
-  numbers        0.8  -1e3; finite. Vectors with blanks or commas between them: 0.8 0.1 0.1 or 0.8,0.1,0.1
-  colours        linear Rec. 709; one number is grey. base_color has alpha, which stays when only three are given;
-                 'diffuse' is another name for it
-  truth          true false, yes no, on off, 1 0
+  numbers        0.8  -1e3; finite. Separate vector components by blanks or commas: 0.8 0.1 0.1 or 0.8,0.1,0.1
+  colours        linear Rec. 709; one number is grey. base_color has alpha, which is kept if only three numbers are
+                 given; 'diffuse' is an alias of base_color
+  booleans       true false, yes no, on off, 1 0
   choices        by name: spot, opaque, clamp ('help KIND' lists them)
   texts          one word, or in quotes: "made by hand"
   references     a path, or none. Children: several paths
-  textures       textures/wood offset=0,0 scale=2,2 rotation=0.5; each part may be left out and then stays
+  textures       textures/wood offset=0,0 scale=2,2 rotation=0.5; omitted parts are kept
   matrices       identity, or 16 numbers column by column; the last row is 0 0 0 1
-Metres; radians in fields, degrees in 'rotate'. Arrays and texels cannot be typed: they come with 'load'.
+Metres; radians in fields, degrees in 'rotate'. Arrays and texels cannot be typed; import them with 'load'.
 )";
 
 constexpr std::string_view Scripts =
     R"(Scripts
-One command a line; # at the start of a word makes the rest a comment. A script is one transaction, or several when
-there are 'commit' lines. It is rehearsed in full before the master hears of it: a script with a mistake in line 40
-has changed nothing. Then its transactions are sent in order; when the master refuses one, those before it are taken
-back. What a line does besides editing (print, save, lock, wait) happens when the edits before it in its transaction
-have been taken. Behind 'undo' and 'redo' no line may read or edit the scene, since it cannot be rehearsed.
-Errors name file, line and column.
+One command per line; # at the start of a word begins a comment. A script is one transaction, or several separated
+by 'commit' lines. The whole script is first run on a copy of the scene (dry run), before anything is sent to the
+master: a script with a mistake in line 40 changes nothing. Then its transactions are sent in order; if the master
+rejects one, the earlier ones are undone. Other actions of a line (print, save, lock, wait) are executed once the
+preceding edits of their transaction have been accepted. After 'undo' or 'redo', no line may read or edit the
+scene, since the dry run cannot predict the result. Errors give the file, line and column.
 )";
 
-// Lines after the first are indented by `more` beyond the others.
+// Lines after the first are indented by `more` additional blanks.
 std::string wrapped(std::string_view text, const std::string& first_indent, std::size_t more = 0) {
     constexpr std::size_t Width = 100;
     std::string result, indent = first_indent;
@@ -74,14 +74,14 @@ std::string padded(std::string_view text, std::size_t width) {
 }
 
 std::string overview() {
-    std::string text = "Commands, one a line:\n";
+    std::string text = "Commands, one per line:\n";
     for (const Command& command : commands()) {
         text += "  " + padded(command.usage, 48) + std::string(command.summary) + "\n";
     }
     return text +
-           "'help COMMAND' says more; 'help materials' and the other kinds list their fields; 'help paths', "
-           "'help "
-           "values' and\n'help scripts' explain these; 'help all' is the whole manual.\n";
+           "'help COMMAND' gives details; 'help materials' and the other kinds list their fields; 'help "
+           "paths', "
+           "'help values' and\n'help scripts' explain these topics; 'help all' prints the whole manual.\n";
 }
 
 std::string about(const Command& command) {
@@ -125,7 +125,7 @@ std::string help_text(std::string_view topic) {
     return {};
 }
 
-void show_help(Rehearsal& rehearsal, const Arguments& arguments, std::size_t) {
+void show_help(DryRun& dry_run, const Arguments& arguments, std::size_t) {
     const std::string topic = arguments.empty() ? "" : arguments[0].text();
     std::string text = help_text(topic);
     if (text.empty()) {
@@ -134,10 +134,10 @@ void show_help(Rehearsal& rehearsal, const Arguments& arguments, std::size_t) {
         candidates.insert(candidates.end(), kind_words().begin(), kind_words().end());
         const auto best = nearest(topic, candidates);
         throw ScriptError(arguments[0].column(),
-                          "there is no help about '" + topic + "'" +
+                          "there is no help topic '" + topic + "'" +
                               (best ? "; did you mean '" + *best + "'?" : ": see 'help'"));
     }
-    rehearsal.print(std::move(text));
+    dry_run.print(std::move(text));
 }
 
 }  // namespace tessera::edit

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "client/edit/rehearsal.h"
+#include "client/edit/dry_run.h"
 #include "client/edit/target.h"
 
 namespace tessera::edit {
@@ -16,20 +16,19 @@ class EditInterpreter {
     using Print = std::function<void(std::string_view)>;  // whole lines
     EditInterpreter(EditTarget& target, Print print) : target_(target), print_(std::move(print)) {}
 
-    // A whole script: rehearsed first, then done. On failure nothing is changed: by a mistake in it nothing
-    // was sent; when the target refused a part, what stood before was taken back, or the message says that it
-    // was not. The message begins with "name:line:column: "; the code is InvalidInput for mistakes, else the
-    // target's.
+    // Runs a whole script: a dry run first, then execution. A script with mistakes sends nothing. If the target rejects
+    // a transaction, the earlier ones are undone, or the message says why they could not be. The message begins with
+    // "name:line:column: "; the code is InvalidInput for mistakes, else that of the target.
     Expected<void> run_script(const std::string& name, std::string_view text);
 
-    // One line at a prompt; a transaction of its own unless 'begin' was typed. After a failure all is as
-    // before it. The message begins with "column N: ".
+    // Runs one line typed at a prompt, as a separate transaction unless 'begin' was typed. A failed line changes
+    // nothing. The message begins with "column N: ".
     Expected<void> run_line(std::string_view line);
 
     bool is_in_transaction() const { return prompt_ && prompt_->is_open(); }
     bool has_quit() const { return has_quit_; }
 
-    // What the next line will see: for completion.
+    // The scene that the next line will see, for completion.
     const scene::Scene& scene();
 
   private:
@@ -37,12 +36,12 @@ class EditInterpreter {
         std::size_t line = 0;
         Error error;
     };
-    std::optional<Failure> play(const std::vector<Step>& steps);
-    Rehearsal& prompt();
+    std::optional<Failure> execute(const std::vector<Step>& steps);
+    DryRun& prompt();
 
     EditTarget& target_;
     Print print_;
-    std::optional<Rehearsal> prompt_;
+    std::optional<DryRun> prompt_;
     bool has_quit_ = false;
 };
 

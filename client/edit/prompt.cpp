@@ -9,7 +9,7 @@
 namespace tessera::edit {
 namespace {
 
-constexpr int MostHistory = 1000;
+constexpr int MaxHistory = 1000;
 
 // libedit counts in characters of the line, which it holds wide; its narrow view is UTF-8.
 int characters(std::string_view text) {
@@ -30,7 +30,7 @@ std::string common_start(const std::vector<std::string>& texts) {
 
 }  // namespace
 
-std::filesystem::path usual_history_file() {
+std::filesystem::path default_history_file() {
     if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state == '/') {
         return std::filesystem::path(state) / "tessera" / "edit_history";
     }
@@ -46,7 +46,7 @@ struct Prompt::Implementation {
         lines = history_init();
         line = el_init("tessera", input, output, output);
         HistEvent event;
-        history(lines, &event, H_SETSIZE, MostHistory);
+        history(lines, &event, H_SETSIZE, MaxHistory);
         history(lines, &event, H_SETUNIQUE, 1);
         if (!history_file.empty()) {
             std::error_code error;
@@ -82,10 +82,11 @@ struct Prompt::Implementation {
     static unsigned char on_interrupt(EditLine* line, int) {
         const LineInfo* info = el_line(line);
         const std::string_view text(info->buffer, static_cast<std::size_t>(info->lastchar - info->buffer));
-        const std::string_view behind(info->cursor, static_cast<std::size_t>(info->lastchar - info->cursor));
+        const std::string_view after_cursor(info->cursor,
+                                            static_cast<std::size_t>(info->lastchar - info->cursor));
         std::fputs("^C\n", of(line).out);
         const int all = characters(text);
-        el_cursor(line, characters(behind));
+        el_cursor(line, characters(after_cursor));
         el_deletestr(line, all);
         el_insertstr(line, "\n");
         return CC_NEWLINE;

@@ -13,10 +13,10 @@
 namespace tessera::edit {
 
 // $XDG_STATE_HOME/tessera/edit_history, or below ~/.local/state; empty when there is no home.
-std::filesystem::path usual_history_file();
+std::filesystem::path default_history_file();
 
-// Lines typed at a terminal, with editing, completion by Tab and a history in a file (for its owner alone;
-// what cannot be read or written is as if it were not there). While a line is typed, Ctrl-C is a key like any
+// Lines typed at a terminal, with editing, completion by Tab and a history in a file (readable by its owner only;
+// I/O errors are ignored). While a line is typed, Ctrl-C is a key like any
 // other and clears it: no signal is involved. Takes the characters of the environment's locale. One thread.
 class Prompt {
   public:

@@ -7,7 +7,7 @@
 
 namespace tessera::edit {
 
-// What is wrong with a line of a script. Thrown inside this library only.
+// What is wrong with a line of a script. Used inside this library only.
 class ScriptError : public Error {
   public:
     ScriptError(std::size_t column, const std::string& message)

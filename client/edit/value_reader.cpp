@@ -13,10 +13,10 @@ double read_number(const Word& word) {
     const std::string& text = word.text();
     const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
     if (parsed.ec == std::errc::result_out_of_range || (parsed.ec == std::errc() && !std::isfinite(value))) {
-        throw ScriptError(word.column(), "'" + text + "' is not finite: numbers have to be");
+        throw ScriptError(word.column(), "'" + text + "' is out of range: numbers must be finite");
     }
     if (text.empty() || parsed.ec != std::errc() || parsed.ptr != text.data() + text.size()) {
-        throw ScriptError(word.column(), "'" + text + "' is no number: write it as 0.8 or -1e3");
+        throw ScriptError(word.column(), "'" + text + "' is not a valid number: write it as 0.8 or -1e3");
     }
     return value;
 }
@@ -30,12 +30,12 @@ ValueReader::ValueReader(const std::vector<Word>& words, std::size_t end_column,
 }
 
 const Word& ValueReader::next() {
-    if (at_ == pieces_.size()) throw ScriptError(end_column_, "the value ends too early: write " + form_);
+    if (at_ == pieces_.size()) throw ScriptError(end_column_, "the value is incomplete: write " + form_);
     return pieces_[at_++];
 }
 
 void ValueReader::wrong(const Word& word) const {
-    throw ScriptError(word.column(), "'" + word.text() + "' does not belong here: write " + form_);
+    throw ScriptError(word.column(), "'" + word.text() + "' is not expected here: write " + form_);
 }
 
 void ValueReader::expect_end() const {
@@ -46,7 +46,7 @@ float ValueReader::number() {
     const Word& word = next();
     const auto value = static_cast<float>(read_number(word));
     if (!std::isfinite(value)) {
-        throw ScriptError(word.column(), "'" + word.text() + "' is beyond 3.4e38: the field holds less");
+        throw ScriptError(word.column(), "'" + word.text() + "' exceeds the range of the field (3.4e38)");
     }
     return value;
 }
@@ -57,7 +57,7 @@ std::size_t ValueReader::choice(const std::vector<std::string>& names) {
         if (word.text() == names[i]) return i;
     }
     const auto best = nearest(word.text(), names);
-    throw ScriptError(word.column(), "'" + word.text() + "' is none of " + form_ +
+    throw ScriptError(word.column(), "'" + word.text() + "' is not one of " + form_ +
                                          (best ? "; did you mean '" + *best + "'?" : ""));
 }
 
@@ -78,8 +78,7 @@ void ValueReader::numbers(V& value, glm::length_t count) {
 void ValueReader::read(std::string& value) {
     if (whole_.empty()) next();
     if (whole_.size() > 1) {
-        throw ScriptError(whole_[1].column(),
-                          "the text has several words: put it into quotes, \"like this\"");
+        throw ScriptError(whole_[1].column(), "the text has several words: quote it, \"like this\"");
     }
     value = whole_[0].text();
     at_ = pieces_.size();
@@ -209,17 +208,17 @@ void ValueReader::read(scene::TextureSlot& value) {
     value = result;
 }
 
-void ValueReader::no_bytes() const {
+void ValueReader::reject_bytes() const {
     throw ScriptError(whole_.empty() ? end_column_ : whole_[0].column(),
-                      "arrays and texels cannot be typed: bring them in with 'load FILE'");
+                      "arrays and texels cannot be typed: import them with 'load FILE'");
 }
 
 void ValueReader::read(scene::BlobRef&) {
-    no_bytes();
+    reject_bytes();
 }
 
 void ValueReader::read(std::vector<scene::BlobRef>&) {
-    no_bytes();
+    reject_bytes();
 }
 
 }  // namespace tessera::edit

@@ -11,7 +11,7 @@
 namespace tessera::edit {
 
 template <Enumerated E>
-std::vector<std::string> words_of() {
+std::vector<std::string> enumerator_names() {
     const auto names = enumerators(E{});
     return {names.begin(), names.end()};
 }
@@ -41,13 +41,13 @@ class ValueReader {
     void read(std::vector<scene::BlobRef>& value);
     template <class E>
     requires std::is_enum_v<E>
-    void read(E& value) { value = static_cast<E>(choice(words_of<E>())); }
+    void read(E& value) { value = static_cast<E>(choice(enumerator_names<E>())); }
 
     void expect_end() const;
 
   private:
     const Word& next();
-    [[noreturn]] void no_bytes() const;
+    [[noreturn]] void reject_bytes() const;
     std::size_t left() const { return pieces_.size() - at_; }
     std::size_t choice(const std::vector<std::string>& names);
     float number();

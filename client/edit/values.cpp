@@ -2,7 +2,7 @@
 
 #include <charconv>
 
-#include "client/edit/path_book.h"
+#include "client/edit/path_index.h"
 #include "client/edit/script_error.h"
 #include "client/edit/value_reader.h"
 #include "mediator/base/nearest.h"
@@ -25,7 +25,7 @@ std::string alternatives(const std::vector<std::string>& words) {
 template <class V>
 ValueForm form_of() {
     if constexpr (std::is_same_v<V, std::string>) {
-        return {"a text, in quotes when it has blanks", "", {}};
+        return {"a text, quoted if it contains blanks", "", {}};
     } else if constexpr (std::is_same_v<V, bool>) {
         return {"true or false", "", {"true", "false"}};
     } else if constexpr (std::is_same_v<V, std::uint32_t> || std::is_same_v<V, std::int32_t>) {
@@ -37,7 +37,7 @@ ValueForm form_of() {
     } else if constexpr (std::is_same_v<V, glm::vec3>) {
         return {"3 numbers, or 1 for all", "", {}};
     } else if constexpr (std::is_same_v<V, glm::vec4>) {
-        return {"3 or 4 numbers (alpha stays when it is left out)", "", {}};
+        return {"3 or 4 numbers (alpha is kept if omitted)", "", {}};
     } else if constexpr (std::is_same_v<V, glm::dvec3>) {
         return {"3 numbers", "", {}};
     } else if constexpr (std::is_same_v<V, glm::dmat4>) {
@@ -49,16 +49,16 @@ ValueForm form_of() {
     } else if constexpr (std::is_same_v<V, std::vector<ObjectId>>) {
         return {"paths, or none", "", {"none"}, true};
     } else if constexpr (std::is_same_v<V, scene::TextureSlot>) {
-        return {"a texture's path or none, then offset=U,V scale=U,V rotation=RADIANS set=0|1 as needed",
+        return {"a texture's path or none, then offset=U,V scale=U,V rotation=RADIANS set=0|1 (all optional)",
                 "",
                 {"none", "offset=", "scale=", "rotation=", "set="},
                 true};
     } else if constexpr (std::is_same_v<V, scene::BlobRef> ||
                          std::is_same_v<V, std::vector<scene::BlobRef>>) {
-        return {"bytes, which cannot be typed: they come with 'load'", "", {}, false, false};
+        return {"binary data, which cannot be typed: import it with 'load'", "", {}, false, false};
     } else {
         static_assert(std::is_enum_v<V>, "a new type of field needs a form, a reader and a text");
-        return {alternatives(words_of<V>()), "", words_of<V>()};
+        return {alternatives(enumerator_names<V>()), "", enumerator_names<V>()};
     }
 }
 
@@ -90,7 +90,7 @@ std::string text_of(const V& value, const WritePath& write_path) {
                components(value[3]);
     } else if constexpr (std::is_same_v<V, std::vector<glm::dmat4>>) {
         std::string text;
-        for (const glm::dmat4& step : value) text += (text.empty() ? "" : "   ") + text_of(step, write_path);
+        for (const glm::dmat4& key : value) text += (text.empty() ? "" : "   ") + text_of(key, write_path);
         return text.empty() ? "none" : text;
     } else if constexpr (std::is_same_v<V, ObjectId>) {
         return write_path(value);
@@ -106,7 +106,8 @@ std::string text_of(const V& value, const WritePath& write_path) {
         return value.empty() ? "no bytes" : std::to_string(value.byte_size) + " bytes";
     } else if constexpr (std::is_same_v<V, std::vector<scene::BlobRef>>) {
         if (value.empty()) return "no bytes";
-        return std::to_string(value.size()) + " steps of " + std::to_string(value[0].byte_size) + " bytes";
+        return std::to_string(value.size()) + " motion keys of " + std::to_string(value[0].byte_size) +
+               " bytes";
     } else if constexpr (std::is_enum_v<V>) {
         const std::string_view name = enumerator_name(value);
         return name.empty() ? std::to_string(static_cast<int>(value)) : std::string(name);
@@ -133,7 +134,7 @@ void with_field(O& object, unsigned field, const Visitor& visit) {
         object);
 }
 
-// Range, unit and what the row says about the field; each behind a comma or a semicolon.
+// Range, unit and description of the field, each preceded by a comma or a semicolon.
 template <class Row>
 std::string notes_of(const Row& row) {
     std::string text;
@@ -141,8 +142,8 @@ std::string notes_of(const Row& row) {
         text += ", " + scene::text_of(row.template note<scene::Range>());
     if constexpr (Row::template has<scene::Unit>)
         text += ", in " + std::string(row.template note<scene::Unit>().symbol);
-    if constexpr (Row::template has<scene::About>)
-        text += "; " + std::string(row.template note<scene::About>().text);
+    if constexpr (Row::template has<scene::Help>)
+        text += "; " + std::string(row.template note<scene::Help>().text);
     return text;
 }
 

@@ -8,30 +8,30 @@
 #include <string_view>
 #include <vector>
 
-#include "client/edit/words.h"
+#include "client/edit/tokenizer.h"
 #include "mediator/scene/objects.h"
 
 // The fields of objects as text.
 namespace tessera::edit {
 
-// By the name in its row; `diffuse` is another one for a material's base_color.
+// By its name; `diffuse` is an alias of a material's base_color.
 std::optional<unsigned> find_field(scene::ObjectKind kind, std::string_view name);
-unsigned read_field(scene::ObjectKind kind, const Word& name);  // throws ScriptError with the nearest one
+unsigned read_field(scene::ObjectKind kind,
+                    const Word& name);  // throws ScriptError, suggesting the nearest name
 std::vector<std::string> field_names(scene::ObjectKind kind);
 std::vector<unsigned> fields_of(scene::ObjectKind kind);  // their indices, in the order of the rows
 
-// Reads the words as the field's new value. Numbers may stand in one word with commas between them. What a
-// value leaves out stays: alpha behind three numbers, the parts of a texture slot that are not named. Throws
-// ScriptError.
+// Reads the words as the field's new value. Numbers may be joined by commas. Omitted parts are kept: alpha after
+// three numbers, unnamed parts of a texture slot. Throws ScriptError.
 using ReadPath = std::function<ObjectId(const Word&)>;
 void read_value(scene::Object& object, unsigned field, const std::vector<Word>& words, std::size_t end_column,
                 const ReadPath& read_path);
 
-// So that read_value reads it back to the bit (blobs: how many bytes they have).
+// read_value(value_text(x)) == x exactly (for blobs: their size only).
 using WritePath = std::function<std::string(ObjectId)>;
 std::string value_text(const scene::Object& object, unsigned field, const WritePath& write_path);
 
-// What may be written for a field: for help and for completion.
+// The accepted syntax of a field, for help and completion.
 struct ValueForm {
     std::string text;                // "3 or 4 numbers", "opaque, mask or blend"
     std::string notes;               // ", from 0 to 1; half angle"

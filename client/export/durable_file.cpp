@@ -30,7 +30,7 @@ class Descriptor {
 
 Error failed(const std::filesystem::path& file) {
     return Error(ErrorCode::Io, "cannot write '" + file.string() + "': " + std::strerror(errno) +
-                                    "; check the folder, its rights and the free space");
+                                    "; check the folder, its permissions and the free space");
 }
 
 void write_all(int file, std::span<const std::byte> bytes, const std::filesystem::path& name) {
@@ -51,8 +51,7 @@ void write_durably(const std::filesystem::path& file, const std::function<void(c
         write([&](std::span<const std::byte> bytes) { write_all(opened.number(), bytes, file); });
         if (fsync(opened.number()) != 0) throw failed(file);
     });
-    // The rename itself is durable once the folder is; a file system that cannot flush folders has no more to
-    // give.
+    // The rename is durable once the folder is flushed. File systems that cannot flush folders are ignored.
     const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
     const Descriptor opened(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (opened.number() >= 0) fsync(opened.number());

@@ -19,7 +19,7 @@ scene::BlobPtr GlbBuffer::blob(const scene::BlobRef& reference) const {
     scene::BlobPtr blob = blobs_.find(reference.hash);
     if (!blob) {
         throw Error(ErrorCode::NotFound,
-                    "the bytes of blob " + to_hex(reference.hash) + " are not here: read the scene again");
+                    "the bytes of blob " + to_hex(reference.hash) + " are missing: load the scene again");
     }
     return blob;
 }
@@ -43,8 +43,8 @@ int GlbBuffer::view(std::span<const std::byte> bytes) {
 }
 
 int GlbBuffer::accessor(const scene::BlobRef& reference, Role role, int components) {
-    const auto [place, is_new] = accessors_.try_emplace({reference.hash, role, components}, 0);
-    if (!is_new) return place->second;
+    const auto [entry, is_new] = accessors_.try_emplace({reference.hash, role, components}, 0);
+    if (!is_new) return entry->second;
     const scene::BlobPtr content = blob(reference);
     tinygltf::Accessor accessor;
     accessor.bufferView = view(content->bytes());
@@ -65,7 +65,7 @@ int GlbBuffer::accessor(const scene::BlobRef& reference, Role role, int componen
         accessor.maxValues = {upper.x, upper.y, upper.z};
     }
     model_.accessors.push_back(std::move(accessor));
-    return place->second = static_cast<int>(model_.accessors.size()) - 1;
+    return entry->second = static_cast<int>(model_.accessors.size()) - 1;
 }
 
 }  // namespace tessera::exporting

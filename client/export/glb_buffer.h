@@ -14,9 +14,9 @@ class Model;
 
 namespace tessera::exporting {
 
-// The one buffer of a .glb: appends arrays, aligned to 4 bytes, equal ones once. Throws Error{NotFound} for a
-// blob that is not there, Error{InvalidInput} when the buffer grows beyond 3.75 GiB: the rest of a .glb's 4
-// is for its text.
+// The single buffer of a .glb: appends arrays, aligned to 4 bytes, equal ones once. Throws Error{NotFound}
+// for a missing blob, Error{InvalidInput} if the buffer exceeds 3.75 GiB: the rest of a .glb's 4 GiB is for
+// its JSON.
 class GlbBuffer {
   public:
     GlbBuffer(tinygltf::Model& model, const scene::BlobStore& blobs) : model_(model), blobs_(blobs) {}
@@ -24,7 +24,7 @@ class GlbBuffer {
     scene::BlobPtr blob(const scene::BlobRef& reference) const;
     int view(std::span<const std::byte> bytes);
 
-    // The number of an accessor for an array of the scene: one of `components` 32-bit elements each.
+    // The index of an accessor for an array of the scene with `components` 32-bit components per element.
     enum class Role { Indices, Positions, Other };
     int accessor(const scene::BlobRef& reference, Role role, int components);
 

@@ -54,7 +54,7 @@ Value extras_of(const T& object, scene::Fields<T> mask, const WriteSlot& write_s
 }
 
 template <class T>
-scene::Fields<T> fields_beside(const T& object, const T& otherwise) {
+scene::Fields<T> changed_fields(const T& object, const T& otherwise) {
     return scene::Fields<T>::from_bits(
         scene::differing_fields(scene::Object(object), scene::Object(otherwise)));
 }
@@ -64,8 +64,8 @@ template Value extras_of(const scene::Camera&, scene::Fields<scene::Camera>, con
 template Value extras_of(const scene::Material&, scene::Fields<scene::Material>, const WriteSlot&);
 template Value extras_of(const scene::SurfaceShader&, scene::Fields<scene::SurfaceShader>, const WriteSlot&);
 template Value extras_of(const scene::Medium&, scene::Fields<scene::Medium>, const WriteSlot&);
-template scene::Fields<scene::Light> fields_beside(const scene::Light&, const scene::Light&);
-template scene::Fields<scene::Material> fields_beside(const scene::Material&, const scene::Material&);
-template scene::Fields<scene::Camera> fields_beside(const scene::Camera&, const scene::Camera&);
+template scene::Fields<scene::Light> changed_fields(const scene::Light&, const scene::Light&);
+template scene::Fields<scene::Material> changed_fields(const scene::Material&, const scene::Material&);
+template scene::Fields<scene::Camera> changed_fields(const scene::Camera&, const scene::Camera&);
 
 }  // namespace tessera::exporting

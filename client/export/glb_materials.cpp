@@ -54,21 +54,21 @@ void GlbMaterials::uses(const char* extension) {
 }
 
 int GlbMaterials::material(ObjectId id) {
-    const auto [place, is_new] = materials_.try_emplace(id, 0);
-    if (!is_new) return place->second;
+    const auto [entry, is_new] = materials_.try_emplace(id, 0);
+    if (!is_new) return entry->second;
     const auto* material = scene_.find_as<scene::Material>(id);
     const auto* shader = scene_.find_as<scene::SurfaceShader>(id);
-    tinygltf::Material made = shader     ? make(*shader)
-                              : material ? make(*material)
-                                         : make(scene::Material{.name = "default grey"});
-    model_.materials.push_back(std::move(made));
-    return place->second = static_cast<int>(model_.materials.size()) - 1;
+    tinygltf::Material result = shader     ? make(*shader)
+                                : material ? make(*material)
+                                           : make(scene::Material{.name = "default grey"});
+    model_.materials.push_back(std::move(result));
+    return entry->second = static_cast<int>(model_.materials.size()) - 1;
 }
 
 int GlbMaterials::medium(ObjectId id) {
     const auto* medium = scene_.find_as<scene::Medium>(id);
     if (medium == nullptr) return -1;
-    const auto [place, is_new] = media_.try_emplace(id, static_cast<int>(media_.size()));
+    const auto [entry, is_new] = media_.try_emplace(id, static_cast<int>(media_.size()));
     if (is_new) {
         Object extras = model_.extras.IsObject() ? model_.extras.Get<Object>() : Object{};
         Value::Array media = extras.contains(import::MediaExtras)
@@ -78,7 +78,7 @@ int GlbMaterials::medium(ObjectId id) {
         extras[import::MediaExtras] = Value(std::move(media));
         model_.extras = Value(std::move(extras));
     }
-    return place->second;
+    return entry->second;
 }
 
 WriteSlot GlbMaterials::slots() {
@@ -86,47 +86,47 @@ WriteSlot GlbMaterials::slots() {
 }
 
 tinygltf::Material GlbMaterials::make(const scene::SurfaceShader& shader) {
-    tinygltf::Material made = make(nearest_material(shader));
-    // All but the name: it stands in the material.
+    tinygltf::Material result = make(nearest_material(shader));
+    // All fields but the name, which is that of the material.
     const auto fields = scene::Fields<scene::SurfaceShader>::from_bits(
         ~scene::Fields<scene::SurfaceShader>(&scene::SurfaceShader::name).bits());
-    made.extras = Value(Object{{import::ShaderExtras, extras_of(shader, fields, slots())}});
-    return made;
+    result.extras = Value(Object{{import::ShaderExtras, extras_of(shader, fields, slots())}});
+    return result;
 }
 
 tinygltf::Material GlbMaterials::make(const scene::Material& material) {
-    tinygltf::Material made;
-    made.name = utf8(material.name);
-    tinygltf::PbrMetallicRoughness& pbr = made.pbrMetallicRoughness;
+    tinygltf::Material result;
+    result.name = utf8(material.name);
+    tinygltf::PbrMetallicRoughness& pbr = result.pbrMetallicRoughness;
     pbr.baseColorFactor = {material.base_color.r, material.base_color.g, material.base_color.b,
                            material.base_color.a};
     fill(pbr.baseColorTexture, material.base_color_texture);
     pbr.metallicFactor = material.metallic;
     pbr.roughnessFactor = material.roughness;
     fill(pbr.metallicRoughnessTexture, material.metallic_roughness_texture);
-    fill(made.normalTexture, material.normal_texture);
-    made.normalTexture.scale = material.normal_scale;
+    fill(result.normalTexture, material.normal_texture);
+    result.normalTexture.scale = material.normal_scale;
 
-    // glTF's factor ends at 1; what is brighter has its strength beside it.
+    // glTF limits the factor to 1; brighter emission needs a strength.
     const glm::dvec3 emission(material.emission);
     const double strength = std::max({emission.r, emission.g, emission.b, 1.0});
-    made.emissiveFactor = {emission.r / strength, emission.g / strength, emission.b / strength};
+    result.emissiveFactor = {emission.r / strength, emission.g / strength, emission.b / strength};
     if (strength > 1.0) {
-        made.extensions["KHR_materials_emissive_strength"] =
+        result.extensions["KHR_materials_emissive_strength"] =
             Value(Object{{"emissiveStrength", Value(strength)}});
         uses("KHR_materials_emissive_strength");
     }
-    fill(made.emissiveTexture, material.emission_texture);
-    made.alphaMode = alpha_mode(material.alpha_mode);
-    made.alphaCutoff = material.alpha_cutoff;
-    made.doubleSided = material.double_sided;
-    add_extensions(made, material);
+    fill(result.emissiveTexture, material.emission_texture);
+    result.alphaMode = alpha_mode(material.alpha_mode);
+    result.alphaCutoff = material.alpha_cutoff;
+    result.doubleSided = material.double_sided;
+    add_extensions(result, material);
     const auto own = scene::Fields<scene::Material>::from_bits(
-        scene::Fields<scene::Material>::with<scene::BesideGltf>().bits() &
-        fields_beside(material, scene::Material{}).bits());
+        scene::Fields<scene::Material>::with<scene::GltfExtras>().bits() &
+        changed_fields(material, scene::Material{}).bits());
     if (!own.empty())
-        made.extras = Value(Object{{import::MaterialExtras, extras_of(material, own, slots())}});
-    return made;
+        result.extras = Value(Object{{import::MaterialExtras, extras_of(material, own, slots())}});
+    return result;
 }
 
 template <class Info>
@@ -158,8 +158,8 @@ std::optional<Value> GlbMaterials::info_of(const scene::TextureSlot& slot, float
     return Value(std::move(info));
 }
 
-// Only what is not the default.
-void GlbMaterials::add_extensions(tinygltf::Material& made, const scene::Material& material) {
+// Only values that differ from the default.
+void GlbMaterials::add_extensions(tinygltf::Material& result, const scene::Material& material) {
     std::map<std::string, Object> extensions;
     if (material.unlit) extensions["KHR_materials_unlit"] = {};
     for (const import::GltfMember& member : import::gltf_members()) {
@@ -179,46 +179,47 @@ void GlbMaterials::add_extensions(tinygltf::Material& made, const scene::Materia
         if (value) extensions[member.extension][member.name] = *value;
     }
     for (auto& [name, members] : extensions) {
-        made.extensions[name] = Value(std::move(members));
+        result.extensions[name] = Value(std::move(members));
         uses(name.c_str());
     }
 }
 
 std::optional<int> GlbMaterials::texture(ObjectId id) {
     if (!id) return std::nullopt;
-    const auto [place, is_new] = textures_.try_emplace(id);
+    const auto [entry, is_new] = textures_.try_emplace(id);
     const auto* texture = scene_.find_as<scene::Texture>(id);
-    if (!is_new || texture == nullptr) return place->second;
+    if (!is_new || texture == nullptr) return entry->second;
     if (texture->format == scene::TexelFormat::RgbFloat) {
-        notices_.insert("texture '" + texture->name +
-                        "' is left out: glTF has no maps of floats; save the scene as .tessera to keep it");
+        notices_.insert(
+            "texture '" + texture->name +
+            "' is left out: glTF has no floating-point textures; save the scene as .tessera to keep it");
         return std::nullopt;
     }
-    tinygltf::Texture made;
-    made.name = utf8(texture->name);
-    made.source = image(*texture);
+    tinygltf::Texture result;
+    result.name = utf8(texture->name);
+    result.source = image(*texture);
     if (texture->depth > 1)
-        made.extras = Value(Object{{import::DepthExtras, Value(static_cast<int>(texture->depth))}});
-    made.sampler = sampler(*texture);
-    model_.textures.push_back(std::move(made));
-    return place->second = static_cast<int>(model_.textures.size()) - 1;
+        result.extras = Value(Object{{import::DepthExtras, Value(static_cast<int>(texture->depth))}});
+    result.sampler = sampler(*texture);
+    model_.textures.push_back(std::move(result));
+    return entry->second = static_cast<int>(model_.textures.size()) - 1;
 }
 
 int GlbMaterials::image(const scene::Texture& texture) {
-    const auto [place, is_new] = images_.try_emplace({texture.texels.hash, texture.width, texture.name}, 0);
-    if (!is_new) return place->second;
+    const auto [entry, is_new] = images_.try_emplace({texture.texels.hash, texture.width, texture.name}, 0);
+    if (!is_new) return entry->second;
     tinygltf::Image image;
     image.name = utf8(texture.name);
     image.mimeType = "image/png";
     image.bufferView = buffer_.view(picture::encode_rgba_png(
         texture.width, texture.height * texture.depth, buffer_.blob(texture.texels)->as<std::uint8_t>()));
     model_.images.push_back(std::move(image));
-    return place->second = static_cast<int>(model_.images.size()) - 1;
+    return entry->second = static_cast<int>(model_.images.size()) - 1;
 }
 
 int GlbMaterials::sampler(const scene::Texture& texture) {
-    const auto [place, is_new] = samplers_.try_emplace({texture.wrap_s, texture.wrap_t, texture.filter}, 0);
-    if (!is_new) return place->second;
+    const auto [entry, is_new] = samplers_.try_emplace({texture.wrap_s, texture.wrap_t, texture.filter}, 0);
+    if (!is_new) return entry->second;
     const bool nearest = texture.filter == scene::TextureFilter::Nearest;
     tinygltf::Sampler sampler;
     sampler.magFilter = nearest ? TINYGLTF_TEXTURE_FILTER_NEAREST : TINYGLTF_TEXTURE_FILTER_LINEAR;
@@ -227,7 +228,7 @@ int GlbMaterials::sampler(const scene::Texture& texture) {
     sampler.wrapS = wrap_mode(texture.wrap_s);
     sampler.wrapT = wrap_mode(texture.wrap_t);
     model_.samplers.push_back(std::move(sampler));
-    return place->second = static_cast<int>(model_.samplers.size()) - 1;
+    return entry->second = static_cast<int>(model_.samplers.size()) - 1;
 }
 
 }  // namespace tessera::exporting

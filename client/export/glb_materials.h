@@ -17,26 +17,26 @@ class Value;
 
 namespace tessera::exporting {
 
-// Makes glTF materials, textures and images of those that are asked for, each once.
+// Creates glTF materials, textures and images on demand, each once.
 class GlbMaterials {
   public:
     GlbMaterials(tinygltf::Model& model, const scene::Scene& scene, GlbBuffer& buffer,
                  std::set<std::string>& notices)
         : model_(model), scene_(scene), buffer_(buffer), notices_(notices) {}
 
-    int material(ObjectId id);  // of either model; 0: the default grey
-    int medium(ObjectId id);    // its number in the file's extras; -1 = none
+    int material(ObjectId id);  // a Material or SurfaceShader; 0: the default grey
+    int medium(ObjectId id);    // its index in the file's extras; -1 = none
 
   private:
     tinygltf::Material make(const scene::Material& material);
     tinygltf::Material make(const scene::SurfaceShader& shader);
     WriteSlot slots();
     std::optional<tinygltf::Value> info_of(const scene::TextureSlot& slot, float scale = 1.0f);
-    void add_extensions(tinygltf::Material& made, const scene::Material& material);
-    std::optional<tinygltf::Value> transform_of(const scene::TextureSlot& slot);  // none: as it is
+    void add_extensions(tinygltf::Material& result, const scene::Material& material);
+    std::optional<tinygltf::Value> transform_of(const scene::TextureSlot& slot);  // none: identity
     template <class Info>
     void fill(Info& info, const scene::TextureSlot& slot);
-    std::optional<int> texture(ObjectId id);  // none for what glTF has no form for; that is told
+    std::optional<int> texture(ObjectId id);  // none, with a notice, if glTF cannot store it
     int image(const scene::Texture& texture);
     int sampler(const scene::Texture& texture);
     void uses(const char* extension);

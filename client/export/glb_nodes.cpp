@@ -13,9 +13,9 @@
 namespace tessera::exporting {
 namespace {
 
-constexpr std::uint64_t MaxPlaces = 1'000'000;
+constexpr std::uint64_t MaxNodes = 1'000'000;
 
-// What lights of a kind that glTF lacks are to other programs: a sphere shines to all sides, a quad to one.
+// The nearest type for lights that glTF lacks: a sphere emits in all directions, a quad to one side.
 const char* type_name(scene::LightKind kind) {
     switch (kind) {
         case scene::LightKind::Point:
@@ -45,13 +45,14 @@ void set_extras(tinygltf::Value& extras, const char* name, tinygltf::Value value
     if (!value.IsObject() || value.Size() > 0) extras = Value(Value::Object{{name, std::move(value)}});
 }
 
-// Looks before nodes are made: shared transforms may unfold to any number.
+// Checked first, as shared transforms may expand to any number of nodes.
 void check_size(const scene::Scene& scene, const std::vector<ObjectId>& roots) {
     std::vector<ObjectId> open = roots;
-    for (std::uint64_t places = 0; !open.empty(); ++places) {
-        if (places > MaxPlaces) {
-            throw Error(ErrorCode::InvalidInput, "the scene has more than " + std::to_string(MaxPlaces) +
-                                                     " places: save it as .tessera, or split it");
+    for (std::uint64_t count = 0; !open.empty(); ++count) {
+        if (count > MaxNodes) {
+            throw Error(ErrorCode::InvalidInput, "the scene expands to more than " +
+                                                     std::to_string(MaxNodes) +
+                                                     " nodes: save it as .tessera, or split it");
         }
         const auto* transform = scene.find_as<scene::Transform>(open.back());
         open.pop_back();
@@ -70,13 +71,13 @@ int GlbNodes::add_node(const std::string& name) {
 
 std::vector<int> GlbNodes::build(const std::vector<ObjectId>& roots) {
     check_size(scene_, roots);
-    std::vector<int> result = hang(roots, -1);
-    while (!open_.empty()) {
-        const Place place = open_.back();
-        open_.pop_back();
-        const auto& transform = *scene_.find_as<scene::Transform>(place.transform);
-        std::vector<int> below = hang(transform.children, place.node);
-        auto& node = model_.nodes[static_cast<std::size_t>(place.node)];
+    std::vector<int> result = attach(roots, -1);
+    while (!pending_.empty()) {
+        const PendingNode current = pending_.back();
+        pending_.pop_back();
+        const auto& transform = *scene_.find_as<scene::Transform>(current.transform);
+        std::vector<int> below = attach(transform.children, current.node);
+        auto& node = model_.nodes[static_cast<std::size_t>(current.node)];
         node.children = std::move(below);
         if (transform.layers != 0) set_layers(node, transform.layers);
         if (transform.matrix == glm::dmat4(1.0)) continue;
@@ -85,11 +86,11 @@ std::vector<int> GlbNodes::build(const std::vector<ObjectId>& roots) {
     return result;
 }
 
-std::vector<int> GlbNodes::hang(const std::vector<ObjectId>& objects, int node) {
+std::vector<int> GlbNodes::attach(const std::vector<ObjectId>& objects, int node) {
     std::vector<int> below;
     std::vector<ObjectId> geometries;
-    // The node itself takes the first of each kind, where there is a node.
-    const auto place_for = [&](const std::string& name, auto is_free) {
+    // The node itself takes the first of each kind, if there is a node.
+    const auto node_for = [&](const std::string& name, auto is_free) {
         if (node >= 0 && is_free(model_.nodes[static_cast<std::size_t>(node)])) return node;
         below.push_back(add_node(name));
         return below.back();
@@ -99,24 +100,24 @@ std::vector<int> GlbNodes::hang(const std::vector<ObjectId>& objects, int node) 
         const std::string& name = scene::name(object);
         if (std::holds_alternative<scene::Transform>(object)) {
             below.push_back(add_node(name));
-            open_.push_back({id, below.back()});
+            pending_.push_back({id, below.back()});
         } else if (std::holds_alternative<scene::Geometry>(object)) {
             geometries.push_back(id);
         } else if (std::holds_alternative<scene::Light>(object)) {
-            const int place =
-                place_for(name, [](const tinygltf::Node& one) { return one.extensions.empty(); });
-            set_light(model_.nodes[static_cast<std::size_t>(place)], light(id));
+            const int target =
+                node_for(name, [](const tinygltf::Node& one) { return one.extensions.empty(); });
+            set_light(model_.nodes[static_cast<std::size_t>(target)], light(id));
         } else if (std::holds_alternative<scene::Camera>(object)) {
-            const int place = place_for(name, [](const tinygltf::Node& one) { return one.camera < 0; });
-            model_.nodes[static_cast<std::size_t>(place)].camera = camera(id);
+            const int target = node_for(name, [](const tinygltf::Node& one) { return one.camera < 0; });
+            model_.nodes[static_cast<std::size_t>(target)].camera = camera(id);
         }
     }
-    if (!geometries.empty()) hang_geometries(geometries, node, below);
+    if (!geometries.empty()) attach_geometries(geometries, node, below);
     return below;
 }
 
-void GlbNodes::hang_geometries(const std::vector<ObjectId>& geometries, int node, std::vector<int>& below) {
-    // Names that the importer gives the parts of one mesh make one mesh again.
+void GlbNodes::attach_geometries(const std::vector<ObjectId>& geometries, int node, std::vector<int>& below) {
+    // Geometries named by the importer as parts of one mesh become one mesh again.
     const std::string& first = scene::name(*scene_.find(geometries[0]));
     bool is_one_mesh = node >= 0;
     for (std::size_t i = 1; i < geometries.size(); ++i) {
@@ -133,8 +134,8 @@ void GlbNodes::hang_geometries(const std::vector<ObjectId>& geometries, int node
 }
 
 int GlbNodes::mesh(const std::vector<ObjectId>& geometries) {
-    const auto [place, is_new] = meshes_.try_emplace(geometries, 0);
-    if (!is_new) return place->second;
+    const auto [entry, is_new] = meshes_.try_emplace(geometries, 0);
+    if (!is_new) return entry->second;
     tinygltf::Mesh mesh;
     mesh.name = utf8(scene::name(*scene_.find(geometries[0])));
     using enum GlbBuffer::Role;
@@ -144,7 +145,7 @@ int GlbNodes::mesh(const std::vector<ObjectId>& geometries) {
         primitive.mode = TINYGLTF_MODE_TRIANGLES;
         const int medium = materials_.medium(geometry.medium);
         if (medium >= 0) set_extras(primitive.extras, import::MediumExtras, tinygltf::Value(medium));
-        // A body without a surface has no material; who knows no media sees glTF's default.
+        // A medium boundary without a surface has no material; other programs use glTF's default.
         if (geometry.material || medium < 0) primitive.material = materials_.material(geometry.material);
         primitive.indices = buffer_.accessor(geometry.indices, Indices, 1);
         const auto add = [&](const char* name, const scene::BlobRef& array, GlbBuffer::Role role,
@@ -160,58 +161,59 @@ int GlbNodes::mesh(const std::vector<ObjectId>& geometries) {
         mesh.primitives.push_back(std::move(primitive));
     }
     model_.meshes.push_back(std::move(mesh));
-    return place->second = static_cast<int>(model_.meshes.size()) - 1;
+    return entry->second = static_cast<int>(model_.meshes.size()) - 1;
 }
 
 int GlbNodes::light(ObjectId id) {
-    const auto [place, is_new] = lights_.try_emplace(id, 0);
-    if (!is_new) return place->second;
+    const auto [entry, is_new] = lights_.try_emplace(id, 0);
+    if (!is_new) return entry->second;
     const auto& light = *scene_.find_as<scene::Light>(id);
-    tinygltf::Light made;
-    made.name = utf8(light.name);
-    made.type = type_name(light.kind);
+    tinygltf::Light result;
+    result.name = utf8(light.name);
+    result.type = type_name(light.kind);
     const double brightest = std::max({light.intensity.r, light.intensity.g, light.intensity.b});
-    made.intensity = brightest;
-    for (int i = 0; i < 3; ++i) made.color.push_back(brightest > 0.0 ? light.intensity[i] / brightest : 1.0);
+    result.intensity = brightest;
+    for (int i = 0; i < 3; ++i)
+        result.color.push_back(brightest > 0.0 ? light.intensity[i] / brightest : 1.0);
     const bool is_quad = light.kind == scene::LightKind::Quad;
-    made.spot.innerConeAngle = is_quad ? 0.0 : double{light.inner_cone_angle};
-    made.spot.outerConeAngle = is_quad ? std::numbers::pi / 2 : double{light.outer_cone_angle};
-    // What our own reader would not know of it.
-    if (auto plain = import::punctual_light(made)) {
+    result.spot.innerConeAngle = is_quad ? 0.0 : double{light.inner_cone_angle};
+    result.spot.outerConeAngle = is_quad ? std::numbers::pi / 2 : double{light.outer_cone_angle};
+    // The fields that glTF's own properties do not restore.
+    if (auto plain = import::punctual_light(result)) {
         plain->name = light.name;
         plain->intensity = light.intensity;
-        set_extras(made.extras, import::LightExtras, extras_of(light, fields_beside(light, *plain)));
+        set_extras(result.extras, import::LightExtras, extras_of(light, changed_fields(light, *plain)));
     }
-    model_.lights.push_back(std::move(made));
-    return place->second = static_cast<int>(model_.lights.size()) - 1;
+    model_.lights.push_back(std::move(result));
+    return entry->second = static_cast<int>(model_.lights.size()) - 1;
 }
 
 int GlbNodes::camera(ObjectId id) {
-    const auto [place, is_new] = cameras_.try_emplace(id, 0);
-    if (!is_new) return place->second;
+    const auto [entry, is_new] = cameras_.try_emplace(id, 0);
+    if (!is_new) return entry->second;
     const auto& camera = *scene_.find_as<scene::Camera>(id);
-    tinygltf::Camera made;
-    made.name = utf8(camera.name);
-    // glTF asks for planes near and far, where ours have none.
+    tinygltf::Camera result;
+    result.name = utf8(camera.name);
+    // glTF requires clipping planes; our cameras have none.
     if (camera.projection == scene::Projection::Orthographic) {
-        made.type = "orthographic";
-        made.orthographic.ymag = 0.5 * camera.orthographic_height;
-        made.orthographic.xmag =
-            made.orthographic.ymag * (camera.aspect_ratio > 0.0 ? camera.aspect_ratio : 1.0);
-        made.orthographic.znear = 0.0;
-        made.orthographic.zfar = 1e6;
+        result.type = "orthographic";
+        result.orthographic.ymag = 0.5 * camera.orthographic_height;
+        result.orthographic.xmag =
+            result.orthographic.ymag * (camera.aspect_ratio > 0.0 ? camera.aspect_ratio : 1.0);
+        result.orthographic.znear = 0.0;
+        result.orthographic.zfar = 1e6;
     } else {
-        made.type = "perspective";
-        made.perspective.yfov = camera.vertical_fov;
-        made.perspective.aspectRatio = camera.aspect_ratio;  // 0 is not written
-        made.perspective.znear = 0.01;
+        result.type = "perspective";
+        result.perspective.yfov = camera.vertical_fov;
+        result.perspective.aspectRatio = camera.aspect_ratio;  // 0 is not written
+        result.perspective.znear = 0.01;
     }
-    if (auto plain = import::camera_of(made)) {
+    if (auto plain = import::camera_of(result)) {
         plain->name = camera.name;
-        set_extras(made.extras, import::CameraExtras, extras_of(camera, fields_beside(camera, *plain)));
+        set_extras(result.extras, import::CameraExtras, extras_of(camera, changed_fields(camera, *plain)));
     }
-    model_.cameras.push_back(std::move(made));
-    return place->second = static_cast<int>(model_.cameras.size()) - 1;
+    model_.cameras.push_back(std::move(result));
+    return entry->second = static_cast<int>(model_.cameras.size()) - 1;
 }
 
 }  // namespace tessera::exporting

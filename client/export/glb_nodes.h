@@ -13,24 +13,24 @@ struct Mesh;
 
 namespace tessera::exporting {
 
-// Makes the tree of glTF nodes that the scene's graph unfolds to, with meshes, lights and cameras.
+// Creates the tree of glTF nodes that the scene graph expands to, with meshes, lights and cameras.
 class GlbNodes {
   public:
     GlbNodes(tinygltf::Model& model, const scene::Scene& scene, const scene::BlobStore& blobs,
              std::set<std::string>& notices)
         : model_(model), scene_(scene), buffer_(model, blobs), materials_(model, scene, buffer_, notices) {}
 
-    std::vector<int> build(const std::vector<ObjectId>& roots);  // numbers of the root nodes
+    std::vector<int> build(const std::vector<ObjectId>& roots);  // indices of the root nodes
 
   private:
-    struct Place {
+    struct PendingNode {
         ObjectId transform;
         int node;
     };
     int add_node(const std::string& name);
-    // Hangs the objects into a node (or, for -1, beside each other at the root; then the nodes are returned).
-    std::vector<int> hang(const std::vector<ObjectId>& objects, int node);
-    void hang_geometries(const std::vector<ObjectId>& geometries, int node, std::vector<int>& below);
+    // Adds the objects to a node; returns its child nodes. -1: the scene itself; returns the root nodes.
+    std::vector<int> attach(const std::vector<ObjectId>& objects, int node);
+    void attach_geometries(const std::vector<ObjectId>& geometries, int node, std::vector<int>& below);
     int mesh(const std::vector<ObjectId>& geometries);
     int light(ObjectId id);
     int camera(ObjectId id);
@@ -39,7 +39,7 @@ class GlbNodes {
     const scene::Scene& scene_;
     GlbBuffer buffer_;
     GlbMaterials materials_;
-    std::vector<Place> open_;  // nodes whose transforms' children are still to be hung in
+    std::vector<PendingNode> pending_;  // nodes whose children are not yet added
     std::map<std::vector<ObjectId>, int> meshes_;
     std::map<ObjectId, int> lights_, cameras_;
 };

@@ -6,7 +6,7 @@
 namespace tessera::exporting {
 namespace {
 
-// Bytes of the well-formed sequence at the front (Unicode 15, table 3-7); 0 when there is none.
+// Bytes of the well-formed sequence at the front (Unicode 15, table 3-7); 0 if it is invalid.
 std::size_t sequence(std::string_view text) {
     const auto at = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     const unsigned char first = at(0);

@@ -5,7 +5,7 @@
 
 namespace tessera::exporting {
 
-// JSON is UTF-8: what is not becomes U+FFFD.
+// Replaces invalid UTF-8 by U+FFFD, as JSON requires UTF-8.
 std::string utf8(std::string_view text);
 
 }  // namespace tessera::exporting

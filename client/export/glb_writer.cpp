@@ -11,7 +11,7 @@
 namespace tessera::exporting {
 namespace {
 
-// A stream of the library's whose bytes go to a sink. Streams swallow what their buffer throws: it is kept.
+// Stream buffer that writes to a sink. Streams swallow exceptions of their buffer, so the first one is kept.
 class SinkBuffer : public std::streambuf {
   public:
     explicit SinkBuffer(const Sink& sink) : sink_(sink) {}
@@ -39,12 +39,12 @@ class SinkBuffer : public std::streambuf {
     std::optional<Error> error_;
 };
 
-void tell_what_is_left_out(const scene::Scene& scene, std::set<std::string>& notices) {
+void report_omissions(const scene::Scene& scene, std::set<std::string>& notices) {
     const std::string remedy = "; save the scene as .tessera to keep it";
     const auto& root = *scene.find_as<scene::Root>(scene::RootId);
     const auto* background = scene.find_as<scene::Background>(root.background);
     if (background && (background->environment || background->color != glm::vec3(0.0f))) {
-        notices.insert("the background is left out: glTF has none" + remedy);
+        notices.insert("the background is left out: glTF has no backgrounds" + remedy);
     }
     std::size_t attachments = 0, moving = 0;
     for (const auto& [id, object] : scene.objects()) {
@@ -56,8 +56,7 @@ void tell_what_is_left_out(const scene::Scene& scene, std::set<std::string>& not
     }
     if (attachments > 0) notices.insert("attachments are left out: " + std::to_string(attachments) + remedy);
     if (moving > 0) {
-        notices.insert("motion while the shutter is open is left out, of objects: " + std::to_string(moving) +
-                       remedy);
+        notices.insert("motion keys (motion blur) are left out, objects: " + std::to_string(moving) + remedy);
     }
 }
 
@@ -71,7 +70,7 @@ void write(const scene::Scene& scene, const scene::BlobStore& blobs, const std::
         GlbNodes(model, scene, blobs, notices).build(scene.find_as<scene::Root>(scene::RootId)->children);
     model.scenes.push_back(std::move(top));
     model.defaultScene = 0;
-    tell_what_is_left_out(scene, notices);
+    report_omissions(scene, notices);
     write_durably(file, [&](const Sink& sink) {
         SinkBuffer buffer(sink);
         std::ostream stream(&buffer);

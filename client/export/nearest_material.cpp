@@ -11,11 +11,11 @@ float largest(const glm::vec3& color) {
     return std::max({color.r, color.g, color.b});
 }
 
-float share(float part, float rest) {
+float fraction(float part, float rest) {
     return part > 0.0f ? part / (part + rest) : 0.0f;
 }
 
-// Perceptual, of Blinn's exponent 128 x shininess: alpha^2 = 2 / (n + 2).
+// Perceptual roughness for Blinn's exponent 128 x shininess: alpha^2 = 2 / (n + 2).
 float roughness_of(const glm::vec2& shininess) {
     const float exponent = 128.0f * 0.5f * (shininess.x + shininess.y);
     return std::pow(2.0f / (exponent + 2.0f), 0.25f);
@@ -29,7 +29,7 @@ scene::Material nearest_material(const scene::SurfaceShader& shader) {
     const float index = std::max(relative, 1.0f / relative), b = shader.fresnel_blend;
     const float head_on = (index - 1.0f) * (index - 1.0f) / ((index + 1.0f) * (index + 1.0f));
     const bool is_glass = largest(shader.transmission) > 0.0f;
-    // Glass reflects by its own Fresnel term.
+    // Glass has its own Fresnel reflection.
     const glm::vec3 mirror = shader.reflection * (1.0f - b + (is_glass ? 0.0f : b * head_on));
     const glm::vec3 through = shader.transmission * (1.0f - b + b * (1.0f - head_on));
     const glm::vec3 reflected = shader.specular + mirror;
@@ -39,13 +39,13 @@ scene::Material nearest_material(const scene::SurfaceShader& shader) {
     material.base_color =
         glm::vec4(glm::clamp(shader.diffuse + reflected + through, 0.0f, 1.0f), shader.alpha);
     material.base_color_texture = shader.diffuse_texture;
-    material.metallic = share(largest(reflected), largest(shader.diffuse) + largest(through));
-    material.transmission = share(largest(through), largest(shader.diffuse));
+    material.metallic = fraction(largest(reflected), largest(shader.diffuse) + largest(through));
+    material.transmission = fraction(largest(through), largest(shader.diffuse));
     material.specular = is_glass ? 1.0f : 0.0f;
     material.thickness = is_glass && index > 1.0f ? 1.0f : 0.0f;
     material.index_of_refraction = is_glass ? index : 1.5f;
     const float sharp = largest(mirror) + largest(through), glossy = largest(shader.specular);
-    if (sharp + glossy > 0.0f) material.roughness = share(glossy, sharp) * roughness_of(shader.shininess);
+    if (sharp + glossy > 0.0f) material.roughness = fraction(glossy, sharp) * roughness_of(shader.shininess);
     material.emission = shader.emission;
     material.emission_texture = shader.emission_texture;
     const bool is_sheer = shader.alpha < 1.0f || shader.alpha_texture.texture;

@@ -4,11 +4,10 @@
 
 namespace tessera::exporting {
 
-// The material of glTF that looks most like a surface shader, for programs that know none. What reflects
-// beside the diffuse lobe, glossy or perfect, is a share of metal, so that light that comes straight on goes
-// the same ways in the same amounts where colours are grey; the rest of the shader's look is not kept:
-// colours of highlights of their own, textures but those of the diffuse lobe, emission and normals,
-// dispersion.
+// The glTF material that is most similar to a surface shader, for programs without surface shaders. Glossy
+// and perfect reflection become a metallic fraction, which preserves the energy of each lobe at normal
+// incidence for grey colours. Not preserved: separate specular colours, dispersion, and textures other than
+// those of the diffuse lobe, emission and normals.
 scene::Material nearest_material(const scene::SurfaceShader& shader);
 
 }  // namespace tessera::exporting

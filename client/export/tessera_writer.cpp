@@ -40,7 +40,7 @@ void write(const scene::Scene& scene, const scene::BlobStore& blobs, const std::
             const scene::BlobPtr blob = blobs.find(reference.hash);
             if (!blob) {
                 throw Error(ErrorCode::NotFound, "the bytes of blob " + to_hex(reference.hash) +
-                                                     " are not here: read the scene again");
+                                                     " are missing: load the scene again");
             }
             put(reference.hash.bytes);
             put(bytes_of(reference.byte_size));
@@ -70,8 +70,9 @@ Expected<Notices> write_scene(const scene::Scene& scene, const scene::BlobStore&
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".glb") return write_glb(scene, blobs, file);
     if (extension == ".tessera") return write_tessera(scene, blobs, file);
-    return failure(ErrorCode::InvalidInput,
-                   "'" + file.string() + "' ends neither in .glb nor in .tessera: name it so");
+    return failure(
+        ErrorCode::InvalidInput,
+        "'" + file.string() + "' has neither of the extensions .glb and .tessera: use one of them");
 }
 
 }  // namespace tessera::exporting

@@ -7,7 +7,7 @@
 namespace tessera::import {
 namespace {
 
-// assimp reads from memory that it does not own; this owns it.
+// Owns the bytes that assimp's MemoryIOStream reads.
 class OwnedStream final : public Assimp::IOStream {
   public:
     explicit OwnedStream(std::vector<unsigned char> bytes)
@@ -32,7 +32,7 @@ class OwnedStream final : public Assimp::IOStream {
 Expected<std::vector<unsigned char>> AssimpFiles::read(const char* name) const {
     const std::filesystem::path path(name);
     if (path == scene_file_) return read_whole_file(path);
-    // assimp puts the scene's folder before the names that it finds in the file.
+    // assimp prepends the scene's folder to the names in the file.
     std::string relative(name);
     const std::string folder = scene_file_.parent_path().string();
     if (!folder.empty() && relative.starts_with(folder + "/")) relative = relative.substr(folder.size() + 1);
@@ -46,7 +46,7 @@ bool AssimpFiles::Exists(const char* name) const {
 Assimp::IOStream* AssimpFiles::Open(const char* name, const char* mode) {
     if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos) return nullptr;
     auto bytes = read(name);
-    return bytes ? new OwnedStream(std::move(*bytes)) : nullptr;  // assimp's interface owns by Close
+    return bytes ? new OwnedStream(std::move(*bytes)) : nullptr;  // released by Close
 }
 
 void AssimpFiles::Close(Assimp::IOStream* stream) {

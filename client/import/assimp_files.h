@@ -8,7 +8,7 @@
 
 namespace tessera::import {
 
-// All that assimp may open: the scene's file and what lies in its folder. Whole files are read at once.
+// Restricts assimp to the scene file and the files in its folder. Files are read completely when opened.
 class AssimpFiles final : public Assimp::IOSystem {
   public:
     explicit AssimpFiles(const std::filesystem::path& scene_file)

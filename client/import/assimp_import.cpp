@@ -84,8 +84,8 @@ class AssimpScene {
 
   private:
     ObjectId geometry(unsigned index) {
-        const auto [place, is_new] = geometries_.try_emplace(index);
-        if (!is_new || index >= source_.mNumMeshes) return place->second;
+        const auto [entry, is_new] = geometries_.try_emplace(index);
+        if (!is_new || index >= source_.mNumMeshes) return entry->second;
         const aiMesh& mesh = *source_.mMeshes[index];
         std::string name = mesh.mName.C_Str();
         if (name.empty()) name = "mesh " + std::to_string(index);
@@ -98,13 +98,14 @@ class AssimpScene {
             for (const std::string& repair : check_and_repair(data)) {
                 builder_.notice("mesh '" + name + "': " + repair);
             }
-            place->second = builder_.add_geometry(name, materials_.material(mesh), data);
+            entry->second = builder_.add_geometry(name, materials_.material(mesh), data);
         } catch (const Error& error) {
             if (error.code() != ErrorCode::InvalidInput) throw;
-            builder_.notice("mesh '" + name + "' is bad (" + error.what() + "): a magenta box stands for it");
-            place->second = builder_.placeholder_geometry();
+            builder_.notice("mesh '" + name + "' is invalid (" + error.what() +
+                            "): a magenta box replaces it");
+            entry->second = builder_.placeholder_geometry();
         }
-        return place->second;
+        return entry->second;
     }
 
     const aiScene& source_;
@@ -124,7 +125,7 @@ void import_with_assimp(const std::filesystem::path& file, SceneBuilder& builder
     Assimp::Importer importer;
     importer.SetIOHandler(new AssimpFiles(file));  // owned by the importer
     importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 45.0f);
-    // Texture coordinates come with v up; ours point down.
+    // Texture coordinates have v up in the file and v down here.
     const aiScene* scene = importer.ReadFile(
         file.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType |
                            aiProcess_GenSmoothNormals | aiProcess_FlipUVs);

@@ -13,7 +13,8 @@
 namespace tessera::import {
 namespace {
 
-// Reads the fields of one material. What is not finite or out of range is told, and its default stands.
+// Reads the fields of one material. Values that are not finite or out of range are reported and replaced by
+// the default.
 class Fields {
   public:
     Fields(const aiMaterial& source, const std::string& material, SceneBuilder& builder)
@@ -26,7 +27,7 @@ class Fields {
         const bool usable =
             is_within(color.x, highest) && is_within(color.y, highest) && is_within(color.z, highest);
         if (!usable) {
-            tell(name, shown(color.x) + " " + shown(color.y) + " " + shown(color.z), highest);
+            warn(name, shown(color.x) + " " + shown(color.y) + " " + shown(color.z), highest);
             return otherwise;
         }
         return color;
@@ -35,7 +36,7 @@ class Fields {
         float value = otherwise;
         if (source_.Get(key, 0, 0, value) != AI_SUCCESS) return otherwise;
         if (is_within(value, highest)) return value;
-        tell(name, shown(value), highest);
+        warn(name, shown(value), highest);
         return otherwise;
     }
 
@@ -46,7 +47,7 @@ class Fields {
         std::snprintf(text, sizeof text, "%g", static_cast<double>(value));
         return text;
     }
-    void tell(const std::string& name, const std::string& value, float highest) const {
+    void warn(const std::string& name, const std::string& value, float highest) const {
         builder_.notice("material '" + material_ + "': its " + name + " is " + value + ", outside 0 to " +
                         shown(highest) + ": its default is used, correct it");
     }
@@ -61,9 +62,9 @@ constexpr float Brightest = 1e12f;
 }  // namespace
 
 ObjectId AssimpMaterials::material(const aiMesh& mesh) {
-    ObjectId& made = made_[{mesh.mMaterialIndex, mesh.HasVertexColors(0)}];
-    if (!made && mesh.mMaterialIndex < source_.mNumMaterials) made = make(mesh.mMaterialIndex, mesh);
-    return made;
+    ObjectId& result = materials_[{mesh.mMaterialIndex, mesh.HasVertexColors(0)}];
+    if (!result && mesh.mMaterialIndex < source_.mNumMaterials) result = make(mesh.mMaterialIndex, mesh);
+    return result;
 }
 
 ObjectId AssimpMaterials::make(unsigned index, const aiMesh& mesh) {
@@ -77,8 +78,7 @@ ObjectId AssimpMaterials::make(unsigned index, const aiMesh& mesh) {
     glm::vec3 diffuse = fields.color("$clr.diffuse", "diffuse colour", glm::vec3(0.8f), 1.0f);
     aiString file;
     const bool textured = source.GetTexture(aiTextureType_DIFFUSE, 0, &file) == AI_SUCCESS;
-    // Files with colours or textures but without a material colour mean those as they are, not times a
-    // default grey.
+    // Without a material, vertex colours and textures are used as they are, not multiplied by a default grey.
     const bool is_default = material.name == AI_DEFAULT_MATERIAL_NAME || material.name.empty();
     if (is_default && (mesh.HasVertexColors(0) || textured)) diffuse = glm::vec3(1.0f);
     material.base_color = glm::vec4(diffuse, fields.number("$mat.opacity", "opacity", 1.0f, 1.0f));
@@ -89,15 +89,15 @@ ObjectId AssimpMaterials::make(unsigned index, const aiMesh& mesh) {
         const float exponent = fields.number("$mat.shininess", "shininess", 0.0f, Brightest);
         material.roughness = std::pow(2.0f / (exponent + 2.0f), 0.25f);  // alpha = roughness^2
     }
-    material.double_sided = true;  // these formats have no notion of a back side
+    material.double_sided = true;  // these formats do not define a back side
     return builder_.add(std::move(material));
 }
 
 ObjectId AssimpMaterials::texture(const std::string& named, const std::string& material) {
     std::string name = named;
     std::replace(name.begin(), name.end(), '\\', '/');
-    const auto [place, is_new] = textures_.try_emplace(name);
-    if (!is_new) return place->second;
+    const auto [entry, is_new] = textures_.try_emplace(name);
+    if (!is_new) return entry->second;
     std::string cause;
     const auto bytes = folder_.read(name);
     if (!bytes) {
@@ -109,17 +109,17 @@ ObjectId AssimpMaterials::texture(const std::string& named, const std::string& m
         texture.height = image->height;
         texture.format = scene::TexelFormat::Rgba8Srgb;
         texture.texels = builder_.blob(image->rgba);
-        place->second = builder_.add(std::move(texture));
+        entry->second = builder_.add(std::move(texture));
         ++builder_.result().counts.textures;
     } else {
         cause = image.error().what();
     }
     if (!cause.empty()) {
         builder_.notice("material '" + material + "': texture '" + name.substr(0, 200) +
-                        "' cannot be used (" + cause + "): a magenta checker stands for it");
-        place->second = builder_.placeholder_texture();
+                        "' cannot be used (" + cause + "): a magenta checkerboard replaces it");
+        entry->second = builder_.placeholder_texture();
     }
-    return place->second;
+    return entry->second;
 }
 
 }  // namespace tessera::import

@@ -11,8 +11,8 @@ struct aiScene;
 
 namespace tessera::import {
 
-// Simple materials of formats older than glTF: diffuse colour and texture, opacity, emission; a highlight's
-// exponent n gives the roughness of equal width, alpha^2 = 2 / (n + 2) (Walter et al. 2007).
+// Materials of formats older than glTF: diffuse colour and texture, opacity, emission; a specular exponent n
+// becomes the roughness of equal width, alpha^2 = 2 / (n + 2) (Walter et al. 2007).
 class AssimpMaterials {
   public:
     AssimpMaterials(const aiScene& source, const LocalFolder& folder, SceneBuilder& builder)
@@ -27,7 +27,8 @@ class AssimpMaterials {
     const aiScene& source_;
     const LocalFolder& folder_;
     SceneBuilder& builder_;
-    std::map<std::pair<unsigned, bool>, ObjectId> made_;  // by index and whether the mesh has vertex colours
+    std::map<std::pair<unsigned, bool>, ObjectId>
+        materials_;  // by index and whether the mesh has vertex colours
     std::map<std::string, ObjectId> textures_;
 };
 

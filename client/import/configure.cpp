@@ -17,8 +17,7 @@ class Configurator {
     Expected<void> hide(const std::string& name) {
         const std::set<ObjectId> parts = named(name);
         if (parts.empty())
-            return failure(ErrorCode::InvalidInput,
-                           "there is no part '" + name + "' to hide" + parts_there());
+            return failure(ErrorCode::InvalidInput, "there is no part '" + name + "' to hide" + part_names());
         const auto remove = [&](std::vector<ObjectId>& children) {
             std::erase_if(children, [&](ObjectId child) { return parts.contains(child); });
         };
@@ -38,13 +37,13 @@ class Configurator {
         }
         if (chosen.value == 0) {
             return failure(ErrorCode::InvalidInput,
-                           "there is no material '" + material + "'" + materials_there());
+                           "there is no material '" + material + "'" + material_names());
         }
         std::size_t painted = 0;
         for (const ObjectId id : named(part)) painted += paint(id, chosen);
         if (painted == 0) {
             return failure(ErrorCode::InvalidInput,
-                           "there is no part '" + part + "' with a surface" + parts_there());
+                           "there is no part '" + part + "' with a surface" + part_names());
         }
         return {};
     }
@@ -72,7 +71,7 @@ class Configurator {
         return ids;
     }
 
-    // The graph has no cycles: the importers made it.
+    // Importers create graphs without cycles.
     std::size_t paint(ObjectId id, ObjectId material) {
         const auto found = by_id_.find(id);
         if (found == by_id_.end()) return 0;
@@ -97,14 +96,14 @@ class Configurator {
         }
         return text.empty() ? std::string(": the file names none") : std::string(": ") + what + " " + text;
     }
-    std::string parts_there() const {
+    std::string part_names() const {
         std::set<std::string> names;
         for (const auto& [id, object] : by_id_) {
             if (const std::string* name = name_of_part(*object)) names.insert(*name);
         }
         return list(names, "the parts are");
     }
-    std::string materials_there() const {
+    std::string material_names() const {
         std::set<std::string> names;
         for (const auto& [id, object] : by_id_) {
             if (const std::string* name = name_of_material(*object)) names.insert(*name);

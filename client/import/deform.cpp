@@ -15,13 +15,13 @@ glm::vec3 unit_or(const glm::dvec3& vector, const glm::vec3& otherwise) {
     return length > 0.0 && std::isfinite(length) ? glm::vec3(vector / length) : otherwise;
 }
 
-// Positions, normals and tangents of one vertex, in double until they are rounded once.
+// One vertex, in double precision, rounded once at the end.
 struct Vertex {
     glm::dvec3 position{0.0}, normal{0.0}, tangent{0.0};
     double handedness = 1.0;
 };
 
-void morph(Vertex& vertex, const BendingMesh& mesh, std::span<const double> weights, std::size_t i) {
+void morph(Vertex& vertex, const DeformableMesh& mesh, std::span<const double> weights, std::size_t i) {
     for (std::size_t k = 0; k < std::min(weights.size(), mesh.targets.size()); ++k) {
         if (weights[k] == 0.0) continue;
         const MorphTarget& target = mesh.targets[k];
@@ -31,8 +31,8 @@ void morph(Vertex& vertex, const BendingMesh& mesh, std::span<const double> weig
     }
 }
 
-void follow_joints(Vertex& vertex, const BendingMesh& mesh, std::span<const glm::dmat4> joints,
-                   std::size_t i) {
+void apply_skin(Vertex& vertex, const DeformableMesh& mesh, std::span<const glm::dmat4> joints,
+                std::size_t i) {
     if (mesh.sets.empty()) return;
     glm::dmat4 blend(0.0);
     for (const JointSet& set : mesh.sets) {
@@ -42,7 +42,8 @@ void follow_joints(Vertex& vertex, const BendingMesh& mesh, std::span<const glm:
         }
     }
     const glm::dmat3 linear(blend);
-    // Cofactors are the inverse transpose times the determinant: right for flat blends, too.
+    // The cofactor matrix is the inverse transpose times the determinant, and defined for singular matrices
+    // as well.
     const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                                glm::cross(linear[0], linear[1]));
     const double side = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
@@ -95,7 +96,7 @@ void normalize_weights(std::vector<JointSet>& sets) {
     }
 }
 
-void follow(BendingMesh& mesh, std::span<const std::uint32_t> from) {
+void remap_vertices(DeformableMesh& mesh, std::span<const std::uint32_t> from) {
     for (MorphTarget& target : mesh.targets) {
         spread(target.positions, from);
         spread(target.normals, from);
@@ -107,30 +108,31 @@ void follow(BendingMesh& mesh, std::span<const std::uint32_t> from) {
     }
 }
 
-MeshData bend(const BendingMesh& mesh, std::span<const double> weights, std::span<const glm::dmat4> joints) {
-    MeshData bent = mesh.rest;
-    for (std::size_t i = 0; i < bent.positions.size(); ++i) {
-        Vertex vertex{.position = glm::dvec3(bent.positions[i])};
-        if (!bent.normals.empty()) vertex.normal = glm::dvec3(bent.normals[i]);
-        if (!bent.tangents.empty()) vertex.tangent = glm::dvec3(bent.tangents[i]);
+MeshData deform(const DeformableMesh& mesh, std::span<const double> weights,
+                std::span<const glm::dmat4> joints) {
+    MeshData deformed = mesh.rest;
+    for (std::size_t i = 0; i < deformed.positions.size(); ++i) {
+        Vertex vertex{.position = glm::dvec3(deformed.positions[i])};
+        if (!deformed.normals.empty()) vertex.normal = glm::dvec3(deformed.normals[i]);
+        if (!deformed.tangents.empty()) vertex.tangent = glm::dvec3(deformed.tangents[i]);
         morph(vertex, mesh, weights, i);
-        follow_joints(vertex, mesh, joints, i);
-        bent.positions[i] = glm::vec3(vertex.position);
+        apply_skin(vertex, mesh, joints, i);
+        deformed.positions[i] = glm::vec3(vertex.position);
         for (int k = 0; k < 3; ++k) {
-            if (!std::isfinite(bent.positions[i][k])) {
-                throw Error(ErrorCode::InvalidInput,
-                            "its pose takes vertex " + std::to_string(i) + " beyond all numbers");
+            if (!std::isfinite(deformed.positions[i][k])) {
+                throw Error(ErrorCode::InvalidInput, "the pose moves vertex " + std::to_string(i) +
+                                                         " to a position that is not finite");
             }
         }
-        if (!bent.normals.empty()) bent.normals[i] = unit_or(vertex.normal, bent.normals[i]);
-        if (!bent.tangents.empty()) {
-            const glm::vec4 rest = bent.tangents[i];
-            bent.tangents[i] = glm::vec4(unit_or(vertex.tangent, glm::vec3(rest)),
-                                         rest.w * static_cast<float>(vertex.handedness));
+        if (!deformed.normals.empty()) deformed.normals[i] = unit_or(vertex.normal, deformed.normals[i]);
+        if (!deformed.tangents.empty()) {
+            const glm::vec4 rest = deformed.tangents[i];
+            deformed.tangents[i] = glm::vec4(unit_or(vertex.tangent, glm::vec3(rest)),
+                                             rest.w * static_cast<float>(vertex.handedness));
         }
     }
-    if (mesh.is_flat) make_normals_flat(bent);
-    return bent;
+    if (mesh.is_flat) make_normals_flat(deformed);
+    return deformed;
 }
 
 }  // namespace tessera::import

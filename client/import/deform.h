@@ -9,37 +9,38 @@
 
 namespace tessera::import {
 
-// What a weight adds to a mesh; arrays are empty or have one difference per vertex.
+// Offsets per unit weight; each array is empty or has one element per vertex.
 struct MorphTarget {
     std::vector<glm::vec3> positions, normals, tangents;
 };
 
-// Up to four joints of each vertex; a mesh with more has several of these.
+// Up to four joints per vertex; a mesh with more has several sets.
 struct JointSet {
     std::vector<glm::u16vec4> joints;
-    std::vector<glm::vec4> weights;  // over all sets of a vertex they sum to 1
+    std::vector<glm::vec4> weights;  // sum to 1 per vertex, over all sets
 };
 
-// A mesh that bends. All arrays of targets and sets follow the vertices of `rest`.
-struct BendingMesh {
+// A mesh with morph targets or a skin. The arrays of targets and sets are parallel to the vertices of `rest`.
+struct DeformableMesh {
     MeshData rest;
     std::vector<MorphTarget> targets;
-    std::vector<JointSet> sets;   // none = no skin
-    std::size_t joint_count = 0;  // one more than the largest joint
-    bool is_flat = false;         // each triangle has three vertices of its own and its own normal
+    std::vector<JointSet> sets;   // empty = no skin
+    std::size_t joint_count = 0;  // the largest joint index + 1
+    bool is_flat = false;         // flat shading: triangles share no vertices
 };
 
-// Brings joints to use: weights are divided by their sum per vertex; where it is 0 the first joint has all.
+// Divides weights by their sum per vertex; where it is 0, the first joint gets weight 1.
 // Throws Error{InvalidInput} for weights that are negative or not finite.
 void normalize_weights(std::vector<JointSet>& sets);
 
-// Targets and sets follow vertices that were spread or split: vertex i was from[i].
-void follow(BendingMesh& mesh, std::span<const std::uint32_t> from);
+// Adapts targets and sets after vertices were duplicated: vertex i was from[i].
+void remap_vertices(DeformableMesh& mesh, std::span<const std::uint32_t> from);
 
-// `rest` with positions, normals and tangents bent: first the targets by their weights (those without one
-// count as 0), then the joints by linear blending; normals by the inverse transpose, tangents as directions,
-// both of length 1. Flat normals are made anew. `joints` has joint_count matrices at least, where there are
-// sets. Throws Error{InvalidInput} when a position is not finite.
-MeshData bend(const BendingMesh& mesh, std::span<const double> weights, std::span<const glm::dmat4> joints);
+// Applies morph targets (missing weights are 0), then linear blend skinning. Normals are transformed by the
+// inverse transpose, tangents as directions, both normalized. Flat normals are recomputed. If there are joint
+// sets, `joints` must have at least joint_count matrices. Throws Error{InvalidInput} if a position is not
+// finite.
+MeshData deform(const DeformableMesh& mesh, std::span<const double> weights,
+                std::span<const glm::dmat4> joints);
 
 }  // namespace tessera::import

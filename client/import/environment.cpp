@@ -29,7 +29,7 @@ frame::Image read_exr(const std::filesystem::path& file) {
     }
     constexpr const char* Channels[] = {"R", "G", "B"};
     frame::Image image(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), 3);
-    // OpenEXR addresses pixels by their place in the data window, which need not start at 0.
+    // OpenEXR addresses pixels by data window coordinates, which need not start at 0.
     constexpr std::ptrdiff_t Pixel = 3 * sizeof(float);
     char* origin =
         reinterpret_cast<char*>(image.values.data()) - (window.min.x + window.min.y * width) * Pixel;
@@ -67,7 +67,7 @@ frame::Image read(const std::filesystem::path& file) {
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".hdr") return read_hdr(file);
     if (extension == ".exr") return read_exr(file);
-    throw Error(ErrorCode::InvalidInput, "its name ends neither in .exr nor in .hdr: convert it");
+    throw Error(ErrorCode::InvalidInput, "its extension is neither .exr nor .hdr: convert it");
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 
 namespace tessera::import {
 
-// Adds a latitude-longitude map as a Texture of RgbFloat texels. Values that are not finite or negative
-// become 0, with a notice. Throws Error naming the file.
+// Adds a latitude-longitude map as a Texture of RgbFloat texels. Negative and non-finite values become 0,
+// with a notice. Throws Error naming the file.
 ObjectId add_environment(const std::filesystem::path& file, SceneBuilder& builder);
 
 }  // namespace tessera::import

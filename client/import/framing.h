@@ -6,13 +6,13 @@
 
 namespace tessera::import {
 
-// How much of a picture's height or width is left free around what is framed.
+// Margin around the bounds, as a fraction of the picture's height or width.
 inline constexpr double FramingMargin = 0.04;
 
-// The rigid pose of a camera that looks from the front right and above at all of `bounds` (a box of 1 m
-// around the origin where they are empty, around their one point where they have no size) and is no farther
-// away than it has to be: the corners' projections span the whole height or the whole width of a picture of
-// this aspect ratio (width / height), but for the margin, and are in its middle.
+// The rigid pose of a camera that sees all of `bounds` from the front right and above, at the least distance:
+// the projected corners are centred and fill the height or the width of a picture of this aspect ratio (width
+// / height), except for the margin. Empty bounds count as a box of 1 m at the origin, a single point as a box
+// of 1 m around it.
 glm::dmat4 framing_pose(Bounds bounds, double vertical_fov, double aspect_ratio);
 
 }  // namespace tessera::import

@@ -12,7 +12,7 @@
 namespace tessera::import {
 namespace {
 
-// `count` elements of `element_size` bytes, `stride` apart; all inside `bytes`.
+// `count` elements of `element_size` bytes, `stride` apart; all within `bytes`.
 struct Elements {
     std::span<const unsigned char> bytes;
     std::size_t stride = 0;
@@ -118,7 +118,7 @@ Elements elements(const GltfAccessors& accessors, const tinygltf::Model& model, 
     // count <= MaxElements and stride <= 252, so nothing here can overflow.
     if (count > MaxElements || offset > bytes.size() ||
         (count > 0 && (count - 1) * stride + element_size > bytes.size() - offset)) {
-        reject_accessor(accessor, "wants " + std::to_string(count) + " elements from a buffer view of " +
+        reject_accessor(accessor, "needs " + std::to_string(count) + " elements from a buffer view of " +
                                       std::to_string(bytes.size()) + " bytes");
     }
     return {bytes.subspan(offset), stride};
@@ -131,7 +131,7 @@ std::vector<float> decode(const GltfAccessors& accessors, const tinygltf::Model&
     if (size == 0) reject_accessor(index, "has an unknown component type");
     if (component_count(accessor.type) != components) {
         reject_accessor(
-            index, "does not have the " + std::to_string(components) + " components that its use asks for");
+            index, "does not have the " + std::to_string(components) + " components that its use requires");
     }
     const bool backed = accessor.bufferView >= 0;
     if (accessor.count > (backed ? MaxElements : MaxUnbackedElements)) {
@@ -144,7 +144,7 @@ std::vector<float> decode(const GltfAccessors& accessors, const tinygltf::Model&
         }
     };
     Elements source;
-    if (backed) {  // before the allocation, which the file's word alone must not cause
+    if (backed) {  // checked before allocating by a count from the file
         source = elements(accessors, model, index, accessor.bufferView, accessor.byteOffset, accessor.count,
                           element_size);
     }
@@ -156,20 +156,20 @@ std::vector<float> decode(const GltfAccessors& accessors, const tinygltf::Model&
     if (sparse.count < 0 || static_cast<std::size_t>(sparse.count) > accessor.count ||
         !is_index_type(sparse.indices.componentType) || sparse.indices.byteOffset < 0 ||
         sparse.values.byteOffset < 0) {
-        reject_accessor(index, "has a sparse part with impossible numbers");
+        reject_accessor(index, "has an invalid sparse part");
     }
     const auto count = static_cast<std::size_t>(sparse.count);
-    const Elements places = elements(accessors, model, index, sparse.indices.bufferView,
-                                     static_cast<std::uint64_t>(sparse.indices.byteOffset), count,
-                                     component_size(sparse.indices.componentType));
+    const Elements replaced = elements(accessors, model, index, sparse.indices.bufferView,
+                                       static_cast<std::uint64_t>(sparse.indices.byteOffset), count,
+                                       component_size(sparse.indices.componentType));
     const Elements replacements =
         elements(accessors, model, index, sparse.values.bufferView,
                  static_cast<std::uint64_t>(sparse.values.byteOffset), count, element_size);
     for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t place = index_component(places.at(i), sparse.indices.componentType);
-        if (place >= accessor.count)
-            reject_accessor(index, "replaces element " + std::to_string(place) + ", which it lacks");
-        convert(replacements.at(i), &values[place * components]);
+        const std::uint32_t element = index_component(replaced.at(i), sparse.indices.componentType);
+        if (element >= accessor.count)
+            reject_accessor(index, "has a sparse index " + std::to_string(element) + " that is out of range");
+        convert(replacements.at(i), &values[element * components]);
     }
     return values;
 }
@@ -197,7 +197,7 @@ std::span<const unsigned char> GltfAccessors::view(int buffer_view) const {
     const std::vector<unsigned char>& buffer = model_.buffers[static_cast<std::size_t>(view.buffer)].data;
     if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset) {
         throw Error(ErrorCode::InvalidInput, "buffer view " + std::to_string(buffer_view) +
-                                                 " reaches beyond its buffer of " +
+                                                 " extends beyond its buffer of " +
                                                  std::to_string(buffer.size()) + " bytes");
     }
     return std::span(buffer).subspan(view.byteOffset, view.byteLength);

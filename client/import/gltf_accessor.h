@@ -15,9 +15,9 @@ class Model;
 
 namespace tessera::import {
 
-// Elements of accessors, every number of the file checked before it is used: references, component types,
-// offsets, lengths, strides, counts, sparse indices. Integers become floats as glTF 3.11 says when
-// normalized, else by value (KHR_mesh_quantization). All throw Error{InvalidInput} that names the accessor.
+// Decodes accessors with full validation: references, component types, offsets, lengths, strides, counts,
+// sparse indices. Normalized integers become floats by glTF 3.11, others by value (KHR_mesh_quantization).
+// All functions throw Error{InvalidInput} naming the accessor.
 class GltfAccessors {
   public:
     explicit GltfAccessors(const tinygltf::Model& model) : model_(model) {}
@@ -28,9 +28,9 @@ class GltfAccessors {
     std::vector<glm::vec2> vec2(int accessor) const;
     std::vector<glm::vec3> vec3(int accessor) const;
     std::vector<glm::vec4> vec4(int accessor) const;
-    std::vector<glm::vec4> color(int accessor) const;      // three or four components; alpha 1 where absent
+    std::vector<glm::vec4> color(int accessor) const;      // three or four components; default alpha 1
     std::vector<glm::u16vec4> joints(int accessor) const;  // unsigned 8 or 16 bit, four
-    std::vector<glm::dmat4> matrices(int accessor) const;  // float; affine, whatever their last row says
+    std::vector<glm::dmat4> matrices(int accessor) const;  // float; the last row is taken as 0 0 0 1
 
     std::span<const unsigned char> view(int buffer_view) const;
 

@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "client/import/gltf_accessor.h"
-#include "client/import/gltf_bending.h"
+#include "client/import/gltf_deformation.h"
 #include "client/import/reject.h"
 
 namespace tessera::import {
@@ -43,7 +43,7 @@ Property property(const std::string& path) {
     if (path == "rotation") return Property::Rotation;
     if (path == "scale") return Property::Scale;
     if (path == "weights") return Property::Weights;
-    reject("it moves something else than translation, rotation, scale and weights");
+    reject("its target is none of translation, rotation, scale and weights");
 }
 
 int& track_of(MovingNode& node, Property property) {
@@ -83,7 +83,7 @@ class Reader {
     void read_channel(std::size_t animation, const tinygltf::AnimationChannel& channel) {
         const int target = channel.target_node;
         if (target < 0 || static_cast<std::size_t>(target) >= reached_.size()) reject("its node is missing");
-        if (!reached_[static_cast<std::size_t>(target)]) return;  // of another scene of the file
+        if (!reached_[static_cast<std::size_t>(target)]) return;  // belongs to another scene of the file
         const tinygltf::Node& source = model_.nodes[static_cast<std::size_t>(target)];
         const Property moved = property(channel.target_path);
         if (moved != Property::Weights && !source.matrix.empty())
@@ -91,15 +91,16 @@ class Reader {
         int& track = track_of(motion_.nodes[static_cast<std::size_t>(target)], moved);
         const auto [owner, is_first] = owners_.try_emplace({target, moved}, animation);
         if (!is_first) {
-            if (owner->second == animation) reject("one before it moves the same");
+            if (owner->second == animation) reject("an earlier channel animates the same property");
             builder_.notice("animation '" + name_of(model_, animation) +
-                            "' moves what one before it moves, which is played instead: choose one of them");
+                            "' animates properties that an earlier animation also animates; the earlier one "
+                            "is played: choose one of them");
             return;
         }
         track = read_track(animation, channel.sampler, moved, source);
     }
 
-    // Of the mesh at a node.
+    // Number of morph targets of the node's mesh.
     std::size_t weight_count(const tinygltf::Node& node) const {
         if (node.mesh < 0 || static_cast<std::size_t>(node.mesh) >= model_.meshes.size())
             reject("its node has no mesh");
@@ -114,7 +115,7 @@ class Reader {
                                                                : 3;
         const bool is_vector = moved == Property::Translation || moved == Property::Scale;
         const std::tuple key(animation, sampler, is_vector ? Property::Scale : moved, width);
-        if (const auto place = known_.find(key); place != known_.end()) return place->second;
+        if (const auto entry = known_.find(key); entry != known_.end()) return entry->second;
 
         const auto& samplers = model_.animations[animation].samplers;
         if (sampler < 0 || static_cast<std::size_t>(sampler) >= samplers.size())
@@ -149,7 +150,7 @@ class Reader {
     std::map<std::pair<int, Property>, std::size_t> owners_;
 };
 
-// 0 for keys that cannot be read: their channels are left out and say so.
+// 0 for invalid keys: their channels are skipped with a notice.
 double last_time(const GltfAccessors& accessors, int input, SceneBuilder& builder) {
     double last = 0.0;
     try {
@@ -163,7 +164,7 @@ double last_time(const GltfAccessors& accessors, int input, SceneBuilder& builde
     return last;
 }
 
-// By name, else by number.
+// By name, else by index.
 std::size_t chosen(const tinygltf::Model& model, const std::string& choice) {
     constexpr std::size_t MostListed = 24;
     std::string list;
@@ -179,7 +180,7 @@ std::size_t chosen(const tinygltf::Model& model, const std::string& choice) {
 
 }  // namespace
 
-std::vector<AnimationInfo> survey_animations(const tinygltf::Model& model, SceneBuilder& builder) {
+std::vector<AnimationInfo> list_animations(const tinygltf::Model& model, SceneBuilder& builder) {
     const GltfAccessors accessors(model);
     std::map<int, double> last_key;  // of accessors
     std::vector<AnimationInfo> animations;

@@ -9,12 +9,13 @@ class Model;
 
 namespace tessera::import {
 
-// Names and lengths of a file's animations, whether they can be played or not; one without keys has length 0.
-std::vector<AnimationInfo> survey_animations(const tinygltf::Model& model, SceneBuilder& builder);
+// Names and durations of all animations of the file, also those that cannot be played; 0 without keys.
+std::vector<AnimationInfo> list_animations(const tinygltf::Model& model, SceneBuilder& builder);
 
-// Gives the nodes their tracks: of all animations together, or of the one that the options name. Where two
-// move the same property of a node, the first does. Channels that cannot be played are left out, each with a
-// notice. Throws Error{InvalidInput} when there is no such animation; the message lists those there are.
+// Sets the tracks of the nodes from all animations, or from the one named in the options. If several
+// animations target the same property of a node, the first one is used. Invalid channels are skipped, each
+// with a notice. Throws Error{InvalidInput} if the named animation does not exist; the message lists those
+// there are.
 void read_animations(const tinygltf::Model& model, const std::vector<bool>& reached, SceneBuilder& builder,
                      NodeMotion& motion);
 

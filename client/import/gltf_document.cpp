@@ -23,13 +23,13 @@ bool is_known(std::string_view extension) {
     return std::find(KnownExtensions.begin(), KnownExtensions.end(), extension) != KnownExtensions.end();
 }
 
-// What tinygltf's file callbacks are told.
+// User data of tinygltf's file callbacks.
 struct FileAccess {
     LocalFolder folder;
     std::vector<std::string> refusals;
 };
 
-// tinygltf looks for a name in the base folder (empty here) and then in ".", which for us is the same place.
+// tinygltf looks for a name in the base folder (empty here) and then in ".", which is the same folder here.
 std::string_view without_dot(std::string_view name) {
     return name.substr(name.starts_with("./") ? 2 : 0);
 }
@@ -63,8 +63,8 @@ bool never_write(std::string*, const std::string&, const std::vector<unsigned ch
     return false;
 }
 
-// Keeps the file's bytes for our own decoder. Those in a buffer view are not even looked at: tinygltf has not
-// checked that the view lies in its buffer.
+// Keeps the encoded bytes for our own decoder. Bytes in a buffer view are not accessed: tinygltf has not
+// checked that the view is within its buffer.
 bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
                   const unsigned char* bytes, int byte_size, void*) {
     image->as_is = true;
@@ -151,11 +151,11 @@ Expected<GltfDocument> load_gltf(const std::filesystem::path& file) {
     for (const std::string& refusal : access.refusals) document.notices.push_back(shortened(refusal));
     if (!loaded) {
         const std::string cause = access.refusals.empty() ? error : access.refusals.front();
-        return failure(ErrorCode::InvalidInput,
-                       "it is no complete glTF 2.0 (" + shortened(cause) + "): copy or export it again");
+        return failure(ErrorCode::InvalidInput, "it is not a complete glTF 2.0 file (" + shortened(cause) +
+                                                    "): copy or export it again");
     }
     if (!model->asset.version.starts_with("2.")) {
-        return failure(ErrorCode::InvalidInput, "it is glTF version '" + shortened(model->asset.version) +
+        return failure(ErrorCode::InvalidInput, "its glTF version is '" + shortened(model->asset.version) +
                                                     "': convert it to glTF 2.0");
     }
     if (const auto checked = check_extensions(*model, document.notices); !checked) {

@@ -9,8 +9,8 @@
 namespace tessera::import {
 
 // KHR_draco_mesh_compression: triangles and the attributes POSITION, NORMAL, TANGENT, COLOR_0, TEXCOORD_0 and
-// TEXCOORD_1 of a compressed mesh, and its sets of joints (JOINTS_n with WEIGHTS_n) with their weights as
-// they stand, by the unique ids that the extension gives. Throws Error{InvalidInput}.
+// TEXCOORD_1 of a compressed mesh, and its joint sets (JOINTS_n and WEIGHTS_n, not normalized), by the unique
+// ids in the extension. Throws Error{InvalidInput}.
 struct DracoMesh {
     MeshData mesh;
     std::vector<JointSet> sets;

@@ -6,9 +6,9 @@
 #include "client/import/texture_use.h"
 #include "mediator/scene/materials.h"
 
-// Which members of the KHR_materials_* extensions are fields of a Material, as they are. The importer, its check
-// of values and the exporter go along this table; what is no plain copy (KHR_materials_unlit, the scale of a
-// texture of normals, the strength of emission) stands in their code.
+// Members of the KHR_materials_* extensions that map one to one to fields of a Material. The importer, its
+// value check and the exporter use this table; other members (KHR_materials_unlit, the scale of a normal
+// texture, the strength of emission) are handled in code.
 namespace tessera::import {
 
 struct GltfMember {
@@ -16,13 +16,13 @@ struct GltfMember {
     std::variant<float scene::Material::*, glm::vec3 scene::Material::*,
                  scene::TextureSlot scene::Material::*>
         field;
-    double least = 0.0, most = 1.0;  // of numbers, as the extension's specification has it
+    double least = 0.0, most = 1.0;  // range of numbers, by the specification of the extension
 };
 
-// Members of one extension stand together.
+// Members of one extension are contiguous.
 std::span<const GltfMember> gltf_members();
 
-// By the row of the field.
+// The use of the texture in this field.
 TextureUse use_of(scene::TextureSlot scene::Material::*field);
 
 }  // namespace tessera::import

@@ -13,7 +13,7 @@ namespace {
 
 using tinygltf::Value;
 
-// Each gives whether the value is of that type.
+// Return whether the value is of that type.
 bool read(const Value& from, std::string& value) {
     if (from.IsString()) value = from.Get<std::string>();
     return from.IsString();
@@ -92,7 +92,7 @@ void read_extras(const Value& from, T& object, const std::string& owner, SceneBu
     if (unknown.empty()) return;
     builder.notice(owner + ": its extras have no field '" + unknown.begin()->substr(0, 40) + "'" +
                    (unknown.size() > 1 ? " and " + std::to_string(unknown.size() - 1) + " others" : "") +
-                   ": what they say is ignored");
+                   ": these are ignored");
 }
 
 template void read_extras(const Value&, scene::Light&, const std::string&, SceneBuilder&, const ReadSlot&);

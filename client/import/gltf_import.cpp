@@ -12,7 +12,7 @@
 namespace tessera::import {
 namespace {
 
-void tell_of_animations(SceneBuilder& builder) {
+void add_animations_notice(SceneBuilder& builder) {
     constexpr std::size_t MostListed = 8;
     const std::vector<AnimationInfo>& animations = builder.result().animations;
     if (animations.empty()) return;
@@ -24,7 +24,7 @@ void tell_of_animations(SceneBuilder& builder) {
     }
     if (animations.size() > MostListed) list += " and more";
     const bool at_rest = !builder.options().at;
-    builder.notice("animations: " + list + (at_rest ? "; the pose at rest is drawn" : ""));
+    builder.notice("animations: " + list + (at_rest ? "; the rest pose is drawn" : ""));
 }
 
 }  // namespace
@@ -35,8 +35,8 @@ void import_gltf(const std::filesystem::path& file, SceneBuilder& builder) {
     for (const std::string& notice : document->notices) builder.notice(notice);
     builder.result().extensions = document->extensions;
     builder.result().variants = document->variants;
-    builder.result().animations = survey_animations(*document->model, builder);
-    tell_of_animations(builder);
+    builder.result().animations = list_animations(*document->model, builder);
+    add_animations_notice(builder);
     builder.result().root.children = GltfNodes(*document->model, builder).build();
 }
 

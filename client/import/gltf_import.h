@@ -6,7 +6,7 @@
 
 namespace tessera::import {
 
-// Brings the default scene of a glTF file into the builder; the root's children are set. Throws Error.
+// Imports the default scene of a glTF file; sets the root's children. Throws Error.
 void import_gltf(const std::filesystem::path& file, SceneBuilder& builder);
 
 }  // namespace tessera::import

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t MostNotices = 64;  // a hostile file does not make an endless list
+constexpr std::size_t MostNotices = 64;  // bounds the log of a malformed file
 
 enum class Type { Number, Pair, Color, ColorAndAlpha, WholeNumber, Flag, AlphaMode, Object, Texture };
 
@@ -22,11 +22,11 @@ struct Range {
 };
 constexpr Range Unit{};
 constexpr Range FromZero{0.0, 1e12};
-constexpr Range Any{-1e6, 1e6};  // beyond, texture coordinates have no digits left
+constexpr Range Any{-1e6, 1e6};  // beyond, texture coordinates lose all precision
 constexpr Range Scale{-1e3, 1e3};
 constexpr Range Whole{0.0, 2147483647.0};
 
-// A member, its owners before it. Owners have rules of their own, above.
+// A member by its JSON path. The objects on the path have rules of their own, earlier in the list.
 struct Rule {
     std::string path;
     Type type;
@@ -65,7 +65,7 @@ const Rule OfTextures[] = {
     {"extensions/KHR_texture_transform/texCoord", Type::WholeNumber, Whole},
 };
 
-// Of the extensions that stand in a table.
+// Rules for the extensions in the table gltf_members().
 std::vector<Rule> of_extensions() {
     std::vector<Rule> rules;
     std::string_view open;
@@ -84,38 +84,38 @@ bool is_whole(const json& value) {
     return value.is_number_integer() && value >= 0 && value <= Whole.highest;
 }
 
-std::string outside(Range range) {
+std::string out_of_range(Range range) {
     char text[64];
     std::snprintf(text, sizeof text, "outside %g to %g", range.lowest, range.highest);
     return text;
 }
 
-std::string numbers_wrong(const json& value, std::size_t count, Range range) {
-    if (!value.is_array() || value.size() != count) return "no " + std::to_string(count) + " numbers";
+std::string check_numbers(const json& value, std::size_t count, Range range) {
+    if (!value.is_array() || value.size() != count) return "not " + std::to_string(count) + " numbers";
     for (const json& number : value) {
-        if (!number.is_number()) return "no " + std::to_string(count) + " numbers";
+        if (!number.is_number()) return "not " + std::to_string(count) + " numbers";
         const double it = number;
-        if (!(it >= range.lowest && it <= range.highest)) return outside(range);
+        if (!(it >= range.lowest && it <= range.highest)) return out_of_range(range);
     }
     return "";
 }
 
-// Why a value cannot be used; "" = it can.
-std::string wrong(const json& value, const Rule& rule) {
+// Why a value is rejected; "" = it is valid.
+std::string cause_of_rejection(const json& value, const Rule& rule) {
     switch (rule.type) {
         case Type::Number:
-            if (!value.is_number()) return "no number";
+            if (!value.is_number()) return "not a number";
             // KHR_materials_ior: 0 is a surface that reflects everything.
             if (rule.path == "extensions/KHR_materials_ior/ior" && value == 0.0) return "";
-            return numbers_wrong(json::array({value}), 1, rule.range);
+            return check_numbers(json::array({value}), 1, rule.range);
         case Type::Pair:
-            return numbers_wrong(value, 2, rule.range);
+            return check_numbers(value, 2, rule.range);
         case Type::Color:
-            return numbers_wrong(value, 3, rule.range);
+            return check_numbers(value, 3, rule.range);
         case Type::ColorAndAlpha:
-            return numbers_wrong(value, 4, rule.range);
+            return check_numbers(value, 4, rule.range);
         case Type::WholeNumber:
-            return is_whole(value) ? "" : "no whole number from 0 on";
+            return is_whole(value) ? "" : "not a non-negative integer";
         case Type::Flag:
             return value.is_boolean() ? "" : "neither true nor false";
         case Type::AlphaMode:
@@ -123,11 +123,11 @@ std::string wrong(const json& value, const Rule& rule) {
                        ? ""
                        : "none of OPAQUE, MASK and BLEND";
         case Type::Object:
-            return value.is_object() ? "" : "no object";
+            return value.is_object() ? "" : "not an object";
         case Type::Texture:
             return value.is_object() && value.contains("index") && is_whole(value["index"])
                        ? ""
-                       : "no object whose index is a whole number";
+                       : "not an object with an integer index";
     }
     return "";
 }
@@ -143,7 +143,7 @@ class Check {
             json& material = materials_[i];
             name_ = "material " + std::to_string(i);
             if (!material.is_object()) {
-                tell("", material, "no object");
+                reject_value("", material, "not an object");
                 material = json::object();
                 continue;
             }
@@ -152,7 +152,7 @@ class Check {
                 name_ = "material '" + name->get<std::string>().substr(0, 100) + "'";
             check(material, OfMaterials, "");
             check(material, extensions_, "");
-            tell_of_brightness(material);
+            check_emissive_factor(material);
         }
         if (others_ > 0) notices_.push_back(std::to_string(others_) + " other wrong values of materials");
         return std::move(notices_);
@@ -166,8 +166,8 @@ class Check {
             json& value = object[pointer];
             const std::string path = owner + rule.path;
             round(value, rule.range);
-            if (const std::string cause = wrong(value, rule); !cause.empty()) {
-                tell(path, value, cause);
+            if (const std::string cause = cause_of_rejection(value, rule); !cause.empty()) {
+                reject_value(path, value, cause);
                 object[pointer.parent_pointer()].erase(pointer.back());
             } else if (rule.type == Type::Texture) {
                 check(value, OfTextures, path + "/");
@@ -175,7 +175,7 @@ class Check {
         }
     }
 
-    // What programs write for 0 or 1 in single precision is no mistake.
+    // Values just outside the range are rounding errors of exporters that write single precision.
     void round(json& value, Range range) {
         if (value.is_array()) {
             for (json& number : value) round(number, range);
@@ -187,17 +187,17 @@ class Check {
         }
     }
 
-    void tell_of_brightness(const json& material) {
+    void check_emissive_factor(const json& material) {
         const auto factor = material.find("emissiveFactor");
         if (factor == material.end()) return;
         for (const json& number : *factor) {
             if (number <= 1.0) continue;
             return add("emissiveFactor is " + shown(*factor) +
-                       ", above 1: it is taken as it is, write KHR_materials_emissive_strength");
+                       ", above 1: it is used unchanged; export it as KHR_materials_emissive_strength");
         }
     }
 
-    void tell(const std::string& field, const json& value, const std::string& cause) {
+    void reject_value(const std::string& field, const json& value, const std::string& cause) {
         changed_ = true;
         add((field.empty() ? "it" : field) + " is " + shown(value) + ", " + cause +
             ": its default is used, correct it");

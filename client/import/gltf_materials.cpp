@@ -15,7 +15,7 @@ namespace {
 
 constexpr double MaxEmission = 1e12;
 
-// Numbers of a material were checked when its text was read (check_gltf_materials).
+// Numbers of materials were validated before parsing (check_gltf_materials).
 float number(double value) {
     return static_cast<float>(value);
 }
@@ -50,19 +50,19 @@ GltfMaterial GltfMaterials::material(int index) {
         builder_.notice("material " + std::to_string(index) + " is missing: the default one is used");
         index = -1;
     }
-    const auto found = made_.find(index);
-    if (found != made_.end()) return found->second;
-    const GltfMaterial made = index < 0 ? make(tinygltf::Material(), "default")
-                                        : make(model_.materials[static_cast<std::size_t>(index)],
-                                               "material " + std::to_string(index));
-    made_[index] = made;
-    return made;
+    const auto found = materials_.find(index);
+    if (found != materials_.end()) return found->second;
+    const GltfMaterial result = index < 0 ? make(tinygltf::Material(), "default")
+                                          : make(model_.materials[static_cast<std::size_t>(index)],
+                                                 "material " + std::to_string(index));
+    materials_[index] = result;
+    return result;
 }
 
 namespace {
 
 template <class T>
-bool uses_second_set(const T& material) {
+bool uses_tex_coords_1(const T& material) {
     bool uses = false;
     scene::for_each_field<T>([&](unsigned, auto member) {
         if constexpr (std::is_same_v<std::decay_t<decltype(material.*member)>, scene::TextureSlot>) {
@@ -79,34 +79,34 @@ GltfMaterial GltfMaterials::make_shader(const tinygltf::Value& fields, const std
     shader.name = name;
     GltfSlots slots(textures_, name);
     read_extras(fields, shader, "material '" + name + "'", builder_, slots.reader());
-    GltfMaterial made;
-    made.wants_tangents = shader.normal_texture.texture || shader.height_texture.texture ||
-                          shader.shininess.x != shader.shininess.y;
-    made.tangent_set = shader.normal_texture.set;
-    made.wants_second_set =
-        uses_second_set(shader) || shader.tangent_tex_coords == 1 || shader.binormal_tex_coords == 1;
-    made.id = builder_.add(std::move(shader));
-    return made;
+    GltfMaterial result;
+    result.needs_tangents = shader.normal_texture.texture || shader.height_texture.texture ||
+                            shader.shininess.x != shader.shininess.y;
+    result.tangent_set = shader.normal_texture.set;
+    result.needs_tex_coords_1 =
+        uses_tex_coords_1(shader) || shader.tangent_tex_coords == 1 || shader.binormal_tex_coords == 1;
+    result.id = builder_.add(std::move(shader));
+    return result;
 }
 
 ObjectId GltfMaterials::medium(const tinygltf::Value& primitive_extras) {
     if (!primitive_extras.IsObject() || !primitive_extras.Has(MediumExtras)) return {};
     const int index = index_member(primitive_extras, MediumExtras);
-    const auto [place, is_new] = media_.try_emplace(index);
-    if (!is_new) return place->second;
+    const auto [entry, is_new] = media_.try_emplace(index);
+    if (!is_new) return entry->second;
     const std::string fallback = "medium " + std::to_string(index);
     const tinygltf::Value none;
     const tinygltf::Value& media =
         model_.extras.IsObject() && model_.extras.Has(MediaExtras) ? model_.extras.Get(MediaExtras) : none;
     if (index < 0 || !media.IsArray() || static_cast<std::size_t>(index) >= media.ArrayLen() ||
         !media.Get(index).IsObject()) {
-        builder_.notice(fallback + " is missing: bodies of it are empty");
+        builder_.notice(fallback + " is missing: the meshes that use it have no interior medium");
         return {};
     }
     scene::Medium medium;
     GltfSlots slots(textures_, fallback);
     read_extras(media.Get(index), medium, fallback, builder_, slots.reader());
-    return place->second = builder_.add(std::move(medium));
+    return entry->second = builder_.add(std::move(medium));
 }
 
 GltfMaterial GltfMaterials::make(const tinygltf::Material& source, const std::string& fallback_name) {
@@ -153,23 +153,23 @@ GltfMaterial GltfMaterials::make(const tinygltf::Material& source, const std::st
             material.thickness = 1.0f;
         } else {
             builder_.notice("material '" + material.name +
-                            "' lets light through without KHR_materials_volume: its walls are thin, as glTF "
-                            "has it; --solid-glass makes a body of it that refracts");
+                            "' is transmissive without KHR_materials_volume: it is rendered thin-walled, as "
+                            "glTF specifies; --solid-glass renders it as solid, refracting glass");
         }
     }
-    if (slots.misses_set()) {
+    if (slots.has_unsupported_set()) {
         builder_.notice(
             "material '" + material.name +
-            "': its textures use more than two sets of coordinates; the second stands for others");
+            "': its textures use more than two sets of coordinates; the second is used for the others");
     }
-    GltfMaterial made;
-    made.wants_tangents = material.normal_texture.texture || material.clearcoat_normal_texture.texture ||
-                          material.anisotropy > 0.0f;
-    made.tangent_set =
+    GltfMaterial result;
+    result.needs_tangents = material.normal_texture.texture || material.clearcoat_normal_texture.texture ||
+                            material.anisotropy > 0.0f;
+    result.tangent_set =
         material.normal_texture.texture ? material.normal_texture.set : material.clearcoat_normal_texture.set;
-    made.wants_second_set = uses_second_set(material);
-    made.id = builder_.add(std::move(material));
-    return made;
+    result.needs_tex_coords_1 = uses_tex_coords_1(material);
+    result.id = builder_.add(std::move(material));
+    return result;
 }
 
 }  // namespace tessera::import

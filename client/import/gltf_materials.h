@@ -13,21 +13,21 @@ namespace tessera::import {
 
 struct GltfMaterial {
     ObjectId id;
-    bool wants_second_set = false;  // some texture reads TEXCOORD_1
-    bool wants_tangents = false;    // it has a normal texture, or its roughness a direction
-    std::uint32_t tangent_set = 0;  // of texture coordinates, along which tangents lead
+    bool needs_tex_coords_1 = false;  // a texture uses TEXCOORD_1
+    bool needs_tangents = false;      // has a normal texture or is anisotropic
+    std::uint32_t tangent_set = 0;    // set of texture coordinates for generated tangents
 };
 
-// Makes Material, SurfaceShader and Medium objects on demand, each once; -1 is glTF's default material.
+// Creates Material, SurfaceShader and Medium objects on demand, each once; -1 is glTF's default material.
 class GltfMaterials {
   public:
     GltfMaterials(const tinygltf::Model& model, SceneBuilder& builder)
         : model_(model), builder_(builder), textures_(model, builder) {}
 
-    // An index that the file lacks gives the default material and a notice.
+    // An index out of range gives the default material and a notice.
     GltfMaterial material(int index);
 
-    // What the primitive's body is filled with; 0 = nothing.
+    // The interior medium of the primitive; 0 = none.
     ObjectId medium(const tinygltf::Value& primitive_extras);
 
   private:
@@ -37,7 +37,7 @@ class GltfMaterials {
     const tinygltf::Model& model_;
     SceneBuilder& builder_;
     GltfTextures textures_;
-    std::map<int, GltfMaterial> made_;
+    std::map<int, GltfMaterial> materials_;
     std::map<int, ObjectId> media_;
 };
 

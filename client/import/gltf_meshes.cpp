@@ -9,7 +9,7 @@
 #include "client/import/gltf_draco.h"
 #include "client/import/gltf_text.h"
 #include "client/import/limits.h"
-#include "client/import/thick_lines.h"
+#include "client/import/line_tubes.h"
 
 namespace tessera::import {
 namespace {
@@ -33,13 +33,13 @@ bool draws_points_or_lines(int mode) {
     return mode >= TINYGLTF_MODE_POINTS && mode <= TINYGLTF_MODE_LINE_STRIP;
 }
 
-// glTF 2.0, 3.7.2.1: components of colours must be clamped. What is not a number stays, and is told of later.
+// glTF 2.0, 3.7.2.1: colour components must be clamped. NaN is kept and reported later.
 bool clamp_colors(std::vector<glm::vec4>& colors) {
     bool clamped = false;
     for (glm::vec4& color : colors) {
-        const glm::vec4 inside = glm::clamp(color, 0.0f, 1.0f);
-        for (int k = 0; k < 4; ++k) clamped |= inside[k] < color[k] || inside[k] > color[k];
-        color = inside;
+        const glm::vec4 clamped_color = glm::clamp(color, 0.0f, 1.0f);
+        for (int k = 0; k < 4; ++k) clamped |= clamped_color[k] < color[k] || clamped_color[k] > color[k];
+        color = clamped_color;
     }
     return clamped;
 }
@@ -47,28 +47,28 @@ bool clamp_colors(std::vector<glm::vec4>& colors) {
 }  // namespace
 
 const std::vector<ObjectId>& GltfMeshes::geometries(int index) {
-    const auto [place, is_new] = made_.try_emplace(index);
+    const auto [entry, is_new] = geometries_.try_emplace(index);
     if (is_new) {
         const bool exists = index >= 0 && static_cast<std::size_t>(index) < model_.meshes.size();
-        MeshPose own;  // by the mesh's own weights, which are mostly none
+        MeshPose own;  // with the default weights of the mesh
         if (exists) own.weights = model_.meshes[static_cast<std::size_t>(index)].weights;
-        const bool bends =
+        const bool deformable =
             std::any_of(own.weights.begin(), own.weights.end(), [](double w) { return w != 0.0; });
-        place->second = make_all(index, bends ? &own : nullptr, nullptr);
+        entry->second = make_all(index, deformable ? &own : nullptr, nullptr);
     }
-    return place->second;
+    return entry->second;
 }
 
-std::vector<ObjectId> GltfMeshes::bent_geometries(int index, const MeshPose& pose,
-                                                  std::vector<BendingGeometry>& bending) {
-    return make_all(index, &pose, &bending);
+std::vector<ObjectId> GltfMeshes::deformed_geometries(int index, const MeshPose& pose,
+                                                      std::vector<DeformedGeometry>& deformed) {
+    return make_all(index, &pose, &deformed);
 }
 
 std::vector<ObjectId> GltfMeshes::make_all(int index, const MeshPose* pose,
-                                           std::vector<BendingGeometry>* bending) {
+                                           std::vector<DeformedGeometry>* deformed) {
     std::vector<ObjectId> geometries;
     if (index < 0 || static_cast<std::size_t>(index) >= model_.meshes.size()) {
-        builder_.notice("mesh " + std::to_string(index) + " is missing: a magenta box stands for it");
+        builder_.notice("mesh " + std::to_string(index) + " is missing: a magenta box replaces it");
         geometries.push_back(builder_.placeholder_geometry());
         return geometries;
     }
@@ -80,18 +80,18 @@ std::vector<ObjectId> GltfMeshes::make_all(int index, const MeshPose* pose,
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
         const tinygltf::Primitive& primitive = mesh.primitives[i];
         if (draws_points_or_lines(primitive.mode))
-            builder_.notice("mesh '" + name + "': its points and lines are drawn as thin bodies");
+            builder_.notice("mesh '" + name + "': its points and lines are drawn as octahedra and tubes");
         const std::string part = i == 0 ? name : name + " part " + std::to_string(i);
         try {
-            geometries.push_back(make(primitive, name, part, pose, bending));
+            geometries.push_back(make(primitive, name, part, pose, deformed));
         } catch (const Error& error) {
             if (error.code() != ErrorCode::InvalidInput) throw;
             if (bad++ == 0) first_cause = "primitive " + std::to_string(i) + ": " + error.what();
         }
     }
     if (bad > 0) {
-        builder_.notice("mesh '" + name + "' is bad (" + first_cause + (bad > 1 ? "; and others" : "") +
-                        "): a magenta box stands for it; export the mesh again");
+        builder_.notice("mesh '" + name + "' is invalid (" + first_cause + (bad > 1 ? "; and others" : "") +
+                        "): a magenta box replaces it; export the mesh again");
         geometries.push_back(builder_.placeholder_geometry());
     }
     return geometries;
@@ -106,11 +106,11 @@ GltfMeshes::Source GltfMeshes::read(const tinygltf::Primitive& primitive, const 
 
     Source source;
     source.medium = materials_.medium(primitive.extras);
-    // A medium without a material has no surface, where others have glTF's default.
+    // A primitive with a medium and no material has no surface; others get glTF's default material.
     if (primitive.material >= 0 || !source.medium) source.material = materials_.material(primitive.material);
-    if (source.material.wants_second_set && !attributes.contains("TEXCOORD_1")) {
+    if (source.material.needs_tex_coords_1 && !attributes.contains("TEXCOORD_1")) {
         builder_.notice("mesh '" + mesh_name + "': it lacks the texture coordinates TEXCOORD_1");
-        source.material.wants_second_set = false;
+        source.material.needs_tex_coords_1 = false;
     }
     MeshData& mesh = source.mesh;
     if (const auto draco = primitive.extensions.find(Draco); draco != primitive.extensions.end()) {
@@ -120,7 +120,7 @@ GltfMeshes::Source GltfMeshes::read(const tinygltf::Primitive& primitive, const 
         source.sets = std::move(decoded.sets);
         for (const JointSet& set : source.sets)
             builder_.spend(set.joints.size() * (sizeof(glm::u16vec4) + sizeof(glm::vec4)));
-        if (!source.material.wants_second_set) mesh.tex_coords_1.clear();
+        if (!source.material.needs_tex_coords_1) mesh.tex_coords_1.clear();
         return source;
     }
     mesh.positions = accessors_.vec3(attributes.at("POSITION"));
@@ -128,7 +128,7 @@ GltfMeshes::Source GltfMeshes::read(const tinygltf::Primitive& primitive, const 
     if (attributes.contains("TANGENT")) mesh.tangents = accessors_.vec4(attributes.at("TANGENT"));
     if (attributes.contains("COLOR_0")) mesh.colors = accessors_.color(attributes.at("COLOR_0"));
     if (attributes.contains("TEXCOORD_0")) mesh.tex_coords = accessors_.vec2(attributes.at("TEXCOORD_0"));
-    if (source.material.wants_second_set) mesh.tex_coords_1 = accessors_.vec2(attributes.at("TEXCOORD_1"));
+    if (source.material.needs_tex_coords_1) mesh.tex_coords_1 = accessors_.vec2(attributes.at("TEXCOORD_1"));
 
     if (const auto indices = attributes.find(IndicesAttribute); indices != attributes.end()) {
         mesh.indices = accessors_.indices(indices->second);
@@ -146,33 +146,33 @@ GltfMeshes::Source GltfMeshes::read(const tinygltf::Primitive& primitive, const 
 
 ObjectId GltfMeshes::make(const tinygltf::Primitive& primitive, const std::string& mesh_name,
                           const std::string& name, const MeshPose* pose,
-                          std::vector<BendingGeometry>* bending) {
+                          std::vector<DeformedGeometry>* deformed) {
     Source source = read(primitive, mesh_name);
     MeshData& mesh = source.mesh;
-    BendingMesh bends;
+    DeformableMesh deformable;
     if (pose != nullptr) {
-        bends = read_bending(primitive, mesh.positions.size(),
-                             pose->joints.empty() ? Joints::Ignored : Joints::Used, std::move(source.sets),
-                             accessors_, builder_);
-        if (bends.joint_count > pose->joints.size()) {
+        deformable = read_deformation(primitive, mesh.positions.size(),
+                                      pose->joints.empty() ? Joints::Ignored : Joints::Used,
+                                      std::move(source.sets), accessors_, builder_);
+        if (deformable.joint_count > pose->joints.size()) {
             throw Error(ErrorCode::InvalidInput,
-                        "a vertex follows joint " + std::to_string(bends.joint_count - 1) +
+                        "a vertex follows joint " + std::to_string(deformable.joint_count - 1) +
                             " of a skin that has " + std::to_string(pose->joints.size()));
         }
         mesh.origins.resize(mesh.positions.size());
         std::iota(mesh.origins.begin(), mesh.origins.end(), 0u);
     }
     if (draws_points_or_lines(primitive.mode))
-        mesh = primitive.mode == TINYGLTF_MODE_POINTS ? thick_points(mesh) : thick_lines(mesh);
+        mesh = primitive.mode == TINYGLTF_MODE_POINTS ? point_octahedra(mesh) : line_tubes(mesh);
     if (clamp_colors(mesh.colors))
-        builder_.notice("mesh '" + name + "': vertex colours beyond 0 to 1 are clamped, as glTF has it");
+        builder_.notice("mesh '" + name + "': vertex colours outside 0 to 1 are clamped, as glTF specifies");
     for (const std::string& repair : check_and_repair(mesh))
         builder_.notice("mesh '" + name + "': " + repair);
     if (mesh.normals.empty()) mesh.tangents.clear();  // glTF 3.7.2.1: given tangents belong to given normals
     const auto& along = source.material.tangent_set == 0 ? mesh.tex_coords : mesh.tex_coords_1;
-    if (source.material.wants_tangents && mesh.tangents.empty() && !along.empty()) {
-        bends.is_flat = mesh.normals.empty();
-        if (bends.is_flat) make_flat(mesh);
+    if (source.material.needs_tangents && mesh.tangents.empty() && !along.empty()) {
+        deformable.is_flat = mesh.normals.empty();
+        if (deformable.is_flat) make_flat(mesh);
         generate_tangents(mesh, source.material.tangent_set);
     }
     const auto add = [&](const MeshData& finished) {
@@ -181,12 +181,12 @@ ObjectId GltfMeshes::make(const tinygltf::Primitive& primitive, const std::strin
         return id;
     };
     if (pose == nullptr) return add(mesh);
-    follow(bends, mesh.origins);
+    remap_vertices(deformable, mesh.origins);
     mesh.origins.clear();
-    bends.rest = std::move(mesh);
-    const ObjectId id = add(bend(bends, pose->weights, pose->joints));
-    if (bending != nullptr)
-        bending->push_back({id, name, std::make_shared<const BendingMesh>(std::move(bends))});
+    deformable.rest = std::move(mesh);
+    const ObjectId id = add(deform(deformable, pose->weights, pose->joints));
+    if (deformed != nullptr)
+        deformed->push_back({id, name, std::make_shared<const DeformableMesh>(std::move(deformable))});
     return id;
 }
 

@@ -59,7 +59,7 @@ std::vector<int> GltfNodes::scene_roots() {
     return roots;
 }
 
-GltfNodes::Tree GltfNodes::reach() {
+GltfNodes::Tree GltfNodes::traverse() {
     struct Visit {
         int node;
         std::size_t depth;
@@ -73,7 +73,8 @@ GltfNodes::Tree GltfNodes::reach() {
         } else if (depth > MaxNesting) {
             builder_.notice("nodes nested more than " + std::to_string(MaxNesting) + " deep are not drawn");
         } else if (!tree.children.try_emplace(node).second) {
-            builder_.notice("node " + number + " has several parents or is inside itself: it is drawn once");
+            builder_.notice("node " + number +
+                            " has several parents or is its own ancestor: it is drawn once");
         } else {
             siblings.push_back(node);
             stack.push_back({node, depth});
@@ -91,17 +92,18 @@ GltfNodes::Tree GltfNodes::reach() {
 }
 
 std::vector<ObjectId> GltfNodes::build() {
-    const Tree tree = reach();
+    const Tree tree = traverse();
     GltfMotion motion(model_, builder_, tree.children);
     for (const auto& [node, unused] : tree.children) motion.set_layers(node, layers_of(node));
     std::map<int, ObjectId> ids;
-    std::map<int, std::vector<ObjectId>> posed;  // by the anchor that they hang from
+    std::map<int, std::vector<ObjectId>> skinned;  // transforms of skinned meshes, by skeleton root
     for (const auto& [index, below] : tree.children) {
-        const std::optional<int> anchor = motion.anchor(index);
-        if (anchor && below.empty() && has_only_a_mesh(model_.nodes[static_cast<std::size_t>(index)])) {
-            // The skin ignores the node's transform, and nothing else needs it.
-            ids[index] = add_holder(index, display_name(model_, index), motion);
-            posed[*anchor].push_back(ids[index]);
+        const std::optional<int> skeleton_root = motion.skeleton_root(index);
+        if (skeleton_root && below.empty() &&
+            has_only_a_mesh(model_.nodes[static_cast<std::size_t>(index)])) {
+            // The skin ignores the node's transform, and the node has nothing else.
+            ids[index] = add_skinned_transform(index, display_name(model_, index), motion);
+            skinned[*skeleton_root].push_back(ids[index]);
         } else {
             ids[index] = add_transform(index, motion);
         }
@@ -114,19 +116,19 @@ std::vector<ObjectId> GltfNodes::build() {
             if (motion.has_transform(child)) children.push_back(ids.at(child));
         }
         if (node.mesh != -1) {
-            const auto geometries =
-                motion.bends(index) ? motion.bent_geometries(index, meshes_) : meshes_.geometries(node.mesh);
-            const std::optional<int> anchor = motion.anchor(index);
-            if (!anchor) {
+            const auto geometries = motion.deforms(index) ? motion.deformed_geometries(index, meshes_)
+                                                          : meshes_.geometries(node.mesh);
+            const std::optional<int> skeleton_root = motion.skeleton_root(index);
+            if (!skeleton_root) {
                 add_mesh(node, name, geometries, children);
             } else {
                 count_instances(geometries.size());
-                ObjectId holder = ids.at(index);
+                ObjectId transform = ids.at(index);
                 if (motion.has_transform(index)) {
-                    holder = add_holder(index, name + " posed", motion);
-                    posed[*anchor].push_back(holder);
+                    transform = add_skinned_transform(index, name + " posed", motion);
+                    skinned[*skeleton_root].push_back(transform);
                 }
-                builder_.get<scene::Transform>(holder).children = geometries;
+                builder_.get<scene::Transform>(transform).children = geometries;
             }
         }
         add_light(node, name, children);
@@ -137,10 +139,11 @@ std::vector<ObjectId> GltfNodes::build() {
     for (const int root : tree.roots) {
         if (motion.has_transform(root)) roots.push_back(ids.at(root));
     }
-    for (const auto& [anchor, holders] : posed) {
-        append(anchor < 0 ? roots : builder_.get<scene::Transform>(ids.at(anchor)).children, holders);
+    for (const auto& [skeleton_root, transforms] : skinned) {
+        append(skeleton_root < 0 ? roots : builder_.get<scene::Transform>(ids.at(skeleton_root)).children,
+               transforms);
     }
-    motion.keep();
+    motion.keep_playback();
     return roots;
 }
 
@@ -154,11 +157,12 @@ ObjectId GltfNodes::add_transform(int index, GltfMotion& motion) {
     return id;
 }
 
-ObjectId GltfNodes::add_holder(int index, const std::string& name, const GltfMotion& motion) {
-    scene::Transform holder;
-    holder.name = name;
-    if (motion.layers(index) != motion.layers(*motion.anchor(index))) holder.layers = motion.layers(index);
-    return builder_.add(std::move(holder));
+ObjectId GltfNodes::add_skinned_transform(int index, const std::string& name, const GltfMotion& motion) {
+    scene::Transform transform;
+    transform.name = name;
+    if (motion.layers(index) != motion.layers(*motion.skeleton_root(index)))
+        transform.layers = motion.layers(index);
+    return builder_.add(std::move(transform));
 }
 
 std::uint32_t GltfNodes::layers_of(int node) {
@@ -176,7 +180,7 @@ void GltfNodes::add_mesh(const tinygltf::Node& node, const std::string& name,
         try {
             matrices = instance_matrices(node);
         } catch (const Error& error) {
-            builder_.notice("node '" + name + "': its instances are bad (" + error.what() +
+            builder_.notice("node '" + name + "': its instances are invalid (" + error.what() +
                             "); one is drawn");
         }
     }
@@ -198,7 +202,7 @@ void GltfNodes::count_instances(std::uint64_t more) {
     instances_ += more;
     if (instances_ > MaxInstances) {
         throw Error(ErrorCode::InvalidInput,
-                    "it places more than " + std::to_string(MaxInstances) + " meshes: split the scene");
+                    "it has more than " + std::to_string(MaxInstances) + " mesh instances: split the scene");
     }
 }
 

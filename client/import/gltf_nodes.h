@@ -12,9 +12,9 @@ class Node;
 
 namespace tessera::import {
 
-// Makes the graph: a Transform per node of the default scene, in file order, with its geometries, light and
-// camera. What a skin poses hangs from the skin's anchor instead of its node. Cycles, second parents and too
-// deep nesting are cut, each with a notice.
+// Builds the graph: a Transform per node of the default scene, in file order, with its geometries, light and
+// camera. Skinned meshes are children of the skeleton root instead of their node. Cycles, second parents and
+// nodes nested too deep are removed, each with a notice.
 class GltfNodes {
   public:
     GltfNodes(const tinygltf::Model& model, SceneBuilder& builder)
@@ -25,14 +25,14 @@ class GltfNodes {
   private:
     struct Tree {
         std::vector<int> roots;
-        std::map<int, std::vector<int>> children;  // of each node that is reached, file order
+        std::map<int, std::vector<int>> children;  // of each reachable node, in file order
     };
-    Tree reach();
+    Tree traverse();
     std::vector<int> scene_roots();
     std::uint32_t layers_of(int node);
     ObjectId add_transform(int node, GltfMotion& motion);
-    // For what a skin poses: unmoved in the anchor's frame, in the node's layers.
-    ObjectId add_holder(int node, const std::string& name, const GltfMotion& motion);
+    // An identity transform below the skeleton root for skinned meshes, with the node's layers.
+    ObjectId add_skinned_transform(int node, const std::string& name, const GltfMotion& motion);
     void add_mesh(const tinygltf::Node& node, const std::string& name,
                   const std::vector<ObjectId>& geometries, std::vector<ObjectId>& children);
     void add_light(const tinygltf::Node& node, const std::string& name, std::vector<ObjectId>& children);

@@ -11,12 +11,12 @@
 namespace tessera::import {
 namespace {
 
-constexpr double Farthest = 1e18;  // metres; squares of it still fit a float
+constexpr double MaxCoordinate = 1e18;  // metres; its square still fits a float
 
 bool usable(const glm::dmat4& matrix) {
     for (int column = 0; column < 4; ++column) {
         for (int row = 0; row < 4; ++row) {
-            if (!(std::abs(matrix[column][row]) <= Farthest)) return false;
+            if (!(std::abs(matrix[column][row]) <= MaxCoordinate)) return false;
         }
     }
     return true;
@@ -31,7 +31,7 @@ tl::unexpected<Error> invalid(const char* cause) {
 Expected<glm::dmat4> placement(const glm::dvec3& translation, const glm::dvec4& rotation,
                                const glm::dvec3& scale) {
     const double length = glm::length(rotation);
-    if (!(length > 1e-9) || !std::isfinite(length)) return invalid("its rotation is no quaternion");
+    if (!(length > 1e-9) || !std::isfinite(length)) return invalid("its rotation is not a valid quaternion");
     const glm::dquat quaternion(rotation.w / length, rotation.x / length, rotation.y / length,
                                 rotation.z / length);
     const glm::dmat4 matrix = glm::translate(glm::dmat4(1.0), translation) * glm::mat4_cast(quaternion) *
@@ -71,11 +71,11 @@ Expected<std::uint32_t> node_layers(const tinygltf::Node& node) {
     constexpr const char* Name = "tessera_layers";
     if (!node.extras.IsObject() || !node.extras.Has(Name)) return 0u;
     const tinygltf::Value& value = node.extras.Get(Name);
-    // The reader makes ints of whole numbers, those from 2^31 on with another sign.
+    // The parser stores integers as int; those from 2^31 on become negative.
     if (value.IsInt()) return static_cast<std::uint32_t>(value.GetNumberAsInt());
     const double number = value.IsNumber() ? value.GetNumberAsDouble() : -1.0;
     if (!(number >= 0.0 && number < 4294967296.0) || number != std::floor(number)) {
-        return invalid("its tessera_layers are no whole number from 0 to 4294967295");
+        return invalid("its tessera_layers are not an integer from 0 to 4294967295");
     }
     return static_cast<std::uint32_t>(number);
 }

@@ -15,8 +15,7 @@ struct Light;
 
 namespace tessera::import {
 
-// Values of a node, light or camera of a file; InvalidInput says why there is none, without naming the
-// object.
+// Converts nodes, lights and cameras; InvalidInput says what is wrong, without naming the object.
 
 // Translation x rotation (a quaternion x, y, z, w of any length) x scale.
 Expected<glm::dmat4> placement(const glm::dvec3& translation, const glm::dvec4& rotation,
@@ -25,7 +24,7 @@ Expected<glm::dmat4> placement(const glm::dvec3& translation, const glm::dvec4& 
 // The node's matrix, or that of its translation, rotation and scale.
 Expected<glm::dmat4> node_matrix(const tinygltf::Node& node);
 
-// What its extras name as "tessera_layers": a mask, 0 where there is none.
+// The mask "tessera_layers" of its extras; 0 if there is none.
 Expected<std::uint32_t> node_layers(const tinygltf::Node& node);
 
 Expected<scene::Light> punctual_light(const tinygltf::Light& light);

@@ -15,7 +15,7 @@ inline const tinygltf::Value* gltf_extension(const tinygltf::ExtensionMap& exten
     return found == extensions.end() ? nullptr : &found->second;
 }
 
-// Reads the texture references of one material: slots, and which set of coordinates they all use.
+// Reads the texture references of one material.
 class GltfSlots {
   public:
     GltfSlots(GltfTextures& textures, const std::string& material)
@@ -26,7 +26,7 @@ class GltfSlots {
         return slot(info.index, info.texCoord, gltf_extension(info.extensions, "KHR_texture_transform"), use);
     }
 
-    // The texture that a member of an extension names.
+    // The texture that a member of an extension refers to.
     scene::TextureSlot slot(const tinygltf::Value& owner, const char* member, TextureUse use) {
         if (!owner.Has(member)) return {};
         const tinygltf::Value& info = owner.Get(member);
@@ -45,8 +45,8 @@ class GltfSlots {
         };
     }
 
-    // Coordinates of a third set and further do not travel: the second set stands in.
-    bool misses_set() const { return misses_set_; }
+    // Only two sets of texture coordinates are supported: the second is used for any further ones.
+    bool has_unsupported_set() const { return has_unsupported_set_; }
 
   private:
     scene::TextureSlot slot(int index, int set, const tinygltf::Value* transform, TextureUse use) {
@@ -65,14 +65,14 @@ class GltfSlots {
             if (transform->Has("texCoord")) set = index_member(*transform, "texCoord");
         }
         if (!slot.texture) return slot;
-        misses_set_ |= set > 1;
+        has_unsupported_set_ |= set > 1;
         slot.set = static_cast<std::uint32_t>(std::clamp(set, 0, 1));
         return slot;
     }
 
     GltfTextures& textures_;
     const std::string& material_;
-    bool misses_set_ = false;
+    bool has_unsupported_set_ = false;
 };
 
 }  // namespace tessera::import

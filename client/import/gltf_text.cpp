@@ -26,20 +26,19 @@ struct Edit {
     std::size_t length = 0;
 };
 
-// What the text needs: edits by their positions, and among them none in the materials but those that make
-// JSON of them.
+// The edits to apply, by position. Edits within the materials only turn invalid JSON into valid JSON.
 struct Scan {
     std::vector<Edit> edits;
-    TextRange materials;  // the array at the top, brackets included
+    TextRange materials;  // the top-level array including brackets
 };
 
 // One open array or object.
 struct Level {
     bool is_object = false;
-    TextRange key;                   // the last string, a key once a colon follows
+    TextRange key;                   // the last string; a key if a colon follows
     bool has_key = false;            // a value for `key` is expected
-    TextRange indices_key, indices;  // "indices": <number>, both as they stand
-    std::size_t attributes = 0;      // just behind the brace of "attributes": {
+    TextRange indices_key, indices;  // "indices": <number>
+    std::size_t attributes = 0;      // just after the brace of "attributes": {
 };
 
 constexpr bool is_space(char c) {
@@ -140,7 +139,7 @@ class Scanner {
         levels_.back().indices = {begin, at_};
     }
 
-    // A number or word in a material: what is neither JSON's nor finite becomes a string, which a check sees.
+    // A number or word in a material: if invalid or not finite, it becomes a string, which the check rejects.
     void word() {
         const std::size_t begin = at_;
         while (at_ < json_.size() && (is_number(json_[at_]) || is_letter(json_[at_]))) ++at_;
@@ -156,7 +155,7 @@ class Scanner {
     std::string_view json_;
     std::size_t at_ = 0;
     std::vector<Level> levels_;
-    std::size_t materials_level_ = 0;  // of the array while it is open, from 1
+    std::size_t materials_level_ = 0;  // nesting level of the materials array while it is open, from 1
     Scan scan_;
 };
 
@@ -174,15 +173,17 @@ std::string applied(std::string_view text, std::size_t first, const std::vector<
     return result;
 }
 
-// Takes what is wrong out of the materials: one edit of all of them, where there is something.
+// Removes invalid values from the materials, by a single edit.
 std::vector<std::string> check_materials(std::string_view json, Scan& scan) {
     const auto [begin, end] = scan.materials;
     if (end <= begin) return {};
-    const auto inside = [&](const Edit& edit) { return edit.position >= begin && edit.position < end; };
+    const auto is_in_materials = [&](const Edit& edit) {
+        return edit.position >= begin && edit.position < end;
+    };
     std::vector<Edit> quotes;
-    std::copy_if(scan.edits.begin(), scan.edits.end(), std::back_inserter(quotes), inside);
+    std::copy_if(scan.edits.begin(), scan.edits.end(), std::back_inserter(quotes), is_in_materials);
     CheckedMaterials checked = check_gltf_materials(applied(json.substr(begin, end - begin), begin, quotes));
-    std::erase_if(scan.edits, inside);
+    std::erase_if(scan.edits, is_in_materials);
     if (checked.json.empty()) return std::move(checked.notices);
     const auto next = std::find_if(scan.edits.begin(), scan.edits.end(),
                                    [&](const Edit& edit) { return edit.position >= end; });

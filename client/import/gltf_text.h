@@ -14,18 +14,18 @@ inline constexpr const char* IndicesAttribute = "_TESSERA_INDICES";
 
 struct PreparedText {
     std::string text;
-    std::vector<std::string> notices;  // of values that were taken out
+    std::vector<std::string> notices;  // about removed values
 };
 
-// Makes the JSON of a glTF digestible for tinygltf, which refuses the whole file for one bad index accessor
-// (and for each one of Draco, which has no buffer view), and which recurses over nested values: moves
-// `indices` of primitives into their attributes and refuses deep nesting. Takes out of materials what
-// check_gltf_materials finds wrong, also numbers that JSON cannot say, as NaN. Text that is no JSON passes;
-// the parser tells of it.
+// Prepares the JSON of a glTF for tinygltf, which rejects the whole file for one invalid index accessor (also
+// for those of Draco, which have no buffer view) and recurses over nested values: moves `indices` of
+// primitives into their attributes and rejects deep nesting. Removes the values of materials that
+// check_gltf_materials rejects, and numbers that are not valid JSON, such as NaN. Invalid JSON passes; the
+// parser reports it.
 Expected<PreparedText> prepare_gltf_text(std::string_view json);
 
-// The same for a GLB: checks its frame (magic, version, lengths) and returns a GLB with the JSON chunk
-// prepared.
+// The same for a GLB: checks its headers (magic, version, lengths) and returns a GLB with a prepared JSON
+// chunk.
 Expected<PreparedText> prepare_glb(std::span<const unsigned char> bytes);
 
 bool is_glb(std::span<const unsigned char> bytes);

@@ -42,7 +42,8 @@ Expected<GltfTextures::Texels> GltfTextures::decode(int index) {
         const std::span<const unsigned char> bytes = embedded ? GltfAccessors(model_).view(image->bufferView)
                                                               : std::span<const unsigned char>(image->image);
         if (bytes.empty() && !image->uri.empty())
-            return failure(ErrorCode::InvalidInput, "its file cannot be read: put it beside the scene");
+            return failure(ErrorCode::InvalidInput,
+                           "its file cannot be read: put it into the scene's folder");
         const Expected<DecodedImage> pixels = decode_image(bytes);
         if (!pixels) return tl::unexpected<Error>(pixels.error());
         return Texels{pixels->width, pixels->height, builder_.blob(pixels->rgba)};
@@ -58,23 +59,24 @@ const Expected<GltfTextures::Texels>& GltfTextures::decoded(int index) {
 }
 
 ObjectId GltfTextures::texture(int index, TextureUse use, const std::string& material) {
-    const bool shows = use == TextureUse::Color;
-    const auto refuse = [&](const std::string& name, const std::string& cause) {
-        builder_.notice("material '" + material + "': texture " + name + " cannot be used (" + cause +
-                        "): " + (shows ? "a magenta checker" : "the plain factor") + " stands for it");
-        return shows ? builder_.placeholder_texture() : ObjectId{};
+    const bool is_color = use == TextureUse::Color;
+    const auto reject_texture = [&](const std::string& name, const std::string& cause) {
+        builder_.notice("material '" + material + "': texture " + name + " cannot be used (" + cause + "): " +
+                        (is_color ? "a magenta checkerboard replaces it" : "only the factor is used"));
+        return is_color ? builder_.placeholder_texture() : ObjectId{};
     };
     const std::string number = std::to_string(index);
     const tinygltf::Texture* source = find(model_.textures, index);
     if (!source) {
-        return refuse(number, "the file has " + std::to_string(model_.textures.size()) +
-                                  " textures: correct its index");
+        return reject_texture(number, "the file has " + std::to_string(model_.textures.size()) +
+                                          " textures: correct its index");
     }
-    if (source->source == -1) return refuse(number, "it names no image: export it as PNG or JPEG");
+    if (source->source == -1) return reject_texture(number, "it names no image: export it as PNG or JPEG");
     const Expected<Texels>& texels = decoded(source->source);
     if (!texels) {
         const tinygltf::Image* image = find(model_.images, source->source);
-        return refuse(image ? "'" + image_name(*image, source->source) + "'" : number, texels.error().what());
+        return reject_texture(image ? "'" + image_name(*image, source->source) + "'" : number,
+                              texels.error().what());
     }
     scene::Texture texture;
     texture.width = texels->width;
@@ -95,17 +97,17 @@ ObjectId GltfTextures::texture(int index, TextureUse use, const std::string& mat
             texture.depth = static_cast<std::uint32_t>(depth);
             texture.height /= texture.depth;
         } else {
-            builder_.notice("texture '" + texture.name + "': its height is no multiple of its " +
-                            DepthExtras + ": it is taken as one slice, correct it");
+            builder_.notice("texture '" + texture.name + "': its height is not a multiple of its " +
+                            DepthExtras + ": it is used as one slice, correct it");
         }
     }
-    ObjectId& made = made_[{source->source, texture.depth, texture.format, texture.wrap_s, texture.wrap_t,
-                            texture.filter}];
-    if (!made) {
-        made = builder_.add(std::move(texture));
+    ObjectId& result = cached_[{source->source, texture.depth, texture.format, texture.wrap_s, texture.wrap_t,
+                                texture.filter}];
+    if (!result) {
+        result = builder_.add(std::move(texture));
         ++builder_.result().counts.textures;
     }
-    return made;
+    return result;
 }
 
 }  // namespace tessera::import

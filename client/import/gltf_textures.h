@@ -10,13 +10,14 @@
 
 namespace tessera::import {
 
-// Makes Texture objects on demand: one per image, sampler and colour space. Each image is decoded once, so an
-// image used both ways is two objects over one blob. What cannot be used is a notice for each material.
+// Creates Texture objects on demand: one per image, sampler and colour space. Each image is decoded once; one
+// used in both colour spaces becomes two objects that share a blob. Invalid textures give one notice per
+// material.
 class GltfTextures {
   public:
     GltfTextures(const tinygltf::Model& model, SceneBuilder& builder) : model_(model), builder_(builder) {}
 
-    ObjectId texture(int index, TextureUse use, const std::string& material);  // 0 for bad data
+    ObjectId texture(int index, TextureUse use, const std::string& material);  // 0 for invalid data textures
 
   private:
     struct Texels {
@@ -32,7 +33,7 @@ class GltfTextures {
     std::map<
         std::tuple<int, std::uint32_t, scene::TexelFormat, scene::Wrap, scene::Wrap, scene::TextureFilter>,
         ObjectId>
-        made_;
+        cached_;
 };
 
 }  // namespace tessera::import

@@ -26,7 +26,7 @@
 namespace tessera::import {
 namespace {
 
-// The most pixels that one byte of a file can stand for. Deflate repeats at most 1032 bytes per byte of
+// Upper bound of pixels per byte of the file. Deflate repeats at most 1032 bytes per byte of
 // input, and a PNG pixel takes at least an eighth of a byte; a progressive JPEG spends at least one bit on 16
 // x 16 pixels. The others store runs of at most 128 pixels in two bytes.
 std::uint64_t pixels_per_byte(std::span<const unsigned char> bytes) {
@@ -94,7 +94,7 @@ Expected<frame::Image> decode_hdr(std::span<const unsigned char> bytes) {
     if (!size) return tl::unexpected<Error>(size.error());
     const int byte_size = static_cast<int>(bytes.size());
     if (!stbi_is_hdr_from_memory(bytes.data(), byte_size)) {
-        return failure(ErrorCode::InvalidInput, "the image is not a Radiance picture");
+        return failure(ErrorCode::InvalidInput, "the image is not a Radiance HDR image");
     }
     int width = 0, height = 0, components = 0;
     const std::unique_ptr<float, decltype(&stbi_image_free)> decoded(

@@ -15,11 +15,11 @@ struct DecodedImage {
     std::vector<std::uint8_t> rgba;  // rows from the top
 };
 
-// PNG, JPEG, BMP or TGA. The size that the header claims is checked against the limits and against the number
-// of bytes that must stand behind it, before anything is allocated. InvalidInput says what is wrong.
+// PNG, JPEG, BMP or TGA. Before anything is allocated, the size in the header is checked against the limits
+// and against the number of bytes available. InvalidInput says what is wrong.
 Expected<DecodedImage> decode_image(std::span<const unsigned char> bytes);
 
-// A Radiance picture (.hdr): three components, linear. Checked likewise.
+// A Radiance image (.hdr): three linear components. Checked in the same way.
 Expected<frame::Image> decode_hdr(std::span<const unsigned char> bytes);
 
 }  // namespace tessera::import

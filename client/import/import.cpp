@@ -7,10 +7,10 @@
 #include <new>
 
 #include "client/import/assimp_import.h"
-#include "client/import/finish.h"
 #include "client/import/gltf_import.h"
+#include "client/import/motion_keys.h"
 #include "client/import/ply_import.h"
-#include "client/import/shutter.h"
+#include "client/import/post_process.h"
 #include "client/import/tessera_import.h"
 #include "client/import/x3d_import.h"
 #include "mediator/scene/fields.h"
@@ -29,14 +29,14 @@ void check_options(const ImportOptions& options) {
     if (options.first_id <= scene::RootId || options.first_id >= options.end_id ||
         options.end_id.value > 1ull << 32) {
         throw Error(ErrorCode::InvalidInput,
-                    "the range of object ids is empty, above 2^32 or holds the root's");
+                    "the range of object ids is empty, above 2^32 or contains the root's id");
     }
     if (options.at && !(std::abs(*options.at) <= 1e9))
         throw Error(ErrorCode::InvalidInput, "the time must be a number of seconds up to 1e9");
     if (!(options.shutter >= 0.0 && options.shutter <= 1e9))
         throw Error(ErrorCode::InvalidInput, "the shutter must be open for 0 to 1e9 seconds");
     if (options.shutter > 0.0 && !options.at)
-        throw Error(ErrorCode::InvalidInput, "a shutter needs the time when it opens");
+        throw Error(ErrorCode::InvalidInput, "a shutter needs the time at which it opens");
     const glm::vec3 color = options.background.value_or(glm::vec3(0.0f));
     for (const float value : {color.x, color.y, color.z, options.environment_strength}) {
         if (!(value >= 0.0f && value <= 1e12f)) {
@@ -50,9 +50,8 @@ void check_animations(SceneBuilder& builder) {
     const ImportOptions& options = builder.options();
     if (!builder.result().animations.empty()) return;
     if (!options.animation.empty())
-        throw Error(ErrorCode::InvalidInput,
-                    "it has no animation '" + options.animation + "', nor any other");
-    if (options.at) builder.notice("there is no animation: it looks the same at any time");
+        throw Error(ErrorCode::InvalidInput, "it has no animation '" + options.animation + "' and no other");
+    if (options.at) builder.notice("the file has no animation: the time is ignored");
 }
 
 void read_into(const std::filesystem::path& file, SceneBuilder& builder) {
@@ -66,19 +65,19 @@ void read_into(const std::filesystem::path& file, SceneBuilder& builder) {
     } else if (extension == ".ply") {
         import_ply(file, builder);
     } else if (extension == ".x3d") {
-        return finish(builder, import_x3d(file, builder));
+        return post_process(builder, import_x3d(file, builder));
     } else if (is_assimp_extension(extension)) {
         import_with_assimp(file, builder);
     } else if (extension == ".x3dz" || extension == ".x3db" || extension == ".x3dv" || extension == ".wrl") {
-        throw Error(ErrorCode::InvalidInput, "of X3D only the XML encoding is read: convert it to .x3d");
+        throw Error(ErrorCode::InvalidInput, "only the XML encoding of X3D is supported: convert it to .x3d");
     } else {
         throw Error(
             ErrorCode::InvalidInput,
-            "its name ends in none of .gltf, .glb, .obj, .ply, .stl, .x3d and .tessera: convert it to "
+            "its extension is none of .gltf, .glb, .obj, .ply, .stl, .x3d and .tessera: convert it to "
             "glTF 2.0");
     }
     check_animations(builder);
-    finish(builder);
+    post_process(builder);
 }
 
 bool moves(const ImportedScene& scene) {
@@ -111,8 +110,8 @@ Expected<ImportedScene> import_scene(const std::filesystem::path& file, const Im
     } catch (const Error& error) {
         return failure(error.code(), named + error.what());
     } catch (const std::bad_alloc&) {
-        return failure(ErrorCode::OutOfMemory, named + "not enough memory to read it: split the scene");
-    } catch (const std::exception& error) {  // of the libraries that parse
+        return failure(ErrorCode::OutOfMemory, named + "not enough memory to load it: split the scene");
+    } catch (const std::exception& error) {  // of third-party parsers
         return failure(ErrorCode::InvalidInput,
                        named + "it cannot be read (" + error.what() + "): export it again");
     }

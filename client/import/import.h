@@ -19,39 +19,39 @@ namespace tessera::import {
 
 struct Playback;
 
-// A camera where the file has none, and a soft sky where nothing shines: added for who wants to see the
-// scene, left to who brings it into another.
+// Whether to add a camera to a file without one and a default environment to a file without light. Leave is
+// for imports into an existing scene.
 enum class Missing { Add, Leave };
 
-// Whether the scene is to be brought to other times with move_to.
+// Sequence: the scene will be moved to other times with move_to.
 enum class Motion { Still, Sequence };
-// What glTF's glass without KHR_materials_volume is: thin walls, as the extension has it, or a body that
-// refracts, as the programs show it that most such files come from.
+// How transmissive glTF materials without KHR_materials_volume are rendered: thin-walled, as specified, or as
+// solid, refracting glass, as most programs that write such files do.
 enum class Glass { Thin, Solid };
 
 struct ImportOptions {
-    ObjectId first_id{2};                 // objects get consecutive ids from here
+    ObjectId first_id{2};                 // ids of objects are consecutive from here
     ObjectId end_id{1ull << 32};          // one past the last id that may be used
     std::optional<glm::vec3> background;  // linear radiance; counts as light when not black
     std::filesystem::path environment;    // latitude-longitude .exr or .hdr; empty = none
     float environment_strength = 1.0f;
     Missing missing = Missing::Add;
-    std::optional<double> at;  // seconds into the animations; none = at rest, as without them
-    double shutter = 0.0;      // seconds that it is open, from `at` on: what is animated moves meanwhile
-    std::string animation;     // only this one, by its name, else its number; "" = all together
+    std::optional<double> at;  // seconds into the animations; none = the rest pose
+    double shutter = 0.0;      // seconds from `at`; animated objects get motion keys over it
+    std::string animation;     // play only this one, by name, else by index; "" = all
     Motion motion = Motion::Still;
     Glass glass = Glass::Thin;
-    // Width / height of the pictures that a camera is made for where the file has none: in those, and in
-    // wider ones, all is seen.
+    // Width / height of the picture for which a missing camera is framed; wider pictures show everything,
+    // too.
     double aspect_ratio = 1.0;
 };
 
-// A place to look from; the Camera object is in the scene, too.
+// A camera with its world pose; the Camera object is also in the scene.
 struct CameraInfo {
     std::string name;                   // unique
     glm::dmat4 world_from_camera{1.0};  // rigid; looks along -z, y up
-    scene::Camera camera;               // its values
-    std::vector<glm::dmat4> motion;     // world_from_camera at steps of time, as scene::Transform::motion
+    scene::Camera camera;               // a copy of the object
+    std::vector<glm::dmat4> motion;     // world_from_camera at motion keys, as scene::Transform::motion
 };
 
 struct AnimationInfo {
@@ -60,60 +60,59 @@ struct AnimationInfo {
 };
 
 struct ImportCounts {
-    std::uint64_t triangles = 0;             // of all geometries, each once
-    std::uint64_t degenerate_triangles = 0;  // among them: kept, without area
+    std::uint64_t triangles = 0;             // of all geometries, not counting instances
+    std::uint64_t degenerate_triangles = 0;  // of these, without area; kept
     std::uint64_t geometries = 0;
-    std::uint64_t instances = 0;  // geometries as placed
-    std::uint64_t lights = 0;     // as placed: point, spot and directional
+    std::uint64_t instances = 0;  // of geometries
+    std::uint64_t lights = 0;     // instances of point, spot and directional lights
     std::uint64_t emissive_geometries = 0;
     std::uint64_t textures = 0;
-    std::uint64_t placeholders = 0;  // meshes and textures that were bad and are shown in magenta
+    std::uint64_t placeholders = 0;  // invalid meshes and textures, shown in magenta
 };
 
-// What a file becomes: values, nothing shared with the file. The same file and options give the same ids and
+// An imported scene, independent of the file. Deterministic: the same file and options give the same ids and
 // bytes.
 struct ImportedScene {
     scene::Root root;                    // children and background; its id is scene::RootId
     std::vector<scene::Create> objects;  // all others, ids ascending and consecutive from first_id
     std::vector<scene::BlobPtr> blobs;   // all that the objects refer to, each once
-    std::vector<CameraInfo> cameras;     // the file's own in file order, else the one that was added
-    std::vector<std::string> notices;    // what was added, replaced or ignored; lower-case phrases, each once
+    std::vector<CameraInfo> cameras;     // of the file in file order, else the one that was added
+    std::vector<std::string> notices;    // about what was added, replaced or ignored; each once
     ImportCounts counts;
-    std::vector<AnimationInfo> animations;  // of the file, played or not
-    std::vector<std::string> extensions;  // of glTF that the file uses; those that are not read have a notice
-    std::vector<std::string> variants;    // names of KHR_materials_variants; the default look is imported
-    // Geometries that are not among the children of a transform while it leaves them no volume.
+    std::vector<AnimationInfo> animations;  // all of the file
+    std::vector<std::string> extensions;    // extensionsUsed of glTF; unsupported ones give a notice
+    std::vector<std::string> variants;  // names of KHR_materials_variants; the default materials are imported
+    // Geometries removed from the children of a transform while it is degenerate.
     std::map<ObjectId, std::vector<ObjectId>> without_volume;
-    std::optional<double> seconds;             // the time it shows; none = at rest
-    double shutter = 0.0;                      // seconds that it is open from then on
-    std::shared_ptr<const Playback> playback;  // for move_to; none = nothing moves
+    std::optional<double> seconds;             // its time; none = the rest pose
+    double shutter = 0.0;                      // seconds that it is open from that time
+    std::shared_ptr<const Playback> playback;  // for move_to; null = nothing is animated
 };
 
-// glTF 2.0 (.gltf, .glb), PLY, X3D (.x3d), through assimp .obj and .stl, or .tessera, which is taken as it
-// was saved (names, attachments, shared transforms; only a camera is added). Of the others: a scene without
-// any light gets a soft sky (surfaces that glow only faintly are none), one without a camera gets one. A bad
-// mesh or texture becomes a placeholder and a notice. Photometric units of KHR_lights_punctual are taken one
-// to one as radiometric ones (1 cd = 1 W/sr, 1 lx = 1 W/m2), as most renderers do. NotFound: no such file.
-// InvalidInput: damaged, another format, an unknown required extension, or nothing to draw; the message names
-// file, object and remedy. Opens only files inside the scene's own folder, and the environment. Any thread;
-// reads, decodes and allocates on the caller's.
+// Imports glTF 2.0 (.gltf, .glb), PLY, X3D (.x3d), .obj and .stl (with assimp), or .tessera, which is loaded
+// as it was saved (names, attachments, shared transforms; only a missing camera is added). In other formats,
+// a scene without light (faint emission does not count) gets a default environment, and one without camera
+// gets a framing camera. An invalid mesh or texture becomes a placeholder with a notice. Photometric units of
+// KHR_lights_punctual are used as radiometric ones (1 cd = 1 W/sr, 1 lx = 1 W/m2), as in most renderers.
+// NotFound: no such file. InvalidInput: damaged, unsupported format or required extension, or nothing to
+// render; the message names file, object and remedy. Opens only the environment and files inside the scene's
+// folder. Any thread; all work is done on the calling thread.
 Expected<ImportedScene> import_scene(const std::filesystem::path& file, const ImportOptions& options = {});
 
-// The edit that brings the scene in. Root is created, or updated (name aside) where the scene already has
-// one.
+// The edit that adds the imported objects to a scene. The root is created, or updated except for its name if
+// it exists.
 enum class RootEntry { Create, Update };
 std::vector<scene::Entry> entries(const ImportedScene& scene, RootEntry root);
 
-// What leads a scene from one time to another: updates of what moved, and the blobs that are new.
-struct TimeStep {
+// The change from one time to another: updates of animated objects, and new blobs.
+struct SceneUpdate {
     std::vector<scene::Entry> entries;
     std::vector<scene::BlobPtr> blobs;
 };
 
-// Brings the scene, its blobs and its cameras to a time; the scene then is what import_scene makes of the
-// same file at that time, but for its notices and counts. Only for a scene that was imported as a Sequence;
-// one in which nothing moves stays as it is. InvalidInput names what cannot be posed; the scene is then as
-// before.
-Expected<TimeStep> move_to(ImportedScene& scene, double seconds);
+// Moves the scene, its blobs and its cameras to a time. The result equals an import of the same file at that
+// time, except for notices and counts. Only for scenes imported as Sequence; a scene without animation is
+// unchanged. InvalidInput names what cannot be posed; the scene is then unchanged.
+Expected<SceneUpdate> move_to(ImportedScene& scene, double seconds);
 
 }  // namespace tessera::import

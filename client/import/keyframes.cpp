@@ -12,14 +12,15 @@
 namespace tessera::import {
 namespace {
 
-constexpr float Largest = 1e15f;       // as the scene's own bound on translations
-constexpr double ShortestTurn = 1e-9;  // of a quaternion: below, its direction is rounding
+constexpr float Largest = 1e15f;  // the scene's bound on translations
+constexpr double MinQuaternionLength =
+    1e-9;  // length of a quaternion; below, its direction is rounding error
 
-// Where a time lies: between key and key + 1, by `part` of the way.
+// A time between key and key + 1, at the fraction `part`.
 struct KeySpan {
     std::size_t key = 0;
     double part = 0.0;
-    double seconds = 0.0;  // from key to key
+    double seconds = 0.0;  // from key to key + 1
 };
 
 KeySpan locate(const KeyTrack& track, double seconds) {
@@ -33,7 +34,7 @@ KeySpan locate(const KeyTrack& track, double seconds) {
     return {.key = key, .part = (seconds - double(times[key])) / length, .seconds = length};
 }
 
-// The parts of a key of a spline; of other tracks there is only the value.
+// The parts of a spline key; other tracks only have values.
 enum class Part : std::size_t { InTangent, Value, OutTangent };
 
 const float* part_of(const KeyTrack& track, std::size_t key, Part part) {
@@ -56,8 +57,8 @@ void check(const KeyTrack& track) {
     }
     const std::size_t per_key = track.width * (track.interpolation == Interpolation::CubicSpline ? 3 : 1);
     if (track.values.size() != track.times.size() * per_key) {
-        reject("it has " + std::to_string(track.values.size()) + " numbers where " +
-               std::to_string(track.times.size()) + " keys ask for " +
+        reject("it has " + std::to_string(track.values.size()) + " values, but " +
+               std::to_string(track.times.size()) + " keys need " +
                std::to_string(track.times.size() * per_key));
     }
     for (const float value : track.values) {
@@ -68,8 +69,8 @@ void check(const KeyTrack& track) {
 void check_rotation(const KeyTrack& track) {
     check(track);
     for (std::size_t i = 0; i < track.times.size(); ++i) {
-        if (!(glm::length(quaternion(part_of(track, i, Part::Value))) > ShortestTurn))
-            reject("the rotation of key " + std::to_string(i) + " is no quaternion");
+        if (!(glm::length(quaternion(part_of(track, i, Part::Value))) > MinQuaternionLength))
+            reject("the rotation of key " + std::to_string(i) + " is not a quaternion");
     }
 }
 
@@ -106,10 +107,10 @@ glm::dvec4 sample_rotation(const KeyTrack& track, double seconds) {
         sample(track, seconds, value);
         const glm::dvec4 turn(value[0], value[1], value[2], value[3]);
         const double length = glm::length(turn);
-        return length > ShortestTurn ? turn / length : here;
+        return length > MinQuaternionLength ? turn / length : here;
     }
     glm::dvec4 next = glm::normalize(quaternion(part_of(track, at.key + 1, Part::Value)));
-    if (glm::dot(here, next) < 0.0) next = -next;  // the same rotation, the shorter way
+    if (glm::dot(here, next) < 0.0) next = -next;  // the same rotation, along the shorter arc
     const double angle = 2.0 * std::atan2(glm::length(next - here), glm::length(next + here));
     // Below, the arc and its chord are the same in double.
     if (angle < 1e-8) return glm::normalize(here * (1.0 - at.part) + next * at.part);

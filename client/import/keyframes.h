@@ -10,26 +10,25 @@ namespace tessera::import {
 
 enum class Interpolation : std::uint8_t { Step, Linear, CubicSpline };
 
-// A property over time, by values at keys (glTF 2.0, appendix C). Before the first key it has the first
-// value, after the last the last one.
+// A keyframed property (glTF 2.0, appendix C). Constant before the first and after the last key.
 struct KeyTrack {
     Interpolation interpolation = Interpolation::Linear;
-    std::size_t width = 1;      // numbers of a value
+    std::size_t width = 1;      // components per value
     std::vector<float> times;   // seconds
-    std::vector<float> values;  // a value per key; CubicSpline: its in-tangent, itself, its out-tangent
+    std::vector<float> values;  // per key: its value; CubicSpline: in-tangent, value, out-tangent
 };
 
-// Throws Error{InvalidInput} for what cannot be sampled: no keys, times that are not finite or do not rise,
-// too few values or too many, values that are not finite or beyond 1e15.
+// Throws Error{InvalidInput} if the track is invalid: no keys, times that are not finite or not ascending,
+// the wrong number of values, values that are not finite or beyond 1e15.
 void check(const KeyTrack& track);
-// The same, and for keys of a rotation that are no quaternions.
+// The same, and for rotations that are not quaternions.
 void check_rotation(const KeyTrack& track);
 
-// A track that passed its check, at a time; `value` has its width.
+// Samples a valid track; `value` has the width of the track.
 void sample(const KeyTrack& track, double seconds, std::span<double> value);
 
-// A unit quaternion x, y, z, w. Linear keys are joined by the shorter great arc at even speed; a spline is
-// normalised, and where it passes through zero, the key before counts.
+// Samples a valid rotation track as a unit quaternion x, y, z, w. Linear keys use slerp along the shorter
+// arc; a spline is normalized, and where it vanishes, the previous key is used.
 glm::dvec4 sample_rotation(const KeyTrack& track, double seconds);
 
 }  // namespace tessera::import

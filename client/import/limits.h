@@ -3,16 +3,16 @@
 #include <cstddef>
 #include <cstdint>
 
-// What a scene file may ask of us. Generous for real scenes, small enough that a hostile one is refused
-// before it takes the machine's memory.
+// Limits for scene files: generous for real scenes, small enough to reject malformed files before they
+// exhaust memory.
 namespace tessera::import {
 
-inline constexpr std::uint64_t MaxFileBytes = 0xffffffffull;      // a GLB's own length field ends here
+inline constexpr std::uint64_t MaxFileBytes = 0xffffffffull;      // the maximum of a GLB's length field
 inline constexpr std::uint64_t MaxElements = 1ull << 28;          // of one array: vertices or indices
-inline constexpr std::uint64_t MaxThinBodies = 1ull << 22;        // of one mesh: its points or lines
-inline constexpr std::uint64_t MaxUnbackedElements = 1ull << 20;  // of an array of zeros that no buffer backs
+inline constexpr std::uint64_t MaxPointsOrLines = 1ull << 22;     // of one mesh
+inline constexpr std::uint64_t MaxUnbackedElements = 1ull << 20;  // of an accessor of zeros without a buffer
 inline constexpr std::uint64_t MaxDecodedBytes = 8ull << 30;      // of all arrays and texels together
-inline constexpr std::uint64_t MaxInstances = 4'000'000;          // geometries as placed
+inline constexpr std::uint64_t MaxInstances = 4'000'000;          // of geometries
 inline constexpr std::uint32_t MaxImageEdge = 16384;              // pixels
 inline constexpr std::uint64_t MaxImagePixels = 1ull << 27;
 inline constexpr std::size_t MaxNesting = 512;      // of nodes

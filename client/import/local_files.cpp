@@ -46,7 +46,8 @@ Expected<fs::path> LocalFolder::locate(std::string_view name) const {
         relative.is_absolute()) {
         return failure(
             ErrorCode::InvalidInput,
-            "'" + shown + "' is no relative name inside the scene's folder: put the file beside the scene");
+            "'" + shown +
+                "' is not a relative path inside the scene's folder: put the file into that folder");
     }
     std::error_code error;
     const fs::path found = fs::canonical(folder_ / relative, error);
@@ -55,7 +56,7 @@ Expected<fs::path> LocalFolder::locate(std::string_view name) const {
     if (end != folder_.end()) {
         return failure(
             ErrorCode::InvalidInput,
-            "'" + shown + "' is a link out of the scene's folder: put the file itself beside the scene");
+            "'" + shown + "' is a link out of the scene's folder: put the file itself into that folder");
     }
     return found;
 }

@@ -10,17 +10,16 @@
 
 namespace tessera::import {
 
-// The whole of a regular file of at most MaxFileBytes. NotFound, InvalidInput (a folder, a device, too big)
-// or Io.
+// Reads a regular file of at most MaxFileBytes. NotFound, InvalidInput (a folder, a device, too big) or Io.
 Expected<std::vector<unsigned char>> read_whole_file(const std::filesystem::path& path);
 
-// What a scene file may reach: files in its own folder and below, by relative names. A scene comes from
-// anywhere, so absolute names, "..", other schemes and links that lead out are refused.
+// Restricts a scene file to files in its folder and below, by relative path. Scene files are untrusted, so
+// absolute paths, "..", other URL schemes and links out of the folder are rejected.
 class LocalFolder {
   public:
     explicit LocalFolder(const std::filesystem::path& scene_file);
 
-    // `name` is decoded (no %20) and uses slashes. NotFound or InvalidInput, naming it.
+    // `name` is percent-decoded and uses slashes. NotFound or InvalidInput, naming the file.
     Expected<std::filesystem::path> locate(std::string_view name) const;
     Expected<std::vector<unsigned char>> read(std::string_view name) const;
 

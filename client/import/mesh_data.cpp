@@ -61,7 +61,7 @@ void repair_normals(MeshData& mesh, std::vector<std::string>& repairs) {
         if (mesh.normals[i] == glm::vec3(0.0f)) mesh.normals[i] = normalized_or(sums[i], {0.0f, 1.0f, 0.0f});
     }
     repairs.push_back(std::to_string(bad) +
-                      " normals without length or not finite are made from the triangles");
+                      " normals of length zero or not finite are recomputed from the triangles");
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ void Bounds::add(const Bounds& other, const glm::dmat4& transform) {
 std::vector<std::uint32_t> triangles_of_strip(std::span<const std::uint32_t> vertices) {
     std::vector<std::uint32_t> triangles;
     for (std::size_t i = 0; i + 2 < vertices.size(); ++i) {
-        // Every second triangle swaps two vertices so that all keep the winding of the first (glTF 3.7.2.1).
+        // Every second triangle swaps two vertices to keep the winding (glTF 3.7.2.1).
         const std::size_t odd = i % 2;
         triangles.insert(triangles.end(), {vertices[i], vertices[i + 1 + odd], vertices[i + 2 - odd]});
     }
@@ -105,7 +105,7 @@ std::vector<std::string> check_and_repair(MeshData& mesh) {
     if (mesh.indices.empty()) throw Error(ErrorCode::InvalidInput, "it has no triangles");
     for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
         if (mesh.indices[i] >= vertices) {
-            throw Error(ErrorCode::InvalidInput, "index " + std::to_string(i) + " names vertex " +
+            throw Error(ErrorCode::InvalidInput, "index " + std::to_string(i) + " refers to vertex " +
                                                      std::to_string(mesh.indices[i]) + " of " +
                                                      std::to_string(vertices));
         }
@@ -114,7 +114,7 @@ std::vector<std::string> check_and_repair(MeshData& mesh) {
     std::vector<std::string> repairs;
     if (beyond != 0)
         repairs.push_back("its last " + std::to_string(beyond) +
-                          " vertices make no triangle and are left out");
+                          " vertices form no triangle and are ignored");
     if (!mesh.normals.empty() && mesh.normals.size() != vertices) {
         drop_if_unusable(mesh.normals, vertices, "normals", repairs);
     }

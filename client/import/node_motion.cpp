@@ -52,8 +52,8 @@ Pose NodeMotion::pose(std::optional<double> seconds) const {
     return pose;
 }
 
-int anchor_of(const std::vector<int>& joints, const std::vector<MovingNode>& nodes) {
-    std::unordered_map<int, std::size_t> above;  // nodes above all joints so far, by their distance
+int skeleton_root_of(const std::vector<int>& joints, const std::vector<MovingNode>& nodes) {
+    std::unordered_map<int, std::size_t> above;  // ancestors of the first joint, with their distance
     std::vector<int> line;                       // from the first joint's parent up to the root
     for (int node = at(nodes, joints.front()).parent; node >= 0; node = at(nodes, node).parent) {
         above[node] = line.size();
@@ -65,17 +65,18 @@ int anchor_of(const std::vector<int>& joints, const std::vector<MovingNode>& nod
         while (node >= 0 && !above.contains(node)) node = at(nodes, node).parent;
         lowest = std::max(lowest, node < 0 ? line.size() : above.at(node));
     }
-    // A joint may itself be above others.
+    // A joint may be an ancestor of others.
     for (const int joint : joints) {
-        const auto place = above.find(joint);
-        if (place != above.end()) lowest = std::max(lowest, place->second + 1);
+        const auto entry = above.find(joint);
+        if (entry != above.end()) lowest = std::max(lowest, entry->second + 1);
     }
     return lowest < line.size() ? line[lowest] : -1;
 }
 
 std::vector<glm::dmat4> joint_matrices(const Skin& skin, const std::vector<MovingNode>& nodes,
                                        const Pose& pose) {
-    std::unordered_map<int, glm::dmat4> known{{skin.anchor, glm::dmat4(1.0)}};  // anchor from node
+    std::unordered_map<int, glm::dmat4> known{
+        {skin.skeleton_root, glm::dmat4(1.0)}};  // skeleton root from node
     std::vector<int> line;
     std::vector<glm::dmat4> matrices;
     matrices.reserve(skin.joints.size());

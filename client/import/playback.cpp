@@ -4,8 +4,8 @@
 #include <set>
 
 #include "client/import/import.h"
-#include "client/import/shutter.h"
-#include "client/import/survey.h"
+#include "client/import/motion_keys.h"
+#include "client/import/scene_stats.h"
 #include "mediator/scene/fields.h"
 #include "mediator/scene/inverse.h"
 #include "mediator/scene/references.h"
@@ -20,86 +20,87 @@ constexpr scene::FieldMask MatrixBit = scene::Fields<Transform>(&Transform::matr
 constexpr scene::FieldMask MotionBit = scene::Fields<Transform>(&Transform::motion).bits();
 constexpr scene::FieldMask ChildrenBit = scene::Fields<Transform>(&Transform::children).bits();
 
-class Step {
+class PoseUpdate {
   public:
-    Step(ImportedScene& scene, double seconds)
+    PoseUpdate(ImportedScene& scene, double seconds)
         : scene_(scene),
           playback_(*scene.playback),
           seconds_(seconds),
           before_(playback_.motion.pose(scene.seconds)),
           now_(playback_.motion.pose(seconds)) {
-        for (std::size_t i = 0; scene.shutter > 0.0 && i <= Looks; ++i) {
-            looks_.push_back(playback_.motion.pose(seconds + scene.shutter * double(i) / double(Looks)));
+        for (std::size_t i = 0; scene.shutter > 0.0 && i <= MotionSamples; ++i) {
+            samples_.push_back(
+                playback_.motion.pose(seconds + scene.shutter * double(i) / double(MotionSamples)));
         }
     }
 
     // Everything that may fail, before anything is changed.
-    void bend() {
-        for (const BendingGeometry& geometry : playback_.bending) {
+    void deform() {
+        for (const DeformedGeometry& geometry : playback_.deformed) {
             const auto node = static_cast<std::size_t>(geometry.node);
             const std::vector<glm::dmat4> joints = joints_of(geometry, now_);
-            if (!looks_.empty()) look_at(geometry);
+            if (!samples_.empty()) sample_deformation(geometry);
             if (now_.weights[node] == before_.weights[node] && joints == joints_of(geometry, before_))
                 continue;
-            bent_.emplace_back(&geometry, bent(geometry, now_));
+            deformed_.emplace_back(&geometry, deformed(geometry, now_));
         }
     }
 
-    TimeStep apply() {
+    SceneUpdate apply() {
         move_transforms();
-        for (const auto& [geometry, mesh] : bent_) set_arrays(geometry->geometry, mesh);
-        for (const auto& [id, steps] : bending_) set_steps(id, steps);
-        if (!bent_.empty() || !bending_.empty()) renew_blobs();
-        look_around();
-        if (!looks_.empty()) move_cameras(scene_);
+        for (const auto& [geometry, mesh] : deformed_) set_arrays(geometry->geometry, mesh);
+        for (const auto& [id, keys] : vertex_keys_) set_vertex_keys(id, keys);
+        if (!deformed_.empty() || !vertex_keys_.empty()) update_blobs();
+        update_visibility_and_cameras();
+        if (!samples_.empty()) move_cameras(scene_);
         scene_.seconds = seconds_;
         for (const auto& [id, mask] : changed_)
-            step_.entries.push_back(scene::Update{id, mask, scene::only(object(id), mask)});
-        return std::move(step_);
+            update_.entries.push_back(scene::Update{id, mask, scene::copy_of_fields(object(id), mask)});
+        return std::move(update_);
     }
 
   private:
-    struct Place {
+    struct Visit {
         ObjectId transform;
         glm::dmat4 parent{1.0};
-        bool is_moved = false;  // by a transform above
+        bool is_moved = false;  // by an ancestor
     };
 
-    // A geometry's vertices while the shutter is open.
-    struct Steps {
+    // Motion keys of a geometry's vertices while the shutter is open.
+    struct VertexKeys {
         std::vector<std::vector<glm::vec3>> positions, normals;
     };
 
-    MeshData bent(const BendingGeometry& geometry, const Pose& pose) const {
+    MeshData deformed(const DeformedGeometry& geometry, const Pose& pose) const {
         try {
-            return import::bend(*geometry.mesh, pose.weights[static_cast<std::size_t>(geometry.node)],
-                                joints_of(geometry, pose));
+            return import::deform(*geometry.mesh, pose.weights[static_cast<std::size_t>(geometry.node)],
+                                  joints_of(geometry, pose));
         } catch (const Error& error) {
             throw Error(error.code(), "mesh '" + geometry.name + "' at " + std::to_string(seconds_) +
                                           " s: " + error.what() + "; repair its animation");
         }
     }
 
-    void look_at(const BendingGeometry& geometry) {
+    void sample_deformation(const DeformedGeometry& geometry) {
         std::vector<std::vector<glm::vec3>> positions, normals;
-        for (const Pose& look : looks_) {
-            MeshData mesh = bent(geometry, look);
+        for (const Pose& sample : samples_) {
+            MeshData mesh = deformed(geometry, sample);
             positions.push_back(std::move(mesh.positions));
             normals.push_back(std::move(mesh.normals));
         }
-        Steps steps{steps_of(positions), {}};
-        // Normals at the same times, where there are some.
-        for (std::size_t i = 1; i <= steps.positions.size() && !normals.front().empty(); ++i) {
-            steps.normals.push_back(std::move(normals[i * (Looks / steps.positions.size())]));
+        VertexKeys keys{motion_keys_of(positions), {}};
+        // Normals at the same times, if the mesh has any.
+        for (std::size_t i = 1; i <= keys.positions.size() && !normals.front().empty(); ++i) {
+            keys.normals.push_back(std::move(normals[i * (MotionSamples / keys.positions.size())]));
         }
-        bending_.emplace_back(geometry.geometry, std::move(steps));
+        vertex_keys_.emplace_back(geometry.geometry, std::move(keys));
     }
 
     scene::Object& object(ObjectId id) {
         return scene_.objects[id.value - scene_.objects.front().id.value].object;
     }
 
-    std::vector<glm::dmat4> joints_of(const BendingGeometry& geometry, const Pose& pose) const {
+    std::vector<glm::dmat4> joints_of(const DeformedGeometry& geometry, const Pose& pose) const {
         if (geometry.skin < 0) return {};
         return joint_matrices(playback_.skins[static_cast<std::size_t>(geometry.skin)],
                               playback_.motion.nodes, pose);
@@ -113,12 +114,12 @@ class Step {
             moving_.insert(id);
             for (int above = static_cast<int>(i); above >= 0;
                  above = nodes[static_cast<std::size_t>(above)].parent)
-                leading_.insert(playback_.transforms[static_cast<std::size_t>(above)]);
+                ancestors_.insert(playback_.transforms[static_cast<std::size_t>(above)]);
             auto& transform = std::get<Transform>(object(id));
-            std::vector<glm::dmat4> looks;
-            for (const Pose& look : looks_) looks.push_back(look.local[i]);
-            if (std::vector<glm::dmat4> steps = steps_of(looks); transform.motion != steps) {
-                transform.motion = std::move(steps);
+            std::vector<glm::dmat4> samples;
+            for (const Pose& sample : samples_) samples.push_back(sample.local[i]);
+            if (std::vector<glm::dmat4> keys = motion_keys_of(samples); transform.motion != keys) {
+                transform.motion = std::move(keys);
                 changed_[id] |= MotionBit;
             }
             if (transform.matrix == now_.local[i]) continue;
@@ -142,56 +143,57 @@ class Step {
         if (blob->hash() == reference.hash) return;
         reference = scene::reference(*blob);
         changed_[id] |= field.bits();
-        made_.emplace(blob->hash(), std::move(blob));
+        new_blobs_.emplace(blob->hash(), std::move(blob));
     }
 
-    void set_steps(ObjectId id, const Steps& steps) {
+    void set_vertex_keys(ObjectId id, const VertexKeys& keys) {
         auto& geometry = std::get<Geometry>(object(id));
-        set_list(id, geometry.motion_positions, steps.positions, &Geometry::motion_positions);
-        set_list(id, geometry.motion_normals, steps.normals, &Geometry::motion_normals);
+        set_list(id, geometry.motion_positions, keys.positions, &Geometry::motion_positions);
+        set_list(id, geometry.motion_normals, keys.normals, &Geometry::motion_normals);
     }
 
     void set_list(ObjectId id, std::vector<scene::BlobRef>& references,
-                  const std::vector<std::vector<glm::vec3>>& steps, scene::Fields<Geometry> field) {
+                  const std::vector<std::vector<glm::vec3>>& keys, scene::Fields<Geometry> field) {
         std::vector<scene::BlobRef> now;
-        for (const std::vector<glm::vec3>& step : steps) {
-            auto blob = std::make_shared<const scene::Blob>(std::as_bytes(std::span(step)));
+        for (const std::vector<glm::vec3>& key : keys) {
+            auto blob = std::make_shared<const scene::Blob>(std::as_bytes(std::span(key)));
             now.push_back(scene::reference(*blob));
-            made_.emplace(blob->hash(), std::move(blob));
+            new_blobs_.emplace(blob->hash(), std::move(blob));
         }
         if (now == references) return;
         references = std::move(now);
         changed_[id] |= field.bits();
     }
 
-    // Those of the time before go, unless something else has them, too.
-    void renew_blobs() {
+    // Removes the blobs of the previous time that nothing else refers to.
+    void update_blobs() {
         std::set<Hash256> wanted;
         for (const scene::Create& create : scene_.objects) {
             for (const scene::BlobRef& blob : scene::referenced_blobs(create.object))
                 wanted.insert(blob.hash);
         }
         std::erase_if(scene_.blobs, [&](const auto& blob) { return !wanted.contains(blob->hash()); });
-        for (const scene::BlobPtr& blob : scene_.blobs) made_.erase(blob->hash());
-        for (auto& [unused, blob] : made_) {
-            step_.blobs.push_back(blob);
+        for (const scene::BlobPtr& blob : scene_.blobs) new_blobs_.erase(blob->hash());
+        for (auto& [unused, blob] : new_blobs_) {
+            update_.blobs.push_back(blob);
             scene_.blobs.push_back(std::move(blob));
         }
     }
 
-    // Where something moved: geometries come and go with the volume that transforms leave them, cameras are
-    // elsewhere.
-    void look_around() {
-        std::vector<Place> stack;
+    // For everything that moved: hides geometries under degenerate transforms, shows them again, and updates
+    // camera poses.
+    void update_visibility_and_cameras() {
+        std::vector<Visit> stack;
         for (const ObjectId child : scene_.root.children) stack.push_back({child});
         while (!stack.empty()) {
-            const Place place = stack.back();
+            const Visit current = stack.back();
             stack.pop_back();
-            auto* transform = std::get_if<Transform>(&object(place.transform));
-            if (transform == nullptr || !(place.is_moved || leading_.contains(place.transform))) continue;
-            const bool is_moved = place.is_moved || moving_.contains(place.transform);
-            const glm::dmat4 world = place.parent * transform->matrix;
-            if (is_moved) show_or_hide(place.transform, *transform, has_volume(world));
+            auto* transform = std::get_if<Transform>(&object(current.transform));
+            if (transform == nullptr || !(current.is_moved || ancestors_.contains(current.transform)))
+                continue;
+            const bool is_moved = current.is_moved || moving_.contains(current.transform);
+            const glm::dmat4 world = current.parent * transform->matrix;
+            if (is_moved) show_or_hide(current.transform, *transform, has_volume(world));
             for (const ObjectId child : transform->children) {
                 stack.push_back({child, world, is_moved});
                 if (const auto* camera = std::get_if<scene::Camera>(&object(child)); camera && is_moved)
@@ -219,7 +221,7 @@ class Step {
         if (unseen.empty()) scene_.without_volume.erase(id);
     }
 
-    // One without a direction stays where it was.
+    // A camera whose transform is degenerate keeps its last pose.
     void move_camera(const std::string& name, glm::dmat4 world) {
         const auto camera = std::find_if(scene_.cameras.begin(), scene_.cameras.end(),
                                          [&](const CameraInfo& info) { return info.name == name; });
@@ -230,23 +232,23 @@ class Step {
     const Playback& playback_;
     double seconds_;
     Pose before_, now_;
-    std::vector<Pose> looks_;  // while the shutter is open
-    std::vector<std::pair<const BendingGeometry*, MeshData>> bent_;
-    std::vector<std::pair<ObjectId, Steps>> bending_;
+    std::vector<Pose> samples_;  // while the shutter is open
+    std::vector<std::pair<const DeformedGeometry*, MeshData>> deformed_;
+    std::vector<std::pair<ObjectId, VertexKeys>> vertex_keys_;
     std::map<ObjectId, scene::FieldMask> changed_;
-    std::map<Hash256, scene::BlobPtr> made_;
-    std::set<ObjectId> moving_, leading_;  // transforms: that move; on the way from the root to one
-    TimeStep step_;
+    std::map<Hash256, scene::BlobPtr> new_blobs_;
+    std::set<ObjectId> moving_, ancestors_;  // moving transforms, and these with all their ancestors
+    SceneUpdate update_;
 };
 
 }  // namespace
 
-Expected<TimeStep> move_to(ImportedScene& scene, double seconds) {
-    if (!scene.playback) return TimeStep{};
+Expected<SceneUpdate> move_to(ImportedScene& scene, double seconds) {
+    if (!scene.playback) return SceneUpdate{};
     try {
-        Step step(scene, seconds);
-        step.bend();
-        return step.apply();
+        PoseUpdate update(scene, seconds);
+        update.deform();
+        return update.apply();
     } catch (const Error& error) {
         return tl::unexpected<Error>(error);
     }

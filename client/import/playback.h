@@ -10,21 +10,21 @@
 
 namespace tessera::import {
 
-// What is bent again at other times.
-struct BendingGeometry {
+// A geometry that is deformed again at other times.
+struct DeformedGeometry {
     ObjectId geometry;
     std::string name;
-    std::shared_ptr<const BendingMesh> mesh;
-    int node = -1;  // with the mesh
+    std::shared_ptr<const DeformableMesh> mesh;
+    int node = -1;  // the node with the mesh
     int skin = -1;
 };
 
-// All that move_to needs of a file.
+// What move_to needs of a file.
 struct Playback {
     NodeMotion motion;
-    std::vector<ObjectId> transforms;  // of each node; 0 where none follows it
+    std::vector<ObjectId> transforms;  // of each node; 0 = none
     std::vector<Skin> skins;
-    std::vector<BendingGeometry> bending;
+    std::vector<DeformedGeometry> deformed;
 };
 
 }  // namespace tessera::import

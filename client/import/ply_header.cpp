@@ -57,7 +57,8 @@ std::optional<PlyProperty> property_of(const std::vector<std::string_view>& word
 }
 
 tl::unexpected<Error> incomplete(const std::string& cause) {
-    return failure(ErrorCode::InvalidInput, "it is no complete PLY (" + cause + "): copy or export it again");
+    return failure(ErrorCode::InvalidInput,
+                   "it is not a complete PLY file (" + cause + "): copy or export it again");
 }
 
 }  // namespace
@@ -94,13 +95,13 @@ Expected<PlyHeader> read_ply_header(std::string_view file) {
             const char* last = words[2].data() + words[2].size();
             const auto [stop, error] = std::from_chars(words[2].data(), last, element.count);
             if (error != std::errc() || stop != last || element.count > file.size()) {
-                return incomplete("its header claims elements that the file cannot hold");
+                return incomplete("its header declares more elements than the file can hold");
             }
             header.elements.push_back(std::move(element));
         } else if (property && !header.elements.empty()) {
             header.elements.back().properties.push_back(*property);
         } else if (words[0] == "format" || words[0] == "element" || words[0] == "property") {
-            return incomplete("its header has the line '" + std::string(line.substr(0, 60)) + "'");
+            return incomplete("its header has the invalid line '" + std::string(line.substr(0, 60)) + "'");
         }
     }
     return incomplete("its header has no end");

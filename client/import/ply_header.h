@@ -16,8 +16,8 @@ std::size_t byte_size(PlyType type);
 
 struct PlyProperty {
     std::string name;
-    PlyType type = PlyType::Float;        // of a value or, in a list, of its items
-    PlyType count_type = PlyType::UInt8;  // in a list
+    PlyType type = PlyType::Float;        // of a value or of the items of a list
+    PlyType count_type = PlyType::UInt8;  // of a list
     bool is_list = false;
 };
 
@@ -30,11 +30,10 @@ struct PlyElement {
 struct PlyHeader {
     PlyEncoding encoding = PlyEncoding::Ascii;
     std::vector<PlyElement> elements;
-    std::size_t byte_size = 0;  // the data begins here
+    std::size_t byte_size = 0;  // offset of the data
 };
 
-// InvalidInput when it is no PLY, has a line that is none of PLY, or claims more elements than the file has
-// bytes.
+// InvalidInput if it is not a PLY file, has an invalid line, or more elements than the file has bytes.
 Expected<PlyHeader> read_ply_header(std::string_view file);
 
 }  // namespace tessera::import

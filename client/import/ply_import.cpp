@@ -14,10 +14,11 @@ namespace tessera::import {
 namespace {
 
 [[noreturn]] void reject_ply(const std::string& cause) {
-    throw Error(ErrorCode::InvalidInput, "it is no complete PLY (" + cause + "): copy or export it again");
+    throw Error(ErrorCode::InvalidInput,
+                "it is not a complete PLY file (" + cause + "): copy or export it again");
 }
 
-// Values one after the other, whatever the encoding.
+// Reads values one after another in any encoding.
 class PlyData {
   public:
     PlyData(std::string_view bytes, PlyEncoding encoding) : rest_(bytes), encoding_(encoding) {}
@@ -33,7 +34,7 @@ class PlyData {
         double value = 0.0;
         const auto [stop, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
         if (error == std::errc::result_out_of_range) value = std::numeric_limits<double>::infinity();
-        if (error == std::errc::invalid_argument) reject_ply("its data has a word that is no number");
+        if (error == std::errc::invalid_argument) reject_ply("its data has a word that is not a number");
         rest_.remove_prefix(static_cast<std::size_t>(stop - rest_.data()));
         return value;
     }
@@ -77,8 +78,8 @@ class PlyData {
     PlyEncoding encoding_;
 };
 
-// Where a named vertex property goes: 0-2 position, 3-5 normal, 6-7 texture coordinates, 8-11 colour; -1 =
-// nowhere.
+// The slot of a vertex property: 0-2 position, 3-5 normal, 6-7 texture coordinates, 8-11 colour; -1 =
+// ignored.
 int slot_of(const std::string& name) {
     constexpr std::string_view Names[] = {"x", "y", "z",   "nx",    "ny",   "nz",
                                           "u", "v", "red", "green", "blue", "alpha"};
@@ -102,7 +103,7 @@ double color_value(double value, PlyType type, bool is_alpha) {
 std::vector<double> read_list(PlyData& data, const PlyProperty& property) {
     const double count = data.next(property.count_type);
     if (!(count >= 0.0 && count <= static_cast<double>(data.bytes_left()) && count == std::floor(count))) {
-        reject_ply("a list claims more than there is");
+        reject_ply("a list is longer than the data");
     }
     std::vector<double> values(static_cast<std::size_t>(count));
     for (double& value : values) value = data.next(property.type);
@@ -143,7 +144,7 @@ void read_vertices(PlyData& data, const PlyElement& element, MeshData& mesh) {
 }
 
 void read_faces(PlyData& data, const PlyElement& element, MeshData& mesh) {
-    constexpr std::uint32_t None = 0xffffffffu;  // never a vertex: check_and_repair refuses it
+    constexpr std::uint32_t None = 0xffffffffu;  // never a valid vertex: rejected by check_and_repair
     std::vector<std::uint32_t> polygon;
     for (std::uint64_t i = 0; i < element.count; ++i) {
         for (const PlyProperty& property : element.properties) {
@@ -179,7 +180,7 @@ MeshData read(std::string_view file) {
         }
     }
     if (mesh.indices.empty())
-        throw Error(ErrorCode::InvalidInput, "it has only points: there is nothing to draw");
+        throw Error(ErrorCode::InvalidInput, "it has only points: there is nothing to render");
     return mesh;
 }
 
@@ -201,8 +202,8 @@ void import_ply(const std::filesystem::path& file, SceneBuilder& builder) {
         geometry = builder.add_geometry(name, builder.add(std::move(material)), mesh);
     } catch (const Error& error) {
         if (error.code() != ErrorCode::InvalidInput) throw;
-        builder.notice("mesh '" + name + "' is bad (" + error.what() +
-                       "): a magenta box stands for it; export it again");
+        builder.notice("mesh '" + name + "' is invalid (" + error.what() +
+                       "): a magenta box replaces it; export it again");
         geometry = builder.placeholder_geometry();
     }
     scene::Transform transform;

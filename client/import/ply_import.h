@@ -6,9 +6,9 @@
 
 namespace tessera::import {
 
-// Brings a PLY, text or binary of either byte order, into the builder as one mesh: x y z, nx ny nz, texture
-// coordinates (u v, s t or texture_u texture_v; v up) and red green blue alpha per vertex (integers are sRGB,
-// floats linear); polygons are cut into fans. Without normals it is drawn flat. Throws Error when the file is
+// Imports a PLY file, text or binary of either byte order, as one mesh: x y z, nx ny nz, texture coordinates
+// (u v, s t or texture_u texture_v; v up) and red green blue alpha per vertex (integers are sRGB, floats
+// linear); polygons become triangle fans. Without normals it is flat-shaded. Throws Error if the file is
 // damaged.
 void import_ply(const std::filesystem::path& file, SceneBuilder& builder);
 

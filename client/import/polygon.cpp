@@ -7,13 +7,13 @@
 namespace tessera::import {
 namespace {
 
-constexpr std::size_t MostCorners = 10'000;  // cutting ears takes the square of this
+constexpr std::size_t MostCorners = 10'000;  // ear clipping is quadratic
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) {
     return a.x * b.y - a.y * b.x;
 }
 
-// Drops the axis along which the polygon is seen best; counter-clockwise stays so.
+// Projects along the dominant axis of the normal; the winding is kept.
 std::vector<glm::dvec2> flattened(std::span<const glm::vec3> corners) {
     const glm::dvec3 area = polygon_area(corners);
     int axis = 0;
@@ -29,17 +29,18 @@ std::vector<glm::dvec2> flattened(std::span<const glm::vec3> corners) {
     return flat;
 }
 
-class Ears {
+class EarClipper {
   public:
-    explicit Ears(std::vector<glm::dvec2> corners) : corners_(std::move(corners)), left_(corners_.size()) {
+    explicit EarClipper(std::vector<glm::dvec2> corners)
+        : corners_(std::move(corners)), left_(corners_.size()) {
         for (std::uint32_t i = 0; i < left_.size(); ++i) left_[i] = i;
     }
 
-    std::vector<std::array<std::uint32_t, 3>> cut() {
+    std::vector<std::array<std::uint32_t, 3>> clip() {
         std::vector<std::array<std::uint32_t, 3>> triangles;
         std::size_t at = 0, tried = 0;
         while (left_.size() > 2) {
-            // After a whole round without an ear the outline crosses itself: any corner will do.
+            // A whole round without an ear: the outline crosses itself, and any corner is clipped.
             if (!is_ear(at) && tried++ < left_.size()) {
                 at = (at + 1) % left_.size();
                 continue;
@@ -86,7 +87,7 @@ glm::dvec3 polygon_area(std::span<const glm::vec3> corners) {
 std::vector<std::array<std::uint32_t, 3>> triangles_of_polygon(std::span<const glm::vec3> corners,
                                                                PolygonShape shape) {
     if (shape == PolygonShape::Any && corners.size() > 3 && corners.size() <= MostCorners)
-        return Ears(flattened(corners)).cut();
+        return EarClipper(flattened(corners)).clip();
     std::vector<std::array<std::uint32_t, 3>> fan;
     for (std::uint32_t i = 1; i + 1 < corners.size(); ++i) fan.push_back({0, i, i + 1});
     return fan;

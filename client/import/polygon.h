@@ -10,13 +10,13 @@ namespace tessera::import {
 
 enum class PolygonShape { Convex, Any };
 
-// Twice the area, along the normal of the side from which the corners go counter-clockwise (Newell's method);
-// of a polygon that is not flat, of its shadow.
+// Twice the area times the normal of the side from which the corners are counter-clockwise (Newell's method).
+// For a polygon that is not planar: of its projection.
 glm::dvec3 polygon_area(std::span<const glm::vec3> corners);
 
-// Triangles of a polygon by numbers of its corners, in its winding: a fan from the first corner, or by
-// cutting ears (O(n^2); a fan, too, of more than 10,000 corners). Of n corners always n - 2, without area
-// where the outline crosses itself.
+// Triangulates a polygon: a fan from the first corner, or ear clipping (O(n^2); a fan for more than 10,000
+// corners). Returns indices of corners in the winding of the polygon. Always n - 2 triangles for n corners,
+// some of them degenerate if the outline crosses itself.
 std::vector<std::array<std::uint32_t, 3>> triangles_of_polygon(std::span<const glm::vec3> corners,
                                                                PolygonShape shape);
 

@@ -6,7 +6,7 @@
 
 namespace tessera::import {
 
-// For readers that give up in the middle: whoever called them turns it into a result or into a report.
+// Ends a reader; its caller turns the error into a result or a notice.
 [[noreturn]] inline void reject(const std::string& cause) {
     throw Error(ErrorCode::InvalidInput, cause);
 }

@@ -8,7 +8,7 @@
 namespace tessera::import {
 namespace {
 
-// This library names kinds itself: the words are for users, not for the wire.
+// Names of kinds for users, independent of those on the wire.
 constexpr std::array<const char*, std::variant_size_v<scene::Object>> KindNames{
     "root",   "node",       "mesh",       "material",       "texture", "light",
     "camera", "background", "attachment", "surface shader", "medium"};
@@ -27,7 +27,7 @@ MeshData unit_box() {
                 box.positions.push_back(position);
                 box.normals.push_back(normal);
             }
-            const std::uint32_t odd = side < 0.0f ? 1 : 0;  // outside is counter-clockwise
+            const std::uint32_t odd = side < 0.0f ? 1 : 0;  // counter-clockwise seen from outside
             box.indices.insert(box.indices.end(), {first, first + 1 + odd, first + 2 - odd, first,
                                                    first + 2 + odd, first + 3 - odd});
         }
@@ -53,7 +53,7 @@ ObjectId SceneBuilder::add(scene::Object object) {
     if (id >= options_.end_id) {
         throw Error(ErrorCode::InvalidInput, "it needs more than the " +
                                                  std::to_string(result_.objects.size()) +
-                                                 " objects that may be made: split the scene");
+                                                 " objects that are allowed: split the scene");
     }
     const scene::ObjectKind kind = scene::kind(object);
     std::visit([&](auto& value) { value.name = unique_name(kind, value.name); }, object);
@@ -64,9 +64,9 @@ ObjectId SceneBuilder::add(scene::Object object) {
 scene::BlobRef SceneBuilder::blob(std::span<const std::byte> bytes) {
     if (bytes.empty()) return {};
     spend(bytes.size());
-    auto made = std::make_shared<const scene::Blob>(bytes);
-    const auto [position, is_new] = blobs_.emplace(made->hash(), made);
-    if (is_new) result_.blobs.push_back(std::move(made));
+    auto blob_ptr = std::make_shared<const scene::Blob>(bytes);
+    const auto [position, is_new] = blobs_.emplace(blob_ptr->hash(), blob_ptr);
+    if (is_new) result_.blobs.push_back(std::move(blob_ptr));
     return scene::reference(*position->second);
 }
 

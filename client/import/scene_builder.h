@@ -13,8 +13,8 @@
 namespace tessera::import {
 
 // Collects objects, blobs and notices while a file is read. Ids ascend in order of creation, names become
-// unique per kind, equal arrays become one blob. Throws Error{InvalidInput} when ids or the budget of decoded
-// bytes run out.
+// unique per kind, equal arrays become one blob. Throws Error{InvalidInput} if ids or the budget of decoded
+// bytes are exhausted.
 class SceneBuilder {
   public:
     explicit SceneBuilder(const ImportOptions& options) : options_(options) {}
@@ -25,7 +25,7 @@ class SceneBuilder {
     // An empty name becomes "<kind> <number>"; one already taken by this kind gets ".2", ".3" and so on.
     ObjectId add(scene::Object object);
     template <class T>
-    T& get(ObjectId id) {  // of an object that was added; until the next add
+    T& get(ObjectId id) {  // an added object; valid until the next add
         return std::get<T>(result_.objects[id.value - options_.first_id.value].object);
     }
 
@@ -40,14 +40,14 @@ class SceneBuilder {
     scene::BlobRef blob(std::span<const std::byte> bytes);  // empty gives an empty reference
     const scene::Blob& stored(const scene::BlobRef& blob) const { return *blobs_.at(blob.hash); }
 
-    // Counts what is decoded without becoming a blob.
+    // Counts decoded bytes that do not become a blob.
     void spend(std::uint64_t bytes);
 
-    // Counts and adds a mesh that passed check_and_repair.
+    // Adds and counts a mesh that passed check_and_repair.
     ObjectId add_geometry(std::string name, ObjectId material, const MeshData& mesh);
 
-    // What stands for something bad, made at its first use: a magenta box of edge 1 around the origin, and a
-    // checker.
+    // Placeholders for invalid data, created at first use: a magenta unit box at the origin, and a magenta
+    // checkerboard.
     ObjectId placeholder_geometry();
     ObjectId placeholder_texture();
 

@@ -16,12 +16,12 @@ namespace {
     throw Error(ErrorCode::InvalidInput, "it is damaged (" + cause + "): copy or save it again");
 }
 
-// Takes what was announced, or tells that it is not there.
+// Reads bytes in sequence; throws at the end.
 class Cursor {
   public:
     explicit Cursor(std::span<const std::byte> bytes) : rest_(bytes) {}
     std::span<const std::byte> take(std::uint64_t count) {
-        if (count > rest_.size()) reject_tessera("it announces more than it holds");
+        if (count > rest_.size()) reject_tessera("it is shorter than its header says");
         const auto taken = rest_.first(static_cast<std::size_t>(count));
         rest_ = rest_.subspan(taken.size());
         return taken;
@@ -46,16 +46,16 @@ Hash256 hash_of(std::span<const std::byte> bytes) {
 
 std::vector<scene::BlobPtr> read_blobs(Cursor& cursor, std::uint32_t count,
                                        const std::vector<scene::BlobRef>& wanted) {
-    if (count != wanted.size()) reject_tessera("it does not hold the blobs that its scene refers to");
+    if (count != wanted.size()) reject_tessera("it does not contain the blobs that its scene refers to");
     std::vector<scene::BlobPtr> blobs;
     for (const scene::BlobRef& reference : wanted) {
         const Hash256 hash = hash_of(cursor.take(sizeof(Hash256::bytes)));
         const auto byte_size = cursor.number<std::uint64_t>();
         if (hash != reference.hash || byte_size != reference.byte_size) {
-            reject_tessera("it does not hold the blobs that its scene refers to");
+            reject_tessera("it does not contain the blobs that its scene refers to");
         }
         blobs.push_back(std::make_shared<const scene::Blob>(cursor.take(byte_size)));
-        if (blobs.back()->hash() != hash) reject_tessera("a blob has another hash than it should");
+        if (blobs.back()->hash() != hash) reject_tessera("the hash of a blob does not match its content");
     }
     return blobs;
 }
@@ -67,7 +67,7 @@ void check(const std::vector<scene::Problem>& problems) {
 TesseraFile read(std::span<const std::byte> bytes) {
     Cursor frame(bytes);
     if (std::memcmp(frame.take(TesseraMagic.size()).data(), TesseraMagic.data(), TesseraMagic.size()) != 0) {
-        throw Error(ErrorCode::InvalidInput, "it is no .tessera file: check the name");
+        throw Error(ErrorCode::InvalidInput, "it is not a .tessera file: check the name");
     }
     if (const auto version = frame.number<std::uint32_t>(); version != TesseraFormatVersion) {
         throw Error(ErrorCode::InvalidInput, "its format version is " + std::to_string(version) + ", not " +
@@ -78,20 +78,20 @@ TesseraFile read(std::span<const std::byte> bytes) {
     if (bytes.size() < TesseraHeaderBytes + HashBytes) reject_tessera("it ends too early");
     const auto content = bytes.first(bytes.size() - HashBytes);
     if (blake2b(content) != hash_of(bytes.last(HashBytes)))
-        reject_tessera("its checksum does not fit its content");
+        reject_tessera("its checksum does not match its content");
 
     Cursor cursor(content.subspan(TesseraMagic.size() + sizeof(std::uint32_t)));
     const auto blob_count = cursor.number<std::uint32_t>();
     const auto list_size = cursor.number<std::uint64_t>();
     auto snapshot = wire::decode_change_list(cursor.take(list_size));
     if (!snapshot) reject_tessera(snapshot.error().what());
-    if (!snapshot->is_snapshot()) reject_tessera("its change list is no snapshot");
+    if (!snapshot->is_snapshot()) reject_tessera("its change list is not a snapshot");
     scene::Scene scene;
     if (const auto applied = scene.apply(*snapshot); !applied) reject_tessera(applied.error().what());
     check(scene::validate(scene));
 
     TesseraFile file{std::move(*snapshot), read_blobs(cursor, blob_count, scene::referenced_blobs(scene))};
-    if (!cursor.at_end()) reject_tessera("bytes are left over");
+    if (!cursor.at_end()) reject_tessera("it has trailing bytes");
     scene::BlobStore store;
     for (const scene::BlobPtr& blob : file.blobs) store.insert(blob);
     for (const auto& [id, object] : scene.objects()) check(scene::validate_blobs(id, *object, store));

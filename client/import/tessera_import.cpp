@@ -4,9 +4,9 @@
 #include <set>
 
 #include "client/import/environment.h"
-#include "client/import/finish.h"
 #include "client/import/limits.h"
-#include "client/import/survey.h"
+#include "client/import/post_process.h"
+#include "client/import/scene_stats.h"
 #include "client/import/tessera_format.h"
 #include "mediator/scene/references.h"
 #include "mediator/scene/scene.h"
@@ -14,19 +14,19 @@
 namespace tessera::import {
 namespace {
 
-// Places a scene that is whole already; a builder's own walk is of what the builder made.
-class Places {
+// Gathers statistics and cameras of a complete scene.
+class SceneTraversal {
   public:
-    Places(const scene::Scene& scene, ImportedScene& result) : scene_(scene), result_(result) {
+    SceneTraversal(const scene::Scene& scene, ImportedScene& result) : scene_(scene), result_(result) {
         for (const scene::BlobPtr& blob : result.blobs) blobs_.insert(blob);
     }
 
     Bounds run(const std::vector<ObjectId>& roots) {
         for (const ObjectId child : roots) stack_.push_back({child, glm::dmat4(1.0)});
         while (!stack_.empty()) {
-            const Place place = stack_.back();
+            const Visit current = stack_.back();
             stack_.pop_back();
-            visit(place);
+            visit(current);
         }
         std::stable_sort(cameras_.begin(), cameras_.end(),
                          [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -35,58 +35,58 @@ class Places {
     }
 
   private:
-    struct Place {
+    struct Visit {
         ObjectId object;
         glm::dmat4 parent{1.0};
     };
 
-    void visit(const Place& place) {
-        if (++places_ > MaxInstances) {
-            throw Error(ErrorCode::InvalidInput,
-                        "it places more than " + std::to_string(MaxInstances) + " objects: split the scene");
+    void visit(const Visit& current) {
+        if (++visits_ > MaxInstances) {
+            throw Error(ErrorCode::InvalidInput, "it has more than " + std::to_string(MaxInstances) +
+                                                     " object instances: split the scene");
         }
-        const scene::Object& object = *scene_.find(place.object);
+        const scene::Object& object = *scene_.find(current.object);
         if (const auto* transform = std::get_if<scene::Transform>(&object)) {
             for (const ObjectId child : transform->children)
-                stack_.push_back({child, place.parent * transform->matrix});
+                stack_.push_back({child, current.parent * transform->matrix});
         } else if (const auto* geometry = std::get_if<scene::Geometry>(&object)) {
             ++result_.counts.instances;
-            bounds_.add(box(place.object, *geometry), place.parent);
+            bounds_.add(box(current.object, *geometry), current.parent);
         } else if (std::holds_alternative<scene::Light>(object)) {
             ++result_.counts.lights;
         } else if (const auto* camera = std::get_if<scene::Camera>(&object)) {
-            add_camera(place, *camera);
+            add_camera(current, *camera);
         }
     }
 
     const Bounds& box(ObjectId id, const scene::Geometry& geometry) {
-        const auto [place, is_new] = boxes_.try_emplace(id);
+        const auto [entry, is_new] = boxes_.try_emplace(id);
         if (is_new) {
             const scene::BlobPtr positions = blobs_.find(geometry.positions.hash);
-            for (const glm::vec3& point : positions->as<glm::vec3>()) place->second.add(glm::dvec3(point));
+            for (const glm::vec3& point : positions->as<glm::vec3>()) entry->second.add(glm::dvec3(point));
         }
-        return place->second;
+        return entry->second;
     }
 
-    void add_camera(const Place& place, const scene::Camera& camera) {
-        glm::dmat4 world = place.parent;
+    void add_camera(const Visit& current, const scene::Camera& camera) {
+        glm::dmat4 world = current.parent;
         if (!make_rigid(world)) {
             result_.notices.push_back("camera '" + camera.name +
-                                      "' is not used: its transform has no direction");
+                                      "' is not used: its transform is degenerate");
             return;
         }
         const std::string base = camera.name.empty() ? "camera" : camera.name;
         std::string name = base;
         for (int suffix = 2; !names_.insert(name).second; ++suffix)
             name = base + "." + std::to_string(suffix);
-        cameras_.emplace_back(place.object, CameraInfo{name, world, camera});
+        cameras_.emplace_back(current.object, CameraInfo{name, world, camera});
     }
 
     const scene::Scene& scene_;
     ImportedScene& result_;
     scene::BlobStore blobs_;
-    std::vector<Place> stack_;
-    std::uint64_t places_ = 0;
+    std::vector<Visit> stack_;
+    std::uint64_t visits_ = 0;
     Bounds bounds_;
     std::map<ObjectId, Bounds> boxes_;
     std::set<std::string> names_;
@@ -100,23 +100,23 @@ void count(const scene::Scene& scene, ImportCounts& counts) {
         if (geometry == nullptr) continue;
         ++counts.geometries;
         counts.triangles += geometry->indices.byte_size / 12;
-        const auto shines = [&](ObjectId made_of) {
-            const scene::Object* found = scene.find(made_of);
+        const auto is_emissive = [&](ObjectId shading_object) {
+            const scene::Object* found = scene.find(shading_object);
             return found != nullptr && emits(*found);
         };
-        if (shines(geometry->material) || shines(geometry->medium)) ++counts.emissive_geometries;
+        if (is_emissive(geometry->material) || is_emissive(geometry->medium)) ++counts.emissive_geometries;
     }
 }
 
-// Ids of the file become consecutive ones; the order stays.
-void bring_in_objects(const scene::Scene& scene, SceneBuilder& builder) {
+// Renumbers the ids of the file consecutively, in the same order.
+void renumber_objects(const scene::Scene& scene, SceneBuilder& builder) {
     ImportedScene& result = builder.result();
     const ImportOptions& options = builder.options();
     if (scene.objects().size() - 1 > options.end_id.value - options.first_id.value) {
         throw Error(ErrorCode::InvalidInput,
                     "it needs more than the " +
                         std::to_string(options.end_id.value - options.first_id.value) +
-                        " objects that may be made: split the scene");
+                        " objects that are allowed: split the scene");
     }
     std::map<ObjectId, ObjectId> renumbered{{ObjectId{}, ObjectId{}}};
     ObjectId next = options.first_id;
@@ -149,7 +149,7 @@ void apply_options(SceneBuilder& builder) {
     auto& background = builder.get<scene::Background>(root.background);
     background.environment = environment;
     background.strength = options.environment_strength;
-    auto& blobs = builder.result().blobs;  // the file may have had the same map
+    auto& blobs = builder.result().blobs;  // the file may already contain the same map
     const Hash256 last = blobs.back()->hash();
     if (std::any_of(blobs.begin(), blobs.end() - 1, [&](const auto& one) { return one->hash() == last; }))
         blobs.pop_back();
@@ -165,12 +165,12 @@ void import_tessera(const std::filesystem::path& file, SceneBuilder& builder) {
     ImportedScene& result = builder.result();
     result.blobs = std::move(content->blobs);
     count(scene, result.counts);
-    bring_in_objects(scene, builder);
+    renumber_objects(scene, builder);
 
     scene::Scene renumbered;
     if (const auto applied = renumbered.apply_entries(entries(result, RootEntry::Create)); !applied)
         throw applied.error();
-    const Bounds bounds = Places(renumbered, result).run(result.root.children);
+    const Bounds bounds = SceneTraversal(renumbered, result).run(result.root.children);
     apply_options(builder);
     if (result.cameras.empty() && builder.options().missing == Missing::Add)
         add_framing_camera(builder, bounds);

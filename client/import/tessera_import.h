@@ -6,9 +6,9 @@
 
 namespace tessera::import {
 
-// Brings a .tessera file into the builder: every object as it was saved, with new ids in the order of the old
-// ones. The options' background and environment take the place of the file's; a camera that frames everything
-// is added where there is none and the options ask for it; nothing else is. Throws Error.
+// Imports a .tessera file: every object as it was saved, with new ids in the same order. The background and
+// environment of the options replace those of the file. If the options ask for it, a framing camera is added
+// to a scene without camera. Throws Error.
 void import_tessera(const std::filesystem::path& file, SceneBuilder& builder);
 
 }  // namespace tessera::import

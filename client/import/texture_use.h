@@ -3,8 +3,8 @@
 namespace tessera::import {
 
 enum class TextureUse {
-    Color,  // sRGB; a magenta checker stands for a bad one
-    Data    // linear; a bad one is left out, the factor alone stays
+    Color,  // sRGB; a magenta checkerboard replaces an invalid one
+    Data    // linear; an invalid one is ignored, only the factor is used
 };
 
 }  // namespace tessera::import

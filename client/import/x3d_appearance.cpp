@@ -20,7 +20,7 @@ X3dAppearances::Parts X3dAppearances::parts_of(pugi::xml_node appearance) {
                                : kind == "TextureTransform"   ? &parts.texture_transform
                                                               : nullptr;
         if (part == nullptr || *part) {
-            document_.problems().skipped(child.node.name(), child.node.offset_debug());
+            document_.diagnostics().skipped(child.node.name(), child.node.offset_debug());
         } else {
             *part = child.node;
         }
@@ -29,9 +29,9 @@ X3dAppearances::Parts X3dAppearances::parts_of(pugi::xml_node appearance) {
 }
 
 X3dSurface X3dAppearances::surface(pugi::xml_node appearance, VertexColors colors) {
-    const auto [place, is_new] = made_.try_emplace({appearance.internal_object(), colors});
-    if (is_new) place->second = make(appearance, colors);
-    return place->second;
+    const auto [entry, is_new] = surfaces_.try_emplace({appearance.internal_object(), colors});
+    if (is_new) entry->second = make(appearance, colors);
+    return entry->second;
 }
 
 X3dSurface X3dAppearances::make(pugi::xml_node appearance, VertexColors colors) {
@@ -41,34 +41,34 @@ X3dSurface X3dAppearances::make(pugi::xml_node appearance, VertexColors colors) 
         add_shader(parts.shader, surface);
     } else if (parts.material) {
         add_material(parts, colors, surface);
-    } else if (!parts.volume || parts.texture) {  // a volume alone has no surface
+    } else if (!parts.volume || parts.texture) {  // a volume alone has no surface material
         add_unlit(appearance, parts.texture, surface);
     }
     if (parts.volume) surface.medium = medium(parts.volume);
     if (parts.texture_transform) {
         surface.texture_transform =
-            texture_transform(X3dFields(parts.texture_transform, document_.problems()));
+            texture_transform(X3dFields(parts.texture_transform, document_.diagnostics()));
     }
     return surface;
 }
 
 void X3dAppearances::add_shader(pugi::xml_node node, X3dSurface& surface) {
-    const auto [place, is_new] = shaders_.try_emplace(node.internal_object());
+    const auto [entry, is_new] = shaders_.try_emplace(node.internal_object());
     if (is_new) {
         scene::SurfaceShader shader = read_surface_shader(document_, node, textures_);
-        X3dSurface& made = place->second;
-        // Tangents are made of texture coordinates, also where only a highlight that is longer than wide
-        // asks.
-        made.wants_tangents = shader.normal_texture.texture || shader.height_texture.texture ||
-                              shader.shininess.x != shader.shininess.y;
-        made.is_textured = made.wants_tangents;
+        X3dSurface& result = entry->second;
+        // Tangents are generated from texture coordinates, also when only an anisotropic highlight needs
+        // them.
+        result.needs_tangents = shader.normal_texture.texture || shader.height_texture.texture ||
+                                shader.shininess.x != shader.shininess.y;
+        result.is_textured = result.needs_tangents;
         scene::for_each_field<scene::SurfaceShader>([&](unsigned, auto member) {
             if constexpr (std::is_same_v<decltype(member), scene::TextureSlot scene::SurfaceShader::*>)
-                made.is_textured |= static_cast<bool>((shader.*member).texture);
+                result.is_textured |= static_cast<bool>((shader.*member).texture);
         });
-        made.material = builder_.add(std::move(shader));
+        result.material = builder_.add(std::move(shader));
     }
-    surface = place->second;
+    surface = entry->second;
 }
 
 void X3dAppearances::add_material(const Parts& parts, VertexColors colors, X3dSurface& surface) {
@@ -76,7 +76,7 @@ void X3dAppearances::add_material(const Parts& parts, VertexColors colors, X3dSu
     if (colors == VertexColors::Given) shader.diffuse = glm::vec3(1.0f);
     if (parts.texture) {
         const X3dTextures::Traits traits = textures_.traits(parts.texture);
-        // X3D 3 (17.2.2.5): a coloured picture takes the place of the diffuse colour; X3D 4 multiplies.
+        // X3D 3 (17.2.2.5): a coloured image replaces the diffuse colour; X3D 4 multiplies.
         if (!traits.is_grey && document_.version() < 4.0) shader.diffuse = glm::vec3(1.0f);
         shader.diffuse_texture.texture =
             textures_.texture(parts.texture, TextureUse::Color, x3d_label(parts.material));
@@ -102,9 +102,9 @@ void X3dAppearances::add_unlit(pugi::xml_node appearance, pugi::xml_node texture
 }
 
 ObjectId X3dAppearances::medium(pugi::xml_node node) {
-    ObjectId& made = media_[node.internal_object()];
-    if (!made) made = builder_.add(read_medium(document_, node, textures_));
-    return made;
+    ObjectId& result = media_[node.internal_object()];
+    if (!result) result = builder_.add(read_medium(document_, node, textures_));
+    return result;
 }
 
 }  // namespace tessera::import

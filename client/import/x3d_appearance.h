@@ -10,14 +10,14 @@
 
 namespace tessera::import {
 
-// Whether a geometry has colours of its own; they take the place of a Material's diffuse colour.
+// Whether a geometry has vertex colours, which replace a Material's diffuse colour.
 enum class VertexColors { None, Given };
 
 // An Appearance as geometries use it.
 struct X3dSurface {
     ObjectId material, medium;
     bool is_textured = false;  // needs texture coordinates
-    bool wants_tangents = false;
+    bool needs_tangents = false;
     glm::dmat3 texture_transform{1.0};  // of (s, t, 1)
 };
 
@@ -26,12 +26,12 @@ class X3dAppearances {
     X3dAppearances(X3dDocument& document, X3dTextures& textures, SceneBuilder& builder)
         : document_(document), textures_(textures), builder_(builder) {}
 
-    // A CommonSurfaceShader takes the place of Material and ImageTexture, which then are for others. Without
-    // any of these, or with a picture alone: white or the picture, unlit.
+    // A CommonSurfaceShader replaces Material and ImageTexture, which are then a fallback for other programs.
+    // Without shader and Material: the texture or white, unlit.
     X3dSurface surface(pugi::xml_node appearance, VertexColors colors);
 
   private:
-    struct Parts {  // null nodes for what is not there
+    struct Parts {  // null nodes if absent
         pugi::xml_node shader, volume, material, texture, texture_transform;
     };
     Parts parts_of(pugi::xml_node appearance);
@@ -44,7 +44,7 @@ class X3dAppearances {
     X3dDocument& document_;
     X3dTextures& textures_;
     SceneBuilder& builder_;
-    std::map<std::pair<const void*, VertexColors>, X3dSurface> made_;
+    std::map<std::pair<const void*, VertexColors>, X3dSurface> surfaces_;
     std::map<const void*, X3dSurface> shaders_;
     std::map<const void*, ObjectId> media_;
 };

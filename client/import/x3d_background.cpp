@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t SkyRows = 256, SkyColumns = 4;
 constexpr double Pi = std::numbers::pi;
 
-// Colours at angles: the first at 0, the others where the file says.
+// A gradient: colours at angles, the first at 0.
 struct Bands {
     std::vector<glm::vec3> colors;
     std::vector<float> angles;
@@ -40,7 +40,7 @@ Bands read_bands(const X3dFields& fields, const char* colors, const char* angles
         wrong = error.what();
     }
     if (wrong.empty() && !bands.empty() && bands.colors.size() != bands.angles.size() + 1)
-        wrong = std::string(angles) + " has to have one number less than there are colours";
+        wrong = std::string(angles) + " must have one number less than there are colours";
     bands.angles.insert(bands.angles.begin(), 0.0f);
     if (!std::is_sorted(bands.angles.begin(), bands.angles.end()) || bands.angles.front() < 0.0f ||
         bands.angles.back() > static_cast<float>(Pi) + 1e-4f)
@@ -51,18 +51,19 @@ Bands read_bands(const X3dFields& fields, const char* colors, const char* angles
         }
     }
     if (wrong.empty()) return bands;
-    fields.problem(wrong + ": this part of it is left out, correct it");
+    fields.report(wrong + ": this part is ignored, correct it");
     return {};
 }
 
 }  // namespace
 
 scene::Background read_background(X3dDocument& document, pugi::xml_node node, SceneBuilder& builder) {
-    const X3dFields fields(node, document.problems());
+    const X3dFields fields(node, document.diagnostics());
     const Bands sky = read_bands(fields, "skyColor", "skyAngle"),
                 ground = read_bands(fields, "groundColor", "groundAngle");
     for (const char* picture : {"backUrl", "bottomUrl", "frontUrl", "leftUrl", "rightUrl", "topUrl"}) {
-        if (fields.has(picture)) fields.problem("has pictures: they are not read, the colours are shown");
+        if (fields.has(picture))
+            fields.report("has images: they are not supported, only the colours are used");
     }
     scene::Background background;
     background.name = x3d_name(node);
@@ -73,11 +74,11 @@ scene::Background read_background(X3dDocument& document, pugi::xml_node node, Sc
     std::vector<glm::vec3> texels;
     for (std::uint32_t row = 0; row < SkyRows; ++row) {
         const double from_zenith = Pi * (row + 0.5) / SkyRows, from_nadir = Pi - from_zenith;
-        // The ground reaches up to its last angle; a single colour is the half below the horizon.
-        const double reach = ground.empty() ? 0.0 : ground.colors.size() == 1 ? Pi / 2 : ground.end();
-        const glm::vec3 color = from_nadir < reach ? ground.at(from_nadir)
-                                : sky.empty()      ? glm::vec3(0.0f)
-                                                   : sky.at(from_zenith);
+        // The ground ends at its last angle; a single ground colour fills the half below the horizon.
+        const double ground_end = ground.empty() ? 0.0 : ground.colors.size() == 1 ? Pi / 2 : ground.end();
+        const glm::vec3 color = from_nadir < ground_end ? ground.at(from_nadir)
+                                : sky.empty()           ? glm::vec3(0.0f)
+                                                        : sky.at(from_zenith);
         texels.insert(texels.end(), SkyColumns, color);
     }
     scene::Texture map;

@@ -5,8 +5,8 @@
 
 namespace tessera::import {
 
-// A Background's sky and ground as light from infinitely far: one colour, or bands of colour as a small
-// environment map of 256 rows (0.7 degrees each). Pictures around the scene are not read.
+// A Background's sky and ground as an infinite light: one colour, or a gradient as an environment map of 256
+// rows (0.7 degrees each). Background images are not supported.
 scene::Background read_background(X3dDocument& document, pugi::xml_node node, SceneBuilder& builder);
 
 }  // namespace tessera::import

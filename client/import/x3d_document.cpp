@@ -13,21 +13,21 @@ namespace {
 std::string text_of(const std::filesystem::path& file) {
     const auto bytes = read_whole_file(file);
     if (!bytes) throw bytes.error();
-    // Other widths of character have zeros among the first of "<?xml".
+    // UTF-16 and UTF-32 have zero bytes in the first characters of "<?xml".
     if (std::memchr(bytes->data(), 0, std::min<std::size_t>(bytes->size(), 4)) != nullptr) {
         throw Error(ErrorCode::InvalidInput, "it is not text in UTF-8: save it as UTF-8");
     }
     return {reinterpret_cast<const char*>(bytes->data()), bytes->size()};
 }
 
-// Without metadata, which says nothing about the picture.
+// Metadata does not affect the picture.
 bool is_node(pugi::xml_node node) {
     const std::string_view kind = node.name();
     return node.type() == pugi::node_element && kind != "WorldInfo" && !kind.starts_with("Metadata");
 }
 
-// Length of the UTF-8 sequence at the start, 0 when it is none. Forms that are too long are let through:
-// whoever shows them shows odd characters.
+// Length of the UTF-8 sequence at the start, 0 if it is invalid. Overlong three- and four-byte forms are
+// accepted.
 std::size_t sequence_length(std::string_view text) {
     const auto lead = static_cast<unsigned char>(text.front());
     const std::size_t length = lead < 0x80 ? 1 : lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : lead >= 0xc2 ? 2 : 0;
@@ -57,23 +57,23 @@ std::string x3d_name(pugi::xml_node node) {
 
 X3dDocument::X3dDocument(const std::filesystem::path& file) : X3dDocument(text_of(file)) {}
 
-X3dDocument::X3dDocument(std::string text) : problems_(text) {
+X3dDocument::X3dDocument(std::string text) : diagnostics_(text) {
     const pugi::xml_parse_result result =
         document_.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
     if (!result) {
-        throw Error(ErrorCode::InvalidInput, problems_.line(result.offset) + ": the XML is broken (" +
+        throw Error(ErrorCode::InvalidInput, diagnostics_.line(result.offset) + ": the XML is broken (" +
                                                  result.description() + "): export it again");
     }
     const pugi::xml_node root = document_.document_element();
     if (std::strcmp(root.name(), "X3D") != 0) {
-        throw Error(ErrorCode::InvalidInput, problems_.line(root.offset_debug()) + ": it begins with <" +
+        throw Error(ErrorCode::InvalidInput, diagnostics_.line(root.offset_debug()) + ": it begins with <" +
                                                  std::string(root.name()).substr(0, 60) +
                                                  ">, not with <X3D>: export it as X3D");
     }
     scene_ = root.child("Scene");
     if (!scene_) {
         throw Error(ErrorCode::InvalidInput,
-                    problems_.line(root.offset_debug()) + ": <X3D> has no <Scene>: export it again");
+                    diagnostics_.line(root.offset_debug()) + ": <X3D> has no <Scene>: export it again");
     }
     const std::string_view version = root.attribute("version").value();
     double number = 0.0;
@@ -83,7 +83,7 @@ X3dDocument::X3dDocument(std::string text) : problems_(text) {
     resolve_uses();
 }
 
-// A walk without recursion: a file may be nested as deep as it is long.
+// Without recursion: the nesting depth is only bounded by the length of the file.
 void X3dDocument::resolve_uses() {
     std::unordered_map<std::string_view, pugi::xml_node> defined;
     std::unordered_set<const void*> open;
@@ -94,9 +94,10 @@ void X3dDocument::resolve_uses() {
             const std::string named = "USE='" + std::string(use.value()).substr(0, 60) + "' ";
             pugi::xml_node target;
             if (found == defined.end()) {
-                problems_.add(named + "names no DEF before it: the node is left out", node.offset_debug());
+                diagnostics_.add(named + "refers to no earlier DEF: the node is ignored",
+                                 node.offset_debug());
             } else if (open.contains(found->second.internal_object())) {
-                problems_.add(named + "stands inside its own DEF: the node is left out", node.offset_debug());
+                diagnostics_.add(named + "is inside its own DEF: the node is ignored", node.offset_debug());
             } else {
                 target = found->second;
             }

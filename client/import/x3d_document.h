@@ -7,44 +7,44 @@
 #include <unordered_map>
 #include <vector>
 
-#include "client/import/x3d_problems.h"
+#include "client/import/x3d_diagnostics.h"
 
 namespace tessera::import {
 
-// An X3D file in its XML encoding, every USE resolved. Throws Error{InvalidInput} with the line where the XML
-// is broken or is no X3D.
+// An X3D file in XML encoding, with every USE resolved. Throws Error{InvalidInput} with the line if the XML
+// is broken or is not X3D.
 class X3dDocument {
   public:
     explicit X3dDocument(const std::filesystem::path& file);
 
     pugi::xml_node scene() const { return scene_; }
-    double version() const { return version_; }  // 3.3 where the file does not say
+    double version() const { return version_; }  // 3.3 if the file has no version
 
-    // The children that are nodes, each with its USE followed: what it names is the nearest DEF before it.
-    // A USE of nothing, or inside its own DEF, is a problem and left out; metadata is left out.
+    // The child nodes, with each USE replaced by the nearest earlier DEF of that name. A USE without DEF or
+    // inside its own DEF is reported and ignored; metadata is ignored.
     struct Child {
         pugi::xml_node node;
-        std::string container;  // its containerField where it stands, "" where it says none
+        std::string container;  // its containerField, "" if it has none
     };
     std::vector<Child> children(pugi::xml_node node);
-    // The first child of that kind; a null node when there is none.
+    // The first child of that kind; a null node if there is none.
     pugi::xml_node child(pugi::xml_node node, const char* kind);
 
-    X3dProblems& problems() { return problems_; }
+    X3dDiagnostics& diagnostics() { return diagnostics_; }
 
   private:
     explicit X3dDocument(std::string text);
     void resolve_uses();
 
-    X3dProblems problems_;
+    X3dDiagnostics diagnostics_;
     pugi::xml_document document_;
     pugi::xml_node scene_;
     double version_ = 3.3;
-    std::unordered_map<const void*, pugi::xml_node> uses_;  // by the node that has the USE; null = left out
+    std::unordered_map<const void*, pugi::xml_node> uses_;  // by the node that has the USE; null = ignored
 };
 
-// Words of the file as a name: in valid UTF-8 and not endless.
+// Text of the file as a name: valid UTF-8 of limited length.
 std::string x3d_name(std::string_view words);
-std::string x3d_name(pugi::xml_node node);  // its DEF, "" without
+std::string x3d_name(pugi::xml_node node);  // its DEF, "" if it has none
 
 }  // namespace tessera::import

@@ -11,7 +11,7 @@
 namespace tessera::import {
 namespace {
 
-constexpr double FarthestX3d = 1e18;  // squares of it still fit a float
+constexpr double MaxMagnitude = 1e18;  // its square still fits a float
 
 bool separates(char c) {
     return c == ' ' || c == ',' || c == '\n' || c == '\t' || c == '\r';
@@ -21,7 +21,7 @@ std::string shown(std::string_view text) {
     return "'" + std::string(text.substr(0, 40)) + "'";
 }
 
-// Calls `take` with each number of the text.
+// Calls `take` with each number in the text.
 template <class Number, class Take>
 void each_number(std::string_view text, const Take& take) {
     std::uint64_t count = 0;
@@ -37,8 +37,8 @@ void each_number(std::string_view text, const Take& take) {
         Number number{};
         const auto [last, error] = std::from_chars(word.data() + sign, word.data() + word.size(), number);
         if (error != std::errc{} || last != word.data() + word.size() ||
-            !(std::abs(static_cast<double>(number)) <= FarthestX3d)) {
-            throw Error(ErrorCode::InvalidInput, shown(word) + " is no number that can be used");
+            !(std::abs(static_cast<double>(number)) <= MaxMagnitude)) {
+            throw Error(ErrorCode::InvalidInput, shown(word) + " is not a valid number");
         }
         if (++count > MaxElements) throw Error(ErrorCode::InvalidInput, "there are more than 2^28 numbers");
         take(number);
@@ -46,7 +46,7 @@ void each_number(std::string_view text, const Take& take) {
     }
 }
 
-std::string in_words(X3dRange range) {
+std::string describe(X3dRange range) {
     const auto number = [](double value) {
         std::string text = std::to_string(value);
         text.erase(text.find_last_not_of('0') + 1);
@@ -65,8 +65,8 @@ std::string x3d_label(pugi::xml_node node) {
     return std::string("<") + node.name() + (name.empty() ? "" : " DEF=" + shown(name)) + ">";
 }
 
-void X3dFields::problem(const std::string& what) const {
-    problems_.add(x3d_label(node_) + " " + what, node_.offset_debug());
+void X3dFields::report(const std::string& what) const {
+    diagnostics_.add(x3d_label(node_) + " " + what, node_.offset_debug());
 }
 
 bool X3dFields::flag(const char* field, bool otherwise) const {
@@ -74,8 +74,8 @@ bool X3dFields::flag(const char* field, bool otherwise) const {
     const std::string_view text = node_.attribute(field).value();
     if (text == "true" || text == "TRUE") return true;
     if (text == "false" || text == "FALSE") return false;
-    problem(std::string(field) + " is " + shown(text) +
-            ", neither true nor false: its default is used, correct it");
+    report(std::string(field) + " is " + shown(text) +
+           ", neither true nor false: its default is used, correct it");
     return otherwise;
 }
 
@@ -87,8 +87,8 @@ std::string X3dFields::word(const char* field, const char* otherwise) const {
     return std::string(text);
 }
 
-std::vector<double> X3dFields::some(const char* field, std::initializer_list<int> counts,
-                                    X3dRange range) const {
+std::vector<double> X3dFields::read_numbers(const char* field, std::initializer_list<int> counts,
+                                            X3dRange range) const {
     if (!has(field)) return {};
     const std::string_view text = node_.attribute(field).value();
     const int most = std::max(counts);
@@ -97,7 +97,7 @@ std::vector<double> X3dFields::some(const char* field, std::initializer_list<int
     try {
         each_number<double>(text, [&](double value) {
             if (found.size() > static_cast<std::size_t>(most)) return;
-            if (!(value >= range.lowest && value <= range.highest)) cause = in_words(range);
+            if (!(value >= range.lowest && value <= range.highest)) cause = describe(range);
             found.push_back(value);
         });
     } catch (const Error& error) {
@@ -105,22 +105,22 @@ std::vector<double> X3dFields::some(const char* field, std::initializer_list<int
     }
     const int count = static_cast<int>(found.size());
     if (cause.empty() && std::find(counts.begin(), counts.end(), count) == counts.end()) {
-        cause = "no " + std::to_string(most) + (most == 1 ? " number" : " numbers");
+        cause = "not " + std::to_string(most) + (most == 1 ? " number" : " numbers");
     }
     if (cause.empty()) return found;
-    problem(std::string(field) + " is " + shown(text) + ", " + cause + ": its default is used, correct it");
+    report(std::string(field) + " is " + shown(text) + ", " + cause + ": its default is used, correct it");
     return {};
 }
 
 double X3dFields::number(const char* field, double otherwise, X3dRange range) const {
-    const std::vector<double> found = some(field, {1}, range);
+    const std::vector<double> found = read_numbers(field, {1}, range);
     return found.empty() ? otherwise : found.front();
 }
 
 std::int32_t X3dFields::whole_number(const char* field, std::int32_t otherwise, X3dRange range) const {
     const double found = number(field, otherwise, range);
     if (found == std::floor(found)) return static_cast<std::int32_t>(found);
-    problem(std::string(field) + " is no whole number: its default is used, correct it");
+    report(std::string(field) + " is not an integer: its default is used, correct it");
     return otherwise;
 }
 
@@ -146,9 +146,9 @@ std::vector<float> X3dFields::numbers(const char* field) const {
     return values;
 }
 
-void X3dFields::refuse_count(const char* field, std::size_t count, std::size_t size) const {
+void X3dFields::reject_count(const char* field, std::size_t count, std::size_t size) const {
     throw Error(ErrorCode::InvalidInput, std::string(field) + ": " + std::to_string(count) +
-                                             " numbers are no multiple of " + std::to_string(size));
+                                             " numbers are not a multiple of " + std::to_string(size));
 }
 
 std::vector<std::string> X3dFields::strings(const char* field) const {
@@ -158,12 +158,12 @@ std::vector<std::string> X3dFields::strings(const char* field) const {
         return one.empty() ? std::vector<std::string>{} : std::vector{one};
     }
     std::vector<std::string> all;
-    bool inside = false;
+    bool in_quotes = false;
     for (std::size_t i = 0; i < text.size(); ++i) {
         if (text[i] == '"') {
-            inside = !inside;
-            if (inside) all.emplace_back();
-        } else if (inside) {
+            in_quotes = !in_quotes;
+            if (in_quotes) all.emplace_back();
+        } else if (in_quotes) {
             if (text[i] == '\\' && i + 1 < text.size()) ++i;
             all.back() += text[i];
         }

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "client/import/x3d_problems.h"
+#include "client/import/x3d_diagnostics.h"
 
 namespace tessera::import {
 
@@ -20,15 +20,15 @@ inline constexpr X3dRange UpToOne{0.0, 1.0};
 inline constexpr X3dRange NotNegative{0.0, 1e12};
 inline constexpr X3dRange Positive{1e-18, 1e18};
 
-// How problems name a node: "<Box>", "<Material DEF='gold'>".
+// The label of a node in messages: "<Box>", "<Material DEF='gold'>".
 std::string x3d_label(pugi::xml_node node);
 
-// Fields of one node. Numbers are separated by white space and commas, finite, and nothing else may stand
-// there. A field of one value that is wrong or out of range is a problem of the file, and its default is
-// used; one of many values throws Error{InvalidInput} without naming the node.
+// Fields of one node. Numbers must be finite and separated by white space and commas. A single value that is
+// invalid or out of range is reported and replaced by its default; an invalid array throws
+// Error{InvalidInput} without naming the node.
 class X3dFields {
   public:
-    X3dFields(pugi::xml_node node, X3dProblems& problems) : node_(node), problems_(problems) {}
+    X3dFields(pugi::xml_node node, X3dDiagnostics& diagnostics) : node_(node), diagnostics_(diagnostics) {}
 
     bool has(const char* field) const { return static_cast<bool>(node_.attribute(field)); }
     bool flag(const char* field, bool otherwise) const;
@@ -38,15 +38,15 @@ class X3dFields {
     template <class Vector>
     Vector vector(const char* field, const Vector& otherwise, X3dRange range = {}) const {
         Vector result = otherwise;
-        const std::vector<double> found = some(field, {Vector::length()}, range);
+        const std::vector<double> found = read_numbers(field, {Vector::length()}, range);
         for (std::size_t i = 0; i < found.size(); ++i)
             result[static_cast<glm::length_t>(i)] = static_cast<typename Vector::value_type>(found[i]);
         return result;
     }
-    // One number for all of its components, or one for each.
+    // One number for all components, or one for each.
     template <class Vector>
     Vector number_or_vector(const char* field, const Vector& otherwise, X3dRange range) const {
-        const std::vector<double> found = some(field, {1, Vector::length()}, range);
+        const std::vector<double> found = read_numbers(field, {1, Vector::length()}, range);
         Vector result = otherwise;
         for (glm::length_t i = 0; i < Vector::length() && !found.empty(); ++i)
             result[i] = static_cast<typename Vector::value_type>(
@@ -60,24 +60,25 @@ class X3dFields {
     std::vector<Vector> vectors(const char* field) const {
         const std::vector<float> all = numbers(field);
         constexpr auto Size = static_cast<std::size_t>(Vector::length());
-        if (all.size() % Size != 0) refuse_count(field, all.size(), Size);
+        if (all.size() % Size != 0) reject_count(field, all.size(), Size);
         std::vector<Vector> result(all.size() / Size);
         for (std::size_t i = 0; i < all.size(); ++i)
             result[i / Size][static_cast<glm::length_t>(i % Size)] = all[i];
         return result;
     }
-    std::vector<std::string> strings(const char* field) const;  // quoted each, or one without quotes
+    std::vector<std::string> strings(const char* field) const;  // each quoted, or a single one without quotes
 
-    // A problem of this node: "<Box> size ...".
-    void problem(const std::string& what) const;
+    // Reports a problem of this node: "<Box> size ...".
+    void report(const std::string& what) const;
 
   private:
-    // As many numbers as one of `counts` says; none where the field is not there or wrong.
-    std::vector<double> some(const char* field, std::initializer_list<int> counts, X3dRange range) const;
-    [[noreturn]] void refuse_count(const char* field, std::size_t count, std::size_t size) const;
+    // The count of numbers must be one of `counts`; returns none if the field is absent or invalid.
+    std::vector<double> read_numbers(const char* field, std::initializer_list<int> counts,
+                                     X3dRange range) const;
+    [[noreturn]] void reject_count(const char* field, std::size_t count, std::size_t size) const;
 
     pugi::xml_node node_;
-    X3dProblems& problems_;
+    X3dDiagnostics& diagnostics_;
 };
 
 }  // namespace tessera::import

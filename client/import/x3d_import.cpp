@@ -12,16 +12,16 @@ scene::Background import_x3d(const std::filesystem::path& file, SceneBuilder& bu
     X3dShapes shapes(document, appearances, builder);
     X3dNodes nodes(document, shapes, builder);
     builder.result().root.children = nodes.build();
-    if (const std::string skipped = document.problems().skipped();
+    if (const std::string skipped = document.diagnostics().skipped();
         builder.result().counts.geometries == 0 && !skipped.empty()) {
-        throw Error(ErrorCode::InvalidInput, "it has no shape that is read (skipped: " + skipped +
-                                                 "): convert them to IndexedFaceSets");
+        throw Error(ErrorCode::InvalidInput,
+                    "it has no supported shape (skipped: " + skipped + "): convert them to IndexedFaceSets");
     }
     scene::Background background;
     const bool is_replaced = builder.options().background || !builder.options().environment.empty();
     if (nodes.background() && !is_replaced)
         background = read_background(document, nodes.background(), builder);
-    for (const std::string& notice : document.problems().notices()) builder.notice(notice);
+    for (const std::string& notice : document.diagnostics().notices()) builder.notice(notice);
     return background;
 }
 

@@ -6,9 +6,9 @@
 
 namespace tessera::import {
 
-// Brings an X3D file (XML encoding) into the builder: what the README lists under X3D; other nodes are
-// counted in notices, one for each kind. Returns the file's Background, or a black one; the options' take
-// its place, so it is not even read where they name one. Throws Error.
+// Imports an X3D file (XML encoding). Unsupported nodes are skipped, with one notice per kind. Returns the
+// file's Background, or a black one; it is not read if the options have a background or environment. Throws
+// Error.
 scene::Background import_x3d(const std::filesystem::path& file, SceneBuilder& builder);
 
 }  // namespace tessera::import

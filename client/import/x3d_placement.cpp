@@ -9,7 +9,7 @@
 namespace tessera::import {
 namespace {
 
-constexpr X3dRange Scene{-1e15, 1e15};  // beyond, double transforms lose the centimetre
+constexpr X3dRange Scene{-1e15, 1e15};  // beyond, double precision is coarser than a centimetre
 
 glm::dmat4 translated(const glm::dvec3& by) {
     return glm::translate(glm::dmat4(1.0), by);
@@ -21,17 +21,18 @@ glm::dmat4 rotation(const X3dFields& fields, const char* field) {
     const double length = glm::length(glm::dvec3(value));
     if (value.w == 0.0) return glm::dmat4(1.0);
     if (!(length > 1e-9)) {
-        fields.problem(std::string(field) + " has an axis without length: it is not turned, name an axis");
+        fields.report(std::string(field) +
+                      " has an axis of length zero: the rotation is ignored, correct it");
         return glm::dmat4(1.0);
     }
     return glm::rotate(glm::dmat4(1.0), value.w, glm::dvec3(value) / length);
 }
 
-// -z along the field's direction, y as far up as that allows.
+// -z along the field's direction, y up as far as possible.
 glm::dmat4 looking_along(const X3dFields& fields, const char* field, const glm::dvec3& otherwise) {
     glm::dvec3 direction = fields.vector(field, otherwise, Scene);
     if (!(glm::length(direction) > 1e-9)) {
-        fields.problem(std::string(field) + " has no length: its default is used, correct it");
+        fields.report(std::string(field) + " has length zero: its default is used, correct it");
         direction = otherwise;
     }
     const glm::dvec3 z = -glm::normalize(direction);
@@ -40,17 +41,17 @@ glm::dmat4 looking_along(const X3dFields& fields, const char* field, const glm::
     return {glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0), glm::dvec4(0, 0, 0, 1)};
 }
 
-PlacedLight shining(const X3dFields& fields, scene::LightKind kind) {
+PlacedLight make_light(const X3dFields& fields, scene::LightKind kind) {
     PlacedLight placed;
     placed.light.kind = kind;
-    // X3D says 0 to 1, but brighter lights are common and mean what they say.
+    // X3D says 0 to 1, but brighter lights are common.
     const double intensity = fields.flag("on", true) ? fields.number("intensity", 1.0, NotNegative) : 0.0;
     placed.light.intensity =
         glm::vec3(std::numbers::pi * intensity * fields.vector("color", glm::dvec3(1.0), NotNegative));
     return placed;
 }
 
-glm::dmat4 located(const X3dFields& fields) {
+glm::dmat4 location(const X3dFields& fields) {
     return translated(fields.vector("location", glm::dvec3(0.0), Scene));
 }
 
@@ -66,24 +67,24 @@ glm::dmat4 transform_matrix(const X3dFields& fields) {
 }
 
 PlacedLight point_light(const X3dFields& fields) {
-    PlacedLight placed = shining(fields, scene::LightKind::Point);
-    placed.parent_from_light = located(fields);
+    PlacedLight placed = make_light(fields, scene::LightKind::Point);
+    placed.parent_from_light = location(fields);
     return placed;
 }
 
 PlacedLight spot_light(const X3dFields& fields) {
-    PlacedLight placed = shining(fields, scene::LightKind::Spot);
+    PlacedLight placed = make_light(fields, scene::LightKind::Spot);
     constexpr X3dRange Angles{1e-6, std::numbers::pi / 2 + 1e-6};
     const double outer = fields.number("cutOffAngle", std::numbers::pi / 2, Angles);
     const double inner = std::min(fields.number("beamWidth", std::numbers::pi / 4, Angles), outer);
     placed.light.outer_cone_angle = static_cast<float>(outer);
     placed.light.inner_cone_angle = static_cast<float>(inner);
-    placed.parent_from_light = located(fields) * looking_along(fields, "direction", {0, 0, -1});
+    placed.parent_from_light = location(fields) * looking_along(fields, "direction", {0, 0, -1});
     return placed;
 }
 
 PlacedLight directional_light(const X3dFields& fields) {
-    PlacedLight placed = shining(fields, scene::LightKind::Directional);
+    PlacedLight placed = make_light(fields, scene::LightKind::Directional);
     placed.parent_from_light = looking_along(fields, "direction", {0, 0, -1});
     return placed;
 }
@@ -98,7 +99,7 @@ PlacedViewpoint viewpoint_of(const X3dFields& fields) {
 }
 
 glm::dmat3 texture_transform(const X3dFields& fields) {
-    constexpr X3dRange Large{-1e6, 1e6};  // beyond, coordinates have no digits left
+    constexpr X3dRange Large{-1e6, 1e6};  // beyond, coordinates lose all precision
     const auto center = fields.vector("center", glm::dvec2(0.0), Large);
     const auto scale = fields.vector("scale", glm::dvec2(1.0), Large);
     const auto translation = fields.vector("translation", glm::dvec2(0.0), Large);

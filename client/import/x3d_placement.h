@@ -7,10 +7,10 @@
 
 namespace tessera::import {
 
-// Translation, center, rotation, scale and scaleOrientation of a Transform, as its parent sees it.
+// Parent from local: translation, center, rotation, scale and scaleOrientation of a Transform.
 glm::dmat4 transform_matrix(const X3dFields& fields);
 
-// A light or camera in the frame that it needs: both look along -z.
+// A light or camera and its frame: both look along -z.
 struct PlacedLight {
     scene::Light light;
     glm::dmat4 parent_from_light{1.0};
@@ -20,18 +20,18 @@ struct PlacedViewpoint {
     glm::dmat4 parent_from_camera{1.0};
 };
 
-// X3D's equations show a white surface that faces a light of intensity 1 as 1; a diffuse surface reflects
-// 1 / pi of what arrives, so that light has pi W/m2 or, at 1 m, pi W/sr. Attenuation, radius, scope and
-// ambient intensity are not read: light falls off by the square of the distance and reaches everything. A
-// spot's intensity falls off between its angles as KHR_lights_punctual says.
+// In X3D's lighting equations a white surface facing a light of intensity 1 has the value 1; a diffuse
+// surface reflects 1 / pi of the irradiance, so the light has pi W/m2 or, at 1 m, pi W/sr. Attenuation,
+// radius, scope and ambient intensity are not supported: the falloff is inverse-square and unlimited. Spot
+// falloff between the cone angles follows KHR_lights_punctual.
 PlacedLight point_light(const X3dFields& fields);
 PlacedLight spot_light(const X3dFields& fields);
 PlacedLight directional_light(const X3dFields& fields);
 
-// fieldOfView is X3D's least angle, which is the vertical one of a picture that is wider than high.
+// X3D's fieldOfView is the smaller angle, which is the vertical one in landscape format.
 PlacedViewpoint viewpoint_of(const X3dFields& fields);
 
-// Texture coordinates (s, t, 1) as a TextureTransform turns them.
+// Transforms texture coordinates (s, t, 1).
 glm::dmat3 texture_transform(const X3dFields& fields);
 
 }  // namespace tessera::import

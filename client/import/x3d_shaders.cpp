@@ -15,7 +15,7 @@ struct TextureField {
     TextureUse use;
 };
 
-// Hangs the node's textures where they belong and counts its other children.
+// Reads the node's textures into their slots; other children are reported as skipped.
 void read_textures(X3dDocument& document, pugi::xml_node node, X3dTextures& textures,
                    std::span<const TextureField> fields) {
     for (const X3dDocument::Child& child : document.children(node)) {
@@ -28,11 +28,11 @@ void read_textures(X3dDocument& document, pugi::xml_node node, X3dTextures& text
             used = true;
         }
         if (!used && child.container != "phaseFunction")
-            document.problems().skipped(child.node.name(), child.node.offset_debug());
+            document.diagnostics().skipped(child.node.name(), child.node.offset_debug());
     }
 }
 
-// One of two words, in any of X3D's quotes.
+// An enumerator with two values, with or without X3D's quotes.
 template <class Enum>
 Enum choice(const X3dFields& fields, const char* field, Enum otherwise, const char* first,
             const char* second) {
@@ -40,15 +40,15 @@ Enum choice(const X3dFields& fields, const char* field, Enum otherwise, const ch
     const std::string word = fields.word(field, "");
     if (word == first) return static_cast<Enum>(0);
     if (word == second) return static_cast<Enum>(1);
-    fields.problem(std::string(field) + " is '" + word.substr(0, 40) + "', neither " + first + " nor " +
-                   second + ": its default is used, correct it");
+    fields.report(std::string(field) + " is '" + word.substr(0, 40) + "', neither " + first + " nor " +
+                  second + ": its default is used, correct it");
     return otherwise;
 }
 
 }  // namespace
 
 scene::SurfaceShader read_surface_shader(X3dDocument& document, pugi::xml_node node, X3dTextures& textures) {
-    const X3dFields fields(node, document.problems());
+    const X3dFields fields(node, document.diagnostics());
     scene::SurfaceShader shader;
     shader.name = x3d_name(node);
     shader.emission = fields.vector(fields.has("emissionFactor") ? "emissionFactor" : "emissiveFactor",
@@ -92,12 +92,12 @@ scene::SurfaceShader read_surface_shader(X3dDocument& document, pugi::xml_node n
 }
 
 scene::SurfaceShader read_material(X3dDocument& document, pugi::xml_node node) {
-    const X3dFields fields(node, document.problems());
+    const X3dFields fields(node, document.diagnostics());
     scene::SurfaceShader shader;
     shader.name = x3d_name(node);
     shader.diffuse = fields.vector("diffuseColor", shader.diffuse, UpToOne);
     shader.ambient = shader.diffuse * static_cast<float>(fields.number("ambientIntensity", 0.2, UpToOne));
-    // X3D says 0 to 1; brighter ones are common where a surface is to shine.
+    // X3D says 0 to 1, but brighter emitters are common.
     shader.emission = fields.vector("emissiveColor", shader.emission, NotNegative);
     shader.specular = fields.vector("specularColor", shader.specular, UpToOne);
     shader.shininess = glm::vec2(static_cast<float>(fields.number("shininess", 0.2, UpToOne)));
@@ -106,7 +106,7 @@ scene::SurfaceShader read_material(X3dDocument& document, pugi::xml_node node) {
 }
 
 scene::Medium read_medium(X3dDocument& document, pugi::xml_node node, X3dTextures& textures) {
-    const X3dFields fields(node, document.problems());
+    const X3dFields fields(node, document.diagnostics());
     scene::Medium medium;
     medium.name = x3d_name(node);
     medium.emission = fields.vector("emissionFactor", medium.emission, NotNegative);
@@ -120,12 +120,11 @@ scene::Medium read_medium(X3dDocument& document, pugi::xml_node node, X3dTexture
     read_textures(document, node, textures, slots);
     for (const X3dDocument::Child& child : document.children(node)) {
         if (child.container != "phaseFunction") continue;
-        const X3dFields phase(child.node, document.problems());
+        const X3dFields phase(child.node, document.diagnostics());
         if (std::strcmp(child.node.name(), "HenyeyGreenstein") == 0) {
             medium.anisotropy = static_cast<float>(phase.number("anisotropy", 0.0, {-1.0, 1.0}));
         } else {
-            phase.problem(
-                "is no phase function that is known: light is scattered evenly, use HenyeyGreenstein");
+            phase.report("is an unknown phase function: scattering is isotropic, use HenyeyGreenstein");
         }
     }
     return medium;

@@ -6,11 +6,11 @@
 
 namespace tessera::import {
 
-// Nodes that say what things are made of, field by field; what a file leaves out has the value of the scene's
-// object, which is that of the thesis. Numbers that the scene does not take are problems of the file.
+// Readers for material nodes. Missing fields have the defaults of the scene objects, which are those of
+// Schwenk's thesis. Numbers out of range are reported.
 
 // CommonSurfaceShader with either spelling: emission or emissive; shininessFactor of one number or two,
-// relativeIndexOfRefraction of one or three. Textures hang below it, each with its containerField.
+// relativeIndexOfRefraction of one or three. Textures are children, identified by containerField.
 scene::SurfaceShader read_surface_shader(X3dDocument& document, pugi::xml_node node, X3dTextures& textures);
 
 // Material is the same model without perfect speculars: ambient = ambientIntensity x diffuseColor, alpha =
@@ -18,8 +18,8 @@ scene::SurfaceShader read_surface_shader(X3dDocument& document, pugi::xml_node n
 scene::SurfaceShader read_material(X3dDocument& document, pugi::xml_node node);
 
 // CommonVolumeShader. Its phaseFunction is a node HenyeyGreenstein with the field `anisotropy`, -1 to 1, and
-// it has a field `priority`: both are ours, X3D and the thesis name none. Textures of coefficients are
-// linear.
+// it has a field `priority`: both are our extensions; neither X3D nor the thesis has them. Textures of
+// coefficients are linear.
 scene::Medium read_medium(X3dDocument& document, pugi::xml_node node, X3dTextures& textures);
 
 }  // namespace tessera::import

@@ -8,7 +8,8 @@
 namespace tessera::import {
 namespace {
 
-constexpr std::size_t MostFacesCompared = 1000;  // each with each: a hostile fan of a million would not end
+constexpr std::size_t MostFacesCompared =
+    1000;  // the comparison is quadratic: bounds the time for malformed files
 
 glm::dvec3 unit_or_zero(const glm::dvec3& vector) {
     const double length = glm::length(vector);
@@ -29,13 +30,13 @@ class Smoothing {
             const std::vector<std::size_t>& corners = at_point_[point];
             const std::size_t first_normal = faces_.normals.size();
             if (all || corners.size() > MostFacesCompared) {
-                const std::uint32_t normal = numbered(sum(corners, glm::dvec3(0.0), -2.0), first_normal);
+                const std::uint32_t normal = normal_index(sum(corners, glm::dvec3(0.0), -2.0), first_normal);
                 for (const std::size_t corner : corners) faces_.corners[corner].normal = normal;
                 continue;
             }
             for (const std::size_t corner : corners) {
                 faces_.corners[corner].normal =
-                    numbered(sum(corners, normals_[face_of_[corner]], least_cosine), first_normal);
+                    normal_index(sum(corners, normals_[face_of_[corner]], least_cosine), first_normal);
             }
         }
     }
@@ -59,7 +60,8 @@ class Smoothing {
 
     glm::vec3 point(std::size_t corner) const { return faces_.positions[faces_.corners[corner].position]; }
 
-    // Of those faces whose normals are as near to `normal` as that. Faces without area have none.
+    // Weighted sum over the faces whose normals are within that cosine of `normal`. Degenerate faces have no
+    // normal.
     glm::dvec3 sum(const std::vector<std::size_t>& corners, const glm::dvec3& normal, double cosine) const {
         glm::dvec3 total(0.0);
         for (const std::size_t corner : corners) {
@@ -69,9 +71,9 @@ class Smoothing {
         return total;
     }
 
-    // Equal normals of one point become one. Without length (faces that cancel) it is left to
+    // Index of the normal; equal normals of one point are shared. A sum of zero is repaired by
     // check_and_repair.
-    std::uint32_t numbered(const glm::dvec3& total, std::size_t first_of_point) {
+    std::uint32_t normal_index(const glm::dvec3& total, std::size_t first_of_point) {
         const glm::vec3 normal(unit_or_zero(total));
         const auto begin = faces_.normals.begin() + static_cast<std::ptrdiff_t>(first_of_point);
         const auto found = std::find(begin, faces_.normals.end(), normal);

@@ -9,7 +9,7 @@
 namespace tessera::import {
 namespace {
 
-// %20 and the like; what is no such code stays.
+// Percent-decoding; invalid codes are kept.
 std::string decoded_address(const std::string& address) {
     std::string name;
     for (std::size_t i = 0; i < address.size(); ++i) {
@@ -52,13 +52,12 @@ const Expected<X3dTextures::Picture>& X3dTextures::decoded(const std::string& na
 }
 
 const X3dTextures::Found& X3dTextures::found(pugi::xml_node image) {
-    const auto [place, is_new] = found_.try_emplace(image.internal_object());
-    Found& found = place->second;
+    const auto [entry, is_new] = found_.try_emplace(image.internal_object());
+    Found& found = entry->second;
     if (!is_new) return found;
-    const X3dFields fields(image, document_.problems());
+    const X3dFields fields(image, document_.diagnostics());
     for (const std::string& address : fields.strings("url")) {
-        if (address.find("://") != address.npos)
-            continue;  // another copy far away, as X3D files like to name
+        if (address.find("://") != address.npos) continue;  // remote copies are common in X3D files
         found.name = decoded_address(address);
         const Expected<Picture>& picture = decoded(found.name);
         if (picture) {
@@ -67,7 +66,7 @@ const X3dTextures::Found& X3dTextures::found(pugi::xml_node image) {
         }
         if (found.cause.empty()) found.cause = picture.error().what();
     }
-    if (found.cause.empty()) found.cause = "it names no picture in the scene's folder";
+    if (found.cause.empty()) found.cause = "it names no image in the scene's folder";
     return found;
 }
 
@@ -78,15 +77,15 @@ X3dTextures::Traits X3dTextures::traits(pugi::xml_node image) {
 
 ObjectId X3dTextures::texture(pugi::xml_node image, TextureUse use, const std::string& owner) {
     const Found& found = this->found(image);
-    const X3dFields fields(image, document_.problems());
+    const X3dFields fields(image, document_.diagnostics());
     if (!found.picture) {
-        const bool shows = use == TextureUse::Color;
-        fields.problem("of " + owner + " cannot be used (" + found.cause +
-                       "): " + (shows ? "a magenta checker" : "the plain factor") + " stands for it");
-        return shows ? builder_.placeholder_texture() : ObjectId{};
+        const bool is_color = use == TextureUse::Color;
+        fields.report("of " + owner + " cannot be used (" + found.cause +
+                      "): " + (is_color ? "a magenta checkerboard replaces it" : "only the factor is used"));
+        return is_color ? builder_.placeholder_texture() : ObjectId{};
     }
-    ObjectId& made = made_[{image.internal_object(), use}];
-    if (made) return made;
+    ObjectId& result = cached_[{image.internal_object(), use}];
+    if (result) return result;
     scene::Texture texture;
     texture.name = x3d_name(image).empty() ? found.name : x3d_name(image);
     texture.width = found.picture->width;
@@ -95,9 +94,9 @@ ObjectId X3dTextures::texture(pugi::xml_node image, TextureUse use, const std::s
     texture.wrap_s = fields.flag("repeatS", true) ? scene::Wrap::Repeat : scene::Wrap::Clamp;
     texture.wrap_t = fields.flag("repeatT", true) ? scene::Wrap::Repeat : scene::Wrap::Clamp;
     texture.texels = found.picture->texels;
-    made = builder_.add(std::move(texture));
+    result = builder_.add(std::move(texture));
     ++builder_.result().counts.textures;
-    return made;
+    return result;
 }
 
 }  // namespace tessera::import

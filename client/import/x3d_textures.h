@@ -11,18 +11,17 @@
 
 namespace tessera::import {
 
-// Makes Texture objects of ImageTexture nodes: one per node and colour space. Of the addresses that a node
-// names the first that is a picture in the scene's folder is used; nothing is fetched. Each file is decoded
-// once.
+// Creates Texture objects from ImageTexture nodes: one per node and colour space. The first URL that is an
+// image in the scene's folder is used; nothing is downloaded. Each file is decoded once.
 class X3dTextures {
   public:
     X3dTextures(X3dDocument& document, LocalFolder folder, SceneBuilder& builder)
         : document_(document), folder_(std::move(folder)), builder_(builder) {}
 
-    // 0 for bad data. `owner`: what problems say that it is a texture of.
+    // 0 for invalid data. `owner`: the label of the node that uses the texture, for messages.
     ObjectId texture(pugi::xml_node image, TextureUse use, const std::string& owner);
 
-    // Of the picture; all false of a bad one.
+    // Traits of the image; all false if it is invalid.
     struct Traits {
         bool is_grey = false;      // in all texels
         bool has_opacity = false;  // some texel is not opaque
@@ -38,7 +37,7 @@ class X3dTextures {
     struct Found {
         std::string name;
         std::optional<Picture> picture;
-        std::string cause;  // why there is none
+        std::string cause;  // why it could not be loaded
     };
     const Found& found(pugi::xml_node image);
     const Expected<Picture>& decoded(const std::string& name);
@@ -49,7 +48,7 @@ class X3dTextures {
     SceneBuilder& builder_;
     std::map<std::string, Expected<Picture>> pictures_;
     std::map<const void*, Found> found_;
-    std::map<std::pair<const void*, TextureUse>, ObjectId> made_;
+    std::map<std::pair<const void*, TextureUse>, ObjectId> cached_;
 };
 
 }  // namespace tessera::import

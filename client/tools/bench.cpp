@@ -21,14 +21,15 @@ int start_bench(char** argv) {
     const std::string path = (program_folder() / "tessera-bench").string();
     execv(path.c_str(), argv);
     if (errno == ENOENT) {
-        return complain("bench", cli::ExitUnavailable,
-                        "'" + path + "' is not there; deploy/setup.sh bench tessera-bench builds it");
+        return report_error("bench", cli::ExitUnavailable,
+                            "'" + path + "' does not exist; deploy/setup.sh bench tessera-bench builds it");
     }
-    return complain("bench", cli::ExitUnavailable, "cannot start '" + path + "': " + std::strerror(errno));
+    return report_error("bench", cli::ExitUnavailable,
+                        "cannot start '" + path + "': " + std::strerror(errno));
 }
 
 Command bench_command(cli::CommandLine& program) {
-    program.command("bench", "Measure speed against error, back-ends beside each other, edits and displays.");
+    program.command("bench", "Benchmarks: error over time, comparison of back-ends, edit latency, displays.");
     return {"bench", [](std::string_view) {
                 std::string name = "tessera", bench = "bench";
                 char* words[] = {name.data(), bench.data(), nullptr};

@@ -10,7 +10,7 @@ namespace tessera::tools {
 
 namespace {
 
-// Whole pixels from `least` to `most` that lie in [0, size).
+// The pixels from `least` to `most`, clipped to [0, size).
 struct Range {
     std::int64_t begin, end;
 };
@@ -53,8 +53,8 @@ std::uint32_t text_width(std::uint32_t scale, std::string_view text) {
 
 void draw_line(Canvas& canvas, const glm::dvec2& from, const glm::dvec2& to, double width, const Rgb& color,
                double coverage) {
-    const glm::dvec2 way = to - from;
-    const double length = glm::dot(way, way), half = 0.5 * width;
+    const glm::dvec2 direction = to - from;
+    const double length = glm::dot(direction, direction), half = 0.5 * width;
     const Range columns =
         clipped(std::min(from.x, to.x) - half - 1, std::max(from.x, to.x) + half + 1, canvas.width);
     const Range rows =
@@ -62,8 +62,9 @@ void draw_line(Canvas& canvas, const glm::dvec2& from, const glm::dvec2& to, dou
     for (std::int64_t y = rows.begin; y < rows.end; ++y) {
         for (std::int64_t x = columns.begin; x < columns.end; ++x) {
             const glm::dvec2 at(double(x) + 0.5, double(y) + 0.5);
-            const double t = length > 0.0 ? std::clamp(glm::dot(at - from, way) / length, 0.0, 1.0) : 0.0;
-            const double inside = std::clamp(half + 0.5 - glm::distance(at, from + t * way), 0.0, 1.0);
+            const double t =
+                length > 0.0 ? std::clamp(glm::dot(at - from, direction) / length, 0.0, 1.0) : 0.0;
+            const double inside = std::clamp(half + 0.5 - glm::distance(at, from + t * direction), 0.0, 1.0);
             if (inside > 0.0) canvas.mix(x, y, color, inside * coverage);
         }
     }

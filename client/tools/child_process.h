@@ -10,7 +10,7 @@
 
 namespace tessera::tools {
 
-// A program started with its output in files. Killed and waited for at the end of its scope.
+// A child process with its output redirected to files. The destructor kills it and waits for it.
 class ChildProcess {
   public:
     // Standard output and error go to FOLDER/LABEL.{out,err}. Throws Error{NotFound} when it cannot start.
@@ -24,7 +24,7 @@ class ChildProcess {
     pid_t pid() const { return pid_; }
     void signal(int number) const;
     bool running();
-    // The exit code (128 + n for signal n); nothing when it still runs at the limit.
+    // The exit code (128 + n for signal n); nothing if it still runs at the limit.
     std::optional<int> wait(std::chrono::milliseconds limit);
     std::string out() const;
     std::string err() const;
@@ -37,10 +37,10 @@ class ChildProcess {
     std::filesystem::path out_, err_;
 };
 
-// The folder of the program that runs.
+// The folder of the running executable.
 std::filesystem::path program_folder();
 
-// Two consecutive TCP ports of the loopback address that nobody uses right now.
+// An endpoint with two consecutive unused TCP ports on the loopback address.
 std::string free_loopback_endpoint();
 
 }  // namespace tessera::tools

@@ -4,14 +4,14 @@
 
 #include <iostream>
 
-#include "client/tools/this_machine.h"
+#include "client/tools/host_info.h"
 
 namespace tessera::tools {
 
 void add_cluster_options(cli::CommandLine& line, client::Address& address) {
-    line.option("--master", "where the cluster is: tcp://host:port", address.endpoint);
-    line.option("--keys", "keys for that cluster: a folder, or an exported file", address.keys);
-    line.option("--user", "whose pair in a folder of keys", address.user);
+    line.option("--master", "endpoint of the cluster's master: tcp://host:port", address.endpoint);
+    line.option("--keys", "keys for that cluster: a key folder or an exported key file", address.keys);
+    line.option("--user", "name of the key to use from a key folder", address.user);
 }
 
 client::SessionSettings session_settings(const std::string& name) {
@@ -21,8 +21,8 @@ client::SessionSettings session_settings(const std::string& name) {
             .pid = static_cast<std::uint64_t>(::getpid()),
             .on_away = [name](bool is_away) {
                 std::cerr << name
-                          << (is_away ? ": the master does not answer: waiting for it to come back"
-                                      : ": the master is back")
+                          << (is_away ? ": lost the connection to the master: reconnecting"
+                                      : ": reconnected to the master")
                           << std::endl;
             }};
 }

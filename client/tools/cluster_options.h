@@ -7,10 +7,10 @@
 
 namespace tessera::tools {
 
-// --master, --keys and --user of commands that talk to a running cluster.
+// --master, --keys and --user for commands that connect to a running cluster.
 void add_cluster_options(cli::CommandLine& line, client::Address& address);
 
-// Who this program is to a master, under the name given.
+// The settings that identify this program to a master under the given name.
 client::SessionSettings session_settings(const std::string& name);
 
 }  // namespace tessera::tools

@@ -4,7 +4,7 @@
 
 namespace tessera::tools {
 
-int complain(std::string_view command, int code, std::string_view message) {
+int report_error(std::string_view command, int code, std::string_view message) {
     std::cerr << "tessera " << command << ": " << message << "\n";
     return code;
 }

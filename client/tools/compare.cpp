@@ -77,7 +77,7 @@ int run_compare(const CompareOptions& options, std::ostream& out) {
         throw Error(ErrorCode::InvalidInput, "'" + options.picture + "' covers " + text(picture.window) +
                                                  " and '" + options.reference + "' covers " +
                                                  text(reference.window) +
-                                                 ": compare pictures of one crop and size");
+                                                 ": the pictures must have the same size and crop window");
     }
     const Values values = values_of(picture.image, reference.image);
     const auto relmse = std::find_if(values.begin(), values.end(), [](const Value& value) {
@@ -95,15 +95,15 @@ Command compare_command(cli::CommandLine& program) {
     line.positional("picture", "OpenEXR file", options->picture);
     line.positional("reference", "OpenEXR file of the same size", options->reference);
     line.option("--layer", "layer to compare, as albedo or raw (default: R G B)", options->layer);
-    line.flag("--json", "one JSON object instead of a table", options->json);
-    line.option("--max-relmse", "exit with 1 when relmse is larger", options->max_relmse);
+    line.flag("--json", "print one JSON object", options->json);
+    line.option("--max-relmse", "exit with 1 if relmse is larger", options->max_relmse);
     line.examples({"tessera compare out.exr reference.exr",
                    "tessera compare out.exr reference.exr --layer high_variance --max-relmse 0.01"});
     return {CompareName, [options](std::string_view) {
                 try {
                     return run_compare(*options, std::cout);
                 } catch (const Error& error) {
-                    return complain(CompareName, exit_code(error.code()), error.what());
+                    return report_error(CompareName, exit_code(error.code()), error.what());
                 }
             }};
 }

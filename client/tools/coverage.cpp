@@ -10,7 +10,7 @@ namespace tessera::tools {
 
 namespace {
 
-double share(std::uint64_t samples, const Coverage& coverage) {
+double fraction(std::uint64_t samples, const Coverage& coverage) {
     return coverage.samples == 0 ? 0.0 : static_cast<double>(samples) / static_cast<double>(coverage.samples);
 }
 
@@ -82,7 +82,7 @@ std::string as_json(const Coverage& coverage, std::uint32_t samples) {
     const auto amount = [&](Json object, std::uint64_t seen) {
         object["samples"] = seen;
         object["pixels"] = pixels(seen, samples);
-        object["share"] = share(seen, coverage);
+        object["share"] = fraction(seen, coverage);
         return object;
     };
     Json objects = Json::array();
@@ -100,7 +100,7 @@ std::string as_text(const Coverage& coverage, std::uint32_t samples) {
     std::string text = "   share      pixels        id  name";
     const auto line = [&](std::uint64_t seen, const std::string& id, const std::string& name) {
         char buffer[64];
-        std::snprintf(buffer, sizeof buffer, "\n%6.2f %% %11.1f %9s  ", 100.0 * share(seen, coverage),
+        std::snprintf(buffer, sizeof buffer, "\n%6.2f %% %11.1f %9s  ", 100.0 * fraction(seen, coverage),
                       pixels(seen, samples), id.c_str());
         text += buffer + name;
     };

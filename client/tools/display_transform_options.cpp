@@ -4,24 +4,37 @@
 #include <cmath>
 #include <vector>
 
+#include "client/tools/ocio_view.h"
+
 namespace tessera::tools {
 
 void DisplayTransformOptions::add_to(cli::CommandLine& command) {
-    command.option("--exposure", "of PNG and JPEG, in EV: each step doubles the light; auto measures it once",
+    command.option("--exposure",
+                   "exposure of PNG and JPEG in EV (+1 doubles the brightness); auto measures it once",
                    exposure);
     const auto names = enumerators(view::ViewTransform{});
-    command.choice("--view-transform", "of PNG and JPEG: the curve from light to the screen", view_transform,
+    command.choice("--view-transform", "view transform (tone curve) of PNG and JPEG", view_transform,
                    std::vector<std::string>(names.begin(), names.end()));
+    command.option(
+        "--ocio",
+        "OpenColorIO view of PNG and JPEG instead: CONFIG[:DISPLAY[:VIEW]]; defaults are the configuration's",
+        ocio);
 }
 
-Expected<view::DisplayTransform> understand(const DisplayTransformOptions& options) {
-    view::DisplayTransform transform;
+Expected<DisplayChoice> parse_options(const DisplayTransformOptions& options) {
+    DisplayChoice choice;
+    view::DisplayTransform& transform = choice.transform;
+    if (!options.ocio.empty()) {
+        auto custom = load_ocio_view(options.ocio);
+        if (!custom) return tl::unexpected(custom.error());
+        choice.custom = std::move(*custom);
+    }
     const auto names = enumerators(view::ViewTransform{});
     for (std::size_t i = 0; i < names.size(); ++i) {
         if (names[i] == options.view_transform)
             transform.view_transform = static_cast<view::ViewTransform>(i);
     }
-    if (options.exposure == "auto") return transform;
+    if (options.exposure == "auto") return choice;
     double value = 0.0;
     const char* const first = options.exposure.data() + (options.exposure.starts_with('+') ? 1 : 0);
     const char* const last = options.exposure.data() + options.exposure.size();
@@ -31,7 +44,7 @@ Expected<view::DisplayTransform> understand(const DisplayTransformOptions& optio
                                                     "' is neither auto nor a number of EV from -60 to 60");
     }
     transform.exposure = value;
-    return transform;
+    return choice;
 }
 
 }  // namespace tessera::tools

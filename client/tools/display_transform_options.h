@@ -1,19 +1,26 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "mediator/base/error.h"
+#include "mediator/picture/custom_view.h"
 #include "mediator/program/command_line.h"
 #include "mediator/view/display_transform.h"
 
 namespace tessera::tools {
 
-// --exposure and --view-transform, of all commands that write PNG or JPEG, or show pictures.
+// --exposure, --view-transform and --ocio of all commands that write PNG or JPEG, or show pictures.
 struct DisplayTransformOptions {
-    std::string exposure = "auto", view_transform = "neutral";
+    std::string exposure = "auto", view_transform = "neutral", ocio;
 
     void add_to(cli::CommandLine& command);
 };
-Expected<view::DisplayTransform> understand(const DisplayTransformOptions& options);
+struct DisplayChoice {
+    view::DisplayTransform transform;
+    std::optional<picture::CustomView> custom;  // of --ocio
+    const picture::CustomView* custom_view() const { return custom ? &*custom : nullptr; }
+};
+Expected<DisplayChoice> parse_options(const DisplayTransformOptions& options);
 
 }  // namespace tessera::tools

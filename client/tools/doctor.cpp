@@ -5,11 +5,11 @@
 #include <memory>
 #include <string>
 
-#include "client/tools/findings.h"
-#include "client/tools/this_machine.h"
+#include "client/tools/diagnostics.h"
+#include "client/tools/host_info.h"
 #include "client/tools/vulkan_devices.h"
 #include "mediator/backend/catalog.h"
-#include "mediator/net/zmq_facts.h"
+#include "mediator/net/zmq_info.h"
 
 namespace tessera::tools {
 
@@ -19,9 +19,9 @@ std::string limit_text(rlim_t limit) {
     return limit == RLIM_INFINITY ? "unlimited" : std::to_string(limit);
 }
 
-void examine_processor(Findings& findings) {
-    findings.push_back(
-        {Verdict::Good, "cores", std::to_string(core_count()) + " that this process may use", ""});
+void examine_processor(Diagnostics& diagnostics) {
+    diagnostics.push_back(
+        {Severity::Ok, "cores", std::to_string(core_count()) + " that this process may use", ""});
     std::string sets;
     const auto add = [&](bool present, const char* set) {
         sets += present ? std::string(sets.empty() ? "" : " ") + set : "";
@@ -33,51 +33,53 @@ void examine_processor(Findings& findings) {
     add(__builtin_cpu_supports("avx512dq"), "avx512dq");
     add(__builtin_cpu_supports("avx512vl"), "avx512vl");
     const bool fits = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-    findings.push_back(
-        {fits ? Verdict::Good : Verdict::Bad, "instruction sets", sets,
+    diagnostics.push_back(
+        {fits ? Severity::Ok : Severity::Error, "instruction sets", sets,
          fits ? "" : "Tessera is built for x86-64-v3 (AVX2 and FMA): use a processor of 2013 or later"});
 }
 
-void examine_backends(Findings& findings) {
+void examine_backends(Diagnostics& diagnostics) {
     bool has_embree = false;
     for (const backend::BackendEntry& entry : backend::catalog()) {
         has_embree = has_embree || entry.name == "embree";
         try {
-            const auto made =
+            const auto instance =
                 entry.make({.threads = 1, .isa = {}, .blobs = std::make_shared<scene::BlobStore>()});
-            findings.push_back({Verdict::Good, "back-end " + entry.name, made->capabilities().kind, ""});
+            diagnostics.push_back(
+                {Severity::Ok, "back-end " + entry.name, instance->capabilities().kind, ""});
         } catch (const Error& error) {
-            findings.push_back({Verdict::Bad, "back-end " + entry.name, error.what(),
-                                "install libembree3-3 and start again"});
+            diagnostics.push_back({Severity::Error, "back-end " + entry.name, error.what(),
+                                   "install libembree3-3 and start again"});
         }
     }
     if (!has_embree) {
-        findings.push_back({Verdict::Poor, "back-end embree", "not built",
-                            "install libembree-dev and configure with -DTESSERA_BACKEND_EMBREE=ON"});
+        diagnostics.push_back({Severity::Warning, "back-end embree", "not built",
+                               "install libembree-dev and configure with -DTESSERA_BACKEND_EMBREE=ON"});
     }
 }
 
-void examine_network(Findings& findings) {
-    const net::ZmqFacts facts = net::zmq_facts();
-    findings.push_back({facts.has_curve ? Verdict::Good : Verdict::Bad, "libzmq",
-                        facts.version + (facts.has_curve ? " with CURVE" : " without CURVE"),
-                        facts.has_curve ? "" : "install Debian's libzmq5, which is built with libsodium"});
+void examine_network(Diagnostics& diagnostics) {
+    const net::ZmqInfo facts = net::zmq_info();
+    diagnostics.push_back({facts.has_curve ? Severity::Ok : Severity::Error, "libzmq",
+                           facts.version + (facts.has_curve ? " with CURVE" : " without CURVE"),
+                           facts.has_curve ? "" : "install Debian's libzmq5, which is built with libsodium"});
 }
 
-void examine_limits(Findings& findings) {
+void examine_limits(Diagnostics& diagnostics) {
     const std::uint64_t memory = total_memory_bytes();
     constexpr std::uint64_t Enough = 4ull << 30;
-    findings.push_back(
-        {memory >= Enough ? Verdict::Good : Verdict::Poor, "memory", byte_text(memory),
+    diagnostics.push_back(
+        {memory >= Enough ? Severity::Ok : Severity::Warning, "memory", byte_text(memory),
          memory >= Enough ? "" : "large scenes will not fit: use a machine with 4 GiB or more"});
     rlimit files{}, locked{};
     ::getrlimit(RLIMIT_NOFILE, &files);
     ::getrlimit(RLIMIT_MEMLOCK, &locked);
     constexpr rlim_t EnoughFiles = 4096;
     const bool plenty = files.rlim_cur >= EnoughFiles;
-    findings.push_back({plenty ? Verdict::Good : Verdict::Poor, "open files", limit_text(files.rlim_cur),
-                        plenty ? "" : "a master of many nodes needs more: ulimit -n 8192"});
-    findings.push_back({Verdict::Good, "locked memory", limit_text(locked.rlim_cur) + " bytes", ""});
+    diagnostics.push_back({plenty ? Severity::Ok : Severity::Warning, "open files",
+                           limit_text(files.rlim_cur),
+                           plenty ? "" : "a master of many nodes needs more: run ulimit -n 8192"});
+    diagnostics.push_back({Severity::Ok, "locked memory", limit_text(locked.rlim_cur) + " bytes", ""});
 }
 
 struct DoctorOptions {
@@ -85,19 +87,19 @@ struct DoctorOptions {
 };
 
 int run(const DoctorOptions& options) {
-    Findings findings;
-    examine_processor(findings);
-    examine_backends(findings);
-    examine_vulkan(findings);
-    examine_network(findings);
-    examine_limits(findings);
+    Diagnostics diagnostics;
+    examine_processor(diagnostics);
+    examine_backends(diagnostics);
+    examine_vulkan(diagnostics);
+    examine_network(diagnostics);
+    examine_limits(diagnostics);
     if (options.json) {
-        print_json(findings);
+        print_json(diagnostics);
     } else {
-        print(findings);
+        print(diagnostics);
     }
-    for (const Finding& finding : findings) {
-        if (finding.verdict == Verdict::Bad) return cli::ExitUnavailable;
+    for (const Diagnostic& diagnostic : diagnostics) {
+        if (diagnostic.severity == Severity::Error) return cli::ExitUnavailable;
     }
     return 0;
 }
@@ -107,7 +109,7 @@ int run(const DoctorOptions& options) {
 Command doctor_command(cli::CommandLine& program) {
     const auto options = std::make_shared<DoctorOptions>();
     cli::CommandLine& command = program.command(
-        "doctor", "Tell what this machine offers to Tessera, with remedies for what is missing.");
+        "doctor", "Check this machine's CPU, GPUs, libraries and limits, with a remedy for each problem.");
     command.flag("--json", "print a JSON list", options->json);
     command.examples({"tessera doctor"});
     return {"doctor", [options](std::string_view) { return run(*options); }};

@@ -25,9 +25,9 @@ struct EditOptions {
 };
 
 int report(const Error& error) {
-    return complain(EditName,
-                    error.code() == ErrorCode::InvalidInput ? ExitBadScript : exit_code(error.code()),
-                    error.what());
+    return report_error(EditName,
+                        error.code() == ErrorCode::InvalidInput ? ExitBadScript : exit_code(error.code()),
+                        error.what());
 }
 
 void print(std::string_view text) {
@@ -39,16 +39,15 @@ Expected<std::string> read_script(const std::string& name) {
     std::ifstream file;
     if (name != "-") {
         if (std::filesystem::is_directory(name, unreadable)) {
-            return failure(ErrorCode::NotFound, "'" + name + "' is a folder: name a script");
+            return failure(ErrorCode::NotFound, "'" + name + "' is a folder: give a script file");
         }
         file.open(name, std::ios::binary);
         if (!file)
-            return failure(ErrorCode::NotFound,
-                           "there is no script '" + name + "' that can be read: check the name");
+            return failure(ErrorCode::NotFound, "cannot read the script '" + name + "': check the name");
     }
     std::istream& stream = name == "-" ? std::cin : file;
     std::string text{std::istreambuf_iterator<char>(stream), {}};
-    if (stream.bad()) return failure(ErrorCode::Io, "'" + name + "' cannot be read");
+    if (stream.bad()) return failure(ErrorCode::Io, "'" + name + "' cannot be read: I/O error");
     return text;
 }
 
@@ -67,13 +66,14 @@ int run_script(edit::EditTarget& target, const std::string& name, const std::str
 
 int run_prompt(edit::EditTarget& target) {
     edit::EditInterpreter interpreter(target, print);
-    edit::Prompt prompt(stdin, stdout, edit::usual_history_file(),
+    edit::Prompt prompt(stdin, stdout, edit::default_history_file(),
                         [&](std::string_view text, std::size_t cursor) {
                             return edit::complete(text, cursor, interpreter.scene());
                         });
-    std::cout << "'help' explains the language, Tab completes, Ctrl-D leaves.\n";
+    std::cout << "'help' lists the commands, Tab completes, Ctrl-D quits.\n";
     while (!interpreter.has_quit()) {
-        const auto line = prompt.read(interpreter.is_in_transaction() ? "tessera (begun)> " : "tessera> ");
+        const auto line =
+            prompt.read(interpreter.is_in_transaction() ? "tessera (transaction)> " : "tessera> ");
         if (!line) {
             std::cout << "\n";
             break;
@@ -81,13 +81,13 @@ int run_prompt(edit::EditTarget& target) {
         if (const auto done = interpreter.run_line(*line); !done) std::cerr << done.error().what() << "\n";
     }
     if (interpreter.is_in_transaction())
-        std::cerr << "the transaction was not committed: nothing of it was sent\n";
+        std::cerr << "the open transaction was discarded: it was not committed\n";
     return 0;
 }
 
 int run(const EditOptions& options, const ConnectScene& connect) {
     if (options.script && !options.commands.empty()) {
-        return complain(EditName, cli::ExitUsage, "a script and -c do not go together: choose one");
+        return report_error(EditName, cli::ExitUsage, "a script and -c exclude each other");
     }
     const bool is_typed = !options.script && options.commands.empty() && ::isatty(STDIN_FILENO) != 0;
     const std::string name = !options.commands.empty() ? "-c" : options.script.value_or("-");
@@ -95,13 +95,14 @@ int run(const EditOptions& options, const ConnectScene& connect) {
         std::string text = joined(options.commands);
         if (!is_typed && options.commands.empty()) {
             auto script = read_script(name);
-            if (!script) return complain(EditName, exit_code(script.error().code()), script.error().what());
+            if (!script)
+                return report_error(EditName, exit_code(script.error().code()), script.error().what());
             text = std::move(*script);
         }
         const std::unique_ptr<edit::EditTarget> target = connect(options.address);
         return is_typed ? run_prompt(*target) : run_script(*target, name, text);
     } catch (const Error& error) {
-        return complain(EditName, exit_code(error.code()), error.what());
+        return report_error(EditName, exit_code(error.code()), error.what());
     }
 }
 
@@ -110,18 +111,20 @@ int run(const EditOptions& options, const ConnectScene& connect) {
 Command edit_command(cli::CommandLine& program, ConnectScene connect) {
     const auto options = std::make_shared<EditOptions>();
     cli::CommandLine& command = program.command(
-        EditName, "Edit a live scene: by a script, single commands, or at a prompt ('help' there).");
-    command.optional_positional("SCRIPT", "file with one command a line, - for a pipe; without one a prompt",
-                                options->script);
+        EditName,
+        "Edit a live scene with a script, with single commands, or at a prompt (type 'help' there).");
+    command.optional_positional(
+        "SCRIPT", "file with one command per line, - for standard input; default: an interactive prompt",
+        options->script);
     command.option("-c",
-                   "a command, in place of a script; may be given several times, all are one transaction",
+                   "run this command instead of a script; may be given several times, all in one transaction",
                    options->commands);
-    command.option("--master", "where the cluster is: tcp://host:port", options->address.master);
-    command.option("--keys", "keys for that cluster: a folder, or an exported file", options->address.keys);
-    command.option("--user", "whose pair in a folder of keys", options->address.user);
-    command.option("--name", "your name, for the others", options->address.name);
-    command.option("--scene", "title of the scene that is started when there is none",
-                   options->address.title);
+    command.option("--master", "endpoint of the cluster's master: tcp://host:port", options->address.master);
+    command.option("--keys", "keys for that cluster: a key folder or an exported key file",
+                   options->address.keys);
+    command.option("--user", "name of the key to use from a key folder", options->address.user);
+    command.option("--name", "your name, as other members see it", options->address.name);
+    command.option("--scene", "title of the scene, if a new one is opened", options->address.title);
     command.required("--master");
     command.examples({"tessera edit --master tcp://render-1:7420 --keys ~/.tessera",
                       "tessera edit tour.txt --master tcp://127.0.0.1:7420",

@@ -9,11 +9,11 @@
 
 namespace tessera::tools {
 
-// Which live scene, and who comes.
+// The live scene to join, and the identity of this client.
 struct SceneAddress {
     std::string master, keys, user;
-    std::string name;   // of this member, for the others
-    std::string title;  // of a scene that is started when there is none
+    std::string name;   // of this member, as others see it
+    std::string title;  // of the scene, if a new one is opened
 };
 
 // Joins the scene; throws Error.
@@ -21,7 +21,7 @@ using ConnectScene = std::function<std::unique_ptr<edit::EditTarget>(const Scene
 
 inline constexpr int ExitBadScript = 65;
 
-// `tessera edit`: a live scene by the text language, from a file, a pipe or a prompt.
+// `tessera edit`: edits a live scene with commands from a file, a pipe or a prompt.
 Command edit_command(cli::CommandLine& program, ConnectScene connect);
 
 }  // namespace tessera::tools

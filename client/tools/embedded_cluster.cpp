@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "client/tools/this_machine.h"
+#include "client/tools/host_info.h"
 #include "mediator/backend/catalog.h"
 #include "mediator/program/command_line.h"
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* Endpoint = "inproc://tessera";
 
-// Inside one process silence means a busy machine, not a lost peer.
+// Within one process, missed heartbeats mean a busy machine, not a lost peer.
 constexpr std::uint32_t PatientHeartbeats = 600;
 
 }  // namespace
@@ -75,12 +75,12 @@ void EmbeddedCluster::add_node(const EmbeddedSettings& settings, std::uint32_t i
                             .reconnect = {}}));
 }
 
-// What a thread cannot go on with is told; the client then hears from the master that nobody is left.
-template <class Body>
-std::jthread EmbeddedCluster::guarded(Body body) {
-    return std::jthread([this, body](std::stop_token stop) {
+// Reports an exception that ends the thread; the master then notifies the client that no node is left.
+template <class Function>
+std::jthread EmbeddedCluster::guarded(Function function) {
+    return std::jthread([this, function](std::stop_token stop) {
         try {
-            body(stop);
+            function(stop);
         } catch (const std::exception& error) {
             events_({wire::Severity::Error, error.what()});
         }

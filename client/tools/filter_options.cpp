@@ -8,12 +8,13 @@ namespace tessera::tools {
 void FilterOption::add_to(cli::CommandLine& command) {
     command.option_with_default(
         "--denoise",
-        "denoise the picture: --denoise for the best choice (fdf), --denoise=NAME[:key=value,...]", denoise,
-        "fdf");
-    command.option("--filter", "the same: NAME[:key=value,...]; tessera filters lists them", filter);
+        "denoise the picture: --denoise uses the recommended filter (fdf); or --denoise=NAME[:key=value,...]",
+        denoise, "fdf");
+    command.option("--filter", "same as --denoise=NAME[:key=value,...]; tessera filters lists the filters",
+                   filter);
 }
 
-Expected<std::string> understand(const FilterOption& option) {
+Expected<std::string> parse_options(const FilterOption& option) {
     if (option.denoise && !option.filter.empty())
         return failure(ErrorCode::InvalidInput, "--denoise and --filter mean the same: give one of them");
     const std::string& text = option.denoise ? *option.denoise : option.filter;

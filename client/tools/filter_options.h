@@ -8,7 +8,7 @@
 
 namespace tessera::tools {
 
-// --denoise[=NAME] and --filter NAME, which mean the same, of all commands that make pictures.
+// --denoise[=NAME] and --filter NAME, which are synonyms, for all commands that write pictures.
 struct FilterOption {
     std::string filter;
     std::optional<std::string> denoise;
@@ -16,7 +16,7 @@ struct FilterOption {
     void add_to(cli::CommandLine& command);
 };
 
-// The filter with its values, as a view takes it; "" without either option.
-Expected<std::string> understand(const FilterOption& option);
+// The filter and its parameters in the format of View::filter; "" without either option.
+Expected<std::string> parse_options(const FilterOption& option);
 
 }  // namespace tessera::tools

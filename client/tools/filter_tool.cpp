@@ -32,12 +32,12 @@ std::string number(double value) {
 
 std::string standard_text(const filter::Parameter& parameter) {
     return parameter.choices.empty()
-               ? number(parameter.standard)
-               : std::string(parameter.choices[static_cast<std::size_t>(parameter.standard)]);
+               ? number(parameter.default_value)
+               : std::string(parameter.choices[static_cast<std::size_t>(parameter.default_value)]);
 }
 
 std::string range_text(const filter::Parameter& parameter) {
-    if (parameter.choices.empty()) return number(parameter.least) + " to " + number(parameter.most);
+    if (parameter.choices.empty()) return number(parameter.minimum) + " to " + number(parameter.maximum);
     std::string text;
     for (const std::string_view choice : parameter.choices)
         text += (text.empty() ? "" : "|") + std::string(choice);
@@ -47,9 +47,9 @@ std::string range_text(const filter::Parameter& parameter) {
 void print_table(const filter::Description& filter) {
     std::cout << filter.name << "  " << filter.summary << (filter.source.empty() ? "" : " (") << filter.source
               << (filter.source.empty() ? "" : ")") << "\n    "
-              << (filter.consistent ? "consistent: its error vanishes with the samples" : "biased")
-              << (filter.temporal ? "; keeps a history" : "") << "\n    reads "
-              << channels_text(filter.channels(filter::standard_values(filter))) << "\n";
+              << (filter.consistent ? "consistent: its error converges to 0 with the samples" : "biased")
+              << (filter.temporal ? "; temporal: keeps a history" : "") << "\n    reads "
+              << channels_text(filter.channels(filter::default_values(filter))) << "\n";
     for (const filter::Parameter& parameter : filter.parameters) {
         std::string head = "    " + std::string(parameter.name) + "=" + standard_text(parameter);
         if (!parameter.unit.empty()) head += " " + std::string(parameter.unit);
@@ -58,7 +58,7 @@ void print_table(const filter::Description& filter) {
     }
 }
 
-// What filters read, and an EXR has as layers.
+// The film channels (AOVs) that filters read; EXR files store them as layers.
 void print_channels() {
     std::cout << "\nchannels\n";
     for (const frame::ChannelInfo& entry : frame::channel_table()) {
@@ -73,8 +73,9 @@ Json as_json(const filter::Description& filter) {
     for (const filter::Parameter& parameter : filter.parameters) {
         Json entry{{"name", parameter.name}, {"unit", parameter.unit}, {"meaning", parameter.meaning}};
         if (parameter.choices.empty()) {
-            entry.update(
-                {{"default", parameter.standard}, {"least", parameter.least}, {"most", parameter.most}});
+            entry.update({{"default", parameter.default_value},
+                          {"least", parameter.minimum},
+                          {"most", parameter.maximum}});
         } else {
             entry.update({{"default", standard_text(parameter)}, {"choices", parameter.choices}});
         }
@@ -86,7 +87,7 @@ Json as_json(const filter::Description& filter) {
             {"consistent", filter.consistent},
             {"temporal", filter.temporal},
             {"path_class", name(filter.path_class)},
-            {"channels", channels_text(filter.channels(filter::standard_values(filter)))},
+            {"channels", channels_text(filter.channels(filter::default_values(filter)))},
             {"parameters", parameters}};
 }
 
@@ -96,14 +97,14 @@ struct FilterOptions {
     bool json = false, maps = false;
 };
 
-// What the filter needs and the film lacks is an error: nothing would stand for it.
+// InvalidInput if the film lacks channels that the filter needs, or has another path class.
 Expected<void> check(const filter::Choice& choice, const picture::FilmFile& file, const view::View& view) {
     const filter::Description& filter = choice.entry->description;
-    const auto missing = filter::lacking(choice, file.film.channels);
+    const auto missing = filter::missing_channels(choice, file.film.channels);
     if (!missing.empty()) {
         return failure(ErrorCode::InvalidInput,
                        "filter '" + std::string(filter.name) + "' needs " + channels_text(missing) +
-                           ", which the film lacks: render it with --save-statistics");
+                           ", which the film does not contain: render it with --save-statistics");
     }
     if (filter.path_class != view::PathClass::Indirect && filter.path_class != view.path_class) {
         return failure(ErrorCode::InvalidInput,
@@ -114,8 +115,8 @@ Expected<void> check(const filter::Choice& choice, const picture::FilmFile& file
     return {};
 }
 
-void write(const FilterOptions& options, const view::DisplayTransform& transform,
-           const picture::FilmFile& file, const filter::Output& output) {
+void write(const FilterOptions& options, const DisplayChoice& display, const picture::FilmFile& file,
+           const filter::Output& output) {
     const frame::Image picture = interleaved(output.picture);
     if (picture_format(options.output) == PictureFormat::Exr) {
         std::vector<picture::Layer> maps;
@@ -128,25 +129,25 @@ void write(const FilterOptions& options, const view::DisplayTransform& transform
                                 : std::vector<std::string>(Names.begin(), Names.begin() + components),
                             interleaved(map.planes)});
         }
-        picture::write_film_exr(options.output, file, picture, picture::Statistics::Left, maps);
+        picture::write_film_exr(options.output, file, picture, picture::Statistics::Omit, maps);
     } else {
-        write_picture(options.output, picture, transform);
+        write_picture(options.output, picture, display.transform, display.custom_view());
     }
 }
 
 int run_filter(const FilterOptions& options) {
-    const auto wrong = [](std::string_view text) { return complain("filter", cli::ExitUsage, text); };
+    const auto wrong = [](std::string_view text) { return report_error("filter", cli::ExitUsage, text); };
     const auto choice = filter::parse_choice(options.filter, filter::catalog());
     if (!choice) return wrong(std::string("--filter: ") + choice.error().what() + "; see tessera filters");
-    if (!picture_format(options.output)) return wrong("-o: end the picture's name with .exr, .png or .jpg");
-    const auto transform = understand(options.display);
-    if (!transform) return wrong(transform.error().what());
+    if (!picture_format(options.output)) return wrong("-o: the file name must end in .exr, .png or .jpg");
+    const auto display = parse_options(options.display);
+    if (!display) return wrong(display.error().what());
     picture::FilmFile file = picture::read_film_exr(options.input);
     const auto view = view_from_attributes(file.attributes);
     if (!view)
-        return complain("filter", ExitBadInput, "film '" + options.input + "': " + view.error().what());
+        return report_error("filter", ExitBadInput, "film '" + options.input + "': " + view.error().what());
     if (auto fine = check(*choice, file, *view); !fine)
-        return complain("filter", ExitBadInput, fine.error().what());
+        return report_error("filter", ExitBadInput, fine.error().what());
     file.attributes["tessera.filter"] = filter::to_text(*choice);
 
     const filter::Inputs inputs = filter::make_inputs(file.film, *view);
@@ -156,7 +157,7 @@ int run_filter(const FilterOptions& options) {
     const auto started = std::chrono::steady_clock::now();
     const filter::Report report = filter->run(inputs, choice->values, output, {arena, {}});
     const double total = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-    write(options, *transform, file, output);
+    write(options, *display, file, output);
 
     if (options.json) {
         Json passes = Json::array();
@@ -189,15 +190,15 @@ int run_filter(const FilterOptions& options) {
 Command filter_command(cli::CommandLine& program) {
     const auto options = std::make_shared<FilterOptions>();
     cli::CommandLine& line =
-        program.command("filter", "Filter a saved film again, with another filter or other values.");
-    line.positional("FILM", "EXR that was written with --save-statistics", options->input);
+        program.command("filter", "Apply a reconstruction filter to a saved film, without rendering again.");
+    line.positional("FILM", "EXR file written with --save-statistics", options->input);
     line.option("-o,--output", "picture to write, .exr, .png or .jpg", options->output);
     line.required("--output");
     line.option("--filter", "NAME[:key=value,...]; tessera filters lists them", options->filter);
     line.required("--filter");
     options->display.add_to(line);
     line.flag("--maps", "write the filter's debug maps as layers of the EXR", options->maps);
-    line.flag("--json", "print one JSON object with everything measured", options->json);
+    line.flag("--json", "print one JSON object with all measurements", options->json);
     line.examples({"tessera render room.glb -o film.exr --spp 4 --save-statistics",
                    "tessera filter film.exr -o smooth.png --filter fdf",
                    "tessera filter film.exr -o pixel.exr --filter pixel:t=0.002 --maps"});
@@ -205,15 +206,15 @@ Command filter_command(cli::CommandLine& program) {
                 try {
                     return run_filter(*options);
                 } catch (const Error& error) {
-                    return complain("filter", exit_code(error.code()), error.what());
+                    return report_error("filter", exit_code(error.code()), error.what());
                 }
             }};
 }
 
 Command filters_command(cli::CommandLine& program) {
     const auto json = std::make_shared<bool>(false);
-    cli::CommandLine& line =
-        program.command("filters", "The reconstruction filters: what they do, read and take.");
+    cli::CommandLine& line = program.command(
+        "filters", "List the reconstruction filters (denoisers) with their inputs and parameters.");
     line.flag("--json", "print one JSON array", *json);
     line.examples({"tessera filters", "tessera filters --json"});
     return {"filters", [json](std::string_view) {

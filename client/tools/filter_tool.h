@@ -4,10 +4,10 @@
 
 namespace tessera::tools {
 
-// tessera filter: a saved film, filtered again.
+// tessera filter: applies a filter to a saved film.
 Command filter_command(cli::CommandLine& program);
 
-// tessera filters: which there are.
+// tessera filters: lists the filters.
 Command filters_command(cli::CommandLine& program);
 
 }  // namespace tessera::tools

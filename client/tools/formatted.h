@@ -5,7 +5,7 @@
 
 namespace tessera::tools {
 
-// Text as printf makes it, of at most 400 characters.
+// printf to a string of at most 400 characters.
 template <class... Values>
 std::string formatted(const char* format, Values... values) {
     char text[400];

@@ -116,7 +116,7 @@ Json as_json(const InfoOptions& options, const import::ImportedScene& scene, con
 
 int run(const InfoOptions& options) {
     const auto scene = import::import_scene(options.scene, {.missing = import::Missing::Leave});
-    if (!scene) return complain(InfoName, ExitBadInput, scene.error().what());
+    if (!scene) return report_error(InfoName, ExitBadInput, scene.error().what());
     const Totals all = totals(options, *scene);
     if (options.json) {
         std::cout << as_json(options, *scene, all).dump(2, ' ', false, Json::error_handler_t::replace)
@@ -133,7 +133,7 @@ Command info_command(cli::CommandLine& program) {
     const auto options = std::make_shared<InfoOptions>();
     cli::CommandLine& line = program.command(
         InfoName,
-        "List what is in a scene file: triangles, lights, cameras, animations, variants, extensions.");
+        "Print the contents of a scene file: triangles, lights, cameras, animations, variants, extensions.");
     line.positional("SCENE", "scene file, as for tessera render", options->scene);
     line.flag("--json", "print one JSON object", options->json);
     line.examples({"tessera info room.glb", "tessera info robot.gltf --json"});

@@ -4,7 +4,7 @@
 
 namespace tessera::tools {
 
-// tessera info: what is in a scene file.
+// tessera info: prints the contents of a scene file.
 Command info_command(cli::CommandLine& program);
 
 }  // namespace tessera::tools

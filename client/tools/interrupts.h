@@ -6,7 +6,7 @@
 namespace tessera::tools {
 
 // Ctrl-C (or SIGTERM) as a stop token: the first asks to stop, the second ends the program at once with 130.
-// Made before any other thread, so that none of them is interrupted.
+// Create it before any other thread, so that the signals are blocked in all of them.
 class Interrupts {
   public:
     Interrupts();

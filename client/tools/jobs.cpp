@@ -32,7 +32,7 @@ struct FetchOptions {
     bool remove = false;
 };
 
-double done_share(const session::JobStatus& job) {
+double progress_fraction(const session::JobStatus& job) {
     if (job.has_ended) return 1.0;
     return double(job.progress.samples) / double(std::max<std::uint64_t>(job.progress.samples_expected, 1));
 }
@@ -42,7 +42,7 @@ Json job_value(const session::JobStatus& job) {
                {"user", job.job.user},
                {"scene", job.scene},
                {"ended", job.has_ended},
-               {"done", done_share(job)},
+               {"done", progress_fraction(job)},
                {"samples", job.progress.samples},
                {"phase", job.has_ended ? Json() : Json(enumerator_name(job.progress.phase))}};
     if (!job.has_ended) return value;
@@ -57,8 +57,8 @@ Json job_value(const session::JobStatus& job) {
     return value;
 }
 
-// As people write it.
-std::string words(std::string_view enumerator) {
+// An enumerator name with blanks instead of underscores.
+std::string display_name(std::string_view enumerator) {
     std::string text(enumerator);
     std::ranges::replace(text, '_', ' ');
     return text;
@@ -66,14 +66,14 @@ std::string words(std::string_view enumerator) {
 
 std::string state_of(const session::JobStatus& job) {
     if (!job.has_ended)
-        return formatted("%3.0f %%  %s", 100.0 * done_share(job),
-                         words(enumerator_name(job.progress.phase)).c_str());
+        return formatted("%3.0f %%  %s", 100.0 * progress_fraction(job),
+                         display_name(enumerator_name(job.progress.phase)).c_str());
     const auto seconds = static_cast<std::time_t>(job.ended_at / 1'000'000'000);
     std::tm local{};
     ::localtime_r(&seconds, &local);
     char when[32];
     std::strftime(when, sizeof when, "%Y-%m-%d %H:%M", &local);
-    std::string text = words(enumerator_name(job.summary.outcome)) + " at " + when;
+    std::string text = display_name(enumerator_name(job.summary.outcome)) + " at " + when;
     if (!job.summary.message.empty()) text += ": " + job.summary.message;
     return text;
 }
@@ -84,7 +84,7 @@ int show_jobs(const JobsOptions& options) {
                                          session_settings("tessera jobs"));
     if (!options.cancel.empty()) {
         session->cancel_job({.user = options.of, .name = options.cancel});
-        std::cout << "job '" << options.cancel << "' is gone" << std::endl;
+        std::cout << "job '" << options.cancel << "' was cancelled" << std::endl;
         return 0;
     }
     const auto jobs = session->jobs();
@@ -114,7 +114,7 @@ const char* extension(session::PictureEncoding encoding) {
     }
 }
 
-bool is_under_way(client::Session& session, const session::JobName& job) {
+bool is_running(client::Session& session, const session::JobName& job) {
     return std::ranges::any_of(session.jobs(), [&](const session::JobStatus& listed) {
         const bool is_meant =
             listed.job.name == job.name && (job.user.empty() || listed.job.user == job.user);
@@ -131,34 +131,34 @@ int fetch(const FetchOptions& options) {
     try {
         result = session->fetch_job(job);
     } catch (const Error& error) {
-        if (error.code() != ErrorCode::Refused || !is_under_way(*session, job)) throw;
-        return complain(FetchName, cli::ExitTryLater, error.what());
+        if (error.code() != ErrorCode::Refused || !is_running(*session, job)) throw;
+        return report_error(FetchName, cli::ExitTryLater, error.what());
     }
     const session::ViewSummary& summary = result.summary;
     if (!result.has_picture()) {
-        return complain(
+        return report_error(
             FetchName, cli::ExitUnavailable,
             "job '" + options.name + "' has no picture: " +
-                (summary.message.empty() ? words(enumerator_name(summary.outcome)) : summary.message));
+                (summary.message.empty() ? display_name(enumerator_name(summary.outcome)) : summary.message));
     }
     if (result.frame.encoding == session::PictureEncoding::Planes) {
-        return complain(FetchName, ExitBadInput,
-                        "job '" + options.name +
-                            "' keeps numbers, no picture file: fetch it from the program that "
-                            "submitted it");
+        return report_error(FetchName, ExitBadInput,
+                            "job '" + options.name +
+                                "' has no picture file but raw pixel values: fetch it from the program that "
+                                "submitted it");
     }
     const std::string kind = extension(result.frame.encoding);
     const std::string output = options.output.empty() ? options.name + "." + kind : options.output;
     if (picture_format(output) != picture_format("x." + kind)) {
-        return complain(
+        return report_error(
             FetchName, cli::ExitUsage,
-            "-o: the picture of job '" + options.name + "' is a file of kind ." + kind + ": end the name so");
+            "-o: the picture of job '" + options.name + "' has the format ." + kind + ": use this extension");
     }
     picture::write_atomically(output,
                               std::string_view(reinterpret_cast<const char*>(result.frame.picture.data()),
                                                result.frame.picture.size()));
     std::cout << formatted("%ux%u pixels, %s, %.2f s rendering\n", result.frame.width, result.frame.height,
-                           words(enumerator_name(summary.outcome)).c_str(), summary.seconds_render)
+                           display_name(enumerator_name(summary.outcome)).c_str(), summary.seconds_render)
               << "wrote " << output << std::endl;
     if (options.remove) session->cancel_job(job);
     return 0;
@@ -170,7 +170,7 @@ Command command(const char* name, const std::shared_ptr<Options>& options, const
                 try {
                     return call(*options);
                 } catch (const Error& error) {
-                    return complain(name, exit_code(error.code()), error.what());
+                    return report_error(name, exit_code(error.code()), error.what());
                 }
             }};
 }
@@ -179,10 +179,11 @@ Command command(const char* name, const std::shared_ptr<Options>& options, const
 
 Command jobs_command(cli::CommandLine& program) {
     const auto options = std::make_shared<JobsOptions>();
-    cli::CommandLine& line = program.command(
-        JobsName, "List the jobs of a cluster that this user has submitted; an operator sees all.");
-    line.option("--cancel", "end the job of this name, or forget its picture", options->cancel);
-    line.option("--of", "with --cancel, for operators: whose job it is", options->of);
+    cli::CommandLine& line =
+        program.command(JobsName, "List your jobs on a cluster; operators see the jobs of all users.");
+    line.option("--cancel", "stop the job of this name, or delete its picture if it has ended",
+                options->cancel);
+    line.option("--of", "with --cancel, for operators: the user who submitted the job", options->of);
     line.flag("--json", "print one JSON array", options->json);
     add_cluster_options(line, options->address);
     line.examples({"tessera jobs --master tcp://render-1:7420 --keys ~/.tessera",
@@ -194,10 +195,11 @@ Command fetch_command(cli::CommandLine& program) {
     const auto options = std::make_shared<FetchOptions>();
     cli::CommandLine& line =
         program.command(FetchName, "Fetch the picture of a job that was submitted with render --detach.");
-    line.positional("NAME", "of the job; tessera jobs lists them", options->name);
-    line.option("-o,--output", "file to write (NAME.png, as it was asked for)", options->output);
-    line.option("--of", "for operators: whose job it is", options->of);
-    line.flag("--remove", "the master forgets it then", options->remove);
+    line.positional("NAME", "name of the job; tessera jobs lists them", options->name);
+    line.option("-o,--output", "file to write (default: NAME.png, .jpg or .exr, as requested at submission)",
+                options->output);
+    line.option("--of", "for operators: the user who submitted the job", options->of);
+    line.flag("--remove", "delete the job on the master afterwards", options->remove);
     add_cluster_options(line, options->address);
     line.examples({"tessera fetch night -o night.png --master tcp://render-1:7420 --keys ~/.tessera",
                    "tessera fetch night --remove --master tcp://127.0.0.1:7420"});

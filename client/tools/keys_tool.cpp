@@ -20,21 +20,21 @@ std::string in_quotes(const std::string& text) {
 
 int create(const KeysOptions& options, std::ostream& out) {
     net::KeyDirectory(options.folder).create();
-    out << "made keys in " << in_quotes(options.folder)
-        << ": the master's, and one each for viewer, editor, node "
+    out << "created keys in " << in_quotes(options.folder)
+        << ": one for the master, and one each for viewer, editor, node "
         << "and operator.\n"
-        << "On this machine give --keys " << options.folder << " to every program. For another machine:\n"
+        << "On this machine, pass --keys " << options.folder << " to every program. For another machine:\n"
         << "  tessera keys " << options.folder << " add NAME --role node --export NAME.key\n";
     return 0;
 }
 
 int add(const KeysOptions& options, std::ostream& out) {
-    if (options.role.empty()) return complain(KeysName, cli::ExitUsage, "add needs --role ROLE");
-    if (options.export_file.empty()) return complain(KeysName, cli::ExitUsage, "add needs --export FILE");
+    if (options.role.empty()) return report_error(KeysName, cli::ExitUsage, "add needs --role ROLE");
+    if (options.export_file.empty()) return report_error(KeysName, cli::ExitUsage, "add needs --export FILE");
     net::KeyDirectory(options.folder).add(options.name, net::role_named(options.role), options.export_file);
-    out << "added " << in_quotes(options.name) << " as " << options.role << ". Carry "
+    out << "added " << in_quotes(options.name) << " as " << options.role << ". Copy "
         << in_quotes(options.export_file)
-        << " to the other machine over a safe way, give it to --keys there, and "
+        << " to the other machine over a secure channel, pass it to --keys there, and "
         << "send SIGHUP to a running tessera-master.\n";
     return 0;
 }
@@ -70,28 +70,28 @@ int run_keys(const KeysOptions& options, std::ostream& out) {
         names.push_back(action.name);
         if (options.action != action.name) continue;
         if (action.takes_name == options.name.empty()) {
-            return complain(KeysName, cli::ExitUsage,
-                            options.action + (action.takes_name ? " needs a NAME" : " takes no NAME"));
+            return report_error(KeysName, cli::ExitUsage,
+                                options.action + (action.takes_name ? " needs a NAME" : " takes no NAME"));
         }
         try {
             return action.run(options, out);
         } catch (const Error& error) {
-            return complain(KeysName, exit_code(error.code()), error.what());
+            return report_error(KeysName, exit_code(error.code()), error.what());
         }
     }
     const auto meant = nearest(options.action, names);
-    return complain(
+    return report_error(
         KeysName, cli::ExitUsage,
-        "there is no action " + in_quotes(options.action) +
-            (meant ? "; did you mean " + in_quotes(*meant) + "?" : ": create, add, list, revoke"));
+        "unknown action " + in_quotes(options.action) +
+            (meant ? "; did you mean " + in_quotes(*meant) + "?" : ": use create, add, list or revoke"));
 }
 
 Command keys_command(cli::CommandLine& program) {
     const auto options = std::make_shared<KeysOptions>();
-    cli::CommandLine& command = program.command(KeysName, "Make and keep the CURVE keys of a cluster.");
-    command.positional("DIR", "folder of keys, on the master's machine", options->folder);
+    cli::CommandLine& command = program.command(KeysName, "Create and manage the CURVE keys of a cluster.");
+    command.positional("DIR", "key folder, on the master's machine", options->folder);
     command.option("ACTION", "create, add, list or revoke", options->action);
-    command.option("NAME", "of the key to add or revoke", options->name);
+    command.option("NAME", "name of the key to add or revoke", options->name);
     command.choice("--role", "what the key may do", options->role, {"viewer", "editor", "node", "operator"});
     command.option("--export", "write the new key and the master's public key to this file",
                    options->export_file);

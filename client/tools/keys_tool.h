@@ -12,11 +12,11 @@ struct KeysOptions {
     std::string action = "create";  // create, add, list, revoke
     std::string name;               // of add and revoke
     std::string role;               // of add
-    std::string export_file;        // of add: what the other machine gets
+    std::string export_file;        // of add: key file for the other machine
 };
 
-// Makes and keeps the keys of a cluster. Says on `out` what it did; failures go to standard error and into
-// the exit code.
+// Creates and manages the keys of a cluster. Prints what it did to `out`; failures go to standard error and are
+// returned as exit code.
 int run_keys(const KeysOptions& options, std::ostream& out);
 
 // tessera keys

@@ -11,7 +11,7 @@ namespace tessera::tools {
 
 namespace {
 
-// What a call throws becomes its value, as the language wants it.
+// Converts an Error exception to an unexpected value.
 template <class Call>
 auto guarded(const Call& call) -> Expected<decltype(call())> {
     try {
@@ -37,14 +37,15 @@ class LiveTarget final : public edit::EditTarget {
     explicit LiveTarget(const SceneAddress& address)
         : session_(client::connect({address.master, address.keys, address.user}, blobs_, clock_,
                                    session_settings(address.name))) {
-        (void)session_->join({.title = address.title,
-                              .on_place =
-                                  [](std::uint32_t place) {
-                                      std::cerr
-                                          << "tessera edit: the cluster renders a batch: waiting, place "
-                                          << place << "\n";
-                                  }},
-                             {});
+        (void)session_->join(
+            {.title = address.title,
+             .on_place =
+                 [](std::uint32_t place) {
+                     std::cerr
+                         << "tessera edit: the cluster is rendering a batch job: waiting, queue position "
+                         << place << "\n";
+                 }},
+            {});
     }
 
     const scene::Scene& scene() const override { return session_->scene(); }
@@ -84,22 +85,22 @@ class LiveTarget final : public edit::EditTarget {
             return writers;
         });
     }
-    Expected<std::vector<edit::Person>> people() override {
+    Expected<std::vector<edit::Member>> members() override {
         return guarded([&] {
-            std::vector<edit::Person> people;
-            const session::People told = session_->people();
-            for (const session::Person& person : told.people) {
-                edit::Person entry{person.name, person.user, person.text, person.editor, {}};
-                for (const session::ObjectLock& lock : told.locks) {
-                    if (lock.name == person.name) entry.locked.push_back(lock.object);
+            std::vector<edit::Member> members;
+            const session::Members scene_members = session_->members();
+            for (const session::Member& member : scene_members.members) {
+                edit::Member entry{member.name, member.user, member.text, member.editor, {}};
+                for (const session::ObjectLock& lock : scene_members.locks) {
+                    if (lock.name == member.name) entry.locked.push_back(lock.object);
                 }
-                for (const session::ViewEntry& view : told.views) {
-                    if (view.owner == person.name)
+                for (const session::ViewEntry& view : scene_members.views) {
+                    if (view.owner == member.name)
                         entry.text += (entry.text.empty() ? "view " : "; view ") + view.name;
                 }
-                people.push_back(std::move(entry));
+                members.push_back(std::move(entry));
             }
-            return people;
+            return members;
         });
     }
     Expected<void> lock(const std::vector<ObjectId>& objects) override {
@@ -126,14 +127,14 @@ class LiveTarget final : public edit::EditTarget {
             session_->refresh();
             const auto history = session_->history(1);
             std::string text = history.empty() ? "done" : history.front().text;
-            for (const std::string& note : result.notes) text += "\n  left as it is: " + note;
+            for (const std::string& note : result.notes) text += "\n  unchanged: " + note;
             return text;
         });
     }
 
     SteadyClock clock_;
     std::shared_ptr<scene::BlobStore> blobs_ = std::make_shared<scene::BlobStore>();
-    std::vector<scene::BlobPtr> kept_;  // for entries to come
+    std::vector<scene::BlobPtr> kept_;  // for entries submitted later
     std::unique_ptr<client::Session> session_;
 };
 

@@ -6,7 +6,7 @@
 
 namespace tessera::tools {
 
-// A live scene on a master as what the edit language works on. Throws Error.
+// Joins a live scene on a master, as the target of edit commands. Throws Error.
 std::unique_ptr<edit::EditTarget> connect_scene(const SceneAddress& address);
 
 }  // namespace tessera::tools

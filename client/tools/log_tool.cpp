@@ -23,7 +23,7 @@ struct LogOptions {
     std::uint64_t last = 0;
 };
 
-// "2026-11-21 16:59:21.123", of this machine's time zone.
+// "2026-11-21 16:59:21.123" in local time.
 std::string time_text(std::int64_t nanoseconds) {
     const std::time_t whole = nanoseconds / 1'000'000'000;
     std::tm parts{};
@@ -71,17 +71,19 @@ int run(const LogOptions& options) {
 Command log_command(cli::CommandLine& program) {
     const auto options = std::make_shared<LogOptions>();
     cli::CommandLine& line = program.command(
-        LogName, "Who did what to a session's scene, and when: number, time, key, name, what.");
-    line.positional("FOLDER", "of the session, as tessera-master --session has it", options->folder);
-    line.option("--object", "only what touched it: materials/red, or its number", options->object);
-    line.option("--last", "only so many of the youngest", options->last);
+        LogName, "List the transactions of a recorded session: number, time, key, client name, description.");
+    line.positional("FOLDER", "session folder, as given to tessera-master --session", options->folder);
+    line.option("--object",
+                "only transactions that changed this object: its path, as materials/red, or its id",
+                options->object);
+    line.option("--last", "only the latest N transactions", options->last);
     line.flag("--json", "print one JSON array", options->json);
     line.examples({"tessera log room.session", "tessera log room.session --object materials/red --last 10"});
     return {LogName, [options](std::string_view) {
                 try {
                     return run(*options);
                 } catch (const Error& error) {
-                    return complain(LogName, exit_code(error.code()), error.what());
+                    return report_error(LogName, exit_code(error.code()), error.what());
                 }
             }};
 }

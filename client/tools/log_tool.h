@@ -4,7 +4,7 @@
 
 namespace tessera::tools {
 
-// tessera log: who did what to a session's scene.
+// tessera log: lists the transactions of a recorded session.
 Command log_command(cli::CommandLine& program);
 
 }  // namespace tessera::tools

@@ -4,7 +4,7 @@
 
 namespace tessera::tools {
 
-// Text as it stands between tags and in quoted attributes of HTML and SVG.
+// Escapes text for HTML and SVG, both between tags and in quoted attributes.
 std::string escaped(const std::string& text);
 
 }  // namespace tessera::tools

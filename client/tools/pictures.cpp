@@ -55,7 +55,7 @@ std::string kinds_of(const client::ViewResult& result) {
     return text;
 }
 
-// Enough to make the picture again, and to tell how much of it is there.
+// Metadata to reproduce the picture, and its sample counts.
 std::map<std::string, std::string> provenance(const session::ViewRequest& request,
                                               const client::ViewResult& result, const Origin& origin) {
     const auto [fewest, most] =
@@ -80,7 +80,7 @@ std::map<std::string, std::string> provenance(const session::ViewRequest& reques
     return attributes;
 }
 
-// The picture as sampled, with alpha where the film has it.
+// The unfiltered picture, with alpha if the film has it.
 frame::Image unfiltered(const frame::FilmTile& film) {
     frame::Image light = frame::resolve_picture(film);
     if (!film.channels.contains(frame::Channel::Alpha)) return light;
@@ -93,7 +93,7 @@ frame::Image unfiltered(const frame::FilmTile& film) {
     return image;
 }
 
-// Throws Error{Unavailable} for a picture of another size than it says.
+// Throws Error{Unavailable} if the size of the picture does not match its header.
 frame::Image interleaved(const client::Frame& picture) {
     frame::Image image(picture.width, picture.height, picture.components);
     if (picture.components < 3 || picture.components > 4 ||
@@ -132,14 +132,14 @@ std::optional<PictureFormat> picture_format(const std::string& path) {
 }
 
 void write_picture(const std::string& path, const frame::Image& image,
-                   const view::DisplayTransform& transform) {
+                   const view::DisplayTransform& transform, const picture::CustomView* custom) {
     using picture::FileFormat;
     const PictureFormat format = picture_format(path).value_or(PictureFormat::Exr);
     write_bytes(path, picture::encode_picture(image,
                                               format == PictureFormat::Png    ? FileFormat::Png
                                               : format == PictureFormat::Jpeg ? FileFormat::Jpeg
                                                                               : FileFormat::Exr,
-                                              transform));
+                                              transform, custom));
 }
 
 view::DisplayTransform used_transform(const std::vector<std::string>& paths,
@@ -156,7 +156,8 @@ view::DisplayTransform used_transform(const std::vector<std::string>& paths,
 }
 
 void write_pictures(const std::vector<std::string>& paths, const session::ViewRequest& request,
-                    const client::ViewResult& result, const Origin& origin, picture::Statistics statistics) {
+                    const client::ViewResult& result, const Origin& origin, picture::Statistics statistics,
+                    const picture::CustomView* custom) {
     std::optional<frame::Image> filtered;
     if (result.has_picture() && !is_encoded(result)) filtered = interleaved(result.frame);
     for (const std::string& path : paths) {
@@ -170,7 +171,8 @@ void write_pictures(const std::vector<std::string>& paths, const session::ViewRe
                                      .attributes = provenance(request, result, origin)},
                                     filtered, statistics);
         } else {
-            write_picture(path, filtered ? *filtered : unfiltered(*result.film()), request.display_transform);
+            write_picture(path, filtered ? *filtered : unfiltered(*result.film()), request.display_transform,
+                          custom);
         }
     }
 }

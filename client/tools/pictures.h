@@ -5,16 +5,17 @@
 #include <vector>
 
 #include "client/frame.h"
+#include "mediator/picture/custom_view.h"
 #include "mediator/picture/film_exr.h"
 
 namespace tessera::tools {
 
 enum class PictureFormat { Exr, Png, Jpeg };
 
-// By the end of the name; nothing for what cannot be written.
+// By the extension; nothing for unsupported formats.
 std::optional<PictureFormat> picture_format(const std::string& path);
 
-// How a film came about, for whoever opens the file later.
+// Provenance of a film, stored in the file.
 struct Origin {
     std::string scene;  // the file's name
     std::string camera;
@@ -25,15 +26,16 @@ struct Origin {
 // radiance, by request.display_transform; an EXR gets the film's channels, too, and its statistics if they are
 // to be saved. A file is there in full or not at all. Throws Error{Io}.
 void write_pictures(const std::vector<std::string>& paths, const session::ViewRequest& request,
-                    const client::ViewResult& result, const Origin& origin, picture::Statistics statistics);
+                    const client::ViewResult& result, const Origin& origin, picture::Statistics statistics,
+                    const picture::CustomView* custom = nullptr);
 
 // An EXR without a film, a PNG or a JPEG, of linear R, G, B (A).
 void write_picture(const std::string& path, const frame::Image& image,
-                   const view::DisplayTransform& transform);
+                   const view::DisplayTransform& transform, const picture::CustomView* custom = nullptr);
 
 // The transform of the request with the exposure of the result: the master's where it encoded the picture,
 // else measured of the picture that would be written; none if that is black, so that a sequence which fades in
-// takes the exposure of its first frame with light. As it is when it has one, or all paths are EXR.
+// takes the exposure of its first frame with light. Unchanged if it has an exposure, or if all paths are EXR.
 view::DisplayTransform used_transform(const std::vector<std::string>& paths,
                                       const session::ViewRequest& request, const client::ViewResult& result);
 

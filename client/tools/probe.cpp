@@ -25,11 +25,11 @@ struct ProbeOptions {
     bool reproducible = false;
 };
 
-// The scene as a cluster holds it: the same ids and the same render origin, so the same bits.
+// The scene as in a cluster: same ids and render origin, hence bit-identical results.
 scene::ChangeList authority_snapshot(ViewPlan& plan, const std::shared_ptr<scene::BlobStore>& blobs,
                                      import::CameraInfo& camera) {
     master::SceneAuthority authority(1, blobs);
-    plan.import.first_id = ObjectId{authority.lend_ids(OnlySession).first};
+    plan.import.first_id = ObjectId{authority.allocate_id_range(OnlySession).first};
     auto imported = import_scene(plan);
     if (!imported) throw imported.error();
     for (const scene::BlobPtr& blob : imported->blobs) blobs->insert(blob);
@@ -50,16 +50,17 @@ scene::ChangeList authority_snapshot(ViewPlan& plan, const std::shared_ptr<scene
 }
 
 int run(const ProbeOptions& options) {
-    auto plan = understand(options.view);
-    if (!plan) return complain(ProbeName, cli::ExitUsage, plan.error().what());
+    auto plan = parse_options(options.view);
+    if (!plan) return report_error(ProbeName, cli::ExitUsage, plan.error().what());
     const auto pixel = parse_pixel(options.pixel, plan->size);
-    if (!pixel) return complain(ProbeName, cli::ExitUsage, std::string("--pixel: ") + pixel.error().what());
+    if (!pixel)
+        return report_error(ProbeName, cli::ExitUsage, std::string("--pixel: ") + pixel.error().what());
     try {
         const auto blobs = std::make_shared<scene::BlobStore>();
         const backend::BackendEntry& entry =
             options.backend ? backend::find_backend(*options.backend) : backend::catalog().front();
         if (const auto fine = backend::check_device(entry, options.device); !fine) {
-            return complain(ProbeName, cli::ExitUsage, fine.error().what());
+            return report_error(ProbeName, cli::ExitUsage, fine.error().what());
         }
         const auto backend =
             entry.make({.isa = options.reproducible ? "avx2" : "", .device = options.device, .blobs = blobs});
@@ -77,7 +78,7 @@ int run(const ProbeOptions& options) {
         }
         return 0;
     } catch (const Error& error) {
-        return complain(ProbeName, exit_code(error.code()), error.what());
+        return report_error(ProbeName, exit_code(error.code()), error.what());
     }
 }
 
@@ -89,12 +90,13 @@ Command probe_command(cli::CommandLine& program) {
         program.command(ProbeName, "Replay one sample of one pixel and print its path.");
     options->view.add_to(command);
     command.option("--pixel", "X,Y from the top left", options->pixel);
-    command.option("--sample", "number of the sample from 0", options->sample);
-    command.option("--backend", "which back-end replays it", options->backend);
-    if (backend::offers_devices()) {
-        command.option("--device", "on which device; index or part of a name", options->device);
+    command.option("--sample", "index of the sample, from 0", options->sample);
+    command.option("--backend", "back-end to use", options->backend);
+    if (backend::has_device_choice()) {
+        command.option("--device", "device to use: index or part of its name", options->device);
     }
-    command.flag("--reproducible", "as the frame was rendered: AVX2 only", options->reproducible);
+    command.flag("--reproducible", "as for frames rendered with --reproducible: AVX2 only",
+                 options->reproducible);
     command.required("--pixel");
     command.examples({"tessera probe room.glb --pixel 320,180 --sample 7",
                       "tessera probe still.glb --env studio.exr --size 640x360 --pixel 10,20 --sample 0"});

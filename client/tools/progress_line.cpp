@@ -26,7 +26,7 @@ std::string describe(const session::ViewProgress& progress, const session::ViewR
         case session::Phase::WaitingForNodes:
             return formatted("waiting for nodes: %u of %u", progress.nodes, request.min_nodes);
         case session::Phase::Syncing:
-            return formatted("the scene is on its way to the nodes: %u ready", progress.nodes);
+            return formatted("sending the scene to the nodes: %u ready", progress.nodes);
         case session::Phase::Filtering:
             return "filtering";
         case session::Phase::Delivering:

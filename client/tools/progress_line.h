@@ -6,10 +6,10 @@
 
 namespace tessera::tools {
 
-// What the line says, without the terminal: "42 %   27 of 64 spp   8.1 Mrays/s   12 s left".
+// The text of the progress line: "42 %   27 of 64 spp   8.1 Mrays/s   12 s left".
 std::string describe(const session::ViewProgress& progress, const session::ViewRequest& request);
 
-// One line on standard error that is written over again and again; nothing at all when that is no terminal.
+// A progress line on standard error, overwritten in place; prints nothing if that is not a terminal.
 class ProgressLine {
   public:
     ProgressLine();

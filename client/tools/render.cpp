@@ -21,7 +21,7 @@ namespace tessera::tools {
 
 namespace {
 
-// Ids that a master lends first; a scene imported with them need not be read again.
+// The first ids that a master allocates; a scene imported with these need not be imported again.
 constexpr ObjectId UsualFirstId{1u << 16};
 
 master::EventSink quiet_log(const cli::Log& log) {
@@ -37,7 +37,7 @@ master::EventSink quiet_log(const cli::Log& log) {
     };
 }
 
-// One run of the command, from the options to the files. Its steps return an exit code when they end it.
+// One run of the command, from the options to the files. Phases return an exit code if they end the run.
 class Render {
   public:
     Render(RenderPlan plan, const RenderOptions& options)
@@ -50,9 +50,9 @@ class Render {
         if (const auto code = import(UsualFirstId)) return *code;
         if (stopped()) return interrupted("nothing was rendered");
         if (plan_.sequence && !scene_.playback)
-            return complain(name_, ExitBadInput, "--frames: the scene has no animation that can be played");
+            return report_error(name_, ExitBadInput, "--frames: the scene has no animation");
         connect();
-        if (const auto code = bring_in_scene()) return *code;
+        if (const auto code = submit_scene()) return *code;
         if (plan_.sequence) return render_sequence();
         if (plan_.job.detached) return submit_job();
         render(plan_.view.view.seed);
@@ -62,18 +62,20 @@ class Render {
   private:
     bool stopped() const { return interrupts_.token().stop_requested(); }
 
-    int fail(int code, const std::string& message) const { return complain(name_, code, where_ + message); }
+    int fail(int code, const std::string& message) const {
+        return report_error(name_, code, where_ + message);
+    }
     int interrupted(const std::string& what) const {
-        return fail(ExitInterrupted, "interrupted; " + (frame_ ? "the frames before it are there" : what));
+        return fail(ExitInterrupted, "interrupted; " + (frame_ ? "the earlier frames were written" : what));
     }
 
     std::optional<int> import(ObjectId first_id) {
         plan_.view.import.first_id = first_id;
         auto scene = import_scene(plan_.view);
-        if (!scene) return complain(name_, ExitBadInput, scene.error().what());
+        if (!scene) return report_error(name_, ExitBadInput, scene.error().what());
         scene_ = std::move(*scene);
         auto camera = choose_camera(scene_.cameras, plan_.view.camera);
-        if (!camera) return complain(name_, cli::ExitUsage, camera.error().what());
+        if (!camera) return report_error(name_, cli::ExitUsage, camera.error().what());
         camera_ = std::move(*camera);
         for (const scene::BlobPtr& blob : scene_.blobs) blobs_->insert(blob);
         return std::nullopt;
@@ -86,7 +88,7 @@ class Render {
         }
         embedded_.emplace(plan_.embedded, blobs_, clock_, quiet_log(log_));
         client::SessionSettings settings = session_settings("tessera " + name_);
-        settings.lost_limit = std::chrono::minutes(10);  // silence in here is a busy machine
+        settings.lost_limit = std::chrono::minutes(10);  // missed heartbeats mean a busy machine
         session_ = client::make_session(embedded_->client(), {}, blobs_, clock_, settings);
     }
 
@@ -105,7 +107,7 @@ class Render {
         return 0;
     }
 
-    // The code that ends the sequence, if one does.
+    // Returns an exit code if the sequence must end.
     std::optional<int> render_frame(std::uint32_t frame) {
         started_ = clock_.now();
         std::vector<std::string> outputs;
@@ -114,7 +116,7 @@ class Render {
             return std::filesystem::exists(output);
         });
         if (is_there && plan_.sequence->skip_existing) {
-            log_.info(where_ + "skipped, its pictures are there");
+            log_.info(where_ + "skipped, its output files exist");
             return std::nullopt;
         }
         auto step = move_to(scene_, plan_.sequence->seconds(frame));
@@ -125,8 +127,8 @@ class Render {
         }
         camera_ = *choose_camera(scene_.cameras, plan_.view.camera);
         render(plan_.view.view.seed + frame);
-        // Those of earlier frames; the scene holds the others. Not before: nodes that share the store may
-        // still be on their way through an earlier version.
+        // Erases the blobs of earlier frames. Not earlier: nodes that share the store may still be loading a
+        // previous version.
         blobs_->erase_unused();
         const int code = finish(outputs);
         return code == 0 ? std::nullopt : std::optional(code);
@@ -137,24 +139,24 @@ class Render {
         if (!session_->settle(interrupts_.token())) return interrupted("nothing was rendered");
         const session::EditResult submitted = session_->take_results().back();
         for (const std::string& problem : submitted.problems) log_.error(where_ + problem);
-        if (!submitted.accepted) return fail(ExitBadInput, "the master does not take the scene");
+        if (!submitted.accepted) return fail(ExitBadInput, "the master rejected the scene");
         return std::nullopt;
     }
 
-    std::optional<int> bring_in_scene() {
+    std::optional<int> submit_scene() {
         const std::string title = std::filesystem::path(plan_.view.scene).filename().string();
-        const auto outcome = session_->join({.title = title,
-                                             .exclusive = true,
-                                             .when_busy = plan_.when_busy,
-                                             .on_place =
-                                                 [this](std::uint32_t place) {
-                                                     log_.info("the cluster is busy: waiting, place " +
-                                                               std::to_string(place) + " in the queue");
-                                                 }},
-                                            interrupts_.token());
+        const auto outcome = session_->join(
+            {.title = title,
+             .exclusive = true,
+             .when_busy = plan_.when_busy,
+             .on_place =
+                 [this](std::uint32_t place) {
+                     log_.info("the cluster is busy: waiting, queue position " + std::to_string(place));
+                 }},
+            interrupts_.token());
         if (std::holds_alternative<client::Stopped>(outcome)) return interrupted("nothing was rendered");
         if (const auto* busy = std::get_if<client::Busy>(&outcome)) {
-            return complain(name_, cli::ExitTryLater, busy->reason);
+            return report_error(name_, cli::ExitTryLater, busy->reason);
         }
         const auto& joined = std::get<client::Joined>(outcome);
         if (joined.first_id != plan_.view.import.first_id) {
@@ -169,8 +171,8 @@ class Render {
         plan_.job.view.seed = plan_.view.view.seed;
         session_->request_view(1, plan_.job);
         std::cout << "job '" << plan_.job.name
-                  << "' is submitted: tessera jobs shows where it is, tessera fetch " << plan_.job.name
-                  << " brings the picture" << std::endl;
+                  << "' is submitted: tessera jobs shows its progress, tessera fetch " << plan_.job.name
+                  << " downloads the picture" << std::endl;
         return 0;
     }
 
@@ -184,7 +186,7 @@ class Render {
             interrupts_.token());
     }
 
-    // Of a whole picture alone: shares of a part would be those of another one.
+    // Complete pictures only: the fractions of a partial picture would be wrong.
     int count() {
         using session::Outcome;
         if (result_.summary.outcome == Outcome::Stopped) return interrupted("nothing was counted");
@@ -201,8 +203,8 @@ class Render {
         return 0;
     }
 
-    // The pictures of what there is, unless there is nothing; then the reason decides. Those of a sequence
-    // are whole or not there.
+    // Writes what was rendered, even if incomplete; without any samples, reports the reason. Frames of a sequence
+    // are written only if complete.
     int finish(const std::vector<std::string>& outputs) {
         using session::Outcome;
         const bool is_failed = result_.summary.outcome == Outcome::Failed;
@@ -212,22 +214,25 @@ class Render {
             return fail(cli::ExitUnavailable, result_.summary.message);
         if ((!result_.film() && !result_.has_picture()) || result_.summary.samples == 0) {
             if (result_.summary.outcome == Outcome::Stopped) return interrupted("nothing was rendered yet");
-            return fail(cli::ExitUnavailable, result_.summary.message.empty()
-                                                  ? "no sample was finished in the time given: give it more"
-                                                  : result_.summary.message);
+            return fail(cli::ExitUnavailable,
+                        result_.summary.message.empty()
+                            ? "no sample was finished within the time limit: raise --time"
+                            : result_.summary.message);
         }
         const std::string hash = result_.film() ? to_hex(frame::film_hash(*result_.film())) : std::string();
-        // A sequence has the exposure of its first frame.
+        // A sequence keeps the exposure of its first frame.
         plan_.job.display_transform = used_transform(outputs, plan_.job, result_);
+        const picture::CustomView* custom = plan_.custom_view ? &*plan_.custom_view : nullptr;
         write_pictures(outputs, plan_.job, result_,
                        {std::filesystem::path(plan_.view.scene).filename().string(), camera_.name, hash},
-                       plan_.statistics);
-        const RenderReport report{plan_.job, result_.summary, seconds(clock_.now() - started_), hash, frame_};
+                       plan_.statistics, custom);
+        const RenderReport report{plan_.job, result_.summary, seconds(clock_.now() - started_),
+                                  hash,      frame_,          custom};
         std::cout << (json_ ? as_json(report) : as_text(report, outputs)) << std::endl;
         if (result_.summary.outcome == Outcome::Stopped)
-            return interrupted("what was merged so far is written");
+            return interrupted("the samples merged so far were written");
         if (result_.summary.outcome == Outcome::NoNodes)
-            return complain(name_, cli::ExitUnavailable, result_.summary.message);
+            return report_error(name_, cli::ExitUnavailable, result_.summary.message);
         return 0;
     }
 
@@ -250,12 +255,12 @@ class Render {
 
 int run(const RenderOptions& options) {
     const char* name = options.coverage ? "coverage" : "render";
-    auto plan = understand(options);
-    if (!plan) return complain(name, cli::ExitUsage, plan.error().what());
+    auto plan = parse_options(options);
+    if (!plan) return report_error(name, cli::ExitUsage, plan.error().what());
     try {
         return Render(std::move(*plan), options).run();
     } catch (const Error& error) {
-        return complain(name, exit_code(error.code()), error.what());
+        return report_error(name, exit_code(error.code()), error.what());
     }
 }
 
@@ -270,8 +275,8 @@ Command render_command(cli::CommandLine& program) {
 
 Command coverage_command(cli::CommandLine& program) {
     const auto options = std::make_shared<RenderOptions>();
-    options->add_coverage_to(
-        program.command("coverage", "Which objects a camera sees, and how much of the picture each takes."));
+    options->add_coverage_to(program.command(
+        "coverage", "Report which objects a camera sees, and the fraction of the picture that each covers."));
     return {"coverage", [options](std::string_view) { return run(*options); }};
 }
 

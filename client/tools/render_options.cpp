@@ -28,15 +28,15 @@ std::vector<std::string> backend_names() {
 
 Expected<void> check_outputs(const RenderOptions& options) {
     if (options.outputs.empty() && !options.coverage && !options.detach)
-        return wrong("no output: say where the picture goes with -o FILE.exr or -o FILE.png");
+        return wrong("no output file: add -o FILE.exr or -o FILE.png");
     for (const std::string& output : options.outputs) {
         if (!picture_format(output)) {
             return wrong("-o: '" + output +
-                         "' is no picture that can be written; end it with .exr, .png or .jpg");
+                         "' has no supported picture format; end it with .exr, .png or .jpg");
         }
         const std::filesystem::path folder = std::filesystem::path(output).parent_path();
         if (!folder.empty() && !std::filesystem::is_directory(folder)) {
-            return wrong("-o: there is no folder '" + folder.string() + "'; make it first");
+            return wrong("-o: there is no folder '" + folder.string() + "'; create it first");
         }
         if (std::filesystem::is_directory(output)) return wrong("-o: '" + output + "' is a folder");
     }
@@ -48,7 +48,7 @@ Expected<EmbeddedSettings> embedded_settings(const RenderOptions& options) {
     const auto names = backend_names();
     if (std::find(names.begin(), names.end(), settings.backend) == names.end()) {
         const auto near = nearest(settings.backend, names);
-        return wrong("--backend: there is no '" + settings.backend + "'" +
+        return wrong("--backend: unknown back-end '" + settings.backend + "'" +
                      (near ? "; did you mean '" + *near + "'?" : "; see tessera doctor"));
     }
     const std::uint64_t nodes = options.nodes.value_or(1), threads = options.threads.value_or(0);
@@ -81,11 +81,11 @@ Expected<void> set_amount(const RenderOptions& options, session::ViewRequest& jo
 Expected<void> set_sequence(const RenderOptions& options, RenderPlan& plan) {
     if (!options.frames) {
         if (options.fps || options.skip_existing)
-            return wrong("--fps and --skip-existing are for sequences; say which with --frames A:B");
+            return wrong("--fps and --skip-existing are for sequences; add --frames A:B");
         if (options.view.animation && !options.view.at)
-            return wrong("--animation: say when with --at SECONDS, or --frames A:B");
+            return wrong("--animation needs a time: add --at SECONDS, or --frames A:B");
         if (options.view.shutter && !options.view.at)
-            return wrong("--shutter: say when it opens with --at SECONDS, or --frames A:B");
+            return wrong("--shutter needs an opening time: add --at SECONDS, or --frames A:B");
         return {};
     }
     if (options.view.at) return wrong("--at and --frames exclude each other");
@@ -97,7 +97,7 @@ Expected<void> set_sequence(const RenderOptions& options, RenderPlan& plan) {
     for (const std::string& output : options.outputs) {
         if (frame_name(output, 0)) continue;
         return wrong("-o: '" + output +
-                     "' has no place for the number of a frame; write it like out.%04d.exr");
+                     "' has no placeholder for the frame number; write it like out.%04d.exr");
     }
     plan.sequence = sequence;
     plan.view.import.motion = import::Motion::Sequence;
@@ -105,7 +105,7 @@ Expected<void> set_sequence(const RenderOptions& options, RenderPlan& plan) {
     return {};
 }
 
-// What goes to an EXR is asked for only when there is one.
+// Channels (AOVs) are requested only if an EXR is written.
 bool any_exr(const std::vector<std::string>& outputs) {
     return std::any_of(outputs.begin(), outputs.end(), [](const std::string& output) {
         return picture_format(output) == PictureFormat::Exr;
@@ -116,7 +116,7 @@ frame::ChannelSet channels_for(const RenderOptions& options) {
     using enum frame::Channel;
     if (options.save_statistics) {
         auto all = frame::ChannelSet::all();
-        all.erase(Color);  // Radiance says more
+        all.erase(Color);  // derived from Radiance
         return all;
     }
     if (any_exr(options.outputs))
@@ -124,12 +124,12 @@ frame::ChannelSet channels_for(const RenderOptions& options) {
     return {Radiance};
 }
 
-// One picture file is encoded by the master, within the time given; for anything else the numbers come here.
+// A single PNG or JPEG is encoded by the master, within the time limit; otherwise the client receives pixel values.
 Expected<void> set_filter(const RenderOptions& options, session::ViewRequest& job) {
     if (options.save_statistics && !any_exr(options.outputs)) {
-        return wrong("--save-statistics needs an EXR to save them in: add -o FILE.exr");
+        return wrong("--save-statistics needs an EXR output: add -o FILE.exr");
     }
-    const auto filter = understand(options.filter);
+    const auto filter = parse_options(options.filter);
     if (!filter) return tl::unexpected(filter.error());
     job.view.filter = *filter;
     if (filter->empty()) return {};
@@ -146,22 +146,22 @@ Expected<void> set_filter(const RenderOptions& options, session::ViewRequest& jo
     return {};
 }
 
-// A picture that the master keeps: it encodes it, as the output would end.
+// The master encodes and keeps the picture, in the format of the output's extension.
 Expected<void> set_detached(const RenderOptions& options, RenderPlan& plan) {
     plan.job.name = options.name;
     if (!options.detach) return {};
     if (options.name.empty()) return wrong("--detach: a job needs a name; add --name NAME");
-    if (!options.master) return wrong("--detach is for a running cluster; name it with --master");
+    if (!options.master) return wrong("--detach needs a running cluster: add --master");
     if (options.frames) return wrong("--detach and --frames exclude each other");
     if (options.save_statistics) return wrong("--detach and --save-statistics exclude each other");
     if (options.json) return wrong("--detach and --json exclude each other; see tessera jobs --json");
     if (options.outputs.size() > 1)
-        return wrong("--detach keeps one picture: give one -o, or none for a PNG");
+        return wrong("--detach stores a single picture: give one -o, or none for a PNG");
     session::ViewRequest& job = plan.job;
     job.detached = true;
     job.film = false;
     job.frames = session::Frames::Last;
-    if (!options.wait_nodes) job.wait_limit = Duration::zero();  // nobody is there to start some
+    if (!options.wait_nodes) job.wait_limit = Duration::zero();  // no user is present to start nodes
     const auto format = options.outputs.empty() ? std::nullopt : picture_format(options.outputs.front());
     job.picture = format == PictureFormat::Exr    ? session::PictureEncoding::Exr
                   : format == PictureFormat::Jpeg ? session::PictureEncoding::Jpeg
@@ -169,25 +169,25 @@ Expected<void> set_detached(const RenderOptions& options, RenderPlan& plan) {
     return {};
 }
 
-// One sample for each pixel of a larger picture, which the master bounds as any other.
+// Renders a larger picture with one pixel per sample; the usual size limits apply.
 Expected<void> set_coverage(const RenderOptions& options, RenderPlan& plan) {
     constexpr std::uint64_t MaxSamples = 4096, DefaultSamples = 16, MaxEdge = 65536;
-    constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 28;  // that a master takes at a time
+    constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 28;  // limit of a master per view
     const std::uint64_t samples = options.spp.value_or(DefaultSamples);
     if (samples == 0 || samples > MaxSamples) return wrong("--spp: between 1 and 4096");
     plan.coverage = sample_grid(static_cast<std::uint32_t>(samples));
     const std::uint64_t width = std::uint64_t{plan.view.size.width} * plan.coverage->across;
     const std::uint64_t height = std::uint64_t{plan.view.size.height} * plan.coverage->down;
     if (width > MaxEdge || height > MaxEdge) {
-        return wrong("--spp: every sample is a pixel of a picture, which would have " +
+        return wrong("--spp: each sample is a pixel of an internal picture, which would have " +
                      std::to_string(width) + "x" + std::to_string(height) +
-                     "; choose fewer, or a smaller --size");
+                     " pixels; choose fewer samples, or a smaller --size");
     }
     spread(plan.view.view, *plan.coverage);
     if (plan.view.view.window.pixel_count() > MaxPixels)
         return wrong(
-            "--spp: every sample is a pixel of a picture, which would have more than 2^28; choose "
-            "fewer, a smaller --size, or a part with --crop");
+            "--spp: each sample is a pixel of an internal picture, which would have more than 2^28 pixels; "
+            "choose fewer samples, a smaller --size, or a part with --crop");
     plan.view.view.renderer = view::Renderer::Coverage;
     plan.view.view.channels = {frame::Channel::ObjectIndex};
     if (!plan.outputs.empty()) plan.view.view.channels.insert(frame::Channel::Color);
@@ -197,26 +197,28 @@ Expected<void> set_coverage(const RenderOptions& options, RenderPlan& plan) {
 
 void add_cluster_to(cli::CommandLine& command, RenderOptions& options) {
     command.option("--backend", "back-end of the embedded nodes", options.backend);
-    if (backend::offers_devices()) {
+    if (backend::has_device_choice()) {
         command.option("--device",
-                       "its device: index or part of a name, as tessera doctor lists them (the best)",
+                       "device of the back-end: index or part of its name, as listed by tessera doctor "
+                       "(default: the best)",
                        options.device);
     }
-    command.option("--cache", "keep built trees and kernels in this folder, for the next start",
+    command.option("--cache",
+                   "cache folder for acceleration structures and compiled kernels, reused by later runs",
                    options.cache);
-    command.option("--nodes", "number of embedded nodes (1)", options.nodes);
-    command.option("--threads", "threads of all embedded nodes together (all cores)", options.threads);
-    command.option("--master", "use a running cluster: tcp://host:port", options.master);
-    command.option("--keys", "keys for that cluster: a folder, or an exported file", options.keys);
-    command.option("--user", "whose pair in a folder of keys", options.user);
-    command.option("--wait-nodes", "begin when N nodes are ready, give up after seconds: N[:seconds]",
+    command.option("--nodes", "number of embedded render nodes (1)", options.nodes);
+    command.option("--threads", "total threads of all embedded nodes (default: all cores)", options.threads);
+    command.option("--master", "render on a running cluster: tcp://host:port of its master", options.master);
+    command.option("--keys", "keys for that cluster: a key folder or an exported key file", options.keys);
+    command.option("--user", "name of the key to use from a key folder", options.user);
+    command.option("--wait-nodes", "wait until N nodes are ready, fail after a timeout: N[:seconds]",
                    options.wait_nodes);
-    command.flag("--no-wait", "exit with 75 when the cluster is busy, instead of waiting", options.no_wait);
+    command.flag("--no-wait", "exit with 75 if the cluster is busy, instead of waiting", options.no_wait);
 }
 
 void add_log_to(cli::CommandLine& command, RenderOptions& options) {
-    command.choice("--log-level", "how much to tell", options.log.level, cli::log_levels());
-    command.option("--log-file", "write the log there instead of standard error", options.log.file);
+    command.choice("--log-level", "log verbosity", options.log.level, cli::log_levels());
+    command.option("--log-file", "write the log to this file instead of standard error", options.log.file);
 }
 
 }  // namespace
@@ -225,7 +227,7 @@ void RenderOptions::add_coverage_to(cli::CommandLine& command) {
     coverage = true;
     view.size = "640x360";
     view.add_scene_to(command);
-    command.option("-o,--output", "picture with a colour for each object, .exr, .png or .jpg", outputs);
+    command.option("-o,--output", "picture with one colour per object, .exr, .png or .jpg", outputs);
     command.option("--spp", "samples per pixel (16)", spp);
     add_cluster_to(command, *this);
     command.flag("--json", "print one JSON object", json);
@@ -241,23 +243,29 @@ void RenderOptions::add_to(cli::CommandLine& command) {
     command.option("--spp", "samples per pixel (64)", spp);
     command.option(
         "--time",
-        "render for so long instead, as 800ms or 10s; with --denoise, denoising and encoding included", time);
+        "time budget instead of --spp, as 800ms or 10s; with --denoise it includes denoising and encoding",
+        time);
     command.option("--frames", "render frames A:B of the animation, each to its own -o out.%04d.exr", frames);
     command.option(
-        "--fps", "frames per second (24): frame K shows K / fps seconds, with the noise of --seed S+K", fps);
-    command.flag("--skip-existing", "leave out frames whose pictures are there", skip_existing);
+        "--fps",
+        "frames per second (24): frame K is rendered at K / fps seconds with seed S+K, where S is --seed",
+        fps);
+    command.flag("--skip-existing", "skip frames whose output files exist", skip_existing);
     filter.add_to(command);
     display.add_to(command);
-    command.flag("--save-statistics", "keep all channels in the EXR, for tessera filter", save_statistics);
-    command.choice("--policy", "how frames are cut into work", policy, {"tiled", "cooperative", "mixed"});
-    command.flag("--reproducible", "the same bits on every x86-64-v3 machine: AVX2 only", reproducible);
+    command.flag("--save-statistics", "store all film channels in the EXR, for tessera filter",
+                 save_statistics);
+    command.choice("--policy", "how a frame is divided into work units", policy,
+                   {"tiled", "cooperative", "mixed"});
+    command.flag("--reproducible", "bit-identical results on every x86-64-v3 machine: AVX2 only",
+                 reproducible);
     add_cluster_to(command, *this);
-    command.option("--name", "what others call the picture, as tessera set-filter --view NAME", name);
+    command.option("--name", "name of the view, as for tessera set-filter --view NAME", name);
     command.flag("--detach",
-                 "leave when the cluster has the scene; tessera jobs shows where it is, tessera fetch NAME "
-                 "brings the picture",
+                 "exit once the cluster has the scene; tessera jobs shows the progress, tessera fetch NAME "
+                 "downloads the picture",
                  detach);
-    command.flag("--json", "print one JSON object with everything measured", json);
+    command.flag("--json", "print one JSON object with all measurements", json);
     add_log_to(command, *this);
     command.examples(
         {"tessera render room.glb -o room.exr -o room.png --spp 256",
@@ -270,8 +278,8 @@ void RenderOptions::add_to(cli::CommandLine& command) {
          "tessera render room.glb --spp 4096 --name night --detach --master tcp://render-1:7420"});
 }
 
-Expected<RenderPlan> understand(const RenderOptions& options) {
-    auto view = understand(options.view);
+Expected<RenderPlan> parse_options(const RenderOptions& options) {
+    auto view = parse_options(options.view);
     if (!view) return tl::unexpected(view.error());
     RenderPlan plan;
     plan.view = *view;
@@ -287,9 +295,8 @@ Expected<RenderPlan> understand(const RenderOptions& options) {
     if (options.master) {
         if (options.backend || options.device || options.cache || options.nodes || options.threads) {
             return wrong(
-                "--backend, --device, --cache, --nodes and --threads are for the embedded cluster; with "
-                "--master the "
-                "nodes decide");
+                "--backend, --device, --cache, --nodes and --threads configure the embedded cluster; with "
+                "--master, set them on the nodes");
         }
         plan.address = {*options.master, options.keys.value_or(""), options.user};
         plan.job.min_nodes = 1;
@@ -300,11 +307,12 @@ Expected<RenderPlan> understand(const RenderOptions& options) {
             plan.job.wait_limit = wait->limit;
         }
     } else if (options.keys || options.wait_nodes) {
-        return wrong("--keys and --wait-nodes are for a running cluster; name it with --master");
+        return wrong("--keys and --wait-nodes need a running cluster: add --master");
     } else if (view->view.renderer == view::Renderer::Raster &&
                !backend::find_backend(plan.embedded.backend).chooses_device) {
-        // Nobody else will come who draws. Whether the device does, its node says.
-        return wrong("--renderer raster: " + plan.embedded.backend + " does not draw; add --backend vulkan");
+        // No other node can join an embedded cluster. The node checks whether the device supports rasterisation.
+        return wrong("--renderer raster: " + plan.embedded.backend +
+                     " does not support rasterisation; add --backend vulkan");
     }
     if (options.no_wait) plan.when_busy = client::WhenBusy::GiveUp;
     if (options.coverage) {
@@ -318,12 +326,18 @@ Expected<RenderPlan> understand(const RenderOptions& options) {
     plan.job.reproducible = options.reproducible;
     if (auto fine = set_filter(options, plan.job); !fine) return tl::unexpected(fine.error());
     if (auto fine = set_detached(options, plan); !fine) return tl::unexpected(fine.error());
-    const auto display = understand(options.display);
+    const auto display = parse_options(options.display);
     if (!display) return tl::unexpected(display.error());
-    plan.job.display_transform = *display;
+    plan.job.display_transform = display->transform;
+    plan.custom_view = display->custom;
+    if (plan.custom_view) {
+        if (options.detach)
+            return wrong("--ocio: the master encodes the picture of a job: fetch an EXR and convert that");
+        if (!plan.job.view.filter.empty()) plan.job.picture = session::PictureEncoding::Planes;
+    }
     plan.view.view.filter = plan.job.view.filter;
     plan.view.view.channels = plan.view.view.channels | channels_for(options);
-    if (options.save_statistics) plan.statistics = picture::Statistics::Saved;
+    if (options.save_statistics) plan.statistics = picture::Statistics::Include;
     return plan;
 }
 

@@ -46,18 +46,19 @@ struct Sequence {
     double seconds(std::uint32_t frame) const { return static_cast<double>(frame) / fps; }
 };
 
-// The same, understood.
+// The validated options.
 struct RenderPlan {
     ViewPlan view;
     session::ViewRequest job;          // view with channels, without camera
     std::vector<std::string> outputs;  // of a sequence: patterns for frame_name
     std::optional<Sequence> sequence;
-    std::optional<client::Address> address;  // none: embedded
+    std::optional<client::Address> address;  // none: embedded cluster
     EmbeddedSettings embedded;
     client::WhenBusy when_busy = client::WhenBusy::Queue;
-    picture::Statistics statistics = picture::Statistics::Left;
-    std::optional<SampleGrid> coverage;  // the view is spread by it
+    picture::Statistics statistics = picture::Statistics::Omit;
+    std::optional<SampleGrid> coverage;              // the view is enlarged by it
+    std::optional<picture::CustomView> custom_view;  // of --ocio
 };
-Expected<RenderPlan> understand(const RenderOptions& options);
+Expected<RenderPlan> parse_options(const RenderOptions& options);
 
 }  // namespace tessera::tools

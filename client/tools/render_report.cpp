@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "client/tools/this_machine.h"
+#include "client/tools/host_info.h"
 #include "mediator/picture/picture_encoder.h"
 
 namespace tessera::tools {
@@ -19,7 +19,7 @@ double per_second(std::uint64_t amount, double time) {
     return time > 0.0 ? static_cast<double>(amount) / time : 0.0;
 }
 
-// A whole number where it is one: what was asked for and reached.
+// The requested number if it was reached.
 Json spp_value(const session::ViewRequest& request, const session::ViewSummary& result) {
     if (result.outcome == session::Outcome::Complete) return request.stop.spp;
     return samples_per_pixel(request, result);
@@ -130,23 +130,23 @@ std::string as_text(const RenderReport& report, const std::vector<std::string>& 
          result.seconds_render, per_second(result.rays, result.seconds_render) * 1e-6,
          per_second(result.samples, result.seconds_render) * 1e-6);
     if (const auto& picture = result.picture; picture.encoding != session::PictureEncoding::None) {
-        line("filter %s: %.1f ms, encoding %.1f ms%s", picture.filter.c_str(), picture.seconds_filter * 1e3,
-             picture.seconds_encode * 1e3,
-             picture.seconds_predicted > 0.0
-                 ? (" (" + std::to_string(std::lround(picture.seconds_predicted * 1e3)) +
-                    " ms were set aside)")
-                       .c_str()
-                 : "");
+        line(
+            "filter %s: %.1f ms, encoding %.1f ms%s", picture.filter.c_str(), picture.seconds_filter * 1e3,
+            picture.seconds_encode * 1e3,
+            picture.seconds_predicted > 0.0
+                ? (" (" + std::to_string(std::lround(picture.seconds_predicted * 1e3)) + " ms were reserved)")
+                      .c_str()
+                : "");
         for (const std::string& note : picture.notes) line("%s", note.c_str());
     }
     if (const auto& transform = report.request.display_transform; transform.exposure)
-        line("view transform %s", picture::describe(transform).c_str());
+        line("view transform %s", picture::describe(transform, report.custom_view).c_str());
     std::set<std::string> kinds;
     for (const session::NodeSummary& node : result.nodes) kinds.insert(node.kind);
     line("%zu node%s took part", result.nodes.size(), result.nodes.size() == 1 ? "" : "s");
     for (const std::string& kind : kinds) line("  %s", kind.c_str());
     if (result.nonfinite_samples != 0) {
-        line("%llu samples were not finite and left out",
+        line("%llu samples were not finite and were discarded",
              static_cast<unsigned long long>(result.nonfinite_samples));
     }
     for (const std::string& output : outputs) text += "\nwrote " + output;

@@ -25,7 +25,7 @@ int run(const SetFilterOptions& options) {
         std::cout << session->set_filter(options.view, options.filter) << std::endl;
         return 0;
     } catch (const Error& error) {
-        return complain(SetFilterName, exit_code(error.code()), error.what());
+        return report_error(SetFilterName, exit_code(error.code()), error.what());
     }
 }
 
@@ -34,9 +34,9 @@ int run(const SetFilterOptions& options) {
 Command set_filter_command(cli::CommandLine& program) {
     const auto options = std::make_shared<SetFilterOptions>();
     cli::CommandLine& line = program.command(
-        SetFilterName, "Give a frame or view that a cluster is rendering another filter, or other values.");
+        SetFilterName, "Change the filter, or its parameters, of a view that a cluster is rendering.");
     line.positional("FILTER", "NAME[:key=value,...]; tessera filters lists them", options->filter);
-    line.option("--view", "of this view of a live scene, by its name; tessera edit -c people lists them",
+    line.option("--view", "name of the view of a live scene; tessera edit -c people lists them",
                 options->view);
     add_cluster_options(line, options->address);
     line.required("--master");

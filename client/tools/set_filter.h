@@ -4,7 +4,7 @@
 
 namespace tessera::tools {
 
-// tessera set-filter: another filter for the frame that a cluster is rendering.
+// tessera set-filter: changes the filter of a view that a cluster is rendering.
 Command set_filter_command(cli::CommandLine& program);
 
 }  // namespace tessera::tools

@@ -79,7 +79,7 @@ std::string as_json(const session::ClusterStatus& status) {
                          {"kind", node.summary.kind},
                          {"phase", enumerator_name(node.phase)},
                          {"version", version_value(node.version)},
-                         {"units_in_hand", node.units_in_hand},
+                         {"units_in_hand", node.units_in_flight},
                          {"samples_per_second", node.samples_per_second},
                          {"round_trip_seconds", node.round_trip_seconds},
                          {"stuck", node.stuck},
@@ -127,7 +127,7 @@ void print_table(const session::ClusterStatus& status) {
                 static_cast<unsigned long long>(status.units.lost));
     if (const session::SceneStatus& live = status.scene; !live.title.empty()) {
         std::printf("%s '%s': %u members, %u views, %llu edits, %llu transactions\n",
-                    live.exclusive ? "scene of one client" : "live scene", live.title.c_str(), live.members,
+                    live.exclusive ? "exclusive scene" : "live scene", live.title.c_str(), live.members,
                     live.views, static_cast<unsigned long long>(live.edits),
                     static_cast<unsigned long long>(live.transactions));
         for (const session::StageTimes& stage : live.stages) {
@@ -147,7 +147,7 @@ void print_table(const session::ClusterStatus& status) {
         std::printf("%-16.16s %-16.16s %-9.9s %-10s %8llu %6u %14.3f %9.2f %11.3f +-%7.3f%s\n",
                     node.summary.name.c_str(), node.summary.host.c_str(), node.summary.backend.c_str(),
                     std::string(enumerator_name(node.phase)).c_str(),
-                    static_cast<unsigned long long>(node.version.number), node.units_in_hand,
+                    static_cast<unsigned long long>(node.version.number), node.units_in_flight,
                     node.samples_per_second * 1e-6, node.round_trip_seconds * 1e3,
                     node.clock_offset_seconds * 1e3, node.clock_bound_seconds * 1e3,
                     node.stuck ? "  stuck" : "");
@@ -171,7 +171,7 @@ int run(const StatusOptions& options) {
         }
         return 0;
     } catch (const Error& error) {
-        return complain(StatusName, exit_code(error.code()), error.what());
+        return report_error(StatusName, exit_code(error.code()), error.what());
     }
 }
 
@@ -184,7 +184,7 @@ Command status_command(cli::CommandLine& program) {
     add_cluster_options(command, options->address);
     command.flag("--json", "print one JSON object", options->json);
     command.option("--chrome-trace",
-                   "write where the time of the latest edits went, for ui.perfetto.dev or chrome://tracing",
+                   "write a trace of the latest edits' latencies, for ui.perfetto.dev or chrome://tracing",
                    options->chrome_trace);
     command.examples({"tessera status --master tcp://render-1:7420 --keys ~/.tessera",
                       "tessera status --master tcp://127.0.0.1:7420 --json"});

@@ -13,11 +13,11 @@ namespace tessera::tools {
 namespace {
 
 constexpr const char* Camera = "tessera.camera.pose";
-constexpr const char* Optics = "tessera.camera.optics";  // where it is no pinhole: projection and lens
-// Where it moves while the shutter is open: 16 numbers for each step after the pose.
+constexpr const char* Optics = "tessera.camera.optics";  // only if not a pinhole: projection and lens
+// Where it moves while the shutter is open: 16 numbers for each motion key after the pose.
 constexpr const char* Motion = "tessera.camera.motion";
 constexpr const char* PathClassName = "tessera.pathClass";
-constexpr std::size_t MaxSteps = 256;  // of a motion that is read
+constexpr std::size_t MaxKeys = 256;  // limit when reading
 
 void put(std::string& text, double value) {
     std::array<char, 40> number{};
@@ -41,14 +41,14 @@ bool get(std::istream& text, glm::dmat4& matrix) {
     return true;
 }
 
-// Nothing where it is damaged.
+// Nothing if the attribute is malformed.
 std::optional<std::vector<glm::dmat4>> motion_of(const std::string& attribute) {
     std::istringstream text(attribute);
-    std::vector<glm::dmat4> steps;
+    std::vector<glm::dmat4> keys;
     while (!(text >> std::ws).eof()) {
-        if (steps.size() == MaxSteps || !get(text, steps.emplace_back())) return std::nullopt;
+        if (keys.size() == MaxKeys || !get(text, keys.emplace_back())) return std::nullopt;
     }
-    return steps;
+    return keys;
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ std::map<std::string, std::string> view_attributes(const view::View& view) {
         attributes[Optics] = text.data();
     }
     if (!view.camera.motion.empty()) {
-        for (const glm::dmat4& step : view.camera.motion) put(attributes[Motion], step);
+        for (const glm::dmat4& key : view.camera.motion) put(attributes[Motion], key);
     }
     return attributes;
 }
@@ -103,9 +103,9 @@ Expected<view::View> view_from_attributes(const std::map<std::string, std::strin
         view.camera.aperture = static_cast<scene::Aperture>(aperture);
     }
     if (const auto motion = attributes.find(Motion); motion != attributes.end()) {
-        const auto steps = motion_of(motion->second);
-        if (!steps) return wrong(Motion);
-        view.camera.motion = *steps;
+        const auto keys = motion_of(motion->second);
+        if (!keys) return wrong(Motion);
+        view.camera.motion = *keys;
     }
     const auto& names = path_class_names();
     const auto path_class = attributes.find(PathClassName);

@@ -9,7 +9,7 @@
 
 namespace tessera::tools {
 
-// What a filter must know of the view, as text attributes of an EXR, and back again.
+// Converts the view parameters that filters need to text attributes of an EXR, and back.
 std::map<std::string, std::string> view_attributes(const view::View& view);
 Expected<view::View> view_from_attributes(const std::map<std::string, std::string>& attributes);
 

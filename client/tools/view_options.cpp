@@ -38,60 +38,67 @@ Expected<void> set_optics(const ViewOptions& options, ViewPlan& plan) {
     return {};
 }
 
-constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 28;  // that a master takes at a time
+constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 28;  // limit of a master per view
 
 }  // namespace
 
 void ViewOptions::add_scene_to(cli::CommandLine& command) {
     command.positional(
         "SCENE",
-        "scene file: .gltf, .glb, .obj, .ply, .stl, .tessera, .x3d (its lights fall off by the square)",
+        "scene file: .gltf, .glb, .obj, .ply, .stl, .tessera, .x3d (lights use inverse-square falloff)",
         scene);
     command.option("--size", "picture size in pixels", size);
-    command.option("--camera", "camera of the scene: its name, or its number from 0", camera);
-    command.option("--orthographic", "parallel rays: the picture is so many metres high", orthographic);
-    command.option("--lens-radius", "of a thin lens, in metres; 0 = a pinhole (the camera's own)",
+    command.option("--camera", "camera of the scene, by name or by number from 0", camera);
+    command.option("--orthographic", "orthographic camera with this picture height in metres", orthographic);
+    command.option("--lens-radius",
+                   "lens radius in metres, for depth of field; 0 = pinhole (default: the camera's)",
                    lens_radius);
-    command.option("--focus", "distance along the axis that is sharp, in metres (the camera's own)", focus);
-    command.choice("--aperture", "how light is spread over the lens (the camera's own)", aperture,
-                   {"uniform", "gaussian"});
-    command.option("--at", "seconds into the scene's animations (the pose at rest)", at);
-    command.option("--shutter", "seconds that the shutter is open: what moves from then on is blurred (0)",
+    command.option("--focus", "focus distance along the camera axis in metres (default: the camera's)",
+                   focus);
+    command.choice("--aperture", "transmission profile of the lens aperture (default: the camera's)",
+                   aperture, {"uniform", "gaussian"});
+    command.option("--at", "time in the scene's animations, in seconds (default: the rest pose)", at);
+    command.option("--shutter", "shutter time in seconds, from the time of --at, for motion blur (0)",
                    shutter);
-    command.option("--animation", "play only this one: its name, or its number from 0 (all together)",
+    command.option("--animation", "play only this animation, by name or by number from 0 (default: all)",
                    animation);
-    command.option("--hide", "leave out this part, by its name in the file; may be given several times",
-                   hidden);
-    command.option("--material", "PART=MATERIAL, both by name; may be given several times", materials);
-    command.option("--crop", "render only the part X,Y,W,H of the picture", crop);
-    command.option("--layers", "see only objects in these layers of the scene, 0 to 31: 0,2 (all)", layers);
-    command.option("--seed", "another seed, other noise", seed);
+    command.option("--hide", "hide this part, by its name in the file; may be given several times", hidden);
+    command.option("--material",
+                   "PART=MATERIAL: assign a material to a part, both by name; may be given several times",
+                   materials);
+    command.option("--crop", "render only the crop window X,Y,W,H of the picture, in pixels", crop);
+    command.option("--layers", "render only objects in these object layers, 0 to 31, as 0,2 (all)", layers);
+    command.option("--seed", "seed of the random numbers", seed);
 }
 
 void ViewOptions::add_to(cli::CommandLine& command) {
     add_scene_to(command);
     command.option("--background",
-                   "uniform light from all around: linear R,G,B (a soft sky where the scene has no light)",
+                   "uniform environment light: linear R,G,B (scenes without lights get a default sky)",
                    background);
     command.option("--env", "environment map, latitude-longitude .exr or .hdr", environment);
-    command.option("--env-strength", "factor on the environment map", environment_strength);
-    command.flag("--solid-glass", "glass of glTF files refracts although they tell of no volume",
+    command.option("--env-strength", "scale factor of the environment map", environment_strength);
+    command.flag("--solid-glass",
+                 "treat transmissive glTF materials without KHR_materials_volume as solid refractive glass, "
+                 "not thin-walled",
                  solid_glass);
-    command.option("--bounces", "how often light is scattered on; 0 = direct light only", bounces);
-    command.choice("--pixel-filter", "how a sample counts for the pixels around it", pixel_filter,
+    command.option("--bounces",
+                   "maximum path depth: scattering events after the first hit; 0 = direct light only",
+                   bounces);
+    command.choice("--pixel-filter", "pixel reconstruction filter", pixel_filter,
                    {"box", "gaussian", "blackman-harris"});
-    command.choice(
-        "--renderer",
-        "path tracing, or direct light and perfect speculars only; raster: the latter with first "
-        "hits from a rasteriser, by nodes with --backend vulkan; coverage: a colour for each object",
-        renderer, {"path", "whitted", "raster", "coverage"});
-    command.choice("--path-class", "paths that the pixel filter may blur", path_class, path_class_names());
-    command.choice("--feature-rule", "what the shading feature of the filter fdf counts", feature_rule,
+    command.choice("--renderer",
+                   "path: path tracing; whitted: direct light, perfect mirrors and smooth glass only; "
+                   "raster: whitted with "
+                   "rasterised first hits, needs nodes with --backend vulkan; coverage: a colour per object",
+                   renderer, {"path", "whitted", "raster", "coverage"});
+    command.choice("--path-class", "which paths the denoiser may blur", path_class, path_class_names());
+    command.choice("--feature-rule", "shading feature of the filter fdf", feature_rule,
                    {"demodulated", "connections"});
-    command.flag("--transparent", "nothing behind the scene: write alpha", transparent);
+    command.flag("--transparent", "transparent background: write alpha", transparent);
 }
 
-Expected<ViewPlan> understand(const ViewOptions& options) {
+Expected<ViewPlan> parse_options(const ViewOptions& options) {
     ViewPlan plan;
     plan.scene = options.scene;
     plan.camera = options.camera;
@@ -111,7 +118,7 @@ Expected<ViewPlan> understand(const ViewOptions& options) {
     }
     if (plan.view.window.pixel_count() > MaxPixels)
         return failure(ErrorCode::InvalidInput,
-                       "--size: more than 2^28 pixels; take fewer, or a part with --crop");
+                       "--size: more than 2^28 pixels; choose a smaller size, or a part with --crop");
     if (options.background) {
         const auto color = parse_color(*options.background);
         if (!color) return wrong("--background", color.error());
@@ -129,7 +136,7 @@ Expected<ViewPlan> understand(const ViewOptions& options) {
         return failure(ErrorCode::InvalidInput, "--at: must be a number of seconds up to 1e9");
     plan.import.at = options.at;
     if (options.shutter && !(*options.shutter >= 0.0 && *options.shutter <= 1e9))
-        return failure(ErrorCode::InvalidInput, "--shutter: must be open for 0 to 1e9 seconds");
+        return failure(ErrorCode::InvalidInput, "--shutter: must be 0 to 1e9 seconds");
     plan.import.shutter = options.shutter.value_or(0.0);
     plan.import.animation = options.animation.value_or("");
     if (options.environment) plan.import.environment = *options.environment;

@@ -13,7 +13,7 @@
 
 namespace tessera::tools {
 
-// What render and probe have in common: which scene is seen, and how. As typed.
+// The options shared by render, coverage and probe, as typed.
 struct ViewOptions {
     std::string scene;
     std::string size = "1280x720";
@@ -29,31 +29,31 @@ struct ViewOptions {
     std::string renderer = "path", path_class = "indirect", feature_rule = "demodulated";
     bool transparent = false;
 
-    void add_scene_to(cli::CommandLine& command);  // what is seen, whatever its light
-    void add_to(cli::CommandLine& command);        // all of them
+    void add_scene_to(cli::CommandLine& command);  // options that do not concern lighting
+    void add_to(cli::CommandLine& command);        // all options
 };
 
-// The same, understood.
+// The validated options.
 struct ViewPlan {
     std::string scene;
     import::ImportOptions import;
     import::Configuration configuration;
     std::optional<std::string> camera;
-    std::optional<double> lens_radius, focus_distance, orthographic_height;  // instead of the camera's
+    std::optional<double> lens_radius, focus_distance, orthographic_height;  // override the camera's
     std::optional<scene::Aperture> aperture;
     Size size;
     view::View view;  // without camera and channels
 };
-Expected<ViewPlan> understand(const ViewOptions& options);
+Expected<ViewPlan> parse_options(const ViewOptions& options);
 
-// The scene with its parts and materials as chosen.
+// Imports the scene and applies the chosen configuration.
 Expected<import::ImportedScene> import_scene(const ViewPlan& plan);
 
-// By name, else by number from 0; without a choice the first. The failure names the nearest.
+// By name, else by number from 0; the first by default. The error suggests the nearest name.
 Expected<import::CameraInfo> choose_camera(const std::vector<import::CameraInfo>& cameras,
                                            const std::optional<std::string>& choice);
 
-// plan.view with the camera, and what the plan says instead of its values.
+// plan.view with the camera and the overrides of the plan.
 view::View view_from(const ViewPlan& plan, const import::CameraInfo& camera);
 
 }  // namespace tessera::tools

@@ -11,14 +11,14 @@ namespace tessera::tools {
 
 namespace {
 
-Finding describe(const vulkan::DeviceInfo& device) {
+Diagnostic describe(const vulkan::DeviceInfo& device) {
     std::string refusals;
     for (const std::string& reason : device.refused) refusals += (refusals.empty() ? "" : ", ") + reason;
-    Finding finding{.verdict = device.refused.empty() ? Verdict::Good : Verdict::Poor,
-                    .subject = "Vulkan device " + std::to_string(device.index),
-                    .fact = device.name + " (" + vulkan::kind_name(device.kind) + ")",
-                    .remedy = refusals.empty() ? "" : "refused: " + refusals};
-    finding.facts = {
+    Diagnostic diagnostic{.severity = device.refused.empty() ? Severity::Ok : Severity::Warning,
+                          .subject = "Vulkan device " + std::to_string(device.index),
+                          .fact = device.name + " (" + vulkan::kind_name(device.kind) + ")",
+                          .remedy = refusals.empty() ? "" : "refused: " + refusals};
+    diagnostic.facts = {
         {"vulkan", vulkan::version_text(device.api_version)},
         {"driver", device.driver},
         {"memory_bytes", device.device_memory_bytes},
@@ -32,37 +32,37 @@ Finding describe(const vulkan::DeviceInfo& device) {
         {"buffer_bytes", device.buffer_bytes},
         {"allocation_bytes", device.allocation_bytes},
         {"timestamps", device.timestamp_period > 0},
-        {"keeps_denormals", device.keeps_denormals},
-        {"rounds_to_even", device.rounds_to_even},
+        {"keeps_denormals", device.supports_denormals},
+        {"rounds_to_even", device.supports_round_to_even},
         {"memory_budget", device.memory_budget},
         {"ray_query", device.ray_query},
         {"draws", device.draws},
     };
-    return finding;
+    return diagnostic;
 }
 
 }  // namespace
 
-void examine_vulkan(Findings& findings) {
+void examine_vulkan(Diagnostics& diagnostics) {
     try {
         const vulkan::Instance instance;
         const auto devices = vulkan::list_devices(instance);
-        for (const vulkan::DeviceInfo& device : devices) findings.push_back(describe(device));
+        for (const vulkan::DeviceInfo& device : devices) diagnostics.push_back(describe(device));
         if (devices.empty()) {
-            findings.push_back({Verdict::Poor, "Vulkan", "no device",
-                                "install mesa-vulkan-drivers or the GPU maker's driver"});
+            diagnostics.push_back({Severity::Warning, "Vulkan", "no device",
+                                   "install mesa-vulkan-drivers or the GPU maker's driver"});
         }
     } catch (const Error& error) {
-        findings.push_back({Verdict::Poor, "Vulkan", "none", error.what()});
+        diagnostics.push_back({Severity::Warning, "Vulkan", "none", error.what()});
     }
 }
 
 #else
 
-void examine_vulkan(Findings& findings) {
-    findings.push_back({Verdict::Poor, "Vulkan", "not built",
-                        "install libvulkan-dev, glslc and spirv-tools and configure with "
-                        "-DTESSERA_BACKEND_VULKAN=ON"});
+void examine_vulkan(Diagnostics& diagnostics) {
+    diagnostics.push_back({Severity::Warning, "Vulkan", "not built",
+                           "install libvulkan-dev, glslc and spirv-tools and configure with "
+                           "-DTESSERA_BACKEND_VULKAN=ON"});
 }
 
 #endif

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "client/tools/findings.h"
+#include "client/tools/diagnostics.h"
 
 namespace tessera::tools {
 
-// One finding for every Vulkan device, also for those that the back-end refuses, with the reasons; one that
-// says so where there is none or where the back-end was not built.
-void examine_vulkan(Findings& findings);
+// Adds one diagnostic per Vulkan device, including those that the back-end refuses (with the reasons), or a single
+// one if there is no device or the back-end was not built.
+void examine_vulkan(Diagnostics& diagnostics);
 
 }  // namespace tessera::tools

@@ -39,12 +39,15 @@ struct WatchOptions {
     bool once = false, no_wait = false;
 };
 
-// Red, green and blue of the frame in the size of the whole view: a coarse one with larger pixels.
+// RGB of the frame at the full size of the view; coarse frames are upsampled to larger pixels.
 frame::Image image_of(const client::Frame& frame, std::uint32_t width, std::uint32_t height) {
     frame::Image image(width, height, 3);
     const std::size_t pixels = std::size_t{frame.width} * frame.height;
     if (frame.components < 3 || frame.picture.size() != pixels * frame.components * sizeof(float))
-        throw Error(ErrorCode::InvalidInput, "the master sent a picture of another shape than it said");
+        throw Error(
+            ErrorCode::InvalidInput,
+            "the master sent a picture whose size does not match its header: check that master and client "
+            "are of the same version");
     std::vector<float> values(pixels * frame.components);
     std::memcpy(values.data(), frame.picture.data(), frame.picture.size());
     for (std::uint32_t y = 0; y < height; ++y) {
@@ -58,7 +61,7 @@ frame::Image image_of(const client::Frame& frame, std::uint32_t width, std::uint
     return image;
 }
 
-// One run of the command: joins, watches until the end, shows.
+// One run of the command: joins the scene, requests the view and shows its frames.
 class Watch {
   public:
     explicit Watch(const WatchOptions& options) : options_(options) {}
@@ -66,21 +69,23 @@ class Watch {
     int run() {
         to_terminal_ = !options_.output && is_terminal();
         if (!options_.output && !to_terminal_)
-            return complain(WatchName, cli::ExitUsage,
-                            "nowhere to show the frames: standard output is no terminal; add -o FILE");
+            return report_error(WatchName, cli::ExitUsage,
+                                "cannot show the frames: standard output is not a terminal; add -o FILE");
         if (options_.output && !picture_format(*options_.output))
-            return complain(WatchName, cli::ExitUsage, "-o: end the name with .exr, .png or .jpg");
-        const auto filter = understand(options_.filter);
-        if (!filter) return complain(WatchName, cli::ExitUsage, filter.error().what());
+            return report_error(WatchName, cli::ExitUsage,
+                                "-o: the file name must end in .exr, .png or .jpg");
+        const auto filter = parse_options(options_.filter);
+        if (!filter) return report_error(WatchName, cli::ExitUsage, filter.error().what());
         filter_ = *filter;
-        const auto transform = understand(options_.display);
-        if (!transform) return complain(WatchName, cli::ExitUsage, transform.error().what());
-        transform_ = *transform;
+        const auto display = parse_options(options_.display);
+        if (!display) return report_error(WatchName, cli::ExitUsage, display.error().what());
+        display_ = *display;
         std::optional<Duration> limit;
         if (options_.time) {
             const auto parsed = parse_duration(*options_.time);
             if (!parsed)
-                return complain(WatchName, cli::ExitUsage, std::string("--time: ") + parsed.error().what());
+                return report_error(WatchName, cli::ExitUsage,
+                                    std::string("--time: ") + parsed.error().what());
             limit = *parsed;
         }
         if (const auto code = choose_size()) return *code;
@@ -91,12 +96,13 @@ class Watch {
              .when_busy = options_.no_wait ? client::WhenBusy::GiveUp : client::WhenBusy::Queue,
              .on_place =
                  [](std::uint32_t place) {
-                     std::cerr << "tessera watch: the cluster is busy: place " << place << " in the queue\n";
+                     std::cerr << "tessera watch: the cluster is busy: waiting, queue position " << place
+                               << "\n";
                  }},
             interrupts_.token());
         if (std::holds_alternative<client::Stopped>(joined)) return ExitInterrupted;
         if (const auto* busy = std::get_if<client::Busy>(&joined))
-            return complain(WatchName, cli::ExitTryLater, busy->reason);
+            return report_error(WatchName, cli::ExitTryLater, busy->reason);
         open_view();
         return watch(limit ? clock_.now() + *limit : TimePoint::max());
     }
@@ -107,7 +113,8 @@ class Watch {
         size_ = to_terminal_ ? Size{terminal.columns, 2 * (terminal.rows - 1)} : Size{1280, 720};
         if (!options_.size) return std::nullopt;
         const auto size = parse_size(*options_.size);
-        if (!size) return complain(WatchName, cli::ExitUsage, std::string("--size: ") + size.error().what());
+        if (!size)
+            return report_error(WatchName, cli::ExitUsage, std::string("--size: ") + size.error().what());
         size_ = *size;
         return std::nullopt;
     }
@@ -116,12 +123,14 @@ class Watch {
         session::ViewRequest request{.name = options_.view,
                                      .stop = {.spp = options_.spp},
                                      .picture = session::PictureEncoding::Planes};
-        const bool shares = !options_.view.empty();
-        if (!shares) {
-            // Until somebody loads a scene there may be none.
+        const bool is_shared = !options_.view.empty();
+        if (!is_shared) {
+            // There is no camera until a client loads a scene.
             while (!view::choose_camera(session_->scene(), "") && !interrupts_.token().stop_requested()) {
-                if (!told_) std::cerr << "tessera watch: the scene has no camera yet: waiting for one\n";
-                told_ = true;
+                if (!camera_wait_logged_)
+                    std::cerr
+                        << "tessera watch: the scene has no camera yet: waiting for a client to add one\n";
+                camera_wait_logged_ = true;
                 ::usleep(100000);
                 session_->refresh();
             }
@@ -135,7 +144,7 @@ class Watch {
             request.view.channels = {frame::Channel::Radiance};
             request.view.filter = filter_;
         }
-        shares ? session_->share_view(View, request) : session_->request_view(View, request);
+        is_shared ? session_->share_view(View, request) : session_->request_view(View, request);
     }
 
     int watch(TimePoint end) {
@@ -155,7 +164,8 @@ class Watch {
         }
         if (interrupts_.token().stop_requested()) return options_.once ? ExitInterrupted : 0;
         return options_.once
-                   ? complain(WatchName, cli::ExitTryLater, "the time is over before the frame was complete")
+                   ? report_error(WatchName, cli::ExitTryLater,
+                                  "the time limit expired before the frame was complete: raise --time")
                    : 0;
     }
 
@@ -163,9 +173,10 @@ class Watch {
         const std::uint32_t width = options_.view.empty() ? size_.width : frame.width * frame.scale;
         const std::uint32_t height = options_.view.empty() ? size_.height : frame.height * frame.scale;
         const frame::Image image = image_of(frame, width, height);
-        // Of the first frame with light in it, so that brightness does not pump while the scene is edited.
-        if (!transform_.exposure) transform_.exposure = picture::measured_exposure(image);
-        if (options_.output) write_picture(*options_.output, image, transform_);
+        // Measured on the first frame that is not black, and kept: brightness must not pump while the scene is edited.
+        if (!display_.transform.exposure) display_.transform.exposure = picture::measured_exposure(image);
+        if (options_.output)
+            write_picture(*options_.output, image, display_.transform, display_.custom_view());
         char text[160];
         std::snprintf(text, sizeof text, "frame %llu, version %llu, %ux%u%s, %llu of %llu samples%s",
                       static_cast<unsigned long long>(count),
@@ -174,8 +185,7 @@ class Watch {
                       static_cast<unsigned long long>(frame.samples_least),
                       static_cast<unsigned long long>(frame.spp), frame.complete ? ", complete" : "");
         if (to_terminal_) {
-            const auto rgb =
-                picture::srgb_bytes(image, {transform_.view_transform, transform_.exposure.value_or(0.0)});
+            const auto rgb = picture::display_bytes(image, display_.transform, display_.custom_view());
             const std::string picture = terminal_picture(width, height, rgb);
             std::cout << picture << text << "\x1b[K" << std::flush;
         } else {
@@ -187,9 +197,9 @@ class Watch {
     WatchOptions options_;
     SteadyClock clock_;
     Size size_;
-    view::DisplayTransform transform_;
+    DisplayChoice display_;
     std::string filter_;
-    bool to_terminal_ = false, told_ = false;
+    bool to_terminal_ = false, camera_wait_logged_ = false;
     std::unique_ptr<client::Session> session_;
 };
 
@@ -197,7 +207,7 @@ int run(const WatchOptions& options) {
     try {
         return Watch(options).run();
     } catch (const Error& error) {
-        return complain(WatchName, exit_code(error.code()), error.what());
+        return report_error(WatchName, exit_code(error.code()), error.what());
     }
 }
 
@@ -206,21 +216,25 @@ int run(const WatchOptions& options) {
 Command watch_command(cli::CommandLine& program) {
     const auto options = std::make_shared<WatchOptions>();
     cli::CommandLine& line = program.command(
-        WatchName, "Watch a live scene: in the terminal, or in a picture file that is kept new.");
+        WatchName,
+        "Watch a live scene in the terminal, or in a picture file that is updated with every frame.");
     add_cluster_options(line, options->address);
-    line.option("--name", "how others see this client", options->name);
-    line.option("--scene", "title of the live scene, if this starts it", options->title);
-    line.option("--view", "watch this view of somebody; tessera edit -c people lists them", options->view);
-    line.option("--camera", "camera of the scene: its name, or its number from 0", options->camera);
-    line.option("--size", "picture size in pixels (1280x720, or that of the terminal)", options->size);
+    line.option("--name", "name of this client, as other members see it", options->name);
+    line.option("--scene", "title of the scene, if a new one is opened", options->title);
+    line.option("--view", "watch this view of another client; tessera edit -c people lists them",
+                options->view);
+    line.option("--camera", "camera of the scene, by name or by number from 0", options->camera);
+    line.option("--size", "picture size in pixels (default: 1280x720, or the size of the terminal)",
+                options->size);
     line.option("--spp", "samples per pixel of the complete frame", options->spp);
     options->filter.add_to(line);
     options->display.add_to(line);
     line.option("-o,--output", "write every frame to this picture, .png, .jpg or .exr", options->output);
-    line.flag("--once", "end when the frame is complete", options->once);
-    line.option("--frames", "end after so many frames; 0 = never", options->frames);
-    line.option("--time", "end after so long, as 10s or 5m", options->time);
-    line.flag("--no-wait", "exit with 75 when a batch has the cluster, instead of waiting", options->no_wait);
+    line.flag("--once", "exit when the frame is complete", options->once);
+    line.option("--frames", "exit after this many frames; 0 = never", options->frames);
+    line.option("--time", "exit after this time, as 10s or 5m", options->time);
+    line.flag("--no-wait", "exit with 75 if a batch job uses the cluster, instead of waiting",
+              options->no_wait);
     line.examples({"tessera watch --master tcp://render-1:7420 --keys ~/.tessera",
                    "tessera watch --master tcp://127.0.0.1:7420 -o now.png --once --spp 64 --denoise",
                    "tessera watch --master tcp://127.0.0.1:7420 --view ann/1"});

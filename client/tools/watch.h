@@ -4,7 +4,7 @@
 
 namespace tessera::tools {
 
-// `tessera watch`: shows the frames of a live scene as they get better.
+// `tessera watch`: shows the frames of a live scene as they converge.
 Command watch_command(cli::CommandLine& program);
 
 }  // namespace tessera::tools

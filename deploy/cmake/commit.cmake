@@ -1,4 +1,4 @@
-# Writes the file OUTPUT with the commit that SOURCE is at, if it is another one than before; "" where that is not known.
+# Writes the file OUTPUT with the commit of SOURCE, if it has changed; "" if it is unknown.
 # Usage: cmake -D SOURCE=folder -D OUTPUT=file -P commit.cmake
 execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --exclude=*
   OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)

@@ -1,4 +1,4 @@
-# Every outside library in one place; targets link what they name in section 2 of the architecture (README).
+# All external libraries in one place.
 find_package(Threads REQUIRED)
 find_package(glm REQUIRED)
 find_package(tl-expected REQUIRED CONFIG)
@@ -15,14 +15,20 @@ find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
 pkg_check_modules(libedit REQUIRED IMPORTED_TARGET libedit)
-pkg_check_modules(libzip REQUIRED IMPORTED_TARGET libzip)  # its CMake files ask for its programs, too
+pkg_check_modules(libzip REQUIRED IMPORTED_TARGET libzip)  # its CMake files also require its programs
 find_package(pugixml REQUIRED CONFIG)
 find_package(TinyGLTF REQUIRED CONFIG)
 find_package(draco REQUIRED CONFIG)
-# Debian's libdraco has a TinyGLTF of another layout in it, and exports it: the linker has to see the right one first.
+# Debian's libdraco contains and exports a TinyGLTF with another layout: the linker has to see the right one first.
 set_property(TARGET TinyGLTF::TinyGLTF APPEND PROPERTY INTERFACE_LINK_LIBRARIES draco::draco)
 find_package(assimp REQUIRED CONFIG)
 find_package(SDL2 REQUIRED CONFIG)
+# For --ocio, where it is installed.
+if(TESSERA_CI)
+  find_package(OpenColorIO REQUIRED CONFIG)
+else()
+  find_package(OpenColorIO QUIET CONFIG)
+endif()
 if(TESSERA_BACKEND_EMBREE OR TESSERA_BACKEND_VULKAN)  # Vulkan: builds trees
   find_package(embree 3 REQUIRED CONFIG)
 endif()

@@ -1,10 +1,10 @@
 # One interface target for warnings, code generation and sanitizers.
 add_library(tessera_flags INTERFACE)
 target_compile_options(tessera_flags INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
-  -Wno-missing-field-initializers  # designated initialisers name what differs from the default
-  -Wno-restrict)                   # GCC 12 sees overlaps in inlined std::string that are not there (GCC bug 105651)
+  -Wno-missing-field-initializers  # designated initialisers only name non-default members
+  -Wno-restrict)                   # false positives of GCC 12 in inlined std::string (GCC bug 105651)
 
-# Bits must not depend on the host that compiled or on contraction: x86-64-v3, no FMA contraction, never fast-math.
+# Results must be bit-identical for any compiling host: x86-64-v3, no FMA contraction, no fast-math.
 target_compile_options(tessera_flags INTERFACE -march=x86-64-v3 -ffp-contract=off)
 
 if(TESSERA_SANITIZE)
@@ -21,8 +21,8 @@ if(TESSERA_CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${TESSERA_CCACHE})
 endif()
 if(CMAKE_BUILD_TYPE STREQUAL "Release")
-  # Assertions stay on: they cost nothing where it matters. Line numbers for profilers take a tenth of the time of a build,
-  # and are for those who change things.
+  # Assertions stay on: their cost is negligible. Line numbers for profilers take a tenth of the build time, so only
+  # development builds have them.
   set(CMAKE_CXX_FLAGS_RELEASE "-O3")
   if(NOT CMAKE_UNITY_BUILD)
     set(CMAKE_CXX_FLAGS_RELEASE "-O3 -g1")

@@ -1,12 +1,12 @@
 # tessera_shaders(TARGET FILE.comp ... [DEFINES NAME=VALUE ...] [SUFFIX text] [KEEP_CALLS])
 # Compiles GLSL for core Vulkan 1.3, checks it with spirv-val and embeds it in the target. Files are named from the
-# repository root, and so are their includes (#include "mediator/shading/..."), which are tracked. The words of
+# repository root, as are their includes (#include "mediator/shading/..."), which are tracked. The SPIR-V words of
 # backends/vulkan/shaders/trace.comp are then
 #     #include "backends/vulkan/shaders/trace.comp.h"
 #     std::span<const std::uint32_t> tessera::vulkan::shaders::trace_comp()
-# SUFFIX tells variants of one file apart: trace.comp with SUFFIX wide gives trace_wide.comp.h and trace_wide_comp().
-# KEEP_CALLS leaves functions as calls, for kernels of many: glslc's optimiser copies each into every place that calls
-# it (paths of light: 20 times slower to compile, 3 times the words) and drivers do so themselves.
+# SUFFIX distinguishes variants of one file: trace.comp with SUFFIX wide gives trace_wide.comp.h and trace_wide_comp().
+# KEEP_CALLS disables inlining, for large kernels: glslc's optimiser inlines every call (path tracing: 20 times slower to
+# compile, 3 times the words), and drivers inline themselves.
 function(tessera_shaders target)
   cmake_parse_arguments(ARG "KEEP_CALLS" "SUFFIX" "DEFINES" ${ARGN})
   set(generated ${CMAKE_BINARY_DIR}/generated)

@@ -1,5 +1,5 @@
-# Completion for bash of tessera, tessera-master, tessera-node and tessera-display: commands, options, and values where they
-# are a choice, all from --help. Put into ~/.bashrc:  source deploy/completions/tessera.bash
+# Completion for bash of tessera, tessera-master, tessera-node and tessera-display: commands, options, and values of
+# options with fixed choices, all from --help. Put into ~/.bashrc:  source deploy/completions/tessera.bash
 _tessera() {
     local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} i help line
     local command=("${COMP_WORDS[0]}")

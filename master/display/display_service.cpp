@@ -15,7 +15,7 @@ using session::OutputState;
 
 namespace {
 
-// Of a choice of layers to show, bit i: layer i.
+// `shown`: bit i is compositing layer i.
 std::string layer_problem(const display::Display& display, std::uint32_t shown) {
     if (shown >> display.layers.size() == 0) return {};
     if (display.layers.empty()) return "the display has no layers to choose from: its file names none";
@@ -52,11 +52,12 @@ std::string DisplayService::open(const scene::BlobPtr& description, std::vector<
     const std::size_t count = decoded->outputs.size();
     const auto interval =
         std::chrono::duration_cast<Duration>(std::chrono::duration<double>(1.0 / decoded->rate));
-    // Who shows an output of that name already goes on with it.
-    std::map<std::string, Shower> showers;
+    // Clients that show an output of the same name keep it.
+    std::map<std::string, OutputClient> output_clients;
     if (open_) {
-        for (std::size_t i = 0; i < open_->showers.size(); ++i) {
-            if (open_->showers[i]) showers[open_->display.outputs[i].name] = *open_->showers[i];
+        for (std::size_t i = 0; i < open_->output_clients.size(); ++i) {
+            if (open_->output_clients[i])
+                output_clients[open_->display.outputs[i].name] = *open_->output_clients[i];
         }
     }
     if (open_) forget();
@@ -66,30 +67,30 @@ std::string DisplayService::open(const scene::BlobPtr& description, std::vector<
                        .content = std::move(content),
                        .camera = std::move(camera),
                        .lock = FrameLock({}, count, interval),
-                       .showers = std::vector<std::optional<Shower>>(count),
+                       .output_clients = std::vector<std::optional<OutputClient>>(count),
                        .stereo_differences = std::vector<double>(count),
                        .samples = std::vector<std::uint64_t>(count)});
     open_->content.push_back(description);
     events_({wire::Severity::Info, "display '" + open_->display.name + "' is open: " + std::to_string(count) +
                                        (count == 1 ? " output" : " outputs")});
-    tell_of_camera();
+    report_camera();
     renderer_.group().open(open_->display.spp, open_->display.coarsest, authority_.version());
     for (std::size_t i = 0; i < count; ++i) {
-        const auto shower = showers.extract(open_->display.outputs[i].name);
-        if (shower.empty()) continue;
-        open_->showers[i] = shower.mapped();
-        tell(i, 0);
+        const auto output_client = output_clients.extract(open_->display.outputs[i].name);
+        if (output_client.empty()) continue;
+        open_->output_clients[i] = output_client.mapped();
+        notify_opened(i, 0);
     }
-    for (const auto& [name, shower] : showers)
-        dismiss(shower, "the display that is open now has no output '" + name + "'");
+    for (const auto& [name, output_client] : output_clients)
+        dismiss(output_client, "the display that is open now has no output '" + name + "'");
     tick(now);
     return {};
 }
 
 void DisplayService::close() {
     if (!open_) return;
-    for (const auto& shower : open_->showers) {
-        if (shower) dismiss(*shower, "the display was closed");
+    for (const auto& output_client : open_->output_clients) {
+        if (output_client) dismiss(*output_client, "the display was closed");
     }
     forget();
 }
@@ -113,27 +114,26 @@ std::string DisplayService::adjust(const session::DisplayAdjustment& request) {
             adjusted.layers[i].shown = ((*request.shown_layers >> i) & 1u) != 0;
     }
     if (std::string problem = first_problem(adjusted); !problem.empty()) return problem;
-    display::Display alike = open_->display;
-    alike.exposure = adjusted.exposure;
-    if (alike != adjusted) {
+    display::Display same_but_exposure = open_->display;
+    same_but_exposure.exposure = adjusted.exposure;
+    if (same_but_exposure != adjusted) {
         renderer_.group().changed();
     } else if (open_->display.exposure != adjusted.exposure) {
-        renderer_.group().take_again();  // other pictures of the same light
+        renderer_.group().resample();  // the same films with another exposure
     }
     open_->display = std::move(adjusted);
     if (request.pattern && open_->pattern != *request.pattern) {
         open_->pattern = *request.pattern;
-        for (std::size_t i = 0; i < open_->showers.size(); ++i) {
-            if (open_->showers[i]) tell(i, 0);
+        for (std::size_t i = 0; i < open_->output_clients.size(); ++i) {
+            if (open_->output_clients[i]) notify_opened(i, 0);
         }
     }
     return {};
 }
 
 void DisplayService::move_head(const display::Head& head) {
-    if (!open_ || open_->display.head == head || !display::is_somewhere(head)) return;
-    // Out of sight of a screen its picture would be behind the eye: the last place where all could be seen
-    // stays.
+    if (!open_ || open_->display.head == head || !display::has_valid_position(head)) return;
+    // Behind a screen there is no frustum: the head stays at the last position from which all screens are visible.
     const display::Display& display = open_->display;
     try {
         for (const display::Output& output : display.outputs) {
@@ -160,28 +160,28 @@ std::string DisplayService::join(const SessionRecord& session, const wire::JoinO
         return "the display has no output '" + request.name + "'; it has: " + names;
     }
     const auto index = static_cast<std::size_t>(found - outputs.begin());
-    std::optional<Shower>& shower = open_->showers[index];
-    if (shower && shower->session != session.id)
-        return "output '" + request.name + "' is shown already, by a process on " + shower->host +
+    std::optional<OutputClient>& output_client = open_->output_clients[index];
+    if (output_client && output_client->session != session.id)
+        return "output '" + request.name + "' is shown already, by a process on " + output_client->host +
                ": stop that one first";
-    if (!shower)
+    if (!output_client)
         events_({wire::Severity::Info, "output '" + request.name + "' is shown on " + session.hello.host});
-    shower = Shower{session.id, session.hello.host, request.request};
-    tell(index, request.request);
-    present(open_->lock.left(index, now), now);  // what it had in hand is lost
+    output_client = OutputClient{session.id, session.hello.host, request.request};
+    notify_opened(index, request.request);
+    present(open_->lock.left(index, now), now);  // its frame in flight is lost
     return {};
 }
 
-void DisplayService::dismiss(const Shower& shower, const std::string& reason) {
-    if (const SessionRecord* session = sessions_.find(shower.session))
-        outbox_.control(session->control, wire::RequestDone{shower.request, false, reason});
+void DisplayService::dismiss(const OutputClient& output_client, const std::string& reason) {
+    if (const SessionRecord* session = sessions_.find(output_client.session))
+        outbox_.control(session->control, wire::RequestDone{output_client.request, false, reason});
 }
 
-void DisplayService::tell(std::size_t output, std::uint64_t request) {
-    Shower& shower = *open_->showers[output];
-    const SessionRecord* session = sessions_.find(shower.session);
+void DisplayService::notify_opened(std::size_t output, std::uint64_t request) {
+    OutputClient& output_client = *open_->output_clients[output];
+    const SessionRecord* session = sessions_.find(output_client.session);
     if (session == nullptr) return;
-    ++shower.unanswered;
+    ++output_client.unanswered;
     outbox_.control(session->control,
                     wire::OutputOpened{.request = request,
                                        .output = {.description = open_->description,
@@ -191,8 +191,8 @@ void DisplayService::tell(std::size_t output, std::uint64_t request) {
 
 std::optional<std::size_t> DisplayService::output_of(SessionId session) const {
     if (!open_) return std::nullopt;
-    for (std::size_t i = 0; i < open_->showers.size(); ++i) {
-        if (open_->showers[i] && open_->showers[i]->session == session) return i;
+    for (std::size_t i = 0; i < open_->output_clients.size(); ++i) {
+        if (open_->output_clients[i] && open_->output_clients[i]->session == session) return i;
     }
     return std::nullopt;
 }
@@ -200,13 +200,13 @@ std::optional<std::size_t> DisplayService::output_of(SessionId session) const {
 void DisplayService::left(SessionId session, TimePoint now) {
     while (const auto output = output_of(session)) {
         events_({wire::Severity::Warning, "output '" + open_->display.outputs[*output].name +
-                                              "' has disappeared: the others go on without it"});
-        open_->showers[*output].reset();
+                                              "' has disconnected: the others continue without it"});
+        open_->output_clients[*output].reset();
         present(open_->lock.left(*output, now), now);
     }
 }
 
-void DisplayService::tell_of_camera() {
+void DisplayService::report_camera() {
     if (const auto& carrier = open_->camera.world_from_camera(); !carrier)
         events_({wire::Severity::Warning,
                  "display '" + open_->display.name + "' waits: " + carrier.error().what()});
@@ -214,7 +214,7 @@ void DisplayService::tell_of_camera() {
 
 bool DisplayService::scene_changed(const scene::ChangeList& changes) {
     if (!open_ || !open_->camera.follow(changes, authority_.scene())) return false;
-    tell_of_camera();
+    report_camera();
     renderer_.group().changed();
     return open_->camera.world_from_camera().has_value();
 }
@@ -225,27 +225,29 @@ std::optional<glm::dvec3> DisplayService::head_in_world() const {
     return *open_->camera.world_from_camera() * glm::dvec4(head, 1.0);
 }
 
-void DisplayService::made(MadeOutput&& output, TimePoint now) {
-    // Of the frame that was ordered first, or of a display before.
-    if (!open_ || open_->making.empty() || open_->making.front().number != output.order.frame) return;
-    Frame& frame = open_->making.front();
+void DisplayService::add_output(OutputResult&& output, TimePoint now) {
+    // Results arrive in order of request; ignores those of an earlier display.
+    if (!open_ || open_->in_progress.empty() || open_->in_progress.front().number != output.request.frame)
+        return;
+    Frame& frame = open_->in_progress.front();
     if (!output.error.empty() && !std::exchange(frame.failed, true))
-        events_({wire::Severity::Warning, "a frame of the display is left out: " + output.error});
-    frame.outputs.at(output.order.output) = std::move(output);
+        events_({wire::Severity::Warning, "a frame of the display is skipped: " + output.error});
+    frame.outputs.at(output.request.output) = std::move(output);
     if (--frame.missing > 0) return;
     if (!frame.failed) open_->waiting = std::move(frame);
-    open_->making.pop_front();
+    open_->in_progress.pop_front();
     send_waiting(now);
 }
 
-// Pictures need a process's bulk link, which may be known later than what it asked for, and go another way
-// than what it is told of the display.
+// Pictures need the client's bulk link, which may connect after its request, and are not ordered with the control
+// messages about the display.
 void DisplayService::admit() {
-    for (std::size_t i = 0; i < open_->showers.size(); ++i) {
-        const auto& shower = open_->showers[i];
-        if (!shower || shower->unanswered > 0 || open_->lock.outputs()[i].state != OutputState::Absent)
+    for (std::size_t i = 0; i < open_->output_clients.size(); ++i) {
+        const auto& output_client = open_->output_clients[i];
+        if (!output_client || output_client->unanswered > 0 ||
+            open_->lock.outputs()[i].state != OutputState::Absent)
             continue;
-        const SessionRecord* session = sessions_.find(shower->session);
+        const SessionRecord* session = sessions_.find(output_client->session);
         if (session != nullptr && session->bulk) open_->lock.joined(i);
     }
 }
@@ -254,10 +256,10 @@ void DisplayService::send_waiting(TimePoint now) {
     admit();
     if (!open_->lock.free()) return;
     const bool is_new = open_->waiting.has_value();
-    if (!is_new && !(open_->latest && open_->lock.anybody_joins())) return;
-    for (std::size_t i = 0; i < open_->showers.size(); ++i) {
+    if (!is_new && !(open_->latest && open_->lock.has_joining())) return;
+    for (std::size_t i = 0; i < open_->output_clients.size(); ++i) {
         const SessionRecord* session =
-            open_->showers[i] ? sessions_.find(open_->showers[i]->session) : nullptr;
+            open_->output_clients[i] ? sessions_.find(open_->output_clients[i]->session) : nullptr;
         if (session == nullptr) continue;
         if (const auto clock = session->clock.offset(now)) open_->lock.clock_bound(i, clock->bound);
     }
@@ -266,29 +268,29 @@ void DisplayService::send_waiting(TimePoint now) {
     open_->version = frame.version;
     for (std::size_t i = 0; i < frame.outputs.size(); ++i) {
         open_->samples[i] = frame.outputs[i].samples_least;
-        if (frame.outputs[i].order.stereo_difference)
+        if (frame.outputs[i].request.stereo_difference)
             open_->stereo_differences[i] = frame.outputs[i].stereo_difference;
     }
-    const auto whom = is_new ? FrameLock::Whom::All : FrameLock::Whom::Joining;
-    for (const std::size_t output : open_->lock.begin(frame.number, whom, now)) send(output);
+    const auto recipients = is_new ? FrameLock::Recipients::All : FrameLock::Recipients::Joining;
+    for (const std::size_t output : open_->lock.begin(frame.number, recipients, now)) send(output);
 }
 
 void DisplayService::send(std::size_t index) {
-    const SessionRecord* session = sessions_.find(open_->showers[index]->session);
+    const SessionRecord* session = sessions_.find(open_->output_clients[index]->session);
     if (session == nullptr || !session->bulk) return;
     const Frame& frame = *open_->latest;
-    const MadeOutput& output = frame.outputs[index];
+    const OutputResult& output = frame.outputs[index];
     const auto eyes = display::eyes(open_->display.outputs[index].stereo);
     for (std::size_t eye = 0; eye < output.eyes.size(); ++eye) {
-        const MadeOutput::Picture& picture = output.eyes[eye];
+        const OutputResult::Picture& picture = output.eyes[eye];
         wire::OutputPicture piece{.frame = frame.number,
                                   .eye = eyes[eye],
                                   .eyes = static_cast<std::uint32_t>(eyes.size()),
                                   .version = frame.version,
-                                  .camera = output.order.eyes[eye].in_display,
+                                  .camera = output.request.eyes[eye].in_display,
                                   .width = picture.width,
                                   .height = picture.height,
-                                  .encoding = output.order.encoding,
+                                  .encoding = output.request.encoding,
                                   .samples = output.samples_least,
                                   .total = picture.bytes->size()};
         const std::span<const std::byte> bytes(*picture.bytes);
@@ -304,7 +306,7 @@ void DisplayService::ready(SessionId session, const wire::OutputReady& ready, Ti
     const auto output = output_of(session);
     if (!output) return;
     if (ready.frame == 0) {
-        std::size_t& unanswered = open_->showers[*output]->unanswered;
+        std::size_t& unanswered = open_->output_clients[*output]->unanswered;
         if (unanswered > 0) --unanswered;
         return send_waiting(now);
     }
@@ -314,11 +316,12 @@ void DisplayService::ready(SessionId session, const wire::OutputReady& ready, Ti
 void DisplayService::present(const std::optional<FrameLock::Present>& present, TimePoint now) {
     if (present) {
         for (const std::size_t output : present->outputs) {
-            const SessionRecord* session =
-                open_->showers[output] ? sessions_.find(open_->showers[output]->session) : nullptr;
+            const SessionRecord* session = open_->output_clients[output]
+                                               ? sessions_.find(open_->output_clients[output]->session)
+                                               : nullptr;
             if (session == nullptr) continue;
             session::PresentFrame order{.frame = present->frame, .version = open_->version};
-            // Without a word of its clock yet: at once.
+            // While the clock offset is unknown: present at once.
             if (const auto clock = session->clock.offset(now)) {
                 order.at = (present->at.time_since_epoch() + clock->offset).count();
                 order.bound = clock->bound.count();
@@ -335,8 +338,8 @@ void DisplayService::tick(TimePoint now) {
     present(open_->lock.tick(now), now);
     for (std::size_t i = 0; i < before.size(); ++i) {
         if (open_->lock.outputs()[i].late > before[i].late)
-            events_({wire::Severity::Warning,
-                     "output '" + open_->display.outputs[i].name + "' is late: the others go on without it"});
+            events_({wire::Severity::Warning, "output '" + open_->display.outputs[i].name +
+                                                  "' is late: the others continue without it"});
     }
     using enum LockstepGroup::Consumer;
     while (const auto stage = renderer_.next_group_stage(can_take() ? Free : Busy, now)) take(*stage);
@@ -354,11 +357,11 @@ session::DisplayStatus DisplayService::status(TimePoint now) const {
                                   .version = open_->version,
                                   .rate = open_->lock.rate(now),
                                   .outputs = {}};
-    for (std::size_t i = 0; i < open_->showers.size(); ++i) {
+    for (std::size_t i = 0; i < open_->output_clients.size(); ++i) {
         const FrameLock::Output& output = open_->lock.outputs()[i];
-        const bool is_coming = open_->showers[i] && output.state == OutputState::Absent;
+        const bool is_coming = open_->output_clients[i] && output.state == OutputState::Absent;
         status.outputs.push_back({.name = open_->display.outputs[i].name,
-                                  .host = open_->showers[i] ? open_->showers[i]->host : "",
+                                  .host = open_->output_clients[i] ? open_->output_clients[i]->host : "",
                                   .state = is_coming ? OutputState::Joining : output.state,
                                   .frames = output.frames,
                                   .late = output.late,

@@ -1,4 +1,4 @@
-// What the nodes render for a display, and the pictures that are made of it.
+// The views that nodes render for a display, and the requests for pictures of its outputs.
 #include "master/display/display_service.h"
 #include "mediator/display/frustum.h"
 
@@ -61,32 +61,31 @@ std::vector<GroupView> DisplayService::views() {
     return wanted;
 }
 
-// One is made while another waits or is made, so that nodes need not wait for either; a third would only be
-// older by the time that it is shown.
+// Two frames are in progress or waiting, so that nodes need not wait for either; a third would only add latency.
 bool DisplayService::can_take() const {
-    return open_->making.size() + (open_->waiting ? 1 : 0) < 2;
+    return open_->in_progress.size() + (open_->waiting ? 1 : 0) < 2;
 }
 
-// By the plan that the stage's views were asked for: the display may have been adjusted since.
+// Uses the plan of the request for this stage: the display may have been adjusted since.
 void DisplayService::take(const GroupStage& stage) {
     const display::Display& display = open_->display;
-    Frame& frame = open_->making.emplace_back(Frame{.number = next_frame_++, .version = stage.version});
+    Frame& frame = open_->in_progress.emplace_back(Frame{.number = next_frame_++, .version = stage.version});
     frame.missing = display.outputs.size();
     frame.outputs.resize(display.outputs.size());
     auto view = stage.views.begin();
     for (std::size_t i = 0; i < display.outputs.size(); ++i) {
         const std::vector<PlannedEye>& eyes = open_->plan.at(i);
-        OutputOrder order{.frame = frame.number, .output = i, .version = stage.version, .eyes = {}};
-        order.encoding = display::takes_linear_light(display.outputs[i]) ? session::PictureEncoding::Half
-                                                                         : session::PictureEncoding::Bytes;
-        order.transform = {display.view_transform, display.exposure, display.white};
-        order.stereo_difference = display.stereo_difference && eyes.size() == 2 && stage.scale == 1;
+        OutputRequest request{.frame = frame.number, .output = i, .version = stage.version, .eyes = {}};
+        request.encoding = display::takes_linear_light(display.outputs[i]) ? session::PictureEncoding::Half
+                                                                           : session::PictureEncoding::Bytes;
+        request.transform = {display.view_transform, display.exposure, display.white};
+        request.stereo_difference = display.stereo_difference && eyes.size() == 2 && stage.scale == 1;
         for (const PlannedEye& eye : eyes) {
             const auto end = view + static_cast<std::ptrdiff_t>(eye.layers);
-            order.eyes.push_back({.layers = {view, end}, .in_display = eye.in_display});
+            request.eyes.push_back({.layers = {view, end}, .in_display = eye.in_display});
             view = end;
         }
-        renderer_.make_output(std::move(order));
+        renderer_.reconstruct_output(std::move(request));
     }
 }
 

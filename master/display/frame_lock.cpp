@@ -12,39 +12,39 @@ constexpr std::size_t KeptTimes = 64;
 
 void FrameLock::joined(std::size_t output) {
     outputs_[output].state = OutputState::Joining;
-    outputs_[output].in_hand = 0;
+    outputs_[output].in_flight = 0;
     waiting_.erase(output);
     ready_.erase(output);
 }
 
 std::optional<FrameLock::Present> FrameLock::left(std::size_t output, TimePoint now) {
     outputs_[output].state = OutputState::Absent;
-    outputs_[output].in_hand = 0;
+    outputs_[output].in_flight = 0;
     waiting_.erase(output);
     ready_.erase(output);
     return present_if_all_ready(now);
 }
 
-bool FrameLock::anybody_joins() const {
+bool FrameLock::has_joining() const {
     return std::any_of(outputs_.begin(), outputs_.end(),
                        [](const Output& output) { return output.state == OutputState::Joining; });
 }
 
-std::vector<std::size_t> FrameLock::begin(std::uint64_t frame, Whom whom, TimePoint now) {
+std::vector<std::size_t> FrameLock::begin(std::uint64_t frame, Recipients recipients, TimePoint now) {
     std::vector<std::size_t> receivers;
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
         Output& output = outputs_[i];
-        const bool is_locked = output.state == OutputState::Locked && whom == Whom::All;
+        const bool is_locked = output.state == OutputState::Locked && recipients == Recipients::All;
         if (output.state != OutputState::Joining && !is_locked) continue;
         output.state = OutputState::Locked;
-        output.in_hand = frame;
+        output.in_flight = frame;
         output.sent_at = now;
         receivers.push_back(i);
     }
     waiting_ = {receivers.begin(), receivers.end()};
     ready_.clear();
     frame_ = receivers.empty() ? 0 : frame;
-    is_new_ = whom == Whom::All;
+    is_new_ = recipients == Recipients::All;
     last_sign_ = now;
     pause_ = Duration::zero();
     return receivers;
@@ -52,8 +52,8 @@ std::vector<std::size_t> FrameLock::begin(std::uint64_t frame, Whom whom, TimePo
 
 std::optional<FrameLock::Present> FrameLock::ready(std::size_t i, std::uint64_t frame, TimePoint now) {
     Output& output = outputs_[i];
-    if (output.in_hand == 0 || frame < output.in_hand) return std::nullopt;
-    output.in_hand = 0;
+    if (output.in_flight == 0 || frame < output.in_flight) return std::nullopt;
+    output.in_flight = 0;
     if (output.state == OutputState::Late) {
         output.state = OutputState::Joining;
         const Duration took = std::min(now - output.sent_at, settings_.most_patience / 2);
@@ -80,12 +80,12 @@ std::optional<FrameLock::Present> FrameLock::present_if_all_ready(TimePoint now)
     if (frame_ == 0 || !waiting_.empty()) return std::nullopt;
     Present present{.frame = frame_, .at = {}, .outputs = {ready_.begin(), ready_.end()}};
     frame_ = 0;
-    constexpr int Forgets = 16;  // after so many frames two thirds of what was expected are forgotten
+    constexpr int Forgets = 16;  // decays to a third after this many frames
     expected_ = std::max(pause_, expected_.value_or(Duration::zero()) * (Forgets - 1) / Forgets);
     if (present.outputs.empty()) return std::nullopt;
     Duration lead = settings_.least_lead;
     for (const std::size_t i : present.outputs) {
-        // The order takes at most a round trip, twice the bound of the clock's offset.
+        // The message takes at most a round trip, twice the bound of the clock offset.
         lead = std::max(lead, 2 * outputs_[i].bound);
         ++outputs_[i].frames;
     }

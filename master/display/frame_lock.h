@@ -13,35 +13,34 @@
 namespace tessera::master {
 
 struct LockSettings {
-    // An output is late when nobody became ready for so long, and for twice as long as the longest pause
-    // between two in frames before (large pictures and busy machines take their time).
+    // An output is late when no output became ready for this long, and for twice the longest pause between two in earlier
+    // frames (large pictures and busy machines take longer).
     Duration patience = std::chrono::milliseconds(100);
-    Duration first_patience = std::chrono::seconds(5);  // nothing is known of the first frame yet
-    // What a late output is given the next time, at most, however long it took.
+    Duration first_patience = std::chrono::seconds(5);  // for the first frame
+    // Upper limit of the patience with an output that was late before.
     Duration most_patience = std::chrono::seconds(2);
-    // Between the order to present and its time, at least: it must have arrived by then.
+    // Limits of the time between the present message and its present time: the message must have arrived by then.
     Duration least_lead = std::chrono::milliseconds(2), most_lead = std::chrono::milliseconds(50);
 };
 
-// All outputs of a display present frame f together, in two phases: every output says that it has f ready,
-// then all are told when to show it. Whoever is not ready in time is dropped from the lock: it delays
-// the others once, by the patience, and is back as soon as it answers. Pure: (state, event, now) ->
-// actions.
+// A software swap barrier: all outputs of a display present frame f together, in two phases. Every output reports that f
+// is ready, then all are sent the present time. An output that is not ready in time is dropped from the lock: it delays
+// the others once, by the patience, and rejoins as soon as it answers. Pure: (state, event, now) -> actions.
 //
-//   Absent   nobody shows the output          joined -> Joining
+//   Absent   has no output client             joined -> Joining
 //   Joining  takes part from the next frame   begin -> Locked, if it is free
 //   Locked   is waited for                    patience over -> Late · left -> Absent
-//   Late     has an old frame in hand         ready, whichever frame -> Joining
+//   Late     has an old frame in flight       ready, whichever frame -> Joining
 class FrameLock {
   public:
     struct Output {
         session::OutputState state = session::OutputState::Absent;
-        std::uint64_t in_hand = 0;  // frame that was sent and not answered; 0 = free
-        TimePoint sent_at{};        // when
-        Duration bound{0};          // of what is known of its clock
+        std::uint64_t in_flight = 0;  // frame that was sent and not answered; 0 = free
+        TimePoint sent_at{};          // when
+        Duration bound{0};            // of its clock offset
         std::uint64_t frames = 0, late = 0;
     };
-    // What is to be told: to whom, and when to show which frame.
+    // The message to send: the recipients, the frame and its present time.
     struct Present {
         std::uint64_t frame = 0;
         TimePoint at{};
@@ -55,16 +54,16 @@ class FrameLock {
     std::optional<Present> left(std::size_t output, TimePoint now);
     void clock_bound(std::size_t output, Duration bound) { outputs_[output].bound = bound; }
 
-    // No frame is on its way.
+    // No frame is in flight.
     bool free() const { return frame_ == 0; }
     // A frame is sent to these outputs now. The lock is free. Who has just joined may be sent the frame that
     // the others show already.
-    enum class Whom { All, Joining };
-    std::vector<std::size_t> begin(std::uint64_t frame, Whom whom, TimePoint now);
-    bool anybody_joins() const;
-    // Frames count up; what is said of older ones only shows that the output lives.
+    enum class Recipients { All, Joining };
+    std::vector<std::size_t> begin(std::uint64_t frame, Recipients recipients, TimePoint now);
+    bool has_joining() const;
+    // Frame numbers increase; a report of an older one only shows that the output is alive.
     std::optional<Present> ready(std::size_t output, std::uint64_t frame, TimePoint now);
-    // Drops who is late.
+    // Drops late outputs.
     std::optional<Present> tick(TimePoint now);
     TimePoint next_event() const { return frame_ == 0 ? TimePoint::max() : last_sign_ + patience(); }
 
@@ -81,11 +80,11 @@ class FrameLock {
     LockSettings settings_;
     Duration interval_;
     std::vector<Output> outputs_;
-    std::uint64_t frame_ = 0;           // on its way; 0 = none
-    bool is_new_ = false;               // nobody shows it yet
-    TimePoint last_sign_{};             // of the frame: begun, or somebody was ready
+    std::uint64_t frame_ = 0;           // in flight; 0 = none
+    bool is_new_ = false;               // not presented yet
+    TimePoint last_sign_{};             // of the frame: sent, or an output became ready
     Duration pause_{0};                 // the longest between two signs
-    std::optional<Duration> expected_;  // of frames before; an old one counts less and less
+    std::optional<Duration> expected_;  // from earlier frames, decaying
     std::set<std::size_t> waiting_, ready_;
     TimePoint last_at_{};
     std::vector<TimePoint> presented_;  // the latest

@@ -28,14 +28,14 @@ class Bilateral final : public Filter {
         shape(out.picture, inputs, components);
         {
             const bool demodulate = values[Demodulate] == 1.0;
-            Stage stage(report, "features",
-                        Features::bytes_per_pixel(components, demodulate) + Features::GuideBytes);
+            PassTimer timer(report, "features",
+                            Features::bytes_per_pixel(components, demodulate) + Features::GuideBytes);
             if (!features_.prepare(inputs, demodulate, context)) return false;
             const std::array scales{scale_of(values[SigmaAlbedo]), scale_of(values[SigmaNormal]),
                                     scale_of(values[SigmaDepth])};
             if (!features_.guides(inputs, DepthGuide::Logarithm, scales, guides_, context)) return false;
         }
-        Stage stage(report, "window", 4.0 * (GuideCount + 1 + 2 * components));
+        PassTimer timer(report, "window", 4.0 * (GuideCount + 1 + 2 * components));
         const float sigma = static_cast<float>(values[Sigma]);
         return components == 4 ? blur<4>(sigma, out.picture, context) : blur<3>(sigma, out.picture, context);
     }
@@ -72,24 +72,29 @@ class Bilateral final : public Filter {
 }  // namespace
 
 FilterEntry bilateral_entry() {
-    return {
-        {.name = "bilateral",
-         .summary = "cross-bilateral filter: Gaussian weights of albedo, normal and depth",
-         .source = "Eisemann 2004",
-         .parameters =
-             {{"sigma", "px", "spatial standard deviation", 3.0, 0.1, 16.0, {}},
-              {"sigma_albedo", "", "difference of albedos that still mixes", 0.05, 1e-3, 1e3, {}},
-              {"sigma_normal", "", "difference of unit normals that still mixes", 0.15, 1e-3, 1e3, {}},
-              {"sigma_depth", "of the depth", "difference of depths that still mixes", 0.05, 1e-4, 1e3, {}},
-              {"demodulate", "", "filter the light without the albedo", 0, 0, 1, {"off", "on"}}},
-         .channels =
-             [](const Values&) {
-                 return frame::ChannelSet{Channel::Radiance, Channel::Albedo, Channel::Normal,
-                                          Channel::Depth};
-             }},
-        [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> {
-            return std::make_unique<Bilateral>();
-        }};
+    return {{.name = "bilateral",
+             .summary = "cross-bilateral filter: Gaussian weights of albedo, normal and depth",
+             .source = "Eisemann 2004",
+             .parameters =
+                 {{"sigma", "px", "spatial standard deviation", 3.0, 0.1, 16.0, {}},
+                  {"sigma_albedo", "", "standard deviation in albedo", 0.05, 1e-3, 1e3, {}},
+                  {"sigma_normal",
+                   "",
+                   "standard deviation of the difference of unit normals",
+                   0.15,
+                   1e-3,
+                   1e3,
+                   {}},
+                  {"sigma_depth", "of the depth", "standard deviation in depth", 0.05, 1e-4, 1e3, {}},
+                  {"demodulate", "", "divide radiance by albedo before filtering", 0, 0, 1, {"off", "on"}}},
+             .channels =
+                 [](const Values&) {
+                     return frame::ChannelSet{Channel::Radiance, Channel::Albedo, Channel::Normal,
+                                              Channel::Depth};
+                 }},
+            [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> {
+                return std::make_unique<Bilateral>();
+            }};
 }
 
 }  // namespace tessera::filter

@@ -6,7 +6,7 @@
 
 namespace tessera::filter {
 
-// Every reconstruction there is, `none` first. One line each; the names are those of --filter.
+// All denoisers, `none` first; their names are the values of --filter.
 std::span<const FilterEntry> catalog();
 
 }  // namespace tessera::filter

@@ -17,9 +17,9 @@ enum Parameters : std::size_t { Levels, SigmaColor, SigmaNormal, SigmaDepth, Dem
 
 constexpr std::uint32_t ColorGuides = 3, SurfaceGuides = 4;
 constexpr std::uint32_t Guides = ColorGuides + SurfaceGuides;
-constexpr std::array<float, 3> Spline{3.0f / 8.0f, 1.0f / 4.0f, 1.0f / 16.0f};  // by distance from the middle
+constexpr std::array<float, 3> Spline{3.0f / 8.0f, 1.0f / 4.0f, 1.0f / 16.0f};  // by distance from the centre
 
-// In order, so that bits do not depend on threads.
+// Sequential, so that the bits do not depend on the number of threads.
 float mean_luminance(const Features& features) {
     const Planes& color = features.color();
     const auto known = features.known().plane(0);
@@ -47,8 +47,8 @@ class Eaw final : public Filter {
         shape(guides_, inputs, Guides);
         {
             const bool demodulate = values[Demodulate] == 1.0;
-            Stage stage(report, "features",
-                        Features::bytes_per_pixel(components, demodulate) + Features::GuideBytes);
+            PassTimer timer(report, "features",
+                            Features::bytes_per_pixel(components, demodulate) + Features::GuideBytes);
             if (!features_.prepare(inputs, demodulate, context)) return false;
             const std::array scales{1.0f, scale_of(values[SigmaNormal]), scale_of(values[SigmaDepth])};
             if (!features_.guides(inputs, DepthGuide::Logarithm, scales, surface_, context)) return false;
@@ -60,8 +60,8 @@ class Eaw final : public Filter {
         const float white = mean_luminance(features_);
         const Planes* from = &features_.color();
         for (std::uint32_t level = 0; level < levels; ++level) {
-            Stage stage(report, "level", 4.0 * (2 * ColorGuides + Guides + 1 + 2 * components));
-            // So that the last level leaves its result in the picture.
+            PassTimer timer(report, "level", 4.0 * (2 * ColorGuides + Guides + 1 + 2 * components));
+            // The last level writes to the output picture.
             Planes& to = (levels - level) % 2 == 1 ? out.picture : between_;
             shape(to, inputs, components);
             const float scale = scale_of(values[SigmaColor]) * std::ldexp(1.0f, static_cast<int>(level));
@@ -71,7 +71,7 @@ class Eaw final : public Filter {
             if (!done) return false;
             from = &to;
         }
-        Stage stage(report, "finish", 4.0 * 3 * components);
+        PassTimer timer(report, "finish", 4.0 * 3 * components);
         if (levels == 0) std::ranges::copy(from->values(), out.picture.values().begin());
         return for_rows(context, inputs.height,
                         [&](std::uint32_t y) { features_.finish_row(out.picture, y); });
@@ -115,29 +115,34 @@ class Eaw final : public Filter {
 }  // namespace
 
 FilterEntry eaw_entry() {
-    return {
-        {.name = "eaw",
-         .summary = "edge-avoiding a-trous wavelets: colour, normal and depth stop them",
-         .source = "Dammertz 2010",
-         .parameters =
-             {{"levels", "", "levels; the taps of level i are 2^i pixels apart", 5, 0, 8, {}},
-              {"sigma_color",
-               "of colour / (colour + mean luminance)",
-               "difference of colours that still mixes at the first level; halves at each next",
-               1.0,
-               1e-3,
-               1e3,
-               {}},
-              {"sigma_normal", "", "difference of unit normals that still mixes", 0.15, 1e-3, 1e3, {}},
-              {"sigma_depth", "of the depth", "difference of depths that still mixes", 0.05, 1e-4, 1e3, {}},
-              {"demodulate", "", "filter the light without the albedo", 1, 0, 1, {"off", "on"}}},
-         .channels =
-             [](const Values& values) {
-                 frame::ChannelSet channels{Channel::Radiance, Channel::Normal, Channel::Depth};
-                 if (values[Demodulate] == 1.0) channels.insert(Channel::Albedo);
-                 return channels;
-             }},
-        [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> { return std::make_unique<Eaw>(); }};
+    return {{.name = "eaw",
+             .summary = "edge-avoiding a-trous wavelets, guided by colour, normal and depth",
+             .source = "Dammertz 2010",
+             .parameters =
+                 {{"levels", "", "levels; the taps of level i are 2^i pixels apart", 5, 0, 8, {}},
+                  {"sigma_color",
+                   "of colour / (colour + mean luminance)",
+                   "standard deviation in colour at the first level; halves at each next",
+                   1.0,
+                   1e-3,
+                   1e3,
+                   {}},
+                  {"sigma_normal",
+                   "",
+                   "standard deviation of the difference of unit normals",
+                   0.15,
+                   1e-3,
+                   1e3,
+                   {}},
+                  {"sigma_depth", "of the depth", "standard deviation in depth", 0.05, 1e-4, 1e3, {}},
+                  {"demodulate", "", "divide radiance by albedo before filtering", 1, 0, 1, {"off", "on"}}},
+             .channels =
+                 [](const Values& values) {
+                     frame::ChannelSet channels{Channel::Radiance, Channel::Normal, Channel::Depth};
+                     if (values[Demodulate] == 1.0) channels.insert(Channel::Albedo);
+                     return channels;
+                 }},
+            [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> { return std::make_unique<Eaw>(); }};
 }
 
 }  // namespace tessera::filter

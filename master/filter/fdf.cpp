@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "master/filter/fade.h"
+#include "master/filter/convergence_blend.h"
 #include "master/filter/fdf/feature_bilateral.h"
 #include "master/filter/fdf/nl_means.h"
 #include "master/filter/kernels.h"
@@ -26,7 +26,7 @@ enum Parameters : std::size_t {
     Patch,
     K,
     Prefilter,
-    UseFade,
+    UseConvergenceBlend,
     Demodulate
 };
 
@@ -69,10 +69,10 @@ class Fdf final : public Filter {
   private:
     // Classes, and the shading feature and its variance in units of the mean over surfaces.
     bool prepare(const Inputs& inputs, Report& report, RunContext& context) {
-        Stage stage(report, "features", 36.0);
+        PassTimer timer(report, "features", 36.0);
         const bool has_alpha = inputs.has(Channel::Alpha), has_depth = inputs.has(Channel::Depth);
         const bool has_shading = inputs.has(Channel::ShadingFeature);
-        if (!has_shading) report.notes.push_back("no shading feature: shadows are not seen");
+        if (!has_shading) report.notes.push_back("no shading feature: shadows are not preserved");
         const Planes& light = inputs.mean(Channel::ShadingFeature);
         sums_.assign(inputs.height, {});
         const bool done = for_rows(context, inputs.height, [&](std::uint32_t y) {
@@ -127,7 +127,7 @@ class Fdf final : public Filter {
     bool prefilter(const Inputs& inputs, const Values& values, Report& report, RunContext& context) {
         prefiltered_ = values[Prefilter] != 0.0 && inputs.has(Channel::ShadingFeature);
         if (!prefiltered_) return !context.stop.stop_requested();
-        Stage stage(report, "nl-means", 16.0);
+        PassTimer timer(report, "nl-means", 16.0);
         const NlmSettings settings{.form = values[Nlm] == 0.0 ? NlmForm::Standard : NlmForm::Thesis,
                                    .radius = static_cast<std::uint32_t>(values[NlmRadius]),
                                    .patch = static_cast<std::uint32_t>(values[Patch]),
@@ -145,20 +145,20 @@ class Fdf final : public Filter {
             .s_max = static_cast<float>(values[SMax]),
             .demodulation = values[Demodulate] != 0.0 ? Demodulation::On : Demodulation::Off};
         {
-            Stage stage(report, "bilateral", 4.0 * (6 + 3 + 2 * components + 1));
+            PassTimer timer(report, "bilateral", 4.0 * (6 + 3 + 2 * components + 1));
             if (!bilateral_.run(inputs, prefiltered_ ? filtered_ : shading_, classes_, settings, out.picture,
                                 self_, context)) {
                 return false;
             }
         }
-        if (values[UseFade] == 0.0) return true;
-        Stage stage(report, "fade", Fade::bytes_per_pixel(components));
-        return fade_.apply(inputs, Channel::Radiance, self_.plane(0), out.picture, context);
+        if (values[UseConvergenceBlend] == 0.0) return true;
+        PassTimer timer(report, "convergence blend", ConvergenceBlend::bytes_per_pixel(components));
+        return convergence_blend_.apply(inputs, Channel::Radiance, self_.plane(0), out.picture, context);
     }
 
     bool fill_holes(const Inputs& inputs, Planes& picture, Report& report, RunContext& context) {
         if (holes_ == 0) return true;
-        Stage stage(report, "holes", 8.0 * (picture.components() + 1));
+        PassTimer timer(report, "holes", 8.0 * (picture.components() + 1));
         ids_.resize(inputs.pixel_count());
         std::ranges::transform(classes_.plane(0), ids_.begin(),
                                [](float c) { return static_cast<std::uint32_t>(c); });
@@ -180,7 +180,7 @@ class Fdf final : public Filter {
     std::size_t holes_ = 0;
     NlMeans nl_means_;
     FeatureBilateral bilateral_;
-    Fade fade_;
+    ConvergenceBlend convergence_blend_;
     svgf::HoleFill hole_fill_;
 };
 
@@ -201,8 +201,14 @@ FilterEntry fdf_entry() {
               {"patch", "px", "radius of the prefilter's patches", 2, 0, NlmMaxPatch, {}},
               {"k", "", "standard form: deviations that count as equal", 0.5, 0.05, 10, {}},
               {"prefilter", "", "prefilter the shading feature", 1, 0, 0, {"off", "on"}},
-              {"fade", "", "fade where it would worsen the picture", 1, 0, 0, {"off", "on"}},
-              {"demodulate", "", "filter radiance / albedo", 0, 0, 0, {"off", "on"}}},
+              {"fade",
+               "",
+               "blend back to the samples where filtering would increase the error",
+               1,
+               0,
+               0,
+               {"off", "on"}},
+              {"demodulate", "", "divide radiance by albedo before filtering", 0, 0, 0, {"off", "on"}}},
          .channels =
              [](const Values&) {
                  return frame::ChannelSet{Channel::Radiance, Channel::Albedo, Channel::Normal,

@@ -20,7 +20,8 @@ float logarithm(float x) {
     return std::log(std::clamp(x, 1e-30f, 1e30f));
 }
 
-// Mean over pixels of 1 / depth where something was hit; in order, so that bits do not depend on threads.
+// Mean over pixels of 1 / depth where something was hit; sequential, so that the bits do not depend on the
+// number of threads.
 float mean_disparity(const Inputs& inputs) {
     double sum = 0.0, hits = 0.0;
     const auto depth = inputs.mean(Channel::Depth).plane(0);
@@ -63,34 +64,34 @@ bool Features::prepare(const Inputs& inputs, bool demodulate, RunContext& contex
     });
 }
 
-// Two sweeps that hand on the nearest pixel with samples that a neighbour knows of (Danielsson 1980): exact
-// but for rare ties of far holes.
+// Two sweeps that propagate the nearest pixel with samples from neighbour to neighbour (Danielsson 1980);
+// exact except for rare ties far inside holes.
 void Features::find_sources(const Inputs& inputs) {
     const auto width = static_cast<std::int32_t>(inputs.width),
                height = static_cast<std::int32_t>(inputs.height);
     const auto counts = inputs.counts.plane(0);
-    constexpr Place Nowhere{-1, -1};
+    constexpr PixelPosition Nowhere{-1, -1};
     sources_.resize(inputs.pixel_count());
-    const auto source = [&](std::int32_t x, std::int32_t y) -> Place& {
+    const auto source = [&](std::int32_t x, std::int32_t y) -> PixelPosition& {
         return sources_[static_cast<std::size_t>(y) * inputs.width + static_cast<std::size_t>(x)];
     };
-    const auto each = [&](const auto& body) {
+    const auto each = [&](const auto& function) {
         for (std::int32_t y = 0; y < height; ++y) {
-            for (std::int32_t x = 0; x < width; ++x) body(x, y, source(x, y));
+            for (std::int32_t x = 0; x < width; ++x) function(x, y, source(x, y));
         }
     };
-    each([&](std::int32_t x, std::int32_t y, Place& place) {
+    each([&](std::int32_t x, std::int32_t y, PixelPosition& position) {
         const float n = counts[static_cast<std::size_t>(y) * inputs.width + static_cast<std::size_t>(x)];
-        place = n > 0.0f ? Place{x, y} : Nowhere;
+        position = n > 0.0f ? PixelPosition{x, y} : Nowhere;
     });
     const auto ask = [&](std::int32_t x, std::int32_t y, std::int32_t dx, std::int32_t dy) {
-        Place& ours = source(x, y);
+        PixelPosition& ours = source(x, y);
         if ((ours.x == x && ours.y == y) || x + dx < 0 || x + dx >= width || y + dy < 0 || y + dy >= height)
             return;
-        const Place theirs = source(x + dx, y + dy);
+        const PixelPosition theirs = source(x + dx, y + dy);
         if (theirs.x < 0) return;
-        const auto distance = [&](Place place) {
-            const std::int64_t u = place.x - x, v = place.y - y;
+        const auto distance = [&](PixelPosition position) {
+            const std::int64_t u = position.x - x, v = position.y - y;
             return u * u + v * v;
         };
         if (ours.x < 0 || distance(theirs) < distance(ours)) ours = theirs;
@@ -104,8 +105,8 @@ void Features::find_sources(const Inputs& inputs) {
     };
     for (std::int32_t y = 0; y < height; ++y) sweep(y, -1);
     for (std::int32_t y = height; y-- > 0;) sweep(y, 1);
-    each([&](std::int32_t x, std::int32_t y, Place& place) {
-        if (place.x < 0) place = {x, y};  // no samples anywhere
+    each([&](std::int32_t x, std::int32_t y, PixelPosition& position) {
+        if (position.x < 0) position = {x, y};  // no samples anywhere
     });
 }
 
@@ -117,8 +118,8 @@ void Features::fill_row(const float* from, std::uint32_t y, float* to) const {
     const std::size_t first = std::size_t{y} * width_;
     const float* plane = from - first;
     for (std::uint32_t x = 0; x < width_; ++x) {
-        const Place place = sources_[first + x];
-        to[x] = plane[static_cast<std::size_t>(place.y) * width_ + static_cast<std::size_t>(place.x)];
+        const PixelPosition position = sources_[first + x];
+        to[x] = plane[static_cast<std::size_t>(position.y) * width_ + static_cast<std::size_t>(position.x)];
     }
 }
 

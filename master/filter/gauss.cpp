@@ -10,7 +10,7 @@ namespace {
 
 enum Parameters : std::size_t { Sigma };
 
-// Holes have no weight, so that they are filled and darken nothing.
+// Holes have no weight: they are filled and do not darken their neighbours.
 class Gauss final : public Filter {
   public:
     Report run(const Inputs& inputs, const Values& values, Output& out, RunContext context) override {
@@ -26,7 +26,7 @@ class Gauss final : public Filter {
         shape(rows_, inputs, components + 1);
         shape(weights_, inputs, 1);
         Report report;
-        Stage stage(report, "gauss", 4.0 * (4 * components + 4));
+        PassTimer timer(report, "gauss", 4.0 * (4 * components + 4));
         const bool done =
             for_rows(context, inputs.height, [&](std::uint32_t y) { blur_row(inputs, y, radius); }) &&
             for_rows(context, inputs.height, [&](std::uint32_t y) { blur_column(out.picture, y, radius); });
@@ -91,7 +91,7 @@ class Gauss final : public Filter {
 FilterEntry gauss_entry() {
     return {
         {.name = "gauss",
-         .summary = "Gaussian blur, the baseline that sees no edges",
+         .summary = "Gaussian blur; the baseline, not edge-preserving",
          .source = "",
          .parameters = {{"sigma", "px", "standard deviation", 2.0, 0.1, 64.0, {}}},
          .channels = [](const Values&) { return frame::ChannelSet{frame::Channel::Radiance}; }},

@@ -4,7 +4,7 @@
 
 namespace tessera::filter {
 
-// Gaussian blur of the radiance, cut at 3 sigma: the baseline that sees no edges.
+// Gaussian blur of the radiance, cut at 3 sigma: the baseline, not edge-preserving.
 FilterEntry gauss_entry();
 
 }  // namespace tessera::filter

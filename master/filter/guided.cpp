@@ -28,16 +28,16 @@ class Guided final : public Filter {
         shape(out.picture, inputs, components);
         {
             const bool demodulate = values[Demodulate] == 1.0;
-            Stage stage(report, "features",
-                        Features::bytes_per_pixel(components, demodulate) + 2.5 * Features::GuideBytes);
+            PassTimer timer(report, "features",
+                            Features::bytes_per_pixel(components, demodulate) + 2.5 * Features::GuideBytes);
             if (!features_.prepare(inputs, demodulate, context)) return false;
             if (!features_.guides(inputs, DepthGuide::Disparity, {1.0f, 1.0f, 1.0f}, guides_, context)) {
                 return false;
             }
             if (!normalise(context)) return false;
         }
-        Stage stage(report, "models",
-                    4.0 * (1 + 2 * GuideCount + 2 * components + 2 * (GuideCount + 1) * components));
+        PassTimer timer(report, "models",
+                        4.0 * (1 + 2 * GuideCount + 2 * components + 2 * (GuideCount + 1) * components));
         const LocalModelSettings settings{.radius = static_cast<std::uint32_t>(std::lround(values[Radius])),
                                           .ridge = static_cast<float>(values[Epsilon])};
         if (!models_.run(guides_, features_.color(), features_.known(), settings, out.picture, context)) {
@@ -52,7 +52,7 @@ class Guided final : public Filter {
         });
     }
 
-    // To mean 0 and variance 1 over the frame; a feature that is the same everywhere becomes 0.
+    // To mean 0 and variance 1 over the frame; a constant feature becomes 0.
     bool normalise(RunContext& context) {
         const std::uint32_t height = guides_.height(), width = guides_.width();
         sums_.resize(std::size_t{height} * GuideCount);
@@ -82,9 +82,9 @@ class Guided final : public Filter {
             for (std::uint32_t g = 0; g < GuideCount; ++g) {
                 const bool varies = variance[g] > 1e-12 * mean[g] * mean[g] && variance[g] > 0.0;
                 const auto scale = varies ? static_cast<float>(1.0 / std::sqrt(variance[g])) : 0.0f;
-                const auto middle = static_cast<float>(mean[g]);
+                const auto center = static_cast<float>(mean[g]);
                 float* __restrict row = guides_.row(g, y);
-                for (std::uint32_t x = 0; x < width; ++x) row[x] = (row[x] - middle) * scale;
+                for (std::uint32_t x = 0; x < width; ++x) row[x] = (row[x] - center) * scale;
             }
         });
     }
@@ -102,15 +102,16 @@ FilterEntry guided_entry() {
         {.name = "guided",
          .summary = "guided image filter: local linear models of the picture in albedo, normal and depth",
          .source = "He 2010, Bauszat 2011",
-         .parameters = {{"radius", "px", "of the windows", 4, 1, 32, {}},
-                        {"epsilon",
-                         "of the features' variances",
-                         "local variance of a feature below which it is not followed",
-                         1e-3,
-                         1e-5,
-                         10.0,
-                         {}},
-                        {"demodulate", "", "filter the light without the albedo", 0, 0, 1, {"off", "on"}}},
+         .parameters =
+             {{"radius", "px", "of the windows", 4, 1, 32, {}},
+              {"epsilon",
+               "of the features' variances",
+               "local variance of a feature below which it is ignored",
+               1e-3,
+               1e-5,
+               10.0,
+               {}},
+              {"demodulate", "", "divide radiance by albedo before filtering", 0, 0, 1, {"off", "on"}}},
          .channels =
              [](const Values&) {
                  return frame::ChannelSet{Channel::Radiance, Channel::Albedo, Channel::Normal,

@@ -9,7 +9,8 @@ namespace tessera::filter {
 //     a = (Cov(g, g) + epsilon I)^-1 Cov(g, picture),   b = mean(picture) - a . mean(g)
 //     out(p) = mean(a) . g(p) + mean(b)     over the windows that p is in
 // Features are divided by their standard deviation in the frame, so that epsilon is relative to their
-// variance. What no feature shows is blurred; what a feature shows steadily, as a curved surface, is kept.
+// variance. Detail that no feature shows is blurred; smooth changes of a feature, as on a curved surface, are
+// kept.
 FilterEntry guided_entry();
 
 }  // namespace tessera::filter

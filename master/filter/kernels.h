@@ -8,11 +8,11 @@
 #include "mediator/base/parallel.h"
 #include "mediator/filter/filter.h"
 
-// What several filters share. Inner loops run over a row of one plane and have no branches, so that they
+// Helpers shared by several filters. Inner loops run over a row of one plane without branches, so that they
 // vectorise.
 namespace tessera::filter {
 
-// Gives `planes` the frame's size, allocating only when it has another.
+// Resizes `planes` to the frame; allocates only when the size changes.
 inline void shape(Planes& planes, const Inputs& inputs, std::uint32_t components) {
     if (planes.width() != inputs.width || planes.height() != inputs.height ||
         planes.components() != components) {
@@ -20,14 +20,14 @@ inline void shape(Planes& planes, const Inputs& inputs, std::uint32_t components
     }
 }
 
-// Times a pass of a report, from its construction to its end.
-class Stage {
+// Measures the time of one pass of a report, from construction to destruction.
+class PassTimer {
   public:
-    Stage(Report& report, std::string_view name, double bytes_per_pixel)
+    PassTimer(Report& report, std::string_view name, double bytes_per_pixel)
         : report_(report), name_(name), bytes_(bytes_per_pixel) {}
-    ~Stage() { report_.passes.push_back({name_, std::chrono::steady_clock::now() - started_, bytes_}); }
-    Stage(const Stage&) = delete;
-    Stage& operator=(const Stage&) = delete;
+    ~PassTimer() { report_.passes.push_back({name_, std::chrono::steady_clock::now() - started_, bytes_}); }
+    PassTimer(const PassTimer&) = delete;
+    PassTimer& operator=(const PassTimer&) = delete;
 
   private:
     Report& report_;
@@ -36,11 +36,11 @@ class Stage {
     std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
 };
 
-// body(y) for every row; rows are independent. False: stopped on the way.
-template <class Body>
-bool for_rows(RunContext& context, std::uint32_t height, const Body& body) {
+// function(y) for every row; rows are independent. False: stopped before the end.
+template <class Function>
+bool for_rows(RunContext& context, std::uint32_t height, const Function& function) {
     parallel_for(context.arena, height, [&](std::size_t y) {
-        if (!context.stop.stop_requested()) body(static_cast<std::uint32_t>(y));
+        if (!context.stop.stop_requested()) function(static_cast<std::uint32_t>(y));
     });
     return !context.stop.stop_requested();
 }
@@ -66,7 +66,7 @@ inline float luminance(float r, float g, float b) {
     return 0.2126f * r + 0.7152f * g + 0.0722f * b;
 }
 
-// Means over squares of (2 radius + 1)^2 pixels, cut at the borders (the mean is over the pixels inside).
+// Means over squares of (2 radius + 1)^2 pixels, clipped at the borders (the mean is over the pixels inside).
 // Running sums in double per row and column, so that the result does not drift. `scratch` and `out` get the
 // shape of `in`.
 void box_mean(const Planes& in, std::uint32_t radius, Planes& scratch, Planes& out, RunContext& context);

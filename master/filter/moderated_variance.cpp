@@ -12,8 +12,8 @@ constexpr std::int64_t MostRadius = 8;
 constexpr std::int64_t Wide = Chunk + 2 * MostRadius;
 constexpr float Largest = 1e30f;  // keeps sums of squares of a window finite
 
-// What is summed over the square: degrees of freedom, known pixels, and per channel the weighted variance of
-// one sample, the mean and its square.
+// The quantities summed over the square: degrees of freedom, known pixels, and per channel the weighted
+// variance of one sample, the mean and its square.
 enum Quantity : std::size_t {
     Dof,
     Known,

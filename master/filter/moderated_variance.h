@@ -4,9 +4,9 @@
 
 namespace tessera::filter {
 
-// Variances of the mean of the radiance that few samples can be trusted with. A pixel whose samples happened
-// to be equal has variance 0 and is not exact; so each pixel's own estimate is moderated by its
-// neighbourhood's (the posterior mean of a scaled inverse chi-square prior, as in moderated t-tests; Smyth
+// Variances of the mean radiance that are reliable with few samples. A pixel whose samples happen to be equal
+// has an estimated variance of 0 without being exact; so each pixel's estimate is moderated by that of its
+// neighbourhood (the posterior mean of a scaled inverse chi-square prior, as in moderated t-tests; Smyth
 // 2004):
 //
 //     V(p) = ((n - 1) V_own + k V_0) / (n - 1 + k),     degrees of freedom n - 1 + k
@@ -23,7 +23,7 @@ class ModeratedVariance {
     const Planes& variance() const { return variance_; }  // r, g, b
     const Planes& dof() const { return dof_; }
 
-    // That run() moves per pixel.
+    // Memory traffic of run() per pixel.
     static constexpr double Bytes = 4.0 * (1 + 3 + 3 + 4);
 
   private:

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "master/filter/fade.h"
+#include "master/filter/convergence_blend.h"
 #include "master/filter/moderated_variance.h"
 #include "master/filter/nfor/selection.h"
 #include "master/filter/svgf/hole_fill.h"
@@ -14,7 +14,7 @@ namespace {
 using frame::Channel;
 using namespace nfor;
 
-enum Parameters : std::size_t { Radius, Patch, Stride, Pooled, Fading };
+enum Parameters : std::size_t { Radius, Patch, Stride, Pooled, UseConvergenceBlend };
 
 constexpr std::uint32_t PoolRadius = 3;
 
@@ -24,7 +24,8 @@ class Nfor final : public Filter {
         Report report;
         shape(out.picture, inputs, inputs.color_components());
         if (inputs.halves[0].empty()) {
-            report.notes.push_back("no halves of the samples: weights come from the samples they weigh");
+            report.notes.push_back(
+                "the film has no half buffers: weights come from the samples that they are applied to");
         }
         report.stopped = !reconstruct(inputs, values, out, context, report);
         return report;
@@ -38,19 +39,19 @@ class Nfor final : public Filter {
         settings.window.patch = static_cast<std::uint32_t>(values[Patch]);
         settings.stride = 1u << static_cast<unsigned>(values[Stride]);
         {
-            Stage stage(report, "variance", ModeratedVariance::Bytes + 4.0 * 30);
+            PassTimer timer(report, "variance", ModeratedVariance::Bytes + 4.0 * 30);
             if (!moderated_.run(inputs, static_cast<float>(values[Pooled]), PoolRadius, context))
                 return false;
             features_.gather(inputs, context);
             if (!prepare_halves(inputs, context)) return false;
         }
         {
-            Stage stage(report, "features", 4.0 * 5 * FeatureCount);
+            PassTimer timer(report, "features", 4.0 * 5 * FeatureCount);
             if (!features_.prefilter(inputs, context)) return false;
         }
         const std::array<Half, 2> halves{half(0), half(1)};
         {
-            Stage stage(report, "regression", 4.0 * 2 * (2 * (Colors + 1) * 3 + FeatureCount + 15));
+            PassTimer timer(report, "regression", 4.0 * 2 * (2 * (Colors + 1) * 3 + FeatureCount + 15));
             for (std::size_t h = 0; h < 2; ++h) {
                 if (!collaborative_.run(halves[h], halves[1 - h], features_, settings, filtered_[h],
                                         context)) {
@@ -59,17 +60,18 @@ class Nfor final : public Filter {
             }
         }
         {
-            Stage stage(report, "selection", 4.0 * (2 * 3 * 3 + 25 + 2 * 2 * Colors));
+            PassTimer timer(report, "selection", 4.0 * (2 * 3 * 3 + 25 + 2 * 2 * Colors));
             if (!selection_.run(inputs, halves, filtered_, context) ||
                 !combine(inputs, out.picture, context)) {
                 return false;
             }
         }
         if (out.wants_maps) out.maps = {{"bandwidth", selection_.first()}};
-        if (values[Fading] == 0.0) return true;
-        Stage stage(report, "fade", Fade::bytes_per_pixel(out.picture.components()));
-        if (!fade_.apply(inputs, Channel::Radiance, {}, out.picture, context)) return false;
-        if (out.wants_maps) out.maps.push_back({"fade", fade_.weights()});
+        if (values[UseConvergenceBlend] == 0.0) return true;
+        PassTimer timer(report, "convergence blend",
+                        ConvergenceBlend::bytes_per_pixel(out.picture.components()));
+        if (!convergence_blend_.apply(inputs, Channel::Radiance, {}, out.picture, context)) return false;
+        if (out.wants_maps) out.maps.push_back({"fade", convergence_blend_.weights()});
         return true;
     }
 
@@ -80,8 +82,8 @@ class Nfor final : public Filter {
                 counts_[h]};
     }
 
-    // Copies of the halves with holes filled, so that differences to a hole are finite and small. A half with
-    // no sample of its own takes the whole's mean.
+    // Copies of the halves with holes filled, so that differences to a hole are finite and small. Pixels
+    // without samples in one half take the mean of both halves.
     bool prepare_halves(const Inputs& inputs, RunContext& context) {
         const bool split = !inputs.halves[0].empty();
         shape(alpha_, inputs, 1);
@@ -125,7 +127,7 @@ class Nfor final : public Filter {
         return holes_.run(inputs.counts, one_object_, views_, context);
     }
 
-    // Light and coverage cannot be negative, nor coverage above 1, whatever a line predicts.
+    // The linear model may predict values outside the valid range: light >= 0, alpha within [0, 1].
     bool combine(const Inputs& inputs, Planes& picture, RunContext& context) {
         return for_rows(context, inputs.height, [&](std::uint32_t y) {
             const float* first = selection_.first().row(0, y);
@@ -139,9 +141,9 @@ class Nfor final : public Filter {
                 };
                 for (std::uint32_t x = 0; x < inputs.width; ++x) {
                     const float all = counts[0][x] + counts[1][x];
-                    const float share = all > 0.0f ? counts[0][x] / all : 0.5f;
+                    const float weight = all > 0.0f ? counts[0][x] / all : 0.5f;
                     const float odd = of(1, x);
-                    to[x] = std::clamp(odd + share * (of(0, x) - odd), 0.0f, most);
+                    to[x] = std::clamp(odd + weight * (of(0, x) - odd), 0.0f, most);
                 }
             }
         });
@@ -151,7 +153,7 @@ class Nfor final : public Filter {
     Regressors features_;
     Collaborative collaborative_;
     Selection selection_;
-    Fade fade_;
+    ConvergenceBlend convergence_blend_;
     svgf::HoleFill holes_;
     std::vector<std::uint32_t> one_object_;
     std::vector<svgf::PlaneView> views_;
@@ -167,9 +169,9 @@ FilterEntry nfor_entry() {
         {.name = "nfor",
          .summary = "first-order regression on features, weights by NL-means of halves; slow",
          .source = "Bitterli et al. 2016",
-         .parameters = {{"radius", "px", "half side of the window of a fit", 9, 1, MaxRadius, {}},
-                        {"patch", "px", "half side of the patches that weights compare", 3, 0, MaxPatch, {}},
-                        {"stride", "px", "distance of the centres of fits", 1, 0, 2, {"1", "2", "4"}},
+         .parameters = {{"radius", "px", "radius of the window of a fit", 9, 1, MaxRadius, {}},
+                        {"patch", "px", "radius of the patches compared for weights", 3, 0, MaxPatch, {}},
+                        {"stride", "px", "distance between the centres of fits", 1, 0, 2, {"1", "2", "4"}},
                         {"pooled",
                          "",
                          "degrees of freedom that the neighbourhood adds to a pixel's variance",
@@ -179,7 +181,7 @@ FilterEntry nfor_entry() {
                          {}},
                         {"fade",
                          "",
-                         "blends with the unfiltered picture where that has less error",
+                         "blend back to the samples where filtering would increase the error",
                          1,
                          0,
                          1,
@@ -187,7 +189,7 @@ FilterEntry nfor_entry() {
          .channels =
              [](const Values&) {
                  return frame::ChannelSet{Channel::Radiance, Channel::Albedo, Channel::Normal, Channel::Depth,
-                                          Channel::EvenHalf};
+                                          Channel::HalfBufferA};
              },
          .consistent = true},
         [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> { return std::make_unique<Nfor>(); }};

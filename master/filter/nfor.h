@@ -8,7 +8,7 @@ namespace tessera::filter {
 // regression for denoising Monte Carlo renderings"): the light around a pixel is fitted as a linear function
 // of prefiltered features and of the position, with NL-means weights on colour. Each half of the samples is
 // filtered with weights from the other; two bandwidths, and a map of which has less error. Variances are
-// those of moderated_variance.h. Slow and good: the reference among filters that are not trained.
+// those of moderated_variance.h. Slow, with high quality: the reference among filters without training.
 FilterEntry nfor_entry();
 
 }  // namespace tessera::filter

@@ -17,7 +17,7 @@ enum Parameters : std::size_t { Radius, Patch, K, Scales, Demodulate };
 
 constexpr std::uint32_t MostScales = 4;
 constexpr float MostColor = 1e18f, MostVariance = 1e37f;
-constexpr std::uint32_t VarianceRadius = 3;  // where pixels have one sample, variance is that around them
+constexpr std::uint32_t VarianceRadius = 3;  // neighbourhood for pixels with one sample
 constexpr std::uint32_t VarianceBlur = 1;
 
 class Nlm final : public Filter {
@@ -43,26 +43,26 @@ class Nlm final : public Filter {
         };
         {
             const bool demodulate = values[Demodulate] == 1.0;
-            Stage stage(report, "features", Features::bytes_per_pixel(components, demodulate) + 60.0);
+            PassTimer timer(report, "features", Features::bytes_per_pixel(components, demodulate) + 60.0);
             if (!features_.prepare(inputs, demodulate, context)) return false;
             if (!estimate_variance(inputs, context)) return false;
         }
         {
-            Stage stage(report, "halve", 8.0 * (components + 6) * 4.0 / 3.0);
+            PassTimer timer(report, "halve", 8.0 * (components + 6) * 4.0 / 3.0);
             for (std::uint32_t s = 0; s < scales; ++s) {
                 if (!make_level(s, context)) return false;
             }
         }
         settings.epsilon = epsilon();
         for (std::uint32_t s = 0; s < scales; ++s) {
-            Stage stage(report, "window",
-                        4.0 * (4 + 1 + 2 * components) / static_cast<double>(1u << (2 * s)));
+            PassTimer timer(report, "window",
+                            4.0 * (4 + 1 + 2 * components) / static_cast<double>(1u << (2 * s)));
             Level& level = levels_[s];
             Planes& filtered = s == 0 ? out.picture : level.filtered;
             if (!windows_[s].run(level.match, color_of(s), known_of(s), settings, filtered, context))
                 return false;
         }
-        Stage stage(report, "combine", 4.0 * 4 * components);
+        PassTimer timer(report, "combine", 4.0 * 4 * components);
         for (std::uint32_t s = scales - 1; s-- > 0;) {
             Planes& finer = s == 0 ? out.picture : levels_[s].filtered;
             halve(finer, levels_[s + 1].halved, context);
@@ -80,7 +80,7 @@ class Nlm final : public Filter {
     const Planes& color_of(std::uint32_t s) const { return s == 0 ? features_.color() : levels_[s].color; }
     const Planes& known_of(std::uint32_t s) const { return s == 0 ? features_.known() : levels_[s].known; }
 
-    // Relative to the picture's square: what makes equal pixels of a noise-free picture count as equal.
+    // Relative to the squared picture, so that equal pixels of a noise-free picture count as equal.
     float epsilon() const {
         const Planes& match = levels_[0].match;
         double sum = 0.0;
@@ -132,7 +132,7 @@ class Nlm final : public Filter {
         return !context.stop.stop_requested();
     }
 
-    // Of the light without its albedo when that was divided out.
+    // Of the demodulated light, if the albedo was divided out.
     void row_variance(const float* variance, std::uint32_t c, std::uint32_t y, std::uint32_t width,
                       float* to) {
         float* filled = moments_.row(0, y);
@@ -149,7 +149,7 @@ class Nlm final : public Filter {
             halve(color_of(s - 1), level.color, context);
             halve(known_of(s - 1), level.known, context);
             halve_variance(levels_[s - 1].variance, level.variance, context);
-            // A pixel that holds anything known is known.
+            // A pixel that covers any known pixel is known.
             for (float& known : level.known.values()) known = known > 0.0f ? 1.0f : 0.0f;
         }
         const Planes& color = color_of(s);
@@ -177,22 +177,28 @@ class Nlm final : public Filter {
 }  // namespace
 
 FilterEntry nlm_entry() {
-    return {
-        {.name = "nlm",
-         .summary = "non-local means of the colour at several scales, by its variances",
-         .source = "Buades 2005, Rousselle 2012",
-         .parameters = {{"radius", "px", "of the window, at each scale", 7, 1, 20, {}},
-                        {"patch", "px", "radius of the patches that are compared", 3, 0, 5, {}},
-                        {"k", "standard deviations", "difference that still mixes", 0.5, 0.01, 10.0, {}},
-                        {"scales", "", "each half as large as the one before", 3, 1, MostScales, {}},
-                        {"demodulate", "", "filter the light without the albedo", 0, 0, 1, {"off", "on"}}},
-         .channels =
-             [](const Values& values) {
-                 frame::ChannelSet channels{Channel::Radiance};
-                 if (values[Demodulate] == 1.0) channels.insert(Channel::Albedo);
-                 return channels;
-             }},
-        [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> { return std::make_unique<Nlm>(); }};
+    return {{.name = "nlm",
+             .summary = "non-local means of the colour at several scales, by its variances",
+             .source = "Buades 2005, Rousselle 2012",
+             .parameters =
+                 {{"radius", "px", "of the window, at each scale", 7, 1, 20, {}},
+                  {"patch", "px", "radius of the patches that are compared", 3, 0, 5, {}},
+                  {"k",
+                   "standard deviations",
+                   "difference at which pixels still count as similar",
+                   0.5,
+                   0.01,
+                   10.0,
+                   {}},
+                  {"scales", "", "each half as large as the one before", 3, 1, MostScales, {}},
+                  {"demodulate", "", "divide radiance by albedo before filtering", 0, 0, 1, {"off", "on"}}},
+             .channels =
+                 [](const Values& values) {
+                     frame::ChannelSet channels{Channel::Radiance};
+                     if (values[Demodulate] == 1.0) channels.insert(Channel::Albedo);
+                     return channels;
+                 }},
+            [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> { return std::make_unique<Nlm>(); }};
 }
 
 }  // namespace tessera::filter

@@ -14,7 +14,7 @@ class None final : public Filter {
         Report report;
         report.stopped = context.stop.stop_requested();
         if (report.stopped) return report;
-        Stage stage(report, "copy", 8.0 * inputs.color_components());
+        PassTimer timer(report, "copy", 8.0 * inputs.color_components());
         shape(out.picture, inputs, inputs.color_components());
         for (std::uint32_t c = 0; c < inputs.color_components(); ++c) {
             std::ranges::copy(inputs.color(c), out.picture.plane(c).begin());
@@ -27,7 +27,7 @@ class None final : public Filter {
 
 FilterEntry none_entry() {
     return {{.name = "none",
-             .summary = "the mean of the samples as it is",
+             .summary = "no denoising: the mean of the samples",
              .source = "",
              .channels = [](const Values&) { return frame::ChannelSet{frame::Channel::Radiance}; },
              .consistent = true},

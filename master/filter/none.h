@@ -4,7 +4,7 @@
 
 namespace tessera::filter {
 
-// The mean of the samples as it is: what every other filter is measured against.
+// No denoising: the mean of the samples, the baseline that other filters are compared with.
 FilterEntry none_entry();
 
 }  // namespace tessera::filter

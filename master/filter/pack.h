@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <cstring>
 
-// Eight numbers at once, for inner loops that must keep their sums in registers: the compiler does not do
-// that for loops over rows. Everything compiles to one AVX2 instruction.
+// SIMD of eight floats, for inner loops that must keep their sums in registers, which the compiler does not
+// do for loops over rows. Each operation compiles to one AVX2 instruction.
 namespace tessera::filter {
 
 using Pack [[gnu::vector_size(32)]] = float;
@@ -32,7 +32,7 @@ inline Pack bits(IntPack v) {
 inline IntPack bits(Pack v) {
     return std::bit_cast<IntPack>(v);
 }
-// Of two numbers one of which is NaN: the second.
+// If one of the two is NaN, the result is the second.
 inline Pack max(Pack a, Pack b) {
     return _mm256_max_ps(a, b);
 }

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-#include "master/filter/fade.h"
+#include "master/filter/convergence_blend.h"
 #include "master/filter/kernels.h"
 #include "master/filter/pixel/compose.h"
-#include "master/filter/pixel/first_look.h"
 #include "master/filter/pixel/plane_filters.h"
 #include "master/filter/pixel/schedule.h"
+#include "master/filter/pixel/width_estimate.h"
 #include "master/filter/pixel/widths.h"
 
 namespace tessera::filter {
@@ -32,7 +32,7 @@ enum Parameters : std::size_t {
     AntialiasRecovery,
     Normals,
     Schedule,
-    Fading,
+    UseConvergenceBlend,
 };
 
 float number(const Values& values, Parameters which) {
@@ -75,7 +75,7 @@ class PixelFilter final : public Filter {
         const bool pass = needs_pass(inputs, values, samples);
         const bool shown = pass || has_pass_;
         {
-            Stage stage(report, "light", 4.0 * (2 + 9));  // counts twice, light and its variances once
+            PassTimer timer(report, "light", 4.0 * (2 + 9));  // counts are read twice
             holes_.find(inputs);
             light_.prepare(inputs, holes_, context);
         }
@@ -87,9 +87,10 @@ class PixelFilter final : public Filter {
             values_ = values;
             samples_ = samples;
         }
-        if (done && !shown) report.notes.push_back("unfiltered: the schedule begins at 4 samples");
+        if (done && !shown) report.notes.push_back("unfiltered: the schedule starts at 4 samples");
         if (done) done = shown ? blend(inputs, values, report, out, context) : show_unfiltered(inputs, out);
-        if (done && shown && is_on(values, Fading)) done = fade(inputs, report, out, context);
+        if (done && shown && is_on(values, UseConvergenceBlend))
+            done = blend_converged(inputs, report, out, context);
         report.stopped = !done;
         return report;
     }
@@ -99,8 +100,9 @@ class PixelFilter final : public Filter {
   private:
     static void note_missing(const Inputs& inputs, Report& report) {
         if (!inputs.has(Channel::HighVariance))
-            report.notes.push_back("no high_variance: all light is filtered");
-        if (!inputs.has(Channel::Range)) report.notes.push_back("no range: only depth guides the filter");
+            report.notes.push_back("channel 'high_variance' is missing: all light is filtered");
+        if (!inputs.has(Channel::Headlight))
+            report.notes.push_back("channel 'range' is missing: only depth guides the filter");
     }
 
     bool needs_pass(const Inputs& inputs, const Values& values, std::uint64_t samples) const {
@@ -118,7 +120,7 @@ class PixelFilter final : public Filter {
         const auto layers = 4.0 + (inputs.has(Channel::Alpha) ? 1.0 : 0.0);
         {
             const double guide = 2.0 * (with_normals ? 7 : 4), field = 7.0 + layers + 1.0;
-            Stage stage(report, "guide", 4.0 * (guide + field));
+            PassTimer timer(report, "guide", 4.0 * (guide + field));
             const Tolerance tolerance{number(values, SigmaColor), number(values, SigmaDepth),
                                       with_normals ? number(values, SigmaNormal) : 0.0f};
             guide_.prepare(inputs, holes_, tolerance, context);
@@ -126,7 +128,7 @@ class PixelFilter final : public Filter {
             scratch_.fit(inputs.width, inputs.height, field_.values.components());
         }
         if (!choose_widths(inputs, values, report, context)) return false;
-        Stage stage(report, "filter", bytes_of_filter(values, layers));
+        PassTimer timer(report, "filter", bytes_of_filter(values, layers));
         if (!run_method(values, context)) return false;
         return for_rows(context, inputs.height, [&](std::uint32_t y) {
             float* variance = field_.values.row(Field::Variance, y);
@@ -138,9 +140,9 @@ class PixelFilter final : public Filter {
     bool choose_widths(const Inputs& inputs, const Values& values, Report& report, RunContext& context) {
         const float sigma = number(values, SigmaSpatial);
         if (is_on(values, Adaptive) && values[MethodChoice] != double(Method::ATrous)) {
-            Stage stage(report, "widths", FirstLook::BytesPerPixel);
+            PassTimer timer(report, "widths", WidthEstimate::BytesPerPixel);
             const AdaptiveWidths rule{number(values, Threshold), sigma, number(values, AdaptiveClamp)};
-            return look_.run(guide_, light_, inputs, field_, rule, widths_, strips_, context);
+            return width_estimate_.run(guide_, light_, inputs, field_, rule, widths_, strips_, context);
         }
         widths_.fit(inputs.width, inputs.height, 1);
         return for_rows(context, inputs.height,
@@ -150,7 +152,7 @@ class PixelFilter final : public Filter {
     bool run_method(const Values& values, RunContext& context) {
         switch (static_cast<Method>(values[MethodChoice])) {
             case Method::Brute:
-                return filter_brute(guide_, widths_, field_, scratch_, context);
+                return filter_brute_force(guide_, widths_, field_, scratch_, context);
             case Method::ATrous:
                 return filter_atrous(guide_, number(values, SigmaSpatial), field_, scratch_, context);
             case Method::Separable:
@@ -184,7 +186,7 @@ class PixelFilter final : public Filter {
 
     bool blend(const Inputs& inputs, const Values& values, Report& report, Output& out, RunContext& context) {
         const std::uint32_t components = inputs.color_components();
-        Stage stage(report, "blend", 4.0 * (3.0 * 3 + components + 3 + components));
+        PassTimer timer(report, "blend", 4.0 * (3.0 * 3 + components + 3 + components));
         const Blend how{number(values, Threshold), static_cast<Root>(values[RootChoice]),
                         number(values, SpikeClamp)};
         BlendMaps maps;
@@ -192,11 +194,12 @@ class PixelFilter final : public Filter {
         return compose(inputs, light_, field_, how, out.picture, maps, context);
     }
 
-    // Only the high-variance light was filtered: its variance says what that could gain.
-    bool fade(const Inputs& inputs, Report& report, Output& out, RunContext& context) {
-        Stage stage(report, "fade", Fade::bytes_per_pixel(inputs.color_components()));
+    // Only the high-variance light was filtered, so the blend uses its variance.
+    bool blend_converged(const Inputs& inputs, Report& report, Output& out, RunContext& context) {
+        PassTimer timer(report, "convergence blend",
+                        ConvergenceBlend::bytes_per_pixel(inputs.color_components()));
         const Channel noisy = inputs.has(Channel::HighVariance) ? Channel::HighVariance : Channel::Radiance;
-        return fade_.apply(inputs, noisy, {}, out.picture, context);
+        return convergence_blend_.apply(inputs, noisy, {}, out.picture, context);
     }
 
     BlendMaps prepare_maps(const Inputs& inputs, Output& out) const {
@@ -206,7 +209,7 @@ class PixelFilter final : public Filter {
             out.maps[i].name = Names[i];
             shape(out.maps[i].planes, inputs, i == 0 ? 3 : 1);
         }
-        if (inputs.has(Channel::Range)) out.maps[0].planes = inputs.mean(Channel::Range);
+        if (inputs.has(Channel::Headlight)) out.maps[0].planes = inputs.mean(Channel::Headlight);
         const Channel high = inputs.has(Channel::HighVariance) ? Channel::HighVariance : Channel::Radiance;
         const Planes& variance = inputs.variance(high);
         for (std::size_t i = 0; i < inputs.pixel_count(); ++i) {
@@ -230,14 +233,14 @@ class PixelFilter final : public Filter {
     Holes holes_;
     Light light_;
     Guide guide_;
-    FirstLook look_;
+    WidthEstimate width_estimate_;
     Widths widths_;
     Field field_, scratch_;  // field_: of the last pass
     Strips strips_;
     ReductionRatios ratios_;
-    Fade fade_;
+    ConvergenceBlend convergence_blend_;
 
-    bool has_pass_ = false;  // field_ holds one, made with these:
+    bool has_pass_ = false;  // field_ holds the result of a pass with these inputs:
     Values values_;
     std::uint64_t samples_ = 0;
 };
@@ -252,18 +255,18 @@ FilterEntry pixel_entry() {
          .parameters =
              {{"t",
                "",
-               "perceived variance that is accepted (0.01: a tenth of the light around)",
+               "accepted perceived variance (0.01: a deviation of a tenth of the surrounding light)",
                0.01,
                1e-6,
                10.0,
                {}},
               {"sigma_s", "px", "standard deviation of the spatial kernel", 8.0, 0.5, 32.0, {}},
-              {"sigma_c", "", "standard deviation in range colour", 0.02, 1e-4, 10.0, {}},
+              {"sigma_c", "", "standard deviation in headlight colour", 0.02, 1e-4, 10.0, {}},
               {"sigma_d", "m", "standard deviation in depth", 2.0, 1e-6, 1e9, {}},
               {"sigma_n", "", "standard deviation of the difference of normals", 0.2, 1e-3, 10.0, {}},
               {"method",
                "",
-               "separable: fast; brute: the reference; atrous: three sparse iterations",
+               "separable: fast; brute: brute force, the reference; atrous: three sparse iterations",
                0,
                0,
                2,
@@ -287,18 +290,30 @@ FilterEntry pixel_entry() {
                {}},
               {"aa_recovery",
                "",
-               "mixes both sides of antialiased edges (separable)",
+               "reconstruct antialiased edges as a mixture of both sides (separable only)",
                1,
                0,
                1,
                {"off", "on"}},
-              {"normals", "", "normals as a further guide", 0, 0, 1, {"off", "on"}},
-              {"schedule", "", "filter only at 4, 8, 16, ... samples, blend between", 0, 0, 1, {"off", "on"}},
-              {"fade", "", "fade where it would worsen the picture", 1, 0, 1, {"off", "on"}}},
+              {"normals", "", "use normals as an additional guide", 0, 0, 1, {"off", "on"}},
+              {"schedule",
+               "",
+               "filter only at 4, 8, 16, ... samples; only blend in between",
+               0,
+               0,
+               1,
+               {"off", "on"}},
+              {"fade",
+               "",
+               "blend back to the samples where filtering would increase the error",
+               1,
+               0,
+               1,
+               {"off", "on"}}},
          .channels =
              [](const Values& values) {
                  frame::ChannelSet channels{Channel::Radiance, Channel::LowVariance, Channel::HighVariance,
-                                            Channel::Depth, Channel::Range};
+                                            Channel::Depth, Channel::Headlight};
                  if (is_on(values, Normals)) channels.insert(Channel::Normal);
                  return channels;
              },

@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "master/filter/fade.h"
+#include "master/filter/convergence_blend.h"
 #include "master/filter/svgf/demodulate.h"
 #include "master/filter/svgf/film_layers.h"
 #include "master/filter/svgf/taa.h"
@@ -27,16 +27,16 @@ enum Parameters : std::size_t {
     Levels,
     Order,
     R0,
-    LightFade,
+    LightHistory,
     LightTest,
     Young,
     Feedback,
     Taa,
     TaaRatio,
-    FadeSwitch,
+    ConvergenceSwitch,
 };
 constexpr double Filtered = 1.0, On = 0.0;
-constexpr float NoShare = 1e-3f;  // of the history in the picture: from there on it is left out
+constexpr float NegligibleWeight = 1e-3f;  // of the history in the picture: below it the history is dropped
 
 const frame::ChannelSet Needed{Channel::Radiance,   Channel::LowVariance, Channel::HighVariance,
                                Channel::Irradiance, Channel::Albedo,      Channel::Normal,
@@ -74,14 +74,14 @@ class Psvgf final : public Filter {
         shape(out.picture, inputs, inputs.color_components());
         out.maps.clear();
         if (!has_all(inputs)) {
-            report.notes.push_back("channels that psvgf reads are missing: the picture is unfiltered");
+            report.notes.push_back("channels that psvgf needs are missing: the picture is unfiltered");
             reset();
             copy_colors(inputs, out.picture);
             return true;
         }
         merge(inputs.changes, pending_);
         if (coverage.samples == 0.0) {
-            report.notes.push_back("no samples yet: the picture before is shown");
+            report.notes.push_back("no samples yet: the previous picture is shown");
             copy_colors(inputs, out.picture);
             if (known_ && shown_.components() == out.picture.components()) out.picture = shown_;
             return true;
@@ -89,16 +89,16 @@ class Psvgf final : public Filter {
         if (pending_.film_restarted) begin_film();
         if (!rest_filtered) signals_[1].forget();
         const Settings settings = settings_of(values);
-        known_ = false;  // until all is done: a run that is stopped leaves nothing to build on
+        known_ = false;  // until the run is complete: a stopped run leaves no valid state
 
         const auto signals = std::span(signals_).first(rest_filtered ? 2 : 1);
         for (Signal& signal : signals) signal.fit(inputs.width, inputs.height);
         if (!layers_.read(inputs, coverage.least == 0.0f, signals, now_, report, context)) return false;
 
         const float kept = std::exp(coverage.least * std::log1p(-settings.accumulation.r0));
-        const bool history = has_before_ && kept > NoShare;
+        const bool history = has_before_ && kept > NegligibleWeight;
         if (history) {
-            Stage stage(report, "motion", 4.0 * 4);
+            PassTimer timer(report, "motion", 4.0 * 4);
             if (!find_motion(now_, before_, motion_, context)) return false;
         }
         for (Signal& signal : signals) {
@@ -112,20 +112,21 @@ class Psvgf final : public Filter {
             if (!signal.filter(now_, settings, feedback, report, context)) return false;
         }
         if (!layers_.compose(inputs, signals, out.picture, report, context)) return false;
-        if (values[FadeSwitch] == On) {
-            Stage stage(report, "fade", Fade::bytes_per_pixel(out.picture.components()));
+        if (values[ConvergenceSwitch] == On) {
+            PassTimer timer(report, "convergence blend",
+                            ConvergenceBlend::bytes_per_pixel(out.picture.components()));
             const bool diffuse_alone = !rest_filtered && knows_diffuse(inputs);
             const Channel part = diffuse_alone ? Channel::HighVariance : Channel::Radiance;
-            if (!fade_.apply(inputs, part, {}, out.picture, context)) return false;
+            if (!convergence_blend_.apply(inputs, part, {}, out.picture, context)) return false;
         }
         const bool shown_fits = shown_before_.pixel_count() == inputs.pixel_count() &&
                                 shown_before_.components() == out.picture.components();
         if (history && values[Taa] == On && shown_fits) {
-            Stage stage(report, "antialias", 4.0 * (3 * out.picture.components() + 5));
+            PassTimer timer(report, "antialias", 4.0 * (3 * out.picture.components() + 5));
             if (!smooth_edges(inputs, static_cast<float>(values[TaaRatio]), out.picture, context))
                 return false;
         }
-        Stage stage(report, "keep", 8.0 * out.picture.components());
+        PassTimer timer(report, "keep", 8.0 * out.picture.components());
         shape(shown_, inputs, out.picture.components());
         std::ranges::copy(out.picture.values(), shown_.values().begin());
         if (out.wants_maps) write_maps(inputs, out);
@@ -144,7 +145,7 @@ class Psvgf final : public Filter {
                           .eps_l = value(EpsL),
                           .deviation = static_cast<Deviation>(static_cast<int>(values[Mode]))};
         settings.accumulation.r0 = value(R0);
-        settings.accumulation.age_scale = changes_.lights_or_materials ? value(LightFade) : 1.0f;
+        settings.accumulation.age_scale = changes_.lights_or_materials ? value(LightHistory) : 1.0f;
         settings.accumulation.z0 =
             changes_.lights_or_materials || changes_.geometry ? value(LightTest) : 0.0f;
         settings.levels = static_cast<std::uint32_t>(values[Levels]);
@@ -160,7 +161,7 @@ class Psvgf final : public Filter {
         }
     }
 
-    // A film that brought no samples is as if it had not been, but what it said has changed has.
+    // A film without samples is ignored, but its changes are kept.
     static void merge(const Changes& from, Changes& to) {
         to.film_restarted |= from.film_restarted;
         to.lights_or_materials |= from.lights_or_materials;
@@ -217,13 +218,13 @@ class Psvgf final : public Filter {
     }
 
     std::uint32_t width_ = 0, height_ = 0;
-    std::array<Signal, 2> signals_;  // irradiance; the rest, when it is filtered
+    std::array<Signal, 2> signals_;  // irradiance; the rest, if it is filtered
     Guides now_, before_;
-    bool known_ = false, has_before_ = false;  // what now_ and before_ say, and all that belongs to them
+    bool known_ = false, has_before_ = false;  // whether now_ and before_ are valid, with all their data
     Changes pending_, changes_;                // since the last run with samples; since before_
     Motion motion_;
     FilmLayers layers_;
-    Fade fade_;
+    ConvergenceBlend convergence_blend_;
     Planes shown_, shown_before_, smoothed_, newness_;
 };
 
@@ -235,7 +236,7 @@ FilterEntry psvgf_entry() {
          .summary = "progressive SVGF: history and edge-stopping wavelets on the diffuse irradiance",
          .source = "Dundr 2",
          .parameters =
-             {{"rest", "", "light besides the diffuse lobe", 0, 0, 1, {"unfiltered", "filtered"}},
+             {{"rest", "", "light of all other lobes", 0, 0, 1, {"unfiltered", "filtered"}},
               {"mode",
                "",
                "what a luminance difference is measured in (E-D11): deviation of the mean, variance, "
@@ -245,40 +246,64 @@ FilterEntry psvgf_entry() {
                0,
                2,
                {"age", "dundr", "svgf"}},
-              {"sigma_l", "deviations", "luminance difference that is kept apart (E-D11)", 4.0, 0.0, 1e3, {}},
-              {"eps_l", "of the luminance", "difference that never counts (E-D11)", 0.01, 0.0, 10.0, {}},
+              {"sigma_l",
+               "deviations",
+               "luminance difference that stops the filter (E-D11)",
+               4.0,
+               0.0,
+               1e3,
+               {}},
+              {"eps_l",
+               "of the luminance",
+               "luminance difference that is always ignored (E-D11)",
+               0.01,
+               0.0,
+               10.0,
+               {}},
               {"sigma_n", "", "exponent of the normals' cosine (E-D9)", 64.0, 0.0, 1e4, {}},
               {"sigma_d", "slopes", "depth difference on one surface (E-D10)", 1.0, 0.0, 1e3, {}},
-              {"eps_d", "of the depth", "depth difference that never counts (E-D10)", 0.005, 0.0, 1.0, {}},
-              {"steep", "of the depth per px", "slope above which depth does not count", 0.2, 0.0, 1e6, {}},
+              {"eps_d",
+               "of the depth",
+               "depth difference that is always ignored (E-D10)",
+               0.005,
+               0.0,
+               1.0,
+               {}},
+              {"steep", "of the depth per px", "slope above which depth is ignored", 0.2, 0.0, 1e6, {}},
               {"levels", "", "levels of the wavelet transform", 6, 0, MaxLevels, {}},
               {"order", "", "order of the levels", 0, 0, 2, {"first_then_coarse", "fine", "coarse"}},
-              {"r0", "", "least share of a new sample in the history (E-D3)", 0.1, 0.0, 0.999, {}},
+              {"r0", "", "minimum weight of a new sample in the history (E-D3)", 0.1, 0.0, 0.999, {}},
               {"light_fade",
                "",
-               "share of its age that history keeps when light changes",
+               "fraction of its age that history keeps when light changes",
                0.25,
                0.0,
                1.0,
                {}},
               {"light_test",
                "deviations",
-               "difference above which history is doubted after an edit; 0: never",
+               "difference above which history is distrusted after an edit; 0: never",
                3.0,
                0.0,
                1e3,
                {}},
-              {"young", "samples", "below them the variance comes from around the pixel", 4.0, 2.0, 64.0, {}},
+              {"young",
+               "samples",
+               "below this count the variance is estimated from the neighbourhood",
+               4.0,
+               2.0,
+               64.0,
+               {}},
               {"feedback",
                "samples",
-               "up to them the first level goes into the history; 0: never",
+               "up to this count the first level is fed back into the history; 0: never",
                8.0,
                0.0,
                1e6,
                {}},
               {"taa", "", "temporal antialiasing where history is used", 0, 0, 1, {"on", "off"}},
-              {"taa_ratio", "", "least share of the new picture in it (E-D14)", 0.1, 0.0, 1.0, {}},
-              {"fade", "", "back to the film's own mean as it converges", 0, 0, 1, {"on", "off"}}},
+              {"taa_ratio", "", "minimum weight of the new picture in it (E-D14)", 0.1, 0.0, 1.0, {}},
+              {"fade", "", "blend back to the samples as they converge", 0, 0, 1, {"on", "off"}}},
          .channels = [](const Values&) { return Needed; },
          .consistent = true,
          .temporal = true,

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "master/filter/fade.h"
+#include "master/filter/convergence_blend.h"
 #include "master/filter/kernels.h"
 #include "master/filter/membership.h"
 #include "master/filter/moderated_variance.h"
@@ -17,11 +17,21 @@ namespace {
 
 using frame::Channel;
 
-enum Parameters : std::size_t { Radius, Sigma, Confidence, Pooled, Albedo, Normal, Depth, Fading };
+enum Parameters : std::size_t {
+    Radius,
+    Sigma,
+    Confidence,
+    Pooled,
+    Albedo,
+    Normal,
+    Depth,
+    UseConvergenceBlend
+};
 
 constexpr std::uint32_t PoolRadius = 3;
 
-// What a pair's weight reads, per pixel. Features are scaled so that their squared difference is an exponent.
+// The inputs of a pair's weight, per pixel. Features are scaled so that their squared difference is an
+// exponent.
 enum Pair : std::uint32_t {
     Mean,
     Variance = Mean + 3,
@@ -37,7 +47,7 @@ constexpr int Features = 7;
 constexpr float Shell = 0.5f;
 constexpr std::int64_t Chunk = 128;  // pixels of a row at a time: their planes stay in the first cache
 using Sums = std::array<std::array<float, Chunk>, 6>;  // weight, shell, colours
-constexpr float Miss = 1e3f;  // logarithm of an infinite depth: misses mix with misses only
+constexpr float Miss = 1e3f;  // logarithm of an infinite depth: misses only match misses
 
 class StatMc final : public Filter {
   public:
@@ -48,24 +58,24 @@ class StatMc final : public Filter {
         squares_.prepare(values[Confidence]);
         bool done = false;
         {
-            Stage stage(report, "variance", ModeratedVariance::Bytes);
+            PassTimer timer(report, "variance", ModeratedVariance::Bytes);
             done = moderated_.run(inputs, static_cast<float>(values[Pooled]), PoolRadius, context);
         }
         if (done) {
-            Stage stage(report, "pairs", 4.0 * (15 + PairPlanes));
+            PassTimer timer(report, "pairs", 4.0 * (15 + PairPlanes));
             shape_pairs(inputs);
             shape(self_, inputs, 1);
             done = for_rows(context, inputs.height, [&](std::uint32_t y) { prepare_row(inputs, values, y); });
         }
         if (done) {
-            Stage stage(report, "average", 4.0 * (PairPlanes + 2 * components));
+            PassTimer timer(report, "average", 4.0 * (PairPlanes + 2 * components));
             done = for_rows(context, inputs.height,
                             [&](std::uint32_t y) { average_row(inputs, values, out.picture, y); });
         }
-        if (done && values[Fading] > 0.0) {
-            Stage stage(report, "fade", Fade::bytes_per_pixel(components));
-            done = fade_.apply(inputs, Channel::Radiance, self_.plane(0), out.picture, context);
-            if (done && out.wants_maps) out.maps = {{"fade", fade_.weights()}};
+        if (done && values[UseConvergenceBlend] > 0.0) {
+            PassTimer timer(report, "convergence blend", ConvergenceBlend::bytes_per_pixel(components));
+            done = convergence_blend_.apply(inputs, Channel::Radiance, self_.plane(0), out.picture, context);
+            if (done && out.wants_maps) out.maps = {{"fade", convergence_blend_.weights()}};
         }
         report.stopped = !done;
         return report;
@@ -88,7 +98,7 @@ class StatMc final : public Filter {
         const float* dof = moderated_.dof().row(0, y);
         float* square = pair_row(Square, y);
         float* credit = pair_row(Credit, y);
-        float seen = -1.0f;  // neighbours mostly have equally many samples
+        float seen = -1.0f;  // neighbours mostly have equal counts
         for (std::uint32_t x = 0; x < width; ++x) {
             const bool hole = !(counts[x] > 0.0f);
             pair_row(Count, y)[x] = hole ? 0.0f : counts[x];
@@ -152,7 +162,7 @@ class StatMc final : public Filter {
             for (std::int64_t row = std::max<std::int64_t>(y - radius, 0);
                  row < std::min(y + radius + 1, height); ++row) {
                 const std::int64_t dy = row - y;
-                Sums line{};  // sums of sums round less
+                Sums line{};  // partial sums reduce rounding
                 for (std::int64_t dx = -radius; dx <= radius; ++dx) {
                     const std::int64_t first = std::max(begin, -dx), last = std::min(end, width - dx);
                     if (first >= last) continue;
@@ -173,9 +183,10 @@ class StatMc final : public Filter {
                     for (std::size_t x = 0; x < Chunk; ++x) sums[i][x] += line[i][x];
                 }
             }
-            // How much the average F follows the pixel's own mean m, dF/dm: its weight, and that members are
-            // chosen by m. A pair that enters or leaves at the limit d = r moves F by its weight times r;
-            // with the density of d taken from the shell, dF/dm = (own + shell / Shell) / sum.
+            // How much the average F depends on the pixel's own mean m, dF/dm: through its weight, and
+            // through the choice of members by m. A pair that enters or leaves at the limit d = r moves F by
+            // its weight times r; with the density of d taken from the shell, dF/dm = (own + shell / Shell) /
+            // sum.
             for (std::int64_t x = begin; x < end; ++x) {
                 const auto at = static_cast<std::size_t>(x - begin);
                 const float own = pair_row(Count, y)[x] + sums[1][at] / Shell;
@@ -212,11 +223,11 @@ class StatMc final : public Filter {
             bool member = true, inner = true, outer = true;
             for (std::uint32_t c = 0; c < 3; ++c) {
                 const float d = of_p(Mean + c) - of_q(Mean + c);
-                const float reach =
-                    squared_reach(of_p(Variance + c), of_q(Variance + c), quantile_p, quantile_q);
-                member &= d * d <= reach;
-                inner &= d * d <= (1.0f - Shell) * reach;
-                outer &= d * d <= (1.0f + Shell) * reach;
+                const float limit =
+                    squared_interval(of_p(Variance + c), of_q(Variance + c), quantile_p, quantile_q);
+                member &= d * d <= limit;
+                inner &= d * d <= (1.0f - Shell) * limit;
+                outer &= d * d <= (1.0f + Shell) * limit;
             }
             const float weight = of_q(Count) * exp_negative(spatial - of_p(Known) * distance);
             weights[i] = member ? weight : 0.0f;
@@ -227,7 +238,7 @@ class StatMc final : public Filter {
 
     ModeratedVariance moderated_;
     StudentSquares squares_;
-    Fade fade_;
+    ConvergenceBlend convergence_blend_;
     std::vector<float> pairs_;  // by row, then by Pair
     std::size_t pitch_ = 0;
     Planes self_;
@@ -238,9 +249,9 @@ class StatMc final : public Filter {
 FilterEntry statmc_entry() {
     return {
         {.name = "statmc",
-         .summary = "averages pixels whose means cannot be told apart (confidence intervals)",
+         .summary = "averages pixels with statistically indistinguishable means (confidence intervals)",
          .source = "Sakai et al. 2024",
-         .parameters = {{"radius", "px", "half side of the window", 10, 1, 40, {}},
+         .parameters = {{"radius", "px", "radius of the window", 10, 1, 40, {}},
                         {"sigma", "px", "standard deviation of the spatial weight", 5, 0.1, 100, {}},
                         {"confidence",
                          "",
@@ -267,7 +278,7 @@ FilterEntry statmc_entry() {
                          {}},
                         {"fade",
                          "",
-                         "blends with the unfiltered picture where that has less error",
+                         "blend back to the samples where filtering would increase the error",
                          1,
                          0,
                          1,

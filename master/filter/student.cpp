@@ -8,7 +8,7 @@ namespace tessera::filter {
 namespace {
 
 // I_x(a, b) by its continued fraction, evaluated from its end with Lentz' method (Abramowitz and Stegun
-// 26.5.8); it converges fast for x < (a + 1) / (a + b + 2), the caller sees to that.
+// 26.5.8); it converges fast for x < (a + 1) / (a + b + 2), the caller ensures that.
 double incomplete_beta_fraction(double a, double b, double x) {
     constexpr double Tiny = 1e-300;
     const auto away_from_zero = [](double v) { return std::abs(v) < Tiny ? Tiny : v; };
@@ -47,8 +47,8 @@ double student_quantile(double confidence, double dof) {
     const double wanted = 1.0 - confidence;
     double low = std::log(1e-3), high = std::log(1e6);
     for (int i = 0; i < 60; ++i) {
-        const double middle = 0.5 * (low + high);
-        (tails(std::exp(middle), dof) > wanted ? low : high) = middle;
+        const double midpoint = 0.5 * (low + high);
+        (tails(std::exp(midpoint), dof) > wanted ? low : high) = midpoint;
     }
     return std::exp(0.5 * (low + high));
 }

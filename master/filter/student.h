@@ -10,8 +10,8 @@ namespace tessera::filter {
 // confidence in [0.01, 0.99999]. The normal quantile above 1e6 degrees.
 double student_quantile(double confidence, double dof);
 
-// t^2 for any number of degrees of freedom >= 1 from a table over 1 / dof, made once per confidence; relative
-// error below 1e-3. Fewer than 1 degree counts as 1.
+// t^2 for any number of degrees of freedom >= 1 from a table over 1 / dof, computed once per confidence;
+// relative error below 1e-3. Fewer than 1 degree counts as 1.
 class StudentSquares {
   public:
     void prepare(double confidence);

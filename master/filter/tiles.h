@@ -6,8 +6,8 @@
 #include "master/filter/pack.h"
 #include "mediator/filter/planes.h"
 
-// Windows of any shape without border cases: the window of a tile is copied with its surroundings, and what
-// lies outside of the picture gets a value that has no weight.
+// Windows without special cases at borders: a tile is copied with its margin, and pixels outside the picture
+// get a value without weight.
 namespace tessera::filter {
 
 struct Tile {
@@ -33,7 +33,7 @@ class Tiles {
 };
 
 // fill(y, first, last, to): writes the pixels [first, last) of row y to `to`. Called for rows y0 .. y0 + rows
-// as far as they are in the picture; everything else of the window becomes `outside`.
+// within the picture; everything else of the window becomes `outside`.
 template <class Fill>
 void copy_window(std::uint32_t width, std::uint32_t height, std::int64_t x0, std::int64_t y0,
                  std::uint32_t columns, std::uint32_t rows, float* to, std::size_t stride, float outside,

@@ -13,10 +13,10 @@ using frame::Channel;
 
 // Light per albedo: the offset keeps black surfaces finite and cancels where both albedos are equal.
 constexpr float AlbedoOffset = 0.01f;
-constexpr float SpatialSigma = 0.75f;  // small pixels: neighbours blend, the second ring hardly counts
+constexpr float SpatialSigma = 0.75f;  // in small pixels: neighbours blend, the second ring has little weight
 constexpr float NormalSigma = 0.25f, AlbedoSigma = 0.2f;
 constexpr float DepthSigma = 0.05f;   // relative
-constexpr float LeastWeight = 1e-4f;  // below, the spatial weights alone decide
+constexpr float LeastWeight = 1e-4f;  // below it only the spatial weights are used
 
 struct Features {
     std::array<float, 3> albedo, normal;
@@ -33,7 +33,7 @@ Features at(const Inputs& inputs, std::size_t pixel) {
     return f;
 }
 
-float likeness(const Features& a, const Features& b) {
+float similarity(const Features& a, const Features& b) {
     const bool a_hit = std::isfinite(a.depth), b_hit = std::isfinite(b.depth);
     if (a_hit != b_hit) return 0.0f;
     if (!a_hit) return 1.0f;
@@ -66,7 +66,7 @@ bool upsample(const Planes& picture, const Inputs& small, const Inputs& full, Pl
             const auto x0 = static_cast<std::int32_t>(std::floor(u)) - 1;
             const Features own = at(full, here);
             const bool is_known = full.counts.plane(0)[here] > 0.0f;
-            std::array<float, 4> alike{}, near{};
+            std::array<float, 4> similar{}, near{};
             float alike_weight = 0.0f, near_weight = 0.0f;
             for (std::int32_t j = y0; j < y0 + 4; ++j) {
                 for (std::int32_t i = x0; i < x0 + 4; ++i) {
@@ -79,12 +79,12 @@ bool upsample(const Planes& picture, const Inputs& small, const Inputs& full, Pl
                     const float dx = float(i) - u, dy = float(j) - v;
                     const float spatial =
                         exp_negative(-(dx * dx + dy * dy) / (2.0f * SpatialSigma * SpatialSigma));
-                    const float weight = is_known ? spatial * likeness(own, other) : 0.0f;
+                    const float weight = is_known ? spatial * similarity(own, other) : 0.0f;
                     for (std::uint32_t c = 0; c < components; ++c) {
                         const float value = picture.plane(c)[there];
                         const float factor =
                             c < 3 ? (own.albedo[c] + AlbedoOffset) / (other.albedo[c] + AlbedoOffset) : 1.0f;
-                        alike[c] += weight * value * factor;
+                        similar[c] += weight * value * factor;
                         near[c] += spatial * value;
                     }
                     alike_weight += weight;
@@ -94,7 +94,7 @@ bool upsample(const Planes& picture, const Inputs& small, const Inputs& full, Pl
             const bool found = alike_weight > LeastWeight * near_weight;
             const float total = found ? alike_weight : near_weight;
             for (std::uint32_t c = 0; c < components; ++c) {
-                const float sum = found ? alike[c] : near[c];
+                const float sum = found ? similar[c] : near[c];
                 out.plane(c)[here] = total > 0.0f ? sum / total : 0.0f;
             }
             if (has_alpha) out.plane(3)[here] = full.mean(Channel::Alpha).plane(0)[here];

@@ -7,19 +7,19 @@
 
 namespace tessera::filter {
 
-// Weighted sums over a window for a stretch of one row. A tap is an offset: every pixel of the stretch gets
-// the pixel that lies there, with the weight
+// Weighted sums over a window for a stretch of one row. A tap is an offset: every pixel of the stretch adds
+// the pixel at that offset, with the weight
 //     spatial x known x exp(-sum over guides of (difference)^2)
-// Offsets are outside, pixels inside, so that a tap is one vectorised loop.
+// The loop over offsets is the outer one, so that a tap is one vectorised loop over pixels.
 template <std::uint32_t Guides, std::uint32_t Components>
 class WindowSum {
   public:
-    static constexpr std::int64_t Stretch = 256;  // what a tap touches stays in the first-level cache
+    static constexpr std::int64_t Stretch = 256;  // the data of a tap stays in the first-level cache
 
     WindowSum(const Planes& guides, const Planes& color, const Planes& known)
         : guides_(guides), color_(color), known_(known) {}
 
-    // Pixels [first, first + Stretch) of row y, as far as there are any.
+    // Pixels [first, first + Stretch) of row y, clipped to the row.
     void begin(std::uint32_t y, std::int64_t first) {
         y_ = y;
         first_ = first;
@@ -28,7 +28,7 @@ class WindowSum {
         for (auto& row : part_) row.fill(0.0f);
     }
 
-    // Offsets that lead out of the picture add nothing.
+    // Offsets out of the picture add nothing.
     void tap(std::int64_t dx, std::int64_t dy, float spatial) {
         const std::int64_t row = y_ + dy;
         if (row < 0 || row >= std::int64_t{color_.height()}) return;
@@ -49,7 +49,7 @@ class WindowSum {
         add(centre, other, color, known, spatial, sums, to - from);
     }
 
-    // After every few taps: sums of partial sums lose less to rounding.
+    // To be called after every few taps: partial sums reduce rounding.
     void close_part() {
         for (std::uint32_t c = 0; c <= Components; ++c) {
             for (std::size_t x = 0; x < Stretch; ++x) sums_[c][x] += part_[c][x];
@@ -57,7 +57,7 @@ class WindowSum {
         }
     }
 
-    // The weighted means go to row y of `out`; the centre's own value where no pixel with samples is like it.
+    // The weighted means go to row y of `out`; the centre's own value where no pixel with samples is similar.
     void write(Planes& out) const {
         for (std::uint32_t c = 0; c < Components; ++c) {
             float* __restrict to = out.row(c, y_) + first_;
@@ -70,7 +70,7 @@ class WindowSum {
     }
 
   private:
-    static constexpr float Least = 1e-30f;  // below, a weight has lost its digits
+    static constexpr float Least = 1e-30f;  // below it a weight has no significant digits
 
     static void add(const std::array<const float*, Guides>& centre,
                     const std::array<const float*, Guides>& other,
@@ -115,7 +115,7 @@ void sum_windows(Sum& sum, std::uint32_t y, Planes& to, const AddTaps& add_taps)
     }
 }
 
-// What turns a difference into the square root of its exponent.
+// Factor from a difference to the square root of its exponent.
 inline float scale_of(double sigma) {
     return static_cast<float>(1.0 / (std::sqrt(2.0) * sigma));
 }

@@ -7,7 +7,7 @@
 
 namespace tessera::master {
 
-// Something worth telling a person.
+// An event for the log.
 struct Event {
     wire::Severity severity = wire::Severity::Info;
     std::string text;

@@ -6,12 +6,12 @@
 
 namespace tessera::master {
 
-// What a node can take now.
+// How many units a node can take now.
 struct NodeCapacity {
     NodeId node;
     std::uint32_t workers = 1;
-    std::uint32_t free_places = 0;
-    std::uint32_t in_hand = 0;
+    std::uint32_t free_slots = 0;
+    std::uint32_t in_flight = 0;
 };
 
 }  // namespace tessera::master

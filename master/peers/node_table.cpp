@@ -8,8 +8,8 @@ NodeCapacity NodeRecord::capacity() const {
     const auto on_the_way = static_cast<std::uint32_t>(pending.size());
     return {.node = id,
             .workers = std::max(1u, hello.concurrent_units),
-            .free_places = state.free_places > on_the_way ? state.free_places - on_the_way : 0,
-            .in_hand = static_cast<std::uint32_t>(state.in_hand.size()) + on_the_way};
+            .free_slots = state.free_slots > on_the_way ? state.free_slots - on_the_way : 0,
+            .in_flight = static_cast<std::uint32_t>(state.in_flight.size()) + on_the_way};
 }
 
 std::optional<wire::OpenView> NodeRecord::opening(const view::View& view) {
@@ -17,7 +17,7 @@ std::optional<wire::OpenView> NodeRecord::opening(const view::View& view) {
     if (revision == view.revision) return std::nullopt;
     revision = view.revision;
     view::View opened = view;
-    opened.filter.clear();  // the master's affair
+    opened.filter.clear();  // only the master uses it
     return wire::OpenView{std::move(opened)};
 }
 
@@ -75,28 +75,29 @@ void NodeTable::heartbeat(NodeRecord& node, const wire::Heartbeat& heartbeat, Ti
     node.stuck = works && now - node.last_progress_at > stuck_.allowance;
 }
 
-std::vector<NodeId> NodeTable::dead(TimePoint now) const {
-    std::vector<NodeId> dead;
+std::vector<NodeId> NodeTable::timed_out(TimePoint now) const {
+    std::vector<NodeId> timed_out;
     for (const auto& [id, node] : nodes_) {
-        if (node.liveness.dead(now)) dead.push_back(id);
+        if (node.liveness.timed_out(now)) timed_out.push_back(id);
     }
-    return dead;
+    return timed_out;
 }
 
 std::vector<UnitId> NodeTable::overdue(NodeRecord& node, const std::vector<UnitId>& held, TimePoint now,
                                        Duration patience) {
-    std::map<UnitId, TimePoint> silent;
+    std::map<UnitId, TimePoint> unreported_since;
     std::vector<UnitId> overdue;
     for (const UnitId unit : held) {
-        const auto& in_hand = node.state.in_hand;
-        if (node.pending.contains(unit) || std::find(in_hand.begin(), in_hand.end(), unit) != in_hand.end())
+        const auto& in_flight = node.state.in_flight;
+        if (node.pending.contains(unit) ||
+            std::find(in_flight.begin(), in_flight.end(), unit) != in_flight.end())
             continue;
-        const auto known = node.silent.find(unit);
-        const TimePoint since = known == node.silent.end() ? now : known->second;
-        silent.emplace(unit, since);
+        const auto known = node.unreported_since.find(unit);
+        const TimePoint since = known == node.unreported_since.end() ? now : known->second;
+        unreported_since.emplace(unit, since);
         if (now - since > patience) overdue.push_back(unit);
     }
-    node.silent = std::move(silent);
+    node.unreported_since = std::move(unreported_since);
     return overdue;
 }
 

@@ -28,13 +28,14 @@ struct NodeRecord {
     Version sent;                       // of the last change list sent to it
     Version reported;                   // committed, hash agrees
     TimePoint sent_at{};                // when
-    Version refused;                    // there was no room for it
+    Version refused;                    // did not fit into its memory
     std::string refusal;                // why
     std::uint32_t hash_mismatches = 0;  // at the version `sent`
     std::uint64_t work_sequence = 0;
-    std::map<UnitId, std::uint64_t> pending;  // work sent, by sequence, that no heartbeat has confirmed
-    std::map<UnitId, TimePoint> silent;       // neither in hand nor merged, since: film under way, or lost
-    std::map<ViewId, std::uint64_t> views;    // opened, and at which revision
+    std::map<UnitId, std::uint64_t> pending;  // work sent and not yet confirmed by a heartbeat, by sequence
+    std::map<UnitId, TimePoint>
+        unreported_since;  // neither in flight on the node nor merged: film on the wire, or lost
+    std::map<ViewId, std::uint64_t> views;  // opened, and at which revision
     bool leaving = false;
     double round_trip_seconds = 0;
     net::PeerClock clock;
@@ -42,10 +43,10 @@ struct NodeRecord {
     TimePoint last_progress_at{};
     bool stuck = false;
 
-    // What it has to be told before work on the view; nothing when it knows this revision already.
+    // The message to send before work on the view; nothing if the node has this revision already.
     std::optional<wire::OpenView> opening(const view::View& view);
 
-    // Free places by the node's own word, less what is on its way to it.
+    // Free slots as reported by the node, less the units sent since.
     NodeCapacity capacity() const;
 };
 
@@ -53,7 +54,7 @@ struct StuckSettings {
     Duration allowance = std::chrono::seconds(30);  // without progress while rendering or building
 };
 
-// Nodes by id, control peer and bulk peer. Pure: told what happened and when.
+// Nodes by id, control peer and bulk peer. Pure: driven by events with their times.
 class NodeTable {
   public:
     NodeTable(const net::LivenessSettings& liveness, const StuckSettings& stuck)
@@ -70,9 +71,9 @@ class NodeTable {
     const std::map<NodeId, NodeRecord>& all() const { return nodes_; }
 
     void heartbeat(NodeRecord& node, const wire::Heartbeat& heartbeat, TimePoint now);
-    std::vector<NodeId> dead(TimePoint now) const;
-    // `held`: the units the scheduler counts on from this node. Those that the node has not had in hand for
-    // longer than `patience`, without film of them: lost on the way.
+    std::vector<NodeId> timed_out(TimePoint now) const;
+    // `held`: the units that the scheduler expects from this node. Returns those that the node has not reported
+    // as in flight for longer than `patience` and whose film has not arrived: they are lost.
     static std::vector<UnitId> overdue(NodeRecord& node, const std::vector<UnitId>& held, TimePoint now,
                                        Duration patience);
 

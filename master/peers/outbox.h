@@ -10,7 +10,7 @@
 
 namespace tessera::master {
 
-// Sends in order per peer and link; what a full queue does not take waits here, bounded in bytes. One thread.
+// Sends in order per peer and link; messages that a full queue rejects wait here, bounded in bytes. One thread.
 class Outbox {
   public:
     explicit Outbox(net::Channel& channel) : channel_(channel) {}
@@ -20,16 +20,15 @@ class Outbox {
     void bulk(net::PeerId peer, const wire::BulkMessage& message);
     void bulk(net::PeerId peer, net::Bytes&& encoded, std::uint64_t session::WireBytes::*counter);
 
-    void flush();  // tries again what waits
+    void flush();  // retries waiting messages
     bool waiting() const { return !queues_.empty(); }
     std::size_t waiting_bytes(net::Link link, net::PeerId peer) const;
     void forget(net::Link link, net::PeerId peer) { queues_.erase({link, peer}); }
 
-    // Peers that cannot be reached or let more than the limit pile up; to be treated as gone. Empties the
-    // list.
+    // Peers that are unreachable or over the limit of waiting bytes, to be removed. Clears the list.
     std::vector<std::pair<net::Link, net::PeerId>> take_lost() { return std::exchange(lost_, {}); }
 
-    session::WireBytes bytes;  // both directions; the receiving side is counted by whoever receives
+    session::WireBytes bytes;  // both directions; received bytes are added by the receiver
 
   private:
     void put(net::Link link, net::PeerId peer, net::Bytes&& message);

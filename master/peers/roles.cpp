@@ -17,7 +17,7 @@ bool is_among(net::Role role, wire::Senders senders) {
             return editor;
         case wire::Senders::Clients:
             return editor || role == Viewer;
-        case wire::Senders::Everybody:
+        case wire::Senders::Everyone:
             return editor || node || role == Viewer;
     }
     return false;

@@ -5,7 +5,7 @@
 
 namespace tessera::master {
 
-// Message kind x role, one table: may a peer whose key has this role send this?
+// May a peer whose key has this role send this kind of message?
 bool allowed(net::Role role, const wire::ControlMessage& message);
 bool allowed(net::Role role, const wire::BulkMessage& message);
 

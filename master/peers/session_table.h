@@ -24,22 +24,22 @@ struct SessionRecord {
     wire::Hello hello;
     net::Liveness liveness;
     wire::BlobFetcher fetcher;
-    // Edits in the order they came; the first waits until its blobs are here.
+    // Edits in the order of arrival; the first waits until its blobs have arrived.
     struct PendingEdit {
-        std::optional<scene::BlobRef> encoded;  // the edit itself is a blob that is still on its way
+        std::optional<scene::BlobRef> encoded;  // the edit itself is a blob that has not arrived
         scene::Edit edit;
         std::uint64_t bytes = 0;  // that it took on the wire
     };
     std::deque<PendingEdit> edits;
-    std::optional<wire::OpenDisplay> opening;  // waits until its blobs are here
+    std::optional<wire::OpenDisplay> opening;  // waits until its blobs have arrived
     std::int64_t heartbeat_sent_at = 0;        // its latest, and when it came: what our next heartbeat echoes
     TimePoint heartbeat_at{};
     net::PeerClock clock;
-    std::uint32_t told_place = 0;            // in the queue, as last told
+    std::uint32_t reported_place = 0;        // in the queue, as last sent to the client
     std::optional<wire::JoinScene> joining;  // waits in the queue
 };
 
-// Clients, and those of them that wait for a scene, in order of arrival.
+// All clients, and the queue of those that wait for the scene, in order of arrival.
 class SessionTable {
   public:
     SessionRecord& add(SessionRecord record) {

@@ -4,7 +4,7 @@ namespace tessera::master {
 
 namespace {
 
-// "no node has the renderer raster: ...; ", or nothing when one has.
+// "no node has the renderer raster: ...; ", or "" if one has.
 std::string missing_renderer(const NodeTable& nodes, view::Renderer renderer) {
     for (const auto& [id, node] : nodes.all()) {
         if (node.hello.renderers.contains(renderer)) return {};
@@ -13,7 +13,7 @@ std::string missing_renderer(const NodeTable& nodes, view::Renderer renderer) {
     return "no node has the renderer raster: start one with --backend vulkan; ";
 }
 
-// "the back-ends of 2 nodes do not give alpha, range; ", or nothing when channels are not the trouble.
+// "the back-ends of 2 nodes do not give alpha, range; ", or "" if channels are not the cause.
 std::string missing_channels(const NodeTable& nodes, frame::ChannelSet channels) {
     std::uint32_t lacking = 0;
     frame::ChannelSet missing;
@@ -31,7 +31,7 @@ std::string missing_channels(const NodeTable& nodes, frame::ChannelSet channels)
     return "the back-ends of " + std::to_string(lacking) + " nodes do not give " + names + "; ";
 }
 
-// "the scene does not fit into 2 nodes (node-1: why); ", or nothing when memory is not the trouble.
+// "the scene does not fit into 2 nodes (node-1: why); ", or "" if memory is not the cause.
 std::string missing_room(const NodeTable& nodes, Version version) {
     std::uint32_t full = 0;
     std::string first;

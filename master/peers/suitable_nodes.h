@@ -6,13 +6,13 @@
 
 namespace tessera::master {
 
-// Could render the view, whatever version it holds; not one that has refused `version` for want of room.
+// Whether the node could render the view, at any version; false if `version` does not fit into its memory.
 bool suits(const NodeRecord& node, const view::View& view, Version version);
-// Suits, and holds the version.
+// Suitable, and has built the version.
 bool ready(const NodeRecord& node, const view::View& view, Version version);
 
-// What keeps nodes from the view: the renderer, channels, room for the scene; each with its remedy or its
-// reason and "; " at the end. Nothing when it is none of these.
+// Why no node can render the view: renderer, channels or memory for the scene, each with its remedy or reason and
+// a final "; ". Empty if it is none of these.
 std::string obstacles(const NodeTable& nodes, const view::View& view, Version version);
 
 }  // namespace tessera::master

@@ -13,11 +13,11 @@ constexpr std::uint32_t TilesAhead = 32;                   // encoded by the fil
 constexpr std::size_t BytesAhead = std::size_t{32} << 20;  // waiting for a slow client
 }  // namespace
 
-void Delivery::watch(SessionId session, std::uint64_t number, ViewId view, const Wish& wish) {
+void Delivery::watch(SessionId session, std::uint64_t number, ViewId view, const FrameFormat& format) {
     Watcher& watcher = watchers_[{session, number}];
-    if (watcher.view != view || watcher.wish != wish) watcher.seen.reset();
+    if (watcher.view != view || watcher.format != format) watcher.seen.reset();
     watcher.view = view;
-    watcher.wish = wish;
+    watcher.format = format;
 }
 
 void Delivery::leave(SessionId session, std::uint64_t number) {
@@ -28,14 +28,14 @@ void Delivery::leave(SessionId session, std::uint64_t number) {
 
 void Delivery::taken(SessionId session, const wire::FrameTaken& taken) {
     const auto watcher = watchers_.find({session, taken.number});
-    if (watcher != watchers_.end() && watcher->second.on_its_way == taken.frame)
-        watcher->second.on_its_way = 0;
+    if (watcher != watchers_.end() && watcher->second.frame_in_flight == taken.frame)
+        watcher->second.frame_in_flight = 0;
 }
 
 void Delivery::resumed(SessionId session) {
     for (auto& [key, watcher] : watchers_) {
         if (key.first != session) continue;
-        watcher.on_its_way = 0;
+        watcher.frame_in_flight = 0;
         watcher.seen.reset();
     }
     std::erase_if(shipments_, [&](const Shipment& shipment) { return shipment.to.first == session; });
@@ -43,8 +43,8 @@ void Delivery::resumed(SessionId session) {
 
 void Delivery::forget(ViewId view) {
     std::erase_if(watchers_, [&](const auto& entry) { return entry.second.view == view; });
-    std::erase_if(making_, [&](const auto& entry) { return entry.second.view == view; });
-    std::erase_if(made_, [&](const auto& entry) { return entry.first.first == view; });
+    std::erase_if(pending_, [&](const auto& entry) { return entry.second.view == view; });
+    std::erase_if(costs_, [&](const auto& entry) { return entry.first.first == view; });
     std::erase_if(shipments_, [&](const Shipment& shipment) { return shipment.view == view; });
 }
 
@@ -67,86 +67,87 @@ std::vector<std::uint64_t> Delivery::numbers(SessionId session) const {
     return numbers;
 }
 
-void Delivery::offer(const ViewState& view, TimePoint now, Duration interval) {
+void Delivery::send_frames(const ViewState& view, TimePoint now, Duration interval) {
     if (!view.shown || view.shown->revision != view.revision) return;
-    const Shown& shown = *view.shown;
-    std::map<Wish, std::vector<Key>> free;
+    const DisplayedState& shown = *view.shown;
+    std::map<FrameFormat, std::vector<Key>> free;
     for (const auto& [key, watcher] : watchers_) {
         const bool has_seen = watcher.seen == shown && watcher.seen_version == view.version;
-        if (watcher.view != view.id || watcher.on_its_way != 0 || has_seen) continue;
-        const bool waits = watcher.wish.frames == session::Frames::Last || view.passes.empty();
+        if (watcher.view != view.id || watcher.frame_in_flight != 0 || has_seen) continue;
+        const bool waits = watcher.format.frames == session::Frames::Last || view.passes.empty();
         if (waits && !shown.complete) continue;
-        free[watcher.wish].push_back(key);
+        free[watcher.format].push_back(key);
     }
-    for (auto& [wish, receivers] : free) {
-        const bool busy = std::any_of(making_.begin(), making_.end(), [&](const auto& entry) {
-            return entry.second.view == view.id && entry.second.wish == wish;
+    for (auto& [format, receivers] : free) {
+        const bool busy = std::any_of(pending_.begin(), pending_.end(), [&](const auto& entry) {
+            return entry.second.view == view.id && entry.second.format == format;
         });
-        Made& last = made_[{view.id, wish}];
+        FrameCost& last = costs_[{view.id, format}];
         const bool news = last.shown != shown &&
                           (shown.complete || shown.pass + 1 < view.passes.size() || shown.samples == 0);
         constexpr int CostLimit = 4;
         if (busy || (!news && now - last.started < std::max(interval, CostLimit * last.cost))) continue;
         last.started = now;
         last.shown = shown;
-        begin(view, wish, std::move(receivers));
+        begin(view, format, std::move(receivers));
     }
 }
 
-Delivery::Making Delivery::frame_of(const ViewState& view, const Wish& wish, std::uint64_t frame) const {
-    Making making{
-        .view = view.id, .wish = wish, .shown = *view.shown, .header = {}, .tiles = {}, .receivers = {}};
-    making.header = {.frame = frame,
-                     .version = view.version,
-                     .revision = view.camera_revision,
-                     .encoding = wish.picture,
-                     .spp = view.request.stop.spp,
-                     .complete = view.shown->complete};
-    making.is_end = view.shown->complete && view.run.outcome.has_value();
-    if (view.passes.empty()) return making;
+Delivery::PendingFrame Delivery::frame_of(const ViewState& view, const FrameFormat& format,
+                                          std::uint64_t frame) const {
+    PendingFrame pending{
+        .view = view.id, .format = format, .shown = *view.shown, .header = {}, .tiles = {}, .receivers = {}};
+    pending.header = {.frame = frame,
+                      .version = view.version,
+                      .revision = view.camera_revision,
+                      .encoding = format.picture,
+                      .spp = view.request.stop.spp,
+                      .complete = view.shown->complete};
+    pending.is_end = view.shown->complete && view.run.outcome.has_value();
+    if (view.passes.empty()) return pending;
     const Pass& pass = view.passes[view.shown->pass];
-    making.header.scale = pass.scale;
-    making.header.width = static_cast<std::uint32_t>(pass.view.window.width);
-    making.header.height = static_cast<std::uint32_t>(pass.view.window.height);
-    return making;
+    pending.header.scale = pass.scale;
+    pending.header.width = static_cast<std::uint32_t>(pass.view.window.width);
+    pending.header.height = static_cast<std::uint32_t>(pass.view.window.height);
+    return pending;
 }
 
-void Delivery::begin(const ViewState& view, const Wish& wish, std::vector<Key> receivers) {
+void Delivery::begin(const ViewState& view, const FrameFormat& format, std::vector<Key> receivers) {
     const std::uint64_t frame = next_frame_++;
-    Making making = frame_of(view, wish, frame);
-    for (const Key& key : receivers) watchers_.at(key).on_its_way = frame;
-    making.receivers = std::move(receivers);
-    const bool waited = wish.frames == session::Frames::Last;
-    if (view.passes.empty()) return ship(frame, std::move(making), {});
+    PendingFrame pending = frame_of(view, format, frame);
+    for (const Key& key : receivers) watchers_.at(key).frame_in_flight = frame;
+    pending.receivers = std::move(receivers);
+    const bool waited = format.frames == session::Frames::Last;
+    if (view.passes.empty()) return ship(frame, std::move(pending), {});
     const Pass& pass = view.passes[view.shown->pass];
-    if (wish.film) {
-        making.header.film_tiles = pass.tiles;
-        making.header.film_window = pass.view.window;
+    if (format.film) {
+        pending.header.film_tiles = pass.tiles;
+        pending.header.film_window = pass.view.window;
         if (waited) {
-            making.film = pass.view.id;  // nothing is added to it any more
+            pending.film = pass.view.id;  // nothing is added to it any more
         } else {
-            film_.deliver(pass.view.id, frame, 0, making.header.film_tiles);
+            film_.deliver(pass.view.id, frame, 0, pending.header.film_tiles);
         }
     }
-    const bool nothing_to_make = waited ? !has_picture(view, wish.picture) : view.run.samples == 0;
-    if (making.is_end && nothing_to_make) return ship(frame, std::move(making), {});
-    const bool hash = making.shown.complete && !waited;
-    film_.reconstruct(frame, pass.view, view.version, {wish.picture, wish.transform, view.id},
+    const bool nothing_to_make = waited ? !has_picture(view, format.picture) : view.run.samples == 0;
+    if (pending.is_end && nothing_to_make) return ship(frame, std::move(pending), {});
+    const bool hash = pending.shown.complete && !waited;
+    film_.reconstruct(frame, pass.view, view.version, {format.picture, format.transform, view.id},
                       hash ? FilmStore::FilmHash::Wanted : FilmStore::FilmHash::NotWanted);
-    making_.emplace(frame, std::move(making));
+    pending_.emplace(frame, std::move(pending));
 }
 
 void Delivery::report_progress(const ViewState& view, std::uint32_t nodes) {
     for (const auto& [key, watcher] : watchers_) {
-        if (watcher.view != view.id || watcher.wish.frames != session::Frames::Last) continue;
+        if (watcher.view != view.id || watcher.format.frames != session::Frames::Last) continue;
         if (const SessionRecord* session = sessions_.find(key.first))
             outbox_.control(session->control, wire::ViewProgress{key.second, progress_of(view, nodes)});
     }
 }
 
 void Delivery::take(EncodedTile&& tile) {
-    if (const auto making = making_.find(tile.frame); making != making_.end()) {
-        making->second.tiles.push_back(std::move(tile.bytes));
+    if (const auto pending = pending_.find(tile.frame); pending != pending_.end()) {
+        pending->second.tiles.push_back(std::move(tile.bytes));
         return;
     }
     for (Shipment& shipment : shipments_) {
@@ -155,23 +156,23 @@ void Delivery::take(EncodedTile&& tile) {
 }
 
 std::optional<ViewId> Delivery::ends(std::uint64_t frame) const {
-    const auto making = making_.find(frame);
-    if (making == making_.end() || !making->second.shown.complete) return std::nullopt;
-    return making->second.view;
+    const auto pending = pending_.find(frame);
+    if (pending == pending_.end() || !pending->second.shown.complete) return std::nullopt;
+    return pending->second.view;
 }
 
 void Delivery::take(const Reconstructed& made, TimePoint now) {
-    auto making = making_.extract(made.frame);
-    if (making.empty()) return;
-    Made& last = made_[{making.mapped().view, making.mapped().wish}];
+    auto pending = pending_.extract(made.frame);
+    if (pending.empty()) return;
+    FrameCost& last = costs_[{pending.mapped().view, pending.mapped().format}];
     last.cost = now - last.started;
-    ship(making.key(), std::move(making.mapped()), made);
+    ship(pending.key(), std::move(pending.mapped()), made);
 }
 
-void Delivery::ship(std::uint64_t frame, Making&& making, const Reconstructed& made) {
-    wire::FrameHeader header = making.header;
+void Delivery::ship(std::uint64_t frame, PendingFrame&& pending, const Reconstructed& made) {
+    wire::FrameHeader header = pending.header;
     const session::PictureSummary& summary = made.picture.summary;
-    if (making.wish.picture != session::PictureEncoding::None && made.picture.bytes) {
+    if (pending.format.picture != session::PictureEncoding::None && made.picture.bytes) {
         header.width = summary.width;
         header.height = summary.height;
         header.components = summary.components;
@@ -181,41 +182,41 @@ void Delivery::ship(std::uint64_t frame, Making&& making, const Reconstructed& m
     header.samples_most = made.samples_most;
     if (made.film_hash) header.film_hash = *made.film_hash;
     const auto no_picture = std::make_shared<const std::vector<std::byte>>();
-    for (const Key& key : making.receivers) {
+    for (const Key& key : pending.receivers) {
         const auto watcher = watchers_.find(key);
-        if (watcher == watchers_.end() || watcher->second.on_its_way != frame) continue;
+        if (watcher == watchers_.end() || watcher->second.frame_in_flight != frame) continue;
         if (key.first == Keeper) {
-            watcher->second.seen = making.shown;
-            ended_.push_back({making.view, header, end_of(*views_.find(making.view), made),
+            watcher->second.seen = pending.shown;
+            ended_.push_back({pending.view, header, end_of(*views_.find(pending.view), made),
                               made.picture.bytes ? made.picture.bytes : no_picture});
             continue;
         }
         const SessionRecord* session = sessions_.find(key.first);
-        const bool has_failed = !made.picture.error.empty() && !making.is_end;
-        const bool is_reachable = session != nullptr && (session->bulk || making.is_end);
-        if (has_failed || is_reachable) {  // what cannot be made is not tried again until there is newer
-            watcher->second.seen = making.shown;
+        const bool has_failed = !made.picture.error.empty() && !pending.is_end;
+        const bool is_reachable = session != nullptr && (session->bulk || pending.is_end);
+        if (has_failed || is_reachable) {  // a failed reconstruction is not retried until there is newer film
+            watcher->second.seen = pending.shown;
             watcher->second.seen_version = header.version;
         }
         if (has_failed || !is_reachable) {
-            watcher->second.on_its_way = 0;
+            watcher->second.frame_in_flight = 0;
             continue;
         }
         header.view = key.second;
-        if (making.is_end) {
+        if (pending.is_end) {
             outbox_.control(
                 session->control,
-                encoded(wire::ViewDone{header.view, header.frame, end_of(*views_.find(making.view), made)}));
+                encoded(wire::ViewDone{header.view, header.frame, end_of(*views_.find(pending.view), made)}));
         }
         shipments_.push_back({.to = key,
-                              .view = making.view,
+                              .view = pending.view,
                               .frame = frame,
                               .header = header,
                               .picture = made.picture.bytes ? made.picture.bytes : no_picture,
-                              .tiles = making.tiles,
+                              .tiles = pending.tiles,
                               .tile_count = header.film_tiles,
-                              .tiles_requested = static_cast<std::uint32_t>(making.tiles.size()),
-                              .film = making.film});
+                              .tiles_requested = static_cast<std::uint32_t>(pending.tiles.size()),
+                              .film = pending.film});
     }
 }
 
@@ -243,7 +244,7 @@ void Delivery::send_kept(const SessionRecord& session, Ended kept) {
                           .film = {}});
 }
 
-std::size_t Delivery::on_their_way(SessionId session) const {
+std::size_t Delivery::in_flight(SessionId session) const {
     return static_cast<std::size_t>(
         std::count_if(shipments_.begin(), shipments_.end(),
                       [&](const Shipment& shipment) { return shipment.to.first == session; }));
@@ -253,7 +254,7 @@ void Delivery::send() {
     std::set<SessionId> busy;
     std::erase_if(shipments_, [&](Shipment& shipment) {
         const SessionRecord* session = sessions_.find(shipment.to.first);
-        if (session == nullptr) return true;  // it has gone
+        if (session == nullptr) return true;  // disconnected
         if (busy.contains(shipment.to.first) || !session->bulk) return false;
         send(shipment, *session);
         if (!shipment.is_done()) busy.insert(shipment.to.first);
@@ -264,7 +265,7 @@ void Delivery::send() {
 void Delivery::send(Shipment& shipment, const SessionRecord& session) {
     const auto has_room = [&] { return outbox_.waiting_bytes(net::Link::Bulk, *session.bulk) <= BytesAhead; };
     if (shipment.header) outbox_.bulk(*session.bulk, *std::exchange(shipment.header, std::nullopt));
-    while (shipment.picture_sent < shipment.picture->size()) {  // what somebody is waiting for goes first
+    while (shipment.picture_sent < shipment.picture->size()) {  // the picture goes before the film
         if (!has_room()) return;
         const auto piece = next_chunk(*shipment.picture, shipment.picture_sent);
         outbox_.bulk(*session.bulk, wire::PictureChunk{.frame = shipment.frame,

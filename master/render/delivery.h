@@ -14,57 +14,57 @@
 
 namespace tessera::master {
 
-// Who gets the pictures of which view, and the frames on their way. A watcher has one frame on its way at a
-// time; when it is taken, the newest follows, so a slow or stopped watcher costs one frame and delays nobody.
-// Watchers that want the same get the same bytes. Who waits for the end gets the last picture, and what
-// became of the view.
+// Which watcher gets the pictures of which view, and the frames in flight. A watcher has at most one frame in
+// flight; when it acknowledges it, the newest one follows, so a slow or stopped watcher costs one frame and
+// delays no other. Watchers with the same format share the encoded bytes. A watcher that waits for the end gets
+// the last picture and the view's summary.
 class Delivery {
   public:
     Delivery(const ViewTable& views, SessionTable& sessions, Outbox& outbox, FilmStore& film)
         : views_(views), sessions_(sessions), outbox_(outbox), film_(film) {}
 
-    struct Wish {
+    struct FrameFormat {
         session::PictureEncoding picture = session::PictureEncoding::None;
         bool film = false;
         session::Frames frames = session::Frames::All;
         view::DisplayTransform transform;
-        friend auto operator<=>(const Wish&, const Wish&) = default;
+        friend auto operator<=>(const FrameFormat&, const FrameFormat&) = default;
     };
-    void watch(SessionId session, std::uint64_t number, ViewId view, const Wish& wish);
+    void watch(SessionId session, std::uint64_t number, ViewId view, const FrameFormat& format);
     void leave(SessionId session, std::uint64_t number);
     void taken(SessionId session, const wire::FrameTaken& taken);
-    void resumed(SessionId session);  // what was on its way may be lost: it goes again
-    void forget(ViewId view);         // closed: nobody watches it any more
+    void resumed(SessionId session);  // frames in flight may be lost: they are sent again
+    void forget(ViewId view);         // closed: removes its watchers
 
-    // The end of a view that is kept for whoever comes for it.
+    // The end of a view that is kept until a client fetches it.
     struct Ended {
         ViewId view;
         wire::FrameHeader header;
         session::ViewSummary summary;
         std::shared_ptr<const std::vector<std::byte>> picture;  // never null
     };
-    void keep(ViewId view, const Wish& wish) { watch(Keeper, view.value, view, wish); }
+    void keep(ViewId view, const FrameFormat& format) { watch(Keeper, view.value, view, format); }
     void release(ViewId view) { leave(Keeper, view.value); }
     bool is_kept(ViewId view) const { return watched(Keeper, view.value).has_value(); }
     std::vector<Ended> take_ended() { return std::exchange(ended_, {}); }
-    // Sends a picture that was kept, as the end of the session's view of that number.
+    // Sends a kept picture as the end of the session's view with that number.
     void send_kept(const SessionRecord& session, Ended kept);
-    std::size_t on_their_way(SessionId session) const;  // shipments
+    std::size_t in_flight(SessionId session) const;  // shipments
 
     std::optional<ViewId> watched(SessionId session, std::uint64_t number) const;
     std::uint64_t watchers(ViewId view) const;
     std::vector<std::uint64_t> numbers(SessionId session) const;
 
-    // Has frames made of what the view shows, for those who are free and have not seen it. Not more often than
-    // `interval` within a pass, nor so often that more than a quarter of the time goes into making them.
-    void offer(const ViewState& view, TimePoint now, Duration interval);
-    // Where the view is, for those who wait for its end.
+    // Starts frames of the displayed state for watchers that have no frame in flight and have not seen it. At
+    // most one per `interval` within a pass, and at most a quarter of the time is spent on reconstruction.
+    void send_frames(const ViewState& view, TimePoint now, Duration interval);
+    // Sends the view's progress to watchers that wait for its end.
     void report_progress(const ViewState& view, std::uint32_t nodes);
-    // Film or picture of frames that are being made has come.
+    // Film tiles or the picture of a pending frame are available.
     void take(EncodedTile&& tile);
     void take(const Reconstructed& made, TimePoint now);
     std::optional<ViewId> ends(std::uint64_t frame) const;  // the view whose end the frame shows
-    // Sends what is made to those whose links have room.
+    // Sends finished frames over links that have room in their send queues.
     void send();
 
   private:
@@ -72,22 +72,23 @@ class Delivery {
     using Key = std::pair<SessionId, std::uint64_t>;
     struct Watcher {
         ViewId view;
-        Wish wish;
-        std::uint64_t on_its_way = 0;  // frame; 0 = free
-        std::optional<Shown> seen;     // the latest sent, and of which version: a change that no picture
-        Version seen_version;          // shows is told with the same picture, for those who wait for it
+        FrameFormat format;
+        std::uint64_t frame_in_flight = 0;   // 0 = none
+        std::optional<DisplayedState> seen;  // the latest sent, and its scene version: after a
+        Version
+            seen_version;  // change that alters no pixel the same picture is sent again with the new version
     };
-    struct Making {
+    struct PendingFrame {
         ViewId view;
-        Wish wish;
-        Shown shown;
+        FrameFormat format;
+        DisplayedState shown;
         wire::FrameHeader header;
         bool is_end = false;
         std::deque<net::Bytes> tiles;
-        ViewId film;  // of tiles that are made when there is room for them; 0: all are here
+        ViewId film;  // its tiles are encoded as the link drains; 0: all are here
         std::vector<Key> receivers;
     };
-    // A frame on its way to one watcher. A client collects one at a time: the next begins when it is sent.
+    // A frame that is being sent to one watcher. A client receives one at a time: the next begins when it is sent.
     struct Shipment {
         Key to;
         ViewId view;
@@ -100,9 +101,9 @@ class Delivery {
         ViewId film;
         bool is_done() const { return picture_sent == picture->size() && tiles_sent == tile_count; }
     };
-    Making frame_of(const ViewState& view, const Wish& wish, std::uint64_t frame) const;
-    void begin(const ViewState& view, const Wish& wish, std::vector<Key> receivers);
-    void ship(std::uint64_t frame, Making&& making, const Reconstructed& made);
+    PendingFrame frame_of(const ViewState& view, const FrameFormat& format, std::uint64_t frame) const;
+    void begin(const ViewState& view, const FrameFormat& format, std::vector<Key> receivers);
+    void ship(std::uint64_t frame, PendingFrame&& pending, const Reconstructed& made);
     session::ViewSummary end_of(const ViewState& view, const Reconstructed& made) const;
     void send(Shipment& shipment, const SessionRecord& session);
 
@@ -111,15 +112,15 @@ class Delivery {
     Outbox& outbox_;
     FilmStore& film_;
     std::map<Key, Watcher> watchers_;
-    std::map<std::uint64_t, Making> making_;  // by frame
+    std::map<std::uint64_t, PendingFrame> pending_;  // by frame
     std::list<Shipment> shipments_;
     std::vector<Ended> ended_;
-    struct Made {
+    struct FrameCost {
         TimePoint started{};
-        Duration cost{};  // of the latest
-        std::optional<Shown> shown;
+        Duration cost{};  // of the latest frame
+        std::optional<DisplayedState> shown;
     };
-    std::map<std::pair<ViewId, Wish>, Made> made_;
+    std::map<std::pair<ViewId, FrameFormat>, FrameCost> costs_;
     std::uint64_t next_frame_ = 1;
 };
 

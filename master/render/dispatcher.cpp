@@ -20,8 +20,8 @@ Dispatcher::Dispatcher(Duration overdue_patience, const Clock& clock, NodeTable&
 
 // ---- passes ----
 
-Scheduler& Dispatcher::begin(const view::View& view, const PlanSettings& plan, const Crew& crew,
-                             std::optional<TimePoint> deadline) {
+Scheduler& Dispatcher::begin(const view::View& view, const PlanSettings& plan,
+                             const NodeRequirements& requirements, std::optional<TimePoint> deadline) {
     if (Active* before = active(view.id)) {
         send_cancellations(before->scheduler.cancel_everything());
         add(counts_, before->scheduler.counts());
@@ -32,8 +32,8 @@ Scheduler& Dispatcher::begin(const view::View& view, const PlanSettings& plan, c
     next_unit_ += UnitsPerPass;
     by_first_unit_[first] = view.id;
     const auto place = passes_.emplace(
-        view.id,
-        Active{view, crew, first, Scheduler(plan, view.id, view.revision, crew.version, first, deadline)});
+        view.id, Active{view, requirements, first,
+                        Scheduler(plan, view.id, view.revision, requirements.version, first, deadline)});
     return place.first->second.scheduler;
 }
 
@@ -62,7 +62,7 @@ void Dispatcher::revise(const view::View& view) {
 
 void Dispatcher::follow(ViewId pass, Version version) {
     if (Active* followed = active(pass)) {
-        followed->crew.version = version;
+        followed->requirements.version = version;
         followed->scheduler.follow(version);
     }
 }
@@ -91,12 +91,15 @@ Dispatcher::Active* Dispatcher::holder(UnitId unit) {
 
 // ---- nodes ----
 
-bool Dispatcher::suits(const NodeRecord& node, const view::View& view, const Crew& crew) const {
-    return master::suits(node, view, crew.version) && (!crew.reproducible || node.hello.reproducible);
+bool Dispatcher::suits(const NodeRecord& node, const view::View& view,
+                       const NodeRequirements& requirements) const {
+    return master::suits(node, view, requirements.version) &&
+           (!requirements.reproducible || node.hello.reproducible);
 }
 
-bool Dispatcher::ready(const NodeRecord& node, const view::View& view, const Crew& crew) const {
-    return suits(node, view, crew) && master::ready(node, view, crew.version);
+bool Dispatcher::ready(const NodeRecord& node, const view::View& view,
+                       const NodeRequirements& requirements) const {
+    return suits(node, view, requirements) && master::ready(node, view, requirements.version);
 }
 
 std::vector<NodeCapacity> Dispatcher::capacities() const {
@@ -110,7 +113,7 @@ void Dispatcher::deal(ViewId id, std::vector<NodeCapacity>& capacities, TimePoin
     if (pass == nullptr) return;
     std::vector<NodeCapacity> suitable;
     for (const NodeCapacity& capacity : capacities) {
-        if (ready(*nodes_.find(capacity.node), pass->view, pass->crew)) suitable.push_back(capacity);
+        if (ready(*nodes_.find(capacity.node), pass->view, pass->requirements)) suitable.push_back(capacity);
     }
     if (suitable.empty()) return;
     for (const Assignment& assignment : pass->scheduler.assign(suitable, balancer_, now)) {
@@ -120,22 +123,23 @@ void Dispatcher::deal(ViewId id, std::vector<NodeCapacity>& capacities, TimePoin
         outbox_.control(node.control, wire::Work{node.work_sequence, assignment.unit});
         for (NodeCapacity& capacity : capacities) {
             if (capacity.node != assignment.node) continue;
-            --capacity.free_places;
-            ++capacity.in_hand;
+            --capacity.free_slots;
+            ++capacity.in_flight;
         }
     }
 }
 
-Dispatcher::Prospects Dispatcher::prospects(const view::View& view, const Crew& crew) const {
+Dispatcher::Prospects Dispatcher::prospects(const view::View& view,
+                                            const NodeRequirements& requirements) const {
     Prospects prospects;
     for (const auto& [id, node] : nodes_.all()) {
-        if (!suits(node, view, crew)) continue;
+        if (!suits(node, view, requirements)) continue;
         ++prospects.suitable;
         prospects.workers += std::max(1u, node.hello.concurrent_units);
         const double rate = balancer_.rate(id);
         double& slowest = prospects.slowest_worker;
         if (rate > 0.0) slowest = slowest > 0.0 ? std::min(slowest, rate) : rate;
-        if (!ready(node, view, crew)) continue;
+        if (!ready(node, view, requirements)) continue;
         ++prospects.ready;
         prospects.samples_per_second += node.capacity().workers * rate;
     }
@@ -188,7 +192,7 @@ void Dispatcher::collect_overdue(TimePoint now) {
 
 Dispatcher::Taken Dispatcher::take(const MergeReport& report, TimePoint now) {
     const NodeRecord* node = nodes_.by_bulk(report.peer);
-    if (report.part + 1 == report.parts) confirm_cancelled(report.unit, now);  // it was done already
+    if (report.part + 1 == report.parts) confirm_cancelled(report.unit, now);  // it was finished already
     if (report.malformed) {
         ++malformed_film_;
         events_({wire::Severity::Warning, "malformed film was dropped"});
@@ -201,10 +205,10 @@ Dispatcher::Taken Dispatcher::take(const MergeReport& report, TimePoint now) {
     switch (report.result.outcome) {
         case FrameAssembler::Outcome::Misfit:
             scheduler.count_refused();
-            events_({wire::Severity::Error, "film that does not fit the frame was refused" +
+            events_({wire::Severity::Error, "film that does not match the frame was rejected" +
                                                 (node ? " (node " + node->hello.name + ")" : std::string())});
             return Taken::Dropped;
-        case FrameAssembler::Outcome::Contradiction:
+        case FrameAssembler::Outcome::Conflict:
             report_contradiction(*pass, report, node);
             scheduler.count_duplicate();
             break;
@@ -252,7 +256,7 @@ std::optional<Dispatcher::Failure> Dispatcher::released(NodeRecord& node, const 
         case wire::ReleaseReason::Leaving:
             return std::nullopt;
         case wire::ReleaseReason::UnknownView:
-            node.views.erase(pass->view.id);  // the message got lost: say it again
+            node.views.erase(pass->view.id);  // the message was lost: send it again
             [[fallthrough]];
         case wire::ReleaseReason::OtherVersion:
             pass->scheduler.count_refused();
@@ -265,7 +269,7 @@ std::optional<Dispatcher::Failure> Dispatcher::released(NodeRecord& node, const 
     return Failure{pass->view.id, release.message};
 }
 
-// Film that was sent is on its way on the other link; the overdue check catches it if it never comes.
+// Its film may still be in flight on the bulk link; the overdue check catches it if it never arrives.
 void Dispatcher::goodbye(NodeRecord& node, const wire::Goodbye& goodbye) {
     for (auto& [view, pass] : passes_) {
         for (const UnitId unit : pass.scheduler.held_by(node.id)) {

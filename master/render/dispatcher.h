@@ -16,53 +16,53 @@
 namespace tessera::master {
 
 // Which nodes may render a pass.
-struct Crew {
+struct NodeRequirements {
     Version version;            // of the scene that they must hold
     bool reproducible = false;  // only nodes pinned to AVX2
 };
 
-// Between passes and nodes: deals units, takes back what nodes hand back, lose or leave behind, cancels what
-// need not be finished, measures how fast nodes are. Passes go by the ids of their views. Told of events by
-// the master's loop; owns no socket.
+// Assigns the units of passes to nodes: deals units, takes back released, lost and orphaned ones, cancels those that
+// are no longer needed, measures the speed of nodes. Passes are identified by the ids of their views. Driven by the
+// master's event loop; owns no socket.
 class Dispatcher {
   public:
-    // `overdue_patience`: a unit that the node neither holds nor sent film of for so long is lost.
+    // `overdue_patience`: a unit that the node does not hold and whose film has not arrived for this long is lost.
     Dispatcher(Duration overdue_patience, const Clock& clock, NodeTable& nodes, Outbox& outbox,
                EventSink events);
 
     // ---- passes ----
-    // Units of the pass are dealt from now on. What its id stood for before ends; nodes replace their view.
-    Scheduler& begin(const view::View& view, const PlanSettings& plan, const Crew& crew,
+    // Deals units of the pass from now on. An earlier pass with its id ends; nodes replace their view.
+    Scheduler& begin(const view::View& view, const PlanSettings& plan, const NodeRequirements& requirements,
                      std::optional<TimePoint> deadline = {});
     void end(ViewId pass);     // cancelled; nodes forget its view
-    void cancel(ViewId pass);  // no more is dealt; film that is on its way is still taken
-    // The view goes on under another revision: what is under way is dealt again.
+    void cancel(ViewId pass);  // deals no more units; film in flight is still merged
+    // The view continues under another revision: units in flight are dealt again.
     void revise(const view::View& view);
-    void follow(ViewId pass, Version version);  // another version of the scene that gives the same samples
+    void follow(ViewId pass, Version version);  // another version of the scene with the same samples
     Scheduler* find(ViewId pass);
     const Scheduler* find(ViewId pass) const;
 
     // ---- nodes ----
     std::vector<NodeCapacity> capacities() const;
-    // To nodes that suit and are ready; counts them down in `capacities`.
+    // To suitable nodes that are ready; reduces `capacities`.
     void deal(ViewId pass, std::vector<NodeCapacity>& capacities, TimePoint now);
-    // How many nodes could render the view, and how many could at once.
+    // How many nodes could render the view, and how many are ready to.
     struct Prospects {
         std::uint32_t suitable = 0, ready = 0;
-        std::uint32_t workers = 0;        // of those that suit
-        double samples_per_second = 0.0;  // of those that are ready; 0 = not measured
-        double slowest_worker = 0.0;      // samples per second, of those that suit and were measured
+        std::uint32_t workers = 0;        // of suitable nodes
+        double samples_per_second = 0.0;  // of ready nodes; 0 = not measured
+        double slowest_worker = 0.0;      // samples per second, of suitable nodes that were measured
     };
-    Prospects prospects(const view::View& view, const Crew& crew) const;
+    Prospects prospects(const view::View& view, const NodeRequirements& requirements) const;
     std::string obstacles(const view::View& view, Version version) const;
     std::size_t node_count() const { return nodes_.all().size(); }
     double rate(NodeId node) const { return balancer_.rate(node); }  // pixel samples a second of one worker
 
     // ---- events ----
     void collect_overdue(TimePoint now);
-    enum class Taken { Dropped, Known, New };  // New: samples that were not there before
+    enum class Taken { Dropped, Known, New };  // New: samples that were not merged before
     Taken take(const MergeReport& report, TimePoint now);
-    // Who sent it, without a share of work; nothing when it is gone.
+    // The node that sent it, without its work counts; nothing when it has disconnected.
     std::optional<session::NodeSummary> sender(const MergeReport& report) const;
     struct Failure {
         ViewId pass;
@@ -73,22 +73,22 @@ class Dispatcher {
     void node_gone(NodeId node);
 
     // ---- counts ----
-    session::UnitCounts counts() const;  // of all passes, those under way too
+    session::UnitCounts counts() const;  // of all passes, including current ones
     std::uint64_t malformed_film() const { return malformed_film_; }
-    // From the order to stop to the node's word that it has.
+    // From the cancellation to the node's confirmation.
     const Percentiles& cancellations() const { return cancellations_; }
 
   private:
     struct Active {
         view::View view;
-        Crew crew;
-        UnitId first_unit;  // its units have ids from here, UnitsPerPass of them
+        NodeRequirements requirements;
+        UnitId first_unit;  // its units have UnitsPerPass ids from this one on
         Scheduler scheduler;
     };
     Active* active(ViewId pass);
     Active* holder(UnitId unit);
-    bool suits(const NodeRecord& node, const view::View& view, const Crew& crew) const;
-    bool ready(const NodeRecord& node, const view::View& view, const Crew& crew) const;
+    bool suits(const NodeRecord& node, const view::View& view, const NodeRequirements& requirements) const;
+    bool ready(const NodeRecord& node, const view::View& view, const NodeRequirements& requirements) const;
     void send_cancellations(const std::vector<Cancellation>& cancellations);
     void confirm_cancelled(UnitId unit, TimePoint now);
     void report_contradiction(const Active& pass, const MergeReport& report, const NodeRecord* node);

@@ -20,12 +20,12 @@ void FilmStore::close(ViewId view) {
     enqueue(Close{view}, 0);
 }
 
-void FilmStore::widen(ViewId view, std::uint64_t revision, frame::ChannelSet channels) {
-    enqueue(Widen{view, revision, channels}, 0);
+void FilmStore::add_channels(ViewId view, std::uint64_t revision, frame::ChannelSet channels) {
+    enqueue(AddChannels{view, revision, channels}, 0);
 }
 
-void FilmStore::keep_features(ViewId view, ViewId of_picture) {
-    enqueue(KeepFeatures{view, of_picture}, 0);
+void FilmStore::retain_as_features(ViewId view, ViewId of_picture) {
+    enqueue(RetainAsFeatures{view, of_picture}, 0);
 }
 
 void FilmStore::push(net::PeerId peer, net::Bytes film_message) {
@@ -46,8 +46,8 @@ void FilmStore::reconstruct(std::uint64_t frame, const view::View& view, Version
     enqueue(Reconstruct{frame, view, version, format, hash}, 0);
 }
 
-void FilmStore::make_output(OutputOrder order) {
-    enqueue(std::move(order), 0);
+void FilmStore::reconstruct_output(OutputRequest request) {
+    enqueue(std::move(request), 0);
 }
 
 std::size_t FilmStore::queued_bytes() const {
@@ -80,8 +80,8 @@ void FilmStore::run(std::stop_token stop) {
 }
 
 FilmStore::OpenFilm* FilmStore::film(ViewId view) {
-    const auto place = films_.find(view);
-    return place == films_.end() ? nullptr : &place->second;
+    const auto found = films_.find(view);
+    return found == films_.end() ? nullptr : &found->second;
 }
 
 void FilmStore::perform(Open& task) {
@@ -95,18 +95,18 @@ void FilmStore::perform(Close& task) {
     features_.erase(task.view);
 }
 
-void FilmStore::perform(KeepFeatures& task) {
+void FilmStore::perform(RetainAsFeatures& task) {
     if (auto ended = films_.extract(task.view)) {
         features_[task.of_picture] =
             std::make_shared<const frame::FilmTile>(ended.mapped().assembler->whole());
     }
 }
 
-void FilmStore::perform(Widen& task) {
+void FilmStore::perform(AddChannels& task) {
     OpenFilm* opened = film(task.view);
     if (opened == nullptr) return;
     opened->revision = task.revision;
-    opened->assembler->widen(task.channels);
+    opened->assembler->add_channels(task.channels);
 }
 
 void FilmStore::perform(Film& task) {
@@ -164,15 +164,15 @@ void FilmStore::perform(Reconstruct& task) {
                     .hash_film = task.hash == FilmHash::Wanted});
 }
 
-void FilmStore::perform(OutputOrder& task) {
+void FilmStore::perform(OutputRequest& task) {
     std::vector<frame::FilmTile> films;
-    for (const OutputOrder::EyePicture& eye : task.eyes) {
+    for (const OutputRequest::EyePicture& eye : task.eyes) {
         for (const view::View& layer : eye.layers) {
             const OpenFilm* opened = film(layer.id);
             if (opened == nullptr || opened->revision != layer.revision) {
-                outputs_.put(MadeOutput{.order = std::move(task),
-                                        .eyes = {},
-                                        .error = "its film is gone: the scene changed meanwhile"});
+                outputs_.put(OutputResult{.request = std::move(task),
+                                          .eyes = {},
+                                          .error = "its film was discarded: the scene has changed"});
                 return;
             }
             films.push_back(opened->assembler->whole());

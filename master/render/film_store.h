@@ -10,15 +10,15 @@
 #include <vector>
 
 #include "master/render/frame_assembler.h"
-#include "master/render/picture_maker.h"
+#include "master/render/picture_worker.h"
 #include "master/render/render_outputs.h"
 #include "mediator/net/channel.h"
 
 namespace tessera::master {
 
-// The films of all views: decodes and merges on a thread of its own, so that the loop that keeps heartbeats
-// never does, and has pictures of them made on another. One film a pass, under the id of its view. Tasks run
-// in the order given; what they bring forth comes through RenderOutputs.
+// The films of all views. Decodes and merges on its own thread, so that the master's event loop is never blocked;
+// pictures are reconstructed on another thread (picture_worker.h). One film per pass, under the id of its view.
+// Tasks run in order; their results arrive through RenderOutputs.
 class FilmStore {
   public:
     explicit FilmStore(RenderOutputs& outputs);
@@ -26,25 +26,25 @@ class FilmStore {
 
     void open(ViewId view, std::uint64_t revision, FrameAssembler assembler);  // replaces an older film of it
     void close(ViewId view);
-    // The film goes on under another revision, with more channels.
-    void widen(ViewId view, std::uint64_t revision, frame::ChannelSet channels);
-    // The film ends here: it has the full size, for upsampling the picture of another one.
-    void keep_features(ViewId view, ViewId of_picture);
+    // The film continues under another revision, with more channels.
+    void add_channels(ViewId view, std::uint64_t revision, frame::ChannelSet channels);
+    // Closes the film and retains it as full-size features for upsampling another film's picture.
+    void retain_as_features(ViewId view, ViewId of_picture);
     void push(net::PeerId peer, net::Bytes film_message);
     // Tiles [first, last) as messages for a client.
     void deliver(ViewId view, std::uint64_t frame, std::uint32_t first, std::uint32_t last);
-    void copy(ViewId view);  // FilmBlocks, or nothing when there is no such film
+    void copy(ViewId view);  // results in FilmBlocks, or in nothing when there is no such film
 
     enum class FilmHash { Wanted, NotWanted };
-    // Of the film of view.id, which shows `version`. Nothing comes when there is no such film.
+    // Of the film of view.id, which shows `version`. No result when there is no such film.
     void reconstruct(std::uint64_t frame, const view::View& view, Version version,
                      const PictureFormat& format, FilmHash hash);
-    // Of the films of all layers of all eyes. Always comes; with an error when a film is gone.
-    void make_output(OutputOrder order);
-    void rehearse(const view::View& view, session::PictureEncoding encoding) {
-        pictures_.rehearse(view, encoding);
+    // Of the films of all layers of all eyes. Always has a result, with an error when a film is gone.
+    void reconstruct_output(OutputRequest request);
+    void calibrate(const view::View& view, session::PictureEncoding encoding) {
+        pictures_.calibrate(view, encoding);
     }
-    // The views [first, last) are gone for good, and with them what their filters remember.
+    // The views [first, last) are closed: discards the history of their filters.
     void forget(ViewId first, ViewId last) { pictures_.forget(first, last); }
 
     std::size_t queued_bytes() const;
@@ -58,10 +58,10 @@ class FilmStore {
     struct Close {
         ViewId view;
     };
-    struct KeepFeatures {
+    struct RetainAsFeatures {
         ViewId view, of_picture;
     };
-    struct Widen {
+    struct AddChannels {
         ViewId view;
         std::uint64_t revision;
         frame::ChannelSet channels;
@@ -85,8 +85,8 @@ class FilmStore {
         PictureFormat format;
         FilmHash hash;
     };
-    using Task =
-        std::variant<Open, Close, KeepFeatures, Widen, Film, Deliver, Copy, Reconstruct, OutputOrder>;
+    using Task = std::variant<Open, Close, RetainAsFeatures, AddChannels, Film, Deliver, Copy, Reconstruct,
+                              OutputRequest>;
     struct OpenFilm {
         std::uint64_t revision = 0;
         std::shared_ptr<FrameAssembler> assembler;
@@ -97,27 +97,27 @@ class FilmStore {
     void run(std::stop_token stop);
     void perform(Open& task);
     void perform(Close& task);
-    void perform(KeepFeatures& task);
-    void perform(Widen& task);
+    void perform(RetainAsFeatures& task);
+    void perform(AddChannels& task);
     void perform(Film& task);
     void perform(Deliver& task);
     void perform(Copy& task);
     void perform(Reconstruct& task);
-    void perform(OutputOrder& task);
+    void perform(OutputRequest& task);
     OpenFilm* film(ViewId view);
 
     RenderOutputs& outputs_;
-    // Of the store's thread alone:
+    // Only used by the store's thread:
     std::map<ViewId, OpenFilm> films_;
     std::map<ViewId, std::shared_ptr<const frame::FilmTile>> features_;  // of pictures that are not open yet
 
-    mutable std::mutex mutex_;  // protects what stands below
+    mutable std::mutex mutex_;  // protects the members below
     std::condition_variable_any changed_;
     std::deque<Task> tasks_;
     std::size_t queued_bytes_ = 0;
 
-    // Last: they start when all else is there. The store's thread ends first, since it feeds the other.
-    PictureMaker pictures_;
+    // Last: they start after everything else is constructed. The store's thread ends first, since it feeds the other.
+    PictureWorker pictures_;
     std::jthread thread_;
 };
 

@@ -28,19 +28,18 @@ FilterChange filter_change(const view::View& now, const std::string& filter) {
     const auto added = change.view.channels - now.channels;
     if (change.view.path_class != now.path_class) {
         change.effect = Effect::Restarted;
-        change.text =
-            "filter '" + name + "' works on other paths than this frame tells apart: start the frame with it";
+        change.text = "filter '" + name +
+                      "' needs path classes that this frame does not separate: start the frame with it";
     } else if (added.contains(frame::Channel::Radiance)) {
         change.effect = Effect::Restarted;
         change.text = "filter '" + name +
-                      "' reads the variance of the light, and this frame keeps color alone: start the frame "
+                      "' needs the variance of the radiance, but this frame has only color: start the frame "
                       "with it";
     } else if (added.empty()) {
         change.text = "filter " + change.view.filter + " for the whole frame";
     } else {
         change.effect = Effect::Widened;
-        change.text =
-            "filter " + change.view.filter + "; " + names(added) + " from now on, not of the samples before";
+        change.text = "filter " + change.view.filter + "; " + names(added) + " only for later samples";
     }
     return change;
 }

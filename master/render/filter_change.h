@@ -6,16 +6,16 @@
 
 namespace tessera::master {
 
-// What it means for a film under way that its view is to have another filter, or other values of it. Pure.
+// How a change of a view's filter, or of its parameters, affects a film in progress. Pure.
 struct FilterChange {
     enum class Effect : std::uint8_t {
-        Kept,      // the film has all that the filter reads: no sample is taken again
-        Widened,   // channels are added: they come with the samples from now on
-        Restarted  // the film tells apart too little for this filter
+        Kept,      // the film has all channels that the filter reads: no sample is taken again
+        Widened,   // channels are added: later samples have them
+        Restarted  // the film does not separate the path classes that this filter needs
     };
     Effect effect = Effect::Kept;
     view::View view;   // as it is rendered with the filter; its film keeps all channels that it has
-    std::string text;  // for a person: what it means, or why the film cannot go on
+    std::string text;  // for users: the effect, or why the film cannot be continued
 };
 
 // `now`: as it is rendered; `filter`: a valid one.

@@ -22,13 +22,13 @@ FrameAssembler::Result FrameAssembler::insert(frame::FilmTile block) {
             return {Outcome::Merged, tile};
         case frame::BlockForest::Outcome::Duplicate:
             return {Outcome::Duplicate, tile};
-        case frame::BlockForest::Outcome::Contradiction:
-            return {Outcome::Contradiction, tile};
+        case frame::BlockForest::Outcome::Conflict:
+            return {Outcome::Conflict, tile};
     }
     return {};
 }
 
-void FrameAssembler::widen(frame::ChannelSet channels) {
+void FrameAssembler::add_channels(frame::ChannelSet channels) {
     const frame::ChannelSet kept = earlier_.empty() ? channels_ : earlier_channels_;
     std::vector<frame::BlockForest> all(tiles_.size());
     for (std::uint32_t tile = 0; tile < tile_count(); ++tile) all[tile] = all_blocks(tile);
@@ -38,7 +38,7 @@ void FrameAssembler::widen(frame::ChannelSet channels) {
     forests_.assign(tiles_.size(), {});
 }
 
-// Every sample there is, with the channels that all of them have.
+// All samples, with the channels that all of them have.
 frame::BlockForest FrameAssembler::all_blocks(std::uint32_t tile) const {
     if (earlier_.empty()) return forests_[tile];
     frame::BlockForest all = earlier_[tile];
@@ -75,7 +75,7 @@ frame::FilmTile FrameAssembler::pasted(frame::ChannelSet channels, const PasteTi
 frame::FilmTile FrameAssembler::whole() const {
     return pasted(earlier_.empty() ? channels_ : earlier_channels_,
                   [&](std::uint32_t tile, frame::FilmTile& film) {
-                      // The usual case, without a copy on the way.
+                      // The usual case, without an intermediate copy.
                       const bool is_one_block = earlier_.empty() && forests_[tile].blocks().size() == 1;
                       is_one_block ? frame::paste(film, forests_[tile].blocks().begin()->second)
                                    : frame::paste(film, merged_tile(tile));

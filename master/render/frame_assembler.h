@@ -9,13 +9,13 @@
 
 namespace tessera::master {
 
-// The film of one view: a block forest per tile. What does not fit the frame (other rect, channels, samples
-// beyond spp) is refused, whoever sent it. One thread.
+// The film of one view: a block forest per tile. Film that does not match the frame (other rect, channels, samples
+// beyond spp) is rejected. Single-threaded.
 class FrameAssembler {
   public:
     FrameAssembler(std::vector<Rect> tiles, frame::ChannelSet channels, std::uint64_t spp);
 
-    enum class Outcome { Merged, Duplicate, Contradiction, Misfit };
+    enum class Outcome { Merged, Duplicate, Conflict, Misfit };
     struct Result {
         Outcome outcome = Outcome::Misfit;
         std::uint32_t tile = 0;
@@ -23,15 +23,15 @@ class FrameAssembler {
     Result insert(frame::FilmTile block);
 
     std::uint32_t tile_count() const { return static_cast<std::uint32_t>(tiles_.size()); }
-    // From now on film brings these channels, too. What the tiles hold stays, without them.
-    void widen(frame::ChannelSet channels);
+    // Film inserted from now on has these channels, too. Existing film stays, without them.
+    void add_channels(frame::ChannelSet channels);
 
     frame::FilmTile merged_tile(std::uint32_t tile) const;  // without samples: zero counts
-    frame::FilmTile whole() const;                          // all tiles in one; the block means nothing
-    // After widen(): the later samples alone, with all channels.
+    frame::FilmTile whole() const;                          // all tiles in one; its block is meaningless
+    // After add_channels(): the later samples alone, with all channels.
     std::optional<frame::FilmTile> later() const;
     std::vector<frame::SampleBlock> roots(std::uint32_t tile) const { return forests_[tile].roots(); }
-    std::vector<frame::FilmTile> blocks() const;  // all that lies here, as it lies; not after widen()
+    std::vector<frame::FilmTile> blocks() const;  // all blocks, unmerged; not after add_channels()
     std::uint64_t byte_size() const;
 
   private:
@@ -43,7 +43,7 @@ class FrameAssembler {
     frame::ChannelSet channels_;
     std::uint64_t spp_;
     std::vector<frame::BlockForest> forests_;
-    // After widen(): what there was before, and its channels.
+    // After add_channels(): what there was before, and its channels.
     std::vector<frame::BlockForest> earlier_;
     frame::ChannelSet earlier_channels_;
     std::map<std::pair<std::int32_t, std::int32_t>, std::uint32_t> by_corner_;

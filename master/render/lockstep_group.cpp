@@ -27,8 +27,8 @@ void LockstepGroup::changed() {
     if (open_) open_->restart_wanted = true;
 }
 
-void LockstepGroup::take_again() {
-    if (open_) open_->retake_wanted = true;
+void LockstepGroup::resample() {
+    if (open_) open_->resample_wanted = true;
 }
 
 void LockstepGroup::scene_changed(Version version, bool restarts) {
@@ -38,14 +38,14 @@ void LockstepGroup::scene_changed(Version version, bool restarts) {
 }
 
 bool LockstepGroup::is_restart_due() const {
-    if (!open_ || !open_->restart_wanted || views_.passes_held) return false;
-    return open_->first_is_taken ||
+    if (!open_ || !open_->restart_wanted || views_.passes_paused) return false;
+    return open_->first_is_consumed ||
            std::none_of(open_->views.begin(), open_->views.end(),
-                        [this](ViewId view) { return views_.find(view)->is_protected(); });
+                        [this](ViewId view) { return views_.find(view)->awaiting_first_frame(); });
 }
 
-// As large as the work is cheap: a unit costs messages whatever its size, but must be stopped soon, and all
-// nodes are to be busy until the end.
+// Larger for cheap pixels: a unit has a constant message overhead, but must be cancellable quickly, and all nodes
+// should stay busy until the end.
 std::uint32_t LockstepGroup::tile_edge(const view::View& view) const {
     constexpr double UnitSeconds = 0.01;
     constexpr double UnitsPerWorker = 6.0;
@@ -64,12 +64,12 @@ std::uint32_t LockstepGroup::tile_edge(const view::View& view) const {
     return edge;
 }
 
-// The same views again keep their ids, so that nodes replace what they have instead of forgetting it first.
+// If the number of views is the same they keep their ids, so that nodes replace them instead of closing them first.
 std::vector<ViewId> LockstepGroup::restart(const std::vector<GroupView>& wanted, TimePoint now) {
     Open& group = *open_;
     std::vector<ViewId> removed;
-    group.restart_wanted = group.retake_wanted = false;
-    group.first_is_taken = group.complete = false;
+    group.restart_wanted = group.resample_wanted = false;
+    group.first_is_consumed = group.complete = false;
     group.samples = 0;
     if (wanted.size() != group.views.size()) {
         removed = std::exchange(group.views, {});
@@ -80,7 +80,7 @@ std::vector<ViewId> LockstepGroup::restart(const std::vector<GroupView>& wanted,
             group.views.push_back(state.id);
         }
     }
-    // Stages are the same for all: what is too small for a coarse picture decides.
+    // Stages are the same for all views: the smallest view limits the coarse passes.
     std::uint32_t coarsest = group.coarsest;
     for (const GroupView& asked : wanted) {
         while (coarsest > 1 && !has_coarse_pass(asked.view, coarsest)) coarsest /= 2;
@@ -134,14 +134,14 @@ std::optional<GroupStage> LockstepGroup::advance(Consumer consumer) {
     if (!open_ || open_->views.empty()) return std::nullopt;
     Open& group = *open_;
     group.is_first_stage = false;
-    // Where films are not whole, their stage is going to be taken anyway.
-    if (group.retake_wanted && group.first_is_taken && is_whole()) {
+    // While films are incomplete, their stage is going to be consumed anyway.
+    if (group.resample_wanted && group.first_is_consumed && is_whole()) {
         if (consumer == Consumer::Free) {
-            group.retake_wanted = false;
+            group.resample_wanted = false;
             return stage();
         }
     } else {
-        group.retake_wanted = false;
+        group.resample_wanted = false;
     }
     if (group.complete || !is_stage_done()) return std::nullopt;
     const bool is_picture = views_.find(group.views.front())->is_last_pass();
@@ -149,29 +149,29 @@ std::optional<GroupStage> LockstepGroup::advance(Consumer consumer) {
     const bool is_last = is_picture && group.samples >= group.spp;
     if (consumer == Consumer::Free) {
         if (mark_shown(is_last)) {
-            group.is_first_stage = !std::exchange(group.first_is_taken, true);
+            group.is_first_stage = !std::exchange(group.first_is_consumed, true);
             return stage();
         }
-    } else if (!group.first_is_taken || is_last) {
+    } else if (!group.first_is_consumed || is_last) {
         return std::nullopt;
     }
     if (is_last) {
         group.complete = true;
-    } else if (!group.restart_wanted && !views_.passes_held) {
-        go_on();
+    } else if (!group.restart_wanted && !views_.passes_paused) {
+        advance_views();
     }
     return std::nullopt;
 }
 
-// False: this stage was taken, and the next one had to wait.
+// False: this stage has been consumed already, and the next one had to wait.
 bool LockstepGroup::mark_shown(bool is_last) {
     for (const ViewId id : open_->views) {
         ViewState& view = *views_.find(id);
-        const Shown shown{.pass = view.current,
-                          .revision = view.revision,
-                          .asked = view.camera_revision,
-                          .samples = passes_.dispatcher.find(view.pass().view.id)->merged_samples(),
-                          .complete = is_last};
+        const DisplayedState shown{.pass = view.current,
+                                   .revision = view.revision,
+                                   .asked = view.camera_revision,
+                                   .samples = passes_.dispatcher.find(view.pass().view.id)->merged_samples(),
+                                   .complete = is_last};
         if (view.shown == shown) return false;
         view.shown = shown;
         for (std::size_t earlier = 0; earlier < view.current; ++earlier)
@@ -180,7 +180,7 @@ bool LockstepGroup::mark_shown(bool is_last) {
     return true;
 }
 
-void LockstepGroup::go_on() {
+void LockstepGroup::advance_views() {
     const bool is_picture = views_.find(open_->views.front())->is_last_pass();
     if (is_picture) open_->samples *= 2;
     for (const ViewId id : open_->views) {

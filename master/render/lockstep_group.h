@@ -9,58 +9,58 @@
 
 namespace tessera::master {
 
-// One of the views that go in lockstep.
+// One of the views of a lockstep group.
 struct GroupView {
     std::string name;
     view::View view;             // id and revision are the group's
     std::uint32_t priority = 1;  // a power of two: samples a pixel, compared with the others
 };
 
-// A moment at which all views of a group show the same: scene, revision, part of the size, samples per pixel
-// (times the priority). Films that are taken again may have more samples by then, each pixel its own number.
+// A consistent state of all views of a group: same scene, revision, resolution scale and samples per pixel
+// (times the priority). When films are resampled, pixels may have different, higher sample counts.
 struct GroupStage {
     Version version;
-    std::vector<view::View> views;  // as they are rendered at this stage; their films are there
-    std::uint32_t scale = 1;        // 8, 4, 2: a coarse picture of this part of the size
+    std::vector<view::View> views;  // as rendered at this stage; their films are complete
+    std::uint32_t scale = 1;        // 8, 4, 2: a coarse picture at 1/scale of the size
 };
 
-// Views that go in lockstep, for whoever consumes their stages: it brings the views whenever pictures start
-// anew, and takes one stage after another. The views take their turns with all others of the table.
+// Views that progress in lockstep. Their consumer provides the views at every restart and consumes one stage
+// after another. The views are scheduled in turn with all others of the table.
 class LockstepGroup {
   public:
     LockstepGroup(ViewTable& views, PassStarter& passes) : views_(views), passes_(passes) {}
 
     void open(std::uint64_t spp, std::uint32_t coarsest, Version version);
-    std::vector<ViewId> close();  // these are to be removed
+    std::vector<ViewId> close();  // views to be removed
     bool is_open() const { return open_.has_value(); }
 
-    void changed();     // its pictures start anew
-    void take_again();  // the films that there are are taken once more, as soon as that can be
+    void changed();   // restarts its pictures
+    void resample();  // the current films are consumed again, as soon as possible
     void scene_changed(Version version, bool restarts);
 
-    // Pictures are to start anew, and nothing speaks against it: restart() with what is to be seen now. No
-    // views: nothing can be seen. Gives views that are to be removed.
+    // A restart is wanted and possible: the consumer calls restart() with the current views (none if nothing is
+    // visible), which returns the views to be removed.
     bool is_restart_due() const;
     std::vector<ViewId> restart(const std::vector<GroupView>& wanted, TimePoint now);
 
-    // The next stage that the consumer is to take, at once: the call after it goes on. The first stage after a
-    // change, and the last, wait for a busy consumer; others are left out.
+    // The next stage, which the consumer must use before the next call. The first stage after a change and the last
+    // one wait for a busy consumer; others are skipped.
     enum class Consumer { Free, Busy };
     std::optional<GroupStage> advance(Consumer consumer);
-    // The views' first stage since the restart was taken by the last advance().
+    // The last advance() returned the first stage since the restart.
     bool is_first_stage() const { return open_ && open_->is_first_stage; }
     const std::vector<ViewId>& views() const;
 
   private:
     struct Open {
-        std::uint64_t spp = 1;       // of priority 1, in the end
+        std::uint64_t spp = 1;       // final, of priority 1
         std::uint32_t coarsest = 8;  // 1: no coarse pictures
         Version version;             // of the scene, published
         std::vector<ViewId> views;
-        std::uint64_t samples = 0;  // the stage under way, when it is one of the whole size
+        std::uint64_t samples = 0;  // of the current stage, when it has the full size
         bool restart_wanted = true;
-        bool retake_wanted = false;
-        bool first_is_taken = false, is_first_stage = false;
+        bool resample_wanted = false;
+        bool first_is_consumed = false, is_first_stage = false;
         bool complete = false;
     };
     void begin_pass(ViewState& view);
@@ -68,7 +68,7 @@ class LockstepGroup {
     bool is_stage_done() const;
     bool is_whole() const;
     bool mark_shown(bool is_last);
-    void go_on();
+    void advance_views();
     GroupStage stage() const;
 
     ViewTable& views_;

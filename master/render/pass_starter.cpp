@@ -2,9 +2,9 @@
 
 namespace tessera::master {
 
-void PassStarter::begin(Pass& pass, const PlanSettings& plan, const Crew& crew,
+void PassStarter::begin(Pass& pass, const PlanSettings& plan, const NodeRequirements& requirements,
                         std::optional<TimePoint> deadline, std::vector<frame::FilmTile>&& blocks) {
-    Scheduler& scheduler = dispatcher.begin(pass.view, plan, crew, deadline);
+    Scheduler& scheduler = dispatcher.begin(pass.view, plan, requirements, deadline);
     pass.tiles = static_cast<std::uint32_t>(scheduler.tiles().size());
     FrameAssembler assembler(scheduler.tiles(), pass.view.channels, plan.spp);
     for (frame::FilmTile& block : blocks) {

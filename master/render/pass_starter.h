@@ -13,11 +13,11 @@ struct PassStarter {
     Dispatcher& dispatcher;
     FilmStore& film;
 
-    // In place of what the id of its view stood for before. `blocks`: film that is there already.
-    void begin(Pass& pass, const PlanSettings& plan, const Crew& crew, std::optional<TimePoint> deadline,
-               std::vector<frame::FilmTile>&& blocks = {});
+    // Replaces an earlier pass with the id of this view. `blocks`: existing film.
+    void begin(Pass& pass, const PlanSettings& plan, const NodeRequirements& requirements,
+               std::optional<TimePoint> deadline, std::vector<frame::FilmTile>&& blocks = {});
     void end(ViewId pass);
-    void end_all(ViewState& view);  // its passes, and what they showed
+    void end_all(ViewState& view);  // its passes and displayed state
 };
 
 }  // namespace tessera::master

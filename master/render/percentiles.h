@@ -8,7 +8,7 @@
 
 namespace tessera::master {
 
-// The latest durations of something, for their percentiles.
+// Percentiles of the latest durations.
 class Percentiles {
   public:
     static constexpr std::size_t Length = 4096;

@@ -10,8 +10,8 @@ namespace {
 
 constexpr frame::ChannelSet PickChannels{frame::Channel::Depth, frame::Channel::ObjectIndex,
                                          frame::Channel::Normal};
-// Of a pixel's edge: so narrow that where in it the sample falls moves the hit by no more than rounding of
-// a float32 distance does.
+// Part of a pixel's width: so narrow that the sample position moves the hit by less than the rounding of a float32
+// distance.
 constexpr double PickWidth = 1e-6;
 
 }  // namespace
@@ -106,12 +106,12 @@ bool Picks::take(const FilmBlocks& film) {
 void Picks::refuse(const Task& task, const std::string& problem) {
     if (const SessionRecord* session = sessions_.find(task.session))
         outbox_.control(session->control, wire::Picked{.request = task.request.request,
-                                                       .seen = {.version = task.version},
+                                                       .result = {.version = task.version},
                                                        .problem = problem});
 }
 
 void Picks::answer(const Task& task, const frame::FilmTile& film) {
-    session::Picked picked{.version = task.version};
+    session::PickResult picked{.version = task.version};
     const float depth = film.plane(film.channels.first_plane(frame::Channel::Depth))[0];
     if (std::isfinite(depth)) {
         const std::uint32_t object = film.channels.first_plane(frame::Channel::ObjectIndex) + 1;
@@ -124,7 +124,7 @@ void Picks::answer(const Task& task, const frame::FilmTile& film) {
     }
     if (const SessionRecord* session = sessions_.find(task.session))
         outbox_.control(session->control,
-                        wire::Picked{.request = task.request.request, .seen = picked, .problem = {}});
+                        wire::Picked{.request = task.request.request, .result = picked, .problem = {}});
 }
 
 }  // namespace tessera::master

@@ -8,21 +8,21 @@
 
 namespace tessera::master {
 
-// What is under a pixel: one sample of a view that sees nothing but the pixel's middle.
+// Finds the object under a pixel, with one sample of a view of the pixel's centre only.
 class Picks {
   public:
     Picks(ViewIds& ids, PassStarter& passes, SessionTable& sessions, Outbox& outbox)
         : ids_(ids), passes_(passes), sessions_(sessions), outbox_(outbox) {}
 
-    // In the view that the session watches under this number; null: it watches none.
+    // `seen`: the view that the session watches under this number; null: none.
     void pick(SessionId session, const wire::Pick& request, const view::View* seen, Version version);
     void session_left(SessionId session);
     void close_all();
-    void follow(Version version);  // the scene is at another version
+    void follow(Version version);  // the scene has another version
 
     bool empty() const { return tasks_.empty(); }
     void deal(std::vector<NodeCapacity>& capacities, TimePoint now);
-    void tick();                        // has the films of those that are complete copied
+    void tick();                        // requests the films of complete picks
     bool take(const FilmBlocks& film);  // false: not of a pick
 
   private:

@@ -14,8 +14,8 @@ namespace {
 
 using namespace scene;
 
-// Looks for something that light meets or comes from, at or below an object. Ends at the first one, so a part
-// of the picture costs little; what holds none is walked once, however deep and shared it is.
+// Searches for a geometry, light or background at or below an object. Stops at the first one, so visible subtrees cost
+// little; subtrees without one are visited once, however deep and shared they are.
 class ContentSearch {
   public:
     explicit ContentSearch(const Scene& scene) : scene_(scene) {}
@@ -35,7 +35,7 @@ class ContentSearch {
             }
             const ObjectId id = (*step.below)[step.next++];
             const Object* object = scene_.find(id);
-            if (object == nullptr) return true;  // gone: not known, so it counts
+            if (object == nullptr) return true;  // removed: unknown, so it counts
             if (std::holds_alternative<Geometry>(*object) || std::holds_alternative<Light>(*object))
                 return true;
             const std::vector<ObjectId>& below = children(*object);
@@ -46,10 +46,10 @@ class ContentSearch {
 
   private:
     const Scene& scene_;
-    std::set<ObjectId> walked_;  // without a find
+    std::set<ObjectId> walked_;  // without a match
 };
 
-// Whether an update of these fields matters, one answer a kind.
+// Whether an update of these fields matters, per kind.
 struct Matters {
     const Update& update;
     ContentSearch& content;

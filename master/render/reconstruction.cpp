@@ -29,7 +29,7 @@ std::optional<picture::FileFormat> file_format(session::PictureEncoding encoding
             return picture::FileFormat::Exr;
         case session::PictureEncoding::Planes:
         case session::PictureEncoding::None:
-        case session::PictureEncoding::Bytes:  // of outputs: master/render/output_maker.h
+        case session::PictureEncoding::Bytes:  // of outputs: master/render/output_reconstruction.h
         case session::PictureEncoding::Half:
             break;
     }
@@ -47,7 +47,7 @@ filter::Filter& Reconstructor::instance(const filter::Choice& choice, const view
         instance.height != inputs.height) {
         instance = {name, inputs.width, inputs.height, choice.entry->make(inputs.width, inputs.height)};
     } else {
-        // What of the scene has changed is not known here: anything may have, unless the film went on.
+        // The scene's changes are unknown here: anything may have changed, unless the film continued.
         const bool restarted = instance.revision != view.revision;
         const bool other_scene = restarted && instance.version != version;
         inputs.changes = {
@@ -133,10 +133,10 @@ const filter::Planes& Reconstructor::filtered(const frame::FilmTile& film, const
     return output_.picture;
 }
 
-double Reconstructor::rehearse(const view::View& asked, session::PictureEncoding encoding,
-                               std::uint32_t width, std::uint32_t height) {
+double Reconstructor::calibrate(const view::View& asked, session::PictureEncoding encoding,
+                                std::uint32_t width, std::uint32_t height) {
     view::View view = asked;
-    view.id = {};  // no picture of the view
+    view.id = {};  // not a picture of the view
     const Rect rect{0, 0, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
     frame::FilmTile film(rect, {0, 2}, view.channels);
     std::fill(film.counts.begin(), film.counts.end(), 4u);

@@ -10,49 +10,49 @@
 
 namespace tessera::master {
 
-// A picture made of a film, and how.
+// A picture reconstructed from a film, and its summary.
 struct Reconstruction {
     session::PictureSummary summary;
     std::shared_ptr<const std::vector<std::byte>> bytes;  // never null; empty when it failed
     std::string error;
 };
 
-// What a picture is made of.
+// The inputs of a reconstruction.
 struct Films {
     const frame::FilmTile& film;
-    const frame::FilmTile* later = nullptr;  // of only some of the samples, for channels that `film` lacks
+    const frame::FilmTile* later = nullptr;  // of fewer samples, with channels that `film` lacks
     const frame::FilmTile* features =
         nullptr;  // of the full size, if `film` is smaller and is to be upsampled
 };
 
-// The file or the numbers that a picture becomes.
+// How a picture is encoded.
 struct PictureFormat {
     session::PictureEncoding encoding = session::PictureEncoding::None;
     view::DisplayTransform transform;
-    ViewId view;  // all of its pictures have the exposure that is measured of the first
+    ViewId view;  // all of its pictures use the exposure measured in the first
 };
 
-// Filters whole films and encodes them. Every view has a filter of its own, which keeps its history from one
-// picture of the view to the next and hears what has changed between them. One thread calls; the work runs on
-// all cores.
+// Filters whole films and encodes them. Every view has its own filter instance, which keeps its history from one
+// picture of the view to the next and is given the changes between them. Called by one thread; runs on all
+// cores.
 class Reconstructor {
   public:
-    // Of view.id; `version`: of the scene that the film shows.
+    // Of view.id; `version` is that of the scene in the film.
     Reconstruction reconstruct(const Films& films, const view::View& view, Version version,
                                const PictureFormat& format);
 
-    // The filtered picture alone, in memory of this object until the next call. Throws Error.
+    // The filtered picture only, owned by this object until the next call. Throws Error.
     const filter::Planes& filtered(const frame::FilmTile& film, const view::View& view, Version version);
     tbb::task_arena& arena() { return arena_; }
 
-    // Seconds that the same takes on a made-up film of about `pixels`: for the first prediction.
-    double rehearse(const view::View& view, session::PictureEncoding encoding, std::uint32_t width,
-                    std::uint32_t height);
+    // Seconds that a reconstruction takes for a synthetic film of this size: for the first prediction.
+    double calibrate(const view::View& view, session::PictureEncoding encoding, std::uint32_t width,
+                     std::uint32_t height);
 
     void forget(ViewId first, ViewId last);  // filters and exposures of the views [first, last)
 
   private:
-    // The filter of a view, and what it saw last.
+    // The filter of a view, and the film it last processed.
     struct Instance {
         std::string name;
         std::uint32_t width = 0, height = 0;
@@ -60,7 +60,7 @@ class Reconstructor {
         std::uint64_t revision = 0;
         Version version;
     };
-    // Ready for the picture; tells `inputs` what has changed since the one before.
+    // Ready for the picture; sets in `inputs` what has changed since the previous one.
     filter::Filter& instance(const filter::Choice& choice, const view::View& view, Version version,
                              filter::Inputs& inputs);
     std::vector<std::byte> encode(const filter::Planes& picture, const PictureFormat& format,

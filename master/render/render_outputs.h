@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "master/render/frame_assembler.h"
-#include "master/render/output_maker.h"
+#include "master/render/output_reconstruction.h"
 #include "master/render/reconstruction.h"
 #include "mediator/net/channel.h"
 
 namespace tessera::master {
 
-// What became of one film message.
+// The result of merging one film message.
 struct MergeReport {
     net::PeerId peer = 0;  // bulk peer that sent it
     UnitId unit;
@@ -26,14 +26,14 @@ struct MergeReport {
     Duration busy{};
     FrameAssembler::Result result;
     bool stale = false;      // of a view or revision that is not being assembled
-    bool malformed = false;  // not decodable; the rest means nothing
+    bool malformed = false;  // not decodable; all other members are meaningless
 };
-// One merged tile of a frame on its way to a client.
+// One merged tile of a frame, encoded for a client.
 struct EncodedTile {
     std::uint64_t frame = 0;
     net::Bytes bytes;
 };
-// The film of a view as it lies: the blocks of all tiles.
+// The film of a view, unmerged: the blocks of all tiles.
 struct FilmBlocks {
     ViewId view;
     std::uint64_t revision = 0;
@@ -46,16 +46,17 @@ struct Reconstructed {
     std::uint64_t samples_least = 0, samples_most = 0;
     std::optional<Hash256> film_hash;
 };
-// How long a made-up picture for a view took.
-struct Rehearsed {
+// How long a synthetic picture took in the configuration of a view.
+struct CalibrationResult {
     ViewId view;
     std::uint64_t pixels = 0;
     double seconds = 0.0;
 };
-using RenderOutput = std::variant<MergeReport, EncodedTile, FilmBlocks, Reconstructed, Rehearsed, MadeOutput>;
+using RenderOutput =
+    std::variant<MergeReport, EncodedTile, FilmBlocks, Reconstructed, CalibrationResult, OutputResult>;
 
-// What the threads that merge film and make pictures bring forth, for the loop that owns the channel: it is
-// woken for each. Thread-safe.
+// Results of the threads that merge film and reconstruct pictures, for the event loop that owns the channel: each
+// result wakes it. Thread-safe.
 class RenderOutputs {
   public:
     explicit RenderOutputs(net::Channel& loop) : loop_(loop) {}

@@ -4,18 +4,18 @@
 
 namespace tessera::master {
 
-void TimeBudget::measured(const Way& way, std::uint64_t pixels, double seconds) {
+void TimeBudget::measured(const CostKey& cost_key, std::uint64_t pixels, double seconds) {
     if (pixels == 0 || !(seconds >= 0.0)) return;
-    if (seconds_per_pixel_.size() >= MaxWays && !seconds_per_pixel_.contains(way)) {
+    if (seconds_per_pixel_.size() >= MaxCostKeys && !seconds_per_pixel_.contains(cost_key)) {
         seconds_per_pixel_.erase(seconds_per_pixel_.begin());
     }
-    std::deque<double>& latest = seconds_per_pixel_[way];
+    std::deque<double>& latest = seconds_per_pixel_[cost_key];
     latest.push_back(seconds / static_cast<double>(pixels));
     if (latest.size() > Remembered) latest.pop_front();
 }
 
-std::optional<double> TimeBudget::predict(const Way& way, std::uint64_t pixels) const {
-    const auto found = seconds_per_pixel_.find(way);
+std::optional<double> TimeBudget::predict(const CostKey& cost_key, std::uint64_t pixels) const {
+    const auto found = seconds_per_pixel_.find(cost_key);
     if (found == seconds_per_pixel_.end()) return std::nullopt;
     return *std::ranges::max_element(found->second) * static_cast<double>(pixels);
 }

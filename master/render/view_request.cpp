@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t MaxEdge = 65536;
 constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 28;
-constexpr std::uint32_t SmallestTile = 8;  // so that no view has more than some millions of them
+constexpr std::uint32_t SmallestTile = 8;  // limits the number of tiles of a view to some millions
 constexpr std::size_t MaxName = 128;
 constexpr Duration LongestTime = std::chrono::hours(24 * 365);  // sums with it stay within a TimePoint
 
@@ -38,7 +38,7 @@ std::string problem_of(const view::CameraPose& camera) {
         return "the camera moves in more than " + std::to_string(scene::MaxMotion) + " steps";
     if (!finite(camera)) return "the camera is not finite or has an empty frustum";
     if (!(camera.lens_radius >= 0.0 && camera.lens_radius <= WidestLens))
-        return "the lens' radius is not between 0 and 1e6 m";
+        return "the lens radius is not between 0 and 1e6 m";
     if (camera.lens_radius > 0.0 &&
         !(camera.focus_distance >= NearestFocus && camera.focus_distance <= Farthest))
         return "the focus distance is not between 1e-6 and 1e15 m";
@@ -68,7 +68,7 @@ std::string problem_of(const session::ViewRequest& request) {
     if (view.window.pixel_count() > MaxPixels) return "the window has more than 2^28 pixels: crop it";
     if (std::string problem = problem_of(view.camera); !problem.empty()) return problem;
     if (std::string problem = problem_of(request.display_transform); !problem.empty()) return problem;
-    if (view.channels.empty()) return "no channel is asked for: ask for color at least";
+    if (view.channels.empty()) return "no channel is requested: request color at least";
     if (!(view.pixel_filter.radius > 0.0f) || view.pixel_filter.radius > 16.0f) {
         return "the pixel filter's radius is not between 0 and 16 pixels";
     }
@@ -76,17 +76,17 @@ std::string problem_of(const session::ViewRequest& request) {
     if (stop.spp == 0 || stop.spp > session::MaxSamplesPerPixel)
         return "samples per pixel are not between 1 and 2^31";
     if (request.name.size() > MaxName) return "the view's name is longer than 128 bytes";
-    if (request.tile != 0 && request.tile < SmallestTile)
-        return "tiles are at least 8 pixels wide: ask for larger ones";
+    if (request.tile != 0 && request.tile < SmallestTile) return "tiles must be at least 8 pixels wide";
     const auto filter = filter::parse_choice(view.filter, filter::catalog());
     if (!filter) return filter.error().what();
     const bool has_picture = request.picture != session::PictureEncoding::None;
     if (request.frames == session::Frames::Last && !has_picture && !request.film) {
-        return "neither a picture nor the film is asked for: ask for one of them";
+        return "neither a picture nor the film is requested: request one of them";
     }
     if (stop.budget < Duration::zero()) return "the time budget is negative";
-    if (std::max(stop.budget, stop.time_limit) > LongestTime) return "more than a year of time is asked for";
-    if (stop.has_budget() && !has_picture) return "a time budget is for a picture: ask for one";
+    if (std::max(stop.budget, stop.time_limit) > LongestTime)
+        return "the time limit or budget is longer than a year";
+    if (stop.has_budget() && !has_picture) return "a time budget needs a picture: request one";
     if (stop.adapts_size && (request.film || !stop.has_budget())) {
         return "only a picture with a time budget and without its film can adapt its size";
     }
@@ -96,7 +96,7 @@ std::string problem_of(const session::ViewRequest& request) {
 
 void complete(view::View& view) {
     const auto filter = filter::parse_choice(view.filter, filter::catalog());
-    view.channels = view.channels | filter::lacking(*filter, view.channels);
+    view.channels = view.channels | filter::missing_channels(*filter, view.channels);
     if (view.transparent_background) view.channels.insert(frame::Channel::Alpha);
     const view::PathClass wanted = filter->entry->description.path_class;
     if (wanted != view::PathClass::Indirect) view.path_class = wanted;
@@ -114,7 +114,7 @@ view::View scaled_view(const view::View& view, std::uint32_t scale) {
     const auto part = [&](std::int32_t edge) { return std::max(1, (edge + int(scale) - 1) / int(scale)); };
     view::View small = view;
     const Rect& window = view.window;
-    // The window's own frustum, so that a crop need not fall on small pixels.
+    // Uses the frustum of the crop window, so that the crop need not be aligned to the scaled pixels.
     const auto along = [](double a, double b, double t) { return a + (b - a) * t; };
     const view::CameraPose& camera = view.camera;
     small.camera.left = along(camera.left, camera.right, double(window.x) / view.width);
@@ -131,7 +131,7 @@ view::View scaled_view(const view::View& view, std::uint32_t scale) {
     return small;
 }
 
-std::string way_of(const session::ViewRequest& request) {
+std::string cost_key(const session::ViewRequest& request) {
     return request.view.filter + " as " + std::to_string(static_cast<int>(request.picture)) +
            " of channels " + std::to_string(request.view.channels.words()[0]) + " " +
            std::to_string(request.view.channels.words()[1]);
@@ -139,7 +139,7 @@ std::string way_of(const session::ViewRequest& request) {
 
 std::uint32_t choose_tile_edge(const view::View& view, std::uint32_t asked) {
     constexpr std::uint32_t Large = 64, Small = 32, EnoughTiles = 64;
-    constexpr std::uint32_t Drawn = 128;  // each tile's samples draw all that stands in it
+    constexpr std::uint32_t Drawn = 128;  // every tile rasterises all geometry in it
     std::uint32_t edge = asked;
     if (edge == 0) edge = view.window.pixel_count() >= EnoughTiles * Large * Large ? Large : Small;
     if (asked == 0 && view.renderer == view::Renderer::Raster) edge = Drawn;

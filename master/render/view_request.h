@@ -7,7 +7,7 @@
 
 namespace tessera::master {
 
-// Sizes, finite camera, window inside the picture, channels, counts. Empty = fine.
+// Checks sizes, camera, crop window, channels and counts. Empty = valid.
 std::string problem_of(const session::ViewRequest& request);
 std::string problem_of(const view::DisplayTransform& transform);
 
@@ -15,14 +15,14 @@ std::string problem_of(const view::DisplayTransform& transform);
 void complete(view::View& view);
 
 // What the time from the film to the encoded picture depends on (time_budget.h).
-std::string way_of(const session::ViewRequest& request);
+std::string cost_key(const session::ViewRequest& request);
 
-// For a picture that is rendered at half or a quarter of the size: the features of the full size, one sample
-// each; and the small view itself.
+// For a picture that is rendered at half or a quarter of its size: the view of the full-size features, with one
+// sample per pixel, and the scaled view itself.
 view::View feature_view(const view::View& view);
 view::View scaled_view(const view::View& view, std::uint32_t scale);
 
-// The edge of the tiles: what was asked for, else 128 for the renderer Raster, 64 for large pictures and 32
+// The edge of the tiles: `asked` if not 0, else 128 for the renderer Raster, 64 for large pictures and 32
 // for small ones; never so large that the film of one tile exceeds a bulk message.
 std::uint32_t choose_tile_edge(const view::View& view, std::uint32_t asked);
 

@@ -18,7 +18,7 @@ void ViewRunner::restart(ViewState& view, TimePoint now) {
     view.restart_wanted = false;
     view.run = {.started = now,
                 .without_nodes_since = now,
-                .way = way_of(view.request),
+                .cost_key = cost_key(view.request),
                 .bytes_before = views_.bytes_at_start};
     wait_for_nodes(view, now);
 }
@@ -31,7 +31,7 @@ void ViewRunner::resume(ViewState& view, std::vector<frame::FilmTile>&& blocks, 
                 .started = now,
                 .rendering_since = now,
                 .without_nodes_since = now,
-                .way = way_of(view.request),
+                .cost_key = cost_key(view.request),
                 .bytes_before = views_.bytes_at_start};
     view.passes = passes_of(view);
     view.current = view.passes.size() - 1;
@@ -39,7 +39,7 @@ void ViewRunner::resume(ViewState& view, std::vector<frame::FilmTile>&& blocks, 
 }
 
 void ViewRunner::wait_for_nodes(ViewState& view, TimePoint now) {
-    const auto prospects = passes_.dispatcher.prospects(view.request.view, crew(view));
+    const auto prospects = passes_.dispatcher.prospects(view.request.view, requirements(view));
     Run& run = view.run;
     if (prospects.ready >= view.request.min_nodes) {
         if (budget_is_planned(view, now)) begin_rendering(view, now);
@@ -57,11 +57,11 @@ void ViewRunner::wait_for_nodes(ViewState& view, TimePoint now) {
     decide(view, Outcome::NoNodes,
            passes_.dispatcher.obstacles(view.request.view, view.version) +
                std::to_string(prospects.suitable) + " of " + std::to_string(view.request.min_nodes) +
-               " nodes came: start more nodes or ask for fewer with --wait-nodes",
+               " nodes are ready: start more nodes or ask for fewer with --wait-nodes",
            now);
 }
 
-// True when it is known how long filter and encoding will take; before, that is tried out.
+// True when the time of filter and encoding is known; otherwise requests a calibration.
 bool ViewRunner::budget_is_planned(ViewState& view, TimePoint now) {
     const session::StopRule& stop = view.request.stop;
     Run& run = view.run;
@@ -70,12 +70,12 @@ bool ViewRunner::budget_is_planned(ViewState& view, TimePoint now) {
         return true;
     }
     if (!run.ready_since) run.ready_since = now;
-    const auto predicted = time_budget_.predict(run.way, view.request.view.window.pixel_count());
+    const auto predicted = time_budget_.predict(run.cost_key, view.request.view.window.pixel_count());
     if (!predicted) {
-        view::View rehearsed = view.request.view;
-        rehearsed.id = view.id;
-        if (!run.rehearsing) passes_.film.rehearse(rehearsed, view.request.picture);
-        run.rehearsing = true;
+        view::View calibration = view.request.view;
+        calibration.id = view.id;
+        if (!run.calibrating) passes_.film.calibrate(calibration, view.request.picture);
+        run.calibrating = true;
         run.phase = Phase::Syncing;
         return false;
     }
@@ -85,13 +85,13 @@ bool ViewRunner::budget_is_planned(ViewState& view, TimePoint now) {
     return true;
 }
 
-// A budget too small for two samples in every pixel: fewer pixels, and features to bring them back to size.
+// If the budget is too small for two samples per pixel: renders fewer pixels, and features for upsampling.
 std::uint32_t ViewRunner::scale_that_fits(const ViewState& view, TimePoint now) const {
     if (!view.request.stop.adapts_size || !view.run.deadline) return 1;
-    constexpr double LeastSamples = 2.5;  // 2, and room for what is lost at the end of the time
+    constexpr double LeastSamples = 2.5;  // 2, and a margin for units that are cancelled at the deadline
     return master::scale_that_fits(
         view.request.view.window.pixel_count(), seconds(*view.run.deadline - now),
-        passes_.dispatcher.prospects(view.request.view, crew(view)).samples_per_second, LeastSamples);
+        passes_.dispatcher.prospects(view.request.view, requirements(view)).samples_per_second, LeastSamples);
 }
 
 void ViewRunner::begin_rendering(ViewState& view, TimePoint now) {
@@ -100,7 +100,7 @@ void ViewRunner::begin_rendering(ViewState& view, TimePoint now) {
     run.phase = Phase::Rendering;
     run.rendering_since = now;
     view.passes = passes_of(view);
-    for (Pass& pass : view.passes) {  // pixels without features are blurred, no more
+    for (Pass& pass : view.passes) {  // pixels without features are only blurred
         if (pass.kind == Pass::Kind::Features) pass.deadline = now + (*run.deadline - now) / 2;
     }
     view.current = 0;
@@ -115,24 +115,24 @@ PlanSettings ViewRunner::plan_of(const ViewState& view) const {
                       .spp = pass.spp,
                       .policy = view.request.policy};
     if (pass.kind == Pass::Kind::Coarse) {
-        // So many tiles that nobody idles while the last are rendered, but none below 8 pixels.
+        // Enough tiles to keep all workers busy until the end, but none below 8 pixels.
         constexpr std::uint64_t TilesPerWorker = 6;
-        const std::uint32_t workers = passes_.dispatcher.prospects(pass.view, crew(view)).workers;
+        const std::uint32_t workers = passes_.dispatcher.prospects(pass.view, requirements(view)).workers;
         plan.tile = 8;
         for (const std::uint32_t edge : {16u, 32u}) {
             if (pass.view.window.pixel_count() >= TilesPerWorker * std::max(1u, workers) * edge * edge)
                 plan.tile = edge;
         }
     }
-    // Who waits for the end is shown nothing before 4 samples; against the clock every round counts, but a
-    // variance, which filters need, takes 2.
+    // A client that waits for the end sees no picture before 4 samples. With a deadline shorter rounds are used, but
+    // with a budget the filter needs a variance, which takes 2.
     if (pass.kind == Pass::Kind::Picture && !view.shows_all())
         plan.first_level = !view.run.deadline ? 2u : view.request.stop.has_budget() ? 1u : 0u;
     return plan;
 }
 
 void ViewRunner::begin_pass(ViewState& view, std::vector<frame::FilmTile>&& blocks) {
-    passes_.begin(view.pass(), plan_of(view), crew(view), view.run.deadline, std::move(blocks));
+    passes_.begin(view.pass(), plan_of(view), requirements(view), view.run.deadline, std::move(blocks));
 }
 
 // ---- from pass to pass ----
@@ -169,10 +169,10 @@ void ViewRunner::advance_to_next_pass(ViewState& view, TimePoint now) {
     if (!is_over) return;
     if (pass.kind == Pass::Kind::Coarse) {
         show(view, now);
-        if (views_.passes_held || view.restart_wanted) return;
+        if (views_.passes_paused || view.restart_wanted) return;
     } else {
         passes_.dispatcher.end(pass.view.id);
-        passes_.film.keep_features(pass.view.id, view.passes.back().view.id);
+        passes_.film.retain_as_features(pass.view.id, view.passes.back().view.id);
     }
     ++view.current;
     begin_pass(view);
@@ -184,7 +184,7 @@ void ViewRunner::advance_picture(ViewState& view, TimePoint now) {
     Run& run = view.run;
     const bool is_whole = scheduler.tiles_without_samples() == 0;
     if (!run.outcome) {
-        const auto prospects = passes_.dispatcher.prospects(view.pass().view, crew(view));
+        const auto prospects = passes_.dispatcher.prospects(view.pass().view, requirements(view));
         if (prospects.ready > 0) run.without_nodes_since = now;
         if (scheduler.complete()) {
             decide(view, Outcome::Complete, {}, now);
@@ -192,7 +192,8 @@ void ViewRunner::advance_picture(ViewState& view, TimePoint now) {
             decide(view, Outcome::TimeUp, {}, now);
         } else if (view.request.wait_limit > Duration::zero() &&
                    now - run.without_nodes_since >= view.request.wait_limit) {
-            decide(view, Outcome::NoNodes, "all nodes are gone: what was merged so far is delivered", now);
+            decide(view, Outcome::NoNodes,
+                   "all nodes have disconnected: the samples merged so far are delivered", now);
         }
     }
     if (run.outcome && !run.is_over() && (scheduler.idle() || now - run.outcome_at > settings_.stop_grace))
@@ -220,16 +221,16 @@ void ViewRunner::account(ViewState& view, const MergeReport& report, Dispatcher:
 }
 
 void ViewRunner::show(ViewState& view, TimePoint now) {
-    const Shown shown{.pass = view.current,
-                      .revision = view.revision,
-                      .asked = view.camera_revision,
-                      .samples = passes_.dispatcher.find(view.pass().view.id)->merged_samples(),
-                      .complete = view.run.is_over()};
+    const DisplayedState shown{.pass = view.current,
+                               .revision = view.revision,
+                               .asked = view.camera_revision,
+                               .samples = passes_.dispatcher.find(view.pass().view.id)->merged_samples(),
+                               .complete = view.run.is_over()};
     if (view.shown == shown) return;
     const bool is_first = !view.shown || view.shown->revision != view.revision;
     view.shown = shown;
     if (is_first) first_pictures_.push_back({view.version, now});
-    delivery_.offer(view, now, settings_.frame_interval);  // before anything newer ends the pass
+    delivery_.send_frames(view, now, settings_.frame_interval);  // before a newer pass ends this one
     for (std::size_t earlier = 0; earlier < view.current; ++earlier)
         passes_.end(view.passes[earlier].view.id);
 }
@@ -254,8 +255,8 @@ void ViewRunner::finish(ViewState& view, TimePoint now) {
     if (run.phase == Phase::Delivering) run.ended = now;
     send_progress(view, now);
     if (!view.passes.empty()) return show(view, now);
-    view.shown = Shown{.revision = view.revision, .asked = view.camera_revision, .complete = true};
-    delivery_.offer(view, now, settings_.frame_interval);
+    view.shown = DisplayedState{.revision = view.revision, .asked = view.camera_revision, .complete = true};
+    delivery_.send_frames(view, now, settings_.frame_interval);
 }
 
 void ViewRunner::take(Reconstructed&& made, TimePoint now) {
@@ -265,7 +266,7 @@ void ViewRunner::take(Reconstructed&& made, TimePoint now) {
     if (view != nullptr && view->run.phase == Phase::Filtering) {
         Run& run = view->run;
         if (view->request.stop.has_budget() && run.outcome == Outcome::TimeUp && run.deadline) {
-            time_budget_.measured(run.way, view->request.view.window.pixel_count(),
+            time_budget_.measured(run.cost_key, view->request.view.window.pixel_count(),
                                   seconds(now - *run.deadline));
         }
         if (!made.picture.error.empty()) {
@@ -279,9 +280,9 @@ void ViewRunner::take(Reconstructed&& made, TimePoint now) {
     delivery_.take(made, now);
 }
 
-void ViewRunner::take(const Rehearsed& rehearsed) {
-    if (const ViewState* view = views_.find(rehearsed.view))
-        time_budget_.measured(view->run.way, rehearsed.pixels, rehearsed.seconds);
+void ViewRunner::take(const CalibrationResult& calibration) {
+    if (const ViewState* view = views_.find(calibration.view))
+        time_budget_.measured(view->run.cost_key, calibration.pixels, calibration.seconds);
 }
 
 void ViewRunner::unit_failed(ViewState& view, const std::string& problem, TimePoint now) {
@@ -290,7 +291,7 @@ void ViewRunner::unit_failed(ViewState& view, const std::string& problem, TimePo
     view.problem = problem;
     const std::string text = "view " + view.name + " is not rendered: " + problem;
     events_({wire::Severity::Error, text});
-    tell_owner(view, text);
+    notify_owner(view, text);
     passes_.end_all(view);
 }
 
@@ -299,45 +300,45 @@ void ViewRunner::unit_failed(ViewState& view, const std::string& problem, TimePo
 void ViewRunner::change_filter(ViewState& view, const FilterChange& change, TimePoint now) {
     view.request.view.filter = change.view.filter;
     view.request.view.channels = change.view.channels;
-    view.run.way = way_of(view.request);
+    view.run.cost_key = cost_key(view.request);
     if (view.passes.empty()) return;
     Pass& picture = view.passes.back();
     picture.view.filter = change.view.filter;
     if (change.effect == FilterChange::Effect::Widened) {
         picture.view.channels = change.view.channels;
         if (view.is_last_pass()) {
-            // All that is in the nodes' hands lacks the channels: it is dealt again under a new revision.
+            // Units in flight lack the channels: they are dealt again under a new revision.
             picture.view.revision = ++view.revision;
             if (view.shown) view.shown->revision = view.revision;
             passes_.dispatcher.revise(picture.view);
-            passes_.film.widen(picture.view.id, view.revision, picture.view.channels);
+            passes_.film.add_channels(picture.view.id, view.revision, picture.view.channels);
         }
     }
     if (view.shown && view.is_last_pass()) show(view, now);
 }
 
-// ---- what is told ----
+// ---- notifications ----
 
-void ViewRunner::tell_owner(const ViewState& view, const std::string& text) {
+void ViewRunner::notify_owner(const ViewState& view, const std::string& text) {
     if (view.in_group()) events_({wire::Severity::Warning, text});
     if (const SessionRecord* owner = sessions_.find(view.owner.session))
         outbox_.control(owner->control, wire::Notice{wire::Severity::Warning, text});
 }
 
-void ViewRunner::tell_of_waiting(ViewState& view, TimePoint now) {
-    if (!view.shows_all()) return;  // its owner hears where it is anyway
-    const bool has_node = passes_.dispatcher.prospects(view.request.view, crew(view)).suitable > 0;
+void ViewRunner::notify_waiting(ViewState& view, TimePoint now) {
+    if (!view.shows_all()) return;  // its owner receives progress reports
+    const bool has_node = passes_.dispatcher.prospects(view.request.view, requirements(view)).suitable > 0;
     if (has_node || view.is_complete()) {
         view.waits_since = now;
-        view.told_of_waiting = false;
+        view.wait_notified = false;
     }
-    if (view.told_of_waiting || now - view.waits_since < settings_.patience_without_nodes) return;
-    view.told_of_waiting = true;
+    if (view.wait_notified || now - view.waits_since < settings_.patience_without_nodes) return;
+    view.wait_notified = true;
     const std::size_t count = passes_.dispatcher.node_count();
-    tell_owner(view, "view " + view.name + " waits: " +
-                         (count == 0 ? "there are no nodes: start some with tessera-node"
-                                     : passes_.dispatcher.obstacles(view.request.view, view.version) +
-                                           "none of " + std::to_string(count) + " nodes can render it"));
+    notify_owner(view, "view " + view.name + " waits: " +
+                           (count == 0 ? "there are no nodes: start some with tessera-node"
+                                       : passes_.dispatcher.obstacles(view.request.view, view.version) +
+                                             "none of " + std::to_string(count) + " nodes can render it"));
 }
 
 void ViewRunner::show_progress(ViewState& view, TimePoint now) {
@@ -347,11 +348,12 @@ void ViewRunner::show_progress(ViewState& view, TimePoint now) {
 
 void ViewRunner::send_progress(ViewState& view, TimePoint now) {
     view.progress_sent = now;
-    delivery_.report_progress(view, passes_.dispatcher.prospects(view.request.view, crew(view)).ready);
+    delivery_.report_progress(view,
+                              passes_.dispatcher.prospects(view.request.view, requirements(view)).ready);
 }
 
 session::ViewProgress ViewRunner::progress(const ViewState& view) const {
-    return progress_of(view, passes_.dispatcher.prospects(view.request.view, crew(view)).ready);
+    return progress_of(view, passes_.dispatcher.prospects(view.request.view, requirements(view)).ready);
 }
 
 TimePoint ViewRunner::next_event(const ViewState& view, TimePoint now) const {

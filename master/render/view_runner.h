@@ -11,14 +11,16 @@
 namespace tessera::master {
 
 struct ViewSettings {
-    Duration overdue_patience = std::chrono::seconds(5);      // film neither in hand nor here: lost
-    Duration orphan_patience = std::chrono::seconds(60);      // a view whose owner fell silent waits so long
+    Duration overdue_patience =
+        std::chrono::seconds(5);  // a unit that the node does not hold and whose film has not arrived: lost
+    Duration orphan_patience = std::chrono::seconds(60);  // how long a view waits for an owner that timed out
     Duration frame_interval = std::chrono::milliseconds(33);  // between pictures of the same pass
     Duration progress_interval = std::chrono::milliseconds(100);
-    Duration stop_grace = std::chrono::seconds(2);  // for the film of stopped units
+    Duration stop_grace = std::chrono::seconds(2);  // for film of cancelled units
     std::uint32_t failure_limit = 8;
-    Duration patience_without_nodes = std::chrono::seconds(3);  // before its owner is told that a view waits
-    std::size_t max_views = 60;  // of all members: a node keeps 256, and each has several passes
+    Duration patience_without_nodes =
+        std::chrono::seconds(3);  // before its owner is notified that a view waits
+    std::size_t max_views = 60;   // of all members: a node keeps 256, and each view has several passes
 };
 
 // The first picture of a version is merged.
@@ -27,8 +29,8 @@ struct FirstPicture {
     TimePoint at{};
 };
 
-// Takes views through their passes: waits for nodes, plans the time, begins one pass after another, shows what
-// there is, ends the view when its stop rule says so. Keeps no view; works on those of the table.
+// Runs views through their passes: waits for nodes, plans the time budget, begins one pass after another, updates the
+// displayed state, ends the view when its stop rule is met. Stateless regarding views; works on those of the table.
 class ViewRunner {
   public:
     ViewRunner(const ViewSettings& settings, ViewTable& views, PassStarter& passes, Delivery& delivery,
@@ -42,21 +44,21 @@ class ViewRunner {
           events_(std::move(events)) {}
 
     void restart(ViewState& view, TimePoint now);
-    // Begins with the last pass, which has this film already.
+    // Begins with the last pass and its existing film.
     void resume(ViewState& view, std::vector<frame::FilmTile>&& blocks, TimePoint now);
-    // Time has passed, or there are new samples.
+    // Called when time has passed or samples have arrived.
     void advance(ViewState& view, TimePoint now);
     void took(ViewState& view, const MergeReport& report, Dispatcher::Taken taken, TimePoint now);
     void unit_failed(ViewState& view, const std::string& problem, TimePoint now);
-    // The film goes on with another filter; not for a change that restarts.
+    // Continues the film with another filter; not for a change that restarts.
     void change_filter(ViewState& view, const FilterChange& change, TimePoint now);
     void decide(ViewState& view, session::Outcome outcome, std::string message, TimePoint now);
 
     void take(Reconstructed&& made, TimePoint now);
-    void take(const Rehearsed& rehearsed);
+    void take(const CalibrationResult& calibration);
 
-    // Once, as long as it lasts.
-    void tell_of_waiting(ViewState& view, TimePoint now);
+    // Notifies the owner once that the view is waiting for nodes.
+    void notify_waiting(ViewState& view, TimePoint now);
     void show_progress(ViewState& view, TimePoint now);
     session::ViewProgress progress(const ViewState& view) const;
     TimePoint next_event(const ViewState& view, TimePoint now) const;
@@ -77,8 +79,10 @@ class ViewRunner {
     void show(ViewState& view, TimePoint now);
     void finish(ViewState& view, TimePoint now);
     void send_progress(ViewState& view, TimePoint now);
-    void tell_owner(const ViewState& view, const std::string& text);
-    Crew crew(const ViewState& view) const { return {view.version, view.request.reproducible}; }
+    void notify_owner(const ViewState& view, const std::string& text);
+    NodeRequirements requirements(const ViewState& view) const {
+        return {view.version, view.request.reproducible};
+    }
 
     const ViewSettings& settings_;
     ViewTable& views_;

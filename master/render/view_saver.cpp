@@ -2,7 +2,7 @@
 
 namespace tessera::master {
 
-// The ledger of the last pass, when that is under way.
+// The scheduler of the last pass, if that is the current one.
 const Scheduler* ViewSaver::accumulating(const ViewState& view) const {
     if (view.restart_wanted || view.passes.empty() || !view.is_last_pass()) return nullptr;
     return passes_.dispatcher.find(view.pass().view.id);
@@ -31,7 +31,7 @@ std::uint64_t ViewSaver::film_progress() const {
     std::uint64_t progress = views_.ids().given();
     for (const auto& [id, view] : views_.all()) {
         if (view.in_group()) continue;
-        progress += view.revision << 32;  // a film that starts anew is another one
+        progress += view.revision << 32;  // a restarted film is another one
         if (const Scheduler* pass = accumulating(view)) progress += pass->merged_samples();
     }
     return progress;
@@ -39,7 +39,7 @@ std::uint64_t ViewSaver::film_progress() const {
 
 std::optional<std::vector<wire::SavedView>> ViewSaver::take_saved() {
     if (!saving_) return std::nullopt;
-    // A film that ended meanwhile does not come any more.
+    // A film that was closed meanwhile will not arrive.
     std::erase_if(saving_->waiting, [this](ViewId film) {
         const ViewState* view = views_.of_pass(film);
         return view == nullptr || saving_->revisions[view->id] != view->revision;

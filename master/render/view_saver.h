@@ -10,22 +10,22 @@
 
 namespace tessera::master {
 
-// Views with their films as values, for a master that is started anew.
+// Saves views with their films, for a master restart.
 class ViewSaver {
   public:
     ViewSaver(ViewTable& views, PassStarter& passes) : views_(views), passes_(passes) {}
 
-    // Has all films copied; they are there when take_saved() brings them. `scene_hash`: of what they show.
+    // Requests copies of all films; take_saved() returns them when they are complete. `scene_hash`: of the scene in the films.
     void save(Hash128 scene_hash);
     bool is_saving() const { return saving_.has_value(); }
     std::optional<std::vector<wire::SavedView>> take_saved();
-    // Grows whenever there is more or other film to save.
+    // Increases whenever film has changed since the last save.
     std::uint64_t film_progress() const;
 
-    bool take(FilmBlocks&& film);  // false: nobody asked for it
+    bool take(FilmBlocks&& film);  // false: not requested by save()
 
   private:
-    // A save under way.
+    // A save in progress.
     struct Saving {
         std::map<ViewId, wire::SavedView> views;
         std::map<ViewId, std::uint64_t> revisions;  // of the views whose film is being copied

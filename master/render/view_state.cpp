@@ -19,7 +19,7 @@ std::vector<Pass> passes_of(const ViewState& state, std::uint32_t coarsest) {
         if (!state.shows_all() || scale > coarsest || !has_coarse_pass(whole, scale)) continue;
         Pass pass{.view = scaled_view(whole, scale), .kind = Pass::Kind::Coarse, .scale = scale};
         pass.view.channels = whole.channels;
-        pass.view.filter.clear();  // most filters need more than a sample a pixel
+        pass.view.filter.clear();  // most filters need more than one sample per pixel
         passes.push_back(std::move(pass));
     }
     const bool upsampled = state.run.scale > 1;

@@ -6,20 +6,20 @@
 
 namespace tessera::master {
 
-// Whether the end of the view brings a picture: one is wanted, and the last pass has samples.
+// Whether the view ends with a picture: one is wanted, and the last pass has samples.
 bool has_picture(const ViewState& view, session::PictureEncoding wanted);
 
 session::ViewProgress progress_of(const ViewState& view, std::uint32_t nodes);
 
-// What became of a view that has ended. `bytes`: of the master, by now.
+// Of a view that has ended. `bytes`: the master's current counters.
 session::ViewSummary summary_of(const ViewState& view, const SceneFacts& facts,
                                 const session::WireBytes& bytes);
 
-// As a message that fits the control link: of very many nodes those with the fewest samples are left out, and a note
-// says how many.
+// As a message that fits the control link: if there are too many nodes, those with the fewest samples are omitted, and
+// a note says how many.
 net::Bytes encoded(wire::ViewDone done);
 
-// Adds to a picture's summary what only the view knows: the size that it was rendered at, and why.
+// Adds the view's facts to a picture's summary: the size that it was rendered at, and why.
 void describe(const ViewState& view, session::PictureSummary& picture);
 
 }  // namespace tessera::master

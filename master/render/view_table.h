@@ -6,15 +6,15 @@
 
 namespace tessera::master {
 
-// What the nodes say of the scene, as they last did.
+// Statistics of the scene, as last reported by nodes.
 struct SceneFacts {
     std::uint64_t triangles = 0, instances = 0, lights = 0;
 };
 
-// Ids for the views of all scenes: no two passes ever have the same.
+// Allocates ids for the views of all scenes: unique among all passes.
 class ViewIds {
   public:
-    ViewId take() {  // and MaxPasses after it
+    ViewId take() {  // and reserves MaxPasses ids
         const ViewId id{next_};
         next_ += MaxPasses;
         return id;
@@ -48,15 +48,16 @@ class ViewTable {
         return found == views_.end() ? nullptr : &found->second;
     }
     ViewState* named(const std::string& name);
-    // Whose pass has this view.
+    // The view that owns this pass.
     ViewState* of_pass(ViewId pass);
     std::map<ViewId, ViewState>& all() { return views_; }
     const std::map<ViewId, ViewState>& all() const { return views_; }
 
     SceneFacts facts;
-    session::WireBytes bytes_at_start;  // of the master, before the scene came: what views are charged with
-    // Changes wait to be published: no pass begins meanwhile.
-    bool passes_held = false;
+    session::WireBytes
+        bytes_at_start;  // of the master, before the scene was opened: baseline of the views' traffic
+    // Changes wait to be published: no pass begins until then.
+    bool passes_paused = false;
 
   private:
     ViewIds& ids_;

@@ -11,7 +11,7 @@ namespace tessera::master {
 
 namespace {
 constexpr std::uint64_t MaxFilmBytes = std::uint64_t{128}
-                                       << 20;  // of a view whose every film goes to a client
+                                       << 20;  // per frame, of a view that streams its film
 
 bool differ_in_filter_alone(view::View a, view::View b) {
     a.filter.clear();
@@ -19,7 +19,7 @@ bool differ_in_filter_alone(view::View a, view::View b) {
     return a == b;
 }
 
-Delivery::Wish wish_of(const session::ViewRequest& request) {
+Delivery::FrameFormat format_of(const session::ViewRequest& request) {
     return {request.picture, request.film, request.frames, request.display_transform};
 }
 
@@ -41,9 +41,9 @@ Views::Views(const ViewSettings& settings, const RenderServices& services, Sessi
 
 std::string Views::share(SessionId session, std::uint64_t number, const session::ViewRequest& wanted) {
     const ViewState* view = table_.named(wanted.name);
-    if (view == nullptr) return "no view is named '" + wanted.name + "': ask for the views that there are";
+    if (view == nullptr) return "no view is named '" + wanted.name + "': list the views to see their names";
     if (std::string problem = problem_of(wanted.display_transform); !problem.empty()) return problem;
-    delivery_.watch(session, number, view->id, wish_of(wanted));
+    delivery_.watch(session, number, view->id, format_of(wanted));
     return {};
 }
 
@@ -67,14 +67,14 @@ std::string Views::open(const ViewOwner& owner, std::uint64_t number, session::V
     view->owner = owner;
     view->name = request.name;
     view->orphaned.reset();
-    const Delivery::Wish wish = wish_of(request);
-    delivery_.watch(owner.session, number, view->id, wish);
-    if (request.detached) delivery_.keep(view->id, wish);  // its end is for take_ended_jobs()
+    const Delivery::FrameFormat format = format_of(request);
+    delivery_.watch(owner.session, number, view->id, format);
+    if (request.detached) delivery_.keep(view->id, format);  // its end is for take_ended_jobs()
     change(*view, std::move(request), version, now);
     return {};
 }
 
-// The view of this number, or the owner's view of this name that waits for it, or a new one.
+// The view of this number, or the owner's orphaned view of this name, or a new one.
 ViewState* Views::find_or_add(const ViewOwner& owner, std::uint64_t number, const std::string& name,
                               std::string& problem) {
     const auto watched = delivery_.watched(owner.session, number);
@@ -82,7 +82,7 @@ ViewState* Views::find_or_add(const ViewOwner& owner, std::uint64_t number, cons
     if (ViewState* known = table_.named(name); known != nullptr && known != view) {
         const bool is_owner = known->owner.user == owner.user && known->owner.key == owner.key;
         if (!known->orphaned || !is_owner) {
-            problem = "a view named '" + name + "' is there already: choose another name, or share it";
+            problem = "a view named '" + name + "' already exists: choose another name, or share it";
             return nullptr;
         }
         view = known;
@@ -91,7 +91,7 @@ ViewState* Views::find_or_add(const ViewOwner& owner, std::uint64_t number, cons
     if (view != nullptr) return view;
     const std::size_t count = table_.all().size() - group_.views().size();
     if (count >= settings_.max_views) {
-        problem = "there are " + std::to_string(count) + " views already: close some";
+        problem = "there are " + std::to_string(count) + " views, the maximum: close some";
         return nullptr;
     }
     return &table_.add();
@@ -128,7 +128,7 @@ void Views::change(ViewState& view, session::ViewRequest&& request, Version vers
     view.failures = 0;
     view.problem.clear();
     if (is_new) view.waits_since = now;
-    const bool wait = view.is_protected();
+    const bool wait = view.awaiting_first_frame();
     view.restart_wanted = true;
     if (!wait) passes_.end_all(view);
     view.version = version;
@@ -150,8 +150,8 @@ void Views::end(SessionId session, const wire::EndView& request, TimePoint now) 
 std::string Views::job_problem(const session::ViewRequest& request) {
     if (request.name.empty()) return "a job needs a name";
     if (request.frames != session::Frames::Last) return "a job has one frame, its last";
-    if (request.film) return "the film of a job is not kept: ask for its picture alone";
-    if (request.picture == session::PictureEncoding::None) return "a job without a picture: ask for one";
+    if (request.film) return "the film of a job is not kept: request only its picture";
+    if (request.picture == session::PictureEncoding::None) return "a job needs a picture: request one";
     return {};
 }
 
@@ -165,7 +165,7 @@ bool Views::has_jobs() const {
                        [this](const auto& entry) { return is_job(entry.first); });
 }
 
-// The view of that name; without a name the one that there is, of those that somebody waits for first.
+// The view of that name; without a name the only one, preferring views that a client waits for.
 ViewState& Views::view_to_filter(const std::string& name) {
     const auto refuse = [](const std::string& why) { throw Error(ErrorCode::Refused, why); };
     std::vector<ViewState*> waited, shown;
@@ -193,7 +193,7 @@ std::string Views::set_filter(const std::string& name, const std::string& filter
     ViewState& view = view_to_filter(name);
     if (view.request.picture == session::PictureEncoding::None) {
         refuse(
-            "the frame's client asked for the film alone: nothing would be filtered; start it with "
+            "the frame's client requested only the film: nothing would be filtered; start it with "
             "--filter");
     }
     const FilterChange change = filter_change(view.request.view, filter);
@@ -203,7 +203,8 @@ std::string Views::set_filter(const std::string& name, const std::string& filter
         wanted.view.filter = filter;
         this->change(view, std::move(wanted), view.version, now);
         if (change.effect == FilterChange::Effect::Restarted)
-            return "filter " + change.view.filter + "; the view starts anew, since it works on other film";
+            return "filter " + change.view.filter +
+                   "; the view restarts, since the filter needs other channels or path classes";
         return change.text;
     }
     const bool has_features_first = !view.passes.empty() && !view.is_last_pass();
@@ -219,11 +220,11 @@ void Views::pick(SessionId session, const wire::Pick& request, Version version) 
     picks_.pick(session, request, view == nullptr ? nullptr : &view->request.view, version);
 }
 
-void Views::session_left(SessionId session, Departure departure, TimePoint now) {
+void Views::session_left(SessionId session, DisconnectReason reason, TimePoint now) {
     picks_.session_left(session);
     for (const std::uint64_t number : delivery_.numbers(session)) {
         ViewState& view = *table_.find(*delivery_.watched(session, number));
-        if (departure == Departure::Goodbye || !view.shows_all()) {
+        if (reason == DisconnectReason::Graceful || !view.shows_all()) {
             end(session, {.number = number}, now);
             continue;
         }
@@ -252,8 +253,8 @@ void Views::close_all() {
 bool Views::may_publish() const {
     return std::none_of(table_.all().begin(), table_.all().end(), [this](const auto& entry) {
         const ViewState& view = entry.second;
-        // Without a node that could render it there is nothing to wait for.
-        return view.is_protected() &&
+        // Without a suitable node there is nothing to wait for.
+        return view.awaiting_first_frame() &&
                services_.dispatcher.prospects(view.request.view, {view.version, view.request.reproducible})
                        .suitable > 0;
     });
@@ -293,8 +294,8 @@ void Views::restore(std::vector<wire::SavedView>&& saved, Version version, Hash1
         view.waits_since = now;
         view.orphaned = now;
         const session::ViewRequest& request = view.request;
-        if (request.detached) delivery_.keep(view.id, wish_of(request));
-        // Film of another scene is of no use, and the time of one that has a clock began with it.
+        if (request.detached) delivery_.keep(view.id, format_of(request));
+        // Film of another scene is useless, and a view with a time limit must start over.
         if (old.blocks.empty() || old.scene_hash_of_film != scene_hash || view.request.stop.has_clock())
             continue;
         runner_.resume(view, std::move(old.blocks), now);
@@ -317,8 +318,8 @@ bool Views::take(RenderOutput& output, TimePoint now) {
         delivery_.take(std::move(*tile));
     } else if (auto* made = std::get_if<Reconstructed>(&output)) {
         runner_.take(std::move(*made), now);
-    } else if (const auto* rehearsed = std::get_if<Rehearsed>(&output)) {
-        runner_.take(*rehearsed);
+    } else if (const auto* calibration = std::get_if<CalibrationResult>(&output)) {
+        runner_.take(*calibration);
     } else if (auto* film = std::get_if<FilmBlocks>(&output)) {
         if (!picks_.take(*film)) (void)saver_.take(std::move(*film));
     } else {
@@ -361,7 +362,7 @@ void Views::forget_orphans(TimePoint now) {
 void Views::advance(TimePoint now) {
     forget_orphans(now);
     for (auto& [id, view] : table_.all()) {
-        runner_.tell_of_waiting(view, now);
+        runner_.notify_waiting(view, now);
         if (!view.in_group()) runner_.advance(view, now);
     }
 }
@@ -371,13 +372,13 @@ void Views::deal(TimePoint now) {
     picks_.deal(capacities, now);
     std::vector<ViewState*> order;
     for (auto& [id, view] : table_.all()) {
-        if (!view.in_group() && view.restart_wanted && !table_.passes_held && !view.is_protected() &&
-            view.problem.empty())
+        if (!view.in_group() && view.restart_wanted && !table_.passes_paused &&
+            !view.awaiting_first_frame() && view.problem.empty())
             runner_.restart(view, now);
         if (!view.passes.empty()) order.push_back(&view);
     }
     if (!order.empty()) {
-        // Those without a picture first, then those with the fewest samples; equals take turns.
+        // Views without a picture first, then those with the fewest samples; equal views take turns.
         std::rotate(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(turn_++ % order.size()),
                     order.end());
         const auto rank = [this](const ViewState& view) {
@@ -397,7 +398,7 @@ void Views::deal(TimePoint now) {
 
 void Views::deliver(TimePoint now) {
     for (auto& [id, view] : table_.all()) {
-        delivery_.offer(view, now, settings_.frame_interval);
+        delivery_.send_frames(view, now, settings_.frame_interval);
         if (!view.shows_all()) runner_.show_progress(view, now);
     }
     delivery_.send();

@@ -12,7 +12,7 @@
 
 namespace tessera::master {
 
-// What all scenes of a master render with.
+// Shared by all scenes of a master.
 struct RenderServices {
     RenderOutputs& outputs;
     FilmStore& film;
@@ -20,31 +20,31 @@ struct RenderServices {
     ViewIds& ids;
 };
 
-// The views of a scene: renders all of them at a time, each until its stop rule says so, coarse passes first,
-// then in turn. A view whose owner waits for the end and one whose every picture is watched differ in what is
-// delivered of them, and in nothing else. Told of events by the scene session; owns no socket.
+// The views of a scene. Renders all of them concurrently, each until its stop rule is met, coarse passes first, then
+// in turn. A view whose owner waits for the end and one that streams every picture differ only in delivery. Driven by
+// the scene session; owns no socket.
 class Views {
   public:
     Views(const ViewSettings& settings, const RenderServices& services, SessionTable& sessions,
           Outbox& outbox, const EventSink& events);
 
     // ---- clients ----
-    // Again with the same number: another camera, size or quality; a filter alone keeps the film. "" or what
-    // is wrong with it.
+    // Again with the same number: changes camera, size or quality; changing only the filter keeps the film. Returns
+    // "" or the problem.
     std::string open(const ViewOwner& owner, std::uint64_t number, session::ViewRequest request,
                      Version version, TimePoint now);
-    // Watches the view that has this name, whatever it shows.
+    // Watches the existing view of this name.
     std::string share(SessionId session, std::uint64_t number, const session::ViewRequest& wanted);
-    // It is watched no more; or it ends with what there is.
+    // Stops watching the view; or ends it with its current samples.
     void end(SessionId session, const wire::EndView& request, TimePoint now);
-    // Another filter for the view of that name; "" = the one there is. Says what it means for the frame; throws
+    // Sets the filter of the view of that name; "" = the only view. Returns a description of the effect; throws
     // Error{Refused} with the reason.
     std::string set_filter(const std::string& name, const std::string& filter, TimePoint now);
-    // ---- jobs: views that go on without their client ----
-    // What is wrong with it as a job; "" = nothing.
+    // ---- jobs: views that continue without their client ----
+    // Why it cannot be a job; "" = it can.
     static std::string job_problem(const session::ViewRequest& request);
     std::vector<Delivery::Ended> take_ended_jobs() { return delivery_.take_ended(); }
-    // It has ended, or is not wanted any more; whoever else watches it goes on.
+    // Ends the job; other watchers keep watching the view.
     void release(ViewId view);
     bool is_job(ViewId view) const { return delivery_.is_kept(view); }
     bool has_jobs() const;
@@ -52,26 +52,26 @@ class Views {
     void send_kept(const SessionRecord& session, Delivery::Ended kept) {
         delivery_.send_kept(session, std::move(kept));
     }
-    std::size_t frames_on_their_way(SessionId session) const { return delivery_.on_their_way(session); }
+    std::size_t frames_in_flight(SessionId session) const { return delivery_.in_flight(session); }
 
     void taken(SessionId session, const wire::FrameTaken& taken) { delivery_.taken(session, taken); }
     void pick(SessionId session, const wire::Pick& request, Version version);
-    // Its views stay for a while when it only fell silent.
-    enum class Departure { Goodbye, Silence };
-    void session_left(SessionId session, Departure departure, TimePoint now);
+    // On a timeout its views are kept for a while.
+    enum class DisconnectReason { Graceful, Timeout };
+    void session_left(SessionId session, DisconnectReason reason, TimePoint now);
     void session_resumed(SessionId session) { delivery_.resumed(session); }
     void close_all();
 
     // ---- scene ----
-    // No first picture is on its way. Changes wait for it, and no pass begins while they wait.
+    // No view awaits its first picture. Changes wait until then, and no pass begins while they wait.
     bool may_publish() const;
-    void hold_passes(bool hold) { table_.passes_held = hold; }
-    // Whether pictures start anew.
+    void pause_passes(bool hold) { table_.passes_paused = hold; }
+    // Returns whether pictures restart.
     bool scene_changed(const scene::ChangeList& changes, const scene::Scene& after);
     void scene_facts(const SceneFacts& facts) { table_.facts = facts; }
-    // The master's bytes so far: from here on views are charged with them.
+    // The master's byte counters: baseline of the views' traffic.
     void charge_from(const session::WireBytes& bytes) { table_.bytes_at_start = bytes; }
-    // The views of a master before: they wait for their owners. Films go on where they show this scene.
+    // Views of a previous run: they wait for their owners. Films of this scene are continued.
     void restore(std::vector<wire::SavedView>&& saved, Version version, Hash128 scene_hash, TimePoint now);
 
     // ---- events ----
@@ -80,7 +80,7 @@ class Views {
     bool take(RenderOutput& output, TimePoint now);  // false: not for views
     std::vector<FirstPicture> take_first_pictures();
 
-    // ---- time: first advance(), then whoever consumes the group, then deal() ----
+    // ---- time: first advance(), then the consumer of the group, then deal() ----
     void advance(TimePoint now);
     void deal(TimePoint now);
     TimePoint next_event(TimePoint now) const;
@@ -89,12 +89,12 @@ class Views {
     const Dispatcher& dispatcher() const { return services_.dispatcher; }
     std::uint64_t watchers(ViewId view) const { return delivery_.watchers(view); }
     ViewSaver& saver() { return saver_; }
-    // Views in lockstep. What it consumes is told here, so that it becomes an event and reaches watchers.
+    // Views in lockstep. Its consumer calls these, so that first pictures are reported.
     LockstepGroup& group() { return group_; }
     void restart_group(const std::vector<GroupView>& wanted, TimePoint now);
     std::optional<GroupStage> next_group_stage(LockstepGroup::Consumer consumer, TimePoint now);
     void close_group();
-    void make_output(OutputOrder order) { services_.film.make_output(std::move(order)); }
+    void reconstruct_output(OutputRequest request) { services_.film.reconstruct_output(std::move(request)); }
 
   private:
     ViewState* find_or_add(const ViewOwner& owner, std::uint64_t number, const std::string& name,
@@ -114,7 +114,7 @@ class Views {
     LockstepGroup group_;
     Picks picks_;
     ViewSaver saver_;
-    std::uint64_t turn_ = 0;  // whose turn it is among equals
+    std::uint64_t turn_ = 0;  // round robin among equal views
 };
 
 }  // namespace tessera::master

@@ -8,7 +8,7 @@ namespace tessera::master {
 
 namespace {
 
-// Each writer once: many fields have the same.
+// Stores each writer once: many fields share one.
 class WriterList {
   public:
     std::uint64_t number(const WriterPtr& writer) {
@@ -49,7 +49,7 @@ wire::RecordedTransaction recorded(const Transaction& transaction, WriterList& w
                                  .editor = transaction.editor,
                                  .nature = static_cast<std::uint32_t>(transaction.nature),
                                  .author = writers.number(transaction.author),
-                                 .gesture = transaction.gesture,
+                                 .edit_group = transaction.edit_group,
                                  .edits = transaction.edits,
                                  .undoes = transaction.undoes,
                                  .undone_by = transaction.undone_by,
@@ -72,7 +72,7 @@ Transaction restored(wire::RecordedTransaction& from, const std::vector<WriterPt
     transaction.editor = from.editor;
     transaction.nature = static_cast<Nature>(std::min(from.nature, 2u));
     transaction.author = writers[from.author - 1];
-    transaction.gesture = from.gesture;
+    transaction.edit_group = from.edit_group;
     transaction.edits = from.edits;
     transaction.undoes = from.undoes;
     transaction.undone_by = from.undone_by;
@@ -100,8 +100,8 @@ wire::RecordedEditor recorded(const EditorRecord& editor) {
             .problems = editor.last_answer.problems,
             .transaction = editor.last_answer.transaction,
             .notes = editor.last_answer.notes,
-            .gesture = editor.gesture,
-            .gesture_transaction = editor.gesture_transaction};
+            .edit_group = editor.edit_group,
+            .edit_group_transaction = editor.edit_group_transaction};
 }
 
 EditorRecord restored(const wire::RecordedEditor& from) {
@@ -112,8 +112,8 @@ EditorRecord restored(const wire::RecordedEditor& from) {
                           .problems = from.problems,
                           .transaction = from.transaction,
                           .notes = from.notes};
-    editor.gesture = from.gesture;
-    editor.gesture_transaction = from.gesture_transaction;
+    editor.edit_group = from.edit_group;
+    editor.edit_group_transaction = from.edit_group_transaction;
     return editor;
 }
 

@@ -9,7 +9,7 @@
 
 namespace tessera::master {
 
-// What of the scene authority outlives its process. Objects are shared with it.
+// The persistent state of the scene authority. Objects are shared with it.
 struct AuthorityState {
     scene::Scene scene;  // the head
     std::uint64_t last_transaction = 0;
@@ -18,11 +18,11 @@ struct AuthorityState {
     WriterTable writers;
 };
 
-// As a checkpoint has it; journal, title and views are the caller's to fill.
+// In checkpoint form; the caller sets journal, title and views.
 wire::CheckpointState recorded(const AuthorityState& state);
 wire::RecordedEditor recorded(const EditorRecord& editor);
 
-// Fails with InvalidInput when the scene is not valid or its hash not the one promised.
+// Fails with InvalidInput if the scene is invalid or its hash differs from the stored one.
 Expected<AuthorityState> restored(wire::CheckpointState&& state);
 EditorRecord restored(const wire::RecordedEditor& editor);
 

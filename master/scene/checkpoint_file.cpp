@@ -14,7 +14,7 @@ void need(bool holds, const char* otherwise) {
 }
 
 wire::CheckpointState parse(HashedFile& in, std::uint64_t number) {
-    need(in.number() == number, "it is another checkpoint than its name says");
+    need(in.number() == number, "its number does not match its file name");
     auto state = wire::decode_checkpoint(in.take(in.number()));
     if (!state) throw state.error();
     for (wire::SavedView& view : state->views) {
@@ -24,7 +24,7 @@ wire::CheckpointState parse(HashedFile& in, std::uint64_t number) {
             view.blocks.push_back(std::move(*film));
         }
     }
-    need(in.rest().empty(), "something follows its last block");
+    need(in.rest().empty(), "unexpected data after its last block");
     return std::move(*state);
 }
 

@@ -12,8 +12,7 @@
 
 namespace tessera::master {
 
-// What a checkpoint is made of. To take it costs the loop a copy of the scene's map; encoding and writing are
-// the writer's.
+// The content of a checkpoint. Taking it costs the loop a copy of the scene's map; the writer encodes and writes it.
 struct CheckpointJob {
     std::uint64_t number = 0;  // Journal::start_segment(), called right before the state was taken
     wire::RecordedTitle scene;
@@ -24,10 +23,10 @@ struct CheckpointJob {
 struct CheckpointResult {
     std::uint64_t number = 0, byte_size = 0;
     double seconds = 0;
-    std::string problem;  // empty = it is on the disk, and what it makes needless is gone
+    std::string problem;  // empty = it is on disk, and outdated files are removed
 };
 
-// Writes checkpoints into a session folder, one at a time, on a thread of its own.
+// Writes checkpoints into a session folder, one at a time, on a background thread.
 class CheckpointWriter {
   public:
     explicit CheckpointWriter(std::filesystem::path folder);
@@ -38,7 +37,7 @@ class CheckpointWriter {
     bool busy() const;
     void start(CheckpointJob job);                  // not while busy
     void wait();                                    // until not busy
-    std::optional<CheckpointResult> take_result();  // of the one that ended last, once
+    std::optional<CheckpointResult> take_result();  // of the latest, once
 
   private:
     void run(const std::stop_token& stop);

@@ -41,7 +41,7 @@ void DiskSync::run(const std::stop_token& stop) {
             if (::fdatasync(file->descriptor()) == 0) continue;
             const std::string reason = std::strerror(errno);
             const std::scoped_lock lock(mutex_);
-            if (problem_.empty()) problem_ = "the disk does not take the journal: " + reason;
+            if (problem_.empty()) problem_ = "the journal cannot be written to disk: " + reason;
         }
         if (last) return;
         std::unique_lock lock(mutex_);

@@ -11,17 +11,17 @@
 
 namespace tessera::master {
 
-// Forces files to the disk on a thread of its own, at most once an interval: what was written before the last
-// one outlives a loss of power.
+// Syncs files to disk on a background thread, at most once per interval: everything written before the last sync
+// survives a power failure.
 class DiskSync {
   public:
     explicit DiskSync(Duration interval);
-    ~DiskSync();  // once more, now
+    ~DiskSync();  // syncs once more
     DiskSync(const DiskSync&) = delete;
     DiskSync& operator=(const DiskSync&) = delete;
 
     void soon(const FilePtr& file);  // in the order of these calls
-    std::string problem() const;     // the first that went wrong; empty = none
+    std::string problem() const;     // the first error; empty = none
 
   private:
     void run(const std::stop_token& stop);

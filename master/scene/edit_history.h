@@ -12,20 +12,20 @@ class EditHistory {
   public:
     static constexpr std::size_t Length = 256;
 
-    std::uint64_t last() const { return last_; }  // number of the youngest ever; 0 = none
-    Transaction& add(Transaction transaction);    // gets the next number; the oldest may go
-    Transaction* find(std::uint64_t number);      // null: never was, or is too old
+    std::uint64_t last() const { return last_; }  // number of the latest ever; 0 = none
+    Transaction& add(Transaction transaction);    // assigns the next number; may drop the oldest
+    Transaction* find(std::uint64_t number);      // null: unknown or too old
     const Transaction* find(std::uint64_t number) const;
 
-    // This editor's youngest that is no undo and is in force; its youngest undo that is. 0 = none.
+    // This editor's latest transaction in force that is not an undo; its latest undo in force. 0 = none.
     std::uint64_t latest_to_undo(std::uint64_t editor) const;
     std::uint64_t latest_to_redo(std::uint64_t editor) const;
-    // `by` takes back `target`: that is no longer in force, what it had taken back is again, and so on.
+    // `by` undoes `target`, which is no longer in force; what `target` had undone is in force again, and so on.
     void mark_undone(Transaction& target, std::uint64_t by);
 
-    const Transaction* remover(ObjectId id) const;  // the youngest that removed the object
+    const Transaction* remover(ObjectId id) const;  // the latest that removed the object
     const std::deque<Transaction>& all() const { return transactions_; }  // oldest first
-    void clear() { transactions_.clear(); }                               // numbers go on
+    void clear() { transactions_.clear(); }                               // numbers continue
     void restore(std::uint64_t last, std::deque<Transaction> transactions);
 
   private:

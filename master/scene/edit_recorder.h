@@ -7,8 +7,8 @@ namespace tessera::master {
 
 using wire::RecordedEdit;
 
-// Told of everything that a restarted master must know again, before anybody else is. What it
-// fails to keep does not happen.
+// Records everything that a restarted master needs, before it is acknowledged. A change that cannot be recorded is
+// refused.
 class EditRecorder {
   public:
     virtual ~EditRecorder() = default;

@@ -13,7 +13,7 @@ std::int64_t ns(TimePoint time) {
     return time.time_since_epoch().count();
 }
 
-// Of a peer's time in ours; 0 = not known.
+// A peer's time in the master's clock; 0 = unknown.
 std::int64_t ours(std::int64_t theirs, const std::optional<net::ClockOffset>& clock) {
     return theirs == 0 || !clock ? 0 : net::to_our_clock(theirs, *clock);
 }
@@ -21,8 +21,8 @@ std::int64_t ours(std::int64_t theirs, const std::optional<net::ClockOffset>& cl
 class Stage {
   public:
     explicit Stage(std::string name) : name_(std::move(name)) {}
-    // Peers' clocks are known to a bound only, so that an end may seem to be before its beginning. As
-    // doubles, whatever a peer says cannot overflow.
+    // Peers' clocks are known only within a bound, so an end may seem to precede its beginning. Doubles cannot
+    // overflow whatever times a peer sends.
     void add(std::int64_t from, std::int64_t to) {
         if (from == 0 || to == 0) return;
         seconds_.push_back(std::max(0.0, (static_cast<double>(to) - static_cast<double>(from)) * 1e-9));
@@ -54,7 +54,7 @@ void EditTraceLog::submitted(const Submitted& edit) {
                       .version = edit.version});
     ++count_;
     bytes_ += edit.bytes;
-    if (edits_.size() > Kept) edits_.pop_front();
+    if (edits_.size() > MaxEdits) edits_.pop_front();
 }
 
 void EditTraceLog::for_each_up_to(Version version, std::uint64_t& next,

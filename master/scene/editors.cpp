@@ -7,7 +7,7 @@ namespace tessera::master {
 namespace {
 
 constexpr std::uint64_t IdsOfABatch = 1u << 24;
-constexpr std::uint64_t IdsOfAMember = 1u << 20;           // 4,095 members at a time
+constexpr std::uint64_t IdsPerEditor = 1u << 20;           // 4,095 members at a time
 constexpr std::uint64_t IdLimit = std::uint64_t{1} << 32;  // an object index must fit a film plane
 
 bool meet(const IdRange& a, const IdRange& b) {
@@ -27,7 +27,7 @@ EditorRecord* Editors::join(SessionId session, const std::string& user, std::uin
         EditorRecord& editor = editors_.at(known->second);
         if (editor.session != session) {
             leave(session);
-            sessions_.erase(editor.session);  // the old connection edits no more
+            sessions_.erase(editor.session);  // the old connection can no longer edit
             editor.session = session;
             editor.may_skip = true;
             sessions_[session] = editor.number;
@@ -38,7 +38,7 @@ EditorRecord* Editors::join(SessionId session, const std::string& user, std::uin
         if (key == 0 && present->key == 0) return present;
         leave(session);
     }
-    const auto ids = free_ids(key == 0 ? IdsOfABatch : IdsOfAMember, scene);
+    const auto ids = free_ids(key == 0 ? IdsOfABatch : IdsPerEditor, scene);
     if (!ids) return nullptr;
     EditorRecord editor{.number = ++last_number_, .user = user, .key = key, .ids = *ids};
     editor.session = session;
@@ -71,11 +71,11 @@ void Editors::leave(SessionId session) {
         return;
     }
     editor->session = {};
-    if (editors_.size() - sessions_.size() > MaxAway) forget_one_away();
+    if (editors_.size() - sessions_.size() > MaxDisconnected) forget_one_disconnected();
 }
 
-// Of those who are away the one that came first.
-void Editors::forget_one_away() {
+// Forgets the oldest of the disconnected editors.
+void Editors::forget_one_disconnected() {
     const auto place = std::find_if(editors_.begin(), editors_.end(),
                                     [](const auto& entry) { return !entry.second.session; });
     if (place == editors_.end()) return;
@@ -87,7 +87,7 @@ void Editors::clear() {
     editors_.clear();
     sessions_.clear();
     keys_.clear();
-    next_id_ = FirstLentId;
+    next_id_ = FirstAllocatedId;
 }
 
 void Editors::restore(EditorRecord editor) {
@@ -102,18 +102,18 @@ void Editors::answer_at(Version version) {
     for (auto& [number, editor] : editors_) editor.last_answer.version = version;
 }
 
-bool Editors::lent(const IdRange& range) const {
+bool Editors::is_allocated(const IdRange& range) const {
     return std::any_of(editors_.begin(), editors_.end(),
                        [&](const auto& entry) { return meet(range, entry.second.ids); });
 }
 
-// The next range that nobody holds and no object lies in; goes round once.
+// The next id range that is not allocated and contains no object; wraps around once.
 std::optional<IdRange> Editors::free_ids(std::uint64_t count, const scene::Scene& scene) {
     for (std::uint64_t tried = 0; tried <= IdLimit / count; ++tried) {
-        if (next_id_ + count > IdLimit) next_id_ = FirstLentId;
+        if (next_id_ + count > IdLimit) next_id_ = FirstAllocatedId;
         const IdRange range{next_id_, count};
         next_id_ += count;
-        if (!lent(range) && !in_use(scene, range)) return range;
+        if (!is_allocated(range) && !in_use(scene, range)) return range;
     }
     return std::nullopt;
 }

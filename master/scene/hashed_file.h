@@ -13,9 +13,9 @@
 
 namespace tessera::master {
 
-// A file that is there in full or not at all: eight bytes that say what it is, the content, and the BLAKE2b hash of
-// both. It is written beside its place, forced to the disk and renamed; a writer that is destroyed before takes back
-// what it wrote. Every call throws Error{Io}, naming the file.
+// Writes a file atomically: an eight-byte magic, the content, and the BLAKE2b hash of both. It is written under a
+// temporary name in the same folder, synced and renamed; a writer destroyed before finish() removes the temporary file.
+// Every call throws Error{Io} with the file's name.
 class HashedFileWriter {
   public:
     using Magic = std::array<char, 8>;
@@ -27,7 +27,7 @@ class HashedFileWriter {
 
     void put(std::span<const std::byte> bytes);
     void put(std::uint64_t number) { put(std::as_bytes(std::span(&number, 1))); }
-    std::uint64_t finish();  // its size
+    std::uint64_t finish();  // returns the size
 
   private:
     void raw(std::span<const std::byte> bytes);
@@ -39,7 +39,7 @@ class HashedFileWriter {
     bool is_finished_ = false;
 };
 
-// The content. Throws Error{Io} when it cannot be read, Error{InvalidInput} when it is something else or damaged.
+// Reads such a file. Throws Error{Io} if it cannot be read, Error{InvalidInput} if it has another magic or is damaged.
 class HashedFile {
   public:
     HashedFile(const std::filesystem::path& path, const HashedFileWriter::Magic& magic, const char* what);

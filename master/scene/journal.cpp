@@ -47,7 +47,7 @@ Expected<void> Journal::keep_blobs(const std::vector<scene::Entry>& entries) {
             const scene::BlobPtr blob = blobs_->find(reference.hash);
             if (!blob) {
                 return failure(ErrorCode::NotFound,
-                               "blob " + to_hex(reference.hash) + " is not here any more: send it again");
+                               "blob " + to_hex(reference.hash) + " is no longer stored: send it again");
             }
             const std::filesystem::path folder = blobs_path(folder_);
             if (auto written = scene::write_blob(folder, *blob); !written) return written;

@@ -9,14 +9,13 @@
 
 namespace tessera::master {
 
-// Everything that happens to the scene, on disk before it is acknowledged: blobs that an edit refers to
-// first, then the edit, each with its author, time and the scene's hash after it. A call is back when the
-// operating system has the record: the death of the process loses nothing. The disk has it 100 ms later at
-// most: so much a loss of power may cost. What cannot be written is refused, and nothing of it stays. One
-// thread.
+// Writes every change of the scene to disk before it is acknowledged: first the blobs that an edit refers to,
+// then the edit with its author, time and the scene's hash after it. A call returns when the operating system has
+// the record, so a crash of the process loses nothing. The disk is synced at most 100 ms later, which is what a
+// power failure may lose. An edit that cannot be written is refused and leaves nothing behind. Single-threaded.
 class Journal final : public EditRecorder {
   public:
-    // Begins with a new segment; throws Error{Io} when it cannot be made.
+    // Begins with a new segment; throws Error{Io} if it cannot be created.
     Journal(const std::filesystem::path& folder, std::shared_ptr<const scene::BlobStore> blobs,
             std::uint64_t segment, Duration sync_interval = std::chrono::milliseconds(100));
 
@@ -27,8 +26,8 @@ class Journal final : public EditRecorder {
     Expected<void> job_started(wire::SavedView view);
     Expected<void> job_ended(const session::JobName& job);
 
-    // From now on into a new segment, whose number it returns: the checkpoint of that number holds all that
-    // was recorded before. Throws Error{Io}; then it goes on as before.
+    // Starts a new segment and returns its number: the checkpoint of that number contains everything recorded
+    // before. Throws Error{Io} and then keeps using the old segment.
     std::uint64_t start_segment();
     std::uint64_t byte_size() const { return earlier_bytes_ + segment_.byte_size(); }  // of this journal
 

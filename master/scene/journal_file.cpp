@@ -122,26 +122,26 @@ JournalScan read_journal(const std::filesystem::path& path, std::uint64_t number
     const std::span<const std::byte> all(file);
     if (file.size() < HeaderBytes) {
         const bool begun = std::equal(file.begin(), file.end(), head.begin());
-        return stop(begun ? JournalEnd::Torn : JournalEnd::Damaged, "its header is not whole");
+        return stop(begun ? JournalEnd::Torn : JournalEnd::Damaged, "its header is incomplete");
     }
     if (!std::equal(head.begin(), head.end(), file.begin()))
-        return stop(JournalEnd::Damaged, "its header is not that of this segment");
+        return stop(JournalEnd::Damaged, "its header belongs to another segment");
     std::vector<std::byte> chain = checksum({}, head);
     scan.offset = HeaderBytes;
     while (scan.offset < file.size()) {
         const std::span<const std::byte> rest = all.subspan(scan.offset);
-        if (rest.size() < RecordHead) return stop(JournalEnd::Torn, "the last record is not whole");
+        if (rest.size() < RecordHead) return stop(JournalEnd::Torn, "the last record is incomplete");
         std::uint32_t length = 0;
         std::memcpy(&length, rest.data(), sizeof length);
         // A length that was damaged looks like a record that goes on behind the end.
         if (length == 0) return stop(JournalEnd::Damaged, "a record without content");
         if (rest.size() - RecordHead < length)
-            return stop(JournalEnd::Torn, "the last record is not whole, or its length is damaged");
+            return stop(JournalEnd::Torn, "the last record is incomplete, or its length is damaged");
         const auto payload = rest.subspan(RecordHead, length);
         std::vector<std::byte> sum = checksum(chain, payload);
         if (!std::equal(sum.begin(), sum.end(), rest.begin() + LengthBytes)) {
             const bool last = rest.size() == RecordHead + length;
-            return stop(last ? JournalEnd::Torn : JournalEnd::Damaged, "a record has another checksum");
+            return stop(last ? JournalEnd::Torn : JournalEnd::Damaged, "a record's checksum does not match");
         }
         if (auto taken = take(payload); !taken) return stop(JournalEnd::Damaged, taken.error().what());
         chain = std::move(sum);

@@ -13,7 +13,7 @@
 
 namespace tessera::master {
 
-// A file of the operating system, closed with its last owner.
+// A file descriptor, closed with its last owner.
 class FileHandle {
   public:
     explicit FileHandle(int descriptor) : descriptor_(descriptor) {}
@@ -32,11 +32,11 @@ using FilePtr = std::shared_ptr<const FileHandle>;
 // changed, left out or put elsewhere unnoticed. Appended by one thread only.
 class JournalFile {
   public:
-    // A new segment; throws Error{Io} when it cannot be made, also when there is one of that number.
+    // Creates a segment; throws Error{Io} if it cannot be created or exists already.
     JournalFile(const std::filesystem::path& path, std::uint64_t number);
 
-    // Back after write(2) took the whole record: the death of the process loses nothing. On failure the file
-    // is cut back to what it was; where even that fails, every later append fails, too.
+    // Returns after write(2) has taken the whole record, so a crash of the process loses nothing. On failure the
+    // file is truncated to its previous length; if that fails too, every later append fails.
     Expected<void> append(std::span<const std::byte> payload);
 
     std::uint64_t byte_size() const { return byte_size_; }
@@ -54,21 +54,20 @@ class JournalFile {
 
 enum class JournalEnd {
     Complete,  // after a whole record
-    Torn,      // in the middle of the last record: what was being written when its master died
-    Damaged,   // at a record that is not what was written, though more follows, or at the header
+    Torn,      // in the middle of the last record: the master crashed while writing it
+    Damaged,   // at a corrupt record that others follow, or at the header
 };
 
 struct JournalScan {
     std::uint64_t records = 0;
     JournalEnd end = JournalEnd::Complete;
-    std::uint64_t offset = 0;  // of what is no record any more: so many bytes are good
+    std::uint64_t offset = 0;  // of the first invalid byte: all before it are valid
     std::uint64_t byte_size = 0;
-    std::string text;  // where and what, when it is not complete
+    std::string text;  // where and why, unless complete
 };
 
-// Hands every good record to `take` in order, until that says no (then it ends there as damaged, with the
-// reason) or the file does. Reads what is there, also while a master appends. Throws Error{Io} when it cannot
-// be read at all.
+// Passes every valid record to `take` in order, until `take` fails (the scan then ends there as damaged, with its
+// reason) or the file ends. May run while a master appends. Throws Error{Io} if the file cannot be read.
 JournalScan read_journal(const std::filesystem::path& path, std::uint64_t number,
                          const std::function<Expected<void>(std::span<const std::byte>)>& take);
 

@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "mediator/scene/scene.h"
-#include "mediator/session/people.h"
+#include "mediator/session/members.h"
 
 namespace tessera::master {
 
-// Who alone may change which objects. Locks go with their session or their object. Pure.
+// Objects that only one session may change. Locks end with their session or their object. Pure.
 class ObjectLocks {
   public:
-    // All of them or none; why not. Whoever holds a lock already may ask again.
+    // Locks all of them or none and returns why not. Locking again by the holder is allowed.
     std::vector<std::string> lock(SessionId session, const std::string& name,
                                   const std::vector<ObjectId>& objects, const scene::Scene& scene);
     void unlock(SessionId session, const std::vector<ObjectId>& objects);
@@ -20,7 +20,7 @@ class ObjectLocks {
     void object_gone(ObjectId id) { locks_.erase(id); }
     void clear() { locks_.clear(); }
 
-    // The holder's name where it is another session; null: free.
+    // The holder's name if another session holds the lock; null: free.
     const std::string* held_by_other(ObjectId id, SessionId session) const;
     std::vector<session::ObjectLock> all() const;  // in id order
 

@@ -30,15 +30,15 @@ class Recoverer {
         for (const std::uint64_t number : files_.journals) {
             if (number < first) continue;
             if (usable && number != expected) {
-                note(journal_path(folder_, expected).string() + " is missing: what follows cannot be used");
+                note(journal_path(folder_, expected).string() + " is missing: later segments cannot be used");
                 usable = false;
             }
-            usable = usable ? replay(number) : set_aside(journal_path(folder_, number));
+            usable = usable ? replay(number) : keep_as_damaged(journal_path(folder_, number));
             expected = number + 1;
         }
         authority_.start_epoch();
         load_blobs();
-        note(std::to_string(recovery_.edits) + " edits were done again from the journal");
+        note(std::to_string(recovery_.edits) + " edits were replayed from the journal");
         return std::move(recovery_);
     }
 
@@ -58,39 +58,40 @@ class Recoverer {
                 auto authority = restored(std::move(*state));
                 if (authority) {
                     authority_.restore(std::move(*authority));
-                    for (const fs::path& other : bad) set_aside(other);
+                    for (const fs::path& other : bad) keep_as_damaged(other);
                     note("checkpoint '" + path.string() + "' was used");
                     return *number;
                 }
                 state =
                     failure(ErrorCode::InvalidInput, "'" + path.string() + "': " + authority.error().what());
             }
-            note("checkpoint " + std::string(state.error().what()) + "; the one before it is used");
+            note("checkpoint " + std::string(state.error().what()) + "; the previous one is used");
             bad.push_back(path);
         }
-        const bool whole = !files_.journals.empty() && files_.journals.front() == 1;
-        if (!whole) {
-            throw Error(ErrorCode::InvalidInput,
-                        "no checkpoint in '" + folder_.string() +
-                            "' is good, and the journal from before is gone: move the folder away to start "
-                            "anew");
+        const bool complete = !files_.journals.empty() && files_.journals.front() == 1;
+        if (!complete) {
+            throw Error(
+                ErrorCode::InvalidInput,
+                "no checkpoint in '" + folder_.string() +
+                    "' is valid, and the journal before it was removed: move the folder away to start "
+                    "a new session");
         }
-        for (const fs::path& other : bad) set_aside(other);
+        for (const fs::path& other : bad) keep_as_damaged(other);
         recovery_.scene = {};
         recovery_.views.clear();
         return 1;
     }
 
-    // Views keep their cameras; film that nodes of today would not make begins anew.
+    // Views keep their cameras; film of another render revision starts again.
     void check_films(const fs::path& path, std::uint32_t revision) {
         if (revision == frame::RenderRevision) return;
         for (wire::SavedView& view : recovery_.views) view.blocks.clear();
         note("checkpoint '" + path.string() + "' holds film of render revision " + std::to_string(revision) +
              ", this master merges revision " + std::to_string(frame::RenderRevision) +
-             ": its views start anew");
+             ": its views start again");
     }
 
-    // False: what follows is of no use.
+    // False: later segments are unusable.
     bool replay(std::uint64_t number) {
         const fs::path path = journal_path(folder_, number);
         const JournalScan scan = read_journal(path, number, [&](std::span<const std::byte> bytes) {
@@ -101,7 +102,8 @@ class Recoverer {
         if (scan.end == JournalEnd::Complete) return true;
         const bool last = number == files_.journals.back();
         if (scan.end == JournalEnd::Torn && last) {
-            note("journal " + scan.text + ": what its master was writing when it died is cut off");
+            note("journal " + scan.text +
+                 ": an incomplete record at the end (the master crashed while writing it) is cut off");
         } else {
             note("journal " + scan.text + ": everything from there on is lost");
         }
@@ -134,7 +136,7 @@ class Recoverer {
 
     void cut(const fs::path& path, const JournalScan& scan) {
         if (scan.records == 0) {
-            set_aside(path);
+            keep_as_damaged(path);
             return;
         }
         const fs::path tail = path.string() + ".tail-" + std::to_string(scan.offset);
@@ -149,11 +151,12 @@ class Recoverer {
         force_to_disk(path);
     }
 
-    bool set_aside(const fs::path& path) {
+    bool keep_as_damaged(const fs::path& path) {
         std::error_code error;
         fs::rename(path, path.string() + ".damaged", error);
         if (error) {
-            throw Error(ErrorCode::Io, "cannot set '" + path.string() + "' aside: " + error.message());
+            throw Error(ErrorCode::Io,
+                        "cannot rename '" + path.string() + "' to .damaged: " + error.message());
         }
         note("'" + path.string() + "' is kept as .damaged");
         return false;

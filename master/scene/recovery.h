@@ -9,19 +9,18 @@
 namespace tessera::master {
 
 struct Recovery {
-    bool found = false;         // there was a session: the authority has it
-    wire::RecordedTitle scene;  // no title: none was open
+    bool found = false;         // a session was found and restored into the authority
+    wire::RecordedTitle scene;  // no title: no scene was open
     std::vector<wire::SavedView> views;
-    std::uint64_t edits = 0;         // done again from the journal
+    std::uint64_t edits = 0;         // replayed from the journal
     std::uint64_t next_segment = 1;  // for the Journal
-    std::vector<std::string> notes;  // for the log: what was used, what was torn or damaged, what is missing
+    std::vector<std::string> notes;  // for the log: what was used, damaged or missing
 };
 
-// Brings a fresh authority to what the folder's session was: the newest checkpoint that is good, and all that
-// was recorded after it. A record that its master's death tore is cut off; at one that is damaged it ends.
-// What is cut off or of no use is kept under another name (.tail-OFFSET, .damaged). Blobs that the scene or
-// its history refer to go into the store. Throws Error when nothing can be recovered though something was
-// there.
+// Restores the folder's session into a new authority: the newest valid checkpoint, then the journal after it. An
+// incomplete last record (from a crash) is cut off; a damaged record ends the replay. Unusable data is kept under
+// another name (.tail-OFFSET, .damaged). Blobs that the scene or its history refer to are put into the store. Throws
+// Error if there is a session but nothing of it can be recovered.
 Recovery recover(const SessionFolder& folder, SceneAuthority& authority, scene::BlobStore& blobs);
 
 }  // namespace tessera::master

@@ -23,15 +23,14 @@ std::string first_field(const scene::Update& update) {
     return "name";
 }
 
-// Why an entry cannot be: unknown or taken ids and wrong kinds. Empty = it can.
+// Why an entry is invalid: unknown or used ids, wrong kinds. Empty = valid.
 std::string problem_of(const scene::Entry& entry, const scene::Object* present, const IdRange& ids) {
     const std::string number = std::to_string(scene::id(entry).value);
     if (const auto* create = std::get_if<scene::Create>(&entry)) {
-        if (present != nullptr)
-            return describe(create->id, *present) + " is there already: choose another id";
+        if (present != nullptr) return describe(create->id, *present) + " exists already: choose another id";
         if (ids.contains(create->id)) return {};
         return describe(create->id, create->object) +
-               " lies outside the ids lent to this session: create it as one of " +
+               " is outside the id range allocated to this session: use an id in " +
                std::to_string(ids.first) + " .. " + std::to_string(ids.first + ids.count - 1);
     }
     if (const auto* update = std::get_if<scene::Update>(&entry)) {
@@ -107,7 +106,7 @@ std::optional<std::string> SceneAuthority::order_problem(const EditorRecord& edi
     const std::string number = "edit " + std::to_string(sequence);
     const std::string last = std::to_string(editor.last_sequence);
     if (sequence < editor.last_sequence || sequence == 0)
-        return number + " is older than " + last + ", the last one of this editor: it is not done again";
+        return number + " is older than " + last + ", the last one of this editor: it is not applied again";
     if (sequence > editor.last_sequence + 1 && !editor.may_skip)
         return number + " came out of order: expected " + std::to_string(editor.last_sequence + 1);
     return std::nullopt;
@@ -117,7 +116,7 @@ SceneAuthority::Answer SceneAuthority::submit(const scene::Edit& edit, const Edi
     EditorRecord* editor = editors_.of(edit.session);
     if (editor == nullptr) {
         return {.version = version(),
-                .problems = {"the session has not opened a scene, or its editor is connected elsewhere: "
+                .problems = {"the session has no open scene, or its editor is connected elsewhere: "
                              "open one first"}};
     }
     if (edit.sequence == editor->last_sequence && edit.sequence != 0) return editor->last_answer;
@@ -152,13 +151,13 @@ SceneAuthority::Answer SceneAuthority::undo(EditorRecord& editor, const scene::E
     const auto refuse = [&](std::string problem) {
         return Answer{.version = version(), .problems = {std::move(problem)}};
     };
-    if (!edit.entries.empty()) return refuse("an undo has no entries of its own: send them as another edit");
+    if (!edit.entries.empty()) return refuse("an undo cannot contain entries: send them as a separate edit");
     std::uint64_t number = edit.undo;
     if (number == scene::UndoLatest) number = history_.latest_to_undo(editor.number);
     if (number == scene::RedoLatest) number = history_.latest_to_redo(editor.number);
     if (number == 0) {
-        return refuse(edit.undo == scene::UndoLatest ? "there is nothing of this editor left to undo"
-                                                     : "there is nothing of this editor to redo");
+        return refuse(edit.undo == scene::UndoLatest ? "this editor has nothing left to undo"
+                                                     : "this editor has nothing to redo");
     }
     const Transaction* target = history_.find(number);
     if (target == nullptr) {
@@ -199,14 +198,14 @@ void SceneAuthority::index(const std::vector<scene::ObjectChange>& changes, Dire
     for (const scene::ObjectChange& change : changes) {
         if (change.is_update() && (change.mask & scene::reference_fields(kind(*change.after))) == 0) continue;
         const scene::Object *from = change.before.get(), *to = change.after.get();
-        if (direction == Direction::Back) std::swap(from, to);
+        if (direction == Direction::Revert) std::swap(from, to);
         referrers_.replace(change.id, from, to);
     }
 }
 
 void SceneAuthority::take_back(const std::vector<scene::ObjectChange>& changes) {
     if (auto applied = scene_.apply_entries(scene::inverse(changes)); !applied) throw applied.error();
-    index(changes, Direction::Back);
+    index(changes, Direction::Revert);
 }
 
 SceneAuthority::Answer SceneAuthority::carry_out(EditorRecord& editor, const scene::Edit& edit,
@@ -218,7 +217,7 @@ SceneAuthority::Answer SceneAuthority::carry_out(EditorRecord& editor, const sce
         answer.problems.push_back(changes.error().what());
         return answer;
     }
-    index(*changes, Direction::Forth);
+    index(*changes, Direction::Apply);
     for (const scene::Problem& problem : scene::validate_changes(scene_, referrers_, *changes)) {
         if (answer.problems.size() < MaxProblems) answer.problems.push_back(problem.message);
     }
@@ -227,7 +226,7 @@ SceneAuthority::Answer SceneAuthority::carry_out(EditorRecord& editor, const sce
     if (answer.problems.empty() && recorder_) {
         const auto kept = recorder_->edited({.editor = editor.number,
                                              .sequence = edit.sequence,
-                                             .gesture = edit.gesture,
+                                             .edit_group = edit.edit_group,
                                              .undo = request.target,
                                              .name = request.author.name,
                                              .user = request.author.user,
@@ -248,8 +247,8 @@ SceneAuthority::Answer SceneAuthority::carry_out(EditorRecord& editor, const sce
 
 Transaction* SceneAuthority::open_transaction(const EditorRecord& editor, const scene::Edit& edit,
                                               const std::vector<scene::ObjectChange>& changes) {
-    if (edit.gesture == 0 || edit.undo != 0 || edit.gesture != editor.gesture) return nullptr;
-    Transaction* open = history_.find(editor.gesture_transaction);
+    if (edit.edit_group == 0 || edit.undo != 0 || edit.edit_group != editor.edit_group) return nullptr;
+    Transaction* open = history_.find(editor.edit_group_transaction);
     const bool goes_on = open && open->undone_by == 0 && can_extend(*open, changes, writers_);
     return goes_on ? open : nullptr;
 }
@@ -258,7 +257,7 @@ void SceneAuthority::commit(EditorRecord& editor, const scene::Edit& edit, const
                             const std::vector<scene::ObjectChange>& changes, Transaction* open) {
     Transaction* transaction = open;
     if (open == nullptr) {
-        Transaction fresh{.editor = editor.number, .nature = request.nature, .gesture = edit.gesture};
+        Transaction fresh{.editor = editor.number, .nature = request.nature, .edit_group = edit.edit_group};
         fresh.undoes = request.target;
         transaction = &history_.add(std::move(fresh));
     } else {
@@ -276,8 +275,8 @@ void SceneAuthority::commit(EditorRecord& editor, const scene::Edit& edit, const
         if (Transaction* target = history_.find(request.target))
             history_.mark_undone(*target, transaction->number);
     }
-    editor.gesture = request.target == 0 ? edit.gesture : 0;
-    editor.gesture_transaction = transaction->number;
+    editor.edit_group = request.target == 0 ? edit.edit_group : 0;
+    editor.edit_group_transaction = transaction->number;
     for (const scene::ObjectChange& change : changes) {
         if (!change.after) locks_.object_gone(change.id);
     }
@@ -315,7 +314,7 @@ std::optional<scene::ChangeList> SceneAuthority::clear() {
     (void)empty.apply_entries({scene::Create{scene::RootId, scene::Root{}}});
     const auto changes = scene::apply_and_observe(scene_, scene::difference(scene_, empty).entries);
     if (!changes) throw changes.error();
-    index(*changes, Direction::Forth);
+    index(*changes, Direction::Apply);
     versions_.changed(*changes);
     editors_.clear();  // ids are part of a frame's bits: the same scene again gets the same ones
     locks_.clear();

@@ -50,28 +50,28 @@ Expected<void> SceneAuthority::replay_edit(const RecordedEdit& recorded) {
     if (recorded.editor == 0) {
         const auto changes = scene::apply_and_observe(scene_, recorded.entries);
         if (!changes) return tl::unexpected(changes.error());
-        index(*changes, Direction::Forth);
+        index(*changes, Direction::Apply);
         versions_.changed(*changes);
     } else {
         EditorRecord* editor = editors_.by_number(recorded.editor);
         if (editor == nullptr)
-            return failure(ErrorCode::InvalidInput, name + " is of an editor who never joined");
+            return failure(ErrorCode::InvalidInput, name + " is by an editor that never joined");
         const scene::Edit edit{.sequence = recorded.sequence,
                                .entries = recorded.undo ? std::vector<scene::Entry>() : recorded.entries,
-                               .gesture = recorded.gesture,
+                               .edit_group = recorded.edit_group,
                                .undo = recorded.undo};
         const Editor who{recorded.name, recorded.user, recorded.time};
         editor->last_sequence = recorded.sequence;
         editor->last_answer = edit.undo ? undo(*editor, edit, who) : change(*editor, edit, who);
         if (!editor->last_answer.accepted) {
             return failure(ErrorCode::InvalidInput,
-                           name + " cannot be done again: " + editor->last_answer.problems.at(0));
+                           name + " cannot be replayed: " + editor->last_answer.problems.at(0));
         }
         if (editor->last_answer.transaction != recorded.transaction)
-            return failure(ErrorCode::InvalidInput, name + " is another transaction than it was");
+            return failure(ErrorCode::InvalidInput, name + " has another transaction number than recorded");
     }
     if (scene_.state_hash() == recorded.state_hash) return {};
-    return failure(ErrorCode::InvalidInput, "the scene after " + name + " is another than it was");
+    return failure(ErrorCode::InvalidInput, "the scene after " + name + " differs from the recorded one");
 }
 
 }  // namespace tessera::master

@@ -37,34 +37,34 @@ void SceneDistributor::send_snapshot(NodeRecord& node, TimePoint now) {
 
 void SceneDistributor::resync(NodeRecord& node, const wire::Resync& request, TimePoint now) {
     ++resyncs_;
-    events_({wire::Severity::Warning, "node " + node.hello.name + " asks for a snapshot: " + request.reason});
+    events_({wire::Severity::Warning, "node " + node.hello.name + " requests a snapshot: " + request.reason});
     send_snapshot(node, now);
 }
 
-SceneDistributor::Verdict SceneDistributor::reported(NodeRecord& node, const wire::VersionReport& report,
-                                                     TimePoint now) {
-    if (report.version != authority_.version()) return Verdict::Behind;
+SceneDistributor::CheckResult SceneDistributor::reported(NodeRecord& node, const wire::VersionReport& report,
+                                                         TimePoint now) {
+    if (report.version != authority_.version()) return CheckResult::Behind;
     if (report.state_hash == authority_.state_hash()) {
         node.reported = report.version;
-        return Verdict::Good;
+        return CheckResult::Good;
     }
     ++resyncs_;
     if (++node.hash_mismatches > 1) {
         events_({wire::Severity::Error, "node " + node.hello.name +
-                                            " has another scene than the master at version " +
+                                            " disagrees with the master about the scene at version " +
                                             std::to_string(report.version.number) +
-                                            " for the second time: taken out; check its build"});
-        return Verdict::TakeOut;
+                                            " for the second time: the node is removed; check its build"});
+        return CheckResult::RemoveNode;
     }
     send_snapshot(node, now);
-    return Verdict::Behind;
+    return CheckResult::Behind;
 }
 
 void SceneDistributor::refused(NodeRecord& node, const wire::SceneRefused& refusal) {
     if (refusal.version != authority_.version()) return;
     node.refused = refusal.version;
     node.refusal = refusal.reason;
-    events_({wire::Severity::Warning, "node " + node.hello.name + " has no room for version " +
+    events_({wire::Severity::Warning, "node " + node.hello.name + " is out of memory for version " +
                                           std::to_string(refusal.version.number) + ": " + refusal.reason});
 }
 

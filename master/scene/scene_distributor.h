@@ -7,9 +7,9 @@
 
 namespace tessera::master {
 
-// Brings every node to the authority's version: the next change list where it follows on what the node was
-// sent, else a snapshot. Repairs what got lost: a node that stays behind is sent a snapshot, a node whose
-// state hash is wrong once too, a second time at the same version it is to be taken out.
+// Keeps the nodes at the authority's version: sends the next change list if it follows the version last sent to the
+// node, else a snapshot. Repairs losses: a node that falls behind is sent a snapshot, as is one whose state hash is
+// wrong; one whose hash is wrong twice at the same version is to be removed.
 class SceneDistributor {
   public:
     SceneDistributor(SceneAuthority& authority, scene::BlobStore& blobs, Outbox& outbox, EventSink events)
@@ -19,13 +19,12 @@ class SceneDistributor {
     void joined(NodeRecord& node, TimePoint now) { send_snapshot(node, now); }
     void resync(NodeRecord& node, const wire::Resync& request, TimePoint now);
 
-    enum class Verdict { Good, Behind, TakeOut };
-    Verdict reported(NodeRecord& node, const wire::VersionReport& report, TimePoint now);
+    enum class CheckResult { Good, Behind, RemoveNode };
+    CheckResult reported(NodeRecord& node, const wire::VersionReport& report, TimePoint now);
 
     void refused(NodeRecord& node, const wire::SceneRefused& refusal);
 
-    // A node that neither reports nor builds `patience` after it was sent the present version is sent it
-    // again.
+    // Sends the current version again to nodes that neither report nor build it `patience` after it was sent.
     void repair(NodeTable& nodes, TimePoint now, Duration patience);
 
     std::uint64_t resyncs() const { return resyncs_; }
@@ -38,7 +37,7 @@ class SceneDistributor {
     Outbox& outbox_;
     EventSink events_;
     Version snapshot_version_;
-    scene::BlobPtr snapshot_;  // held here, since the store alone may drop it
+    scene::BlobPtr snapshot_;  // kept alive here: the store may drop it
     scene::BlobPtr long_changes_;
     std::uint64_t resyncs_ = 0;
 };

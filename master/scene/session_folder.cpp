@@ -98,7 +98,7 @@ void remove_outdated(const fs::path& folder) {
 void force_to_disk(const fs::path& path) {
     const FileHandle file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
     if (file.descriptor() >= 0 && ::fsync(file.descriptor()) == 0) return;
-    throw Error(ErrorCode::Io, "cannot force '" + path.string() + "' to the disk: " + std::strerror(errno));
+    throw Error(ErrorCode::Io, "cannot sync '" + path.string() + "' to disk: " + std::strerror(errno));
 }
 
 }  // namespace tessera::master

@@ -30,7 +30,7 @@ void SessionJournal::job_started(wire::SavedView view) {
     if (auto written = journal_->job_started(std::move(view)); !written) throw written.error();
 }
 
-// What is not recorded is rendered once more after a restart.
+// A job whose end is not recorded is rendered again after a restart.
 void SessionJournal::job_ended(const session::JobName& job) {
     if (auto written = journal_->job_ended(job); !written)
         events_({wire::Severity::Error, written.error().what()});

@@ -11,28 +11,28 @@
 
 namespace tessera::master {
 
-// A scene session on disk: what happens to it, as it happens, and every `interval` all of it with the films of
-// its views. Lives in the render master's loop, which it never holds for longer than a copy of the scene's
-// map: files are written by a thread of their own.
+// A scene session on disk: a journal of its changes and, every `interval`, a checkpoint with the films of its
+// views. Used in the render master's loop, which it blocks no longer than copying the scene's map takes: files are
+// written by another thread.
 class SessionJournal {
   public:
-    // Takes the folder, brings `authority` to what its last master left there, and records from now on.
-    // Throws Error, naming the folder, when it is in use or of no use.
+    // Locks the folder, restores `authority` from it and records from now on. Throws Error with the folder's name if
+    // it is in use or unusable.
     SessionJournal(const std::filesystem::path& folder, Duration interval, SceneAuthority& authority,
                    std::shared_ptr<scene::BlobStore> blobs, EventSink events);
 
     const Recovery& recovery() const { return recovery_; }
-    // The scene is open: edits are recorded. Throws Error{Io} when they cannot be.
+    // The scene was opened: edits are recorded. Throws Error{Io}.
     void opened(const wire::RecordedTitle& scene);
     void closed();
-    // A job of the open scene. Throws Error{Io} when it cannot be recorded.
+    // Records a job of the open scene. Throws Error{Io}.
     void job_started(wire::SavedView view);
     void job_ended(const session::JobName& job);
 
     void tick();
-    // It is time for a checkpoint, and there is something new: edits, or film (`film_progress` differs).
+    // True when a checkpoint is due and there are new edits or new film (`film_progress` differs).
     bool wants_checkpoint(std::uint64_t film_progress, TimePoint now) const;
-    // The session as it is now goes to disk with these views, which were copied when `film_progress` was so.
+    // Writes the session and these views, which were copied at `film_progress`.
     void write_checkpoint(const wire::RecordedTitle& scene, std::vector<wire::SavedView>&& views,
                           std::uint64_t film_progress, TimePoint now);
 

@@ -19,7 +19,7 @@ class Reader {
 
     SessionLog read(const std::filesystem::path& folder) {
         const SessionFiles files = session_files(folder);
-        // What the journal has from its beginning, no checkpoint needs to tell.
+        // A journal that is complete from its start needs no checkpoint.
         const bool is_whole = !files.journals.empty() && files.journals.front() == 1;
         if (!files.checkpoints.empty() && !is_whole) {
             const std::uint64_t number = files.checkpoints.front();
@@ -86,7 +86,7 @@ class Reader {
             const auto* updated = std::get_if<scene::Update>(&entry);
             see(scene::id(entry), created ? &created->object : updated ? &updated->fields : nullptr);
         }
-        if (edit.transaction == 0) return;  // the master's own
+        if (edit.transaction == 0) return;  // an edit of the master itself
         LoggedTransaction& to = transactions_[edit.transaction];
         to.number = edit.transaction;
         to.name = edit.name;

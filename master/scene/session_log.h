@@ -15,7 +15,7 @@ struct LoggedTransaction {
     std::int64_t time = 0;   // ns since 1970, of the last edit
     std::uint64_t edits = 0;
     std::uint64_t undoes = 0;  // a number; 0 = none
-    std::string text;          // what it did, for people; of a drag, what its last edit did
+    std::string text;          // readable summary; of a drag, of its last edit
     std::vector<ObjectId> objects;
 };
 
@@ -24,11 +24,10 @@ struct SessionLog {
     std::vector<std::string> notes;               // what could not be read
 };
 
-// What a session's folder tells: the journal, and the transactions of the oldest checkpoint where the journal
-// before that is gone. Changes
-// nothing, and takes an end that is just being written for the end. `object`: only what touched it, by its
-// number or as materials/red, if that was its name at any time; "" = all. Throws Error{Io} when there is no
-// such folder.
+// Reads the history of a session folder: the journal, and the transactions of the oldest checkpoint where the journal
+// before it was removed. Changes nothing; a record that is just being written counts as the end. `object`: only
+// transactions that touched it, by its number or a name it had at any time, as in materials/red; "" = all. Throws
+// Error{Io} if the folder does not exist.
 SessionLog read_session_log(const std::filesystem::path& folder, const std::string& object);
 
 }  // namespace tessera::master

@@ -9,7 +9,7 @@ namespace tessera::master {
 
 namespace {
 
-// Before `shared` is changed: a copy of its own where another thread may still read it.
+// Copy-on-write: before `shared` is changed, copies it if another thread may still read it.
 template <class T>
 void own(std::shared_ptr<T>& shared) {
     if (!shared) {
@@ -17,7 +17,7 @@ void own(std::shared_ptr<T>& shared) {
     } else if (shared.use_count() > 1) {
         shared = std::make_shared<T>(*shared);
     } else {
-        std::atomic_thread_fence(std::memory_order_acquire);  // after the reads of whoever let go last
+        std::atomic_thread_fence(std::memory_order_acquire);  // after the reads of the last other owner
     }
 }
 
@@ -32,8 +32,8 @@ scene::FieldMask children_mask(const scene::ObjectChange& change) {
     return change.is_update() ? change.mask & scene::children_field(kind(*change.after)) : 0;
 }
 
-// What the object was like before both: what the first wrote is as it was before that, all else as it was
-// before the second.
+// The object before both changes: fields written by the first as they were before it, all others as before the
+// second.
 std::shared_ptr<const scene::Object> earliest(const scene::ObjectChange& first,
                                               const scene::ObjectChange& second) {
     const bool nothing_new = (second.mask & ~first.mask) == 0 && second.is_update();

@@ -10,7 +10,7 @@
 
 namespace tessera::master {
 
-// Who wrote, and when: as it was said with the edit.
+// Author and time, as sent with the edit.
 struct Writer {
     std::uint64_t transaction = 0;
     std::string name, user;
@@ -18,7 +18,7 @@ struct Writer {
 };
 using WriterPtr = std::shared_ptr<const Writer>;
 
-// By number of the field. A null or absent writer: the field is as it came with the object.
+// By field number. A null or absent writer: the field has not been written since the object was created.
 using ObjectWriters = std::map<std::uint32_t, WriterPtr>;
 
 struct TransactionChange {
@@ -26,10 +26,10 @@ struct TransactionChange {
     // transaction's first write, `after` as it left them.
     scene::ObjectChange object;
     ObjectWriters writers_before;  // of the fields of the mask; of all, where the object was removed
-    ObjectWriters writers_after;   // of an undo or redo: whom it brought back
+    ObjectWriters writers_after;   // of an undo or redo: the restored writers
 };
 
-// By object. Copies share it until one of them is changed, so that a checkpoint's copy costs nothing.
+// By object. Copy-on-write, so that a checkpoint's copy is free.
 class TransactionChanges {
   public:
     using Map = std::map<ObjectId, TransactionChange>;
@@ -40,30 +40,30 @@ class TransactionChanges {
     std::shared_ptr<Map> changes_ = std::make_shared<Map>();
 };
 
-enum class Nature : std::uint8_t { Edit, Undo, Redo };  // a redo takes back an undo
+enum class Nature : std::uint8_t { Edit, Undo, Redo };  // a redo undoes an undo
 
 struct Transaction {
     std::uint64_t number = 0;
     std::uint64_t editor = 0;  // see Editors
     Nature nature = Nature::Edit;
     WriterPtr author;
-    std::uint64_t gesture = 0;
+    std::uint64_t edit_group = 0;
     std::uint32_t edits = 1;
     std::uint64_t undoes = 0, undone_by = 0;  // numbers of others; 0 = none
-    std::string text;                         // what it did, for people
+    std::string text;                         // readable summary
     TransactionChanges changes;
 };
 
-// Who wrote each field last; only of fields that were edited.
+// The last writer of each field that was edited.
 class WriterTable {
   public:
-    WriterPtr of(ObjectId id, std::uint32_t field) const;  // null: nobody
+    WriterPtr of(ObjectId id, std::uint32_t field) const;  // null: none
     const ObjectWriters& of(ObjectId id) const;
     void set(ObjectId id, std::uint32_t field, const WriterPtr& writer);
     void set(ObjectId id, const ObjectWriters& writers);
     ObjectWriters take(ObjectId id);
     void clear() { writers_.clear(); }
-    // By object; copies of the table share what neither changes.
+    // By object; copies of the table share unchanged entries.
     using Map = std::map<ObjectId, std::shared_ptr<ObjectWriters>>;
     const Map& all() const { return writers_; }
 
@@ -71,16 +71,15 @@ class WriterTable {
     Map writers_;
 };
 
-// True when the changes can be told as part of the transaction, so that one undo takes both back. Not so
-// where others came in between in a way that a field cannot hold: they rewrote the same list of children, or
-// the object is another one now.
+// True if the changes can be merged into the transaction, so that one undo reverts both. False if others have
+// rewritten the same list of children since, or the object was replaced by another.
 bool can_extend(const Transaction& transaction, const std::vector<scene::ObjectChange>& changes,
                 const WriterTable& writers);
 
-// Takes the changes, which are in the scene, into the transaction, and its author into the table.
+// Adds the changes, which are already applied, to the transaction, and its author to the table.
 void extend(Transaction& transaction, const std::vector<scene::ObjectChange>& changes, WriterTable& writers);
 
-// The same for an undo, which brings writers back: also where the value was already what it is to be.
+// The same for an undo, which restores writers, also of fields whose value does not change.
 void record_undo(Transaction& undo, const std::vector<scene::ObjectChange>& changes,
                  const std::map<ObjectId, ObjectWriters>& brought_back, const scene::Scene& scene,
                  WriterTable& writers);

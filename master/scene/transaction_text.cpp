@@ -32,7 +32,7 @@ std::string fields_of(const scene::ObjectChange& change) {
     return text;
 }
 
-// Links that an object comes or goes with are not worth a word.
+// Child links of created and removed objects are not mentioned.
 bool only_links(const scene::ObjectChange& change) {
     return change.is_update() && change.mask == scene::children_field(kind(*change.after));
 }
@@ -83,7 +83,7 @@ std::string summary(std::span<const scene::ObjectChange> changes) {
     append(text, "set", set);
     append(text, "removed", removed);
     if (text.empty()) append(text, "set", linked);
-    return text.empty() ? "nothing in the end" : text;
+    return text.empty() ? "no net change" : text;
 }
 
 std::string summary(const Transaction& transaction) {

@@ -7,16 +7,16 @@
 
 namespace tessera::master {
 
-// "materials/red", or "materials/@17" where it has no name: how logs and notes name an object. Long names are
-// cut, what a terminal would obey is replaced.
+// The name of an object in logs and notes: "materials/red", or "materials/@17" without a name. Long names are cut,
+// control characters replaced.
 std::string object_path(ObjectId id, const scene::Object& object);
 
-// What was done, for people, in a line: "set materials/red base_color", "created 12 objects, removed 3".
+// A one-line summary: "set materials/red base_color", "created 12 objects, removed 3".
 std::string summary(std::span<const scene::ObjectChange> changes);
 
 std::string summary(const Transaction& transaction);
 
-// Text of others, fit to be shown: without control characters, cut at `limit` bytes.
+// Untrusted text made safe for display: without control characters, cut at `limit` bytes.
 std::string shown(const std::string& text, std::size_t limit);
 
 }  // namespace tessera::master

@@ -47,7 +47,7 @@ class Planner {
         const Object* now = scene_.find(id);
         if (now == nullptr) return note(gone(id, *change.object.after));
         if (now->index() != change.object.after->index())
-            return note(object_path(id, *now) + " is another object by now: it stays");
+            return note(object_path(id, *now) + " is another object now: it stays");
         for (const auto& [field, writer] : writers_.of(id)) {
             if (still_ours(change, field, writer)) continue;
             note(object_path(id, *now) + " goes with what " + writer->name + " wrote to it since");
@@ -71,7 +71,7 @@ class Planner {
         const Object* now = scene_.find(id);
         if (now == nullptr) return note(gone(id, *change.object.after));
         if (now->index() != change.object.after->index())
-            return note(object_path(id, *now) + " is another object by now: it stays");
+            return note(object_path(id, *now) + " is another object now: it stays");
         plan_.entries.emplace_back(scene::Remove{id});
         create(id, change);
     }
@@ -80,8 +80,8 @@ class Planner {
         const Object* now = scene_.find(id);
         if (now == nullptr) return note(gone(id, *change.object.before));
         if (now->index() != change.object.before->index())
-            return note(object_path(id, *now) + " is another object by now: it stays");
-        scene::Update update{id, 0, scene::only(*change.object.before, change.object.mask)};
+            return note(object_path(id, *now) + " is another object now: it stays");
+        scene::Update update{id, 0, scene::copy_of_fields(*change.object.before, change.object.mask)};
         const scene::FieldMask children = scene::children_field(kind(*now));
         for (std::uint32_t field = 0; change.object.mask >> field != 0; ++field) {
             const scene::FieldMask bit = scene::field_bit(field);
@@ -113,8 +113,8 @@ class Planner {
 
     void merge_children(ObjectId id, const TransactionChange& change, const Object& now, Object& to) {
         std::vector<ObjectId> merged =
-            without_step(scene::children(*change.object.before), scene::children(*change.object.after),
-                         scene::children(now));
+            without_change(scene::children(*change.object.before), scene::children(*change.object.after),
+                           scene::children(now));
         std::erase_if(merged, [&](ObjectId child) {
             const auto other = transaction_.changes.all().find(child);
             const bool comes = other != transaction_.changes.all().end() && !other->second.object.after;
@@ -149,9 +149,9 @@ UndoPlan plan_undo(const Transaction& transaction, const scene::Scene& scene, co
     return Planner(transaction, scene, writers, history, author).make();
 }
 
-std::vector<ObjectId> without_step(const std::vector<ObjectId>& before, const std::vector<ObjectId>& after,
-                                   const std::vector<ObjectId>& now) {
-    std::unordered_map<ObjectId, std::int64_t> added;  // less than 0: taken out so often
+std::vector<ObjectId> without_change(const std::vector<ObjectId>& before, const std::vector<ObjectId>& after,
+                                     const std::vector<ObjectId>& now) {
+    std::unordered_map<ObjectId, std::int64_t> added;  // negative: removed that many times
     for (const ObjectId id : after) ++added[id];
     for (const ObjectId id : before) --added[id];
 

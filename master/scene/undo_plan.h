@@ -8,24 +8,22 @@
 
 namespace tessera::master {
 
-// What takes a transaction back from the scene as it is now.
+// The edit that undoes a transaction in the current scene.
 struct UndoPlan {
     std::vector<scene::Entry> entries;
-    // The writer of each field that it brings back; the undo's own where lists of children were merged.
+    // The writer of each restored field; the undo's author where lists of children were merged.
     std::map<ObjectId, ObjectWriters> writers;
-    std::vector<std::string> notes;  // what stays as others made it since, and who that was
+    std::vector<std::string> notes;  // fields that stay since others changed them, and who
 };
 
-// Fields whose last writer still is the transaction become what they were before it; fields that others wrote
-// since stay. Lists of children that others wrote since are merged: what the transaction added goes, what it
-// removed comes back at its place. Removed objects come back under their ids, with their writers; created
-// ones go.
+// Fields whose last writer is the transaction get their previous values; fields that others wrote since stay. Lists of
+// children that others wrote since are merged: children that the transaction added are removed, those that it removed
+// are reinserted at their position. Removed objects are restored with their ids and writers; created ones removed.
 UndoPlan plan_undo(const Transaction& transaction, const scene::Scene& scene, const WriterTable& writers,
                    const EditHistory& history, const WriterPtr& author);
 
-// `now` without what led from `before` to `after`. Of what was taken out and comes back, each follows what it
-// stood behind.
-std::vector<ObjectId> without_step(const std::vector<ObjectId>& before, const std::vector<ObjectId>& after,
-                                   const std::vector<ObjectId>& now);
+// `now` without the change from `before` to `after`. Reinserted ids follow the id that preceded them before.
+std::vector<ObjectId> without_change(const std::vector<ObjectId>& before, const std::vector<ObjectId>& after,
+                                     const std::vector<ObjectId>& now);
 
 }  // namespace tessera::master

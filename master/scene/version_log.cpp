@@ -10,7 +10,7 @@ namespace {
 void add_entries(ObjectId id, std::optional<scene::ObjectKind> was, scene::FieldMask mask,
                  const scene::Object* now, std::vector<scene::Entry>& entries) {
     if (was && now && *was == kind(*now)) {
-        if (mask != 0) entries.push_back(scene::Update{id, mask, scene::only(*now, mask)});
+        if (mask != 0) entries.push_back(scene::Update{id, mask, scene::copy_of_fields(*now, mask)});
         return;
     }
     if (was) entries.emplace_back(scene::Remove{id});

@@ -10,12 +10,11 @@
 
 namespace tessera::master {
 
-// What of the head was published, and which objects each of the latest versions touched. The published scene
-// is never copied: it is the head with the objects that changed since as they were. Pure.
+// The published state of the scene, and the objects that each of the latest versions touched. The published scene is
+// never copied: it is the head with the unpublished objects' previous values. Pure.
 class VersionLog {
   public:
-    // So much is remembered for those who ask what happened since a version: at 60 versions a second a
-    // minute.
+    // How much is remembered for queries of changes since a version: about a minute at 60 versions per second.
     static constexpr std::size_t MaxVersions = 4096;
     static constexpr std::size_t MaxTouched = std::size_t{1} << 18;
 
@@ -29,13 +28,13 @@ class VersionLog {
     Version pending() const { return {version_.epoch, version_.number + (unpublished_ ? 1 : 0)}; }
     Hash128 state_hash() const { return state_hash_; }  // of the published scene
 
-    // Everything since the last one, an object each; may be empty where edits took each other back. Needs
-    // something unpublished.
+    // All changes since the last version, one entry per object; empty if the edits cancel each other. Requires
+    // unpublished changes.
     scene::ChangeList publish(const scene::Scene& head);
 
-    // Of the published scene, however far the head is.
+    // Of the published scene, without unpublished edits.
     scene::ChangeList snapshot(const scene::Scene& head) const;
-    // Leads from `known` to the published scene; none when `known` is unknown or too old.
+    // Changes from `known` to the published scene; none if `known` is unknown or too old.
     std::optional<scene::ChangeList> since(Version known, const scene::Scene& head) const;
 
   private:
@@ -44,7 +43,7 @@ class VersionLog {
     struct Touched {
         ObjectId id;
         scene::FieldMask mask = 0;
-        std::optional<scene::ObjectKind> was;  // before the version; none: was not there
+        std::optional<scene::ObjectKind> was;  // its kind before the version; none: it did not exist
     };
     Version version_;
     Hash128 state_hash_;

@@ -10,14 +10,13 @@ namespace tessera::backend {
 // The back-ends that were built, best first (defined in backends/catalog.cpp).
 std::span<const BackendEntry> catalog();
 
-// Throws Error{InvalidInput} with the names there are.
+// Throws Error{InvalidInput} that lists the available names.
 const BackendEntry& find_backend(std::string_view name);
 
-// Whether any of them has a choice of devices.
-bool offers_devices();
+// Whether any back-end lets the user choose a device.
+bool has_device_choice();
 
-// `device` as somebody typed it, "" for nothing, together with the back-end. InvalidInput: that one has no
-// choice.
+// `device` is what the user gave, "" for nothing. InvalidInput: this back-end has no choice of devices.
 Expected<void> check_device(const BackendEntry& entry, std::string_view device);
 
 }  // namespace tessera::backend

@@ -6,8 +6,8 @@ EditReport make_report(const SceneDelta& delta, const MeshCatalog& meshes, const
                        const SceneTables& tables) {
     EditReport report{.entries = delta.entries,
                       .relevant = delta.relevant,
-                      .rebuilt = changes.count(MeshStep::Rebuild),
-                      .refitted = changes.count(MeshStep::Refit),
+                      .rebuilt = changes.count(MeshUpdate::Rebuild),
+                      .refitted = changes.count(MeshUpdate::Refit),
                       .instances = tables.instances.size(),
                       .lights = tables.lights.size(),
                       .ignored_kinds = delta.ignored_kinds,

@@ -5,7 +5,7 @@
 
 namespace tessera::backend {
 
-// What all back-ends tell of an edit in the same way; `rebuilt` and `refitted` are those that were asked for.
+// The part of the report that is the same for all back-ends; `rebuilt` and `refitted` are the requested updates.
 EditReport make_report(const SceneDelta& delta, const MeshCatalog& meshes, const MeshCatalog::Result& changes,
                        const SceneTables& tables);
 

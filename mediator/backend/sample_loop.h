@@ -5,8 +5,8 @@
 
 namespace tessera::backend {
 
-// The samples of a unit one after the other, merged as they come. fill(tile, rays) puts one sample into every
-// pixel of the tile and counts its rays; false: stopped on the way, and this sample is dropped.
+// Renders the samples of a unit in order and merges them. fill(tile, rays) adds one sample to every pixel of the
+// tile and counts its rays; it returns false when it was stopped, and this sample is discarded.
 template <class Fill>
 RenderResult render_samples(const view::WorkUnit& unit, frame::ChannelSet channels, const Fill& fill) {
     frame::BlockStack finished;

@@ -39,25 +39,26 @@ Expected<void> ShadowScene::apply(const scene::ChangeList& changes) {
 
 Expected<void> ShadowScene::apply(const scene::ChangeList& changes, const scene::Scene& after) {
     if (changes.to != after.version() || !(changes.is_snapshot() || changes.from == scene_.version())) {
-        return failure(ErrorCode::InvalidInput,
-                       "a change list does not follow on the back-end's scene: give it a snapshot");
+        return failure(
+            ErrorCode::InvalidInput,
+            "the change list does not start at the version of the back-end's scene: send a snapshot");
     }
     const Touched touched = touch(changes);
     Undo undo;
     if (touched.structure || changes.is_snapshot()) {
-        Expected<Lowered> lowered = lower(after);
-        if (!lowered) return tl::unexpected(lowered.error());
-        undo.lowered = std::exchange(lowered_, std::move(*lowered));
+        Expected<FlatScene> flat_scene = flatten(after);
+        if (!flat_scene) return tl::unexpected(flat_scene.error());
+        undo.flat_scene = std::exchange(flat_scene_, std::move(*flat_scene));
         forget_index();
     }
     undo.scene = std::exchange(scene_, after);
-    if (!undo.lowered) {
+    if (!undo.flat_scene) {
         undo.moved_transforms = touched.moved_transforms;
         if (move_below(touched.moved_transforms, moved_)) delta_.lights_changed = true;
     }
     if (changes.is_snapshot()) replace_everything();
     record(touched);
-    if (undo.lowered && !changes.is_snapshot()) record_relowering(*undo.lowered);
+    if (undo.flat_scene && !changes.is_snapshot()) record_reflattening(*undo.flat_scene);
     undo_.push_back(std::move(undo));
     return {};
 }
@@ -91,12 +92,12 @@ void ShadowScene::record(const Touched& touched) {
     delta_.entries += touched.entries;
     delta_.relevant += touched.relevant;
     for (const ObjectId id : touched.light_values) {
-        delta_.lights_changed |= std::any_of(lowered_.lights.begin(), lowered_.lights.end(),
+        delta_.lights_changed |= std::any_of(flat_scene_.lights.begin(), flat_scene_.lights.end(),
                                              [&](const PlacedLight& placed) { return placed.light == id; });
     }
 }
 
-void ShadowScene::record_relowering(const Lowered& before) {
+void ShadowScene::record_reflattening(const FlatScene& before) {
     const auto same_member = [](const Instance& a, const Instance& b) {
         return a.geometry == b.geometry && a.path == b.path && a.hint == b.hint;
     };
@@ -104,7 +105,7 @@ void ShadowScene::record_relowering(const Lowered& before) {
         return a.light == b.light && a.path == b.path && a.world_from_light == b.world_from_light &&
                a.layers == b.layers && a.motion == b.motion;
     };
-    const auto& now = lowered_.instances;
+    const auto& now = flat_scene_.instances;
     if (std::equal(now.begin(), now.end(), before.instances.begin(), before.instances.end(), same_member)) {
         for (std::uint32_t i = 0; i < now.size(); ++i) {
             const Instance& old = before.instances[i];
@@ -115,7 +116,7 @@ void ShadowScene::record_relowering(const Lowered& before) {
     } else {
         delta_.instances_changed = true;
     }
-    if (!std::equal(lowered_.lights.begin(), lowered_.lights.end(), before.lights.begin(),
+    if (!std::equal(flat_scene_.lights.begin(), flat_scene_.lights.end(), before.lights.begin(),
                     before.lights.end(), same_light)) {
         delta_.lights_changed = true;
     }
@@ -128,7 +129,7 @@ bool ShadowScene::move_below(const std::vector<ObjectId>& transforms, std::set<s
     for (const ObjectId transform : transforms) {
         if (const auto below = instances_below_.find(transform); below != instances_below_.end()) {
             for (const std::uint32_t i : below->second) {
-                Instance& instance = lowered_.instances[i];
+                Instance& instance = flat_scene_.instances[i];
                 instance.world_from_object = placement(scene_, instance.path);
                 instance.motion = scene::motion_along(scene_, instance.path);
                 moved.insert(i);
@@ -136,7 +137,7 @@ bool ShadowScene::move_below(const std::vector<ObjectId>& transforms, std::set<s
         }
         if (const auto below = lights_below_.find(transform); below != lights_below_.end()) {
             for (const std::uint32_t i : below->second) {
-                PlacedLight& light = lowered_.lights[i];
+                PlacedLight& light = flat_scene_.lights[i];
                 light.world_from_light = placement(scene_, light.path);
                 light.motion = scene::motion_along(scene_, light.path);
                 lights = true;
@@ -148,11 +149,11 @@ bool ShadowScene::move_below(const std::vector<ObjectId>& transforms, std::set<s
 
 void ShadowScene::index_paths() {
     if (indexed_) return;
-    for (std::uint32_t i = 0; i < lowered_.instances.size(); ++i) {
-        for (const ObjectId id : lowered_.instances[i].path) instances_below_[id].push_back(i);
+    for (std::uint32_t i = 0; i < flat_scene_.instances.size(); ++i) {
+        for (const ObjectId id : flat_scene_.instances[i].path) instances_below_[id].push_back(i);
     }
-    for (std::uint32_t i = 0; i < lowered_.lights.size(); ++i) {
-        for (const ObjectId id : lowered_.lights[i].path) lights_below_[id].push_back(i);
+    for (std::uint32_t i = 0; i < flat_scene_.lights.size(); ++i) {
+        for (const ObjectId id : flat_scene_.lights[i].path) lights_below_[id].push_back(i);
     }
     indexed_ = true;
 }
@@ -198,8 +199,8 @@ void ShadowScene::rollback() {
         Undo undo = std::move(undo_.back());
         undo_.pop_back();
         scene_ = std::move(undo.scene);
-        if (undo.lowered) {
-            lowered_ = std::move(*undo.lowered);
+        if (undo.flat_scene) {
+            flat_scene_ = std::move(*undo.flat_scene);
             forget_index();
         } else {
             std::set<std::uint32_t> moved;

@@ -7,17 +7,17 @@
 #include <unordered_map>
 #include <vector>
 
-#include "mediator/backend/lowering.h"
+#include "mediator/backend/flattening.h"
 #include "mediator/scene/fields.h"
 
 namespace tessera::backend {
 
-// What an edit means for a back-end: touched things only, each once, ascending. Everything else is as before.
+// The effect of an edit on a back-end: the ids that changed, each once, ascending.
 struct SceneDelta {
-    bool everything = false;         // a snapshot: nothing of before counts
-    bool instances_changed = false;  // the flat list has other members; compare by value, not by index
-    bool lights_changed = false;     // placed lights: members, places or values
-    // Indices into lowered().instances, when not instances_changed: at another place or in other layers.
+    bool everything = false;         // a snapshot replaced the whole scene
+    bool instances_changed = false;  // instances were added or removed: indices are not comparable
+    bool lights_changed = false;     // placed lights: added, removed, moved or with other values
+    // Indices into flat_scene().instances with another transform or other layers; only if not instances_changed.
     std::vector<std::uint32_t> moved_instances;
     struct GeometryChange {
         ObjectId id;
@@ -29,33 +29,32 @@ struct SceneDelta {
     bool background_changed = false;
     bool render_origin_changed = false;
     std::uint32_t entries = 0, relevant = 0;
-    std::vector<std::string> ignored_kinds;  // kinds among the entries that no back-end draws (attachments)
+    std::vector<std::string> ignored_kinds;  // object kinds of the edit that back-ends ignore (attachments)
 };
 
-// The back-end's mirror: dictionary and dispatch, shared by all back-ends (Schwenk 5.3.2.3). Deltas of
-// consecutive lists add up until accept(), and until then rollback() undoes them. The result never
-// depends on how the scene came about: it equals one that was made from a snapshot. Moving a transform costs
-// the instances below it.
+// A back-end's copy of the scene and its flattened form, shared by all back-ends (Schwenk 5.3.2.3). Deltas of
+// consecutive lists accumulate until accept(); until then rollback() undoes them. The result does not depend on the
+// edit history: it equals that of a snapshot. The cost of moving a transform is proportional to the instances below it.
 class ShadowScene {
   public:
-    // All of a list or nothing. `after`: the scene that the list makes, of which it keeps a copy and so shares the
-    // objects. InvalidInput: the list does not follow on what is here, or lower() refuses the scene.
+    // All of a list or nothing. `after` is the scene that results from it; a copy is kept, which shares the objects.
+    // InvalidInput: the list starts at another version, or flatten() rejects the scene.
     Expected<void> apply(const scene::ChangeList& changes, const scene::Scene& after);
-    // For owners that keep no scene. InvalidInput: what Scene::apply refuses, too.
+    // For callers without a scene. InvalidInput also for whatever Scene::apply rejects.
     Expected<void> apply(const scene::ChangeList& changes);
-    // What changed since the last accept(), which makes it final: for a back-end whose device may refuse.
+    // The changes since the last accept(). accept() makes them final, after the device has taken them.
     SceneDelta pending() const;
     void accept();
     SceneDelta take_delta();  // both
     void rollback();          // to the state at the last accept(); nothing is pending then
 
     const scene::Scene& scene() const { return scene_; }
-    const Lowered& lowered() const { return lowered_; }
+    const FlatScene& flat_scene() const { return flat_scene_; }
 
   private:
-    // What one list touches, read off its entries and the scene before it.
+    // The objects that a list touches, from its entries and the scene before it.
     struct Touched {
-        bool structure = false;  // the flat lists may have other members
+        bool structure = false;  // instances or lights may be added or removed
         std::vector<ObjectId> moved_transforms;
         std::vector<ObjectId> light_values;
         std::vector<SceneDelta::GeometryChange> changed_geometries;
@@ -64,11 +63,11 @@ class ShadowScene {
         std::uint32_t entries = 0, relevant = 0;
         std::set<std::string> ignored_kinds;
     };
-    // The way back of one list.
+    // Undoes one list.
     struct Undo {
         scene::Scene scene;
         std::vector<ObjectId> moved_transforms;
-        std::optional<Lowered> lowered;  // instead of the moves, where the structure changed
+        std::optional<FlatScene> flat_scene;  // set if the structure changed; else moved_transforms suffices
     };
 
     Touched touch(const scene::ChangeList& changes) const;
@@ -77,14 +76,14 @@ class ShadowScene {
     static void touch_removed(Touched& touched, ObjectId id, const scene::Object& object);
     void replace_everything();
     void record(const Touched& touched);
-    void record_relowering(const Lowered& before);
-    // Places what hangs below the transforms anew; true when lights are among it.
+    void record_reflattening(const FlatScene& before);
+    // Updates the transforms of the instances and lights below; returns whether there were lights.
     bool move_below(const std::vector<ObjectId>& transforms, std::set<std::uint32_t>& moved);
     void index_paths();
     void forget_index();
 
     scene::Scene scene_;
-    Lowered lowered_;
+    FlatScene flat_scene_;
     SceneDelta delta_;
     std::vector<Undo> undo_;
     std::set<std::uint32_t> moved_;                                   // becomes delta_.moved_instances
@@ -92,7 +91,8 @@ class ShadowScene {
     std::set<ObjectId> created_geometries_, removed_geometries_, materials_, textures_;
     std::set<std::string> ignored_kinds_;
 
-    bool indexed_ = false;  // the two maps hold, for every transform, what hangs below it
+    bool indexed_ =
+        false;  // whether the two maps are filled: of every transform the instances and lights below it
     std::unordered_map<ObjectId, std::vector<std::uint32_t>> instances_below_, lights_below_;
 };
 

@@ -8,7 +8,7 @@ namespace tessera {
 using Duration = std::chrono::nanoseconds;
 using TimePoint = std::chrono::time_point<std::chrono::steady_clock, Duration>;
 
-// Injected wherever time decides something, so that tests own it. Thread-safe.
+// Injected wherever behaviour depends on time, so that tests can control it. Thread-safe.
 class Clock {
   public:
     virtual ~Clock() = default;
@@ -24,7 +24,7 @@ inline double seconds(Duration duration) {
     return std::chrono::duration<double>(duration).count();
 }
 
-// Of the calendar, for people: ns since 1970.
+// Wall-clock time: ns since 1970.
 inline std::int64_t since_1970() {
     return std::chrono::duration_cast<Duration>(std::chrono::system_clock::now().time_since_epoch()).count();
 }

@@ -6,8 +6,8 @@
 
 namespace tessera {
 
-// A value that copies share until one of them is changed, which then has its own. Never empty. Copies may be
-// read, changed and destroyed by different threads; each of them by one at a time.
+// Copy-on-write: copies share the value until one of them is changed. Never empty. Copies may be read, changed and
+// destroyed by different threads, each copy by one thread at a time.
 template <class T>
 class CopyOnWrite {
   public:
@@ -21,7 +21,7 @@ class CopyOnWrite {
         std::swap(node_, other.node_);
         return *this;
     }
-    // A value that was moved from may only be destroyed or assigned to.
+    // A moved-from object may only be destroyed or assigned to.
     ~CopyOnWrite() {
         if (node_ && node_->owners.fetch_sub(1, std::memory_order_acq_rel) == 1) delete node_;
     }
@@ -29,7 +29,7 @@ class CopyOnWrite {
     const T& operator*() const { return node_->value; }
     const T* operator->() const { return &node_->value; }
     T& edit() {
-        // The last of the others has released what it read.
+        // Acquires the reads of the last other owner.
         if (node_->owners.load(std::memory_order_acquire) != 1) *this = CopyOnWrite(node_->value);
         return node_->value;
     }

@@ -9,8 +9,8 @@
 #include <type_traits>
 #include <utility>
 
-// How plain structures say what their members are, once, for everything that treats members alike: codecs, masks,
-// comparison, hashing, texts. A structure has one row per member, in the order of the bits of its masks:
+// Compile-time reflection: structures describe their members once for codecs, masks, comparison, hashing and
+// printing. A structure has one row per member, in the order of the bits of its masks:
 //
 //     struct Pick {
 //         std::uint64_t request = 0;
@@ -20,12 +20,12 @@
 //         }
 //     };
 //
-// `describe` is a template, so that it costs nothing where nobody asks. The number is that of the field in proto/ and is
-// never reused; the name is the field's, in snake_case. What follows are notes, values of any type that a reader of rows
-// looks up by type and others ignore. A structure may also have `const char* malformed() const`: null, or why no decoded
-// value may be like this one.
+// `describe` is a template, so that it costs no compile time where it is not used. The number is that of the field in
+// proto/ and is never reused; the name is the field's, in snake_case. Any further arguments are notes: values that are
+// looked up by their type. A structure may also have `const char* malformed() const`: null, or why a decoded value is
+// invalid.
 //
-// An enumeration names its enumerators, which count from 0, beside its definition:
+// An enumeration names its enumerators, which count from 0, next to its definition:
 //
 //     enum class Turn : std::uint8_t { None, Quarter };
 //     constexpr auto enumerators(Turn) { return std::to_array<std::string_view>({"none", "quarter"}); }
@@ -42,29 +42,29 @@ struct Limit {
     std::size_t entries;
 };
 
-// A note: the number has 8 bytes on the wire (fixed64), as keys and hashes do, which are seldom small.
+// A note: the number has 8 bytes on the wire (fixed64), as random keys and hashes, which are rarely small.
 struct FullWidth {};
 
-// A note, of rows that came after the first release; their line in proto/ is `optional`. Absent, the member has the
-// structure's own initial value, so that files and peers that do not know it yet stay readable.
+// A note, of rows that were added after the first release; their field in proto/ is `optional`. If it is absent, the
+// member has its default value, so that files and messages of older versions stay readable.
 struct InitialWhenAbsent {};
 
-// A structure with its initial values.
+// A default-initialised structure.
 template <class T>
 const T& initial() {
     static const T Value{};
     return Value;
 }
 
-// A note: an enumerator beyond this one is not decoded here, though the enumeration has it.
+// A note: enumerators beyond this one are rejected when decoding this field.
 template <class E>
 struct UpTo {
     E last;
 };
 template <class E>
-UpTo(E) -> UpTo<E>;  // clang 16 does not find it by itself
+UpTo(E) -> UpTo<E>;  // clang 16 does not deduce it
 
-// A member that is computed: `get(const T&)` gives the value that is described, `set(T&, value)` takes it.
+// A computed member: `get(const T&)` returns the described value, `set(T&, value)` stores it.
 template <class Get, class Set>
 struct Computed {
     Get get;
@@ -126,7 +126,7 @@ inline constexpr std::size_t row_count = std::tuple_size_v<std::remove_const_t<d
 template <Described T, std::size_t I>
 inline constexpr const auto& row_of = std::get<I>(rows_of<T>);
 
-// The value of the I-th row: a reference to the member, or what is computed.
+// The value of the I-th row: a reference to the member, or the computed value.
 template <std::size_t I, Described T>
 constexpr decltype(auto) row_value(const T& object) {
     constexpr const auto& row = row_of<T, I>;
@@ -139,7 +139,7 @@ constexpr decltype(auto) row_value(const T& object) {
 template <Described T, std::size_t I>
 using RowValue = std::remove_cvref_t<decltype(row_value<I>(std::declval<const T&>()))>;
 
-// Calls fill(V&) with the member of the I-th row, or with a new value that is then set.
+// Calls fill(V&) with the member of the I-th row, or with a temporary that is then stored.
 template <std::size_t I, Described T, class Fill>
 constexpr void set_row(T& object, const Fill& fill) {
     constexpr const auto& row = row_of<T, I>;
@@ -163,7 +163,7 @@ constexpr bool within(const RowValue<T, I>& value) {
     }
 }
 
-// Null, or why no decoded value may be like this one.
+// Null, or why this decoded value is invalid.
 template <Described T>
 constexpr const char* why_malformed(const T& value) {
     if constexpr (requires {
@@ -192,7 +192,7 @@ concept Enumerated = std::is_enum_v<E> && requires(E value) {
 template <Enumerated E>
 inline constexpr std::size_t enumerator_count = enumerators(E{}).size();
 
-// "" when it is none.
+// "" for values that are not enumerators.
 template <Enumerated E>
 constexpr std::string_view enumerator_name(E value) {
     const auto index = static_cast<std::size_t>(value);

@@ -21,7 +21,7 @@ struct Header {
     std::uint64_t size = 0;  // of the data
     Hash256 key, checksum;   // the checksum is of the data
 };
-static_assert(sizeof(Header) == 80, "what is written has no padding");
+static_assert(sizeof(Header) == 80, "the header must not have padding");
 
 constexpr std::array<char, 8> Magic{'t', 'e', 's', 's', 'c', 'a', 'c', '1'};
 
@@ -74,7 +74,7 @@ DiskCache::DiskCache(fs::path folder, std::string kind, std::uint64_t byte_limit
     if (folder_.empty()) return;
     std::error_code error;
     fs::create_directories(folder_, error);
-    if (error) note("cannot make the cache folder '" + folder_.string() + "': " + error.message());
+    if (error) note("cannot create the cache folder '" + folder_.string() + "': " + error.message());
     shrink();
 }
 
@@ -97,7 +97,7 @@ std::optional<std::vector<std::byte>> DiskCache::load(const Hash256& key) {
         fs::last_write_time(path, fs::file_time_type::clock::now(), error);  // used just now
     } else {
         fs::remove(path, error);
-        note("the cache file '" + path.string() + "' is damaged; it is made anew");
+        note("the cache file '" + path.string() + "' is damaged; it is rebuilt");
     }
     return data;
 }

@@ -14,25 +14,24 @@
 
 namespace tessera {
 
-// Removes the least recently written of the files that are `ours` until the others hold at most `byte_limit`.
-// Returns what these hold.
+// Removes the least recently written of the files for which `ours` is true until the others have at most `byte_limit`
+// bytes. Returns the size of these.
 std::uint64_t shrink_folder(const std::filesystem::path& folder, std::uint64_t byte_limit,
                             const std::function<bool(const std::filesystem::path&)>& ours);
 
-// What took long to make and can be made again, kept on disk under a hash of all that it was made from. A
-// file is written under another name first, and verified when it is read: what is damaged is removed, told
-// and not given. The least recently used go first when there is too much. A cache that cannot be written is a
-// smaller cache, never an error. Several caches of other kinds, and several processes, may share the folder.
-// Thread-safe.
+// A disk cache of derived data, under a hash of everything it was computed from. Files are written under a temporary
+// name and renamed, and verified when read; damaged ones are reported and removed. The least recently used are evicted.
+// Write failures only make the cache smaller. Several caches of other kinds, and several processes, may share the
+// folder. Thread-safe.
 class DiskCache final {
   public:
-    // `kind` is the files' extension, a few lower-case letters. An empty folder: nothing is ever kept.
+    // `kind` is the files' extension, a few lower-case letters. An empty folder name: nothing is cached.
     DiskCache(std::filesystem::path folder, std::string kind, std::uint64_t byte_limit);
 
     std::optional<std::vector<std::byte>> load(const Hash256& key);
     void save(const Hash256& key, std::span<const std::byte> data);
 
-    // What went wrong since the last call, a phrase each.
+    // Errors since the last call, one phrase each.
     std::vector<std::string> take_notes();
 
   private:
@@ -45,7 +44,7 @@ class DiskCache final {
     const std::uint64_t byte_limit_;
 
     std::mutex mutex_;             // protects all below, and files from being removed while they are read
-    std::uint64_t byte_size_ = 0;  // as far as we know; shrink() counts anew
+    std::uint64_t byte_size_ = 0;  // estimate; shrink() recounts
     std::vector<std::string> notes_;
 };
 

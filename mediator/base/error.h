@@ -9,15 +9,15 @@ namespace tessera {
 
 enum class ErrorCode {
     InvalidInput,  // a file, message or option is wrong; the same input fails again
-    NotFound,      // a named thing is not there
-    Unavailable,   // not now: a peer is away, a resource is busy
-    Refused,       // the peer or a rule says no
+    NotFound,      // a named object, file or key does not exist
+    Unavailable,   // temporary: a peer is not connected, a resource is busy
+    Refused,       // rejected by the peer or a rule
     Io,            // the operating system failed to read or write
     OutOfMemory,
-    Internal,  // a broken promise of our own
+    Internal,  // a bug: a broken invariant
 };
 
-// Cannot go on here. The message is a lower-case phrase that names object, cause and remedy.
+// The exception of all components. The message is a lower-case phrase that names object, cause and remedy.
 class Error : public std::runtime_error {
   public:
     Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}

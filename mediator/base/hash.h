@@ -13,14 +13,14 @@
 
 namespace tessera {
 
-// BLAKE2b-256: the name of a blob, a film, a scene.
+// BLAKE2b-256: identifies a blob, film or scene.
 struct Hash256 {
     std::array<std::byte, 32> bytes{};
 
     friend auto operator<=>(const Hash256&, const Hash256&) = default;
 };
 
-// Adds modulo 2^128, so that the hash of a set costs only the members that changed.
+// Sums modulo 2^128, so that the hash of a set is updated at the cost of the changed members.
 struct Hash128 {
     std::uint64_t high = 0, low = 0;
 

@@ -7,7 +7,7 @@
 
 namespace tessera {
 
-// A number that names one kind of thing; two kinds cannot be mixed up. 0 names nothing.
+// A typed id: ids of different kinds cannot be mixed up. 0 is invalid.
 template <class Tag>
 struct Id {
     std::uint64_t value = 0;
@@ -22,7 +22,7 @@ using UnitId = Id<struct UnitTag>;
 using NodeId = Id<struct NodeTag>;
 using SessionId = Id<struct SessionTag>;
 
-// The scene's version: the epoch is new at every start of a master, the number grows by one per change list.
+// The scene's version: every start of a master has a new epoch, the number grows by one per change list.
 struct Version {
     std::uint64_t epoch = 0;
     std::uint64_t number = 0;

@@ -6,7 +6,7 @@
 
 namespace tessera {
 
-// A list of at most `Capacity` small things, which takes no memory of its own.
+// A list of at most `Capacity` small values, stored inline.
 template <class T, std::size_t Capacity>
 class InPlaceList {
   public:

@@ -8,10 +8,10 @@
 
 namespace tessera {
 
-// Runs body(i) for i in [0, count) in the given arena; the arena is always passed in, never global.
-template <class Body>
-void parallel_for(tbb::task_arena& arena, std::size_t count, const Body& body) {
-    arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { body(i); }); });
+// Runs function(i) for i in [0, count) in the given arena; the arena is always passed in, never global.
+template <class Function>
+void parallel_for(tbb::task_arena& arena, std::size_t count, const Function& function) {
+    arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { function(i); }); });
 }
 
 }  // namespace tessera

@@ -11,7 +11,7 @@ constexpr std::uint64_t mix(std::uint64_t x) {
     return x ^ (x >> 31);
 }
 
-// Counter-based: the k-th draw of a stream is a pure function, so nothing has to be carried along or restored.
+// Counter-based: the k-th number of a stream is a pure function, so there is no state to store or restore.
 class CounterRandom {
   public:
     constexpr explicit CounterRandom(std::uint64_t seed, std::uint64_t stream = 0)

@@ -8,8 +8,8 @@
 
 namespace tessera {
 
-// One thread for what takes long and has an order: builds, pictures, the disk. The destructor drops what waits
-// and lets the task at hand end.
+// One thread that runs long tasks in order: builds, pictures, disk access. The destructor drops waiting tasks and waits
+// for the running one.
 class TaskThread {
   public:
     TaskThread();

@@ -10,8 +10,7 @@
 
 #include "mediator/base/error.h"
 
-// Little-endian numbers one after another. The reader checks before it looks; it
-// throws Error{InvalidInput}.
+// Little-endian numbers, one after another. The reader is bounds-checked and throws Error{InvalidInput}.
 namespace tessera::codec {
 
 class ByteWriter {

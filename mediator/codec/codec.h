@@ -23,13 +23,13 @@
 //     std::optional of a number or structure   optional
 //     std::vector                              repeated; of glm types: one after another
 //
-// Numbers that are 0 and empty texts and lists are left out, as proto3 has it, so an absent number is 0 whatever the
-// structure's own initial value; an absent vector or structure keeps it. With InitialWhenAbsent numbers are always written,
-// and an absent one has the initial value. Unknown fields are skipped. A decoder throws
-// Error{InvalidInput}; on its way it allocates in proportion to the bytes that it has, never to a number in them.
+// As in proto3, zero numbers and empty strings and lists are left out, so that an absent number is 0 even if its initial
+// value is another one; an absent vector or structure keeps its initial value. With InitialWhenAbsent numbers are always
+// written, and an absent one has its initial value. Unknown fields are skipped. Decoders throw Error{InvalidInput};
+// they allocate memory in proportion to the bytes received, never to a number in them.
 namespace tessera::codec {
 
-// Entries of a list without a Limit: as many as fit into a control message.
+// Maximum entries of a list without a Limit, as many as fit into a control message.
 inline constexpr Limit DefaultLimit{65536};
 
 // Fields of a structure: bit i is the row with number i + 1. Numbers beyond 64 cannot be masked.
@@ -130,7 +130,7 @@ template <class T>
 void read_packed(FormatReader& in, std::vector<T>& values, std::size_t limit) {
     const auto bytes = in.block();
     if constexpr (Packed<T>::count > 0) {
-        if (bytes.size() % sizeof(T) != 0) in.fail("a list has a part of an entry");
+        if (bytes.size() % sizeof(T) != 0) in.fail("a list ends within an entry");
         const std::size_t before = values.size(), more = bytes.size() / sizeof(T);
         if (more > limit - before) in.fail("a list is too long");
         values.resize(before + more);
@@ -144,7 +144,7 @@ void read_packed(FormatReader& in, std::vector<T>& values, std::size_t limit) {
     }
 }
 
-// One field's worth of entries: of numbers all.
+// The entries of one field: one message or string, or all numbers of a packed list.
 template <class T>
 void read_entries(FormatReader& in, std::vector<T>& values, std::size_t limit) {
     in.enter_entry(values.size());
@@ -170,19 +170,18 @@ void read_field(FormatReader& in, T& value, std::size_t limit) {
         decltype(value.bits()) bits{};
         read_field<Full>(in, bits, limit);
         value = T::from_bits(bits);
-        if (value.bits() != bits) in.fail("a member of a set is unknown");
+        if (value.bits() != bits) in.fail("a set has an unknown member");
     } else if constexpr (std::is_same_v<T, std::string>) {
         const auto bytes = in.block();
         value.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     } else if constexpr (std::is_same_v<T, Hash256>) {
         const auto bytes = in.block();
-        if (!bytes.empty() && bytes.size() != value.bytes.size())
-            in.fail("a hash has another length than it should");
+        if (!bytes.empty() && bytes.size() != value.bytes.size()) in.fail("a hash has the wrong length");
         value = {};
         std::copy(bytes.begin(), bytes.end(), value.bytes.begin());
     } else if constexpr (Vector<T>) {
         const auto bytes = in.block();
-        if (bytes.size() != sizeof value) in.fail("a vector has another length than it should");
+        if (bytes.size() != sizeof value) in.fail("a vector has the wrong length");
         std::memcpy(glm::value_ptr(value), bytes.data(), bytes.size());
     } else if constexpr (is_list<T>) {
         read_entries(in, value, limit);
@@ -193,7 +192,7 @@ void read_field(FormatReader& in, T& value, std::size_t limit) {
     }
 }
 
-// What an absent field means.
+// Sets the value of an absent field.
 template <class T>
 void set_absent(T& value) {
     if constexpr (Number<T> || Set<T> || std::is_same_v<T, Hash256>) {
@@ -233,7 +232,7 @@ void read_row(FormatReader& in, T& value) {
     in.enter(Traits::row.name);
     set_row<I>(value, [&](auto& part) {
         read_field<Traits::full_width>(in, part, Traits::limit());
-        if (!within<I, T>(part)) in.fail("an enumerator is not for here");
+        if (!within<I, T>(part)) in.fail("an enumerator is not allowed here");
     });
 }
 
@@ -264,7 +263,7 @@ void write_rows(FormatWriter& out, const T& value, RowMask mask) {
     });
 }
 
-// To the end of `in`. Members that are not in the mask stay as they are, whatever comes.
+// Reads to the end of `in`. Members that are not in the mask stay unchanged.
 template <Described T>
 void read_rows(FormatReader& in, T& value, RowMask mask) {
     for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
@@ -273,7 +272,7 @@ void read_rows(FormatReader& in, T& value, RowMask mask) {
     std::uint32_t tag = in.tag();
     while (tag != 0) {
         bool taken = false;
-        // Fields come in the order of the rows, so one walk along them finds nearly all.
+        // Fields usually arrive in the order of the rows, so one pass over the rows reads them all.
         for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
             if (!detail::in_mask<row_of<T, I>.number>(mask)) return;
             while (tag == detail::RowTraits<T, I>::tag) {
@@ -289,7 +288,7 @@ void read_rows(FormatReader& in, T& value, RowMask mask) {
     if (const char* what = why_malformed(value)) in.fail(what);
 }
 
-// The alternative that there is, with the rows whose bits are in the mask.
+// The active alternative, with the rows whose bits are in the mask.
 template <Oneof T>
 void write_oneof(FormatWriter& out, const T& value, RowMask mask = AllRows) {
     for_each_alternative<T>([&]<class A>(const Alternative<A>& alternative) {
@@ -301,7 +300,7 @@ void write_oneof(FormatWriter& out, const T& value, RowMask mask = AllRows) {
     });
 }
 
-// The last one that comes counts.
+// The last alternative wins.
 template <Oneof T>
 void read_oneof(FormatReader& in, T& value, RowMask mask = AllRows) {
     bool found = false;
@@ -350,7 +349,7 @@ std::vector<std::byte> to_bytes(const T& value) {
     return out.take();
 }
 
-// Any bytes: a value, or Error{InvalidInput}.
+// Decodes any bytes to a value, or Error{InvalidInput}.
 template <detail::Message T>
 Expected<T> from_bytes(std::span<const std::byte> bytes) {
     try {

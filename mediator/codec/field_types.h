@@ -17,10 +17,10 @@
 #include "mediator/base/ids.h"
 #include "mediator/codec/format.h"
 
-// Which kinds of fields the codec knows, and how numbers travel.
+// The field types of the codec, and the encoding of numbers.
 namespace tessera::codec {
 
-// Specialised for what has a layout of its own: write(FormatWriter&, const T&) and read(FormatReader&, T&) of the message's
+// Specialised for types with a custom layout: write(FormatWriter&, const T&) and read(FormatReader&, T&) of the message's
 // content.
 template <class T>
 struct CustomCodec;
@@ -54,7 +54,7 @@ concept Custom = requires(FormatWriter& out, FormatReader& in, T& value) {
 template <class T>
 concept Message = Described<T> || Oneof<T> || Custom<T>;
 
-// Numbers in a row, a fixed count of them: what glm's types are.
+// Types that consist of a fixed number of floating-point values, like those of glm.
 template <class T>
 struct Packed {
     static constexpr std::size_t count = 0;
@@ -86,7 +86,7 @@ constexpr WireType number_type(bool full_width) {
     return std::is_same_v<T, double> || full_width ? WireType::Fixed64 : WireType::Varint;
 }
 
-// A number as the bits that travel, with 0 for 0 only (-0.0 is not).
+// A number as encoded bits; 0 only for 0 (not for -0.0).
 template <Number T>
 std::uint64_t to_bits(const T& value, bool full_width) {
     if constexpr (is_id<T>) {
@@ -117,7 +117,7 @@ T from_bits(FormatReader& in, std::uint64_t bits) {
     } else if constexpr (std::is_same_v<T, bool>) {
         return bits != 0;
     } else if constexpr (std::is_enum_v<T>) {
-        static_assert(Enumerated<T>, "its enumerators are listed beside it");
+        static_assert(Enumerated<T>, "needs an enumerators() function");
         if (bits >= enumerator_count<T>) in.fail("an enumerator is unknown");
         return static_cast<T>(bits);
     } else if constexpr (std::is_signed_v<T>) {

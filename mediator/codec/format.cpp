@@ -7,12 +7,12 @@ namespace tessera::codec {
 namespace {
 
 constexpr std::size_t MaxMessage = std::numeric_limits<std::int32_t>::max();
-constexpr std::size_t FirstRoom = 256;
+constexpr std::size_t InitialCapacity = 256;
 
 }  // namespace
 
 void FormatWriter::grow(std::size_t size) {
-    bytes_.resize(std::max({FirstRoom, 2 * bytes_.size(), size_ + size}));
+    bytes_.resize(std::max({InitialCapacity, 2 * bytes_.size(), size_ + size}));
 }
 
 void FormatWriter::end(std::size_t start) {
@@ -22,7 +22,7 @@ void FormatWriter::end(std::size_t start) {
         return;
     }
     const auto more =
-        static_cast<std::size_t>(std::bit_width(length) - 1) / 7;  // bytes beside the one there is
+        static_cast<std::size_t>(std::bit_width(length) - 1) / 7;  // bytes in addition to the reserved one
     room(more);
     std::byte* to = bytes_.data() + start - 1;
     std::memmove(to + 1 + more, to + 1, size_ - start);

@@ -13,11 +13,12 @@
 
 #include "mediator/base/error.h"
 
-// The encoding of Protocol Buffers, as far as proto3 needs it: tags, varints, fixed numbers and lengths. No allocation
-// follows a number that was read.
+// The Protocol Buffers encoding, as far as proto3 needs it: tags, varints, fixed-width numbers and lengths. No allocation
+// depends on a number that was read.
 namespace tessera::codec {
 
-static_assert(std::endian::native == std::endian::little, "numbers of fixed width are copied as they are");
+static_assert(std::endian::native == std::endian::little,
+              "fixed-width numbers are copied without conversion");
 
 enum class WireType : std::uint32_t { Varint = 0, Fixed64 = 1, Length = 2, Fixed32 = 5 };
 
@@ -32,8 +33,8 @@ constexpr std::int64_t unzigzag(std::uint64_t value) {
     return static_cast<std::int64_t>((value >> 1) ^ (~(value & 1) + 1));
 }
 
-// Appends to one buffer. The length of a nested message is put in when it is complete: one byte is kept free for it, and
-// the message moves when that does not do.
+// Appends to one buffer. The length of a nested message is written when it is complete: one byte is reserved for it, and
+// the message is moved if more are needed.
 class FormatWriter {
   public:
     void varint(std::uint64_t value) {
@@ -59,7 +60,7 @@ class FormatWriter {
         varint(size);
         raw(data, size);
     }
-    // What is written between begin and end is the message's content.
+    // Between begin and end, the content of the message is written.
     std::size_t begin(std::uint32_t tag) {
         varint(tag);
         room(1);
@@ -112,7 +113,7 @@ class FormatReader {
     void skip(std::uint32_t tag);
     bool at_end() const { return at_ == end_; }
 
-    // Where the reading is, for the text of an error.
+    // The current field, for error messages.
     void enter(std::string_view field) {
         field_ = field;
         entry_ = NoEntry;

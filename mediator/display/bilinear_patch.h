@@ -9,17 +9,17 @@
 
 namespace tessera::display {
 
-// What lies between four corners in the plane, bilinear.
+// A bilinear patch between four corners in the plane.
 struct BilinearPatch {
     static constexpr double Rounding = 1e-7;
 
-    std::array<glm::dvec2, 4> corners;  // of ways (0, 0), (1, 0), (0, 1), (1, 1)
+    std::array<glm::dvec2, 4> corners;  // at (u, v) = (0, 0), (1, 0), (0, 1), (1, 1)
 
-    // The way to a place, by Newton's method: in [0, 1] inside; not a number when there is none.
+    // The (u, v) of a point, by Newton's method: in [0, 1] inside; NaN if there is none.
     glm::dvec2 inverse(const glm::dvec2& at) const;
 
-    // Calls visit(x, y, way) for every pixel of width x height whose centre (x + 0.5, y + 0.5) lies inside,
-    // or by rounding on an edge: neighbours leave no gap. Corners that are not numbers: none.
+    // Calls visit(x, y, uv) for every pixel of width x height whose centre (x + 0.5, y + 0.5) is inside,
+    // or within rounding of an edge: neighbours leave no gap. None if corners are not finite.
     template <class Visit>
     void for_each_pixel(std::uint32_t width, std::uint32_t height, const Visit& visit) const {
         glm::dvec2 least = corners[0], most = least;
@@ -36,10 +36,9 @@ struct BilinearPatch {
         };
         for (std::size_t y = first(least.y, height); y < end(most.y, height); ++y)
             for (std::size_t x = first(least.x, width); x < end(most.x, width); ++x) {
-                const glm::dvec2 way = inverse({double(x) + 0.5, double(y) + 0.5});
-                if (way.x >= -Rounding && way.y >= -Rounding && way.x <= 1 + Rounding &&
-                    way.y <= 1 + Rounding)
-                    visit(x, y, way);
+                const glm::dvec2 uv = inverse({double(x) + 0.5, double(y) + 0.5});
+                if (uv.x >= -Rounding && uv.y >= -Rounding && uv.x <= 1 + Rounding && uv.y <= 1 + Rounding)
+                    visit(x, y, uv);
             }
     }
 };

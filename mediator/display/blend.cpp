@@ -13,7 +13,7 @@ struct Edges {
     double left = 0, right = 0, top = 0, bottom = 0;
 };
 
-// Soft edges are those of the upright picture; which edges of the device are they?
+// Maps the soft edges of the upright picture to edges of the device.
 Edges device_edges(const Blend& blend, Turn turn) {
     switch (turn) {
         case Turn::None:
@@ -40,7 +40,7 @@ std::vector<float> ramps(std::size_t pixels, double first, double last, double s
     return weights;
 }
 
-// Beyond the outermost nodes a grid carries on: it may leave [0, 1].
+// A grid is extrapolated beyond its outermost nodes: values may leave [0, 1].
 std::vector<float> in_range(std::vector<float> values) {
     for (float& value : values) value = value > 0.0f ? std::min(value, 1.0f) : 0.0f;
     return values;

@@ -8,7 +8,7 @@
 
 namespace tessera::display {
 
-// The weight of a soft edge, t of the way from where it begins (0) to where the picture is in full (1).
+// The weight of a soft edge at t, from its start (0) to the full picture (1).
 double soft_edge(double t, double shape);
 
 // Soft edges and black level of one output, at the pixels of its device.

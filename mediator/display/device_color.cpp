@@ -11,11 +11,11 @@ namespace tessera::display {
 
 namespace {
 
-// Half floats from 0 to 1 as their bits count them.
+// Number of half floats from 0 to 1, in order of their bits.
 constexpr std::size_t TableSize = 0x3c01;
 
-// Thresholds of 8 x 8 pixels, 256 x (k + 0.5) / 64, so that any square of 2, 4 or 8 has an even share of each
-// range (Bayer 1973).
+// Thresholds of 8 x 8 pixels, 256 x (k + 0.5) / 64, so that every square of 2, 4 or 8 pixels has evenly
+// distributed thresholds (Bayer 1973).
 constexpr std::array<std::array<std::uint16_t, 8>, 8> make_thresholds() {
     std::array<std::array<std::uint16_t, 8>, 8> result{};
     for (unsigned y = 0; y < 8; ++y)
@@ -39,7 +39,7 @@ __m256 clamped(__m256 value) {
 __m128i codes(const std::uint16_t* table, __m256 value, __m128i thresholds) {
     alignas(16) std::array<std::uint16_t, PackSize> at;
     _mm_store_si128(reinterpret_cast<__m128i*>(at.data()), _mm256_cvtps_ph(clamped(value), 0));
-    for (std::uint16_t& each : at) each = table[each];  // faster than to gather
+    for (std::uint16_t& each : at) each = table[each];  // faster than a gather
     const __m128i between = _mm_load_si128(reinterpret_cast<const __m128i*>(at.data()));
     return _mm_srli_epi16(_mm_adds_epu16(between, thresholds), 8);
 }
@@ -65,8 +65,8 @@ double DeviceColor::device_value(double linear) const {
         const double at = linear * static_cast<double>(curve_.size() - 1);
         const auto before = std::min(static_cast<std::size_t>(at), curve_.size() - 1);
         const std::size_t after = std::min(before + 1, curve_.size() - 1);
-        const double way = at - static_cast<double>(before);
-        return std::clamp(curve_[before] + way * (curve_[after] - curve_[before]), 0.0, 1.0);
+        const double fraction = at - static_cast<double>(before);
+        return std::clamp(curve_[before] + fraction * (curve_[after] - curve_[before]), 0.0, 1.0);
     }
     if (gamma_ > 0.0) return std::pow(linear, 1.0 / gamma_);
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
@@ -77,8 +77,8 @@ double DeviceColor::light(double value) const {
         if (value <= curve_.front()) return 0.0;
         for (std::size_t i = 1; i < curve_.size(); ++i) {
             if (curve_[i] < value) continue;
-            const double before = curve_[i - 1], way = (value - before) / (curve_[i] - before);
-            return (static_cast<double>(i - 1) + way) / static_cast<double>(curve_.size() - 1);
+            const double before = curve_[i - 1], fraction = (value - before) / (curve_[i] - before);
+            return (static_cast<double>(i - 1) + fraction) / static_cast<double>(curve_.size() - 1);
         }
         return 1.0;
     }
@@ -86,8 +86,8 @@ double DeviceColor::light(double value) const {
     return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
 }
 
-// A code and how much of the next one's light is to be added to its own. Light that is rounded to a half
-// float and may have been a code's own counts as that.
+// A code plus the fraction of the next one. Light that is within half float rounding of a code's is that code
+// exactly.
 double DeviceColor::code_between(double linear, double tolerance) const {
     const double smooth = 255.0 * device_value(linear);
     if (!curve_.empty()) return smooth;

@@ -14,7 +14,7 @@ DeviceGrid::DeviceGrid(const Grid& grid, const Output& output, const scene::Blob
     const scene::BlobPtr blob = arrays.find(grid.values.hash);
     if (!blob)
         throw Error(ErrorCode::NotFound,
-                    "the " + what + " of output '" + output.name + "' are not there: open the display again");
+                    "the " + what + " of output '" + output.name + "' are missing: open the display again");
     const auto values = blob->as<float>();
     if (nodes == 0 || grid.components == 0 || values.size() != nodes * grid.components)
         throw Error(ErrorCode::InvalidInput, "the " + what + " of output '" + output.name + "' are " +
@@ -28,17 +28,18 @@ DeviceGrid::DeviceGrid(const Grid& grid, const Output& output, const scene::Blob
         planes_[c].resize(nodes);
         for (std::size_t y = 0; y < rows_; ++y)
             for (std::size_t x = 0; x < columns_; ++x) {
-                const Place from = upright_place(output.turn, {x, y}, columns_, rows_);
+                const PixelPosition from = upright_position(output.turn, {x, y}, columns_, rows_);
                 planes_[c][y * columns_ + x] = values[(from.y * grid.columns + from.x) * grid.components + c];
             }
     }
-    across_ = places(output.width, columns_, grid.nodes);
-    down_ = places(output.height, rows_, grid.nodes);
+    across_ = interpolation(output.width, columns_, grid.nodes);
+    down_ = interpolation(output.height, rows_, grid.nodes);
 }
 
-DeviceGrid::Places DeviceGrid::places(std::size_t pixels, std::size_t nodes, Grid::Nodes where) {
-    Places result{std::vector<std::uint32_t>(pixels, 0), std::vector<float>(pixels, 0.0f),
-                  where == Grid::Nodes::Centres && pixels == nodes};
+DeviceGrid::Interpolation DeviceGrid::interpolation(std::size_t pixels, std::size_t nodes,
+                                                    Grid::Nodes where) {
+    Interpolation result{std::vector<std::uint32_t>(pixels, 0), std::vector<float>(pixels, 0.0f),
+                         where == Grid::Nodes::Centres && pixels == nodes};
     for (std::size_t i = 0; i < pixels; ++i) {
         if (result.is_one_each) {
             result.nodes[i] = static_cast<std::uint32_t>(i);

@@ -12,7 +12,7 @@ const char* Head::malformed() const {
     const double length = glm::length(wxyz());
     return finite && length > 0.5 && length < 2.0
                ? nullptr
-               : "a head is nowhere, or its orientation is no unit quaternion";
+               : "the head's position is not finite, or its orientation is not a unit quaternion";
 }
 
 void Head::turn(const glm::dvec4& wxyz) {
@@ -21,7 +21,7 @@ void Head::turn(const glm::dvec4& wxyz) {
     orientation = glm::dquat(unit.x, unit.y, unit.z, unit.w);
 }
 
-bool is_somewhere(const Head& head) {
+bool has_valid_position(const Head& head) {
     constexpr double Farthest = 1e6;
     for (int i = 0; i < 3; ++i) {
         if (!(head.position[i] >= -Farthest && head.position[i] <= Farthest)) return false;

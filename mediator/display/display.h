@@ -15,19 +15,19 @@
 #include "mediator/view/display_transform.h"
 #include "mediator/view/view.h"
 
-// What stands in front of people: screens in space, and outputs, each the picture of one device. Plain
+// Displays: screens in space, and outputs, each the picture of one device. Plain
 // values. Display space: metres, right-handed, y up; origin and axes are those of the scene camera that
 // carries the display, so a wall two metres in front of it has z = -2.
 namespace tessera::display {
 
-// Beyond these a display is refused.
+// Larger displays are rejected.
 inline constexpr std::size_t MaxOutputs = 64, MaxLayers = 4, MaxHull = 4096, MaxCurve = 4096;
 inline constexpr std::uint32_t MaxEdge = 16384;
 
 // How an output shows the two eyes.
 enum class Stereo : std::uint8_t {
     Mono,  // one picture, seen from between the eyes
-    Left,  // this eye alone: the other has an output of its own
+    Left,  // this eye only: the other has its own output
     Right,
     Separate,        // two pictures of the full size: files
     SideBySide,      // left eye in the left half, each squeezed to half the width
@@ -41,7 +41,7 @@ constexpr auto enumerators(Stereo) {
                                             "rows", "anaglyph-plain", "anaglyph"});
 }
 
-// How far the device is turned clockwise as it hangs, so its picture is turned the other way.
+// Clockwise rotation of the mounted device; its picture is rotated the other way.
 enum class Turn : std::uint8_t { None, Quarter, Half, ThreeQuarters };
 constexpr auto enumerators(Turn) {
     return std::to_array<std::string_view>({"none", "quarter", "half", "three-quarters"});
@@ -50,7 +50,7 @@ constexpr auto enumerators(Turn) {
 // Values over an output's picture, float32, row by row from the top left, bilinear in between.
 struct Grid {
     enum class Nodes : std::uint8_t {
-        Edges,   // node (i, j) lies at (i / (columns - 1), j / (rows - 1)) of the picture
+        Edges,   // node (i, j) is at (i / (columns - 1), j / (rows - 1)) of the picture
         Centres  // at ((i + 0.5) / columns, (j + 0.5) / rows): one a pixel, for example
     };
     friend constexpr auto enumerators(Nodes) { return std::to_array<std::string_view>({"edges", "centres"}); }
@@ -68,14 +68,15 @@ struct Grid {
 
 // The flat plane that an output's view is rendered for. The picture is the bounding box, along `right` and
 // `up`, of the hull as it is seen from the eye.
-struct ViewPlane {
-    glm::dvec3 origin{0.0, 0.0, -1.0};                   // any point of it
+struct ProjectionPlane {
+    glm::dvec3 origin{0.0, 0.0, -1.0};                   // any point of the plane
     glm::dvec3 right{1.0, 0.0, 0.0}, up{0.0, 1.0, 0.0};  // unit, orthogonal; eyes are where right x up points
-    std::vector<glm::dvec3> hull;                        // of what is shown; a flat wall: its four corners
-    friend bool operator==(const ViewPlane&, const ViewPlane&) = default;
+    std::vector<glm::dvec3> hull;  // of the visible points; of a flat wall: its four corners
+    friend bool operator==(const ProjectionPlane&, const ProjectionPlane&) = default;
     static constexpr auto describe(auto row) {
-        return std::tuple(row(1, "origin", &ViewPlane::origin), row(2, "right", &ViewPlane::right),
-                          row(3, "up", &ViewPlane::up), row(4, "hull", &ViewPlane::hull, Limit{MaxHull}));
+        return std::tuple(row(1, "origin", &ProjectionPlane::origin),
+                          row(2, "right", &ProjectionPlane::right), row(3, "up", &ProjectionPlane::up),
+                          row(4, "hull", &ProjectionPlane::hull, Limit{MaxHull}));
     }
 };
 
@@ -86,8 +87,8 @@ struct Blend {
     double left = 0, right = 0, top = 0, bottom = 0;
     double shape = 1.0;
     Grid weights;  // 1 component in [0, 1], instead of ramps
-    // Black-level lift: what is added (1 component, in [0, 1) of full white) where fewer projectors' blacks
-    // overlap than elsewhere; a pixel shows lift + (1 - lift) x value.
+    // Black-level lift: added (1 component, in [0, 1) of full white) where fewer projectors overlap than
+    // elsewhere; a pixel shows lift + (1 - lift) x value.
     Grid lift;
     friend bool operator==(const Blend&, const Blend&) = default;
     static constexpr auto describe(auto row) {
@@ -98,7 +99,7 @@ struct Blend {
     }
 };
 
-// From linear light to what the device is sent: matrix, gain, then curve or gamma.
+// From linear light to device values: matrix, gain, then curve or gamma.
 struct Color {
     glm::dmat3 matrix{1.0};  // device rgb from linear Rec. 709
     glm::dvec3 gain{1.0};
@@ -117,9 +118,9 @@ struct Output {
     std::int32_t x = 0, y = 0;                  // of its top left pixel on the desktop
     Turn turn = Turn::None;
     Stereo stereo = Stereo::Mono;
-    std::uint32_t priority = 1;  // 1, 2, 4 or 8: samples a pixel, compared with the others
-    ViewPlane plane;
-    std::uint32_t view_width = 1920, view_height = 1080;  // of the picture that is rendered for it, an eye
+    std::uint32_t priority = 1;  // 1, 2, 4 or 8: samples per pixel, relative to other outputs
+    ProjectionPlane plane;
+    std::uint32_t view_width = 1920, view_height = 1080;  // of the picture rendered for each eye
     Grid points;  // 3 components: where on the screen the device's pixels are seen; empty = the plane's box
     Blend blend;
     Color color;
@@ -135,11 +136,11 @@ struct Output {
     }
 };
 
-// What is in the picture, composed by depth and alpha (Schwenk 5.3.2).
+// A compositing layer: layers are composed by depth and alpha (Schwenk 5.3.2).
 struct Layer {
     std::string name;
     view::Renderer renderer = view::Renderer::PathTracing;
-    std::uint32_t layers = 0xffffffffu;  // of the scene's objects: those that it shows
+    std::uint32_t layers = 0xffffffffu;  // bit mask of the object layers that it shows
     bool shown = true;
     friend bool operator==(const Layer&, const Layer&) = default;
     static constexpr auto describe(auto row) {
@@ -148,12 +149,12 @@ struct Layer {
     }
 };
 
-// The eyes of who looks, at rest or tracked.
+// The viewer's head, at rest or tracked.
 struct Head {
     glm::dvec3 position{0.0};                    // between the eyes
     glm::dquat orientation{1.0, 0.0, 0.0, 0.0};  // (w, x, y, z), unit; identity looks along -z
     friend bool operator==(const Head&, const Head&) = default;
-    // The orientation is made a unit again when it is decoded, so no rounding adds up.
+    // The orientation is normalized when decoded, so rounding errors do not accumulate.
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "position", &Head::position),
                           row(2, "orientation",
@@ -162,26 +163,27 @@ struct Head {
     }
     const char* malformed() const;
     glm::dvec4 wxyz() const { return {orientation.w, orientation.x, orientation.y, orientation.z}; }
-    void turn(const glm::dvec4& wxyz);  // that is about a unit quaternion; else malformed() says so
+    void turn(const glm::dvec4& wxyz);  // close to a unit quaternion; otherwise malformed() reports it
 };
 
 struct Display {
     std::string name;
-    std::string camera;            // of the scene, that carries the display; "" = its first
+    std::string camera;            // of the scene, carries the display; "" = its first camera
     double units_per_metre = 1.0;  // of the scene
     Head head;
     double eye_separation = 0.064;  // metres
     double zero_parallax = 0.0;     // metres from the head; 0 = on the screens
     std::uint64_t spp = 256;        // of outputs with priority 1
-    std::uint32_t coarsest = 8;     // 8, 4, 2: the first picture after a change is of this part of the size
+    std::uint32_t coarsest = 8;     // 8, 4, 2: the first picture after a change has 1/coarsest of the size
     std::uint32_t max_bounces = 8;
     double rate = 60.0;     // frames a second, at most
     std::string filter;     // NAME[:key=value,...]
-    double exposure = 0.0;  // EV; of all outputs, so that no seam shows
-    view::ViewTransform view_transform = view::ViewTransform::Linear;  // of all outputs as well
-    double white = 0.0;              // of the view transform reinhard: the luminance that becomes 1; 0 = 4
-    bool stereo_difference = false;  // measure how well the eyes fit together (costs the depth channel)
-    std::vector<Layer> layers;       // none: one, of everything, path traced
+    double exposure = 0.0;  // EV; the same for all outputs, so that there are no seams
+    view::ViewTransform view_transform = view::ViewTransform::Linear;  // also for all outputs
+    double white = 0.0;  // of the view transform reinhard: the luminance that becomes 1; 0 = 4
+    bool stereo_difference =
+        false;                  // measure the consistency of both eyes' pictures (needs the depth channel)
+    std::vector<Layer> layers;  // empty: one path-traced layer of everything
     std::vector<Output> outputs;
     friend bool operator==(const Display&, const Display&) = default;
     static constexpr auto describe(auto row) {
@@ -199,11 +201,11 @@ struct Display {
     }
 };
 
-// Whether an output process works on linear light: it warps, blends or corrects colour. Else it is sent what
-// it shows.
+// Whether an output client needs linear light, since it warps, blends or corrects colour. Otherwise it is sent device
+// values.
 bool takes_linear_light(const Output& output);
 
-// Whether a head is where one can be: finite, within 1000 km of the display's origin.
-bool is_somewhere(const Head& head);
+// Whether the position is finite and within 1000 km of the display's origin.
+bool has_valid_position(const Head& head);
 
 }  // namespace tessera::display

@@ -31,7 +31,7 @@ glm::dvec3 eye_position(const Head& head, view::Eye eye, double separation) {
     return head.position + head.orientation * glm::dvec3(side * separation, 0.0, 0.0);
 }
 
-view::CameraPose frustum(const ViewPlane& plane, const Head& head, view::Eye eye, double separation,
+view::CameraPose frustum(const ProjectionPlane& plane, const Head& head, view::Eye eye, double separation,
                          double zero_parallax) {
     const glm::dvec3 normal = glm::cross(plane.right, plane.up);
     double scale = 1.0;
@@ -44,24 +44,24 @@ view::CameraPose frustum(const ViewPlane& plane, const Head& head, view::Eye eye
     const glm::dvec3 position = eye_position(head, eye, separation);
     double left = std::numeric_limits<double>::infinity(), bottom = left, right = -left, top = -left;
     for (const glm::dvec3& point : plane.hull) {
-        const glm::dvec3 way = head.position + scale * (point - head.position) - position;
-        const double depth = -glm::dot(way, normal);
+        const glm::dvec3 direction = head.position + scale * (point - head.position) - position;
+        const double depth = -glm::dot(direction, normal);
         if (!(depth > 0.0))
             throw Error(ErrorCode::InvalidInput, "an eye is not in front of the screen: move the head there");
-        const double x = glm::dot(way, plane.right) / depth, y = glm::dot(way, plane.up) / depth;
+        const double x = glm::dot(direction, plane.right) / depth, y = glm::dot(direction, plane.up) / depth;
         left = std::min(left, x);
         right = std::max(right, x);
         bottom = std::min(bottom, y);
         top = std::max(top, y);
     }
     if (!(right > left && top > bottom && std::isfinite(right - left) && std::isfinite(top - bottom)))
-        throw Error(ErrorCode::InvalidInput, "nothing of the screen can be seen from the eye");
+        throw Error(ErrorCode::InvalidInput, "the screen is not visible from the eye: move the head");
     const glm::dmat4 pose(glm::dvec4(plane.right, 0.0), glm::dvec4(plane.up, 0.0), glm::dvec4(normal, 0.0),
                           glm::dvec4(position, 1.0));
     return {.world_from_camera = pose, .left = left, .right = right, .bottom = bottom, .top = top};
 }
 
-view::CameraPose screen_pose(const ViewPlane& plane, const Head& head, view::Eye eye, double separation,
+view::CameraPose screen_pose(const ProjectionPlane& plane, const Head& head, view::Eye eye, double separation,
                              double zero_parallax) {
     if (zero_parallax > 0.0)
         separation *=

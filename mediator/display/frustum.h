@@ -6,26 +6,25 @@
 
 namespace tessera::display {
 
-// What a picture of an output in this mode needs.
+// The eyes whose views an output in this mode needs.
 std::span<const view::Eye> eyes(Stereo stereo);
 
 // In display space. `separation` in metres.
 glm::dvec3 eye_position(const Head& head, view::Eye eye, double separation);
 
-// The off-axis frustum of an output for one eye, in display space: the camera stands in the eye and looks
-// straight at the view plane; edges are the bounding box of the hull at distance 1. The picture of a flat
-// wall lies still on the wall wherever the eye is.
+// The off-axis frustum of an output for one eye, in display space: the camera is at the eye and looks along the
+// normal of the projection plane; its edges are the bounding box of the hull at distance 1. Points on a flat wall do
+// not move on it when the eye moves.
 //
-// With `zero_parallax` d > 0 the screen is thought at distance d from the head along the plane's normal
-// (scaled about the head): what is d away has no parallax, and the picture from between the eyes stays as it
-// is. Throws Error{InvalidInput} when the eye is not in front of the plane and of all of the hull.
-view::CameraPose frustum(const ViewPlane& plane, const Head& head, view::Eye eye, double separation,
+// With `zero_parallax` d > 0 a virtual screen at distance d from the head along the plane's normal is used
+// (scaled about the head): points at that distance have no parallax, and the picture from between the eyes is
+// unchanged. Throws Error{InvalidInput} when the eye is not in front of the plane and of all of the hull.
+view::CameraPose frustum(const ProjectionPlane& plane, const Head& head, view::Eye eye, double separation,
                          double zero_parallax);
 
-// Where the screen itself is seen as that picture shows it: with zero parallax at d instead of at the
-// screen's distance D the screen is scaled by d / D about the head, which is the same as eyes D / d as far
-// apart.
-view::CameraPose screen_pose(const ViewPlane& plane, const Head& head, view::Eye eye, double separation,
+// The frustum of the real screen that shows the same picture: with zero parallax at d instead of at the screen's distance
+// D the screen is scaled by d / D about the head, which equals an eye separation scaled by D / d.
+view::CameraPose screen_pose(const ProjectionPlane& plane, const Head& head, view::Eye eye, double separation,
                              double zero_parallax);
 
 // The same camera in the world: `world_from_camera` of the scene camera that carries the display, rigid.

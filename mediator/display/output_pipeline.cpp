@@ -32,12 +32,12 @@ void expect(bool is_so, const Output& output, const char* what) {
 
 void check(const EyePicture& picture, const Output& output) {
     expect(picture.width > 0 && picture.height > 0 && picture.width <= MaxEdge && picture.height <= MaxEdge,
-           output, "an eye's picture has no or too many pixels");
+           output, "an eye's picture is empty or too large");
     expect(picture.values.size() ==
                std::size_t{3} * picture.width * picture.height * bytes_per_value(picture.encoding),
-           output, "an eye's picture has not as many bytes as its size says");
+           output, "the bytes of an eye's picture do not match its size");
     expect(reinterpret_cast<std::uintptr_t>(picture.values.data()) % bytes_per_value(picture.encoding) == 0,
-           output, "an eye's picture of half floats begins at an odd byte");
+           output, "the half floats of an eye's picture are not aligned");
 }
 
 std::array<std::uint16_t, 256> halves_of_srgb() {
@@ -49,14 +49,14 @@ std::array<std::uint16_t, 256> halves_of_srgb() {
     return halves;
 }
 
-// Cuts off at [0, 1]; pixels that are not finite become black and are counted.
+// Clamps to [0, 1]; pixels that are not finite become black and are counted.
 std::uint64_t keep_in_range(std::size_t count, PlanarRow row) {
     const __m256 zero = _mm256_setzero_ps(), one = _mm256_set1_ps(1.0f);
     std::uint64_t bad = 0;
     for (std::size_t i = 0; i < count; i += PackSize) {
         const __m256 r = _mm256_loadu_ps(row.planes[0] + i), g = _mm256_loadu_ps(row.planes[1] + i),
                      b = _mm256_loadu_ps(row.planes[2] + i);
-        // 0 times what is not finite is not a number. Halves add up to finite floats.
+        // 0 times a non-finite value is NaN. Sums of halves are finite floats.
         const __m256 zeros =
             _mm256_mul_ps(_mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(r, zero), _mm256_mul_ps(g, zero)),
                                         _mm256_mul_ps(b, zero)),
@@ -78,7 +78,7 @@ std::uint64_t keep_in_range(std::size_t count, PlanarRow row) {
 OutputPipeline::OutputPipeline(const Output& output, const scene::BlobStore& arrays)
     : output_(output), blend_(output, arrays), color_(output.color) {
     expect(output.width > 0 && output.height > 0 && output.width <= MaxEdge && output.height <= MaxEdge,
-           output, "the device has no or too many pixels");
+           output, "the device is empty or too large");
     expect(output.stereo != Stereo::SideBySide || output.width % 2 == 0, output,
            "eyes side by side need an even width");
     expect(output.stereo != Stereo::TopBottom || output.height % 2 == 0, output,
@@ -130,7 +130,7 @@ void OutputPipeline::copy_bytes(tbb::task_arena& arena, std::span<const EyePictu
                     continue;
                 }
                 for (std::size_t x = 0; x < width; ++x) {
-                    const Place from = upright_place(output_.turn, {x, y}, width, height);
+                    const PixelPosition from = upright_position(output_.turn, {x, y}, width, height);
                     std::memcpy(to + 3 * x, picture.values.data() + 3 * (from.y * picture.width + from.x), 3);
                 }
             }
@@ -138,7 +138,7 @@ void OutputPipeline::copy_bytes(tbb::task_arena& arena, std::span<const EyePictu
     }
 }
 
-// Half floats are read where they are. Others are made into halves first, and a single column into two.
+// Half floats are used in place. Bytes are converted to halves first, and a single column is duplicated.
 void OutputPipeline::take(tbb::task_arena& arena, const EyePicture& picture, Eye& eye) const {
     const auto* halves = reinterpret_cast<const std::uint16_t*>(picture.values.data());
     eye.picture = {halves, picture.width, picture.height};
@@ -158,7 +158,7 @@ void OutputPipeline::take(tbb::task_arena& arena, const EyePicture& picture, Eye
     eye.picture = {eye.as_half.data(), static_cast<std::uint32_t>(width), picture.height};
 }
 
-// The picture as the pixels of row y of the device see it.
+// Samples the picture for the pixels of row y of the device.
 void OutputPipeline::fetch(Eye& eye, std::size_t y, Space& space, PlanarRow out) const {
     const std::size_t width = output_.width, height = output_.height;
     if (eye.warp) {
@@ -173,7 +173,7 @@ void OutputPipeline::fetch(Eye& eye, std::size_t y, Space& space, PlanarRow out)
                 scale_y =
                     static_cast<float>(eye.picture.height) / static_cast<float>(is_on_side ? width : height);
     for (std::size_t x = 0; x < width; ++x) {
-        const Place at = upright_place(output_.turn, {x, y}, width, height);
+        const PixelPosition at = upright_position(output_.turn, {x, y}, width, height);
         space.x[x] = (static_cast<float>(at.x) + 0.5f) * scale_x - 0.5f;
         space.y[x] = (static_cast<float>(at.y) + 0.5f) * scale_y - 0.5f;
     }
@@ -215,11 +215,11 @@ PlanarRow OutputPipeline::compose(std::size_t picture, std::size_t y, Space& spa
 template <class Value>
 void OutputPipeline::check_all(std::span<const EyePicture> pictures,
                                std::span<const std::span<Value>> devices) const {
-    expect(pictures.size() == eye_count(), output_, "a frame has pictures of another number of eyes");
-    expect(devices.size() == picture_count(), output_, "there is room for another number of pictures");
+    expect(pictures.size() == eye_count(), output_, "a frame has pictures of a different number of eyes");
+    expect(devices.size() == picture_count(), output_, "the number of device pictures is wrong");
     for (const EyePicture& picture : pictures) check(picture, output_);
     for (const std::span<Value>& device : devices)
-        expect(device.size() == value_count(), output_, "the room for a picture has another size");
+        expect(device.size() == value_count(), output_, "the size of a device picture is wrong");
 }
 
 template <class Value>

@@ -25,22 +25,20 @@ struct EyePicture {
     std::span<const std::byte> values;
 };
 
-// From the pictures of an output's eyes to what its device shows: warp, soft edges and black level, both eyes
-// packed into one picture, colours of the device. Light is cut off at full white first, so that two
-// projectors that overlap show no more than one. Bytes that need nothing of this pass as they are.
+// From the pictures of an output's eyes to its device values: warp, soft edges and black level, both eyes
+// packed into one picture, colours of the device. Light is clamped to full white first, so that two
+// overlapping projectors show no more than one. Bytes that need no processing are copied.
 class OutputPipeline {
   public:
-    // The arrays of the output are read here, once. Throws Error{NotFound} when one is not in the store and
-    // Error{InvalidInput} when one has another size than the output says, or when halves of an odd number of
-    // pixels are asked for.
+    // Reads the arrays of the output. Throws Error{NotFound} when one is not in the store, Error{InvalidInput} when one
+    // does not have the output's size, or when an odd number of pixels is to be halved.
     OutputPipeline(const Output& output, const scene::BlobStore& arrays);
     OutputPipeline(const OutputPipeline&) = delete;
     OutputPipeline& operator=(const OutputPipeline&) = delete;
 
-    // Where this eye sees the screen from. Needed before the first run when the output has points. With a
-    // zero parallax d off the screen, which is thought D from the head, the camera's eye is the one that sees
-    // the screen itself as the picture shows it: frustum(plane, head, eye, separation x D / d, 0), with the
-    // same edges as the picture's.
+    // The frustum from which this eye sees the screen. Required before the first run when the output has points. With a
+    // zero parallax distance d that differs from the screen's distance D from the head, use the frustum of the real
+    // screen (screen_pose()): frustum(plane, head, eye, separation x D / d, 0), with the edges of the picture.
     void set_frustum(view::Eye eye, const view::CameraPose& in_display);
 
     std::size_t eye_count() const { return eyes_.size(); }
@@ -50,12 +48,12 @@ class OutputPipeline {
     }  // of a picture
 
     struct Report {
-        std::uint64_t not_finite = 0;  // pixels of eyes that were shown black
+        std::uint64_t not_finite = 0;  // pixels of eyes that were replaced by black
     };
-    // `pictures`: one an eye, left first; `devices`: picture_count() times value_count() values, rgb, rows
-    // from the top: bytes, or device values in [0, 1] that are not rounded. Allocates in the first run alone,
-    // and when a picture in bytes is larger than those before. Throws Error{InvalidInput} when a picture has
-    // not the size that it says.
+    // `pictures`: one per eye, left first; `devices`: picture_count() times value_count() values, rgb, rows
+    // from the top: bytes, or device values in [0, 1] that are not rounded. Allocates in the first run only,
+    // and when a picture in bytes is larger than those before. Throws Error{InvalidInput} when a picture does not
+    // have its stated size.
     Report run(tbb::task_arena& arena, std::span<const EyePicture> pictures,
                std::span<const std::span<std::uint8_t>> devices);
     Report run(tbb::task_arena& arena, std::span<const EyePicture> pictures,
@@ -68,7 +66,7 @@ class OutputPipeline {
         std::vector<std::uint16_t> as_half;  // of a picture in bytes
         HalfPicture picture;
     };
-    // What one thread works in.
+    // Scratch memory of one thread.
     struct Space {
         RowSpace rows;
         std::vector<float> x, y, points;

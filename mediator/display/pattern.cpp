@@ -25,16 +25,16 @@ float light_of_step(double step) {  // of 256, by sRGB
     return float(value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4));
 }
 
-// A line of text, magnified, with its middle at a place of the picture.
+// A magnified line of text, centred at a position of the picture.
 class Label {
   public:
-    Label(std::string text, const dvec2& middle, const dvec2& room) : text_(std::move(text)) {
+    Label(std::string text, const dvec2& center, const dvec2& room) : text_(std::move(text)) {
         const double width = double(GlyphAdvance) * double(std::max<std::size_t>(1, text_.size()));
         scale_ = std::floor(std::min(room.x / width, room.y / GlyphHeight));
-        corner_ = middle - 0.5 * scale_ * dvec2(width - 1.0, GlyphHeight - 1.0);
+        corner_ = center - 0.5 * scale_ * dvec2(width - 1.0, GlyphHeight - 1.0);
     }
-    // A frame of one dot around it stays dark, so that lines do not run into letters.
-    bool has_room_at(const dvec2& at) const {
+    // Keeps a dark margin of one dot, so that lines do not touch letters.
+    bool contains(const dvec2& at) const {
         const dvec2 dot = (at - corner_) / std::max(scale_, 1.0);
         return scale_ >= 1.0 && !text_.empty() && dot.x >= -1.0 && dot.y >= -1.0 &&
                dot.x < double(GlyphAdvance) * double(text_.size()) && dot.y < GlyphHeight + 1.0;
@@ -51,8 +51,8 @@ class Label {
     dvec2 corner_;
 };
 
-// Steps of light from left to right, where overlaps of a fifth do not reach; null where (u, v) is not on one
-// of the ramps.
+// Steps of light from left to right, outside of overlaps of up to a fifth; null where (u, v) is not on one of the
+// ramps.
 std::optional<vec3> ramp(double u, double v) {
     constexpr double Left = 0.15, Right = 0.85, Top = 0.60, Height = 0.032;
     if (u < Left || u >= Right || v < Top) return std::nullopt;
@@ -75,16 +75,16 @@ std::optional<vec3> ramp(double u, double v) {
     }
 }
 
-// The part of the view plane that the picture shows, in metres from the plane's origin.
+// The part of the projection plane that the picture shows, in metres from the plane's origin.
 struct Extent {
     dvec2 least, most;
 };
-Extent extent(const ViewPlane& plane) {
+Extent extent(const ProjectionPlane& plane) {
     Extent box{dvec2(std::numeric_limits<double>::infinity()),
                dvec2(-std::numeric_limits<double>::infinity())};
     for (const glm::dvec3& point : plane.hull) {
-        const glm::dvec3 way = point - plane.origin;
-        const dvec2 at(glm::dot(way, plane.right), glm::dot(way, plane.up));
+        const glm::dvec3 offset = point - plane.origin;
+        const dvec2 at(glm::dot(offset, plane.right), glm::dot(offset, plane.up));
         box.least = glm::min(box.least, at);
         box.most = glm::max(box.most, at);
     }
@@ -111,26 +111,26 @@ class Pattern {
     }
 
     vec3 at(std::uint32_t x, std::uint32_t y) const {
-        const dvec2 place(x + 0.5, y + 0.5);
-        const dvec2 to_edge = glm::min(place, size_ - place);
+        const dvec2 position(x + 0.5, y + 0.5);
+        const dvec2 to_edge = glm::min(position, size_ - position);
         if (std::min(to_edge.x, to_edge.y) < border()) return vec3(White);
-        if (const auto step = ramp(place.x / size_.x, place.y / size_.y)) return *step;
+        if (const auto step = ramp(position.x / size_.x, position.y / size_.y)) return *step;
         for (const Label* label : {&name_, &numbers_, &mark_}) {
-            if (label->has_room_at(place)) return vec3(label->covers(place) ? White : Background);
+            if (label->contains(position)) return vec3(label->covers(position) ? White : Background);
         }
-        return vec3(lines(place));
+        return vec3(lines(position));
     }
 
   private:
     double border() const { return std::min(size_.x, size_.y) >= 64.0 ? 2.0 : 1.0; }
 
-    // How much a line of two pixels, `metres` from the pixel's middle, covers of it.
+    // Coverage of a pixel by a line of two pixels width, `metres` from its centre.
     static float coverage(double metres, double pitch) {
         return float(std::clamp(1.5 - std::abs(metres) / pitch, 0.0, 1.0));
     }
 
-    float lines(const dvec2& place) const {
-        const dvec2 metres(box_.least.x + place.x * pitch_.x, box_.most.y - place.y * pitch_.y);
+    float lines(const dvec2& position) const {
+        const dvec2 metres(box_.least.x + position.x * pitch_.x, box_.most.y - position.y * pitch_.y);
         float light = Background;
         const auto draw = [&](float of_line, float covered) {
             light = std::max(light, Background + (of_line - Background) * covered);
@@ -139,12 +139,12 @@ class Pattern {
             const double off = metres[axis] - spacing_ * std::round(metres[axis] / spacing_);
             draw(Line, coverage(off, pitch_[axis]));
         }
-        const dvec2 from_middle = metres - 0.5 * (box_.least + box_.most);
+        const dvec2 from_center = metres - 0.5 * (box_.least + box_.most);
         for (int axis = 0; axis < 2; ++axis) {
-            if (std::abs(from_middle[1 - axis]) < 0.5 * spacing_)
-                draw(Axis, coverage(from_middle[axis], pitch_[axis]));
+            if (std::abs(from_center[1 - axis]) < 0.5 * spacing_)
+                draw(Axis, coverage(from_center[axis], pitch_[axis]));
         }
-        draw(Axis, coverage(glm::length(from_middle) - radius_, std::max(pitch_.x, pitch_.y)));
+        draw(Axis, coverage(glm::length(from_center) - radius_, std::max(pitch_.x, pitch_.y)));
         return light;
     }
 

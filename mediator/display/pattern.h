@@ -9,8 +9,8 @@ namespace tessera::display {
 // through the output's pipeline like every picture. Shows border, grid, circle, name and size, ramps in steps
 // of 8 bits (of sRGB: grey, red, green, blue, and the darkest 32 greys), and L or R for the eye.
 //
-// Grid lines lie at multiples of a power of two metres along the view plane's axes from its origin, so on
-// flat screens those of outputs that share a wall lie on each other where the outputs overlap.
+// Grid lines are at multiples of a power of two metres along the projection plane's axes from its origin, so on
+// flat screens the lines of outputs that share a wall coincide where the outputs overlap.
 frame::Image pattern(const Output& output, view::Eye eye);
 
 // The output without warp, soft edges and colour: for judging the device itself, pixel by pixel.

@@ -12,15 +12,15 @@ struct HalfPicture {
     std::uint32_t width = 0, height = 0;
 };
 
-// The picture at `count` places, bilinear: u and v in [0, 1] from its top left; within half a pixel of the
-// border the edge is repeated; not a number: black. u, v and the row are padded.
+// Samples the picture at `count` positions, bilinear: u and v in [0, 1] from its top left; clamped to edge; NaN: black.
+// u, v and the row are padded.
 void sample_row(const HalfPicture& picture, const float* u, const float* v, std::size_t count, PlanarRow out);
 
-// The same for places in pixels of the picture; the first pixel's centre is (0, 0).
+// The same for positions in pixels of the picture; the first pixel's centre is (0, 0).
 void sample_row_at(const HalfPicture& picture, const float* x, const float* y, std::size_t count,
                    PlanarRow out);
 
-// Row y of the picture as it is; the row's padding is left alone.
+// Copies row y of the picture; the padding is not written.
 void copy_row(const HalfPicture& picture, std::size_t y, PlanarRow out);
 
 }  // namespace tessera::display

@@ -6,18 +6,18 @@
 
 namespace tessera::display {
 
-// Loops over rows work on so many pixels at once: rows have room for the last pack in full.
+// Loops over rows process this many pixels at once: rows are padded to whole packs.
 inline constexpr std::size_t PackSize = 8;
 inline constexpr std::size_t padded(std::size_t count) {
     return (count + PackSize - 1) / PackSize * PackSize;
 }
 
-// Red, green and blue of a row of pixels, each for itself, padded. Linear light.
+// Red, green and blue planes of a row of pixels, padded. Linear light.
 struct PlanarRow {
     std::array<float*, 3> planes{};
 };
 
-// Rows that one thread works in.
+// Scratch rows of one thread.
 class RowSpace {
   public:
     RowSpace(std::size_t width, std::size_t count)

@@ -8,14 +8,14 @@
 namespace tessera::display {
 
 view::CameraPose pose(const Projector& projector, double aspect_ratio) {
-    const glm::dvec3 way = projector.look_at - projector.position;
-    const glm::dvec3 side = glm::cross(way, projector.up);
-    if (!(glm::length(way) > 0.0))
+    const glm::dvec3 direction = projector.look_at - projector.position;
+    const glm::dvec3 side = glm::cross(direction, projector.up);
+    if (!(glm::length(direction) > 0.0))
         throw Error(ErrorCode::InvalidInput, "the projector looks at its own position: move look_at");
-    // A thousandth of a degree from `up` says nothing about which side is up.
-    if (!(glm::length(side) > 2e-5 * glm::length(way) * glm::length(projector.up)))
+    // Within a thousandth of a degree of `up` the orientation is undefined.
+    if (!(glm::length(side) > 2e-5 * glm::length(direction) * glm::length(projector.up)))
         throw Error(ErrorCode::InvalidInput, "the projector looks along its up direction: give another up");
-    const glm::dvec3 back = -glm::normalize(way), right = glm::normalize(side);
+    const glm::dvec3 back = -glm::normalize(direction), right = glm::normalize(side);
     const double half_width = std::tan(projector.horizontal_fov / 2.0);
     const double half_height = half_width / aspect_ratio;
     const glm::dvec2 moved = 2.0 * projector.shift * glm::dvec2(half_width, half_height);
@@ -33,13 +33,13 @@ glm::dvec3 ray(const view::CameraPose& projector, double u, double v) {
     return glm::dvec3(projector.world_from_camera * glm::dvec4(x, y, -1.0, 0.0));
 }
 
-std::optional<glm::dvec2> place_in_picture(const view::CameraPose& projector, const glm::dvec3& point) {
+std::optional<glm::dvec2> image_coordinates(const view::CameraPose& projector, const glm::dvec3& point) {
     const glm::dmat4& axes = projector.world_from_camera;
-    const glm::dvec3 way = point - glm::dvec3(axes[3]);
-    const double depth = -glm::dot(way, glm::dvec3(axes[2]));
+    const glm::dvec3 direction = point - glm::dvec3(axes[3]);
+    const double depth = -glm::dot(direction, glm::dvec3(axes[2]));
     if (!(depth > 0.0)) return std::nullopt;
-    const double x = glm::dot(way, glm::dvec3(axes[0])) / depth,
-                 y = glm::dot(way, glm::dvec3(axes[1])) / depth;
+    const double x = glm::dot(direction, glm::dvec3(axes[0])) / depth,
+                 y = glm::dot(direction, glm::dvec3(axes[1])) / depth;
     return glm::dvec2((x - projector.left) / (projector.right - projector.left),
                       (y - projector.top) / (projector.bottom - projector.top));
 }

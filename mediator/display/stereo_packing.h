@@ -8,13 +8,13 @@
 
 namespace tessera::display {
 
-// Means of neighbours two by two: `count` of them go to `out` from pixel `first` on.
+// Averages pairs of neighbours: writes `count` means to `out` from pixel `first` on.
 void halve_columns(PlanarRow row, std::size_t count, std::size_t first, PlanarRow out);
 
 // `out` becomes the mean of both rows.
 void average_rows(std::size_t count, PlanarRow row, PlanarRow out);
 
-// How the colours of a red-cyan picture come from both eyes, in linear light, row by row.
+// Matrices from both eyes' colours to those of a red-cyan picture, in linear light, row by row.
 struct EyeMix {
     std::array<std::array<float, 3>, 3> left, right;
 };

@@ -33,26 +33,26 @@ dvec3 on_sphere(double azimuth, double elevation) {
             -std::cos(elevation) * std::cos(azimuth)};
 }
 
-dvec3 place(const Wall& wall, double u, double v) {
+dvec3 point_on(const Wall& wall, double u, double v) {
     return point(wall, u, v);
 }
 
-dvec3 place(const Cylinder& cylinder, double u, double v) {
+dvec3 point_on(const Cylinder& cylinder, double u, double v) {
     const double angle = cylinder.from + u * (cylinder.to - cylinder.from);
     return cylinder.centre + dvec3(cylinder.radius * std::sin(angle),
                                    cylinder.top + v * (cylinder.bottom - cylinder.top),
                                    -cylinder.radius * std::cos(angle));
 }
 
-dvec3 place(const Dome& dome, double u, double v) {
+dvec3 point_on(const Dome& dome, double u, double v) {
     const double azimuth = dome.from + u * (dome.to - dome.from);
     const double elevation = dome.top + v * (dome.bottom - dome.top);
     return dome.centre + dome.radius * tilted(on_sphere(azimuth, elevation), dome.tilt);
 }
 
-// Of a t^2 + 2 b t + c = 0 in front of the origin, the root whose place is nearer to `middle`.
+// Of a t^2 + 2 b t + c = 0 in front of the origin, the root whose point is nearer to `center`.
 std::optional<dvec3> nearer_root(double a, double b, double c, const dvec3& origin, const dvec3& direction,
-                                 const dvec3& middle) {
+                                 const dvec3& center) {
     const double inner = b * b - a * c;
     if (!(a > 0.0 && inner >= 0.0)) return std::nullopt;
     // The root without cancellation first: the other follows from the product of both.
@@ -62,31 +62,31 @@ std::optional<dvec3> nearer_root(double a, double b, double c, const dvec3& orig
     for (const double t : roots) {
         if (!(t > 0.0)) continue;
         const dvec3 candidate = origin + t * direction;
-        if (!best || glm::distance(candidate, middle) < glm::distance(*best, middle)) best = candidate;
+        if (!best || glm::distance(candidate, center) < glm::distance(*best, center)) best = candidate;
     }
     return best;
 }
 
-std::optional<dvec3> meet(const Wall& wall, const dvec3& origin, const dvec3& direction) {
+std::optional<dvec3> intersect(const Wall& wall, const dvec3& origin, const dvec3& direction) {
     const dvec3 normal = glm::cross(wall.across, wall.upward);
     const double t = glm::dot(wall.corner - origin, normal) / glm::dot(direction, normal);
     if (!(t > 0.0 && std::isfinite(t))) return std::nullopt;
     return origin + t * direction;
 }
 
-std::optional<dvec3> meet(const Cylinder& cylinder, const dvec3& origin, const dvec3& direction) {
-    const dvec3 way(direction.x, 0.0, direction.z);
+std::optional<dvec3> intersect(const Cylinder& cylinder, const dvec3& origin, const dvec3& direction) {
+    const dvec3 horizontal(direction.x, 0.0, direction.z);
     const dvec3 from(origin.x - cylinder.centre.x, 0.0, origin.z - cylinder.centre.z);
-    return nearer_root(glm::dot(way, way), glm::dot(from, way),
+    return nearer_root(glm::dot(horizontal, horizontal), glm::dot(from, horizontal),
                        glm::dot(from, from) - cylinder.radius * cylinder.radius, origin, direction,
-                       place(cylinder, 0.5, 0.5));
+                       point_on(cylinder, 0.5, 0.5));
 }
 
-std::optional<dvec3> meet(const Dome& dome, const dvec3& origin, const dvec3& direction) {
+std::optional<dvec3> intersect(const Dome& dome, const dvec3& origin, const dvec3& direction) {
     const dvec3 from = origin - dome.centre;
     return nearer_root(glm::dot(direction, direction), glm::dot(from, direction),
                        glm::dot(from, from) - dome.radius * dome.radius, origin, direction,
-                       place(dome, 0.5, 0.5));
+                       point_on(dome, 0.5, 0.5));
 }
 
 }  // namespace
@@ -96,13 +96,13 @@ Wall wall(const dvec3& lower_left, const dvec3& lower_right, const dvec3& upper_
     const auto refuse = [](const std::string& why) { throw Error(ErrorCode::InvalidInput, why); };
     const dvec3 across = lower_right - lower_left, upward = upper_left - lower_left;
     const double width = glm::length(across), height = glm::length(upward);
-    if (!(width > 0.0)) refuse("lower_left and lower_right are the same place: the wall has no area");
-    if (!(height > 0.0)) refuse("lower_left and upper_left are the same place: the wall has no area");
+    if (!(width > 0.0)) refuse("lower_left and lower_right are the same point: the wall has no area");
+    if (!(height > 0.0)) refuse("lower_left and upper_left are the same point: the wall has no area");
     if (!is_right_angle(across, upward)) {
         if (is_right_angle(lower_left - lower_right, upper_left - lower_right))
-            refuse("the corners cross: upper_left lies above lower_right; is it the upper right one?");
+            refuse("the corners cross: upper_left is above lower_right; is it the upper right one?");
         const double degrees = degrees_between(across, upward);
-        if (degrees < 0.5 || degrees > 179.5) refuse("the corners lie on one line: the wall has no area");
+        if (degrees < 0.5 || degrees > 179.5) refuse("the corners are collinear: the wall has no area");
         char text[120];
         std::snprintf(text, sizeof text,
                       "the edges at lower_left meet at %.1f degrees, not at 90: measure the corners again",
@@ -111,8 +111,8 @@ Wall wall(const dvec3& lower_left, const dvec3& lower_right, const dvec3& upper_
     }
     if (upper_right) {
         if (glm::dot(*upper_right - upper_left, across) <= 0.0)
-            refuse("the corners cross: upper_right lies left of upper_left; exchange them");
-        // Half a degree of each of the edges that meet there.
+            refuse("the corners cross: upper_right is left of upper_left; exchange them");
+        // Half a degree for each of the two edges.
         if (glm::distance(*upper_right, lower_right + upward) > 0.0175 * std::max(width, height))
             refuse("upper_right does not complete the rectangle: measure the corners again");
     }
@@ -133,18 +133,18 @@ dvec3 point(const Wall& wall, double u, double v) {
 }
 
 dvec3 point(const Screen& screen, double u, double v) {
-    return std::visit([&](const auto& shape) { return place(shape, u, v); }, screen);
+    return std::visit([&](const auto& shape) { return point_on(shape, u, v); }, screen);
 }
 
 std::optional<dvec3> hit(const Screen& screen, const dvec3& origin, const dvec3& direction) {
-    return std::visit([&](const auto& shape) { return meet(shape, origin, direction); }, screen);
+    return std::visit([&](const auto& shape) { return intersect(shape, origin, direction); }, screen);
 }
 
-ViewPlane view_plane(const Wall& wall, const Part& part) {
-    ViewPlane plane{.origin = wall.corner,
-                    .right = glm::normalize(wall.across),
-                    .up = glm::normalize(wall.upward),
-                    .hull = {}};
+ProjectionPlane projection_plane(const Wall& wall, const Part& part) {
+    ProjectionPlane plane{.origin = wall.corner,
+                          .right = glm::normalize(wall.across),
+                          .up = glm::normalize(wall.upward),
+                          .hull = {}};
     for (const double y : {part.bottom, part.top}) {
         for (const double x : {part.left, part.right})
             plane.hull.push_back(wall.corner + x * wall.across + y * wall.upward);

@@ -7,8 +7,8 @@
 
 #include "mediator/display/display.h"
 
-// Screens as geometry, in display space. A place on a screen is (u, v) as in its picture: u from 0 at the
-// left to 1 at the right, v from 0 at the top to 1 at the bottom, as people see it.
+// Screens as geometry, in display space. A position on a screen is (u, v) as in its picture: u from 0 at the left to 1
+// at the right, v from 0 at the top to 1 at the bottom, as seen by viewers.
 namespace tessera::display {
 
 // A flat rectangle: its lower left corner and the edges from there.
@@ -23,8 +23,8 @@ struct Cylinder {
     double radius = 1.0, from = -0.5, to = 0.5, bottom = -1.0, top = 1.0;
 };
 
-// A part of a sphere: azimuth as of the cylinder, elevation above the horizon; then the whole is turned about
-// the x axis through the centre by `tilt`: its zenith comes forward.
+// A part of a sphere: azimuth as of the cylinder, elevation above the horizon; then rotated about the x axis
+// through the centre by `tilt`, zenith forward.
 struct Dome {
     glm::dvec3 centre{0.0};
     double radius = 1.0, from = -0.5, to = 0.5, bottom = 0.0, top = 0.5, tilt = 0.0;
@@ -32,27 +32,27 @@ struct Dome {
 
 using Screen = std::variant<Wall, Cylinder, Dome>;
 
-// Corners as they were measured; the fourth is only looked at. Edges that are not at right angles by up to
-// half a degree (9 mm in 1 m: a mistake of the tape) are straightened. Throws Error{InvalidInput} when the
-// corners cross, do not make a rectangle, or enclose no area.
+// From measured corners; the fourth is only checked. Deviations of up to half a degree from right angles (9 mm in 1 m:
+// measurement errors) are corrected. Throws Error{InvalidInput} when the corners cross, do not form a rectangle, or
+// enclose no area.
 Wall wall(const glm::dvec3& lower_left, const glm::dvec3& lower_right, const glm::dvec3& upper_left,
           const std::optional<glm::dvec3>& upper_right = {});
 
-// Straight ahead of the display's origin: what a camera of this vertical field of view (radians) sees at that
-// distance.
+// Straight ahead of the display's origin: the rectangle that a camera with this vertical field of view (radians) sees
+// at that distance.
 Wall wall_in_view(double vertical_fov, double aspect_ratio, double distance);
 
 glm::dvec3 point(const Wall& wall, double u, double v);
 glm::dvec3 point(const Screen& screen, double u, double v);
 
-// Where a ray meets the screen or its continuation; of two such places the one nearer to the screen's middle.
+// Intersection of a ray with the screen or its continuation; of two the one nearer to the screen's centre.
 std::optional<glm::dvec3> hit(const Screen& screen, const glm::dvec3& origin, const glm::dvec3& direction);
 
-// Of a part of the wall, [left, right] x [bottom, top] in parts of the whole from the lower left. Parts that
-// share an edge share its corners bit by bit, so their pictures do, too.
+// A part of the wall, [left, right] x [bottom, top] as fractions from the lower left. Parts that share an edge have
+// bit-identical corners there, and so do their pictures.
 struct Part {
     double left = 0.0, right = 1.0, bottom = 0.0, top = 1.0;
 };
-ViewPlane view_plane(const Wall& wall, const Part& part = {});
+ProjectionPlane projection_plane(const Wall& wall, const Part& part = {});
 
 }  // namespace tessera::display

@@ -6,18 +6,18 @@
 
 namespace tessera::display {
 
-// Whether the picture's width lies along the device's height.
+// Whether the picture's width is along the device's height.
 inline bool swaps_edges(Turn turn) {
     return turn == Turn::Quarter || turn == Turn::ThreeQuarters;
 }
 
-struct Place {
+struct PixelPosition {
     std::size_t x = 0, y = 0;
 };
 
-// What place of the upright picture a place of a device's picture of width x height shows, counted from top
+// The pixel of the upright picture that a pixel of the device's width x height picture shows, both from the top
 // left: with the device turned by a quarter, its top edge is on the right.
-inline Place upright_place(Turn turn, Place at, std::size_t width, std::size_t height) {
+inline PixelPosition upright_position(Turn turn, PixelPosition at, std::size_t width, std::size_t height) {
     switch (turn) {
         case Turn::None:
             break;

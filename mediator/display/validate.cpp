@@ -11,7 +11,7 @@ namespace tessera::display {
 
 namespace {
 
-// Of all eyes of an output: they wait for one process at a time.
+// Of all eyes of an output together: they are queued for one output client.
 constexpr std::uint64_t MaxPictureBytes = std::uint64_t{200} << 20;
 constexpr std::size_t MaxViews = 128;
 
@@ -25,7 +25,8 @@ void check_grid(const Grid& grid, std::uint32_t components, const std::string& w
     const std::uint64_t bytes = std::uint64_t{4} * grid.columns * grid.rows * grid.components;
     if (grid.components != components || grid.columns < 2 || grid.rows < 2 || grid.columns > MaxEdge ||
         grid.rows > MaxEdge || grid.values.byte_size != bytes)
-        found.push_back(what + " is no grid of " + std::to_string(components) + " components: make it anew");
+        found.push_back(what + " must be a grid of " + std::to_string(components) +
+                        " components: create it again");
 }
 
 void check_output(const Display& display, const Output& output, std::vector<std::string>& found) {
@@ -43,9 +44,9 @@ void check_output(const Display& display, const Output& output, std::vector<std:
     if (output.priority != 1 && output.priority != 2 && output.priority != 4 && output.priority != 8)
         bad("its priority is not 1, 2, 4 or 8");
     if (!output.points.empty() && output.stereo == Stereo::InterlacedRows)
-        bad("interlaced rows and a warp exclude each other: rows must reach the screen unwarped");
+        bad("interlaced rows cannot be warped: remove the warp or choose another stereo mode");
     if (!output.points.empty() && output.turn != Turn::None)
-        bad("it is turned and warped: leave the turn out, the warp says where its pixels are seen");
+        bad("it has both a turn and a warp: leave the turn out, the warp includes it");
     check_grid(output.points, 3, name + ": its points", found);
     check_grid(output.blend.weights, 1, name + ": its weights", found);
     check_grid(output.blend.lift, 1, name + ": its black-level lift", found);
@@ -58,21 +59,22 @@ void check_output(const Display& display, const Output& output, std::vector<std:
     if (color.gamma != 0.0 && !is_within(color.gamma, 0.5, 5.0)) bad("its gamma is not within 0.5 and 5");
     if (color.curve.size() == 1) bad("its curve has one point: give two or more");
     for (const float value : color.curve) {
-        if (!is_within(value, 0.0, 1.0)) bad("its curve leaves 0 to 1");
+        if (!is_within(value, 0.0, 1.0)) bad("its curve has values not within 0 and 1");
     }
     for (int i = 0; i < 3; ++i) {
         if (!is_within(color.gain[i], 0.0, 100.0)) bad("its gain is not within 0 and 100");
         for (int j = 0; j < 3; ++j) {
-            if (!is_within(color.matrix[i][j], -100.0, 100.0)) bad("its colour matrix has absurd numbers");
+            if (!is_within(color.matrix[i][j], -100.0, 100.0))
+                bad("its colour matrix has numbers not within -100 and 100");
         }
     }
-    const ViewPlane& plane = output.plane;
+    const ProjectionPlane& plane = output.plane;
     constexpr double Tolerance = 1e-6;
     if (!(std::abs(glm::length(plane.right) - 1.0) < Tolerance) ||
         !(std::abs(glm::length(plane.up) - 1.0) < Tolerance) ||
         !(std::abs(glm::dot(plane.right, plane.up)) < Tolerance))
-        bad("the axes of its view plane are not unit and orthogonal");
-    if (plane.hull.size() < 3) return bad("its view plane has fewer than three points");
+        bad("the axes of its projection plane are not unit and orthogonal");
+    if (plane.hull.size() < 3) return bad("its projection plane has fewer than three points");
     try {
         for (const view::Eye eye : eyes(output.stereo))
             (void)frustum(plane, display.head, eye, display.eye_separation, display.zero_parallax);
@@ -93,7 +95,8 @@ std::vector<std::string> problems(const Display& display) {
         found.emplace_back("no layer of the display is shown: show one of them");
     if (!is_within(display.units_per_metre, 1e-9, 1e9))
         found.emplace_back("units_per_metre is not within 1e-9 and 1e9");
-    if (!is_somewhere(display.head)) found.emplace_back("the head is more than 1000 km away: check its unit");
+    if (!has_valid_position(display.head))
+        found.emplace_back("the head is more than 1000 km away: check its unit");
     if (!is_within(display.eye_separation, 0.0, 10.0))
         found.emplace_back("the eye separation is not within 0 and 10 m");
     if (!is_within(display.zero_parallax, 0.0, 1e6))

@@ -7,8 +7,8 @@
 
 namespace tessera::display {
 
-// What is wrong with a display, one phrase each that names the output and the remedy; empty = it can be
-// shown. Filter names and the contents of grids are looked at by who uses them.
+// The problems of a display, each naming the output and the remedy; empty = valid. Filter names and the contents of
+// grids are checked where they are used.
 std::vector<std::string> problems(const Display& display);
 
 }  // namespace tessera::display

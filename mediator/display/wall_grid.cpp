@@ -8,17 +8,17 @@ namespace tessera::display {
 
 namespace {
 
-// From the lower end of the axis. `bezel` as a part of the whole.
+// From the lower end of the axis. `bezel` as a fraction of the whole.
 struct GridAxis {
     std::uint32_t count, pixels, overlap;
     double bezel;
 
     std::pair<double, double> ends(std::uint32_t index) const {
-        // With neither bezel nor overlap an end is a whole number over a whole number, alike for neighbours.
+        // With neither bezel nor overlap an end is a quotient of whole numbers, identical for neighbours.
         const double advance = double(pixels - overlap), total = advance * count + overlap;
-        const double share = 1.0 - bezel * (count - 1);
+        const double visible = 1.0 - bezel * (count - 1);
         const double begin = advance * index, end = begin + pixels;
-        return {begin / total * share + bezel * index, end / total * share + bezel * index};
+        return {begin / total * visible + bezel * index, end / total * visible + bezel * index};
     }
 };
 
@@ -27,12 +27,12 @@ GridAxis axis(std::uint32_t count, std::uint32_t pixels, std::uint32_t overlap, 
     const std::string direction(name);
     if (overlap > 0 && bezel > 0.0) {
         throw Error(ErrorCode::InvalidInput,
-                    "outputs have bezels and overlap " + direction + ": they have one or the other");
+                    "outputs have bezels and overlap " + direction + ": give only one of them");
     }
     if (count > 1 && overlap > pixels / 2) {
         throw Error(ErrorCode::InvalidInput, "outputs overlap " + direction + " by more than half of their " +
                                                  std::to_string(pixels) +
-                                                 " pixels: three pictures would meet");
+                                                 " pixels: at most two pictures may overlap");
     }
     if (!(bezel * (count - 1) < 1.0))
         throw Error(ErrorCode::InvalidInput, "the bezels " + direction + " leave nothing of the wall");

@@ -7,12 +7,12 @@
 
 namespace tessera::display {
 
-// Columns x rows of outputs of one size on one wall, whose corners are those of the outer pixels.
+// Columns x rows of outputs of the same size on one wall, whose corners are those of the outer pixels.
 struct WallGrid {
     std::uint32_t columns = 1, rows = 1;
     std::uint32_t width = 1920, height = 1080;  // pixels of each output's picture
-    // Metres between the pixels of neighbours (frames of monitors: what lies behind them is not shown), or
-    // pixels that neighbours share (projectors). Not both.
+    // Metres between the pixels of neighbours (frames of monitors, which hide part of the picture), or pixels that
+    // neighbours share (projectors). Not both.
     double bezel_across = 0.0, bezel_upward = 0.0;
     std::uint32_t overlap_across = 0, overlap_upward = 0;
 };

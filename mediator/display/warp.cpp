@@ -43,7 +43,7 @@ void Warp::make_row(std::size_t y, std::span<float> space) {
     for (std::size_t c = 0; c < 3; ++c) points_.row(c, y, at + c * width_, at + 3 * width_);
     const glm::dvec3 right(camera_.world_from_camera[0]), up(camera_.world_from_camera[1]),
         back(camera_.world_from_camera[2]), eye(camera_.world_from_camera[3]);
-    // u and v of a direction are its parts along these two, over its part along the third: its depth.
+    // u and v of a direction are its components along these two, divided by that along the third: its depth.
     const glm::dvec3 along_u = (right + camera_.left * back) / (camera_.right - camera_.left);
     const glm::dvec3 along_v = -(up + camera_.top * back) / (camera_.top - camera_.bottom);
     float *const u = u_.data() + y * stride_, *const v = v_.data() + y * stride_;
@@ -54,7 +54,7 @@ void Warp::make_row(std::size_t y, std::span<float> space) {
         const double at_u = (along_u.x * dx + along_u.y * dy + along_u.z * dz) / depth;
         const double at_v = (along_v.x * dx + along_v.y * dy + along_v.z * dz) / depth;
         const double in_u = std::min(std::max(at_u, 0.0), 1.0), in_v = std::min(std::max(at_v, 0.0), 1.0);
-        // What is not a number is not there.
+        // NaN: not visible.
         const bool is_there =
             depth > 0.0 && std::abs(at_u - in_u) <= margin_u_ && std::abs(at_v - in_v) <= margin_v_;
         u[x] = is_there ? static_cast<float>(in_u) : NoSource;

@@ -9,9 +9,9 @@
 
 namespace tessera::display {
 
-// Where in an eye's picture each pixel of a device looks: the point of the screen where the pixel is seen,
-// projected from the eye onto the view plane. Rows are made when they are first asked for; rows of different
-// numbers may be asked for by different threads at once.
+// For each pixel of a device, its coordinates in an eye's picture: the pixel's point on the screen, projected from the
+// eye onto the projection plane. Rows are computed on first use; different rows may be used by different threads
+// concurrently.
 class Warp {
   public:
     // `points` has three components and outlives this. A point up to half a pixel of the view beyond the
@@ -19,11 +19,11 @@ class Warp {
     Warp(const DeviceGrid& points, const Output& output);
     void set_frustum(const view::CameraPose& in_display);
 
-    // Places in [0, 1] from the top left of the picture; not a number: the eye does not see the point there.
+    // In [0, 1] from the top left of the picture; NaN: the eye does not see the point there.
     struct Row {
         const float *u = nullptr, *v = nullptr;  // padded
     };
-    // `space`: space_for() floats that nobody else uses meanwhile.
+    // `space`: scratch memory of space_for() floats.
     Row row(std::size_t y, std::span<float> space);
     static std::size_t space_for(std::size_t width, const DeviceGrid& points) {
         return 3 * width + points.columns();

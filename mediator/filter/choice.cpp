@@ -41,18 +41,18 @@ Expected<double> value_of(const Description& filter, const Parameter& parameter,
     if (result.ec != std::errc() || result.ptr != text.data() + text.size() || !std::isfinite(value)) {
         return wrong(name + " needs a number, not '" + std::string(text) + "'");
     }
-    if (value < parameter.least || value > parameter.most) {
-        return wrong(name + " is " + number(value) + ": choose a value from " + number(parameter.least) +
-                     " to " + number(parameter.most));
+    if (value < parameter.minimum || value > parameter.maximum) {
+        return wrong(name + " is " + number(value) + ": choose a value from " + number(parameter.minimum) +
+                     " to " + number(parameter.maximum));
     }
     return value;
 }
 
 }  // namespace
 
-Values standard_values(const Description& description) {
+Values default_values(const Description& description) {
     Values values;
-    for (const Parameter& parameter : description.parameters) values.push_back(parameter.standard);
+    for (const Parameter& parameter : description.parameters) values.push_back(parameter.default_value);
     return values;
 }
 
@@ -69,7 +69,7 @@ Expected<Choice> parse_choice(std::string_view text, std::span<const FilterEntry
                      list(names));
     }
     const Description& filter = entry->description;
-    Choice choice{&*entry, standard_values(filter)};
+    Choice choice{&*entry, default_values(filter)};
     std::string_view rest = colon == std::string_view::npos ? "" : text.substr(colon + 1);
     while (!rest.empty()) {
         const std::string_view item = rest.substr(0, rest.find(','));
@@ -97,7 +97,7 @@ Expected<Choice> parse_choice(std::string_view text, std::span<const FilterEntry
     return choice;
 }
 
-frame::ChannelSet lacking(const Choice& choice, frame::ChannelSet there) {
+frame::ChannelSet missing_channels(const Choice& choice, frame::ChannelSet there) {
     const bool is_none = choice.entry->description.name == "none";
     if (is_none && there.contains(frame::Channel::Color)) there.insert(frame::Channel::Radiance);
     return choice.channels() - there;
@@ -108,7 +108,7 @@ std::string to_text(const Choice& choice) {
     std::string text;
     for (std::size_t i = 0; i < filter.parameters.size(); ++i) {
         const Parameter& parameter = filter.parameters[i];
-        if (choice.values[i] == parameter.standard) continue;
+        if (choice.values[i] == parameter.default_value) continue;
         text += (text.empty() ? ":" : ",") + std::string(parameter.name) + "=";
         text += parameter.choices.empty()
                     ? number(choice.values[i])

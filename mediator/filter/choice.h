@@ -8,7 +8,7 @@
 
 namespace tessera::filter {
 
-// A filter of a table with its values.
+// A filter with its parameter values.
 struct Choice {
     const FilterEntry* entry = nullptr;
     Values values;
@@ -16,13 +16,13 @@ struct Choice {
     frame::ChannelSet channels() const { return entry->description.channels(values); }
 };
 
-// NAME[:key=value,...]; empty means "none". InvalidInput names what is wrong, its range and the nearest name.
+// NAME[:key=value,...]; empty means "none". InvalidInput names the problem and the valid names or range.
 Expected<Choice> parse_choice(std::string_view text, std::span<const FilterEntry> table);
 
-// What the filter reads and `there` lacks. Without a filter the picture may be Color as well as Radiance.
-frame::ChannelSet lacking(const Choice& choice, frame::ChannelSet there);
+// Channels that the filter reads and `there` does not contain. Without a filter, Color suffices instead of Radiance.
+frame::ChannelSet missing_channels(const Choice& choice, frame::ChannelSet there);
 
-// The shortest text that parses to the same: values that are standard are left out.
+// The shortest text that parses to the same: default values are left out.
 std::string to_text(const Choice& choice);
 
 }  // namespace tessera::filter

@@ -12,15 +12,15 @@
 #include "mediator/base/in_place_list.h"
 #include "mediator/filter/inputs.h"
 
-// What a reconstruction owes the picture: statistics of samples in, one image out. It knows neither nodes nor
-// tiles, does not tone-map, and gives the same bits for any number of threads.
+// The interface of a denoiser: sample statistics in, one image out. It does not depend on nodes or tiles, does not
+// tone-map, and gives the same bits for any number of threads.
 namespace tessera::filter {
 
-// A number, or a choice among names (then the value is the index). All are live: a run reads them anew.
+// A number, or a choice among names (then the value is the index). Every run uses the current values.
 struct Parameter {
     std::string_view name, unit, meaning;
-    double standard = 0.0, least = 0.0, most = 0.0;  // the default, and the range that is accepted
-    std::vector<std::string_view> choices;           // empty: a number
+    double default_value = 0.0, minimum = 0.0, maximum = 0.0;
+    std::vector<std::string_view> choices;  // empty: a number
 };
 
 // In the order of the description's parameters.
@@ -29,16 +29,15 @@ using Values = std::vector<double>;
 struct Description {
     std::string_view name, summary, source;  // source: "Schwenk 3"
     std::vector<Parameter> parameters;
-    frame::ChannelSet (*channels)(const Values&);  // that a run with these values reads
-    // Its error goes to 0 with the samples, and it does not worsen a converged picture. Otherwise it is
-    // biased.
+    frame::ChannelSet (*channels)(const Values&);  // read by a run with these values
+    // Its error goes to 0 with the number of samples. Otherwise it is biased.
     bool consistent = false;
     // Keeps a history between runs: reset() drops it.
     bool temporal = false;
-    // What paths go to HighVariance, where it matters which.
+    // The paths for HighVariance, if it reads that channel.
     view::PathClass path_class = view::PathClass::Indirect;
 };
-Values standard_values(const Description& description);
+Values default_values(const Description& description);
 
 struct DebugMap {
     std::string name;  // EXR layer: "blend"
@@ -59,8 +58,8 @@ struct Pass {
 struct Report {
     InPlaceList<Pass, 64> passes;
     InPlaceList<std::string_view, 4>
-        notes;             // what a user should know, as a fallback that was taken; literals
-    bool stopped = false;  // asked to: the picture means nothing
+        notes;             // for the user, such as a fallback that was used; string literals
+    bool stopped = false;  // on request: the picture is invalid
 };
 
 struct RunContext {
@@ -68,7 +67,7 @@ struct RunContext {
     std::stop_token stop;
 };
 
-// Made for one size. `run` allocates nothing once it has seen its inputs; one thread at a time.
+// For one picture size. After the first `run` it allocates nothing. One thread at a time.
 class Filter {
   public:
     virtual ~Filter() = default;
@@ -76,7 +75,7 @@ class Filter {
     virtual void reset() {}
 };
 
-// One line of the explicit table in master/filter/catalog.cpp.
+// One row of the table in master/filter/catalog.cpp.
 struct FilterEntry {
     Description description;
     std::unique_ptr<Filter> (*make)(std::uint32_t width, std::uint32_t height);

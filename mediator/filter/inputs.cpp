@@ -11,9 +11,9 @@ namespace {
 
 using frame::Channel;
 
-// Even samples are a sum with a count of its own; the odd ones are what is left of the whole.
+// The even samples are stored as sum and count; the odd ones are the difference to all samples.
 void split_halves(const frame::FilmTile& film, Inputs& inputs) {
-    const std::uint32_t even = film.channels.first_plane(Channel::EvenHalf);
+    const std::uint32_t even = film.channels.first_plane(Channel::HalfBufferA);
     const std::uint32_t all = film.channels.first_plane(Channel::Radiance);
     for (int half = 0; half < 2; ++half) {
         inputs.halves[half].resize(inputs.width, inputs.height, 3);
@@ -37,7 +37,7 @@ void clear_channel(const frame::ChannelInfo& entry, Inputs& inputs) {
     inputs.means[index].resize(0, 0, 0);
     inputs.variances[index].resize(0, 0, 0);
     if (entry.channel == Channel::ObjectIndex) inputs.object_ids.clear();
-    if (entry.channel == Channel::EvenHalf) {
+    if (entry.channel == Channel::HalfBufferA) {
         for (Planes& half : inputs.halves) half.resize(0, 0, 0);
         for (Planes& counts : inputs.half_counts) counts.resize(0, 0, 0);
     }
@@ -50,7 +50,7 @@ void take_channel(const frame::FilmTile& film, const frame::ChannelInfo& entry, 
         inputs.object_ids.resize(ids.size());
         for (std::size_t i = 0; i < ids.size(); ++i)
             inputs.object_ids[i] = std::bit_cast<std::uint32_t>(ids[i]);
-    } else if (entry.channel == Channel::EvenHalf) {
+    } else if (entry.channel == Channel::HalfBufferA) {
         if (film.channels.contains(Channel::Radiance)) {
             split_halves(film, inputs);
         } else {

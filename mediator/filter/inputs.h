@@ -10,12 +10,12 @@
 
 namespace tessera::filter {
 
-// What happened to the scene since the run before, for filters with a history. A film that goes on (same view
-// revision, same version) has none of it.
+// What changed since the previous run, for temporal filters. Nothing if the same film continues (same view revision,
+// same scene version).
 struct Changes {
-    bool film_restarted = false;       // the samples are new: the run before saw another film
-    bool lights_or_materials = false;  // light may differ anywhere
-    bool geometry = false;             // surfaces may have moved; object ids tell where
+    bool film_restarted = false;       // the film is a new one
+    bool lights_or_materials = false;  // radiance may differ anywhere
+    bool geometry = false;             // surfaces may have moved; object ids show where
 };
 
 // The assembled frame of one view as a filter reads it: means, variances of the means and sample counts, all
@@ -27,10 +27,10 @@ struct Inputs {
     std::array<Planes, frame::ChannelCount> means;      // n = 0: 0 (Depth +inf)
     std::array<Planes, frame::ChannelCount> variances;  // of the mean, of Moments channels: M2 / (n (n - 1));
                                                         // 0 where n < 2: unknown there, not small
-    std::array<Planes, 2> halves;                       // radiance of even and of odd samples, with EvenHalf
-    std::array<Planes, 2> half_counts;                  // samples in each
-    std::vector<std::uint32_t> object_ids;              // with ObjectIndex; 0 = miss
-    view::CameraPose camera;                            // of the whole picture
+    std::array<Planes, 2> halves;           // radiance of even and of odd samples, with HalfBufferA
+    std::array<Planes, 2> half_counts;      // samples in each
+    std::vector<std::uint32_t> object_ids;  // with ObjectIndex; 0 = miss
+    view::CameraPose camera;                // of the whole picture
     view::PathClass path_class = view::PathClass::Indirect;
     Changes changes;
 
@@ -51,9 +51,9 @@ struct Inputs {
     }
 };
 
-// Divides by n (frame::resolve); the film covers the window of the view. Whatever `inputs` were before, they are
-// those of the film afterwards; they allocate only where the film is larger or has other channels.
-// `later`: film of the same size that holds only some of the samples, for the channels that `film` lacks.
+// Resolves a film (frame::resolve) that covers the crop window of the view into `inputs`, reusing their memory unless
+// the film is larger or has other channels. `later`: a film of the same size with only some of the samples, for
+// channels that are missing in `film`.
 void resolve_inputs(const frame::FilmTile& film, const view::View& view, const frame::FilmTile* later,
                     Inputs& inputs);
 Inputs make_inputs(const frame::FilmTile& film, const view::View& view,

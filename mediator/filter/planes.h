@@ -19,7 +19,7 @@ class Planes {
           components_(components),
           values_(std::size_t{width} * height * components) {}
 
-    // Of another size and with any values; keeps its memory where that suffices.
+    // The values are undefined afterwards; reuses the memory if it suffices.
     void resize(std::uint32_t width, std::uint32_t height, std::uint32_t components) {
         width_ = width;
         height_ = height;
@@ -53,7 +53,7 @@ class Planes {
     std::vector<float> values_;
 };
 
-// For files, which keep the components of a pixel together.
+// With interleaved components, for files.
 frame::Image interleaved(const Planes& planes);
 
 }  // namespace tessera::filter

@@ -10,7 +10,7 @@ BlockForest::Outcome BlockForest::insert(FilmTile block) {
     if (after != blocks_.begin()) {
         const FilmTile& before = std::prev(after)->second;
         if (before.block == range) {
-            return identical_bits(before, block) ? Outcome::Duplicate : Outcome::Contradiction;
+            return identical_bits(before, block) ? Outcome::Duplicate : Outcome::Conflict;
         }
         if (before.block.contains(range)) return Outcome::Duplicate;
     }

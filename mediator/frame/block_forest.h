@@ -7,15 +7,15 @@
 
 namespace tessera::frame {
 
-// The film of one tile and the ledger of who contributed, in one: a set of disjoint aligned blocks. Siblings merge at
-// once, so the roots are the fewest blocks that cover what is there, whatever the order of arrival.
+// The film of one tile as a set of disjoint aligned blocks of samples. Siblings are merged immediately, so the roots
+// are the fewest blocks that cover the received samples, independent of the order of arrival.
 class BlockForest {
   public:
     enum class Outcome {
-        Merged,         // new samples
-        Duplicate,      // already inside, same bits where they can be compared
-        Replaced,       // contained smaller blocks, which it replaces
-        Contradiction,  // an equal block with other bits is there: a broken promise, kept out
+        Merged,     // new samples
+        Duplicate,  // already contained, with the same bits if it can be compared
+        Replaced,   // contained smaller blocks, which it replaces
+        Conflict,   // the same block exists with other bits: rejected
     };
 
     Outcome insert(FilmTile block);
@@ -26,7 +26,7 @@ class BlockForest {
     std::vector<SampleBlock> missing(std::uint64_t spp) const;                   // of [0, spp), ascending
     const std::map<std::uint64_t, FilmTile>& blocks() const { return blocks_; }  // by first sample
     FilmTile merged()
-        const;  // the roots folded in ascending order of first sample; empty forest: a tile without pixels
+        const;  // the roots merged in order of their first sample; an empty forest gives a tile without pixels
 
   private:
     std::map<std::uint64_t, FilmTile> blocks_;

@@ -6,14 +6,14 @@
 
 namespace tessera::frame {
 
-// A back-end's way to a unit's block: push whole-tile blocks of one sample in ascending order; equal neighbours merge
-// like the carries of a binary counter. What is inside at any time is the complete prefix as its maximal aligned blocks.
+// Accumulates the samples of a work unit: push blocks of one sample in ascending order; siblings merge like carries of
+// a binary counter. At any time it holds the samples so far as maximal aligned blocks.
 class BlockStack {
   public:
     void push(FilmTile block);
     std::vector<FilmTile> take();  // ascending; leaves the stack empty
     FilmTile recycled(Rect rect, SampleBlock block,
-                      ChannelSet channels);  // a tile to fill, from spent memory
+                      ChannelSet channels);  // a tile without samples, in reused memory
 
   private:
     std::vector<FilmTile> blocks_;

@@ -11,7 +11,7 @@
 
 namespace tessera::frame {
 
-// How values of one pixel become one. Planes are what a channel of c components keeps in a film tile:
+// How the samples of a pixel are merged, and the planes of a film tile for a channel of c components:
 //   Moments  2c planes: means, then M2 = sum of squared deviations   (variance = M2 / (n - 1))
 //   Sum      c planes: the plain sum                                  (resolve divides by n)
 //   Minimum, Maximum  c planes; empty pixels hold +inf, -inf
@@ -32,10 +32,10 @@ enum class Channel : std::uint8_t {
     Depth = 5,
     ObjectIndex = 6,
     Alpha = 7,
-    Range = 8,
+    Headlight = 8,
     ShadingFeature = 9,
     Irradiance = 10,
-    EvenHalf = 11,
+    HalfBufferA = 11,
     Color = 12,
 };
 
@@ -44,21 +44,21 @@ struct ChannelInfo {
     std::string_view name;  // EXR layer and option name
     MergeRule rule;
     std::uint32_t components;
-    std::string_view meaning;  // for people
+    std::string_view meaning;  // for users
     constexpr std::uint32_t plane_count() const {
         return rule == MergeRule::Moments ? 2 * components : components;
     }
 };
 
-// One row a channel, in the order of their numbers, none of which is left out.
+// One row per channel, in the order of their numbers, without gaps.
 inline constexpr auto ChannelTable = std::to_array<ChannelInfo>({
-    {Channel::Radiance, "radiance", MergeRule::Moments, 3, "all light that reaches the pixel"},
+    {Channel::Radiance, "radiance", MergeRule::Moments, 3, "radiance of the pixel"},
     {Channel::LowVariance, "low_variance", MergeRule::Moments, 3,
-     "light of paths outside the view's path class (Schwenk 3.3)"},
+     "radiance of paths outside the view's path class (Schwenk 3.3)"},
     {Channel::HighVariance, "high_variance", MergeRule::Moments, 3,
-     "light of paths of the view's path class: radiance less low_variance, sample by sample"},
+     "radiance of paths of the view's path class: radiance minus low_variance, per sample"},
     {Channel::Albedo, "albedo", MergeRule::Sum, 3,
-     "of the first non-delta hit times the weight of the way to it; misses count 0"},
+     "of the first non-delta hit times the throughput of the path to it; misses count 0"},
     {Channel::Normal, "normal", MergeRule::Sum, 3,
      "mapped shading normal of the first non-delta hit, world; misses count 0"},
     {Channel::Depth, "depth", MergeRule::Minimum, 1,
@@ -66,18 +66,18 @@ inline constexpr auto ChannelTable = std::to_array<ChannelInfo>({
     {Channel::ObjectIndex, "object_id", MergeRule::Nearest, 2,
      "depth, then the scene object id of the nearest first hit (bits of a uint32), 0 = miss"},
     {Channel::Alpha, "alpha", MergeRule::Sum, 1,
-     "1 where the camera's ray hits something, 0 where it leaves the scene"},
-    {Channel::Range, "range", MergeRule::Sum, 3,
-     "head light and ambient at the first non-delta hits, in [0, 1] (Schwenk 3.3.3)"},
+     "1 where the camera ray hits a surface, 0 where it leaves the scene"},
+    {Channel::Headlight, "range", MergeRule::Sum, 3,
+     "headlight and ambient at the first non-delta hits, in [0, 1] (Schwenk 3.3.3)"},
     {Channel::ShadingFeature, "shading", MergeRule::Moments, 1,
-     "light found by the path, in grey, without the surface's colour (Lardinoije 4.2)"},
+     "shading feature: grey illumination without the surface's colour (Lardinoije 4.2)"},
     {Channel::Irradiance, "irradiance", MergeRule::Moments, 3,
-     "light of the diffuse lobe at the first non-delta hit: times albedo = its radiance"},
-    {Channel::EvenHalf, "even_half", MergeRule::Sum, 4,
-     "r, g, b of the samples of even index, and 1 for each of them"},
+     "irradiance of the diffuse lobe at the first non-delta hit: times albedo = its radiance"},
+    {Channel::HalfBufferA, "even_half", MergeRule::Sum, 4,
+     "sum of r, g, b of the samples of even index, and their count"},
     {Channel::Color, "color", MergeRule::Sum, 3,
-     "all light that reaches the pixel, without second moments: half of radiance's planes, for a picture "
-     "alone"},
+     "radiance of the pixel without second moments, for pictures without statistics: half of radiance's "
+     "planes"},
 });
 inline constexpr std::size_t ChannelCount = ChannelTable.size();
 
@@ -111,7 +111,7 @@ class ChannelSet {
         for (const ChannelInfo& entry : ChannelTable) set.insert(entry.channel);
         return set;
     }
-    // As they travel: may have bits that are no channel's.
+    // As received: may have bits of unknown channels.
     static constexpr ChannelSet from_words(const Words& words) {
         ChannelSet set;
         set.words_ = words;
@@ -120,7 +120,7 @@ class ChannelSet {
     constexpr const Words& words() const { return words_; }
     constexpr Words& words() { return words_; }
     constexpr bool is_known() const { return (*this - all()).empty(); }
-    // As the shared text of kernels knows them, whose channels are all below 32.
+    // For the shading code, whose channels are all below 32.
     constexpr std::uint32_t kernel_bits() const { return static_cast<std::uint32_t>(words_[0]); }
 
     constexpr bool contains(Channel channel) const { return (word(channel) >> shift(channel)) & 1u; }
@@ -131,8 +131,7 @@ class ChannelSet {
     std::uint32_t plane_count() const;  // over all channels in the set
     std::uint32_t first_plane(Channel channel) const;
 
-    // In order; as long as `visit` does not return false, where it returns something. A loop over the bits: most sets
-    // have few.
+    // Visits the channels in order until `visit` returns false. Loops over the set bits only.
     template <class Visit>
     constexpr bool for_each(const Visit& visit) const {
         for (std::size_t word = 0; word < words_.size(); ++word) {

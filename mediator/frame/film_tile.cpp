@@ -22,16 +22,16 @@ void fill_empty(FilmTile& tile, const ChannelInfo& info) {
     }
 }
 
-// What is not 0 in a tile without samples.
+// Sets the values of a tile without samples that are not 0.
 void fill_empty(FilmTile& tile) {
     for (const ChannelInfo& info : channel_table()) {
         if (tile.channels.contains(info.channel)) fill_empty(tile, info);
     }
 }
 
-// Copies the rows of a tile's plane to their place in the window's plane.
+// Copies the rows of a tile's plane into the window's plane.
 template <class T>
-void place(std::span<const T> from, const Rect& tile, std::span<T> to, const Rect& window) {
+void copy_rows(std::span<const T> from, const Rect& tile, std::span<T> to, const Rect& window) {
     for (std::int32_t row = 0; row < tile.height; ++row) {
         const auto source = from.subspan(static_cast<std::size_t>(row) * static_cast<std::size_t>(tile.width),
                                          static_cast<std::size_t>(tile.width));
@@ -62,9 +62,9 @@ void FilmTile::reset(SampleBlock sample_block) {
 }
 
 void paste(FilmTile& film, const FilmTile& tile) {
-    place<std::uint32_t>(tile.counts, tile.rect, film.counts, film.rect);
+    copy_rows<std::uint32_t>(tile.counts, tile.rect, film.counts, film.rect);
     for (std::uint32_t plane = 0; plane < tile.channels.plane_count(); ++plane) {
-        place<float>(tile.plane(plane), tile.rect, film.plane(plane), film.rect);
+        copy_rows<float>(tile.plane(plane), tile.rect, film.plane(plane), film.rect);
     }
     film.nonfinite_samples += tile.nonfinite_samples;
 }

@@ -11,7 +11,7 @@
 namespace tessera::frame {
 
 // Statistics of one block of samples over one tile: per pixel a count of accepted samples, and float32
-// planes, one after another, each in raster order. The only form in which light travels and is merged.
+// planes, one after another, each in raster order. The only form in which samples are sent and merged.
 class FilmTile {
   public:
     FilmTile() = default;
@@ -35,10 +35,10 @@ class FilmTile {
     std::size_t byte_size() const { return counts.size() * 4 + planes.size() * 4; }
 };
 
-// Copies `tile`, which lies inside of `film` and has its channels, to its place.
+// Copies `tile` into `film`, which contains its rectangle and has the same channels.
 void paste(FilmTile& film, const FilmTile& tile);
 
-// The same samples with fewer channels: `channels` is part of those of the tile.
+// The same samples with fewer channels: `channels` is a subset of those of the tile.
 FilmTile with_channels(const FilmTile& tile, ChannelSet channels);
 
 bool identical_bits(const FilmTile& a, const FilmTile& b);

@@ -10,7 +10,7 @@ namespace tessera::frame {
 
 namespace {
 
-// What is known of the counts of two tiles decides how much work a merge is.
+// Equal counts allow a cheaper merge.
 struct Counts {
     std::span<const std::uint32_t> into, later;
     bool equal_everywhere = true;  // and not 0: siblings without a rejected sample
@@ -51,7 +51,7 @@ void merge_moments(FilmTile& into, const FilmTile& later, std::uint32_t first, s
     }
 }
 
-// Records go as bits: a payload may look like a signalling NaN.
+// Copies bits: a payload may look like a signalling NaN.
 void copy_value(std::span<float> into, std::span<const float> from, std::size_t pixel) {
     std::memcpy(&into[pixel], &from[pixel], sizeof(float));
 }
@@ -148,8 +148,7 @@ void merge(FilmTile& into, const FilmTile& later) {
     if (into.block.sibling() == later.block) {
         into.block = into.block.parent();
     } else {
-        // A fold of unequal roots is no block any more; its extent keeps the order of further merges
-        // checkable.
+        // Merged roots that are no siblings form no block; the end is kept so that the order of merges can be checked.
         into.block = {later.block.end() - 1, 0};
     }
 }

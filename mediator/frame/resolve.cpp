@@ -17,7 +17,7 @@ struct Target {
     float* first;
     std::size_t stride;
 
-    // Numbers of objects are no floats: their bits are what counts.
+    // Copies bits: object ids are not floats.
     void copy(std::size_t i, const float& value) const {
         std::memcpy(first + i * stride, &value, sizeof value);
     }
@@ -35,7 +35,7 @@ void write_values(const FilmTile& film, Channel channel, std::uint32_t component
     }
 }
 
-// Of a channel of moments.
+// For channels with moments.
 void write_variances(const FilmTile& film, Channel channel, std::uint32_t component, Target to) {
     const std::uint32_t first = film.channels.first_plane(channel) + info(channel).components;
     const std::span<const float> m2 = film.plane(first + component);
@@ -91,7 +91,7 @@ Hash256 film_hash(const FilmTile& film) {
     Blake2b hash;
     const auto add = [&](const auto& values) { hash.update(std::as_bytes(std::span(values))); };
     add(std::array{film.rect.width, film.rect.height});
-    // Films without later channels keep their hashes of before there were any.
+    // Films without channels from 32 on keep the hashes of older versions.
     const ChannelSet::Words& words = film.channels.words();
     add(std::array{static_cast<std::uint32_t>(words[0])});
     if (words[0] >> 32 != 0 || words[1] != 0) add(words);

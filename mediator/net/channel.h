@@ -15,8 +15,8 @@ namespace tessera::net {
 
 using Bytes = std::vector<std::byte>;
 
-// A peer has two links on consecutive ports: control (small, in order) and bulk (large). Nothing is assumed
-// about the order between the two.
+// A peer has two links on consecutive ports: control (small, in order) and bulk (large). There is no ordering between
+// the two.
 enum class Link : std::uint8_t { Control, Bulk };
 
 // One remote end of one link, as this channel numbers it. A client channel has the one peer ServerPeer.
@@ -25,7 +25,7 @@ inline constexpr PeerId ServerPeer = 0;
 
 enum class Role : std::uint8_t { None, Viewer, Editor, Node, Operator };
 const char* name(Role role);
-Role role_named(std::string_view text);  // None for what is no role's name
+Role role_named(std::string_view text);  // None for unknown names
 
 struct Message {
     Link link = Link::Control;
@@ -39,8 +39,8 @@ enum class SendResult { Sent, WouldBlock, Closed };
 enum class NoMessage { Timeout, Woken, Closed };
 using Received = std::variant<Message, NoMessage>;
 
-// Moves bytes between one server end and many client ends; one part a message. All calls from one thread,
-// except wake(). ZeroMQ and the loopback pass the same contract tests.
+// Moves messages between one server and many clients. All calls from one thread, except wake(). ZeroMQ and the loopback
+// pass the same contract tests.
 class Channel {
   public:
     virtual ~Channel() = default;
@@ -49,7 +49,7 @@ class Channel {
     // peer, or longer than the link's limit.
     virtual SendResult send(Link link, PeerId peer, Bytes&& bytes) = 0;
     virtual Received receive(TimePoint deadline) = 0;
-    virtual void wake() = 0;  // thread-safe: a receive() under way or the next one returns Woken
+    virtual void wake() = 0;  // thread-safe: the current or the next receive() returns Woken
     virtual void close() = 0;
 };
 

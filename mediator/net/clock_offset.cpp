@@ -39,7 +39,7 @@ std::optional<Duration> PeerClock::add(const ClockExchange& e) {
                                      [&](const ClockExchange& older) { return contradict(older, e); });
     exchanges_.erase(exchanges_.begin(), jumped.base());
     exchanges_.push_back(e);
-    if (exchanges_.size() > Kept) exchanges_.pop_front();
+    if (exchanges_.size() > MaxExchanges) exchanges_.pop_front();
     return Duration(round_trip(e));
 }
 
@@ -56,7 +56,8 @@ std::optional<ClockOffset> PeerClock::offset(TimePoint now) const {
     if (exchanges_.empty()) return std::nullopt;
     const std::int64_t at = std::clamp(now.time_since_epoch().count(), -Limit, Limit);
     const auto bound = [&](const ClockExchange& e) {
-        return (round_trip(e) + 1) / 2 + drift_since(e.received, at);  // rounded up, as the middle may be off
+        return (round_trip(e) + 1) / 2 +
+               drift_since(e.received, at);  // rounded up, as the midpoint is rounded
     };
     const ClockExchange& best = *std::min_element(
         exchanges_.begin(), exchanges_.end(),

@@ -8,12 +8,12 @@
 
 namespace tessera::net {
 
-// A peer's clock less ours. The truth lies within `bound` of it, on either side.
+// A peer's clock minus ours. The true value is within +-`bound` of it.
 struct ClockOffset {
     Duration offset{0}, bound{0};  // a bound is never 0
 };
 
-// There and back: a message of ours and the peer's answer to it, in ns of the clock of who looked at it.
+// A message and the peer's answer to it; each time in ns of the clock it was taken from.
 struct ClockExchange {
     std::int64_t sent = 0;            // ours
     std::int64_t received_there = 0;  // theirs
@@ -23,32 +23,32 @@ struct ClockExchange {
 
 // How far a peer's clock is from ours, from the four times of each exchange (Mills, RFC 5905): a message
 // takes no negative time, so sent_there - received <= offset <= received_there - sent, an interval as long as
-// the round trip, whatever either way took. Of the last 60 exchanges the one with the least bound is stated:
-// half of its round trip, and MaxDrift for every second since.
+// the round trip, however it is divided between the directions. The exchange with the smallest bound of the last 60 is
+// used: half of its round trip, plus MaxDrift for every second since.
 //
-// Two exchanges whose intervals do not meet, drift included, contradict each other: a clock has jumped in
-// between, and the older one and all before it are dropped. Exchanges that cannot be (a round trip below 0,
-// numbers beyond 36 years) are ignored. Pure; one thread.
+// If the intervals of two exchanges do not overlap, drift included, a clock has jumped in between, and the older one and
+// all before it are dropped. Impossible exchanges (a negative round trip, times beyond 36 years) are ignored. Pure;
+// single-threaded.
 class PeerClock {
   public:
-    static constexpr std::size_t Kept = 60;
-    // Two clocks with 50 ppm each way, as crystals are sold, drift apart by at most this.
+    static constexpr std::size_t MaxExchanges = 60;
+    // Maximum drift between two clocks of +-50 ppm, the tolerance of common crystals.
     static constexpr double MaxDrift = 100e-6;
 
-    // The round trip; nothing for what was ignored.
+    // Returns the round trip; nothing if the exchange was ignored.
     std::optional<Duration> add(const ClockExchange& exchange);
-    // The same of a heartbeat that came now; one that echoes none of ours (echo_sent_at 0) tells nothing.
+    // The same for a heartbeat that arrived now; one that echoes none of ours (echo_sent_at 0) is ignored.
     std::optional<Duration> heartbeat(std::int64_t sent_at, std::int64_t echo_sent_at,
                                       std::int64_t echo_delay, TimePoint now);
 
     std::optional<ClockOffset> offset(TimePoint now) const;  // nothing before the first exchange
-    std::size_t size() const { return exchanges_.size(); }   // that count
+    std::size_t size() const { return exchanges_.size(); }   // stored exchanges
 
   private:
     std::deque<ClockExchange> exchanges_;  // oldest first
 };
 
-// A time of the peer's clock in ours. Saturates.
+// Converts a time of the peer's clock to ours. Saturates.
 std::int64_t to_our_clock(std::int64_t theirs, const ClockOffset& offset);
 
 }  // namespace tessera::net

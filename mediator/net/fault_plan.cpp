@@ -16,7 +16,7 @@ constexpr std::size_t MaxWaiting = 4096;  // messages of one pipe
 constexpr Duration BlockedPause = std::chrono::milliseconds(1);
 constexpr Duration ReorderSpan = std::chrono::milliseconds(1);
 
-// Messages of one peer on one link in one direction, on their way through the trouble.
+// Messages of one peer on one link in one direction, on their way through the fault injection.
 class FaultyPipe {
   public:
     FaultyPipe(const FaultPlan& plan, std::uint64_t stream) : plan_(plan), random_(plan.seed, stream) {}
@@ -26,19 +26,19 @@ class FaultyPipe {
         taken();
         for (const Passage& passage : passages) {
             TimePoint due = now + passage.waits;
-            // Held back without holding up those behind it, or so that nobody overtakes.
+            // Delayed without delaying later messages (reorder), or so that order is kept.
             if (!passage.reordered) due = in_order_ = std::max(in_order_, due);
             waiting_.emplace(due, message);
         }
     }
 
-    // Would the next message pass as if there was no pipe? Then it may, and is told to be taken().
+    // Whether the next message passes unchanged. If so, the caller sends it directly and calls taken().
     bool passes_at_once() {
         return waiting_.empty() && fate().passages.size() == 1 && fate().passages[0].waits.count() == 0;
     }
     void taken() { fate_.reset(); }
 
-    // The first message whose time has come, until it is popped.
+    // The first message that is due, until it is popped.
     Message* due(TimePoint now) {
         if (waiting_.empty() || waiting_.begin()->first > now) return nullptr;
         return &waiting_.begin()->second;
@@ -63,7 +63,7 @@ class FaultyPipe {
         std::vector<Passage> passages;  // none: lost
     };
 
-    // Of the next message: drawn once, however often it is tried.
+    // Faults of the next message: drawn once, however often sending is retried.
     Fate& fate() {
         if (fate_) return *fate_;
         fate_.emplace();
@@ -85,7 +85,7 @@ class FaultyPipe {
     CounterRandom random_;
     std::optional<Fate> fate_;
     TimePoint in_order_;
-    std::multimap<TimePoint, Message> waiting_;  // equal times leave as they came
+    std::multimap<TimePoint, Message> waiting_;  // equal times keep their order
     std::optional<TimePoint> blocked_until_;
 };
 
@@ -141,7 +141,7 @@ class FaultyChannel final : public Channel {
 
     static TimePoint now() { return std::chrono::steady_clock::now(); }
 
-    // Every pipe has chances of its own.
+    // Every pipe has its own random stream.
     enum Direction : std::uint64_t { Outward, Inward };
     static std::uint64_t stream(Link link, Direction direction, PeerId peer) {
         return 4 * peer + 2 * direction + static_cast<std::uint64_t>(link);
@@ -200,7 +200,7 @@ class FaultyChannel final : public Channel {
         return next;
     }
 
-    // False when the peer is gone.
+    // False if the peer is gone.
     bool flush(FaultyPipe& out) {
         while (Message* due = out.due(now())) {
             const SendResult result = inner_->send(due->link, due->peer, std::move(due->bytes));

@@ -63,7 +63,7 @@ std::string parse_key(const std::filesystem::path& source, std::string text) {
     std::array<std::uint8_t, 32> binary{};
     if (text.size() != Z85Length || zmq_z85_decode(binary.data(), text.c_str()) == nullptr) {
         throw Error(ErrorCode::InvalidInput,
-                    "'" + source.string() + "' holds no key: make new ones with 'tessera keys DIR'");
+                    "'" + source.string() + "' contains no key: create new ones with 'tessera keys DIR'");
     }
     return text;
 }
@@ -94,8 +94,8 @@ std::vector<AllowedKey> parse_allowed(const std::filesystem::path& source, const
         if (!is_key_name(key.name) || key.role == Role::None || (words >> rest) || twice) {
             throw Error(ErrorCode::InvalidInput,
                         "'" + source.string() + "' line " + std::to_string(number) +
-                            ": expected a new name, a role (viewer, editor, node, operator) "
-                            "and a new public key");
+                            ": expected a unique name, a role (viewer, editor, node, operator) "
+                            "and a unique public key");
         }
         key.public_key = parse_key(source, key.public_key);
         keys.push_back(std::move(key));

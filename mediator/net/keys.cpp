@@ -30,7 +30,7 @@ KeyPair make_key_pair() {
 }
 
 void KeyDirectory::store(const std::string& name, const KeyPair& pair) const {
-    write_text(folder_ / (name + ".public"), pair.public_key + "\n", Visibility::Everybody);
+    write_text(folder_ / (name + ".public"), pair.public_key + "\n", Visibility::Everyone);
     write_text(folder_ / (name + ".secret"), pair.secret_key + "\n", Visibility::Owner);
 }
 
@@ -51,7 +51,7 @@ void KeyDirectory::create() const {
     std::error_code error;
     const bool is_new = std::filesystem::create_directories(folder_, error);
     if (error) {
-        throw Error(ErrorCode::Io, "cannot make folder '" + folder_.string() + "': " + error.message());
+        throw Error(ErrorCode::Io, "cannot create folder '" + folder_.string() + "': " + error.message());
     }
     if (is_new) std::filesystem::permissions(folder_, std::filesystem::perms::owner_all);
     std::vector<AllowedKey> keys;
@@ -61,7 +61,7 @@ void KeyDirectory::create() const {
         keys.push_back({net::name(role), role, pair.public_key});
     }
     write_allowed(keys);
-    store(Master, make_key_pair());  // last: a folder with it is whole
+    store(Master, make_key_pair());  // last: its presence marks a complete folder
 }
 
 std::vector<AllowedKey> KeyDirectory::allowed() const {
@@ -76,7 +76,7 @@ void KeyDirectory::write_allowed(const std::vector<AllowedKey>& keys) const {
 void KeyDirectory::add(const std::string& name, Role role, const std::filesystem::path& export_file) const {
     if (!is_key_name(name) || name == Master) {
         throw Error(ErrorCode::InvalidInput,
-                    "'" + name + "' is no good name: use letters, digits, '-' and '_', but not 'master'");
+                    "'" + name + "' is not a valid name: use letters, digits, '-' and '_', but not 'master'");
     }
     if (role == Role::None) {
         throw Error(ErrorCode::InvalidInput, "a key needs a role: viewer, editor, node or operator");
@@ -84,12 +84,11 @@ void KeyDirectory::add(const std::string& name, Role role, const std::filesystem
     std::vector<AllowedKey> keys = allowed();
     for (const AllowedKey& key : keys) {
         if (key.name == name) {
-            throw Error(ErrorCode::Refused, "'" + name + "' is there already: revoke it first");
+            throw Error(ErrorCode::Refused, "'" + name + "' exists already: revoke it first");
         }
     }
     if (std::filesystem::exists(export_file)) {
-        throw Error(ErrorCode::Refused,
-                    "'" + export_file.string() + "' is there already: choose another file");
+        throw Error(ErrorCode::Refused, "'" + export_file.string() + "' exists already: choose another file");
     }
     const KeyPair pair = make_key_pair();
     const KeyExport exported{.name = name, .role = role, .keys = {pair, key_in(folder_ / "master.public")}};
@@ -99,7 +98,7 @@ void KeyDirectory::add(const std::string& name, Role role, const std::filesystem
         write_allowed(keys);
     } catch (const Error&) {
         std::error_code ignored;
-        std::filesystem::remove(export_file, ignored);  // a key that nobody lets in only misleads
+        std::filesystem::remove(export_file, ignored);  // a key that is not on the list is useless
         throw;
     }
 }
@@ -111,7 +110,7 @@ void KeyDirectory::revoke(const std::string& name) const {
     }
     write_allowed(keys);
     for (const char* ending : {".secret", ".public"}) {
-        std::error_code ignored;  // most have no pair here
+        std::error_code ignored;  // most have no local pair
         std::filesystem::remove(folder_ / (name + ending), ignored);
     }
 }
@@ -127,7 +126,7 @@ ClientKeys KeyDirectory::client(const std::string& name) const {
     }
     if (!is_key_name(name)) {
         throw Error(ErrorCode::InvalidInput,
-                    "'" + name + "' is no name of a key: see 'tessera keys DIR list'");
+                    "'" + name + "' is not the name of a key: see 'tessera keys DIR list'");
     }
     return {load(name), key_in(folder_ / "master.public")};
 }

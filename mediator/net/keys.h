@@ -21,26 +21,26 @@ struct AllowedKey {
     std::string public_key;
 };
 
-// What a client needs: its own pair and the master's public key.
+// The keys of a client: its own pair and the master's public key.
 struct ClientKeys {
     KeyPair own;
     std::string server_public_key;
 };
 
 // A folder: master.public, master.secret (0600), allowed.keys (a line per key: name, role, public key), and
-// per local name NAME.public, NAME.secret (0600). Or one file that add() exported for another machine: of it
-// only client() is possible. Every read throws Error: Refused for a secret that others may read, with the
-// chmod that helps, NotFound and InvalidInput with the file's name.
+// per local name NAME.public, NAME.secret (0600). Or a single file exported by add() for another machine, which supports
+// only client(). Every read throws Error: Refused for a secret that others may read, with the chmod command that fixes
+// it; NotFound and InvalidInput with the file's name.
 class KeyDirectory {
   public:
     explicit KeyDirectory(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    // Master pair and one pair per role; throws Error{Refused} when a master pair is there already.
+    // Creates the master's pair and one pair per role; throws Error{Refused} if a master pair exists.
     void create() const;
-    // A new key for another machine: `export_file` (0600, must not exist) gets its pair and the master's
-    // public key, the folder only its public key. Throws Error{Refused} for a name that is there already.
+    // Creates a key for another machine: its pair and the master's public key are written to `export_file` (0600, must
+    // not exist), only its public key to the folder. Throws Error{Refused} for an existing name.
     void add(const std::string& name, Role role, const std::filesystem::path& export_file) const;
-    // Takes it off the list, and its local pair away. A running master has to read the list again.
+    // Removes it from the list, and its local pair. A running master has to reload the list.
     void revoke(const std::string& name) const;
     std::vector<AllowedKey> allowed() const;
     KeyPair master() const;

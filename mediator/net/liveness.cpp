@@ -10,7 +10,7 @@ Liveness::Liveness(const LivenessSettings& settings, TimePoint now)
       last_sent_(now - settings.interval),
       backoff_(settings.min_backoff) {}
 
-void Liveness::heard(TimePoint now) {
+void Liveness::on_message(TimePoint now) {
     last_heard_ = std::max(last_heard_, now);
     backoff_ = settings_.min_backoff;
 }
@@ -23,7 +23,7 @@ bool Liveness::heartbeat_due(TimePoint now) const {
     return now - last_sent_ >= settings_.interval;
 }
 
-bool Liveness::dead(TimePoint now) const {
+bool Liveness::timed_out(TimePoint now) const {
     return now - last_heard_ >= settings_.interval * settings_.missed;
 }
 

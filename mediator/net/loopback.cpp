@@ -17,7 +17,7 @@ std::size_t limit(Link link) {
 
 }  // namespace
 
-// Everybody's inboxes under one mutex: a test tool, not a fast path.
+// All inboxes under one mutex: a test tool, not optimised.
 struct LoopbackHub::State {
     struct Inbox {
         std::array<std::deque<Message>, 2> queues;  // by link
@@ -33,7 +33,7 @@ struct LoopbackHub::State {
     explicit State(Limits queue_limits) : limits(queue_limits) {}
 
     const Limits limits;
-    std::mutex mutex;  // protects what stands below
+    std::mutex mutex;  // protects the members below
     std::condition_variable changed;
     Inbox server;
     std::map<std::uint64_t, Client> clients;  // by number, from 1
@@ -56,7 +56,7 @@ struct LoopbackHub::State {
         });
         if (inbox.closed) return NoMessage::Closed;
         if (std::exchange(inbox.woken, false)) return NoMessage::Woken;
-        // Turns between the links, so that neither starves.
+        // Alternates between the links, so that neither starves.
         for (int i = 0; i < 2; ++i) {
             auto& queue = inbox.queues[inbox.turn];
             inbox.turn = 1 - inbox.turn;
@@ -138,7 +138,7 @@ class LoopbackClient final : public Channel {
   private:
     std::shared_ptr<LoopbackHub::State> state_;
     std::uint64_t number_;
-    LoopbackHub::State::Client& client_;  // a map's element: stays where it is
+    LoopbackHub::State::Client& client_;  // an element of a std::map: its address is stable
 };
 
 }  // namespace

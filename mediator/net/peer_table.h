@@ -9,8 +9,8 @@
 
 namespace tessera::net {
 
-// The remote ends of one link of a server, numbered as they first speak. Bounded: whoever was unused for
-// longest is forgotten first, gets a new number when it speaks again, and has to say hello once more.
+// The peers of one link of a server, numbered by their first message. Bounded: the least recently used peer is evicted;
+// it gets a new number with its next message and has to send Hello again.
 class PeerTable {
   public:
     explicit PeerTable(std::size_t limit) : limit_(limit) {}
@@ -18,8 +18,8 @@ class PeerTable {
     struct Peer {
         std::string routing_id, user_id;
     };
-    // Takes `next` and counts it up for an end that is new. A routing id under which another user speaks is
-    // another end, so that nobody inherits what was said to the one before.
+    // Assigns and increments `next` for a new peer. A routing id used by another user is another peer, so that no user
+    // gets messages meant for the previous one.
     PeerId number(const std::string& routing_id, const std::string& user_id, PeerId& next);
     const Peer* find(PeerId peer);  // counts as use; valid until the table changes
     void forget(PeerId peer);
@@ -35,7 +35,7 @@ class PeerTable {
     std::size_t limit_;
     std::unordered_map<PeerId, Entry> peers_;
     std::unordered_map<std::string, PeerId> numbers_;  // by routing id
-    std::list<PeerId> uses_;                           // the longest unused first
+    std::list<PeerId> uses_;                           // least recently used first
 };
 
 }  // namespace tessera::net

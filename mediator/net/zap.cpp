@@ -10,7 +10,7 @@ namespace tessera::net {
 
 namespace {
 
-constexpr const char* Endpoint = "inproc://zeromq.zap.01";  // where libzmq asks, by RFC 27
+constexpr const char* Endpoint = "inproc://zeromq.zap.01";  // the endpoint used by libzmq, RFC 27
 
 std::string z85(const zmq::message_t& binary) {
     if (binary.size() != 32) return {};
@@ -43,7 +43,7 @@ ZapHandler::ZapHandler(zmq::context_t& context)
     const std::string stop = "inproc://zap-stop";
     stop_receiver_.bind(stop);
     stop_sender_.connect(stop);
-    // Signals are for the program's own threads.
+    // Signals are handled by the program's other threads.
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
@@ -115,7 +115,7 @@ void ZapHandler::forget(const std::string& domain) {
     domains_.erase(domain);
 }
 
-bool ZapHandler::stands(const std::string& domain, const std::string& user_id) const {
+bool ZapHandler::is_allowed(const std::string& domain, const std::string& user_id) const {
     const std::scoped_lock lock(mutex_);
     const auto list = domains_.find(domain);
     return list != domains_.end() && list->second.user_ids.contains(user_id);

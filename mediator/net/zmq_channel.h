@@ -10,7 +10,7 @@
 
 namespace tessera::net {
 
-// One ZeroMQ context for every channel of a process; inproc names are its own. Must outlive the channels.
+// One ZeroMQ context for all channels of a process; inproc names are local to it. Must outlive the channels.
 class ZmqContext;
 std::shared_ptr<ZmqContext> make_zmq_context();
 
@@ -26,16 +26,16 @@ struct ClientSettings {
     std::optional<ClientKeys> keys;
 };
 
-// ROUTER pair behind a ZAP handler that was up before the bind. Throws Error{Refused} for a TCP endpoint
+// A ROUTER pair; its ZAP handler runs before the bind. Throws Error{Refused} for a TCP endpoint
 // without keys that is not loopback, Error{Unavailable} when the port is taken.
 class ZmqServer : public Channel {
   public:
-    // After SIGHUP. Who is no longer on the list cannot connect; libzmq cannot cut off who is connected, so
-    // their messages are dropped unread and sending to them is Closed. Throws Error when the list cannot be
-    // read; the old one stands then.
+    // Called after SIGHUP. Revoked keys can no longer connect; libzmq cannot disconnect connected ones, so their messages
+    // are dropped unread and sending to them returns Closed. Throws Error when the list cannot be
+    // read; the old list then stays in force.
     virtual void reload_keys() = 0;
     virtual std::uint64_t refused_handshakes() const = 0;
-    // Messages that came and were dropped unread.
+    // Messages that were received and dropped unread.
     struct Dropped {
         std::uint64_t revoked = 0;    // of users who are no longer on the list
         std::uint64_t malformed = 0;  // not exactly one part, or too long
@@ -45,8 +45,7 @@ class ZmqServer : public Channel {
 std::unique_ptr<ZmqServer> make_zmq_server(std::shared_ptr<ZmqContext> context,
                                            const ServerSettings& settings);
 
-// DEALER pair. Connects in the background; reconnect() closes both sockets and opens new ones: what was not
-// sent yet is lost. Throws Error{Refused} like the server.
+// A DEALER pair. Connects in the background; reconnect() replaces both sockets: unsent messages are lost. Throws Error{Refused} like the server.
 class ZmqClient : public Channel {
   public:
     virtual void reconnect() = 0;

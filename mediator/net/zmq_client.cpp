@@ -43,7 +43,7 @@ class DealerPair final : public ZmqClient {
     void reconnect() override {
         if (closed_) return;
         for (zmq::socket_t& socket : sockets_) {
-            // What the dead link did not take is of no use to the new one.
+            // Messages not sent on the old connection are void on the new one.
             socket.set(zmq::sockopt::linger, 0);
             socket.close();
         }
@@ -77,7 +77,7 @@ class DealerPair final : public ZmqClient {
             const zmq::message_t& payload = parts.kept[0];
             if (parts.count != 1 || payload.size() > limit_of(link)) continue;
             const auto* data = payload.data<std::byte>();
-            // What comes here comes from the master: its key was checked by the handshake.
+            // All messages are from the master: the handshake has checked its key.
             return Message{.link = link, .role = Role::Operator, .bytes = Bytes(data, data + payload.size())};
         }
         return std::nullopt;

@@ -20,7 +20,7 @@ class ZmqContext {
   private:
     zmq::context_t context_{1};
     std::atomic<int> domains_{0};
-    std::mutex mutex_;  // protects what stands below
+    std::mutex mutex_;  // protects the members below
     std::optional<ZapHandler> zap_;
 };
 

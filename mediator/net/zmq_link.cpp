@@ -20,7 +20,7 @@ constexpr int HandshakeMilliseconds = 5000;
 Error bad_endpoint(const std::string& endpoint) {
     return Error(ErrorCode::InvalidInput,
                  "'" + endpoint +
-                     "' is no address: expected tcp://host:port with a port between 1 and "
+                     "' is not an address: expected tcp://host:port with a port between 1 and "
                      "65534 (bulk data use the next one)");
 }
 
@@ -37,7 +37,7 @@ bool is_loopback_address(const std::string& host) {
     throw Error(ErrorCode::Internal, std::string(what) + ": " + zmq_strerror(zmq_errno()));
 }
 
-// Calls again when a signal came in between.
+// Retries if a signal interrupts the call.
 template <class Call>
 int uninterrupted(const Call& call) {
     int result = 0;
@@ -90,8 +90,8 @@ void configure(zmq::socket_t& socket, Link link, const Addresses& addresses) {
     socket.set(zmq::sockopt::reconnect_ivl_max, 5000);
     const bool is_server = zmq::socket_type(socket.get(zmq::sockopt::type)) == zmq::socket_type::router;
     if (is_server) socket.set(zmq::sockopt::router_mandatory, true);
-    // A server on "*" hears both families. A client's host name is looked up as IPv4: libzmq tries one
-    // address only, and a name often has an IPv6 one where nobody listens.
+    // A server on "*" listens on IPv4 and IPv6. A client resolves its host name as IPv4: libzmq tries only one address,
+    // and a name often has an IPv6 address that the server does not listen on.
     socket.set(zmq::sockopt::ipv6, is_server || addresses.is_ipv6);
 }
 
@@ -106,7 +106,7 @@ SendResult send_message(zmq::socket_t& socket, const std::string* routing_id, co
     };
     if (routing_id != nullptr && send(routing_id->data(), routing_id->size(), ZMQ_SNDMORE) < 0)
         return failed();
-    // Once ROUTER took the routing id, it takes the rest, too.
+    // Once ROUTER has accepted the routing id, it accepts the rest.
     return send(bytes.data(), bytes.size(), 0) < 0 ? failed() : SendResult::Sent;
 }
 
@@ -129,8 +129,8 @@ WakeSignal::~WakeSignal() {
 
 void WakeSignal::raise() {
     const std::uint64_t one = 1;
-    [[maybe_unused]] const auto written = write(descriptor_, &one, sizeof one);  // full means: raised already
-    raised_ = true;  // after the write: who sees it has something to read
+    [[maybe_unused]] const auto written = write(descriptor_, &one, sizeof one);  // full: already raised
+    raised_ = true;  // after the write: a thread that sees it can read
 }
 
 bool WakeSignal::take() {
@@ -145,7 +145,7 @@ void wait_readable(std::array<zmq::socket_t, 2>& sockets, const WakeSignal& sign
     constexpr std::int64_t LongestWait = 60'000;
     std::int64_t wait = 0;
     if (deadline > now) {
-        // Rounded up: a wait that ends early would only spin.
+        // Rounded up: a wait that ends early would spin.
         wait = deadline - now > std::chrono::milliseconds(LongestWait)
                    ? LongestWait
                    : std::chrono::ceil<std::chrono::milliseconds>(deadline - now).count();

@@ -9,7 +9,7 @@
 #include "mediator/base/error.h"
 #include "mediator/net/channel.h"
 
-// What servers and clients share: addresses, socket options, waiting.
+// Shared by servers and clients: addresses, socket options, waiting.
 namespace tessera::net {
 
 struct Addresses {
@@ -20,25 +20,25 @@ struct Addresses {
 // Of "tcp://host:port" or "inproc://name"; throws Error{InvalidInput}.
 Addresses addresses_of(const std::string& endpoint);
 
-// Throws Error{Refused} for what other machines can read: TCP beyond this machine without keys.
+// Throws Error{Refused} for unencrypted TCP to other machines.
 enum class Keys { Absent, Present };
 void require_keys(const std::string& endpoint, const Addresses& addresses, Keys keys);
 
 std::size_t limit_of(Link link);
 
-// What one peer may have waiting on one link, in each direction; in messages of the greatest length.
+// Bytes that may be queued per peer, link and direction, assuming messages of maximum length.
 inline constexpr std::size_t QueueBudget = 64 * 1024 * 1024;
 int queue_limit(Link link);
 
-// The one place that sets socket options: non-blocking with ROUTER_MANDATORY (else a full or unknown peer
-// loses messages in silence), bounded linger, high-water marks from a byte budget, message sizes.
+// The one place that sets socket options: non-blocking with ROUTER_MANDATORY (else messages to a full or unknown
+// peer are lost silently), bounded linger, high-water marks from a byte budget, message sizes.
 void configure(zmq::socket_t& socket, Link link, const Addresses& addresses);
 
 // Of a whole message: WouldBlock when the queue is full, Closed when ROUTER does not know the routing id.
-// `routing_id` is null for a DEALER. Takes up the work again after a signal; throws Error{Internal}.
+// `routing_id` is null for a DEALER. Continues after a signal; throws Error{Internal}.
 SendResult send_message(zmq::socket_t& socket, const std::string* routing_id, const Bytes& bytes);
 
-// Non-blocking; false when there is none. `parts` counts all, only the first `size()` of them are kept.
+// Non-blocking; false if there is none. `parts` counts all, only the first `size()` of them are kept.
 template <std::size_t Count>
 struct Parts {
     std::array<zmq::message_t, Count> kept;
@@ -64,7 +64,7 @@ class WakeSignal {
     WakeSignal(const WakeSignal&) = delete;
     WakeSignal& operator=(const WakeSignal&) = delete;
     void raise();  // thread-safe
-    bool take();   // was raised since the last take
+    bool take();   // true if raised since the last take()
     int descriptor() const { return descriptor_; }
 
   private:

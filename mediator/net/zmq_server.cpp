@@ -35,7 +35,7 @@ class RouterPair final : public ZmqServer {
         const PeerTable::Peer* known = peers(link).find(peer);
         if (known == nullptr) return SendResult::Closed;
         SendResult result = SendResult::Closed;
-        if (stands(known->user_id)) result = send_message(socket(link), &known->routing_id, bytes);
+        if (is_allowed(known->user_id)) result = send_message(socket(link), &known->routing_id, bytes);
         if (result == SendResult::Closed) peers(link).forget(peer);
         return result;
     }
@@ -43,7 +43,7 @@ class RouterPair final : public ZmqServer {
     Received receive(TimePoint deadline) override {
         while (!closed_) {
             if (signal_.take()) return NoMessage::Woken;
-            // Turns between the links, so that neither starves.
+            // Alternates between the links, so that neither starves.
             for (int i = 0; i < 2; ++i) {
                 const Link link = turn_ == Link::Control ? Link::Bulk : Link::Control;
                 turn_ = link;
@@ -101,11 +101,11 @@ class RouterPair final : public ZmqServer {
         }
     }
 
-    bool stands(const std::string& user_id) const {
-        return !encrypted_ || context_->zap().stands(domain_, user_id);
+    bool is_allowed(const std::string& user_id) const {
+        return !encrypted_ || context_->zap().is_allowed(domain_, user_id);
     }
 
-    // Nothing when none is there. What is not one routing id and one part is dropped and counted.
+    // Nothing if there is none. Anything but one routing id and one part is dropped and counted.
     std::optional<Message> take(Link link) {
         Parts<2> parts;
         while (receive_message(socket(link), parts)) {
@@ -118,7 +118,7 @@ class RouterPair final : public ZmqServer {
             std::string id;
             if (encrypted_) {
                 id = metadata(parts.kept[1], "User-Id");
-                if (!stands(id)) {
+                if (!is_allowed(id)) {
                     ++dropped_.revoked;
                     continue;
                 }

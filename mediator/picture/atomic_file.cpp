@@ -24,7 +24,7 @@ Error cannot_write(const std::string& path) {
 
 void write_atomically(const std::string& path, const std::function<void(const std::string&)>& write) {
     const std::string temporary = path + ".part-" + std::to_string(getpid());
-    // Tried first, so that the reason is the system's own and not a library's guess.
+    // Opened first, so that the error message is that of the system.
     const int file = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (file < 0) throw cannot_write(path);
     close(file);

@@ -4,7 +4,7 @@
 
 namespace tessera::picture {
 
-// Of linear Rec. 709 components.
+// Luminance of linear Rec. 709 components.
 inline double luminance(double r, double g, double b) {
     return 0.2126 * r + 0.7152 * g + 0.0722 * b;
 }

@@ -20,8 +20,7 @@ using Kernel = std::vector<float>;
 // exp(-x^2 / (2 sigma^2)) at -radius .. radius, with sum 1.
 Kernel gaussian(double sigma, int radius);
 
-// The separable filter across(x) down(y); the border pixels go on beyond the border. Runs on the cores of the
-// calling thread's arena.
+// Separable convolution by across(x) down(y), clamped at the border. Runs in the calling thread's TBB arena.
 Plane convolve(const Plane& plane, const Kernel& across, const Kernel& down);
 
 }  // namespace tessera::picture

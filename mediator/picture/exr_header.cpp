@@ -15,7 +15,7 @@ Error damaged(const std::string& reason) {
     return Error(ErrorCode::InvalidInput, reason + ": write it again");
 }
 
-// Little-endian, as the hosts that this is built for.
+// Little-endian; so are all supported hosts.
 class Reader {
   public:
     explicit Reader(const std::string& path) : file_(path, std::ios::binary) {
@@ -35,7 +35,7 @@ class Reader {
         constexpr std::size_t LongestName = 255;
         std::string result;
         for (char letter = value<char>(); letter != '\0'; letter = value<char>()) {
-            if (result.size() == LongestName) throw damaged("its header has a name without an end");
+            if (result.size() == LongestName) throw damaged("its header has an unterminated name");
             result += letter;
         }
         return result;
@@ -57,16 +57,16 @@ class Reader {
 Rect checked_window(const std::array<std::int32_t, 4>& box) {
     const auto [left, top, right, bottom] = box;
     const std::int64_t width = std::int64_t{right} - left + 1, height = std::int64_t{bottom} - top + 1;
-    constexpr std::int64_t FarthestPlace = std::int64_t{1} << 30;
-    if (width < 1 || height < 1 || std::abs(std::int64_t{left}) > FarthestPlace ||
-        std::abs(std::int64_t{top}) > FarthestPlace) {
+    constexpr std::int64_t MaxCoordinate = std::int64_t{1} << 30;
+    if (width < 1 || height < 1 || std::abs(std::int64_t{left}) > MaxCoordinate ||
+        std::abs(std::int64_t{top}) > MaxCoordinate) {
         throw damaged("its data window is empty or out of range");
     }
     if (width > MaxPicturePixels || height > MaxPicturePixels || width * height > MaxPicturePixels) {
         throw Error(ErrorCode::InvalidInput, "it claims " + std::to_string(width) + " x " +
                                                  std::to_string(height) + " pixels, more than the " +
                                                  std::to_string(MaxPicturePixels) +
-                                                 " that are read: scale it down");
+                                                 " that are supported: scale it down");
     }
     return {left, top, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
 }

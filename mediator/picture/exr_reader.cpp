@@ -78,7 +78,7 @@ Picture read(const std::string& path, const std::string& layer) {
     picture.image =
         frame::Image(static_cast<std::uint32_t>(window.width), static_cast<std::uint32_t>(window.height),
                      static_cast<std::uint32_t>(names.size()));
-    // The address that EXR wants is of pixel (0, 0), which may lie outside the window.
+    // EXR needs the address of pixel (0, 0), which may be outside the window.
     const auto x_stride = static_cast<std::ptrdiff_t>(names.size() * sizeof(float));
     const std::ptrdiff_t y_stride = x_stride * window.width;
     char* origin =
@@ -109,7 +109,7 @@ Picture read_exr(const std::string& path, const std::string& layer) {
         throw Error(error.code(), named + error.what());
     } catch (const std::bad_alloc&) {
         throw Error(ErrorCode::OutOfMemory, named + "it does not fit into memory: scale it down");
-    } catch (const std::exception& error) {  // of OpenEXR
+    } catch (const std::exception& error) {  // from OpenEXR
         throw Error(ErrorCode::InvalidInput,
                     named + "it cannot be read (" + error.what() + "): write it again");
     }

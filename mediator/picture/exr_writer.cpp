@@ -19,7 +19,7 @@ std::string channel_name(const Layer& layer, std::size_t component) {
     return (layer.name.empty() ? "" : layer.name + ".") + layer.components[component];
 }
 
-// One plane per channel, with the address that EXR wants: of pixel (0, 0), which may lie outside the window.
+// One plane per channel. EXR needs the address of pixel (0, 0), which may be outside the window.
 void insert(Imf::FrameBuffer& frame_buffer, const Layer& layer, const Rect& window) {
     const std::size_t x_stride = layer.image.components * sizeof(float);
     const std::size_t y_stride = x_stride * layer.image.width;

@@ -10,7 +10,7 @@
 
 namespace tessera::picture {
 
-// One EXR layer: the image's components under the given names; layer "" is what viewers show first.
+// One EXR layer: the image's components under the given names; layer "" is the one that viewers show first.
 struct Layer {
     std::string name;                     // "albedo"
     std::vector<std::string> components;  // "R", "G", "B": one per component of the image
@@ -19,7 +19,7 @@ struct Layer {
 };
 
 // 32-bit channels, ZIP. `window` is the part of the display (width x height) that the images cover.
-// Attributes are text. In full or not at all; throws Error{Io}.
+// Attributes are strings. The file is never incomplete; throws Error{Io}.
 void write_exr(const std::string& path, std::uint32_t width, std::uint32_t height, const Rect& window,
                const std::vector<Layer>& layers, const std::map<std::string, std::string>& attributes);
 

@@ -41,7 +41,7 @@ std::string plane_name(std::uint32_t plane) {
     return "p" + std::to_string(plane);
 }
 
-// The planes of a channel as they are merged, in the order of the film.
+// The raw planes of a channel, in the order of the film.
 Layer statistics_layer(const frame::FilmTile& film, const frame::ChannelInfo& entry) {
     const std::uint32_t count = entry.plane_count(), first = film.channels.first_plane(entry.channel);
     Layer layer{
@@ -63,7 +63,7 @@ std::vector<std::string> component_names(const frame::ChannelInfo& entry) {
     return {"R", "G", "B"};
 }
 
-// Puts a channel of the file into a plane; the address that EXR wants is of pixel (0, 0).
+// Reads a channel of the file into a plane; EXR needs the address of pixel (0, 0).
 void take(Imf::FrameBuffer& target, const std::string& name, Imf::PixelType type, void* values,
           const Rect& window) {
     constexpr std::ptrdiff_t X = sizeof(float);
@@ -95,8 +95,7 @@ FilmFile read(const std::string& path) {
     const bool has_picture =
         channels.contains(frame::Channel::Radiance) || channels.contains(frame::Channel::Color);
     if (!has_picture || !holds("samples.count", Imf::UINT)) {
-        throw Error(ErrorCode::InvalidInput,
-                    "it holds no statistics: render it again with --save-statistics");
+        throw Error(ErrorCode::InvalidInput, "it has no statistics: render it again with --save-statistics");
     }
     result.film = frame::FilmTile(window, {}, channels);
     Imf::FrameBuffer target;
@@ -118,7 +117,7 @@ FilmFile read(const std::string& path) {
     return result;
 }
 
-// A file may say anything; what a filter reads must be what it is promised (mediator/filter/inputs.h).
+// Checks what filters rely on (mediator/filter/inputs.h), since a file may contain anything.
 void check(const frame::FilmTile& film) {
     for (const frame::ChannelInfo& entry : frame::channel_table()) {
         if (!film.channels.contains(entry.channel) || entry.rule == frame::MergeRule::Nearest) continue;
@@ -127,11 +126,11 @@ void check(const frame::FilmTile& film) {
         for (std::uint32_t plane = 0; plane < entry.plane_count(); ++plane) {
             const bool is_square = plane >= entry.components;  // sums of squared deviations
             for (const float value : film.plane(first + plane)) {
-                const bool fine = std::isfinite(value) || (may_be_infinite && value > 0.0f);
-                if (!fine || (is_square && value < 0.0f)) {
+                const bool is_valid = std::isfinite(value) || (may_be_infinite && value > 0.0f);
+                if (!is_valid || (is_square && value < 0.0f)) {
                     throw Error(ErrorCode::InvalidInput,
                                 "channel " + std::string(entry.name) +
-                                    " holds a number that cannot be there: it is damaged");
+                                    " holds a value that no film has: the file is damaged");
                 }
             }
         }
@@ -156,7 +155,7 @@ void write_film_exr(const std::string& path, const FilmFile& file,
     for (const frame::ChannelInfo& entry : frame::channel_table()) {
         if (!film.channels.contains(entry.channel)) continue;
         attributes["tessera/merge/" + std::string(entry.name)] = std::string(enumerator_name(entry.rule));
-        if (statistics == Statistics::Saved) layers.push_back(statistics_layer(film, entry));
+        if (statistics == Statistics::Include) layers.push_back(statistics_layer(film, entry));
         if (entry.channel == Channel::ObjectIndex) {
             layers.push_back(object_layer(film));
         } else if (entry.channel == picture) {
@@ -165,7 +164,7 @@ void write_film_exr(const std::string& path, const FilmFile& file,
             layers.push_back({"variance", rgb, frame::resolve_variance_of_mean(film, Channel::Radiance)});
         } else if (entry.channel == Channel::Alpha && !filtered) {
             layers.push_back({"", {"A"}, frame::resolve(film, Channel::Alpha)});
-        } else if (entry.channel != Channel::EvenHalf) {
+        } else if (entry.channel != Channel::HalfBufferA) {
             layers.push_back(
                 {std::string(entry.name), component_names(entry), frame::resolve(film, entry.channel)});
         }
@@ -192,7 +191,7 @@ FilmFile read_film_exr(const std::string& path) {
         throw Error(error.code(), named + error.what());
     } catch (const std::bad_alloc&) {
         throw Error(ErrorCode::OutOfMemory, named + "it does not fit into memory: crop it");
-    } catch (const std::exception& error) {  // of OpenEXR
+    } catch (const std::exception& error) {  // from OpenEXR
         throw Error(ErrorCode::InvalidInput,
                     named + "it cannot be read (" + error.what() + "): write it again");
     }

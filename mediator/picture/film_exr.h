@@ -12,25 +12,25 @@
 
 namespace tessera::picture {
 
-// A film as a file for people and for filters.
+// A film file: layers for viewers, statistics for filters.
 struct FilmFile {
     std::uint32_t width = 0, height = 0;  // of the whole picture; the film covers its rect
     frame::FilmTile film;
     std::map<std::string, std::string> attributes;
 };
 
-enum class Statistics { Left, Saved };
+enum class Statistics { Omit, Include };
 
-// One EXR: R G B (A) is `filtered`, if there is one (3 or 4 components), then layer `raw` is the radiance as
-// it was sampled; otherwise R G B is the radiance. Further layers: its variance of the mean, every other
+// One EXR: R G B (A) is `filtered`, if given (3 or 4 components), and layer `raw` the unfiltered radiance;
+// otherwise R G B is the radiance. Further layers: its variance of the mean, every other
 // channel of the film resolved, object ids, sample counts; each channel's merge rule among the attributes.
-// Statistics::Saved adds the film itself, plane by plane (layers statistics.CHANNEL), from which
-// read_film_exr() makes it again, bit by bit. In full or not at all; throws Error{Io}.
+// Statistics::Include adds the film itself, plane by plane (layers statistics.CHANNEL), from which
+// read_film_exr() restores it bit by bit. The file is never incomplete; throws Error{Io}.
 void write_film_exr(const std::string& path, const FilmFile& file,
                     const std::optional<frame::Image>& filtered = {},
-                    Statistics statistics = Statistics::Left, const std::vector<Layer>& more = {});
+                    Statistics statistics = Statistics::Omit, const std::vector<Layer>& more = {});
 
-// Throws Error{NotFound, InvalidInput}: no such file, damaged, or written without its statistics.
+// Throws Error{NotFound} if there is no such file, Error{InvalidInput} if it is damaged or has no statistics.
 FilmFile read_film_exr(const std::string& path);
 
 }  // namespace tessera::picture

@@ -16,10 +16,10 @@ namespace {
 // ACES as fitted by Narkowicz (2015), with the exposure of 0.6 folded in: the tone mapper of HDR-FLIP.
 constexpr double K0 = 0.6 * 0.6 * 2.51, K1 = 0.6 * 0.03, K3 = 0.6 * 0.6 * 2.43, K4 = 0.6 * 0.59, K5 = 0.14;
 constexpr double Target = 0.85;  // t: what the brightest and the median luminance map to at the two ends
-constexpr double LeastMedian = std::numeric_limits<float>::epsilon();  // of a mostly black reference
+constexpr double MinMedian = std::numeric_limits<float>::epsilon();  // of a mostly black reference
 
 double aces(double x) {
-    if (x > 1e6) return 1.0;  // it has passed 1 long before, and squares must not overflow
+    if (x > 1e6) return 1.0;  // beyond 1 already; avoids overflow of the squares
     return std::clamp((K0 * x * x + K1 * x) / (K3 * x * x + K4 * x + K5), 0.0, 1.0);
 }
 
@@ -62,7 +62,7 @@ void require_comparable(const frame::Image& picture, const frame::Image& referen
 }
 
 struct Exposures {
-    double start = 0.0, step = 0.0;  // stops
+    double start = 0.0, step = 0.0;  // in stops
     int count = 2;
 };
 Exposures exposures_for(const frame::Image& reference) {
@@ -70,11 +70,11 @@ Exposures exposures_for(const frame::Image& reference) {
     for (std::size_t i = 0; i < luminances.size(); ++i)
         luminances[i] =
             luminance(component(reference, i, 0), component(reference, i, 1), component(reference, i, 2));
-    const double largest = std::max(*std::max_element(luminances.begin(), luminances.end()), LeastMedian);
-    const auto middle = luminances.begin() + static_cast<std::ptrdiff_t>(luminances.size() / 2);
-    std::nth_element(luminances.begin(), middle, luminances.end());
+    const double largest = std::max(*std::max_element(luminances.begin(), luminances.end()), MinMedian);
+    const auto median = luminances.begin() + static_cast<std::ptrdiff_t>(luminances.size() / 2);
+    std::nth_element(luminances.begin(), median, luminances.end());
     const double start = std::log2(target_luminance() / largest);
-    const double stop = std::log2(target_luminance() / std::max(*middle, LeastMedian));
+    const double stop = std::log2(target_luminance() / std::max(*median, MinMedian));
     Exposures exposures{.start = start, .count = std::max(2, static_cast<int>(std::ceil(stop - start)))};
     exposures.step = (stop - start) / (exposures.count - 1);
     return exposures;

@@ -2,17 +2,17 @@
 
 #include "mediator/frame/image.h"
 
-// FLIP, the difference that a viewer sees when the two pictures alternate, at 67.02 pixels per degree (0.7 m
-// before a display 0.7 m wide with 3840 pixels). 0 = none, 1 = largest; the mean over pixels is returned. One
-// or three components, linear Rec. 709; throws Error{InvalidInput} for others and for pictures that differ in
-// size. What is negative or NaN is black.
+// FLIP, the perceived difference when alternating between two pictures, at 67.02 pixels per degree (0.7 m
+// from a display 0.7 m wide with 3840 pixels). 0 = none, 1 = largest; the mean over pixels is returned. One
+// or three components, linear Rec. 709; throws Error{InvalidInput} for others and for pictures of different
+// size. Negative values and NaN count as black.
 namespace tessera::picture {
 
 // For pictures made for a display: values above 1 are white.
 // Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", PACMCGIT 3(2), 2020.
 double ldr_flip_mean(const frame::Image& picture, const frame::Image& reference);
 
-// For any range: per pixel the largest difference over the exposures that the reference calls for.
+// For high dynamic range: per pixel the largest difference over a range of exposures given by the reference.
 // Andersson et al., "Visualizing Errors in Rendered High Dynamic Range Images", Eurographics 2021.
 double hdr_flip_mean(const frame::Image& picture, const frame::Image& reference);
 

@@ -82,7 +82,7 @@ RgbPlanes opponents(const RgbPlanes& rgb) {
     return planes;
 }
 
-// A Gaussian is separable, the sum of two is not: each is filtered alone, with its share of the sum's weight.
+// A Gaussian is separable, the sum of two is not: each is filtered alone, weighted by its part of the sum.
 Plane filtered(const Plane& plane, const Sensitivity& sensitivity) {
     const int radius =
         static_cast<int>(std::ceil(3.0 * std::sqrt(WidestTerm / (2.0 * pi * pi)) * PixelsPerDegree));
@@ -100,10 +100,10 @@ Plane filtered(const Plane& plane, const Sensitivity& sensitivity) {
     if (sensitivity.a2 == 0.0) return result;
     const double first = weight(sensitivity.a1, sensitivity.b1),
                  second = weight(sensitivity.a2, sensitivity.b2);
-    const float share = static_cast<float>(second / (first + second));
+    const float second_weight = static_cast<float>(second / (first + second));
     const Plane other = term(sensitivity.b2);
     for (std::size_t i = 0; i < result.values.size(); ++i)
-        result.values[i] += share * (other.values[i] - result.values[i]);
+        result.values[i] += second_weight * (other.values[i] - result.values[i]);
     return result;
 }
 

@@ -31,7 +31,7 @@ class HdrBytes {
         if (left() == 0) throw damaged_hdr("it ends in the middle of its pixels");
         return static_cast<std::uint8_t>(bytes_[next_++]);
     }
-    Rgbe four() { return {byte(), byte(), byte(), byte()}; }
+    Rgbe read_rgbe() { return {byte(), byte(), byte(), byte()}; }
     void back(std::size_t count) { next_ -= count; }
     std::string line() {
         constexpr std::size_t LongestLine = 4096;
@@ -78,15 +78,15 @@ Size read_header(HdrBytes& reader) {
         throw Error(ErrorCode::InvalidInput, "it claims " + std::to_string(size.width) + " x " +
                                                  std::to_string(size.height) + " pixels, more than the " +
                                                  std::to_string(MaxPicturePixels) +
-                                                 " that are read: scale it down");
+                                                 " that are supported: scale it down");
     }
-    // No form spends fewer than four bytes on a row.
+    // Every encoding needs at least four bytes per row.
     if (4 * size.height > static_cast<std::int64_t>(reader.left()))
         throw damaged_hdr("it is shorter than its size claims");
     return size;
 }
 
-// The four components one after another, each as runs and plain stretches.
+// The four components one after another, each as runs and literal sequences.
 void read_components(HdrBytes& reader, std::span<Rgbe> row) {
     for (std::size_t component = 0; component < 4; ++component) {
         for (std::size_t x = 0; x < row.size();) {
@@ -100,11 +100,11 @@ void read_components(HdrBytes& reader, std::span<Rgbe> row) {
     }
 }
 
-// Whole pixels; (1, 1, 1, n) repeats the one before, and after another such it stands for 256 times as many.
+// Whole pixels; (1, 1, 1, n) repeats the previous one n times; consecutive repeats are multiplied by 256 each.
 void read_pixels(HdrBytes& reader, std::span<Rgbe> row) {
     unsigned shift = 0;
     for (std::size_t x = 0; x < row.size();) {
-        const Rgbe pixel = reader.four();
+        const Rgbe pixel = reader.read_rgbe();
         if (pixel[0] != 1 || pixel[1] != 1 || pixel[2] != 1) {
             row[x++] = pixel;
             shift = 0;
@@ -119,7 +119,7 @@ void read_pixels(HdrBytes& reader, std::span<Rgbe> row) {
 
 void read_row(HdrBytes& reader, std::span<Rgbe> row) {
     if (row.size() < 8 || row.size() > 0x7fff) return read_pixels(reader, row);
-    const Rgbe start = reader.four();
+    const Rgbe start = reader.read_rgbe();
     if (start[0] == 2 && start[1] == 2 && start[2] < 128) {
         if (start[2] * 256u + start[3] != row.size())
             throw damaged_hdr("a row has another width than the picture");

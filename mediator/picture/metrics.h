@@ -2,20 +2,20 @@
 
 #include "mediator/frame/image.h"
 
-// How far a picture is from a reference. Every function takes linear values of equal size and number of
-// components, and throws Error{InvalidInput} otherwise. Equal values, infinite ones too, differ by 0; NaN
-// stays.
+// Error metrics of a picture against a reference. Every function takes linear values of equal size and number of
+// components, and throws Error{InvalidInput} otherwise. Equal values, including infinities, differ by 0; NaN
+// propagates.
 namespace tessera::picture {
 
 // Mean over pixels and components of (x - r)^2.
 double mse(const frame::Image& picture, const frame::Image& reference);
 
 // Mean over pixels and components of (x - r)^2 / (r^2 + e), e = 0.01 (mean luminance of the reference)^2.
-// Nothing is clipped. Two components or other than colours: the mean of the finite values is the luminance.
+// Nothing is clipped. Unless there are three components, their mean is the luminance.
 double relmse(const frame::Image& picture, const frame::Image& reference);
 
-// The two below look at pictures as a display shows them: both times 0.18 / (logarithmic mean luminance of
-// the reference), then c / (1 + c) per component, then sRGB; in [0, 1]. What is negative or NaN is black.
+// The two below compare tone-mapped pictures: both times 0.18 / (logarithmic mean luminance of
+// the reference), then c / (1 + c) per component, then sRGB; in [0, 1]. Negative values and NaN count as black.
 
 // 10 log10(1 / mean squared difference) in decibels; +inf for equal pictures.
 double psnr(const frame::Image& picture, const frame::Image& reference);

@@ -42,7 +42,7 @@ frame::Image colors(const frame::Image& image) {
     return rgb;
 }
 
-// Straight colours: what a covered pixel would show if it were covered in full.
+// Unpremultiplied colours.
 frame::Image straight(const frame::Image& image) {
     frame::Image rgb(image.width, image.height, 3);
     for (std::size_t i = 0; i < image.pixel_count(); ++i) {
@@ -87,18 +87,19 @@ struct PngCompressor {
     PngCompressor& operator=(const PngCompressor&) = delete;
 };
 
-std::vector<std::byte> png(const frame::Image& image, const view::DisplayTransform& transform) {
+std::vector<std::byte> png(const frame::Image& image, const view::DisplayTransform& transform,
+                           const CustomView* custom) {
     const bool has_alpha = image.components == 4;
     const std::vector<std::uint8_t> rgb =
-        srgb_bytes(has_alpha ? straight(image) : image, view_transform(transform));
+        display_bytes(has_alpha ? straight(image) : image, transform, custom);
     const std::vector<std::uint8_t> pixels = has_alpha ? with_alpha(rgb, image) : rgb;
     PngCompressor compressor;
     const png_structp out = compressor.png;
     png_set_IHDR(out, compressor.info, image.width, image.height, 8,
                  has_alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_sRGB(out, compressor.info, PNG_sRGB_INTENT_PERCEPTUAL);
-    std::string key = DisplayTransformKey, value = describe(transform);
+    if (custom == nullptr) png_set_sRGB(out, compressor.info, PNG_sRGB_INTENT_PERCEPTUAL);
+    std::string key = DisplayTransformKey, value = describe(transform, custom);
     png_text text{};
     text.compression = PNG_TEXT_COMPRESSION_NONE;
     text.key = key.data();
@@ -140,9 +141,10 @@ struct JpegCompressor {
     JpegCompressor& operator=(const JpegCompressor&) = delete;
 };
 
-std::vector<std::byte> jpeg(const frame::Image& image, const view::DisplayTransform& transform) {
+std::vector<std::byte> jpeg(const frame::Image& image, const view::DisplayTransform& transform,
+                            const CustomView* custom) {
     std::vector<std::uint8_t> pixels =
-        srgb_bytes(image.components == 4 ? colors(image) : image, view_transform(transform));
+        display_bytes(image.components == 4 ? colors(image) : image, transform, custom);
     JpegCompressor compressor;
     jpeg_compress_struct& info = compressor.info;
     info.image_width = image.width;
@@ -152,7 +154,7 @@ std::vector<std::byte> jpeg(const frame::Image& image, const view::DisplayTransf
     jpeg_set_defaults(&info);
     jpeg_set_quality(&info, JpegQuality, TRUE);
     jpeg_start_compress(&info, TRUE);
-    const std::string comment = std::string(DisplayTransformKey) + ": " + describe(transform);
+    const std::string comment = std::string(DisplayTransformKey) + ": " + describe(transform, custom);
     jpeg_write_marker(&info, JPEG_COM, reinterpret_cast<const JOCTET*>(comment.data()),
                       static_cast<unsigned>(comment.size()));
     for (std::uint32_t y = 0; y < image.height; ++y) {
@@ -192,22 +194,42 @@ std::vector<std::byte> exr(const frame::Image& image) {
 }  // namespace
 
 std::vector<std::byte> encode_picture(const frame::Image& image, FileFormat format,
-                                      const view::DisplayTransform& transform) {
+                                      const view::DisplayTransform& transform, const CustomView* custom) {
     switch (format) {
         case FileFormat::Png:
-            return png(image, with_exposure(transform, image));
+            return png(image, with_exposure(transform, image), custom);
         case FileFormat::Jpeg:
-            return jpeg(image, with_exposure(transform, image));
+            return jpeg(image, with_exposure(transform, image), custom);
         case FileFormat::Exr:
             break;
     }
     return exr(image);
 }
 
-std::string describe(const view::DisplayTransform& transform) {
+std::vector<std::uint8_t> display_bytes(const frame::Image& image, const view::DisplayTransform& transform,
+                                        const CustomView* custom) {
+    if (custom == nullptr) return srgb_bytes(image, view_transform(transform));
+    const ViewTransform exposed(view::ViewTransform::Linear, transform.exposure.value_or(0.0));
+    std::vector<float> rgb(image.pixel_count() * 3);
+    for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+        const auto pixel = image.pixel(i);
+        const std::array<float, 3> light = exposed(pixel[0], pixel[1], pixel[2]);
+        std::copy(light.begin(), light.end(), &rgb[3 * i]);
+    }
+    custom->apply(rgb);
+    std::vector<std::uint8_t> bytes(rgb.size());
+    std::transform(rgb.begin(), rgb.end(), bytes.begin(), [](float value) {
+        return static_cast<std::uint8_t>(value > 0.0f ? std::lround(std::min(value, 1.0f) * 255.0f)
+                                                      : 0);  // NaN: 0
+    });
+    return bytes;
+}
+
+std::string describe(const view::DisplayTransform& transform, const CustomView* custom) {
     char exposure[32] = "auto";
     if (transform.exposure) std::snprintf(exposure, sizeof exposure, "%+.2f EV", *transform.exposure);
-    return std::string(enumerator_name(transform.view_transform)) + ", exposure " + exposure;
+    return (custom != nullptr ? custom->name : std::string(enumerator_name(transform.view_transform))) +
+           ", exposure " + exposure;
 }
 
 }  // namespace tessera::picture

@@ -10,7 +10,7 @@ namespace tessera::picture {
 
 namespace {
 
-constexpr png_uint_32 MostPixels = 16384;  // a side
+constexpr png_uint_32 MaxSide = 16384;  // pixels per side
 
 struct Source {
     std::span<const std::byte> rest;
@@ -33,17 +33,17 @@ struct Failure {
     png_longjmp(png, 1);
 }
 
-void say_nothing(png_structp, png_const_charp) {}
+void ignore_warning(png_structp, png_const_charp) {}
 
-// One at a time: what libpng jumps out of holds nothing that would have to be destroyed.
+// Functions that libpng may longjmp out of have no objects with destructors.
 class PngReader {
   public:
     explicit PngReader(Source& source)
-        : png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &failure_, fail, say_nothing)),
+        : png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &failure_, fail, ignore_warning)),
           info_(png_ != nullptr ? png_create_info_struct(png_) : nullptr) {
         if (info_ == nullptr) throw Error(ErrorCode::OutOfMemory, "no memory to read a PNG");
         png_set_read_fn(png_, &source, read_bytes);
-        png_set_user_limits(png_, MostPixels, MostPixels);
+        png_set_user_limits(png_, MaxSide, MaxSide);
     }
     ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
     PngReader(const PngReader&) = delete;
@@ -87,7 +87,7 @@ Expected<frame::Image> read_png(std::span<const std::byte> bytes) {
         return failure(ErrorCode::InvalidInput, "the PNG picture is damaged: " + reader.message());
     };
     if (!reader.read_header()) return damaged();
-    // A byte of deflate stands for at most 1032: a header that claims more is not worth the memory.
+    // Deflate expands a byte to at most 1032; rejects headers that claim more before allocating.
     if (reader.row_bytes() * reader.height() > 1040 * bytes.size() + 65536)
         return failure(ErrorCode::InvalidInput, "the PNG picture claims more pixels than its bytes can hold");
     std::vector<std::uint8_t> values(reader.row_bytes() * reader.height());

@@ -8,9 +8,8 @@
 
 namespace tessera::picture {
 
-// A PNG of 8 or 16 bits as it is stored, from 0 to 1: 1 component of grey pictures, 3 of others (palettes
-// become colours); no alpha, no gamma. InvalidInput says what is wrong: not a PNG, damaged, or beyond
-// 16384 pixels a side.
+// Decodes a PNG of 8 or 16 bits to [0, 1] without conversion: 1 component for greyscale, 3 for others (palettes are
+// expanded); no alpha, no gamma. InvalidInput: not a PNG, damaged, or more than 16384 pixels per side.
 Expected<frame::Image> read_png(std::span<const std::byte> bytes);
 
 }  // namespace tessera::picture

@@ -8,7 +8,7 @@
 
 namespace tessera::picture {
 
-// 8-bit sRGB, 3 bytes a pixel. In full or not at all; throws Error{Io}.
+// 8-bit sRGB, 3 bytes a pixel. The file is never incomplete; throws Error{Io}.
 void write_png(const std::string& path, std::uint32_t width, std::uint32_t height,
                std::span<const std::uint8_t> rgb);
 
@@ -16,7 +16,7 @@ void write_png(const std::string& path, std::uint32_t width, std::uint32_t heigh
 std::vector<std::byte> encode_png(std::uint32_t width, std::uint32_t height,
                                   std::span<const std::uint8_t> rgb);
 
-// With alpha, 4 bytes a pixel: stored as they are, alpha not multiplied in.
+// With unpremultiplied alpha, 4 bytes a pixel.
 std::vector<std::byte> encode_rgba_png(std::uint32_t width, std::uint32_t height,
                                        std::span<const std::uint8_t> rgba);
 

@@ -7,7 +7,7 @@
 
 namespace tessera::picture {
 
-// Throws Error{InvalidInput} unless both have the same size and number of components, and any pixel at all.
+// Throws Error{InvalidInput} unless both have the same size and number of components, and are not empty.
 inline void require_same_size(const frame::Image& picture, const frame::Image& reference) {
     const auto size = [](const frame::Image& image) {
         return std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels of " +

@@ -17,9 +17,9 @@ SrgbBytes::SrgbBytes() {
     thresholds_.back() = std::numeric_limits<float>::infinity();
     for (std::size_t code = 0; code + 1 < thresholds_.size(); ++code) {
         const double limit = linear_from_srgb((static_cast<double>(code) + 0.5) / 255.0);
-        auto least = static_cast<float>(limit);
-        if (double{least} < limit) least = std::nextafter(least, 1.0f);
-        thresholds_[code] = least;
+        auto threshold = static_cast<float>(limit);
+        if (double{threshold} < limit) threshold = std::nextafter(threshold, 1.0f);
+        thresholds_[code] = threshold;
     }
     std::uint8_t code = 0;
     for (std::size_t i = 0; i < codes_.size(); ++i) {

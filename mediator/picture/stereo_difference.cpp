@@ -15,18 +15,18 @@ double luminance_at(const EyeView& eye, std::size_t i) {
     return luminance(eye.red[i], eye.green[i], eye.blue[i]);
 }
 
-struct Seen {
+struct SurfaceSample {
     double luminance = 0.0;
     double depth = 0.0;
 };
 
-// Bilinear between pixel centres; nothing outside or beside a pixel without a surface.
-std::optional<Seen> read(const EyeView& eye, double x, double y) {
+// Bilinear between pixel centers; empty outside the picture or next to a pixel without a surface.
+std::optional<SurfaceSample> read(const EyeView& eye, double x, double y) {
     const double left = std::floor(x - 0.5), top = std::floor(y - 0.5);
     if (!(left >= 0.0 && top >= 0.0 && left + 1.0 < eye.width && top + 1.0 < eye.height)) return std::nullopt;
     const double s = x - 0.5 - left, t = y - 0.5 - top;
     const auto first = static_cast<std::size_t>(top) * eye.width + static_cast<std::size_t>(left);
-    Seen seen;
+    SurfaceSample seen;
     for (const int corner : {0, 1, 2, 3}) {
         const std::size_t i =
             first + static_cast<std::size_t>(corner & 1) + (corner & 2 ? std::size_t{eye.width} : 0);

@@ -17,13 +17,13 @@ struct EyeView {
 
 struct StereoDifference {
     double mean = 0.0;    // of |l - r| / (l + r + 2e) over the luminances of pixels that both eyes see
-    double shared = 0.0;  // part of the left eye's pixels with a surface that the right eye sees, too
+    double shared = 0.0;  // fraction of the left eye's surface pixels that the right eye sees as well
 };
 
-// How well two eyes fit together: every surface point of the left picture is projected into the right one,
-// which is read bilinearly; points that are hidden there (depth farther than 1 % off) or outside do not
-// count. 0 = the same light everywhere. Highlights and mirrors differ between the eyes by nature, noise and
-// filters must not. e = 1e-3 of the left picture's mean luminance keeps black from counting as a difference.
+// Consistency of two eyes: every surface point of the left picture is projected into the right one, which is
+// interpolated bilinearly; points that are hidden there (depth differs by more than 1 %) or outside are ignored. 0 =
+// equal radiance everywhere. Highlights and reflections differ between the eyes by nature; noise and filters must not.
+// e = 1e-3 of the left picture's mean luminance keeps differences in black from counting.
 StereoDifference stereo_difference(const EyeView& left, const EyeView& right);
 
 }  // namespace tessera::picture

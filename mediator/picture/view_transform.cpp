@@ -15,26 +15,26 @@ namespace {
 glm::vec3 neutral(glm::vec3 color) {
     constexpr float F90 = 0.04f;  // reflection of a dielectric of index 1.5 at normal incidence
     constexpr float StartOfCompression = 0.8f - F90, Desaturation = 0.15f;
-    const float least = std::min({color.r, color.g, color.b});
-    const float offset = least <= 2.0f * F90 ? least - least * least / (4.0f * F90) : F90;
+    const float minimum = std::min({color.r, color.g, color.b});
+    const float offset = minimum <= 2.0f * F90 ? minimum - minimum * minimum / (4.0f * F90) : F90;
     color -= offset;
     const float peak = std::max({color.r, color.g, color.b});
     if (peak <= StartOfCompression) return color;
     constexpr float Rest = 1.0f - StartOfCompression;
     const float compressed = 1.0f - Rest * Rest / (peak + Rest - StartOfCompression);
-    const float kept = 1.0f / (Desaturation * (peak - compressed) + 1.0f);
-    return color / peak * (compressed * kept) + compressed * (1.0f - kept);
+    const float saturation = 1.0f / (Desaturation * (peak - compressed) + 1.0f);
+    return color / peak * (compressed * saturation) + compressed * (1.0f - saturation);
 }
 
-// A sigmoid of slope 2 through (0, 0), the pivot and (1, 1); `power` says how hard it bends on either side.
+// A sigmoid of slope 2 through (0, 0), the pivot and (1, 1); `power` is the curvature on either side.
 float sigmoid(float x) {
-    constexpr float Pivot = 20.0f / 33.0f;  // where middle grey lies in the 16.5 stops
+    constexpr float Pivot = 20.0f / 33.0f;  // middle grey within the 16.5 stops
     const bool is_toe = x < Pivot;
     const float power = is_toe ? 3.0f : 3.25f;
-    const float reach = is_toe ? Pivot : 1.0f - Pivot;
-    const float away = std::fabs(x - Pivot) / reach;
-    const float bend = std::pow(4.0f * reach, power) - 1.0f;  // so that it meets the end
-    return 0.5f + 2.0f * (x - Pivot) * std::pow(1.0f + bend * std::pow(away, power), -1.0f / power);
+    const float range = is_toe ? Pivot : 1.0f - Pivot;
+    const float distance = std::fabs(x - Pivot) / range;
+    const float scale = std::pow(4.0f * range, power) - 1.0f;  // so that the curve ends at (0, 0) or (1, 1)
+    return 0.5f + 2.0f * (x - Pivot) * std::pow(1.0f + scale * std::pow(distance, power), -1.0f / power);
 }
 
 glm::vec3 agx(const glm::vec3& color) {
@@ -42,12 +42,13 @@ glm::vec3 agx(const glm::vec3& color) {
                                  0.07843650156180276f, 0.8784365015618028f, 0.07843650156180276f,
                                  0.0791624274877287f, 0.0791624274877287f, 0.8791624274877287f);
     static const glm::mat3 Outset(glm::inverse(glm::dmat3(Inset)));
-    const float least = std::log2(0.18f) - 10.0f, stops = 16.5f;  // 10 stops below middle grey to 6.5 above
+    const float min_stop = std::log2(0.18f) - 10.0f,
+                stops = 16.5f;  // 10 stops below middle grey to 6.5 above
     const glm::vec3 inset = Inset * color;
     glm::vec3 curved;
     for (int c = 0; c < 3; ++c) {
         const float stop = std::log2(std::max(inset[c], std::numeric_limits<float>::min()));
-        curved[c] = sigmoid(std::clamp((stop - least) / stops, 0.0f, 1.0f));
+        curved[c] = sigmoid(std::clamp((stop - min_stop) / stops, 0.0f, 1.0f));
     }
     const glm::vec3 encoded = Outset * curved;  // for a display of gamma 2.2
     glm::vec3 linear;

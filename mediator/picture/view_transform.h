@@ -11,25 +11,25 @@
 namespace tessera::picture {
 
 // Exposure and view transform of one pixel: scene-linear Rec. 709 to display-linear Rec. 709.
-//   neutral   Khronos PBR Neutral: colours up to 0.76 are kept but for the 4 % of a dielectric's reflection, so
-//             that base colours come out as they were chosen; what is brighter is compressed and desaturated
+//   neutral   Khronos PBR Neutral: colours up to 0.76 are kept, minus the 4 % reflection of a dielectric, so that
+//             base colours are reproduced; brighter values are compressed and desaturated
 //   agx       AgX (Troy Sobotka, 2022), its default contrast: 16.5 stops, bright colours go to white
 //   reinhard  L (1 + L / white^2) / (1 + L) on luminance, so that colours keep their ratios (Reinhard et al. 2002,
 //             equation 4)
-//   linear    nothing: what is above 1 is clipped by the encoding
-// What is negative or not a number counts as black.
+//   linear    none: values above 1 are clipped by the encoding
+// Negative values and NaN count as black.
 class ViewTransform {
   public:
-    // `exposure`: EV. `white`: of reinhard alone, the luminance after exposure that becomes 1; 0 = 4.
+    // `exposure`: EV. `white`: only for reinhard, the luminance after exposure that maps to 1; 0 = 4.
     ViewTransform(view::ViewTransform kind, double exposure, double white = 0.0);
     std::array<float, 3> operator()(float r, float g, float b) const {
-        const std::array<float, 3> light{usable(gain_ * r), usable(gain_ * g), usable(gain_ * b)};
+        const std::array<float, 3> light{clamped(gain_ * r), clamped(gain_ * g), clamped(gain_ * b)};
         return kind_ == view::ViewTransform::Linear ? light : curved(light);
     }
 
   private:
-    static constexpr float Most = 1e30f;  // squares and sums of it are infinite at worst, and no curve minds
-    static float usable(float value) { return value > 0.0f ? std::min(value, Most) : 0.0f; }  // NaN: 0
+    static constexpr float MaxValue = 1e30f;  // so that no curve gives NaN
+    static float clamped(float value) { return value > 0.0f ? std::min(value, MaxValue) : 0.0f; }  // NaN: 0
     std::array<float, 3> curved(const std::array<float, 3>& light) const;
 
     view::ViewTransform kind_;

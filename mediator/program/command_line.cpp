@@ -17,7 +17,7 @@ struct CommandLine::Implementation {
     std::unique_ptr<CLI::App> owned;  // of the program itself
     std::vector<std::unique_ptr<CommandLine>> commands;
     std::string config;
-    std::map<std::string, std::string> alone;  // options that need no value, and what they mean without
+    std::map<std::string, std::string> alone;  // options with an optional value, and their value without one
 };
 
 namespace {
@@ -46,7 +46,7 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
     return best ? "; did you mean '" + *best + "'?" : "; see --help";
 }
 
-// The first word that nothing answers to, with the nearest that does; "" when all are known.
+// An error for the first unknown word, with the closest known one; "" if all are known.
 std::string unknown_word(const CLI::App& program, const std::vector<std::string>& words) {
     const CLI::App* app = &program;
     for (const std::string& word : words) {
@@ -77,7 +77,7 @@ std::optional<std::string> config_path(const std::vector<std::string>& words) {
     return path;
 }
 
-// Puts each section's words right behind its command, so that what was typed comes later and wins.
+// Inserts each section's words right after its command, so that typed options come later and override them.
 std::vector<std::string> with_config(const CLI::App& program, const std::vector<std::string>& typed,
                                      const std::vector<ConfigSection>& sections) {
     const auto append_section = [&](std::vector<std::string>& words, const std::string& command) {
@@ -113,7 +113,7 @@ CommandLine::CommandLine(const std::string& program, const std::string& summary)
     implementation_->app = implementation_->owned.get();
     CLI::App& app = *implementation_->app;
     app.set_version_flag("--version", program + " " + version());
-    option("--config", "read options from a TOML FILE; what is typed stands over it",
+    option("--config", "read options from a TOML FILE; options on the command line override it",
            implementation_->config);
     app.get_option("--config")->type_name("FILE");
 }
@@ -169,7 +169,7 @@ void CommandLine::choice(const std::string& names, const std::string& help, std:
     const auto check = [choices, list](const std::string& word) -> std::string {
         if (std::find(choices.begin(), choices.end(), word) != choices.end()) return {};
         const std::optional<std::string> best = nearest(word, choices);
-        return "'" + word + "' is none of " + list + (best ? "; did you mean '" + *best + "'?" : "");
+        return "'" + word + "' is not one of " + list + (best ? "; did you mean '" + *best + "'?" : "");
     };
     single(implementation_->app->add_option(names, value, help))
         ->check(CLI::Validator(check, ""))

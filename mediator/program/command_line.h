@@ -7,19 +7,19 @@
 #include <string>
 #include <vector>
 
-// What every program needs around its work: options that explain themselves, the same options from a file.
+// Shared by all programs: command-line options with help, and the same options from a file.
 namespace tessera::cli {
 
-// Exit codes of sysexits.h, as the manual promises them.
+// Exit codes of sysexits.h, as documented.
 inline constexpr int ExitUsage = 64;
 inline constexpr int ExitUnavailable = 69;
 inline constexpr int ExitTryLater = 75;
 inline constexpr int ExitRefused = 77;
 
-// The options of a program or of one of its sub-commands. Values must outlive parse(), which writes those
-// that were given and leaves the others, so the value before is the default. Names as "--size" or
+// The options of a program or of one of its sub-commands. Values must outlive parse(), which writes only
+// those that were given, so the previous value is the default. Names as "--size" or
 // "-s,--size".
-// --help, --version and --config FILE are there by themselves.
+// --help, --version and --config FILE are added automatically.
 class CommandLine {
   public:
     CommandLine(const std::string& program, const std::string& summary);
@@ -41,7 +41,7 @@ class CommandLine {
                 std::vector<std::string>& values);  // repeatable
     void choice(const std::string& names, const std::string& help, std::string& value,
                 const std::vector<std::string>& choices);
-    // --name=VALUE, or --name alone for the value `alone`: the next word is never taken.
+    // --name=VALUE, or --name without a value for `alone`: the next word is never the value.
     void option_with_default(const std::string& name, const std::string& help,
                              std::optional<std::string>& value, const std::string& alone);
     void flag(const std::string& names, const std::string& help, bool& value);
@@ -51,9 +51,9 @@ class CommandLine {
     void required(const std::string& option_name);  // makes an option one that must be given
     void examples(const std::vector<std::string>& lines);
 
-    // Nothing: go on. Else the code to exit with: 0 after --help and --version (written to `out`), 64 for
-    // wrong options (said on `err`, with the nearest valid one). A file named by --config holds the same
-    // names without dashes as TOML keys, a table per sub-command; what is typed stands over it.
+    // Returns nothing to continue, else the exit code: 0 after --help and --version (written to `out`), 64 for wrong
+    // options (reported on `err`, with the closest valid one). A --config file has the same names without dashes as TOML
+    // keys, a table per sub-command; options on the command line override it.
     std::optional<int> parse(int argc, const char* const* argv, std::ostream& out, std::ostream& err);
 
     std::string chosen() const;  // after parse(): "render", "keys add"; "" without sub-commands

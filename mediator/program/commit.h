@@ -2,7 +2,7 @@
 
 namespace tessera::cli {
 
-// What was built: the short hash of the commit, with -dirty if files differ from it; "" if it is not known.
+// The commit of the build: its short hash, with -dirty if files differ from it; "" if unknown.
 // Written by deploy/cmake/commit.cmake at every build.
 extern const char* const Commit;
 

@@ -21,7 +21,7 @@ std::string text(const toml::node& node, const std::string& path) {
     } else {
         throw Error(ErrorCode::InvalidInput, "a value in '" + path + "' at line " +
                                                  std::to_string(node.source().begin.line) +
-                                                 " is no text, number, yes/no or list of these");
+                                                 " is not text, a number, yes/no or a list of these");
     }
     return out.str();
 }
@@ -61,7 +61,7 @@ std::vector<ConfigSection> read_config(const std::string& path) {
     } catch (const toml::parse_error& error) {
         throw Error(ErrorCode::InvalidInput, "'" + path + "' line " +
                                                  std::to_string(error.source().begin.line) +
-                                                 " is no TOML: " + std::string(error.description()));
+                                                 " is not valid TOML: " + std::string(error.description()));
     }
 }
 

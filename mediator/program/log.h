@@ -15,7 +15,7 @@ struct LogSettings {
 
 std::vector<std::string> log_levels();
 
-// Where programs write what their libraries tell them by value or callback. Thread-safe.
+// The log of a program; libraries report by return value or callback. Thread-safe.
 class Log {
   public:
     explicit Log(const LogSettings& settings);  // throws Error{Io} when the file cannot be written

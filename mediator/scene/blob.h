@@ -19,12 +19,12 @@ namespace tessera::scene {
 class Blob {
   public:
     explicit Blob(std::span<const std::byte> data);          // copies once and hashes
-    Blob(std::vector<std::byte> data, const Hash256& hash);  // takes over; the caller has verified the hash
+    Blob(std::vector<std::byte> data, const Hash256& hash);  // moves; the caller has verified the hash
 
     const Hash256& hash() const { return hash_; }
     std::span<const std::byte> bytes() const { return {storage_.data(), byte_size_}; }
     template <class T>
-    std::span<const T> as() const {  // a trailing partial element is not part of the span
+    std::span<const T> as() const {  // a trailing partial element is left out
         return {reinterpret_cast<const T*>(storage_.data()), byte_size_ / sizeof(T)};
     }
 
@@ -36,7 +36,7 @@ class Blob {
 
 using BlobPtr = std::shared_ptr<const Blob>;
 
-// What a scene object holds instead of the bytes.
+// A reference to a blob, as scene objects hold it.
 struct BlobRef {
     Hash256 hash;
     std::uint64_t byte_size = 0;
@@ -52,11 +52,10 @@ inline BlobRef reference(const Blob& blob) {
     return {blob.hash(), blob.bytes().size()};
 }
 
-// Where blobs are found by hash. Thread-safe. In one process all parts share one store, so a blob exists
-// once.
+// All blobs of a process, by hash. Thread-safe.
 class BlobStore {
   public:
-    BlobPtr insert(BlobPtr blob);  // returns the one already there, if any
+    BlobPtr insert(BlobPtr blob);  // returns the existing one, if any
     BlobPtr insert(std::span<const std::byte> data);
     BlobPtr find(const Hash256& hash) const;  // null when absent
     std::size_t erase_unused();               // drops blobs that only the store holds; returns their bytes

@@ -13,7 +13,7 @@ std::filesystem::path blob_path(const std::filesystem::path& folder, const BlobR
 // Verified; null when absent or damaged.
 BlobPtr read_blob(const std::filesystem::path& folder, const BlobRef& blob);
 
-// Written under another name first: the file is there in full or not at all. Does nothing when it is there.
+// Written to a temporary file and renamed, so that it is never incomplete. Does nothing if the file exists.
 Expected<void> write_blob(const std::filesystem::path& folder, const Blob& blob);
 
 }  // namespace tessera::scene

@@ -16,7 +16,7 @@ struct Create {
     ObjectId id;
     Object object;
 };
-// Only the fields in the mask mean anything (see Fields<T>); the object's alternative is the kind.
+// Only the fields in the mask are set (see Fields<T>); the variant's alternative is the kind.
 struct Update {
     ObjectId id;
     FieldMask mask = 0;
@@ -26,13 +26,12 @@ struct Remove {
     ObjectId id;
 };
 using Entry = std::variant<Create, Update, Remove>;
-inline constexpr std::size_t MaxEntries = 16'000'000;  // that are decoded
+inline constexpr std::size_t MaxEntries = 16'000'000;  // decoder limit
 
 ObjectId id(const Entry& entry);
 
-// What leads from one version to the next; a value. A snapshot is a change list from nothing (`from.number` =
-// 0). Each object has at most one entry; their order means nothing, since references are checked on the
-// whole.
+// The difference from one version to the next. A snapshot is a change list from nothing (`from.number` = 0). Each
+// object has at most one entry; their order is irrelevant, since references are checked at the end.
 struct ChangeList {
     Version from, to;
     std::vector<Entry> entries;
@@ -46,23 +45,23 @@ struct ChangeList {
     }
 };
 
-// What a client wants changed. (session, sequence) makes a resent edit harmless.
+// An edit request of a client. (session, sequence) identifies it, so that a resent edit is applied once.
 struct Edit {
     SessionId session;
     std::uint64_t sequence = 0;
     Version base;
     std::vector<Entry> entries;
-    // Edits in a row of one session with the same one, not 0, are one transaction: a drag.
-    std::uint64_t gesture = 0;
-    std::int64_t submitted_at = 0;  // ns, the client's clock; 0 = not told
-    // Not 0: no entries, but the transaction whose writes are to be taken back; UndoLatest, RedoLatest: the
-    // latest of this editor that can be.
+    // Consecutive edits of a session with the same group, not 0, are one transaction (one undo step): a drag.
+    std::uint64_t edit_group = 0;
+    std::int64_t submitted_at = 0;  // ns, the client's clock; 0 = unknown
+    // Not 0: there are no entries; this transaction is undone. UndoLatest, RedoLatest: the latest possible one of this
+    // editor.
     std::uint64_t undo = 0;
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "session", &Edit::session), row(2, "sequence", &Edit::sequence),
                           row(3, "base", &Edit::base), row(4, "entries", &Edit::entries, Limit{MaxEntries}),
-                          row(5, "gesture", &Edit::gesture), row(6, "submitted_at", &Edit::submitted_at),
-                          row(7, "undo", &Edit::undo));
+                          row(5, "edit_group", &Edit::edit_group),
+                          row(6, "submitted_at", &Edit::submitted_at), row(7, "undo", &Edit::undo));
     }
 };
 inline constexpr std::uint64_t UndoLatest = ~std::uint64_t{0};

@@ -8,11 +8,11 @@
 
 #include "mediator/base/description.h"
 
-// What the rows of scene objects say beside number, name and member (mediator/base/description.h). Validation,
-// the edit language, its help, the Python classes and the importers of extras read it here and nowhere else.
+// Annotations of the rows of scene objects (mediator/base/description.h): the single source for validation, the edit
+// language and its help, the Python classes and the import of extras.
 namespace tessera::scene {
 
-// Fields of an object of any kind: the bit of a row is its number - 1.
+// A set of fields of an object: the bit of a row is its number - 1.
 using FieldMask = std::uint64_t;
 inline constexpr std::size_t MaxFields = 64;
 
@@ -21,8 +21,8 @@ constexpr FieldMask field_bit(unsigned field) {
     return FieldMask{1} << field;
 }
 
-// Its numbers are written into state hashes; on the wire they are those of the oneof in proto/scene.proto
-// less 1.
+// The numbers are part of state hashes; on the wire they are the field numbers of the oneof in proto/scene.proto
+// minus 1.
 enum class ObjectKind : std::uint8_t {
     Root = 0,
     Transform = 1,
@@ -47,56 +47,56 @@ struct KindRow {
     const char *name, *plural;
 };
 
-// What may be a child of the root or of a transform.
+// Kinds that may be children of the root or of a transform.
 inline constexpr std::uint32_t PlacedKinds = bit(ObjectKind::Transform) | bit(ObjectKind::Geometry) |
                                              bit(ObjectKind::Light) | bit(ObjectKind::Camera) |
                                              bit(ObjectKind::Attachment);
 
-// Of a number, or of each component of a vector. Numbers without a range only have to be finite.
+// The range of a number, or of each component of a vector. Numbers without a range have to be finite.
 struct Range {
-    double least = 0.0, most = 0.0;
-    bool excludes_ends = false;
+    double minimum = 0.0, maximum = 0.0;
+    bool exclusive = false;
 };
 inline constexpr double Unbounded = std::numeric_limits<float>::max();
 inline constexpr double MaxCoordinate = 1e15;  // metres; beyond, double transforms lose the centimetre
 inline constexpr Range Fraction{0.0, 1.0}, NotNegative{0.0, Unbounded};
 inline constexpr Range Cone{0.0, std::numbers::pi / 2 + 1e-6};
 
-// Of a number; none = a factor.
+// The unit of a number; none = dimensionless.
 struct Unit {
     std::string_view symbol;
 };
 inline constexpr Unit Metres{"m"}, Radians{"rad"}, Radiance{"W/(m2 sr)"};
 
-// The most bytes of a text, or the most entries of a list.
-struct Longest {
+// The maximum bytes of a text, or entries of a list.
+struct MaxSize {
     std::size_t size;
 };
-inline constexpr Longest MaxName{4096};
+inline constexpr MaxSize MaxName{4096};
 
-// The kinds that a reference may name, bit(kind) each. References to textures within slots need none.
+// The kinds that a reference may point to, a bit(kind) each. Texture slots do not need it.
 struct Refers {
     std::uint32_t kinds;
 };
 
-// What a blob holds: little-endian elements of so many components.
+// The elements of a blob, little-endian, with this number of components.
 enum class Element : std::uint8_t { Uint32, Float32, Byte };
 struct Array {
     Element element;
     unsigned components;
-    bool is_per_vertex = false;  // as many elements as there are positions
+    bool is_per_vertex = false;  // one element per position
 
     constexpr std::size_t bytes() const { return components * (element == Element::Byte ? 1 : 4); }
 };
 
-// A texture slot whose texels are numbers; the others hold colours.
+// A texture slot for data; all others are for colours.
 struct DataTexels {};
 
-// glTF has no place for the field: it is written into extras, from which every field can be read.
-struct BesideGltf {};
+// glTF lacks this field: it is stored in extras (client/import/gltf_extras.h).
+struct GltfExtras {};
 
-// What else a reader of help, or of the Python classes, has to know.
-struct About {
+// Further help text, also in the Python classes.
+struct Help {
     std::string_view text;
 };
 

@@ -14,13 +14,13 @@
 #include "mediator/base/hash.h"
 #include "mediator/scene/objects.h"
 
-// Comparison and hashing of what the fields of scene objects are made of, bit by bit: equal bits, equal hash,
-// on every machine (little-endian; texts and lists with their length in front). A NaN equals itself, and -0
-// differs from 0, so that the two agree. Rows that came after the first release are hashed only when they differ
-// from their initial value, so that older files keep their state hash.
+// Bitwise comparison and hashing of the fields of scene objects: equal bits, equal hash, on every machine
+// (little-endian; texts and lists are prefixed with their length). Both treat NaN as equal to itself and -0 as
+// different from 0. Rows added after the first release are hashed only when they differ from their initial value, so
+// that older files keep their state hash.
 namespace tessera::scene {
 
-// Compared and hashed as the bytes that they are.
+// Types that are compared and hashed as raw bytes.
 template <class T>
 inline constexpr bool is_raw = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 template <glm::length_t L, class T>
@@ -35,7 +35,7 @@ inline constexpr bool is_raw<Hash256> = true;
 template <class T>
 bool same_bits(const T& a, const T& b) {
     if constexpr (is_raw<T>) {
-        // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): it is the bits that count
+        // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): bits are compared on purpose
         return std::memcmp(&a, &b, sizeof a) == 0;
     } else if constexpr (Described<T>) {
         bool same = true;

@@ -18,7 +18,7 @@ constexpr void for_each_field(Visitor&& visit) {
     });
 }
 
-// Which fields of a T are meant. Typed, so that a mask of one kind cannot reach another.
+// A typed set of fields of T, so that masks of different kinds cannot be mixed up.
 template <class T>
 class Fields {
   public:
@@ -31,7 +31,7 @@ class Fields {
         for_each_field<T>([&](unsigned index, auto) { bits |= field_bit(index); });
         return Fields(bits, 0);
     }
-    // Those whose rows have the note.
+    // The fields whose rows have this note.
     template <class Note>
     static constexpr Fields with() {
         FieldMask bits = 0;
@@ -58,7 +58,7 @@ class Fields {
                 if (candidate == member) bit = field_bit(index);
             }
         });
-        if (bit == 0) std::abort();  // a member without a row; where a constant is wanted it does not compile
+        if (bit == 0) std::abort();  // a member without a row; does not compile in a constant expression
         return bit;
     }
 
@@ -68,18 +68,18 @@ class Fields {
 // Calls visit.template operator()<T>() for the structure of this kind.
 template <class Visitor>
 void with_kind(ObjectKind kind, Visitor&& visit) {
-    const auto look = [&]<class... T>(const std::variant<T...>*) {
+    const auto visit_kind = [&]<class... T>(const std::variant<T...>*) {
         ((T::Kind.kind == kind ? visit.template operator()<T>() : void()), ...);
     };
-    look(static_cast<const Object*>(nullptr));
+    visit_kind(static_cast<const Object*>(nullptr));
 }
 
-// The untyped forms, for lists that hold all kinds. `from` must be of `to`'s kind (asserted).
+// Untyped versions, for objects of any kind. `from` must have the kind of `to` (asserted).
 FieldMask all_fields(const Object& object);
 FieldMask all_fields(ObjectKind kind);
 void assign(Object& to, const Object& from, FieldMask mask);
 FieldMask differing_fields(const Object& a, const Object& b);
-// snake_case, as users type it; "" when there is none with this index.
+// snake_case, as users type it; "" if there is no field with this index.
 std::string_view field_name(ObjectKind kind, unsigned field);
 
 }  // namespace tessera::scene

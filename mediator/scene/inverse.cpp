@@ -8,7 +8,7 @@ namespace tessera::scene {
 
 namespace {
 
-std::shared_ptr<const Object> share(const Scene& scene, ObjectId id) {
+std::shared_ptr<const Object> shared_object(const Scene& scene, ObjectId id) {
     const auto place = scene.objects().find(id);
     return place == scene.objects().end() ? nullptr : place->second;
 }
@@ -17,11 +17,11 @@ std::shared_ptr<const Object> share(const Scene& scene, ObjectId id) {
 
 Expected<std::vector<ObjectChange>> apply_and_observe(Scene& scene, const std::vector<Entry>& entries) {
     std::map<ObjectId, std::shared_ptr<const Object>> before;
-    for (const Entry& entry : entries) before.try_emplace(id(entry), share(scene, id(entry)));
+    for (const Entry& entry : entries) before.try_emplace(id(entry), shared_object(scene, id(entry)));
     if (auto applied = scene.apply_entries(entries); !applied) return tl::unexpected(applied.error());
     std::vector<ObjectChange> changes;
     for (auto& [id, old] : before) {
-        ObjectChange change{.id = id, .before = std::move(old), .after = share(scene, id)};
+        ObjectChange change{.id = id, .before = std::move(old), .after = shared_object(scene, id)};
         if (!change.before && !change.after) continue;
         if (change.is_update()) {
             change.mask = differing_fields(*change.before, *change.after);
@@ -38,7 +38,7 @@ std::vector<Entry> inverse(std::span<const ObjectChange> changes) {
     std::vector<Entry> entries;
     for (const ObjectChange& change : changes) {
         if (change.is_update()) {
-            entries.emplace_back(Update{change.id, change.mask, only(*change.before, change.mask)});
+            entries.emplace_back(Update{change.id, change.mask, copy_of_fields(*change.before, change.mask)});
             continue;
         }
         if (change.after) entries.emplace_back(Remove{change.id});
@@ -47,7 +47,7 @@ std::vector<Entry> inverse(std::span<const ObjectChange> changes) {
     return entries;
 }
 
-Object only(const Object& object, FieldMask mask) {
+Object copy_of_fields(const Object& object, FieldMask mask) {
     Object result = std::visit([]<class T>(const T&) { return Object(T{}); }, object);
     assign(result, object, mask);
     return result;

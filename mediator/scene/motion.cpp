@@ -13,20 +13,20 @@ glm::dmat4 matrix_at(const Transform& transform, double time) {
     const auto key = [&](std::size_t i) { return i == 0 ? transform.matrix : transform.motion[i - 1]; };
     const double at = time * static_cast<double>(steps);
     const std::size_t step = std::min(static_cast<std::size_t>(at), steps - 1);
-    const double share = at - static_cast<double>(step);
-    // Both ends exactly.
-    return share == 1.0 ? key(step + 1) : key(step) + (key(step + 1) - key(step)) * share;
+    const double fraction = at - static_cast<double>(step);
+    // Exact at both ends.
+    return fraction == 1.0 ? key(step + 1) : key(step) + (key(step + 1) - key(step)) * fraction;
 }
 
-std::size_t steps_of(std::span<const Transform* const> moving) {
+std::size_t key_interval_count(std::span<const Transform* const> moving) {
     if (moving.size() == 1) return moving.front()->motion.size();
-    std::size_t together = 1, most = 1;
+    std::size_t common_multiple = 1, max_count = 1;
     for (const Transform* transform : moving) {
-        together = std::min(std::lcm(together, transform->motion.size()), MaxMotion + 1);
-        most = std::max(most, transform->motion.size());
+        common_multiple = std::min(std::lcm(common_multiple, transform->motion.size()), MaxMotion + 1);
+        max_count = std::max(max_count, transform->motion.size());
     }
-    const std::size_t unit = together <= MaxMotion ? together : most;
-    return MaxMotion / unit * unit;
+    const std::size_t base_count = common_multiple <= MaxMotion ? common_multiple : max_count;
+    return MaxMotion / base_count * base_count;
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ std::vector<glm::dmat4> motion_along(const Scene& scene, std::span<const ObjectI
     }
     std::vector<glm::dmat4> motion;
     if (moving.empty()) return motion;
-    const std::size_t steps = steps_of(moving);
+    const std::size_t steps = key_interval_count(moving);
     for (std::size_t i = 1; i <= steps; ++i) {
         const double time = static_cast<double>(i) / static_cast<double>(steps);
         glm::dmat4 world(1.0);

@@ -8,10 +8,9 @@
 
 namespace tessera::scene {
 
-// The product of the transforms along a path at even steps of time after the beginning (Transform::motion);
-// empty where nothing of it moves. Where one transform moves there are its own steps. Products of several
-// that move are no straight lines, and those of different counts turn their corners at different times: they
-// get as many steps as there may be, of which all corners are some wherever that is possible.
+// The motion keys of the product of the transforms along a path (as Transform::motion); empty if none of them moves.
+// With one moving transform these are at the times of its own keys. Products of several are not piecewise linear, so
+// they get as many keys as allowed, at a multiple of the numbers of all transforms where possible.
 std::vector<glm::dmat4> motion_along(const Scene& scene, std::span<const ObjectId> path);
 
 }  // namespace tessera::scene

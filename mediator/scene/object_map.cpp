@@ -6,7 +6,7 @@ namespace tessera::scene {
 
 namespace {
 
-constexpr std::size_t PageLimit = 128;  // objects: what the first change of a page after a copy moves
+constexpr std::size_t PageLimit = 128;  // objects; the first change of a page after a copy copies that many
 
 constexpr auto by_id = [](const ObjectMap::value_type& item, ObjectId id) { return item.first < id; };
 
@@ -48,11 +48,11 @@ void ObjectMap::set(ObjectId id, std::shared_ptr<const Object> object) {
         page.emplace(slot, id, std::move(object));
         return;
     }
-    // Full. What grows at its end, as most scenes do, leaves full pages behind.
+    // The page is full. Appending, as most scenes grow, leaves full pages behind.
     const bool at_end = slot == page.end() && at + 1 == pages.size();
-    const auto middle = page.begin() + (at_end ? PageLimit : PageLimit / 2);
-    Page upper(std::make_move_iterator(middle), std::make_move_iterator(page.end()));
-    page.erase(middle, page.end());
+    const auto split = page.begin() + (at_end ? PageLimit : PageLimit / 2);
+    Page upper(std::make_move_iterator(split), std::make_move_iterator(page.end()));
+    page.erase(split, page.end());
     Page& half = upper.empty() || id > upper.front().first ? upper : page;
     half.emplace(std::lower_bound(half.begin(), half.end(), id, by_id), id, std::move(object));
     pages.emplace(pages.begin() + static_cast<std::ptrdiff_t>(at + 1), std::move(upper));

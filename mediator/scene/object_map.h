@@ -11,8 +11,8 @@
 
 namespace tessera::scene {
 
-// Objects by id, in id order. A copy costs nothing: it shares all objects, and the pages of the map but those that
-// one of both changes afterwards. Iterators hold until the map they came from changes.
+// Objects by id, in id order. Copies are cheap: they share all objects and, copy on write, the pages of the map.
+// Iterators are valid until their map changes.
 class ObjectMap {
   public:
     using value_type = std::pair<ObjectId, std::shared_ptr<const Object>>;
@@ -65,11 +65,11 @@ class ObjectMap {
     const_iterator lower_bound(ObjectId id) const;
     const_iterator find(ObjectId id) const;
 
-    void set(ObjectId id, std::shared_ptr<const Object> object);  // in place of what is there
-    void erase(ObjectId id);                                      // if it is there
+    void set(ObjectId id, std::shared_ptr<const Object> object);  // inserts or replaces
+    void erase(ObjectId id);                                      // if present
 
   private:
-    std::size_t page_of(ObjectId id) const;  // where it is, or would be; 0 in an empty map
+    std::size_t page_of(ObjectId id) const;  // of an existing or a new id; 0 in an empty map
 
     CopyOnWrite<Pages> pages_;
     std::size_t size_ = 0;

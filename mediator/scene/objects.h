@@ -16,27 +16,27 @@
 #include "mediator/scene/field_notes.h"
 #include "mediator/scene/materials.h"
 
-// The minimal set of scene objects (Schwenk 5.3.2.1). Plain values; `describe` has one row for each field,
-// and everything that treats fields alike is derived from it: masks, validation, comparison, hashing, the
-// wire, the edit language, Python. Metres, radians, linear Rec. 709; world right-handed, y up.
+// The minimal set of scene objects (Schwenk 5.3.2.1). Plain values; `describe` has one row for each field, from which
+// masks, validation, comparison, hashing, the wire format, the edit language and the Python classes are derived.
+// Metres, radians, linear Rec. 709; world right-handed, y up.
 namespace tessera::scene {
 
-// How often a geometry is going to move (Schwenk 5.4.1): static is built for tracing, animated for updating,
-// unflagged starts as static and changes over at its first move.
+// How often a geometry will move (Schwenk 5.4.1): the BVH of a static one is built for tracing speed, that of an
+// animated one for updates; unflagged starts as static and changes at its first move.
 enum class MotionHint : std::uint8_t { Unflagged, Static, Animated };
 constexpr auto enumerators(MotionHint) {
     return std::to_array<std::string_view>({"unflagged", "static", "animated"});
 }
 
-// Steps of motion that an object may have after its first.
+// The maximum number of motion keys after the first.
 inline constexpr std::size_t MaxMotion = 15;
-// Longer lists are not decoded; validation allows much less motion and its message says more.
+// Decoder limits. Validation allows fewer motion keys, with a better message.
 inline constexpr std::size_t MaxDecodedMotion = 256, MaxChildren = 16'000'000;
 inline constexpr Limit DecodedMotion{MaxDecodedMotion}, DecodedChildren{MaxChildren};
 
-// The graph's inner node. Children may be transforms, geometries, lights, cameras and attachments; shared
-// children are instances. No cycles. Layers (Schwenk F55) are for views to leave out: an object is in those
-// of the nearest transform above it that names some, else in RootLayers.
+// An inner node of the scene graph. Children are transforms, geometries, lights, cameras and attachments; shared
+// children are instances. No cycles. Views can exclude layers of objects (Schwenk F55): an object is in the layers of
+// the nearest transform above it that sets some, else in RootLayers.
 struct Transform {
     static constexpr KindRow Kind{ObjectKind::Transform, "transform", "transforms"};
     std::string name;
@@ -44,24 +44,24 @@ struct Transform {
     std::vector<ObjectId> children;
     MotionHint hint = MotionHint::Unflagged;
     std::uint32_t layers = 0;
-    // While the shutter is open: matrices at even steps of time after `matrix`, the last when it closes;
-    // between them each element goes in a straight line. Empty: it stands still.
+    // Motion keys while the shutter is open: matrices at even times after `matrix`, the last one when it closes;
+    // elements are interpolated linearly. Empty: no motion.
     std::vector<glm::dmat4> motion;
     // clang-format off
     static constexpr auto describe(auto row) {
         using T = Transform;
         return std::tuple(
             row(1, "name", &T::name, MaxName),
-            row(2, "matrix", &T::matrix, About{"parent from local, affine"}),
+            row(2, "matrix", &T::matrix, Help{"parent from local, affine"}),
             row(3, "children", &T::children, Refers{PlacedKinds}, DecodedChildren),
             row(4, "hint", &T::hint),
-            row(5, "layers", &T::layers, About{"bit i: what hangs below is in layer i; 0 = as the parent says"}),
-            row(6, "motion", &T::motion, Longest{MaxMotion}, DecodedMotion, About{"at even steps of time after matrix, until the shutter closes"}));
+            row(5, "layers", &T::layers, Help{"bit i: the subtree is in layer i; 0 = inherited"}),
+            row(6, "motion", &T::motion, MaxSize{MaxMotion}, DecodedMotion, Help{"motion keys at even times after matrix"}));
     }
     // clang-format on
 };
 
-// Indexed triangles. Arrays are blobs; empty = not there.
+// Indexed triangles. Arrays are blobs; empty = absent.
 struct Geometry {
     static constexpr KindRow Kind{ObjectKind::Geometry, "geometry", "geometries"};
     std::string name;
@@ -82,18 +82,18 @@ struct Geometry {
         constexpr auto of_vertex = [](unsigned components) { return Array{Element::Float32, components, true}; };
         return std::tuple(
             row(1, "name", &T::name, MaxName),
-            row(2, "material", &T::material, Refers{bit(ObjectKind::Material) | bit(ObjectKind::SurfaceShader)}, About{"0 = the default grey"}),
+            row(2, "material", &T::material, Refers{bit(ObjectKind::Material) | bit(ObjectKind::SurfaceShader)}, Help{"0 = the default grey"}),
             row(3, "hint", &T::hint),
-            row(4, "indices", &T::indices, Array{Element::Uint32, 3}, About{"of a triangle"}),
+            row(4, "indices", &T::indices, Array{Element::Uint32, 3}, Help{"of a triangle"}),
             row(5, "positions", &T::positions, of_vertex(3)),
             row(6, "normals", &T::normals, of_vertex(3)),
-            row(7, "tangents", &T::tangents, of_vertex(4), About{"w = handedness"}),
-            row(8, "tex_coords", &T::tex_coords, of_vertex(2), About{"v down as in glTF"}),
-            row(9, "colors", &T::colors, of_vertex(4), About{"linear"}),
+            row(7, "tangents", &T::tangents, of_vertex(4), Help{"w = handedness"}),
+            row(8, "tex_coords", &T::tex_coords, of_vertex(2), Help{"v down as in glTF"}),
+            row(9, "colors", &T::colors, of_vertex(4), Help{"linear"}),
             row(10, "tex_coords_1", &T::tex_coords_1, of_vertex(2)),
-            row(11, "medium", &T::medium, Refers{bit(ObjectKind::Medium)}, About{"what its body is filled with; 0 = nothing"}),
-            row(12, "motion_positions", &T::motion_positions, of_vertex(3), Longest{MaxMotion}, DecodedMotion, About{"at even steps of time after positions"}),
-            row(13, "motion_normals", &T::motion_normals, of_vertex(3), Longest{MaxMotion}, DecodedMotion, About{"none: normals stay; or as many as motion_positions"}));
+            row(11, "medium", &T::medium, Refers{bit(ObjectKind::Medium)}, Help{"interior medium; 0 = none"}),
+            row(12, "motion_positions", &T::motion_positions, of_vertex(3), MaxSize{MaxMotion}, DecodedMotion, Help{"motion keys at even times after positions"}),
+            row(13, "motion_normals", &T::motion_normals, of_vertex(3), MaxSize{MaxMotion}, DecodedMotion, Help{"empty, or as many as motion_positions"}));
     }
     // clang-format on
 };
@@ -111,7 +111,7 @@ constexpr auto enumerators(TextureFilter) {
     return std::to_array<std::string_view>({"linear", "nearest"});
 }
 
-// Decoded texels; decoding is the client's work, a node never parses image files.
+// Decoded texels. Clients decode image files; nodes never do.
 struct Texture {
     static constexpr KindRow Kind{ObjectKind::Texture, "texture", "textures"};
     std::string name;
@@ -133,8 +133,8 @@ struct Texture {
             row(5, "wrap_s", &T::wrap_s),
             row(6, "wrap_t", &T::wrap_t),
             row(7, "filter", &T::filter),
-            row(8, "texels", &T::texels, Array{Element::Byte, 1}, About{"rows from the top, slices one after the other"}),
-            row(9, "depth", &T::depth, Edge, About{"slices; only media read more than the first"}));
+            row(8, "texels", &T::texels, Array{Element::Byte, 1}, Help{"rows from the top, slices one after the other"}),
+            row(9, "depth", &T::depth, Edge, Help{"slices; only media read more than the first"}));
     }
     // clang-format on
 };
@@ -144,9 +144,9 @@ constexpr auto enumerators(LightKind) {
     return std::to_array<std::string_view>({"point", "spot", "directional", "sphere", "quad"});
 }
 
-// KHR_lights_punctual, in the frame of its parent transform: shines along -z; only its place and direction
-// count, not its scale. Spheres and quads can be seen and do not block light; emissive geometry is a light,
-// too.
+// As KHR_lights_punctual, in the frame of its parent transform: emits along -z; only position and direction of the
+// transform count, not its scale. Spheres and quads are visible and do not block light. Emissive geometry is a light
+// as well.
 struct Light {
     static constexpr KindRow Kind{ObjectKind::Light, "light", "lights"};
     std::string name;
@@ -163,12 +163,12 @@ struct Light {
         return std::tuple(
             row(1, "name", &T::name, MaxName),
             row(2, "kind", &T::kind),
-            row(3, "intensity", &T::intensity, NotNegative, About{"W/sr as seen from afar; W/m2 of a directional light"}),
-            row(4, "inner_cone_angle", &T::inner_cone_angle, Cone, Radians, About{"half angle"}),
-            row(5, "outer_cone_angle", &T::outer_cone_angle, Cone, Radians, About{"half angle"}),
-            row(6, "radius", &T::radius, NotNegative, Metres, About{"of a sphere"}),
-            row(7, "size", &T::size, NotNegative, Metres, About{"of a quad along x and y; it shines on one side"}),
-            row(8, "angle", &T::angle, Range{0, std::numbers::pi / 2}, Radians, About{"of a directional light: half of what it spans in the sky"}));
+            row(3, "intensity", &T::intensity, NotNegative, Help{"W/sr in the far field; W/m2 for directional lights"}),
+            row(4, "inner_cone_angle", &T::inner_cone_angle, Cone, Radians, Help{"half angle"}),
+            row(5, "outer_cone_angle", &T::outer_cone_angle, Cone, Radians, Help{"half angle"}),
+            row(6, "radius", &T::radius, NotNegative, Metres, Help{"of a sphere"}),
+            row(7, "size", &T::size, NotNegative, Metres, Help{"of a quad along x and y; it emits on one side"}),
+            row(8, "angle", &T::angle, Range{0, std::numbers::pi / 2}, Radians, Help{"of a directional light: half its angular diameter"}));
     }
     // clang-format on
 };
@@ -177,13 +177,12 @@ enum class Projection : std::uint8_t { Perspective, Orthographic };
 constexpr auto enumerators(Projection) {
     return std::to_array<std::string_view>({"perspective", "orthographic"});
 }
-enum class Aperture : std::uint8_t { Uniform, Gaussian };  // how the light is spread over the lens
+enum class Aperture : std::uint8_t { Uniform, Gaussian };  // distribution of samples over the lens
 constexpr auto enumerators(Aperture) {
     return std::to_array<std::string_view>({"uniform", "gaussian"});
 }
 
-// In the frame of its parent transform: looks along -z, y up. A view takes its values; it is no node's
-// business.
+// In the frame of its parent transform: looks along -z, y up. Views copy its values; render nodes ignore it.
 struct Camera {
     static constexpr KindRow Kind{ObjectKind::Camera, "camera", "cameras"};
     std::string name;
@@ -201,24 +200,24 @@ struct Camera {
         return std::tuple(
             row(1, "name", &T::name, MaxName),
             row(2, "vertical_fov", &T::vertical_fov, Range{0, std::numbers::pi, true}, Radians),
-            row(3, "aspect_ratio", &T::aspect_ratio, NotNegative, About{"width / height; 0 = the picture's"}),
+            row(3, "aspect_ratio", &T::aspect_ratio, NotNegative, Help{"width / height; 0 = the picture's"}),
             row(4, "projection", &T::projection),
-            row(5, "orthographic_height", &T::orthographic_height, Positive, Metres, About{"of what is seen"}),
-            row(6, "lens_radius", &T::lens_radius, Range{0, MaxCoordinate}, Metres, About{"0 = a pinhole"}),
-            row(7, "focus_distance", &T::focus_distance, Positive, Metres, About{"of the plane that is sharp, along the axis"}),
-            row(8, "aperture", &T::aperture, About{"gaussian: sigma = half the lens' radius"}));
+            row(5, "orthographic_height", &T::orthographic_height, Positive, Metres, Help{"of the view"}),
+            row(6, "lens_radius", &T::lens_radius, Range{0, MaxCoordinate}, Metres, Help{"0 = a pinhole"}),
+            row(7, "focus_distance", &T::focus_distance, Positive, Metres, Help{"of the focal plane, along the axis"}),
+            row(8, "aperture", &T::aperture, Help{"gaussian: sigma = half the lens' radius"}));
     }
     // clang-format on
 };
 
-// What camera rays see that hit nothing; all others see the environment.
+// The background for camera rays that hit nothing; all other rays see the environment.
 enum class VisibleBackground : std::uint8_t { Environment, Color };
 constexpr auto enumerators(VisibleBackground) {
     return std::to_array<std::string_view>({"environment", "color"});
 }
 
-// Light from infinitely far: color + strength x environment. Latitude-longitude map, row 0 is +y, column
-// centre of the map is -z at rotation 0 (u grows to +x), turned about y.
+// Infinite light: color + strength x environment. Latitude-longitude map; row 0 is +y, the center column is -z at
+// rotation 0 (u grows towards +x); rotated about y.
 struct Background {
     static constexpr KindRow Kind{ObjectKind::Background, "background", "backgrounds"};
     std::string name;
@@ -234,16 +233,16 @@ struct Background {
         return std::tuple(
             row(1, "name", &T::name, MaxName),
             row(2, "color", &T::color, NotNegative, Radiance),
-            row(3, "environment", &T::environment, Refers{bit(ObjectKind::Texture)}, About{"with rgb_float texels; 0 = none"}),
+            row(3, "environment", &T::environment, Refers{bit(ObjectKind::Texture)}, Help{"with rgb_float texels; 0 = none"}),
             row(4, "strength", &T::strength, NotNegative),
             row(5, "rotation", &T::rotation, Radians),
-            row(6, "visible", &T::visible, About{"to camera rays that hit nothing"}),
-            row(7, "visible_color", &T::visible_color, NotNegative, About{"alpha 0 = transparent"}));
+            row(6, "visible", &T::visible, Help{"to camera rays that hit nothing"}),
+            row(7, "visible_color", &T::visible_color, NotNegative, Help{"alpha 0 = transparent"}));
     }
     // clang-format on
 };
 
-// Data that only some parts understand (Schwenk F54); all others carry it along.
+// Application data (Schwenk F54), which Tessera stores and distributes unchanged.
 struct Attachment {
     static constexpr KindRow Kind{ObjectKind::Attachment, "attachment", "attachments"};
     std::string name;
@@ -254,12 +253,12 @@ struct Attachment {
         return std::tuple(
             row(1, "name", &T::name, MaxName),
             row(2, "key", &T::key, MaxName),
-            row(3, "value", &T::value, Longest{1 << 20}));
+            row(3, "value", &T::value, MaxSize{1 << 20}));
     }
     // clang-format on
 };
 
-// The one object with a fixed id: where the graph starts and what rendering is relative to.
+// The only object with a fixed id: the root of the graph, with the render origin.
 struct Root {
     static constexpr KindRow Kind{ObjectKind::Root, "root", "root"};
     std::string name;
@@ -273,7 +272,7 @@ struct Root {
             row(1, "name", &T::name, MaxName),
             row(2, "children", &T::children, Refers{PlacedKinds}, DecodedChildren),
             row(3, "background", &T::background, Refers{bit(ObjectKind::Background)}),
-            row(4, "render_origin", &T::render_origin, Range{-MaxCoordinate, MaxCoordinate}, Metres, About{"set by the master, on a coarse power-of-two grid"}));
+            row(4, "render_origin", &T::render_origin, Range{-MaxCoordinate, MaxCoordinate}, Metres, Help{"set by the master, on a coarse power-of-two grid"}));
     }
     // clang-format on
 };

@@ -8,8 +8,8 @@
 
 namespace tessera::scene {
 
-// Calls visit(id) for every reference in the fields of an object, those that name nothing (0) too. With an
-// object that is not const `visit` gets them by reference and may change them.
+// Calls visit(id) for every reference in the fields of an object, null references (0) included. For a non-const
+// object `visit` gets them by reference and may change them.
 template <class O, class Visitor>
 requires std::is_same_v<std::remove_const_t<O>, Object>
 void for_each_reference(O& object, Visitor&& visit) {

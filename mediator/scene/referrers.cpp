@@ -34,13 +34,13 @@ FieldMask children_field(ObjectKind kind) {
 
 std::vector<Reference> references(const Object& object) {
     std::vector<Reference> found;
-    const auto look = [&](const auto& row, const auto& value) {
+    const auto collect = [&](const auto& row, const auto& value) {
         using Row = std::decay_t<decltype(row)>;
         using V = std::decay_t<decltype(value)>;
         if constexpr (std::is_same_v<V, TextureSlot>) {
             if (value.texture) found.push_back({value.texture, bit(ObjectKind::Texture), row.name});
         } else if constexpr (std::is_same_v<V, ObjectId>) {
-            static_assert(Row::template has<Refers>, "a reference says what it may name");
+            static_assert(Row::template has<Refers>, "a reference needs a Refers note");
             if (value) found.push_back({value, row.template note<Refers>().kinds, row.name});
         } else if constexpr (std::is_same_v<V, std::vector<ObjectId>>) {
             for (const ObjectId id : value)
@@ -50,7 +50,7 @@ std::vector<Reference> references(const Object& object) {
     std::visit(
         [&]<class T>(const T& value) {
             for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
-                look(row_of<T, I>, row_of<T, I>.of(value));
+                collect(row_of<T, I>, row_of<T, I>.of(value));
             });
         },
         object);
@@ -74,18 +74,18 @@ FieldMask reference_fields(ObjectKind kind) {
 ReferenceChange reference_change(const Object* before, const Object* after) {
     std::vector<Reference> old = before ? references(*before) : std::vector<Reference>();
     std::vector<Reference> now = after ? references(*after) : std::vector<Reference>();
-    // Mostly one child comes or goes in a long list: what is the same at both ends needs no sorting.
+    // Usually one child is added to or removed from a long list: only the part that differs is sorted.
     const std::size_t shorter = std::min(old.size(), now.size());
     std::size_t head = 0, tail = 0;
     while (head < shorter && same(old[head], now[head])) ++head;
     while (tail < shorter - head && same(old[old.size() - 1 - tail], now[now.size() - 1 - tail])) ++tail;
-    const auto middle = [&](std::vector<Reference>& list) {
+    const auto differing_part = [&](std::vector<Reference>& list) {
         std::vector<Reference> part(list.begin() + static_cast<std::ptrdiff_t>(head),
                                     list.end() - static_cast<std::ptrdiff_t>(tail));
         std::sort(part.begin(), part.end(), before_in_order);
         return part;
     };
-    const std::vector<Reference> from = middle(old), to = middle(now);
+    const std::vector<Reference> from = differing_part(old), to = differing_part(now);
     ReferenceChange change;
     std::set_difference(to.begin(), to.end(), from.begin(), from.end(), std::back_inserter(change.added),
                         before_in_order);

@@ -10,27 +10,27 @@
 
 namespace tessera::scene {
 
-// That one object names another.
+// A reference of one object to another.
 struct Reference {
     ObjectId id;
-    std::uint32_t kinds = 0;  // that it may have, a bit(kind) each
-    std::string_view field;   // that names it: for messages
+    std::uint32_t kinds = 0;  // allowed kinds, a bit(kind) each
+    std::string_view field;   // the field that holds it, for messages
 };
 std::vector<Reference> references(const Object& object);
-// The fields that hold them, as a mask.
+// The fields that hold references, as a mask.
 FieldMask reference_fields(ObjectKind kind);
 
-// The list of a root or a transform, else an empty one; its field as a mask, 0 where there is none.
+// The children of a root or a transform, else an empty list; their field as a mask, else 0.
 const std::vector<ObjectId>& children(const Object& object);
 FieldMask children_field(ObjectKind kind);
 
-// References of `after` that `before` does not have, and the other way round; null is an object without any.
+// References added and removed between two states of an object; null has none.
 struct ReferenceChange {
     std::vector<Reference> added, removed;
 };
 ReferenceChange reference_change(const Object* before, const Object* after);
 
-// Who refers to whom, so that an edit is checked at the cost of its own objects.
+// For each object, the objects that refer to it, so that checking an edit costs no more than its own objects.
 class ReferrerIndex {
   public:
     void replace(ObjectId id, const Object* before, const Object* after);

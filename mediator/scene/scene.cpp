@@ -13,7 +13,7 @@ std::string text(Version version) {
     return std::to_string(version.epoch) + ":" + std::to_string(version.number);
 }
 
-Error broken(ObjectId id, const std::string& cause) {
+Error entry_error(ObjectId id, const std::string& cause) {
     return Error(ErrorCode::InvalidInput, "object " + std::to_string(id.value) + " " + cause);
 }
 
@@ -100,13 +100,13 @@ Expected<void> Scene::apply_entry(const Entry& entry) {
     const auto place = objects_.find(target);
     if (const auto* create = std::get_if<Create>(&entry)) {
         if (place != objects_.end())
-            return tl::unexpected(broken(target, "is there already: it cannot be created"));
+            return tl::unexpected(entry_error(target, "is there already: it cannot be created"));
         state_hash_ += object_hash(target, create->object);
         objects_.set(target, std::make_shared<const Object>(create->object));
         return {};
     }
     if (place == objects_.end())
-        return tl::unexpected(broken(target, "is not there: it cannot be changed or removed"));
+        return tl::unexpected(entry_error(target, "is not there: it cannot be changed or removed"));
     state_hash_ -= object_hash(target, *place->second);
     const auto* update = std::get_if<Update>(&entry);
     if (update == nullptr) {
@@ -114,9 +114,9 @@ Expected<void> Scene::apply_entry(const Entry& entry) {
         return {};
     }
     if (update->fields.index() != place->second->index()) {
-        return tl::unexpected(broken(target, std::string("is a ") + name(kind(*place->second)) +
-                                                 ": it cannot be changed like a " +
-                                                 name(kind(update->fields))));
+        return tl::unexpected(entry_error(target, std::string("is a ") + name(kind(*place->second)) +
+                                                      ": it cannot be changed like a " +
+                                                      name(kind(update->fields))));
     }
     Object changed = *place->second;
     assign(changed, update->fields, update->mask);

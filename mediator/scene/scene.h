@@ -11,8 +11,8 @@
 
 namespace tessera::scene {
 
-// The state at one version: objects by id, in id order. A copy costs nothing, since both share what neither has
-// changed since; so the editor can write v+1 while readers hold v, each its own copy. One thread at a time.
+// The state of a scene at one version: objects by id, in id order. Copies are cheap (copy on write), so that an editor
+// can write v+1 while readers hold v, each with its own copy. One thread at a time per copy.
 class Scene {
   public:
     Version version() const { return version_; }
@@ -25,18 +25,16 @@ class Scene {
     }
     const ObjectMap& objects() const { return objects_; }
 
-    // Applies in full or not at all. Fails with InvalidInput when `from` is not this version (a snapshot
-    // replaces everything), an id is missing or taken, a kind differs, or the resulting state hash is not the
-    // one promised.
+    // Applies all entries or none. InvalidInput: `from` is not this version (a snapshot replaces everything), an id
+    // does not exist or already exists, a kind differs, or the resulting state hash is not that of the list.
     Expected<void> apply(const ChangeList& changes);
 
-    // The same without version and hash checks: the authority's and the editor's way.
+    // The same without checks of version and hash, for the scene authority and editors.
     Expected<void> apply_entries(const std::vector<Entry>& entries);
     void set_version(Version version) { version_ = version; }
 
   private:
-    // What was there before each entry, so that a refused list costs its own objects, not a copy of the
-    // scene.
+    // The previous state of the objects, to undo a rejected list without a copy of the scene.
     using Journal = std::vector<std::pair<ObjectId, std::shared_ptr<const Object>>>;
     Expected<void> apply_entries(const std::vector<Entry>& entries, Journal& journal);
     Expected<void> apply_entry(const Entry& entry);
@@ -47,16 +45,16 @@ class Scene {
     ObjectMap objects_;
 };
 
-// What a change list makes of a scene; fails as Scene::apply.
+// The scene after a change list; fails like Scene::apply.
 Expected<Scene> after(const Scene& before, const ChangeList& changes);
 
 // The hash of one object at its id; the state hash is their sum.
 Hash128 object_hash(ObjectId id, const Object& object);
 
-// A change list from nothing to `scene`: the late joiner's way in, through the same code as every edit.
+// A change list from nothing to `scene`, for nodes and clients that join late.
 ChangeList snapshot(const Scene& scene);
 
-// What leads from a to b, field by field; versions are theirs.
+// The change list from a to b, field by field, with their versions.
 ChangeList difference(const Scene& a, const Scene& b);
 
 // Blobs that the objects refer to, each once.

@@ -67,7 +67,7 @@ std::vector<Entry> SceneEditor::take() {
         } else if (base == nullptr) {
             entries.push_back(Create{id, std::move(pending.object)});
         } else if (base->index() != pending.object.index()) {
-            // The same id comes back as another kind: the one case that needs two entries.
+            // Another kind under the same id: the only case with two entries.
             entries.push_back(Remove{id});
             entries.push_back(Create{id, std::move(pending.object)});
         } else if (const FieldMask mask = differing_fields(*base, pending.object); mask != 0) {

@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::uint64_t IdLimit = std::uint64_t{1} << 32;
 constexpr FieldMask Any = ~FieldMask{0};
-// Up to so many parents that got children are looked at from below, one by one; more from above, together.
+// Up to this number of parents with new children are checked one by one, towards the root; more in one traversal of
+// the graph.
 constexpr std::size_t FewParents = 16;
 
 void check_reference(const Scene& scene, ObjectId id, const Object& object, const Reference& reference,
@@ -40,13 +41,13 @@ void check_references(const Scene& scene, ObjectId id, const Object& object, std
     }
 }
 
-// Users of a texture that becomes a volume may be unable to read it.
-bool may_disturb_users(const Object& object, FieldMask mask) {
+// Only media can use a texture that becomes a volume.
+bool may_invalidate_users(const Object& object, FieldMask mask) {
     const auto* texture = std::get_if<Texture>(&object);
     return texture && texture->depth != 1 && Fields<Texture>::from_bits(mask).contains(&Texture::depth);
 }
 
-void still_referred(ObjectId id, const Object& object, ObjectId gone, std::vector<Problem>& problems) {
+void report_dangling(ObjectId id, const Object& object, ObjectId gone, std::vector<Problem>& problems) {
     problems.push_back({id, describe(id, object) + " still refers to object " + std::to_string(gone.value) +
                                 ", which is removed: change it as well"});
 }
@@ -70,8 +71,8 @@ const std::vector<ObjectId>& children_of(const Object* object) {
     return object ? children(*object) : None;
 }
 
-// Depth-first without recursion, since a hostile graph may be a million deep. `done` holds what is known to
-// be free of cycles, so shared subgraphs are walked once.
+// Depth-first without recursion, since a malformed graph may be a million levels deep. `done` holds the objects known
+// to be free of cycles, so that shared subgraphs are visited once.
 bool reaches_itself(const Scene& scene, ObjectId start, std::set<ObjectId>& done) {
     struct Step {
         ObjectId id;
@@ -105,7 +106,7 @@ void check_cycles(const Scene& scene, const std::vector<ObjectId>& starts, std::
         problems.push_back(
             {start, describe(start, *scene.find(start)) +
                         " is among its own descendants: take it out of one of the child lists"});
-        return;  // one is enough: others may be the same cycle
+        return;  // one is enough: others may report the same cycle
     }
 }
 
@@ -171,18 +172,17 @@ std::vector<Problem> validate_entries(const Scene& scene, const std::vector<Entr
         check_references(scene, target, *object, problems);
         const auto* update = std::get_if<Update>(&entry);
         const FieldMask mask = update ? update->mask : Any;
-        if (may_disturb_users(*object, mask)) volumes.insert(target);
+        if (may_invalidate_users(*object, mask)) volumes.insert(target);
         const bool children_touched =
             !children_of(object).empty() && (mask & children_field(kind(*object))) != 0;
         if (children_touched) parents.push_back(target);
     }
     check_cycles(scene, parents, problems);
-    // A removal breaks whoever still refers to what is gone, and a volume is not for all; that takes a look
-    // at everybody.
+    // Objects may still refer to a removed one, or use a texture that became a volume: all objects are checked.
     if (removed.empty() && volumes.empty()) return problems;
     for (const auto& [id, object] : scene.objects()) {
         for (const Reference& reference : references(*object)) {
-            if (removed.contains(reference.id)) still_referred(id, *object, reference.id, problems);
+            if (removed.contains(reference.id)) report_dangling(id, *object, reference.id, problems);
             if (volumes.contains(reference.id)) check_reference(scene, id, *object, reference, problems);
         }
     }
@@ -196,12 +196,12 @@ std::vector<Problem> validate_changes(const Scene& scene, const ReferrerIndex& r
     if (scene.find(RootId) == nullptr)
         problems.push_back({RootId, "the scene has no root: create object 1 as root"});
     for (const ObjectChange& change : changes) {
-        const bool volume = change.after && may_disturb_users(*change.after, change.mask);
+        const bool volume = change.after && may_invalidate_users(*change.after, change.mask);
         if (change.before && (!change.is_update() || volume)) {
             for (const ObjectId id : referrers.referrers(change.id)) {
                 const Object& object = *scene.find(id);
                 if (!change.after) {
-                    still_referred(id, object, change.id, problems);
+                    report_dangling(id, object, change.id, problems);
                     continue;
                 }
                 for (const Reference& reference : references(object)) {

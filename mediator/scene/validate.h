@@ -20,17 +20,16 @@ struct Problem {
 // Root. Does not look into blobs. Empty = valid.
 std::vector<Problem> validate(const Scene& scene);
 
-// Only what `entries` touch and the objects that refer to it; `scene` is the state after them. Cost is
-// theirs.
+// Checks only the objects that `entries` touch and those that refer to them; `scene` is the state after them.
 std::vector<Problem> validate_entries(const Scene& scene, const std::vector<Entry>& entries);
 
-// The same for what `changes` did, told by an index of `scene`: at the cost of the changed objects, whatever
-// the size of the scene.
+// The same for `changes`, with an index of `scene`: the cost is that of the changed objects, independent of the size
+// of the scene.
 std::vector<Problem> validate_changes(const Scene& scene, const ReferrerIndex& referrers,
                                       const std::vector<ObjectChange>& changes);
 
 // Looks into a geometry's or texture's blobs: indices in range, finite positions and normals, enough texels.
-// The message says how many and the first. Empty = valid. Every node runs it on what the network brought.
+// The message gives their number and the first one. Empty = valid. Every node checks received blobs.
 std::vector<Problem> validate_blobs(ObjectId id, const Object& object, const BlobStore& blobs);
 
 }  // namespace tessera::scene

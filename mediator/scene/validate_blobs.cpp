@@ -13,12 +13,13 @@ class BlobCheck {
     BlobCheck(ObjectId id, const Object& object, const BlobStore& blobs)
         : id_(id), object_(object), blobs_(blobs) {}
 
-    // Null with a problem when the blob is absent or shorter than said.
+    // Null, with a problem, if the blob is missing or has another size.
     BlobPtr get(const BlobRef& reference, std::string_view what) {
         if (reference.empty()) return nullptr;
         BlobPtr blob = blobs_.find(reference.hash);
         if (!blob || blob->bytes().size() != reference.byte_size) {
-            add("the blob of its " + std::string(what) + " is missing or has another size than said");
+            add("the blob of its " + std::string(what) +
+                " is missing, or its size differs from the reference");
             return nullptr;
         }
         return blob;
@@ -36,7 +37,7 @@ class BlobCheck {
         if (bad > 0) {
             add(std::to_string(bad) + " numbers of its " + std::string(what) +
                 " are not finite, the first in element " + std::to_string(first) +
-                ": mend the file or the exporter");
+                ": fix the file or the exporter");
         }
     }
 
@@ -53,7 +54,7 @@ class BlobCheck {
         if (bad > 0) {
             add(std::to_string(bad) + " indices point beyond its " + std::to_string(vertices) +
                 " vertices, the first in triangle " + std::to_string(first) +
-                ": mend the file or the exporter");
+                ": fix the file or the exporter");
         }
     }
 

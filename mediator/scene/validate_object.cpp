@@ -20,12 +20,12 @@ std::string text_of(double value) {
 }
 
 bool is_inside(double value, const Range& range) {
-    if (range.excludes_ends) return value > range.least && value < range.most;
-    return value >= range.least && value <= range.most;
+    if (range.exclusive) return value > range.minimum && value < range.maximum;
+    return value >= range.minimum && value <= range.maximum;
 }
 
-// A field, one within a texture slot, or an entry of a list. Made into a text only when something is wrong.
-struct Place {
+// A field, one within a texture slot, or an entry of a list. Formatted only for problems.
+struct FieldPath {
     std::string_view field, part = {};
     std::size_t entry = 0;
     bool has_entry = false;
@@ -61,7 +61,7 @@ class Check {
 
   private:
     template <class Row, class V>
-    void value(const Row& row, const V& value, const Place& place) {
+    void value(const Row& row, const V& value, const FieldPath& place) {
         if constexpr (std::is_same_v<V, bool> || std::is_same_v<V, ObjectId>) {
             return;
         } else if constexpr (std::is_arithmetic_v<V>) {
@@ -71,7 +71,7 @@ class Check {
                 add(place.text() + " is " + std::to_string(static_cast<int>(value)) +
                     ": it has to be one of " + choices<V>());
         } else if constexpr (std::is_same_v<V, std::string>) {
-            size(value.size(), row.template note<Longest>(), place, " bytes");
+            size(value.size(), row.template note<MaxSize>(), place, " bytes");
         } else if constexpr (std::is_same_v<V, TextureSlot>) {
             for_each_row<V>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
                 this->value(row_of<V, I>, row_of<V, I>.of(value), {place.field, row_of<V, I>.name});
@@ -90,23 +90,23 @@ class Check {
         }
     }
     template <class Row, class V>
-    void list(const Row& row, const V& values, const Place& place) {
-        if constexpr (Row::template has<Longest>)
-            size(values.size(), row.template note<Longest>(), place, " entries");
+    void list(const Row& row, const V& values, const FieldPath& place) {
+        if constexpr (Row::template has<MaxSize>)
+            size(values.size(), row.template note<MaxSize>(), place, " entries");
         if constexpr (!std::is_same_v<typename V::value_type, ObjectId>) {
             for (std::size_t i = 0; i < values.size(); ++i) value(row, values[i], {place.field, {}, i, true});
         }
     }
-    void number(double value, const Range& range, const Place& place) {
+    void number(double value, const Range& range, const FieldPath& place) {
         if (!is_inside(value, range))
             add(place.text() + " is " + text_of(value) + ": it has to be " + scene::text_of(range));
     }
-    void size(std::size_t size, const Longest& longest, const Place& place, const char* what) {
+    void size(std::size_t size, const MaxSize& longest, const FieldPath& place, const char* what) {
         if (size > longest.size)
             add(place.text() + " has " + std::to_string(size) + what + ": there may be " +
                 std::to_string(longest.size));
     }
-    void matrix(const glm::dmat4& m, const Place& place) {
+    void matrix(const glm::dmat4& m, const FieldPath& place) {
         for (glm::length_t i = 0; i < 16; ++i) number(m[i / 4][i % 4], Finite, place);
         if (m[0][3] != 0.0 || m[1][3] != 0.0 || m[2][3] != 0.0 || m[3][3] != 1.0)
             add(place.text() + " is not affine: its last row has to be 0 0 0 1");
@@ -117,15 +117,14 @@ class Check {
     std::vector<std::string> causes_;
 };
 
-// What no single field shows. Byte sizes have to fit together; what is in the arrays is validate_blobs'
-// matter.
+// Checks across fields. Sizes of arrays have to match; their contents are checked by validate_blobs.
 void check_together(const Geometry& geometry, Check& check) {
     if (geometry.positions.empty() || geometry.indices.empty())
         check.add("it has no positions or no indices: a mesh needs both");
     const std::uint64_t vertices = geometry.positions.byte_size / 12;
     if (vertices > MaxElements || geometry.indices.byte_size / 12 > MaxElements)
         check.add("it has more than 2^31 vertices or triangles: split it");
-    const auto per_vertex = [&](std::uint64_t size, std::size_t element, const Place& place) {
+    const auto per_vertex = [&](std::uint64_t size, std::size_t element, const FieldPath& place) {
         if (size != vertices * element)
             check.add(place.text() + " has " + std::to_string(size) + " bytes: " + std::to_string(vertices) +
                       " vertices need " + std::to_string(vertices * element));
@@ -178,10 +177,10 @@ void check_together(const T&, Check&) {}
 }  // namespace
 
 std::string text_of(const Range& range) {
-    if (range.least == Finite.least) return "finite";
-    if (range.excludes_ends) return "between " + text_of(range.least) + " and " + text_of(range.most);
-    if (range.most >= Unbounded) return "at least " + text_of(range.least) + " and finite";
-    return "from " + text_of(range.least) + " to " + text_of(range.most);
+    if (range.minimum == Finite.minimum) return "finite";
+    if (range.exclusive) return "between " + text_of(range.minimum) + " and " + text_of(range.maximum);
+    if (range.maximum >= Unbounded) return "at least " + text_of(range.minimum) + " and finite";
+    return "from " + text_of(range.minimum) + " to " + text_of(range.maximum);
 }
 
 std::string describe(ObjectId id, const Object& object) {

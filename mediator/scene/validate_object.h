@@ -10,10 +10,10 @@ namespace tessera::scene {
 // "geometry 17 ('chair')": how messages name an object.
 std::string describe(ObjectId id, const Object& object);
 
-// What is wrong with an object seen alone: numbers that are not finite or out of range, unknown enumerators,
-// arrays whose sizes contradict each other. Each names field, cause and remedy.
+// The problems of an object on its own: numbers that are not finite or out of range, unknown enumerators, arrays with
+// inconsistent sizes. Each message names field, cause and remedy.
 std::vector<std::string> causes_of(const Object& object);
-// The same with the object's description in front.
+// The same, prefixed with the object's description.
 std::vector<std::string> problems_of(ObjectId id, const Object& object);
 
 // "from 0 to 1", "at least 0", "finite".

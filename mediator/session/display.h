@@ -8,10 +8,10 @@
 #include "mediator/base/ids.h"
 #include "mediator/scene/blob.h"
 
-// What changes a display that is open, and what its outputs are told.
+// Adjustments of an open display, and the messages to its outputs.
 namespace tessera::session {
 
-// What is set is changed, at once for all outputs.
+// The fields that are set are changed, for all outputs simultaneously.
 struct DisplayAdjustment {
     std::optional<double> eye_separation, zero_parallax, exposure;
     std::optional<bool> pattern;                // show the test pattern instead of the scene
@@ -24,7 +24,7 @@ struct DisplayAdjustment {
     }
 };
 
-// An output of the display as it is now.
+// An output of the open display.
 struct OutputOpened {
     scene::BlobRef description;  // an encoded display::Display
     std::uint32_t index = 0;     // of the output in it
@@ -35,7 +35,7 @@ struct OutputOpened {
     }
 };
 
-// Every output that was ready shows this frame at that time; one that does not have it shows what it has.
+// Every output that is ready presents this frame at that time; one that does not have it keeps its last frame.
 struct PresentFrame {
     std::uint64_t frame = 0;
     Version version;

@@ -16,8 +16,8 @@ struct EditResult {
     bool accepted = false;
     Version version;                    // that holds it, or will when it is published
     std::vector<std::string> problems;  // why not
-    std::uint64_t transaction = 0;      // that it is, or is part of
-    std::vector<std::string> notes;     // of an undo: what was left as later edits made it
+    std::uint64_t transaction = 0;      // the transaction it belongs to
+    std::vector<std::string> notes;     // of an undo: fields that stay since later edits changed them
     static constexpr auto describe(auto row) {
         using Self = EditResult;
         return std::tuple(row(1, "accepted", &Self::accepted), row(2, "version", &Self::version),
@@ -30,8 +30,8 @@ struct TransactionSummary {
     std::uint64_t number = 0;
     std::string name, user;
     std::int64_t time = 0;    // ns since 1970
-    std::uint32_t edits = 0;  // in one gesture
-    std::string text;         // what it did, for people
+    std::uint32_t edits = 0;  // in one edit group
+    std::string text;         // readable summary
     std::uint64_t undoes = 0, undone_by = 0;
     static constexpr auto describe(auto row) {
         using Self = TransactionSummary;
@@ -54,8 +54,8 @@ struct FieldWriter {
     }
 };
 
-// What is seen in the middle of a pixel.
-struct Picked {
+// The surface at the center of a pixel.
+struct PickResult {
     Version version;
     bool hit = false;
     ObjectId object;           // the Geometry
@@ -63,13 +63,13 @@ struct Picked {
     glm::vec3 normal{0.0f};    // shading normal, world
     double distance = 0;       // from the eye
     static constexpr auto describe(auto row) {
-        return std::tuple(row(1, "version", &Picked::version), row(2, "hit", &Picked::hit),
-                          row(3, "object", &Picked::object), row(4, "position", &Picked::position),
-                          row(5, "normal", &Picked::normal), row(6, "distance", &Picked::distance));
+        return std::tuple(row(1, "version", &PickResult::version), row(2, "hit", &PickResult::hit),
+                          row(3, "object", &PickResult::object), row(4, "position", &PickResult::position),
+                          row(5, "normal", &PickResult::normal), row(6, "distance", &PickResult::distance));
     }
 };
 
-// How long the latest edits took. Times in ns of the master's clock, 0 = not known (yet).
+// Latencies of the latest edits. Times in ns of the master's clock, 0 = unknown (yet).
 struct NodeTrace {
     std::string name;
     std::int64_t received = 0, built = 0;
@@ -86,7 +86,7 @@ struct EditTrace {
     std::int64_t submitted = 0, bound = 0;  // bound: of the client's clock's offset
     std::int64_t received = 0, published = 0;
     std::vector<NodeTrace> nodes;
-    std::int64_t merged = 0;  // the first picture of its version
+    std::int64_t merged = 0;  // when the first picture of its version was merged
     Version version;
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "transaction", &EditTrace::transaction), row(2, "name", &EditTrace::name),

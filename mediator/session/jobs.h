@@ -6,12 +6,12 @@
 
 #include "mediator/session/view_summary.h"
 
-// Pictures that are rendered while nobody waits for them.
+// Pictures rendered without a connected client.
 namespace tessera::session {
 
-// Who submitted it, by the key, and what it is called: no two of one user have the same name.
+// The user (of the key) who submitted the job, and its name, unique per user.
 struct JobName {
-    std::string user;  // "" = the one who asks
+    std::string user;  // "" = the requesting user
     std::string name;
     friend auto operator<=>(const JobName&, const JobName&) = default;
     static constexpr auto describe(auto row) {
@@ -22,7 +22,7 @@ struct JobName {
 struct JobStatus {
     JobName job;
     std::string scene;          // its title
-    bool has_ended = false;     // the picture can be fetched, or why there is none
+    bool has_ended = false;     // the picture can be fetched, or the summary says why there is none
     ViewProgress progress;      // until then
     ViewSummary summary;        // from then on
     std::int64_t ended_at = 0;  // ns since 1970

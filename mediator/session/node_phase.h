@@ -6,7 +6,7 @@
 
 namespace tessera::session {
 
-// What a node does.
+// What a node is doing.
 enum class NodePhase : std::uint8_t { Idle, Syncing, Building, Rendering, Leaving };
 constexpr auto enumerators(NodePhase) {
     return std::to_array<std::string_view>({"idle", "syncing", "building", "rendering", "leaving"});

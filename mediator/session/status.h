@@ -26,10 +26,10 @@ struct StageTimes {
 };
 struct SceneStatus {
     std::string title;       // "" = no scene is open
-    bool exclusive = false;  // one client's alone
+    bool exclusive = false;  // open for one client only
     std::uint32_t members = 0, views = 0;
     std::uint64_t edits = 0, transactions = 0, edit_bytes = 0;
-    std::uint64_t versions = 0, change_bytes = 0;  // published; sent to all nodes together
+    std::uint64_t versions = 0, change_bytes = 0;  // published; bytes sent to all nodes
     std::uint64_t journal_bytes = 0, checkpoints = 0;
     std::vector<StageTimes> stages;
     static constexpr auto describe(auto row) {
@@ -48,14 +48,14 @@ struct NodeStatus {
     NodeSummary summary;
     NodePhase phase = NodePhase::Idle;
     Version version;
-    std::uint32_t units_in_hand = 0;
+    std::uint32_t units_in_flight = 0;
     double samples_per_second = 0, round_trip_seconds = 0;
     bool stuck = false;
-    double clock_offset_seconds = 0, clock_bound_seconds = 0;  // its clock less the master's, +- bound
+    double clock_offset_seconds = 0, clock_bound_seconds = 0;  // its clock minus the master's, +- bound
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "summary", &NodeStatus::summary), row(2, "phase", &NodeStatus::phase),
                           row(3, "version", &NodeStatus::version),
-                          row(4, "units_in_hand", &NodeStatus::units_in_hand),
+                          row(4, "units_in_flight", &NodeStatus::units_in_flight),
                           row(5, "samples_per_second", &NodeStatus::samples_per_second),
                           row(6, "round_trip_seconds", &NodeStatus::round_trip_seconds),
                           row(7, "stuck", &NodeStatus::stuck),
@@ -68,7 +68,7 @@ enum class OutputState : std::uint8_t {
     Absent,  // no process shows it
     Joining,
     Locked,
-    Late,  // was not ready in time and is not waited for until it answers
+    Late,  // was not ready in time; not waited for until it answers
 };
 constexpr auto enumerators(OutputState) {
     return std::to_array<std::string_view>({"absent", "joining", "locked", "late"});
@@ -80,7 +80,7 @@ struct OutputStatus {
     std::uint64_t late = 0;    // times that it was dropped from the lock
     double stereo_difference =
         0.0;                    // of the latest complete frame: see picture/stereo_difference.h; 0 = unknown
-    std::uint64_t samples = 0;  // of a pixel, in the latest frame
+    std::uint64_t samples = 0;  // per pixel, in the latest frame
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "name", &OutputStatus::name), row(2, "host", &OutputStatus::host),
                           row(3, "state", &OutputStatus::state), row(4, "frames", &OutputStatus::frames),
@@ -93,7 +93,7 @@ struct DisplayStatus {
     std::string name;  // "" = none
     std::uint64_t frames = 0;
     Version version;  // of the latest frame
-    double rate = 0;  // frames a second, of late
+    double rate = 0;  // recent frames per second
     std::vector<OutputStatus> outputs;
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "name", &DisplayStatus::name), row(2, "frames", &DisplayStatus::frames),
@@ -113,7 +113,7 @@ struct ClusterStatus {
     WireBytes wire_bytes;
     std::vector<NodeStatus> nodes;
     SceneStatus scene;
-    std::uint64_t resyncs = 0;  // nodes that had to be sent the whole scene again
+    std::uint64_t resyncs = 0;  // times that a node had to be sent the whole scene again
     DisplayStatus display;
     static constexpr auto describe(auto row) {
         using Self = ClusterStatus;

@@ -14,24 +14,23 @@
 #include "mediator/view/display_transform.h"
 #include "mediator/view/view.h"
 
-// What a client asks to have rendered of the scene it is in.
+// What a client requests to be rendered.
 namespace tessera::session {
 
-// What the master makes of the film: nothing, the filtered picture as float32 planes one after another, a
-// file, or (of outputs of displays alone) red, green and blue of each pixel: 8-bit sRGB, or linear half
-// floats.
+// What the master makes of the film: nothing, the filtered picture as consecutive float32 planes, an image file, or
+// (for display outputs only) interleaved RGB: 8-bit sRGB, or linear half floats.
 enum class PictureEncoding : std::uint8_t { None, Planes, Png, Jpeg, Exr, Bytes, Half };
 constexpr auto enumerators(PictureEncoding) {
     return std::to_array<std::string_view>({"none", "planes", "png", "jpeg", "exr", "bytes", "half"});
 }
 
-// How samples are dealt to nodes.
+// How samples are distributed to nodes.
 enum class Policy : std::uint8_t { Tiled, Cooperative, Mixed };
 constexpr auto enumerators(Policy) {
     return std::to_array<std::string_view>({"tiled", "cooperative", "mixed"});
 }
 
-// Which frames of a view are delivered: every one that is newer, coarse ones first, or the last alone.
+// Which frames of a view are delivered: every newer one, coarse ones first, or only the last.
 enum class Frames : std::uint8_t { All, Last };
 constexpr auto enumerators(Frames) {
     return std::to_array<std::string_view>({"all", "last"});
@@ -43,25 +42,25 @@ inline constexpr std::uint64_t MaxSamplesPerPixel = std::uint64_t{1} << 31;  // 
 struct StopRule {
     std::uint64_t spp = 64;
     Duration time_limit{0};  // of sampling; 0 = none
-    Duration budget{0};  // not 0: the picture is there so long after the start, filter and encoding included
+    Duration budget{0};      // not 0: time from the start to the encoded picture, filter included
     bool adapts_size =
-        false;  // with a budget too small for 2 samples per pixel: half or a quarter of the size
+        false;  // if the budget is too small for 2 samples per pixel: render at half or a quarter of the size
 
     bool has_budget() const { return budget > Duration::zero(); }
     bool has_clock() const { return has_budget() || time_limit > Duration::zero(); }
-    // The samples of a pixel that are never exceeded.
+    // The maximum number of samples per pixel.
     std::uint64_t most_samples() const {
         return has_budget() || (has_clock() && spp == 0) ? MaxSamplesPerPixel : spp;
     }
 
-    // When sampling must end, given when nodes were ready and how long filter and encoding will take.
+    // When sampling must end, given when the nodes were ready and the predicted time of filter and encoding.
     std::optional<TimePoint> deadline(TimePoint ready, TimePoint now, Duration afterwards) const {
         if (has_budget()) return std::max(now, ready + budget - afterwards);
         if (has_clock()) return now + time_limit;
         return std::nullopt;
     }
 
-    // Against a budget every pixel shall have its first samples; for that it may be late by a part of it.
+    // With a budget every pixel should have its first samples; to get them the picture may be late by a fraction of it.
     bool time_is_up(std::optional<TimePoint> deadline, bool every_pixel_has_samples, TimePoint now) const {
         if (!deadline || now < *deadline) return false;
         if (!has_budget() || every_pixel_has_samples) return true;
@@ -76,20 +75,20 @@ struct StopRule {
     }
 };
 
-// What is seen, until when, by which nodes, and what of it is delivered.
+// What to render, for how long, on which nodes, and what to deliver.
 struct ViewRequest {
-    std::string name;  // for others; "" = the master's choice
-    view::View view;   // id and revision are the master's to choose
+    std::string name;  // shown to other members; "" = chosen by the master
+    view::View view;   // id and revision are set by the master
     StopRule stop;
     Policy policy = Policy::Mixed;
     bool reproducible = false;    // only nodes pinned to AVX2
-    std::uint32_t tile = 0;       // edge in pixels; 0 = the master's choice
-    std::uint32_t min_nodes = 0;  // begin when so many are ready
-    Duration wait_limit{0};       // give up after so long without nodes; 0 = never
+    std::uint32_t tile = 0;       // edge in pixels; 0 = chosen by the master
+    std::uint32_t min_nodes = 0;  // start when this many are ready
+    Duration wait_limit{0};       // give up after this time without nodes; 0 = never
     Frames frames = Frames::All;
     PictureEncoding picture = PictureEncoding::None;
-    bool film = false;      // the statistics, too
-    bool detached = false;  // a job: it goes on, and the master keeps its picture, when the client leaves
+    bool film = false;      // also deliver the film
+    bool detached = false;  // a job: continues when the client leaves, and the master stores its picture
     view::DisplayTransform display_transform;  // of a PNG or JPEG
     static constexpr auto describe(auto row) {
         using Self = ViewRequest;

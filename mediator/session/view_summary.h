@@ -11,7 +11,7 @@
 #include "mediator/base/ids.h"
 #include "mediator/session/view_request.h"
 
-// Where a view is, and what became of it.
+// Progress and result of a view.
 namespace tessera::session {
 
 enum class Phase : std::uint8_t { WaitingForNodes, Syncing, Rendering, Delivering, Filtering };
@@ -21,7 +21,7 @@ constexpr auto enumerators(Phase) {
 }
 struct ViewProgress {
     Phase phase = Phase::WaitingForNodes;
-    std::uint64_t samples = 0, samples_expected = 0;  // of pixels
+    std::uint64_t samples = 0, samples_expected = 0;  // pixel samples
     std::uint64_t rays = 0;
     std::uint32_t nodes = 0;
     Duration elapsed{};  // since rendering began
@@ -80,12 +80,12 @@ struct PictureSummary {
     PictureEncoding encoding = PictureEncoding::None;
     std::uint32_t width = 0, height = 0, components = 0;
     std::uint64_t byte_size = 0;
-    std::string filter;       // as it ran: name and values
-    std::uint32_t scale = 1;  // 2, 4: rendered at this part of the size and upsampled
+    std::string filter;       // name and parameters as used
+    std::uint32_t scale = 1;  // 2, 4: rendered at 1/2, 1/4 of the size and upsampled
     double seconds_filter = 0, seconds_encode = 0;
-    double seconds_predicted = 0;  // with a budget: what was set aside for filter and encoding
+    double seconds_predicted = 0;  // with a budget: time reserved for filter and encoding
     std::vector<FilterPass> passes;
-    std::vector<std::string> notes;            // for a person
+    std::vector<std::string> notes;            // readable messages
     view::DisplayTransform display_transform;  // of a PNG or JPEG, with the exposure that was used
     static constexpr auto describe(auto row) {
         using Self = PictureSummary;
@@ -100,7 +100,7 @@ struct PictureSummary {
     }
 };
 
-// What became of a view when its stop rule ended it.
+// The result of a view after its stop rule ended it.
 struct ViewSummary {
     Outcome outcome = Outcome::Complete;
     std::string message;  // why, unless complete
@@ -113,7 +113,7 @@ struct ViewSummary {
     UnitCounts units;
     WireBytes wire_bytes;
     PictureSummary picture;
-    std::uint64_t samples_least = 0, samples_most = 0;  // of a pixel; with a picture
+    std::uint64_t samples_least = 0, samples_most = 0;  // per pixel; with a picture
     static constexpr auto describe(auto row) {
         using Self = ViewSummary;
         return std::tuple(

@@ -5,9 +5,9 @@
 
 // Blinn's microfacets (1977), with two exponents as Ashikhmin and Shirley's (2000):
 //   D(h) = sqrt((eu + 2)(ev + 2)) / (2 pi) x cos(h)^(eu cos^2 phi + ev sin^2 phi)
-// whose projected areas sum to 1. The facets are walls of V-shaped cavities: for those the share that is seen
-// is known for any D, min(1, 2 cos(h) cos(w) / (w . h)), and so never reflects more than comes in (Heitz and
-// d'Eon 2014). What hits the other wall is lost. Directions as in microfacets.h.
+// whose projected areas sum to 1. The facets are walls of V-shaped cavities: their visible fraction is known
+// for any D, min(1, 2 cos(h) cos(w) / (w . h)), and conserves energy (Heitz and d'Eon 2014). Light that hits
+// the other wall is lost. Directions as in microfacets.h.
 SHADING_BEGIN
 
 // 1 - cos^2 of the half vector; by its x and y, since 1 - z^2 cancels where exponents are high.
@@ -42,21 +42,21 @@ inline float blinn_distribution(vec3 h, vec2 exponents) {
     return scale * exponential(exponent * logarithm_of_cosine(sine2, h.z));
 }
 
-// Share of the facets with the normal h that is seen from w.
-inline float cavity_share(vec3 w, vec3 h) {
+// Fraction of the facets with normal h that is visible from w.
+inline float cavity_visibility(vec3 w, vec3 h) {
     const float facing = dot(w, h);
     if (!(facing > 0.0f)) return 0.0f;
     return lesser_of(1.0f, 2.0f * h.z * w.z / facing);
 }
 
-// Half vectors in proportion to what is visible from `wo`: one of all facets, or the other wall of its
-// cavity. `choice` of [0, 1).
+// Half vectors in proportion to the facets' visible area from `wo`: a facet by D, or the other wall of its
+// cavity. `choice` in [0, 1).
 inline vec3 sample_blinn_normal(vec3 wo, vec2 exponents, float choice, vec2 u) {
     const float turn = 2.0f * Pi * u.x;
     const float x = sqrt(exponents.y + 2.0f) * cosine(turn), y = sqrt(exponents.x + 2.0f) * sine(turn);
     const float length2 = x * x + y * y;
     const float exponent = (exponents.x * x * x + exponents.y * y * y) / length2;
-    // cos = (1 - u)^(1 / (e + 2)); 1 - u: there is no 0 among them.
+    // cos = (1 - u)^(1 / (e + 2)); 1 - u is never 0.
     const float part = -logarithm(1.0f - u.y) / (exponent + 2.0f);
     const float sine_h = sqrt(one_minus_exponential(2.0f * part) / length2);
     const vec3 h = vec3(x * sine_h, y * sine_h, exponential(-part));
@@ -68,8 +68,8 @@ inline vec3 sample_blinn_normal(vec3 wo, vec2 exponents, float choice, vec2 u) {
 // Facets in microfacets.h.
 inline Facets blinn_at(vec3 wo, vec3 wi, vec3 h, vec2 exponents) {
     const float density = blinn_distribution(h, exponents) / (4.0f * wo.z);
-    const float seen = cavity_share(wo, h);
-    return Facets(density * lesser_of(seen, cavity_share(wi, h)), density * seen);
+    const float seen = cavity_visibility(wo, h);
+    return Facets(density * lesser_of(seen, cavity_visibility(wi, h)), density * seen);
 }
 
 SHADING_END

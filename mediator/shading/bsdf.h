@@ -4,43 +4,42 @@
 #include "mediator/shading/energy.h"
 #include "mediator/shading/phase.h"
 #include "mediator/shading/rough_glass.h"
-#include "mediator/shading/shader_lobes.h"
 #include "mediator/shading/sheen.h"
+#include "mediator/shading/surface_shader_lobes.h"
 
-// The surface model: a set of lobes that both models of materials lower to. All directions are in the shading
+// The surface model: a set of lobes that both material models map to. All directions are in the shading
 // frame (z = normal) and point away from the surface. From the outside in:
 //   sheen     fibres (sheen.h) over all the rest
-//   coat      GGX with Schlick's Fresnel, F0 = 0.04, about a normal of its own
-//   specular  GGX, height-correlated Smith, Schlick's Fresnel: metal and dielectric in one lobe; what facets
-//             send to each other comes out as a broad lobe of its own (Kulla and Conty 2017)
-//   diffuse   base colour / pi x (1 - S(i)) (1 - S(o)) / (1 - mean S), S(w) = what the dielectric interface
-//             reflects of light from w (Kelemen and Szirmay-Kalos 2001): white reflects all that comes in
+//   coat      GGX with Schlick's Fresnel, F0 = 0.04, with its own normal
+//   specular  GGX, height-correlated Smith, Schlick's Fresnel: metal and dielectric in one lobe; multiple
+//             scattering between facets is compensated by an additional broad lobe (Kulla and Conty 2017)
+//   diffuse   base colour / pi x (1 - S(i)) (1 - S(o)) / (1 - mean S), S(w) = albedo of the dielectric
+//             interface for direction w (Kelemen and Szirmay-Kalos 2001): conserves energy for white
 //   glass     rough boundary of two dielectrics, or of a thin wall; single scattering only
-// A thin film changes the Fresnel of specular and glass (thin_film.h); S is then that of a bound.
-// A layer passes the lesser of what it lets through on the way in and on the way out. Every lobe is
-// reciprocal; the sum never reflects more than comes in.
-// The lobes of CommonSurfaceShader are others, in shader_lobes.h: a surface has those or these.
-// Perfect mirrors and smooth glass have no density and are in specular.h; a material is a mixture of both
-// kinds.
+// A thin film changes the Fresnel term of specular and glass (thin_film.h); S is then an upper bound. A layer
+// transmits the smaller of its transmittances for wi and wo. Every lobe is reciprocal; the sum conserves
+// energy. The lobes of CommonSurfaceShader are others, in surface_shader_lobes.h: a surface has those or
+// these. Perfect mirrors and smooth glass have no density and are in perfect_specular.h; a material is a
+// mixture of both kinds.
 SHADING_BEGIN
 
-// Lobes that few surfaces have: bits of records.h's features.
+// Rare lobes, as feature bits (records.h).
 inline constexpr uint ExtraLobes = FeatureCoat | FeatureSheen | FeatureRoughGlass | FeatureIridescence;
 
 inline constexpr float CoatF0 = 0.04f;
 
-// What a material is at a point: its factors times its textures.
-struct Look {
+// A material evaluated at a point: its factors times its textures.
+struct MaterialSample {
     vec3 base_color;
     float metallic;
     vec2 alpha;  // roughness along x and y, perceptual roughness squared
     float transmission;
     float index_of_refraction;
-    float eta;  // far side / this side; 0: without bound
+    float eta;  // far side / this side; 0: infinite
     float specular;
     vec3 specular_color;
-    FeatureBits lobes;  // of ExtraLobes, which may be there
-    uint thin;          // walls: light goes straight on
+    FeatureBits lobes;  // of ExtraLobes, those that may occur
+    uint thin;          // thin-walled: transmitted light goes straight on
     float coat;
     float coat_roughness;
     vec3 coat_normal;
@@ -49,21 +48,22 @@ struct Look {
     ThinFilm film;  // of FeatureIridescence
 };
 
-inline Look plain_look(vec3 base_color, float metallic, float roughness, float transmission,
-                       float index_of_refraction, float eta) {
-    return Look(base_color, metallic, vec2(roughness * roughness), transmission, index_of_refraction, eta,
-                1.0f, vec3(1.0f), 0u, 0u, 0.0f, 0.0f, vec3(0.0f, 0.0f, 1.0f), vec3(0.0f), 0.0f, no_film());
+inline MaterialSample default_material_sample(vec3 base_color, float metallic, float roughness,
+                                              float transmission, float index_of_refraction, float eta) {
+    return MaterialSample(base_color, metallic, vec2(roughness * roughness), transmission,
+                          index_of_refraction, eta, 1.0f, vec3(1.0f), 0u, 0u, 0.0f, 0.0f,
+                          vec3(0.0f, 0.0f, 1.0f), vec3(0.0f), 0.0f, no_film());
 }
 
-// What a surface consists of: shares that sum to 1. This file knows metal (rough), dielectric (opaque,
-// coated) and glass (rough).
+// The components of a surface, as fractions that sum to 1. This file implements metal (rough), dielectric
+// (opaque) and rough glass.
 struct Mixture {
     float metal, dielectric, rough_glass;
     float mirror, glass;
 };
 
-// Exactly 1 where there is neither mirror nor glass.
-inline float rough_share(IN(Mixture) mixture) {
+// Exactly 1 if there is neither mirror nor glass.
+inline float rough_fraction(IN(Mixture) mixture) {
     return 1.0f - mixture.mirror - mixture.glass;
 }
 
@@ -71,19 +71,19 @@ inline bool is_smooth(float alpha) {
     return alpha <= MinAlpha;
 }
 
-inline Mixture make_mixture(IN(Look) look) {
-    const float opaque = 1.0f - look.metallic;
-    Mixture mixture = Mixture(look.metallic, opaque, 0.0f, 0.0f, 0.0f);
-    const bool mirror = is_smooth(greater_of(look.alpha.x, look.alpha.y));
-    if (look.transmission > 0.0f) {
-        const float glass = opaque * look.transmission;
-        const bool clear = mirror || look.eta == 0.0f || !is_boundary(look.eta);
+inline Mixture make_mixture(IN(MaterialSample) material_sample) {
+    const float opaque = 1.0f - material_sample.metallic;
+    Mixture mixture = Mixture(material_sample.metallic, opaque, 0.0f, 0.0f, 0.0f);
+    const bool mirror = is_smooth(greater_of(material_sample.alpha.x, material_sample.alpha.y));
+    if (material_sample.transmission > 0.0f) {
+        const float glass = opaque * material_sample.transmission;
+        const bool clear = mirror || material_sample.eta == 0.0f || !is_boundary(material_sample.eta);
         mixture.glass = clear ? glass : 0.0f;
         mixture.rough_glass = clear ? 0.0f : glass;
-        mixture.dielectric = opaque * (1.0f - look.transmission);
+        mixture.dielectric = opaque * (1.0f - material_sample.transmission);
     }
     if (mirror) {
-        mixture.mirror = look.metallic;
+        mixture.mirror = material_sample.metallic;
         mixture.metal = 0.0f;
     }
     return mixture;
@@ -95,99 +95,100 @@ struct Interface {
     float f90;
 };
 
-inline Interface interface_of(IN(Look) look) {
-    const float f0 = normal_reflectance(look.index_of_refraction);
-    const vec3 tinted =
-        vec3(lesser_of(f0 * look.specular_color.x, 1.0f), lesser_of(f0 * look.specular_color.y, 1.0f),
-             lesser_of(f0 * look.specular_color.z, 1.0f));
-    return Interface(tinted * look.specular, f0 > 0.0f ? look.specular : 0.0f);
+inline Interface interface_of(IN(MaterialSample) material_sample) {
+    const float f0 = normal_reflectance(material_sample.index_of_refraction);
+    const vec3 tinted = vec3(lesser_of(f0 * material_sample.specular_color.x, 1.0f),
+                             lesser_of(f0 * material_sample.specular_color.y, 1.0f),
+                             lesser_of(f0 * material_sample.specular_color.z, 1.0f));
+    return Interface(tinted * material_sample.specular, f0 > 0.0f ? material_sample.specular : 0.0f);
 }
 
 struct Bsdf {
     FeatureBits lobes;        // of ExtraLobes
     vec3 diffuse;             // albedo of the base
     vec3 f0;                  // specular reflectance at normal incidence
-    float f90;                // and at grazing: of all of its share
+    float f90;                // and at grazing incidence
     float base_f0, base_f90;  // of the interface above the diffuse lobe
-    float dielectric, metal;  // shares of what is under a film, which the glass knows
+    float dielectric, metal;  // fractions of the components under a thin film (RoughGlass::film)
     vec2 alpha;
-    float roughness;    // by which the specular lobe's energy is looked up: of the smoother direction
-    vec3 late;          // specular light from facet to facet: value / ((1 - E(i)) (1 - E(o)) cos(i))
-    float base_late;    // share of what the interface loses at first that it reflects later
-    float late_out;     // 1 - E(o), E = what the specular lobe would reflect if facets reflected all
-    float base_out;     // (1 - S(o)) / (1 - mean S) / pi
-    float glass_share;  // of rough glass
-    RoughGlass glass;   // its film is that of all the surface
-    float coat, coat_alpha, coat_roughness, coat_out;  // share; what the coat lets pass to wo
+    float roughness;          // for the lookup of the specular lobe's albedo: that of the smoother direction
+    vec3 multiscatter;        // multiple scattering between facets: value / ((1 - E(i)) (1 - E(o)) cos(i))
+    float base_multiscatter;  // fraction of the interface's loss that multiple scattering returns
+    float multiscatter_out;   // 1 - E(o), E = albedo of the specular lobe with perfectly reflecting facets
+    float base_out;           // (1 - S(o)) / (1 - mean S) / pi
+    float glass_fraction;     // of rough glass
+    RoughGlass glass;         // its film is that of all the surface
+    float coat, coat_alpha, coat_roughness, coat_out;  // strength; transmittance of the coat for wo
     vec3 coat_normal;
     vec3 sheen;
     float sheen_alpha, sheen_roughness, sheen_out;
-    ShaderLobes shader;
+    SurfaceShaderLobes surface_shader;
     float anisotropy;   // of a medium (phase.h)
-    vec3 chances;       // of sampling diffuse, specular, coat; the rest is rough glass
-    float reflectance;  // estimate of all that is reflected and let through, as luminance
+    vec3 chances;       // sampling probabilities of diffuse, specular, coat; the rest is rough glass
+    float reflectance;  // estimate of the albedo, reflection and transmission, as luminance
 };
 
 inline float glass_chance(IN(Bsdf) bsdf) {
     return greater_of(1.0f - bsdf.chances.x - bsdf.chances.y - bsdf.chances.z, 0.0f);
 }
 
-// A smooth coat is in specular.h.
+// A smooth coat is a perfect specular (perfect_specular.h).
 inline bool has_rough_coat(IN(Bsdf) bsdf) {
     return (bsdf.lobes & FeatureCoat) != 0u && !is_smooth(bsdf.coat_alpha);
 }
 
 // ---- layers ----
 
-// Of the dielectric interface: (1 - S).
-inline float passes_interface(IN(Bsdf) bsdf, vec2 energy) {
+// Transmittance of the dielectric interface: 1 - S.
+inline float interface_transmittance(IN(Bsdf) bsdf, vec2 energy) {
     const float first = bsdf.base_f0 * energy.x + bsdf.base_f90 * energy.y;
-    return greater_of(1.0f - first - bsdf.base_late * (1.0f - energy.x - energy.y), 0.0f);
+    return greater_of(1.0f - first - bsdf.base_multiscatter * (1.0f - energy.x - energy.y), 0.0f);
 }
 
-inline float passes_coat(FloatArray table, IN(Bsdf) bsdf, vec3 w) {
+inline float coat_transmittance(FloatArray table, IN(Bsdf) bsdf, vec3 w) {
     const vec2 energy = lobe_energy(table, abs(dot(w, bsdf.coat_normal)), bsdf.coat_roughness);
     return 1.0f - bsdf.coat * (CoatF0 * energy.x + energy.y);
 }
 
-inline float passes_sheen(FloatArray table, IN(Bsdf) bsdf, float cosine) {
+inline float sheen_transmittance(FloatArray table, IN(Bsdf) bsdf, float cosine) {
     const float energy = sheen_energy(table, abs(cosine), bsdf.sheen_roughness);
     return 1.0f - largest(bsdf.sheen) * lesser_of(energy, 1.0f);
 }
 
-// Of all layers above base and glass, for light between wo and wi.
-inline float passes_layers(FloatArray table, IN(Bsdf) bsdf, vec3 wi) {
-    float share = 1.0f;
-    if ((bsdf.lobes & FeatureCoat) != 0u) share = lesser_of(passes_coat(table, bsdf, wi), bsdf.coat_out);
+// Transmittance of all layers above base and glass, for light between wo and wi.
+inline float layer_transmittance(FloatArray table, IN(Bsdf) bsdf, vec3 wi) {
+    float transmittance = 1.0f;
+    if ((bsdf.lobes & FeatureCoat) != 0u)
+        transmittance = lesser_of(coat_transmittance(table, bsdf, wi), bsdf.coat_out);
     if ((bsdf.lobes & FeatureSheen) != 0u) {
-        share *= lesser_of(passes_sheen(table, bsdf, wi.z), bsdf.sheen_out);
+        transmittance *= lesser_of(sheen_transmittance(table, bsdf, wi.z), bsdf.sheen_out);
     }
-    return share;
+    return transmittance;
 }
 
-// ---- making ----
+// ---- construction ----
 
-// Where facets send less to each other than this share, in the mean over all directions, that light is left
-// out: it leaves along the surface, where no other lobe would look for it.
-inline constexpr float LeastLate = 1e-3f;
+// Multiple scattering below this fraction (mean over all directions) is left out: it leaves at grazing
+// angles, where no lobe would sample it.
+inline constexpr float MinMultiscatter = 1e-3f;
 
-SELDOM inline vec3 filmed_facets(IN(Bsdf) bsdf, float cosine, vec3 plain) {
+COLD_NOINLINE inline vec3 thin_film_facet_fresnel(IN(Bsdf) bsdf, float cosine, vec3 plain) {
     const FilmLight light = film_light(bsdf.glass.film, cosine);
-    const vec3 filmed = bsdf.dielectric * filmed_dielectric(bsdf.glass.film, light, bsdf.glass.f0) +
-                        bsdf.metal * film_reflectances(light, bsdf.glass.tint);
+    const vec3 filmed = bsdf.dielectric * thin_film_dielectric(bsdf.glass.film, light, bsdf.glass.f0) +
+                        bsdf.metal * thin_film_reflectances(light, bsdf.glass.tint);
     return plain + bsdf.glass.film.strength * (filmed - plain);
 }
 
-// Reflectance of the facets, to light under this angle.
+// Reflectance of the facets at this angle of incidence.
 inline vec3 specular_fresnel(IN(Bsdf) bsdf, float cosine) {
     const vec3 plain = bsdf.f0 + (bsdf.f90 - bsdf.f0) * schlick_weight(cosine);
     if ((bsdf.lobes & FeatureIridescence) == 0u) return plain;
-    return filmed_facets(bsdf, cosine, plain);
+    return thin_film_facet_fresnel(bsdf, cosine, plain);
 }
 
-// late_reflectance: what the lobe's late light adds to what is reflected to wo, as luminance.
-inline void add_specular(INOUT(Bsdf) bsdf, OUT(float) late_reflectance, FloatArray table, IN(Mixture) mixture,
-                         IN(Interface) face, vec3 base_color, float cos_out) {
+// multiscatter_reflectance: of the multiple scattering lobe for wo, as luminance.
+inline void add_specular(INOUT(Bsdf) bsdf, OUT(float) multiscatter_reflectance, FloatArray table,
+                         IN(Mixture) mixture, IN(Interface) face, vec3 base_color, float cos_out) {
     bsdf.f0 = face.f0 * mixture.dielectric + base_color * mixture.metal;
     bsdf.f90 = face.f90 * mixture.dielectric + mixture.metal;
     bsdf.base_f0 = largest(face.f0);
@@ -204,57 +205,60 @@ inline void add_specular(INOUT(Bsdf) bsdf, OUT(float) late_reflectance, FloatArr
         mean_dielectric += strength * (film.dielectric - mean_dielectric);
         mean_metal += strength * (film.metal - mean_metal);
     }
-    bsdf.late = vec3(0.0f);
-    bsdf.base_late = 0.0f;
-    bsdf.late_out = 0.0f;
+    bsdf.multiscatter = vec3(0.0f);
+    bsdf.base_multiscatter = 0.0f;
+    bsdf.multiscatter_out = 0.0f;
     bsdf.base_out = InversePi;
-    late_reflectance = 0.0f;
+    multiscatter_reflectance = 0.0f;
     if (!(bsdf.f90 > 0.0f) && !(bsdf.base_f90 > 0.0f)) return;
     const vec2 energy = lobe_energy(table, cos_out, bsdf.roughness);
     const vec2 mean = mean_lobe_energy(table, bsdf.roughness);
     const float e = mean.x + mean.y;
-    // The tables know of one roughness: with two, that light stays lost.
-    const bool has_late = bsdf.alpha.x == bsdf.alpha.y && 1.0f - e > LeastLate;
-    bsdf.late_out = has_late ? 1.0f - energy.x - energy.y : 0.0f;
-    bsdf.base_late =
-        has_late ? late_share(lesser_of(mean_schlick(bsdf.base_f0, bsdf.base_f90), 1.0f), e) : 0.0f;
-    const float passes = passes_interface(bsdf, mean);
-    // Below, it is rounding: the interface reflects all.
-    bsdf.base_out = passes > 1e-6f ? InversePi * passes_interface(bsdf, energy) / passes : 0.0f;
-    if (!has_late) return;
+    // The tables are for isotropic roughness: with anisotropy there is no compensation.
+    const bool has_multiscatter = bsdf.alpha.x == bsdf.alpha.y && 1.0f - e > MinMultiscatter;
+    bsdf.multiscatter_out = has_multiscatter ? 1.0f - energy.x - energy.y : 0.0f;
+    bsdf.base_multiscatter =
+        has_multiscatter
+            ? multiscatter_fraction(lesser_of(mean_schlick(bsdf.base_f0, bsdf.base_f90), 1.0f), e)
+            : 0.0f;
+    const float passes = interface_transmittance(bsdf, mean);
+    // Below, it is rounding error: the interface reflects everything.
+    bsdf.base_out = passes > 1e-6f ? InversePi * interface_transmittance(bsdf, energy) / passes : 0.0f;
+    if (!has_multiscatter) return;
     if (mixture.dielectric > 0.0f) {
-        bsdf.late += mixture.dielectric * late_shares(mean_dielectric, e);
+        bsdf.multiscatter += mixture.dielectric * multiscatter_fractions(mean_dielectric, e);
     }
     if (mixture.metal > 0.0f) {
-        bsdf.late += mixture.metal * late_shares(mean_metal, e);
+        bsdf.multiscatter += mixture.metal * multiscatter_fractions(mean_metal, e);
     }
-    late_reflectance = luminance(bsdf.late) * bsdf.late_out;
-    bsdf.late *= InversePi / (1.0f - e);
+    multiscatter_reflectance = luminance(bsdf.multiscatter) * bsdf.multiscatter_out;
+    bsdf.multiscatter *= InversePi / (1.0f - e);
 }
 
-inline void add_layers(INOUT(Bsdf) bsdf, FloatArray table, IN(Look) look, vec3 wo) {
-    bsdf.coat = look.coat;
-    bsdf.coat_roughness = look.coat_roughness;
-    bsdf.coat_alpha = greater_of(look.coat_roughness * look.coat_roughness, MinAlpha);
-    bsdf.coat_normal = look.coat_normal;
-    bsdf.sheen = look.sheen_color;
-    bsdf.sheen_roughness = look.sheen_roughness;
-    bsdf.sheen_alpha = sheen_alpha_of(look.sheen_roughness);
-    if ((bsdf.lobes & FeatureCoat) != 0u) bsdf.coat_out = passes_coat(table, bsdf, wo);
-    if ((bsdf.lobes & FeatureSheen) != 0u) bsdf.sheen_out = passes_sheen(table, bsdf, wo.z);
+inline void add_layers(INOUT(Bsdf) bsdf, FloatArray table, IN(MaterialSample) material_sample, vec3 wo) {
+    bsdf.coat = material_sample.coat;
+    bsdf.coat_roughness = material_sample.coat_roughness;
+    bsdf.coat_alpha = greater_of(material_sample.coat_roughness * material_sample.coat_roughness, MinAlpha);
+    bsdf.coat_normal = material_sample.coat_normal;
+    bsdf.sheen = material_sample.sheen_color;
+    bsdf.sheen_roughness = material_sample.sheen_roughness;
+    bsdf.sheen_alpha = sheen_alpha_of(material_sample.sheen_roughness);
+    if ((bsdf.lobes & FeatureCoat) != 0u) bsdf.coat_out = coat_transmittance(table, bsdf, wo);
+    if ((bsdf.lobes & FeatureSheen) != 0u) bsdf.sheen_out = sheen_transmittance(table, bsdf, wo.z);
 }
 
-// In proportion to what the lobes reflect of light to wo, so far as that can be told; never 0 or 1 while
-// several are there, so that no light is out of reach.
-inline void choose_chances(INOUT(Bsdf) bsdf, FloatArray table, float late_reflectance, float cos_out) {
+// Sampling probabilities in proportion to the estimated albedos of the lobes for wo; never 0 or 1 if there
+// are several lobes, so that no light is missed.
+inline void choose_chances(INOUT(Bsdf) bsdf, FloatArray table, float multiscatter_reflectance,
+                           float cos_out) {
     const float weight = schlick_weight(cos_out);
     const float below = bsdf.coat_out * bsdf.sheen_out;
     float specular = luminance(specular_fresnel(bsdf, cos_out)) * below;
-    // A film that reflects nothing here does so elsewhere.
+    // A film that reflects nothing at this angle may do so at others.
     if ((bsdf.lobes & FeatureIridescence) != 0u) specular = greater_of(specular, 1e-4f);
     float diffuse = luminance(bsdf.diffuse) * (1.0f - bsdf.base_f0) *
                     (1.0f - lesser_of(bsdf.base_f90, 1.0f) * weight) * below;
-    diffuse += late_reflectance * below;  // as broad as the diffuse lobe, and found with it
+    diffuse += multiscatter_reflectance * below;  // as broad as the diffuse lobe, and sampled with it
     float coat = 0.0f, glass = 0.0f;
     if ((bsdf.lobes & FeatureSheen) != 0u) {
         diffuse += luminance(bsdf.sheen) * sheen_energy(table, cos_out, bsdf.sheen_roughness);
@@ -263,7 +267,7 @@ inline void choose_chances(INOUT(Bsdf) bsdf, FloatArray table, float late_reflec
         coat = (1.0f - bsdf.coat_out) * bsdf.sheen_out;
     }
     if ((bsdf.lobes & FeatureRoughGlass) != 0u) {
-        glass = bsdf.glass_share * below;
+        glass = bsdf.glass_fraction * below;
     }
     const float sum = diffuse + specular + coat + glass;
     bsdf.reflectance = sum;
@@ -276,26 +280,29 @@ inline void choose_chances(INOUT(Bsdf) bsdf, FloatArray table, float late_reflec
     bsdf.chances = all > 0.0f ? vec3(diffuse, specular, coat) / all : vec3(1.0f, 0.0f, 0.0f);
 }
 
-inline void fill_bsdf(INOUT(Bsdf) bsdf, FloatArray table, IN(Look) look, IN(Mixture) mixture, vec3 wo) {
-    bsdf.lobes = look.lobes;
-    const Interface face = interface_of(look);
-    bsdf.diffuse = look.base_color * mixture.dielectric;
-    bsdf.alpha = vec2(greater_of(look.alpha.x, MinAlpha), greater_of(look.alpha.y, MinAlpha));
+inline void fill_bsdf(INOUT(Bsdf) bsdf, FloatArray table, IN(MaterialSample) material_sample,
+                      IN(Mixture) mixture, vec3 wo) {
+    bsdf.lobes = material_sample.lobes;
+    const Interface face = interface_of(material_sample);
+    bsdf.diffuse = material_sample.base_color * mixture.dielectric;
+    bsdf.alpha =
+        vec2(greater_of(material_sample.alpha.x, MinAlpha), greater_of(material_sample.alpha.y, MinAlpha));
     bsdf.roughness = sqrt(lesser_of(bsdf.alpha.x, bsdf.alpha.y));
-    bsdf.glass_share = mixture.rough_glass;
-    bsdf.glass = RoughGlass(look.base_color, look.eta, face.f0, face.f90, bsdf.alpha, look.thin, look.film);
-    float late_reflectance;
-    add_specular(bsdf, late_reflectance, table, mixture, face, look.base_color, wo.z);
+    bsdf.glass_fraction = mixture.rough_glass;
+    bsdf.glass = RoughGlass(material_sample.base_color, material_sample.eta, face.f0, face.f90, bsdf.alpha,
+                            material_sample.thin, material_sample.film);
+    float multiscatter_reflectance;
+    add_specular(bsdf, multiscatter_reflectance, table, mixture, face, material_sample.base_color, wo.z);
     if (!(mixture.rough_glass > 0.0f)) bsdf.lobes &= ~FeatureRoughGlass;
     bsdf.coat_out = 1.0f;
     bsdf.sheen_out = 1.0f;
-    if ((bsdf.lobes & (FeatureCoat | FeatureSheen)) != 0u) add_layers(bsdf, table, look, wo);
-    choose_chances(bsdf, table, late_reflectance, wo.z);
+    if ((bsdf.lobes & (FeatureCoat | FeatureSheen)) != 0u) add_layers(bsdf, table, material_sample, wo);
+    choose_chances(bsdf, table, multiscatter_reflectance, wo.z);
 }
 
-inline void fill_shader_bsdf(INOUT(Bsdf) bsdf, IN(ShaderLobes) lobes) {
-    bsdf.lobes = FeatureShader;
-    bsdf.shader = lobes;
+inline void fill_shader_bsdf(INOUT(Bsdf) bsdf, IN(SurfaceShaderLobes) lobes) {
+    bsdf.lobes = FeatureSurfaceShader;
+    bsdf.surface_shader = lobes;
     bsdf.coat_out = 1.0f;
     bsdf.sheen_out = 1.0f;
     bsdf.reflectance = rough_reflectance(lobes);
@@ -316,8 +323,8 @@ inline void evaluate_base(INOUT(BsdfValue) result, FloatArray table, IN(Bsdf) bs
     float passes = InversePi;
     if (bsdf.base_f90 > 0.0f || bsdf.f90 > 0.0f) {
         const vec2 energy = lobe_energy(table, wi.z, bsdf.roughness);
-        passes = bsdf.base_out * passes_interface(bsdf, energy);
-        result.value += bsdf.late * (bsdf.late_out * (1.0f - energy.x - energy.y) * wi.z);
+        passes = bsdf.base_out * interface_transmittance(bsdf, energy);
+        result.value += bsdf.multiscatter * (bsdf.multiscatter_out * (1.0f - energy.x - energy.y) * wi.z);
     }
     result.diffuse = bsdf.diffuse * (passes * wi.z);
     result.value += result.diffuse;
@@ -340,12 +347,12 @@ inline void add_coat(INOUT(BsdfValue) result, IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
 
 inline void add_glass(INOUT(BsdfValue) result, IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
     const GlassValue glass = evaluate_rough_glass(bsdf.glass, wo, wi);
-    result.value += glass.value * bsdf.glass_share;
+    result.value += glass.value * bsdf.glass_fraction;
     result.pdf += glass_chance(bsdf) * glass.pdf;
 }
 
-// Where fibres seen along the surface would reflect more than comes in, they reflect all of it; by the lesser
-// of both directions' limits, so that it stays reciprocal.
+// Limits the albedo of sheen to 1 at grazing angles; by the smaller limit of both directions, so that it
+// stays reciprocal.
 inline float capped_sheen(FloatArray table, IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
     const float most = greater_of(sheen_energy(table, wo.z, bsdf.sheen_roughness),
                                   sheen_energy(table, wi.z, bsdf.sheen_roughness));
@@ -354,8 +361,8 @@ inline float capped_sheen(FloatArray table, IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
 
 inline BsdfValue evaluate_bsdf(FloatArray table, IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
     BsdfValue result = BsdfValue(vec3(0.0f), 0.0f, vec3(0.0f));
-    if ((bsdf.lobes & FeatureShader) != 0u) {
-        return wo.z > 0.0f && wi.z > 0.0f ? evaluate_shader(bsdf.shader, wo, wi) : result;
+    if ((bsdf.lobes & FeatureSurfaceShader) != 0u) {
+        return wo.z > 0.0f && wi.z > 0.0f ? evaluate_shader(bsdf.surface_shader, wo, wi) : result;
     }
     if ((bsdf.lobes & FeatureMedia) != 0u) {
         const float value = phase_value(bsdf.anisotropy, wi);
@@ -366,7 +373,7 @@ inline BsdfValue evaluate_bsdf(FloatArray table, IN(Bsdf) bsdf, vec3 wo, vec3 wi
     if (wi.z > 0.0f) evaluate_base(result, table, bsdf, wo, wi);
     if (glass) add_glass(result, bsdf, wo, wi);
     if ((bsdf.lobes & (FeatureCoat | FeatureSheen)) == 0u) return result;
-    const float passes = passes_layers(table, bsdf, wi);
+    const float passes = layer_transmittance(table, bsdf, wi);
     result.value *= passes;
     result.diffuse *= passes;
     if (!(wi.z > 0.0f)) return result;
@@ -375,7 +382,7 @@ inline BsdfValue evaluate_bsdf(FloatArray table, IN(Bsdf) bsdf, vec3 wo, vec3 wi
         add_coat(coat, bsdf, wo, wi);
         float under_sheen = 1.0f;
         if ((bsdf.lobes & FeatureSheen) != 0u) {
-            under_sheen = lesser_of(passes_sheen(table, bsdf, wi.z), bsdf.sheen_out);
+            under_sheen = lesser_of(sheen_transmittance(table, bsdf, wi.z), bsdf.sheen_out);
         }
         result.value += coat.value * under_sheen;
         result.pdf += coat.pdf;
@@ -388,7 +395,7 @@ inline BsdfValue evaluate_bsdf(FloatArray table, IN(Bsdf) bsdf, vec3 wo, vec3 wi
 
 // A direction, or none (0, 0, 0).
 inline vec3 sample_bsdf(IN(Bsdf) bsdf, vec3 wo, float choice, vec2 u) {
-    if ((bsdf.lobes & FeatureShader) != 0u) return sample_shader(bsdf.shader, wo, choice, u);
+    if ((bsdf.lobes & FeatureSurfaceShader) != 0u) return sample_shader(bsdf.surface_shader, wo, choice, u);
     if ((bsdf.lobes & FeatureMedia) != 0u) return sample_phase(bsdf.anisotropy, u);
     float first = bsdf.chances.y;
     if (choice < first) {

@@ -5,7 +5,7 @@
 
 SHADING_BEGIN
 
-// What a surface scatters from wi to wo.
+// The BSDF for light from wi to wo.
 struct BsdfValue {
     vec3 value;    // f |cos(wi)|
     float pdf;     // of wi per solid angle, as it is sampled

@@ -2,25 +2,25 @@
 #define TESSERA_MEDIATOR_SHADING_BUMP_H
 
 #include "mediator/shading/motion.h"
-#include "mediator/shading/points.h"
 #include "mediator/shading/textures.h"
+#include "mediator/shading/triangle_points.h"
 
-// Normals and tangents of triangles in the world, and how texture coordinates lie on them: what frames and
-// bumps are relative to.
+// World-space normals and tangents of triangles, and gradients of texture coordinates on them, for tangent
+// frames and bump mapping.
 SHADING_BEGIN
 
 inline vec3 vertex_normal(IN(Instance) instance, IN(Mesh) mesh, uvec3 corners, vec2 b, vec3 face) {
     if ((mesh.arrays & MeshNormals) == 0u) return face;
     const vec3 mean = mesh.normals.items[corners.x] * (1.0f - b.x - b.y) +
                       mesh.normals.items[corners.y] * b.x + mesh.normals.items[corners.z] * b.y;
-    if ((mesh.arrays & MeshBends) == 0u) return direction_of(instance.normals * mean, face);
+    if ((mesh.arrays & MeshDeforms) == 0u) return direction_of(instance.normals * mean, face);
     const vec3 next = mesh.next_normals.items[corners.x] * (1.0f - b.x - b.y) +
                       mesh.next_normals.items[corners.y] * b.x + mesh.next_normals.items[corners.z] * b.y;
-    return direction_of(instance.normals * between(mean, next, mesh.share), face);
+    return direction_of(instance.normals * between(mean, next, mesh.key_fraction), face);
 }
 
-// The vertices' tangent, turned into the plane of the normal; w: 1 or -1, the side of the bitangent; 0: there
-// is no tangent.
+// The interpolated tangent, made orthogonal to the normal; w: 1 or -1, the sign of the bitangent; 0: no
+// tangent.
 inline vec4 tangent_at(IN(Instance) instance, IN(Mesh) mesh, uvec3 corners, vec2 b, vec3 normal) {
     if ((mesh.arrays & MeshTangents) == 0u) return vec4(0.0f);
     const vec4 mean = mesh.tangents.items[corners.x] * (1.0f - b.x - b.y) +
@@ -31,8 +31,8 @@ inline vec4 tangent_at(IN(Instance) instance, IN(Mesh) mesh, uvec3 corners, vec2
     return vec4(across.x, across.y, across.z, mean.w < 0.0f ? -1.0f : 1.0f);
 }
 
-// How fast a value at the corners grows along the triangle, per metre: by its steps along the two edges from
-// the first corner (Mikkelsen 2010). 0 for a degenerate triangle.
+// Edges for the surface gradient of a value given at the corners, per metre, by its differences along the two
+// edges from the first corner (Mikkelsen 2010). 0 for a degenerate triangle.
 struct EdgesInWorld {
     vec3 p;       // from the first corner to the second, times `scale`
     vec3 q;       // and to the third
@@ -53,7 +53,7 @@ inline vec3 surface_gradient(IN(EdgesInWorld) edges, float along_p, float along_
            (edges.scale / area2);
 }
 
-// Texture coordinates' steps along the two edges: x = of u, y = of v.
+// Differences of texture coordinates along the two edges: x = of u, y = of v.
 struct TexSteps {
     vec2 p;
     vec2 q;
@@ -70,8 +70,8 @@ inline vec3 gradient_of_u(IN(EdgesInWorld) edges, IN(Mesh) mesh, uint set, uvec3
     return surface_gradient(edges, steps.p.x, steps.q.x);
 }
 
-// In which direction the place moves while u grows and v stays; w: the side of the bitangent, against v
-// (which grows down the picture).
+// Direction of growing u at constant v; w: the sign of the bitangent, which is opposite to v (which grows
+// down the picture).
 inline vec4 along_u(IN(EdgesInWorld) edges, IN(Mesh) mesh, uint set, uvec3 corners) {
     const TexSteps steps = tex_steps(mesh, set, corners);
     const float turn = steps.p.x * steps.q.y - steps.q.x * steps.p.y;
@@ -80,12 +80,12 @@ inline vec4 along_u(IN(EdgesInWorld) edges, IN(Mesh) mesh, uint set, uvec3 corne
     return vec4(along.x, along.y, along.z, -side);
 }
 
-// Slope of a height map along u and v: of the picture between its texels, over the width of one. Differences
-// come first: what is flat has slope 0, not what rounding leaves of two products.
+// Slope of a height map along u and v, by central differences over the width of a texel. Differences are
+// taken first, so that flat areas have slope 0 without rounding noise.
 inline vec2 height_slope(IN(Scene) scene, IN(Texture) map, vec2 uv) {
     const vec2 size = vec2(float(map.width), float(map.height));
     vec2 rise = vec2(0.0f);
-    KEEP_LOOP
+    NO_UNROLL
     for (uint i = 0u; i < 4u; ++i) {
         const float side = (i & 1u) == 0u ? 0.5f : -0.5f;
         const vec2 step = i < 2u ? vec2(side / size.x, 0.0f) : vec2(0.0f, side / size.y);

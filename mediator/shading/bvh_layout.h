@@ -13,23 +13,23 @@ inline constexpr uint BvhWidth = 8u;          // children of a node
 inline constexpr uint BvhLeafTriangles = 3u;  // of one child; 8 children fill the 24 bits of a mask
 inline constexpr uint BvhNodeItems = 5u;
 inline constexpr uint BvhTriangleItems = 3u;
-inline constexpr uint BvhInstanceItems = 5u;  // as many as a node, for both stand in one row of children
+inline constexpr uint BvhInstanceItems = 5u;  // as many as a node, since both are in one array of children
 
-// Levels of nodes. A visited node leaves at most one entry on the stack, an entered instance one more; the
-// place above the last is written, too.
+// Maximum depths. A visited node leaves at most one entry on the stack, an entered instance one more; the
+// entry above the last one is written as well.
 inline constexpr uint BvhTopDepth = 12u;
 inline constexpr uint BvhMeshDepth = 18u;
 inline constexpr uint BvhStackSize = 32u;
 
-// One mesh's nodes stand in one row, the root first, every node before its children; so do its triangles.
-// Indices are relative to these rows, so that a tree may lie anywhere. In the top level the children after
-// the inner ones are instances in the same row.
+// The nodes of a mesh are one contiguous array, the root first, every node before its children; likewise its
+// triangles. Indices are relative to these arrays, so that a tree is relocatable. In the top level the
+// children after the inner ones are instances in the same array.
 struct BvhNode {
     vec3 origin;  // of the frame, at or below all boxes
     uint frame;   // three biased exponents, x lowest: a step is 2^(e - 127); highest byte: count of inner
                   // children
-    uint first_child;     // its children follow each other, in items of BvhNodeItems
-    uint first_triangle;  // in the row; top level: count of instances, the children after the inner ones
+    uint first_child;     // its children are contiguous, in units of BvhNodeItems
+    uint first_triangle;  // in its array; top level: count of instances, the children after the inner ones
     uvec2 leaves;         // a byte each child: 5 bits first triangle from first_triangle, 3 bits one for each
                           // triangle; 0 = no leaf. Top level: 0
     uvec2 low_x, low_y, low_z;     // a byte each child, lowest first; in steps from the origin
@@ -47,20 +47,20 @@ struct BvhTriangle {
 
 struct BvhInstance {
     vec4 object_x, object_y, object_z;  // rows of object from world
-    uint nodes, triangles;              // where the mesh's rows begin, in items of the pool
+    uint nodes, triangles;              // where the mesh's arrays start, in items of the pool
     uint instance;                      // index in the scene
     uint flags;                         // BvhAlphaTested, BvhMoves
-    uint layers;                        // rays of none of them pass it by
-    // Of BvhMoves alone. Where its matrices begin, in items from the top level's root: BvhPlaceItems for each
-    // step, rows of world from object; and the steps after the first. None: object_x to object_z hold.
-    uint places;
-    uint steps;
-    uint mesh_steps;  // of its triangles after the first; each has BvhTriangleItems for each step
+    uint layers;                        // rays with none of these layers skip it
+    // Of BvhMoves only. Where its transforms start, in items from the top level's root: BvhTransformItems per
+    // motion key, rows of world from object; and the number of keys - 1. If 0, object_x to object_z apply.
+    uint transform_keys;
+    uint key_intervals;
+    uint mesh_key_intervals;  // motion keys of its triangles - 1; a triangle has BvhTriangleItems per key
 };
 
-inline constexpr uint BvhAlphaTested = 2u;  // what it hits has to be asked
-inline constexpr uint BvhMoves = 4u;        // it or its vertices, while the shutter is open
-inline constexpr uint BvhPlaceItems = 3u;
+inline constexpr uint BvhAlphaTested = 2u;  // hits need the alpha test
+inline constexpr uint BvhMoves = 4u;        // it or its vertices move while the shutter is open
+inline constexpr uint BvhTransformItems = 3u;
 
 #ifdef __cplusplus
 
@@ -80,8 +80,8 @@ static_assert(offsetof(BvhInstance, object_x) == 0 && offsetof(BvhInstance, obje
 static_assert(offsetof(BvhInstance, object_z) == 32);
 static_assert(offsetof(BvhInstance, nodes) == 48 && offsetof(BvhInstance, triangles) == 52);
 static_assert(offsetof(BvhInstance, instance) == 56 && offsetof(BvhInstance, flags) == 60);
-static_assert(offsetof(BvhInstance, layers) == 64 && offsetof(BvhInstance, places) == 68);
-static_assert(offsetof(BvhInstance, steps) == 72 && offsetof(BvhInstance, mesh_steps) == 76);
+static_assert(offsetof(BvhInstance, layers) == 64 && offsetof(BvhInstance, transform_keys) == 68);
+static_assert(offsetof(BvhInstance, key_intervals) == 72 && offsetof(BvhInstance, mesh_key_intervals) == 76);
 static_assert(BvhStackSize >= BvhTopDepth + BvhMeshDepth + 2);
 
 #endif

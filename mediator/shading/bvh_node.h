@@ -4,25 +4,25 @@
 #include "mediator/shading/bvh_layout.h"
 #include "mediator/shading/bvh_ray.h"
 
-// One node against a ray: which triangles to test, which children to visit and in which order.
+// Intersects a ray with a node: which triangles to test, which children to visit and in which order.
 SHADING_BEGIN
 
-// What is asked of a ray; sums of them. Constants, so that compilers leave out what is not needed.
+// Flags of a ray query. Passed as constants, so that compilers remove what is not needed.
 inline constexpr uint BvhClosest = 0u;
-inline constexpr uint BvhAny = 1u;     // any hit will do: children are visited in any order
-inline constexpr uint BvhAlpha = 2u;   // instances marked BvhAlphaTested stop only what stops_ray() says
-inline constexpr uint BvhMotion = 4u;  // instances marked BvhMoves are where they are at the ray's time; else
-                                       // all is as at the beginning
+inline constexpr uint BvhAny = 1u;     // any hit: children are visited in any order
+inline constexpr uint BvhAlpha = 2u;   // hits on BvhAlphaTested instances count only if stops_ray()
+inline constexpr uint BvhMotion = 4u;  // BvhMoves instances are evaluated at the ray's time; else all at
+                                       // shutter open
 
 // Slots of children, 3 bits each, the nearest lowest; a set bit above the last slot; from bit 25 on the count
-// of inner children. BvhEnd instead: nothing is left. BvhLeave: an instance is finished.
+// of inner children. BvhEnd instead: traversal is finished. BvhLeave: an instance is finished.
 inline constexpr uint BvhEnd = 0u;
 inline constexpr uint BvhLeave = 1u;
 inline constexpr uint BvhInnerShift = 25u;
 inline constexpr uint BvhRoot = (1u << 3u) | (1u << 25u);  // slot 0 of 1
 inline constexpr uint BvhSlots = (1u << 25u) - 1u;
 
-// Is the nearest slot that of an inner node?
+// Whether the nearest slot is an inner node.
 inline bool bvh_is_node(uint list) {
     return (list & 7u) < (list >> BvhInnerShift);
 }
@@ -61,9 +61,8 @@ inline BvhFrame bvh_frame(IN(BvhRay) ray, vec3 origin, uint exponents) {
     return frame;
 }
 
-// Keys of four children: the bits of the distance where the box is entered, whose order is that of the
-// numbers since none is negative, with the slot in the lowest three; BvhMissed if the box is missed between
-// `near` and `far`.
+// Sort keys of four children: the bits of the entry distance (which sort like the numbers, as none is
+// negative), with the slot in the lowest three; BvhMissed if the box is missed between `near` and `far`.
 inline uvec4 bvh_keys(IN(BvhFrame) frame, uvec3 low, uvec3 high, float near, float far, uint first_slot) {
     const vec4 enter_x = bvh_bytes(frame.down_x ? high.x : low.x) * frame.step.x + frame.start.x;
     const vec4 enter_y = bvh_bytes(frame.down_y ? high.y : low.y) * frame.step.y + frame.start.y;
@@ -99,9 +98,9 @@ struct BvhVisit {
     uint list;       // of the children to visit
 };
 
-// The five items of a node. `sorted`: so many slots count as children to visit; those after are leaves.
+// The five items of a node. `sorted`: number of slots that are children to visit; the others are leaves.
 inline BvhVisit bvh_visit(IN(BvhRay) ray, uvec4 item0, uvec4 item1, uvec4 item2, uvec4 item3, uvec4 item4,
-                          float near, float far, uint sorted, uint question) {
+                          float near, float far, uint sorted, uint query) {
     const vec3 origin = vec3(float_from_bits(item0.x), float_from_bits(item0.y), float_from_bits(item0.z));
     const BvhFrame frame = bvh_frame(ray, origin, item0.w);
     const uvec4 first =
@@ -119,7 +118,7 @@ inline BvhVisit bvh_visit(IN(BvhRay) ray, uvec4 item0, uvec4 item1, uvec4 item2,
     uint k2 = 2u < sorted ? first.z : BvhMissed, k3 = 3u < sorted ? first.w : BvhMissed;
     uint k4 = 4u < sorted ? second.x : BvhMissed, k5 = 5u < sorted ? second.y : BvhMissed;
     uint k6 = 6u < sorted ? second.z : BvhMissed, k7 = 7u < sorted ? second.w : BvhMissed;
-    if ((question & BvhAny) == 0u) {
+    if ((query & BvhAny) == 0u) {
         // Batcher's odd-even merge sort: 19 exchanges.
         bvh_order(k0, k1), bvh_order(k2, k3), bvh_order(k4, k5), bvh_order(k6, k7);
         bvh_order(k0, k2), bvh_order(k1, k3), bvh_order(k4, k6), bvh_order(k5, k7);

@@ -10,14 +10,14 @@ SHADING_BEGIN
 struct BvhRay {
     vec3 origin, direction;
     vec3 inverse;  // of the direction; finite
-    vec3 shear;    // of the direction in turned axes: x / z, y / z, 1 / z
-    uint axis;     // the direction's largest component, which turning puts last
+    vec3 shear;    // of the direction in permuted axes: x / z, y / z, 1 / z
+    uint axis;     // the direction's largest component, which the permutation puts last
 };
 
-// A component of the direction below this share of the largest takes its place, so that reciprocals are
-// finite. The way it goes wrong, 5e-20 of the distance, is far within the margin of boxes (up to 1e13 of
-// their extent away), and products with coordinates below 2^60 stay finite.
-inline constexpr float BvhLeastShare = 5.4210109e-20f;  // 2^-64
+// Components of the direction are at least this fraction of the largest one, so that reciprocals are finite.
+// The resulting error, 5e-20 of the distance, is far within the margin of boxes (up to 1e13 of their extent
+// away), and products with coordinates below 2^60 stay finite.
+inline constexpr float BvhMinRelativeComponent = 5.4210109e-20f;  // 2^-64
 
 inline float bvh_reciprocal(float x, float least) {
     return 1.0f / (abs(x) < least ? least : x);
@@ -33,7 +33,7 @@ inline BvhRay bvh_ray(vec3 origin, vec3 direction) {
     ray.origin = origin;
     ray.direction = direction;
     const vec3 sizes = abs(direction);
-    const float least = max(sizes.x, max(sizes.y, sizes.z)) * BvhLeastShare;
+    const float least = max(sizes.x, max(sizes.y, sizes.z)) * BvhMinRelativeComponent;
     ray.inverse = vec3(bvh_reciprocal(direction.x, least), bvh_reciprocal(direction.y, least),
                        bvh_reciprocal(direction.z, least));
     ray.axis = sizes.x >= sizes.y && sizes.x >= sizes.z ? 0u : sizes.y >= sizes.z ? 1u : 2u;
@@ -42,15 +42,15 @@ inline BvhRay bvh_ray(vec3 origin, vec3 direction) {
     return ray;
 }
 
-// Of a triangle's corners where a ray's line crosses its plane, times the area that the ray sees, to its
-// sign.
+// Barycentric weights where the ray's line crosses a triangle's plane, times the triangle's projected area,
+// signed.
 struct BvhWeights {
     float a;
     float b;
     float c;
 };
 
-// The corners seen from the ray's origin, turned.
+// The corners relative to the ray's origin, permuted.
 inline BvhWeights bvh_weights(IN(BvhRay) ray, vec3 ta, vec3 tb, vec3 tc) {
     PRECISE const float ax = ta.x - ray.shear.x * ta.z;
     PRECISE const float ay = ta.y - ray.shear.y * ta.z;
@@ -72,12 +72,11 @@ struct BvhCrossing {
 
 // Watertight (Woop, Benthin and Wald 2013): the corners are sheared into the ray's frame, each by itself, so
 // triangles see a common corner at the same place; the signs of the edge functions are exact or zero, since
-// rounding is monotonic and nothing is contracted; zero counts as inside. So two triangles cannot both miss
-// between them, on either side of a common edge or around a common corner. What has no area seen from the ray
-// is missed. The distance is that to the plane, as Embree has it: its error is one of the origin's height
-// above the plane, which a path can leave behind it (leave_surface), and is 0 where origin and triangle lie
-// in one plane along the axes. It is kept between those of the corners, which a plane seen from its edge
-// would let it leave.
+// rounding is monotonic and nothing is contracted; zero counts as inside. So no ray passes between triangles
+// that share an edge or a corner. Triangles without projected area are missed. The distance is that to the
+// plane, as Embree has it: its error is one of the origin's height above the plane, which a path can leave
+// behind it (leave_surface), and is 0 where origin and triangle lie in one axis-aligned plane. It is clamped
+// to the range of the corners' distances, which it could leave when the plane is hit edge-on.
 inline BvhCrossing bvh_cross_triangle(IN(BvhRay) ray, vec3 a, vec3 b, vec3 c) {
     const vec3 from_a = a - ray.origin;
     const vec3 ta = bvh_turned(ray.axis, from_a);
@@ -95,7 +94,7 @@ inline BvhCrossing bvh_cross_triangle(IN(BvhRay) ray, vec3 a, vec3 b, vec3 c) {
     crossing.barycentric = vec2(weights.b * scale, weights.c * scale);
     const float least = min(weights.a, min(weights.b, weights.c));
     const float greatest = max(weights.a, max(weights.b, weights.c));
-    crossing.crosses = (least >= 0.0f || greatest <= 0.0f) && abs(sum) > 0.0f;  // false for what is no number
+    crossing.crosses = (least >= 0.0f || greatest <= 0.0f) && abs(sum) > 0.0f;  // false for NaN
     return crossing;
 }
 

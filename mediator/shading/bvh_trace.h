@@ -5,13 +5,13 @@
 #include "mediator/shading/motion.h"
 #include "mediator/shading/rays.h"
 
-// Rays through the two levels of the acceleration structure. Hits are a function of the triangles alone:
-// neither the tree nor the order of its visit shows, but for rays within a triangle's plane.
+// Traversal of the two-level acceleration structure. Hits depend on the triangles only, not on the tree or
+// the order of traversal, except for rays within a triangle's plane.
 SHADING_BEGIN
 
 ARRAY_OF(uvec4, BvhItems, 16);
 
-// A shader may have the pool in a texel buffer (R32G32B32A32_UINT) and name it BVH_TEXELS.
+// A shader may bind the pool as a texel buffer (R32G32B32A32_UINT) and define BVH_TEXELS as its name.
 inline uvec4 bvh_item(BvhItems pool, uint at) {
 #ifdef BVH_TEXELS
     return texelFetch(BVH_TEXELS, int(at));
@@ -44,13 +44,13 @@ inline bool bvh_is_closer(IN(Hit) hit, float distance, uint instance, uint trian
             (instance < hit.instance || (instance == hit.instance && triangle < hit.triangle)));
 }
 
-// Where a ray is: in the top level (instance = NoInstance) or within an instance.
+// Traversal state of a ray: in the top level (instance = NoInstance) or within an instance.
 struct BvhPlace {
     BvhRay ray;
-    uint nodes, corners;  // where the rows begin
+    uint nodes, corners;  // where the arrays start
     uint instance, flags;
-    uint stride;    // of triangles, in items
-    Moment moment;  // of a mesh that bends
+    uint stride;           // of triangles, in items
+    KeyInterval interval;  // of a deforming mesh
 };
 
 inline BvhPlace bvh_top(uint top, vec3 origin, vec3 direction) {
@@ -61,14 +61,15 @@ inline BvhPlace bvh_top(uint top, vec3 origin, vec3 direction) {
     place.instance = NoInstance;
     place.flags = 0u;
     place.stride = BvhTriangleItems;
-    place.moment = Moment(0u, 0.0f);
+    place.interval = KeyInterval(0u, 0.0f);
     return place;
 }
 
-inline Place bvh_place(BvhItems pool, uint at) {
+inline Affine3x4 bvh_place(BvhItems pool, uint at) {
     const vec4 x = bvh_floats(bvh_item(pool, at)), y = bvh_floats(bvh_item(pool, at + 1u));
     const vec4 z = bvh_floats(bvh_item(pool, at + 2u));
-    return Place(mat3(vec3(x.x, y.x, z.x), vec3(x.y, y.y, z.y), vec3(x.z, y.z, z.z)), vec3(x.w, y.w, z.w));
+    return Affine3x4(mat3(vec3(x.x, y.x, z.x), vec3(x.y, y.y, z.y), vec3(x.z, y.z, z.z)),
+                     vec3(x.w, y.w, z.w));
 }
 
 inline BvhPlace bvh_enter_moving(BvhItems pool, uint top, uint at, IN(BvhPlace) still, vec3 origin,
@@ -76,23 +77,24 @@ inline BvhPlace bvh_enter_moving(BvhItems pool, uint top, uint at, IN(BvhPlace) 
     const uvec4 motion = bvh_item(pool, at + 4u);
     BvhPlace place = still;
     if (motion.z > 0u) {
-        const Moment moment = moment_at(motion.z, time);
-        const uint from = top + motion.y + moment.step * BvhPlaceItems;
-        // A place without an inverse gives a ray that hits nothing.
-        const Ray inner = ray_in_object(
-            place_between(bvh_place(pool, from), bvh_place(pool, from + BvhPlaceItems), moment.share), origin,
-            direction);
+        const KeyInterval interval = key_interval_at(motion.z, time);
+        const uint from = top + motion.y + interval.index * BvhTransformItems;
+        // A singular transform gives a ray that hits nothing.
+        const Ray inner =
+            ray_in_object(interpolate_transform(bvh_place(pool, from),
+                                                bvh_place(pool, from + BvhTransformItems), interval.fraction),
+                          origin, direction);
         place.ray = bvh_ray(inner.origin, inner.direction);
     }
     if (motion.w > 0u) {
-        place.moment = moment_at(motion.w, time);
+        place.interval = key_interval_at(motion.w, time);
         place.stride = BvhTriangleItems * (motion.w + 1u);
     }
     return place;
 }
 
-// Directions are not made unit: distances are those of the world.
-inline BvhPlace bvh_enter(BvhItems pool, uint top, uint at, vec3 origin, vec3 direction, uint question,
+// Directions are not normalised: distances stay those of world space.
+inline BvhPlace bvh_enter(BvhItems pool, uint top, uint at, vec3 origin, vec3 direction, uint query,
                           float time) {
     const vec4 x = bvh_floats(bvh_item(pool, at)), y = bvh_floats(bvh_item(pool, at + 1u));
     const vec4 z = bvh_floats(bvh_item(pool, at + 2u));
@@ -105,12 +107,12 @@ inline BvhPlace bvh_enter(BvhItems pool, uint top, uint at, vec3 origin, vec3 di
     place.instance = about.z;
     place.flags = about.w;
     place.stride = BvhTriangleItems;
-    place.moment = Moment(0u, 0.0f);
-    if ((question & about.w & BvhMoves) == 0u) return place;
+    place.interval = KeyInterval(0u, 0.0f);
+    if ((query & about.w & BvhMoves) == 0u) return place;
     return bvh_enter_moving(pool, top, at, place, origin, direction, time);
 }
 
-// Whether a ray of these layers passes the instance there by.
+// Whether a ray with these layers skips the instance.
 inline bool bvh_is_hidden(BvhItems pool, uint at, uint layers) {
     return layers != AllLayers && (bvh_item(pool, at + 4u).x & layers) == 0u;
 }
@@ -120,7 +122,7 @@ struct BvhStep {
     BvhVisit visit;
 };
 
-inline BvhStep bvh_step(BvhItems pool, uint node, IN(BvhPlace) place, float near, float far, uint question) {
+inline BvhStep bvh_step(BvhItems pool, uint node, IN(BvhPlace) place, float near, float far, uint query) {
     const uvec4 item0 = bvh_item(pool, node), item1 = bvh_item(pool, node + 1u);
     const uint inner = item0.w >> 24u;
     const uint sorted = place.instance == NoInstance ? inner + item1.y : inner;
@@ -128,7 +130,7 @@ inline BvhStep bvh_step(BvhItems pool, uint node, IN(BvhPlace) place, float near
     made.first_child = item1.x;
     made.first_triangle = item1.y;
     made.visit = bvh_visit(place.ray, item0, item1, bvh_item(pool, node + 2u), bvh_item(pool, node + 3u),
-                           bvh_item(pool, node + 4u), near, far, sorted, question);
+                           bvh_item(pool, node + 4u), near, far, sorted, query);
     return made;
 }
 
@@ -138,16 +140,16 @@ inline Triangle bvh_triangle(BvhItems pool, uint at) {
 }
 
 inline BvhCrossing bvh_cross_moving(BvhItems pool, uint at, IN(BvhPlace) place) {
-    const uint step = at + place.moment.step * BvhTriangleItems;
+    const uint step = at + place.interval.index * BvhTriangleItems;
     const Triangle from = bvh_triangle(pool, step), to = bvh_triangle(pool, step + BvhTriangleItems);
-    return bvh_cross_triangle(place.ray, between(from.p, to.p, place.moment.share),
-                              between(from.q, to.q, place.moment.share),
-                              between(from.r, to.r, place.moment.share));
+    return bvh_cross_triangle(place.ray, between(from.p, to.p, place.interval.fraction),
+                              between(from.q, to.q, place.interval.fraction),
+                              between(from.r, to.r, place.interval.fraction));
 }
 
-// A closer hit of the triangle of this number in the row, or the hit as it was.
-inline Hit bvh_meet(BvhItems pool, uint number, IN(BvhPlace) place, float near, uint question, IN(Hit) hit) {
-    const bool moves = (question & BvhMotion) != 0u;
+// Intersects the triangle with this index in the array; returns the closer hit.
+inline Hit bvh_meet(BvhItems pool, uint number, IN(BvhPlace) place, float near, uint query, IN(Hit) hit) {
+    const bool moves = (query & BvhMotion) != 0u;
     const uint at = place.corners + number * (moves ? place.stride : BvhTriangleItems);
     const uvec4 a = bvh_item(pool, at), b = bvh_item(pool, at + 1u), c = bvh_item(pool, at + 2u);
     BvhCrossing crossing;
@@ -167,30 +169,30 @@ inline Hit bvh_meet(BvhItems pool, uint number, IN(BvhPlace) place, float near, 
     return met;
 }
 
-// The triangles that are left of a row, one after the other, until there is one whose alpha is to be asked for: true,
-// and it is the candidate.
+// Intersects the remaining triangles of a leaf until one is hit that needs the alpha test: returns true, with
+// that hit as the candidate.
 inline bool bvh_meet_row(BvhItems pool, uint first_triangle, INOUT(uint) triangles, IN(BvhPlace) place,
-                         float near, uint question, INOUT(Hit) hit, INOUT(Hit) candidate) {
-    bool asked = false;
-    while (triangles != 0u && !asked) {
+                         float near, uint query, INOUT(Hit) hit, INOUT(Hit) candidate) {
+    bool needs_alpha_test = false;
+    while (triangles != 0u && !needs_alpha_test) {
         const uint number = first_triangle + lowest_bit(triangles);
         triangles &= triangles - 1u;
-        candidate = bvh_meet(pool, number, place, near, question, hit);
-        asked = (question & place.flags & BvhAlpha) != 0u &&
-                (candidate.instance != hit.instance || candidate.triangle != hit.triangle);
-        if (!asked) hit = candidate;
+        candidate = bvh_meet(pool, number, place, near, query, hit);
+        needs_alpha_test = (query & place.flags & BvhAlpha) != 0u &&
+                           (candidate.instance != hit.instance || candidate.triangle != hit.triangle);
+        if (!needs_alpha_test) hit = candidate;
     }
-    return asked;
+    return needs_alpha_test;
 }
 
-// The closest hit with near < distance <= far, or any; distance = far where there is none. `top`: where the
-// top level's root is, in items. `layers`: instances in none of them are not there; AllLayers, as a constant,
-// costs nothing. `time`: of BvhMotion. Whoever includes this says what Context is and defines
+// The closest hit with near < distance <= far, or any; distance = far if there is none. `top`: where the
+// top level's root is, in items. `layers`: instances in none of them are skipped; free of cost if it is the
+// constant AllLayers. `time`: for BvhMotion. The including file defines Context and, before the include,
 //     bool stops_ray(IN(Context) context, IN(Hit) candidate, uint seed)
-// before. Memory: BvhStackSize entries of 8 bytes; the builder bounds the depth of every tree.
+// Memory: BvhStackSize entries of 8 bytes; the builder bounds the depth of every tree.
 WITH_CONTEXT
-inline Hit bvh_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float near, float far,
-                     uint question, uint layers, float time, IN(Context) context, uint seed) {
+inline Hit bvh_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float near, float far, uint query,
+                     uint layers, float time, IN(Context) context, uint seed) {
     Hit hit = Hit(NoInstance, 0u, vec2(0.0f), far);
     uint stack_first[BvhStackSize];
     uint stack_list[BvhStackSize];
@@ -202,17 +204,17 @@ inline Hit bvh_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float
     uint triangles = 0u, first_triangle = 0u;
     Hit candidate = hit;
 
-    // One loop, its parts one after the other: lanes that have come to triangles wait for those still among
-    // nodes, and no longer; nested loops, another order or leaving the inner loop early were slower.
+    // One loop with sequential parts: lanes that have reached triangles wait only for those still at nodes.
+    // Nested loops, another order, and early exits from the inner loop were slower.
     while (list != BvhEnd || triangles != 0u) {
         while (triangles == 0u && bvh_is_node(list)) {
             const uint node = place.nodes + (first + (list & 7u)) * BvhNodeItems;
             list = bvh_without_nearest(list);
-            // Written in any case: a branch would cost more.
+            // Written unconditionally: a branch would cost more.
             stack_first[height + 1u] = first;
             stack_list[height + 1u] = list;
             height += bvh_is_empty(list) ? 0u : 1u;
-            const BvhStep made = bvh_step(pool, node, place, near, hit.distance, question);
+            const BvhStep made = bvh_step(pool, node, place, near, hit.distance, query);
             first = made.first_child;
             first_triangle = made.first_triangle;
             triangles = made.visit.triangles;
@@ -223,10 +225,11 @@ inline Hit bvh_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float
                 height -= height > 0u ? 1u : 0u;
             }
         }
-        const bool asked =
-            bvh_meet_row(pool, first_triangle, triangles, place, near, question, hit, candidate);
-        if ((question & BvhAlpha) != 0u && asked && stops_ray(context, candidate, seed)) hit = candidate;
-        if ((question & BvhAny) != 0u && hit.instance != NoInstance) {
+        const bool needs_alpha_test =
+            bvh_meet_row(pool, first_triangle, triangles, place, near, query, hit, candidate);
+        if ((query & BvhAlpha) != 0u && needs_alpha_test && stops_ray(context, candidate, seed))
+            hit = candidate;
+        if ((query & BvhAny) != 0u && hit.instance != NoInstance) {
             triangles = 0u;
             list = BvhEnd;
         }
@@ -238,7 +241,7 @@ inline Hit bvh_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float
         }
         if (triangles == 0u && list > BvhLeave && !bvh_is_node(list)) {  // into an instance
             const uint at = top + (first + (list & 7u)) * BvhInstanceItems;
-            place = bvh_enter(pool, top, at, origin, direction, question, time);
+            place = bvh_enter(pool, top, at, origin, direction, query, time);
             list = bvh_without_nearest(list);
             stack_first[height + 1u] = first;
             stack_list[height + 1u] = list;

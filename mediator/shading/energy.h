@@ -4,20 +4,21 @@
 #include "mediator/shading/fresnel.h"
 #include "mediator/shading/records.h"
 
-// What lobes reflect of light from everywhere, from tables over direction and roughness (made at build time,
-// backend/tables/energy_maker.cpp). A lobe with Schlick's Fresnel reflects f0 x + f90 y of a pair (x, y).
+// Directional albedos of lobes, from tables over direction and roughness (generated at build time,
+// backend/tables/energy_table_generator.cpp). A lobe with Schlick's Fresnel reflects f0 x + f90 y of a pair
+// (x, y).
 SHADING_BEGIN
 
-// Steps of direction and of roughness, both 0 to 1. One after the other: GGX, of light without loss to
-// Fresnel, over `energy_direction`; GGX, the mean of Schlick's weight, over the root of the cosine; both
-// means over the hemisphere, for each roughness; sheen, over the root of the cosine.
+// Table resolution in direction and roughness, both 0 to 1. The tables in order: GGX, without Fresnel losses,
+// over `energy_direction`; GGX, the mean of Schlick's weight, over the root of the cosine; both means over
+// the hemisphere, for each roughness; sheen, over the root of the cosine.
 inline constexpr uint EnergySteps = 32u;
 inline constexpr uint SchlickEnergies = EnergySteps * EnergySteps;
 inline constexpr uint MeanEnergies = 2u * SchlickEnergies;
 inline constexpr uint SheenEnergies = MeanEnergies + 2u * EnergySteps;
 inline constexpr uint EnergyCount = SheenEnergies + EnergySteps * EnergySteps;
 
-// Where shadowing begins depends on the ratio of the cosine and alpha.
+// Table coordinate of the direction: shadowing depends on the ratio of the cosine and alpha.
 inline float energy_direction(float root_of_cosine, float roughness) {
     const float sum = root_of_cosine + roughness;
     return sum > 0.0f ? root_of_cosine * (1.0f + roughness) / sum : 1.0f;
@@ -34,7 +35,7 @@ inline float energy_between(FloatArray table, uint start, float direction, float
     return near + (far - near) * (y - float(row));
 }
 
-// Of the GGX lobe, to first order of scattering between its facets.
+// Albedo of the GGX lobe, single scattering only.
 inline vec2 lobe_energy(FloatArray table, float cosine, float roughness) {
     const float root = sqrt(clamp(cosine, 0.0f, 1.0f));
     const float all = energy_between(table, 0u, energy_direction(root, roughness), roughness);
@@ -52,7 +53,7 @@ inline vec2 mean_lobe_energy(FloatArray table, float roughness) {
     return near + (far - near) * (y - float(row));
 }
 
-// Of white sheen, which may be more than 1.
+// Albedo of white sheen; may exceed 1.
 inline float sheen_energy(FloatArray table, float cosine, float roughness) {
     return energy_between(table, SheenEnergies, sqrt(clamp(cosine, 0.0f, 1.0f)), roughness);
 }
@@ -62,14 +63,14 @@ inline float mean_schlick(float f0, float f90) {
     return f0 + (f90 - f0) * (1.0f / 21.0f);
 }
 
-// Of the light that a facet sends to another, the share that comes out at last, when the mean reflectance of
-// facets is f and the mean share that leaves at the first go is e (Kulla and Conty 2017): f^2 e / (1 - f (1 -
-// e)).
-inline float late_share(float f, float e) {
+// Multiple scattering energy compensation: the fraction of light that a facet reflects to another facet and
+// that finally leaves; f: mean reflectance of the facets, e: mean single scattering albedo (Kulla and Conty
+// 2017): f^2 e / (1 - f (1 - e)).
+inline float multiscatter_fraction(float f, float e) {
     return f * f * e / (1.0f - f * (1.0f - e));
 }
 
-inline vec3 late_shares(vec3 f, float e) {
+inline vec3 multiscatter_fractions(vec3 f, float e) {
     return f * f * e / (1.0f - f * (1.0f - e));
 }
 

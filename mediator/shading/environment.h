@@ -1,27 +1,27 @@
 #ifndef TESSERA_MEDIATOR_SHADING_ENVIRONMENT_H
 #define TESSERA_MEDIATOR_SHADING_ENVIRONMENT_H
 
+#include "mediator/shading/cdf.h"
 #include "mediator/shading/sampling.h"
-#include "mediator/shading/sums.h"
 #include "mediator/shading/textures.h"
 
-// Light from infinitely far: sampled in proportion to the map's brightness (per texel, with its neighbours,
-// so that whatever bilinear filtering shows can be sampled), or uniformly without a map.
+// The environment light: sampled in proportion to the map's luminance (per texel, including its neighbours,
+// so that all of the bilinearly filtered map can be sampled), or uniformly without a map.
 SHADING_BEGIN
 
 inline bool has_map(IN(Scene) scene) {
     return (scene.features & FeatureEnvironmentMap) != 0u;
 }
 
-// Sine of the angle to the poles, y and -y, from what does not cancel beside them.
-inline float sine_from_pole(vec3 direction) {
+// Sine of the angle to the poles y and -y, without cancellation near them.
+inline float sine_to_pole(vec3 direction) {
     return sqrt(direction.x * direction.x + direction.z * direction.z);
 }
 
-// Where a direction is in a map that is turned by `rotation`, in [0, 1].
-inline vec2 direction_place(vec3 direction, float rotation) {
+// Texture coordinates of a direction in a map rotated by `rotation`, in [0, 1].
+inline vec2 direction_to_uv(vec3 direction, float rotation) {
     const float u = 0.5f + (arc_tangent(direction.x, -direction.z) + rotation) * (0.5f * InversePi);
-    return vec2(u - floor(u), arc_tangent(sine_from_pole(direction), direction.y) * InversePi);
+    return vec2(u - floor(u), arc_tangent(sine_to_pole(direction), direction.y) * InversePi);
 }
 
 struct Sky {
@@ -32,15 +32,15 @@ struct Sky {
 inline Sky sky_at(IN(Scene) scene, vec3 direction) {
     Sky sky = Sky(scene.environment.color, 1.0f / (4.0f * Pi));
     if (!has_map(scene)) return sky;
-    const vec2 uv = direction_place(direction, scene.environment.rotation);
+    const vec2 uv = direction_to_uv(direction, scene.environment.rotation);
     sky.radiance += scene.environment.strength * vec3(lookup(scene, scene.environment.map, uv));
     const uint width = scene.environment.map.width;
     const uint height = scene.environment.map.height;
     const uint x = min(uint(uv.x * float(width)), width - 1u);
     const uint y = min(uint(uv.y * float(height)), height - 1u);
-    const float row = probability_of(scene.sums, scene.environment.row_sums, y);
-    const float column = probability_of(scene.sums, scene.environment.column_sums + y * width, x);
-    const float sine_theta = sine_from_pole(direction);
+    const float row = probability_of(scene.cdfs, scene.environment.row_cdf, y);
+    const float column = probability_of(scene.cdfs, scene.environment.column_cdf + y * width, x);
+    const float sine_theta = sine_to_pole(direction);
     const float per_texel = row * column * float(width) * float(height);
     sky.pdf = sine_theta > 0.0f ? per_texel / (2.0f * Pi * Pi * sine_theta) : 0.0f;
     return sky;
@@ -50,8 +50,8 @@ inline vec3 sample_sky(IN(Scene) scene, vec2 u) {
     if (!has_map(scene)) return sample_sphere(u);
     const uint width = scene.environment.map.width;
     const uint height = scene.environment.map.height;
-    const Choice row = choose(scene.sums, scene.environment.row_sums, height, u.y);
-    const Choice column = choose(scene.sums, scene.environment.column_sums + row.index * width, width, u.x);
+    const Choice row = choose(scene.cdfs, scene.environment.row_cdf, height, u.y);
+    const Choice column = choose(scene.cdfs, scene.environment.column_cdf + row.index * width, width, u.x);
     const float theta = Pi * (float(row.index) + row.rest) / float(height);
     const float phi =
         2.0f * Pi * ((float(column.index) + column.rest) / float(width) - 0.5f) - scene.environment.rotation;

@@ -3,11 +3,11 @@
 
 #include "mediator/shading/lights.h"
 
-// Places of a leg in a medium where much light arrives: even in the angle under which the leg is seen from a
-// light, so that 1 / distance^2 cancels (Kulla and Fajardo 2012). One such place for each leg, with a light
-// of its own, beside the place that free flight finds by chance: both find light in all places of a leg that
-// a light shines on, and are combined by the balance heuristic (Veach 1997) over places and lights. Free
-// flight goes on as it would: what is behind the fog loses no samples to it.
+// Equiangular sampling (Kulla and Fajardo 2012): points of a segment in a medium, uniform in the angle seen
+// from a light, so that 1 / distance^2 cancels. Each segment has one such sample, with its own light, in
+// addition to the free flight sample. Both techniques can reach all points that a light illuminates, and are
+// combined by the balance heuristic (Veach 1997) over points and lights. Free flight sampling is unaffected,
+// so surfaces behind fog lose no samples to it.
 SHADING_BEGIN
 
 // A straight part of a ray.
@@ -17,21 +17,22 @@ struct Span {
     float extent;    // metres
 };
 
-// The part of a span that a light may shine on, as seen from the light.
+// The part of a span that a light may illuminate, as seen from the light.
 struct SpanView {
-    float near;  // where it begins on the span; in metres, as all here
+    float near;  // its start on the span; all lengths in metres
     float extent;
-    float foot;  // from there to the foot of the light's height over the span, which may lie beyond both ends
-    float height;  // more than 0
-    float angle;   // that the part spans; 0: no light comes there
+    float foot;    // from the start to the light's projection on the span, which may lie outside of it
+    float height;  // distance of the light from the span's line; more than 0
+    float angle;   // subtended by the part; 0: not illuminated
 };
 
-// Where a light's own cone or front meets the span; `cosine` of its half angle, at least 0. x: where that
-// begins, y: where it ends, no more than x: nowhere.
+// The interval x to y of the span inside a light's cone or half space; `cosine` of its half angle, at least
+// 0. Empty if y <= x.
 inline vec2 lit_part(IN(Span) span, vec3 apex, vec3 axis, float cosine) {
     const vec3 from = span.start - apex;
     const float b = dot(from, axis), rise = dot(span.direction, axis), cosine2 = cosine * cosine;
-    // Of f(t) = (height over the apex)^2 - (cosine x distance)^2, positive in both halves of the cone.
+    // Coefficients of f(t) = (height over the apex)^2 - (cosine x distance)^2, positive in both halves of the
+    // cone.
     const float a = rise * rise - cosine2;
     const float half_b = b * rise - cosine2 * dot(from, span.direction);
     const float c = b * b - cosine2 * dot(from, from);
@@ -52,8 +53,8 @@ inline vec2 lit_part(IN(Span) span, vec3 apex, vec3 axis, float cosine) {
     return b + 0.5f * (between.x + between.y) * rise > 0.0f ? between : vec2(0.0f);
 }
 
-// One that moves may shine on all of it.
-inline vec2 part_lit_by(IN(Span) span, IN(LightSource) light) {
+// A moving light may illuminate all of it.
+inline vec2 lit_part_of(IN(Span) span, IN(LightSource) light) {
     if (light.motion < 0 && light.kind == LightSpot && light.cos_outer > 0.0f) {
         return lit_part(span, light.position, light.direction, light.cos_outer);
     }
@@ -62,71 +63,73 @@ inline vec2 part_lit_by(IN(Span) span, IN(LightSource) light) {
     return vec2(0.0f, span.extent);
 }
 
-// `radius`: of the light's ball; places within it count as if they were at its rim. Nor is a light nearer
-// than rounding can tell.
-inline SpanView view_span(IN(Span) span, vec2 part, vec3 middle, float radius) {
-    SpanView seen = SpanView(part.x, part.y - part.x, 0.0f, 1.0f, 0.0f);
-    const vec3 offset = middle - span.start;
+// `radius`: of the light's bounding sphere; closer points count as on the sphere. The distance is also at
+// least that of the rounding error.
+inline SpanView view_span(IN(Span) span, vec2 part, vec3 center, float radius) {
+    SpanView span_view = SpanView(part.x, part.y - part.x, 0.0f, 1.0f, 0.0f);
+    const vec3 offset = center - span.start;
     const float unit = greater_of(extent_of(offset), span.extent);
-    if (!(seen.extent > 0.0f) || !(unit > 0.0f) || !is_finite(unit)) return seen;
+    if (!(span_view.extent > 0.0f) || !(unit > 0.0f) || !is_finite(unit)) return span_view;
     const vec3 scaled = offset / unit;
     const float along = dot(scaled, span.direction);
     const vec3 across = scaled - along * span.direction;
     const float size = radius / unit, least = rounding_bound(8.0f);
     const float height = sqrt(dot(across, across) + size * size + least * least);
     const float to_start = part.x / unit - along, to_end = part.y / unit - along;
-    seen.angle = arc_tangent((to_end - to_start) * height, height * height + to_start * to_end);
-    seen.foot = -to_start * unit;
-    seen.height = height * unit;
-    return seen;
+    span_view.angle = arc_tangent((to_end - to_start) * height, height * height + to_start * to_end);
+    span_view.foot = -to_start * unit;
+    span_view.height = height * unit;
+    return span_view;
 }
 
-// On the span. By the triangle of light, beginning and place, whose angle at the light is known: it does not
-// cancel where the part is seen under a small one.
-inline float equiangular_distance(IN(SpanView) seen, float u) {
-    const float angle = u * seen.angle;
-    const float foot = seen.foot / seen.height;
+// Distance on the span, by the triangle of light, start and point, whose angle at the light is known: no
+// cancellation for small angles.
+inline float equiangular_distance(IN(SpanView) span_view, float u) {
+    const float angle = u * span_view.angle;
+    const float foot = span_view.foot / span_view.height;
     const float across = sine(angle);
     const float opening = foot * across + cosine(angle);
-    const float distance = (1.0f + foot * foot) * across / opening * seen.height;
-    // Rounded beyond its end.
-    if (!(opening > 0.0f)) return seen.near + seen.extent;
-    return seen.near + clamp(distance, 0.0f, seen.extent);
+    const float distance = (1.0f + foot * foot) * across / opening * span_view.height;
+    // Rounding led beyond the end.
+    if (!(opening > 0.0f)) return span_view.near + span_view.extent;
+    return span_view.near + clamp(distance, 0.0f, span_view.extent);
 }
 
 // Per metre.
-inline float equiangular_pdf(IN(SpanView) seen, float distance) {
-    const float beyond = distance - seen.near;
-    if (!(seen.angle > 0.0f) || beyond < 0.0f || beyond > seen.extent) return 0.0f;
-    const float ratio = (beyond - seen.foot) / seen.height;
-    return 1.0f / (seen.angle * seen.height * (1.0f + ratio * ratio));
+inline float equiangular_pdf(IN(SpanView) span_view, float distance) {
+    const float beyond = distance - span_view.near;
+    if (!(span_view.angle > 0.0f) || beyond < 0.0f || beyond > span_view.extent) return 0.0f;
+    const float ratio = (beyond - span_view.foot) / span_view.height;
+    return 1.0f / (span_view.angle * span_view.height * (1.0f + ratio * ratio));
 }
 
-// What is known of a leg where light is looked for at one of its places.
-struct LegLight {
-    bool is_on;     // there are two such places
-    bool is_aside;  // it is that beside the path; else it is the path's own
+// The equiangular sample of a segment, and what MIS with the free flight sample needs.
+struct EquiangularSample {
+    bool is_active;       // the segment has an equiangular sample: MIS applies
+    bool is_equiangular;  // evaluated at the equiangular sample; else at the free flight sample
     Span span;
-    ChosenEmitter chosen;  // for the place aside
-    float distance;        // of the place
-    float pdf;             // per metre, of the place aside
-    float density;         // per metre, with which free flight scatters there
+    ChosenEmitter chosen;  // light of the equiangular sample
+    float distance;        // of the point
+    float pdf;             // of the equiangular sample, per metre
+    float density;         // of free flight sampling there, per metre
 };
 
-inline LegLight no_leg_light() {
-    return LegLight(false, false, Span(vec3(0.0f), vec3(0.0f), 0.0f), no_emitter(), 0.0f, 0.0f, 0.0f);
+inline EquiangularSample no_equiangular_sample() {
+    return EquiangularSample(false, false, Span(vec3(0.0f), vec3(0.0f), 0.0f), no_emitter(), 0.0f, 0.0f,
+                             0.0f);
 }
 
-// For the place that free flight has found, which it does with `density`.
-inline LegLight at_own_place(IN(LegLight) leg, float distance, float density) {
-    LegLight own = leg;
-    own.is_aside = false;
+// The same for the free flight sample, which has this density.
+inline EquiangularSample at_free_flight_point(IN(EquiangularSample) equiangular, float distance,
+                                              float density) {
+    EquiangularSample own = equiangular;
+    own.is_equiangular = false;
     own.distance = distance;
     own.density = density;
     return own;
 }
 
-// Light is welcome all along.
+// A receiver along all of the span.
 inline Receiver receiver_along(IN(Span) span) {
     return Receiver(span.start, vec3(0.0f), span.extent * span.direction);
 }
@@ -134,34 +137,37 @@ inline Receiver receiver_along(IN(Span) span) {
 inline SpanView seen_from(IN(Scene) scene, IN(Span) span, uint emitter) {
     const Emitter light = scene.emitters.items[emitter];
     const LightNode node = scene.light_nodes.items[light.node];
-    return view_span(span, part_lit_by(span, scene.lights.items[light.light]), node.middle, node.radius);
+    return view_span(span, lit_part_of(span, scene.lights.items[light.light]), node.center, node.radius);
 }
 
-// Shares of light that is found in both ways; `other_chance`: of the light, with which the other way would
-// have chosen it.
-struct LegShares {
-    float share;
-    float other_chance;
+// Weight of a light sample among both techniques. `other_probability`: with which the other technique would
+// have chosen this light.
+struct EquiangularWeights {
+    float weight;
+    float other_probability;
 };
-inline LegShares leg_shares(IN(Scene) scene, uint strategy, IN(LegLight) leg, IN(LightSample) light,
-                            IN(Receiver) place) {
-    LegShares shares = LegShares(1.0f, light.chance);
-    if (!leg.is_on || light.emitter < 0) return shares;
+inline EquiangularWeights equiangular_weights(IN(Scene) scene, uint strategy,
+                                              IN(EquiangularSample) equiangular, IN(LightSample) light,
+                                              IN(Receiver) place) {
+    EquiangularWeights weights = EquiangularWeights(1.0f, light.chance);
+    if (!equiangular.is_active || light.emitter < 0) return weights;
     const uint emitter = uint(light.emitter);
     const uint node = scene.emitters.items[emitter].node;
-    Receiver other = receiver_along(leg.span);
-    if (leg.is_aside) other = place;
-    shares.other_chance = leaf_probability(scene, node, other);
-    if (leg.is_aside) shares.other_chance *= scene.tree_probability;
-    float aside = leg.pdf * light.chance, flight = leg.density * shares.other_chance;
-    if (!leg.is_aside) {
-        aside = equiangular_pdf(seen_from(scene, leg.span, emitter), leg.distance) * shares.other_chance;
-        flight = leg.density * light.chance;
+    Receiver other = receiver_along(equiangular.span);
+    if (equiangular.is_equiangular) other = place;
+    weights.other_probability = leaf_probability(scene, node, other);
+    if (equiangular.is_equiangular) weights.other_probability *= scene.tree_probability;
+    float by_equiangular = equiangular.pdf * light.chance,
+          by_flight = equiangular.density * weights.other_probability;
+    if (!equiangular.is_equiangular) {
+        by_equiangular = equiangular_pdf(seen_from(scene, equiangular.span, emitter), equiangular.distance) *
+                         weights.other_probability;
+        by_flight = equiangular.density * light.chance;
     }
-    if (strategy == StrategyEquiangularOnly) flight = 0.0f;
-    const float own = leg.is_aside ? aside : flight;
-    shares.share = own > 0.0f ? own / (aside + flight) : 0.0f;
-    return shares;
+    if (strategy == StrategyEquiangularOnly) by_flight = 0.0f;
+    const float own = equiangular.is_equiangular ? by_equiangular : by_flight;
+    weights.weight = own > 0.0f ? own / (by_equiangular + by_flight) : 0.0f;
+    return weights;
 }
 
 SHADING_END

@@ -3,7 +3,7 @@
 
 #include "mediator/shading/maths.h"
 
-// How much light the boundary of two media reflects. Cosines are those of the direction and the normal, in
+// Reflectance of the boundary of two media. Cosines are those of the direction and the normal, in
 // [0, 1].
 SHADING_BEGIN
 
@@ -15,15 +15,15 @@ inline float schlick_weight(float cosine) {
 }
 
 // Squared cosine on the far side, by Snell's law; not positive at total reflection. `sine2` is 1 - cosine^2,
-// as its source can tell it best; eta as below, not 0. Towards the denser side (and none) in a form that does
-// not cancel at grazing angles.
+// passed in because callers can compute it more accurately; eta as below, not 0. For eta >= 1 in a form that
+// does not cancel at grazing angles.
 inline float refracted_cosine2(float cosine, float sine2, float eta) {
     const float eta2 = eta * eta;
     return eta >= 1.0f ? ((eta - 1.0f) * (eta + 1.0f) + cosine * cosine) / eta2 : 1.0f - sine2 / eta2;
 }
 
-// Share of unpolarised light that the smooth boundary of two dielectrics reflects. eta = index of refraction
-// on the far side / on this side; eta = 0 stands for an index without bound.
+// Reflectance of a smooth boundary of two dielectrics for unpolarised light. eta = index of refraction on the
+// far side / on this side; eta = 0: infinite.
 inline float fresnel_dielectric(float cosine, float eta) {
     if (eta == 1.0f) return 0.0f;
     if (!(eta > 0.0f)) return 1.0f;
@@ -35,7 +35,7 @@ inline float fresnel_dielectric(float cosine, float eta) {
     return 0.5f * (parallel * parallel + across * across);
 }
 
-// Reflectance at normal incidence; the index 0 stands for one without bound.
+// Reflectance at normal incidence; index 0: infinite.
 inline float normal_reflectance(float index_of_refraction) {
     const float r =
         index_of_refraction == 0.0f ? 1.0f : (index_of_refraction - 1.0f) / (index_of_refraction + 1.0f);

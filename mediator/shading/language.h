@@ -1,45 +1,46 @@
 #ifndef TESSERA_MEDIATOR_SHADING_LANGUAGE_H
 #define TESSERA_MEDIATOR_SHADING_LANGUAGE_H
 
-// The language of the headers here that say SHADING_BEGIN: one text that is C++20 (with GLM) for the Embree
-// back-end and GLSL 460 (glslc, target Vulkan 1.3) for the Vulkan back-end. A shader starts with
+// Headers in this folder that use SHADING_BEGIN compile both as C++20 (with GLM) for the Embree back-end and
+// as GLSL 460 (glslc, target Vulkan 1.3) for the Vulkan back-end. A shader starts with
 //     #version 460
 //     #extension GL_GOOGLE_include_directive : require
 //     #include "mediator/shading/..."
 //
-// What a shared file looks like:
+// Conventions of shared headers:
 // - Include guard TESSERA_MEDIATOR_SHADING_NAME_H, since GLSL includes it too; then the includes,
-//   SHADING_BEGIN, the code, SHADING_END; RECORDS_BEGIN and RECORDS_END around types that all kernels share.
+//   SHADING_BEGIN, the code, SHADING_END. RECORDS_BEGIN and RECORDS_END enclose types that all kernels share.
 // - Constants are `inline constexpr float Name = 1.0f;`, functions `inline T name(...)`.
 // - Types: float, int, uint, bool, uint64_t, vec2/3/4, ivec2/3/4, uvec2/3/4, mat3, structs of them, arrays of
-//   fixed size. A `bool` never lies in a struct that goes through memory: `uint` does.
-// - Parameters: by value, or IN(T), OUT(T), INOUT(T) for structs, matrices and what a function fills.
-// - Aggregates are filled member by member, or at once and completely: Numbers(index, seed).
-// - `float(x)`, `uint(x)` convert; float_bits, float_from_bits look at bits; is_nan, is_finite work even if a
-//   compiler takes all numbers to be finite. PRECISE before a local variable forbids contraction in what is
-//   assigned to it, where bits matter (C++ is compiled so everywhere).
-// - KEEP_LOOP before a loop asks a shader's compiler not to unroll it.
-// - KEPT(T) before a local name for one of two things that lie elsewhere: in C++ no copy of it.
-// - SELDOM before a function that few scenes call keeps it out of the way of those around it, in C++.
-// - GENERIC(T) before a function with a parameter of a type T that the includer brings: a template in C++; in
-//   GLSL T is a struct that is known before.
-// - Data in buffers: ARRAY_OF(Item, ItemArray, alignment) declares a type of the size of an address, whose
-//   `.items[i]` reads on both sides. Its members and items are laid out as in C++ (scalar layout).
-// - FeatureBits is a number whose bits are records.h's features, asked for by `&`.
-// - WITH_CONTEXT stands before a function with a parameter IN(Context): a type of the including side, through
-//   which rays are asked for (transport.h).
+//   fixed size. Structs that are stored in buffers use `uint` instead of `bool`.
+// - Parameters: by value, or IN(T), OUT(T), INOUT(T) for structs, matrices and output parameters.
+// - Aggregates are initialised member by member, or completely: Sampler(index, seed).
+// - `float(x)`, `uint(x)` convert; float_bits, float_from_bits reinterpret bits; is_nan, is_finite work even
+//   if a compiler assumes that all numbers are finite. PRECISE before a local variable forbids contraction in
+//   the expression assigned to it (all C++ is compiled without contraction).
+// - NO_UNROLL before a loop asks the shader compiler not to unroll it.
+// - CONST_REF(T) declares a local that refers to one of two existing objects: a const reference in C++, a
+//   copy in GLSL.
+// - COLD_NOINLINE marks a rarely called function as cold and never inlined, in C++.
+// - GENERIC(T) before a function with a parameter of a type T that the including file defines: a template in
+//   C++; in GLSL T is a struct declared before the include.
+// - Data in buffers: ARRAY_OF(Item, ItemArray, alignment) declares an array reference of the size of an
+//   address; `.items[i]` reads an element in both languages. Items are laid out as in C++ (scalar layout).
+// - FeatureBits holds feature flags (records.h), tested by `&`.
+// - WITH_CONTEXT precedes a function with a parameter IN(Context): a type that the including file defines,
+//   through which rays are traced (transport.h).
 //
-// What it must not have:
+// Not allowed:
 // - references, pointers, templates, member functions, default member initialisers, default arguments, enums,
 //   braces that construct, static_cast, hexadecimal floats, swizzles, recursion, std:: and glm::; double and
-//   half (devices need not have them).
+//   half (optional device features).
 // - sin, cos, tan, asin, acos, atan, exp, exp2, log, log2, pow, inversesqrt, normalize, length, distance of
-//   the driver: they may be off by 2^-11. maths.h has our own.
-// - min, max, clamp where an argument may be no number: GLSL leaves the result open. greater_of and lesser_of
-//   do not.
+//   the driver: they may be off by 2^-11. Use those of maths.h.
+// - min, max, clamp where an argument may be NaN: the result is undefined in GLSL. Use greater_of and
+//   lesser_of.
 // - GLSL's words as names: in, out, inout, sample, sampler, filter, input, output, active, common, partition,
 //   half, fixed, buffer, shared, patch, flat, smooth, resource, precise, texture and image types.
-// - Names of GLSL's own functions for something else.
+// - Names of GLSL built-in functions with another meaning.
 
 #ifdef __cplusplus
 
@@ -53,9 +54,9 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-// A source that defines SHADING_KERNEL, a name, before it includes any shared file has all of their functions
-// for itself, compiled for scenes with no other features than SHADING_FEATURES; with SHADING_HAS_ALL_FEATURES
-// for those that have them all. Records are everyone's.
+// A source that defines SHADING_KERNEL (a name) before it includes any shared header gets its own copy of all
+// functions, compiled for scenes with no other features than SHADING_FEATURES; with SHADING_HAS_ALL_FEATURES,
+// for scenes with any features. Records are shared by all kernels.
 #define RECORDS_BEGIN namespace tessera::shading {
 #define RECORDS_END }
 #ifdef SHADING_KERNEL
@@ -74,9 +75,9 @@
 #define OUT(T) T&
 #define INOUT(T) T&
 #define PRECISE
-#define KEEP_LOOP
-#define KEPT(T) const T&
-#define SELDOM [[gnu::cold, gnu::noinline]]
+#define NO_UNROLL
+#define CONST_REF(T) const T&
+#define COLD_NOINLINE [[gnu::cold, gnu::noinline]]
 #define WITH_CONTEXT template <class Context>
 #define GENERIC(T) template <class T>
 #define ARRAY_OF(Item, Name, alignment) \
@@ -93,7 +94,7 @@ using glm::vec2, glm::vec3, glm::vec4, glm::mat3;
 using std::sqrt;
 using std::uint64_t;
 
-// Not GLM's, which compare: to clear the sign is one instruction.
+// Instead of GLM's, which compare: clearing the sign bit is one instruction.
 inline float abs(float x) {
     return std::fabs(x);
 }
@@ -150,9 +151,9 @@ struct FeatureBits {
 #define OUT(T) out T
 #define INOUT(T) inout T
 #define PRECISE precise
-#define KEEP_LOOP [[dont_unroll]]
-#define KEPT(T) T
-#define SELDOM
+#define NO_UNROLL [[dont_unroll]]
+#define CONST_REF(T) T
+#define COLD_NOINLINE
 #define WITH_CONTEXT
 #define GENERIC(T)
 #define ARRAY_OF(Item, Name, alignment)                                                         \
@@ -167,7 +168,7 @@ uint lowest_bit(uint bits) {
     return uint(findLSB(bits));
 }
 
-// By bits: a driver may leave out comparisons with what is no number.
+// By bits: drivers may optimise comparisons with NaN away.
 bool is_nan(float x) {
     return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u;
 }

@@ -1,27 +1,26 @@
 #ifndef TESSERA_MEDIATOR_SHADING_LIGHTS_H
 #define TESSERA_MEDIATOR_SHADING_LIGHTS_H
 
+#include "mediator/shading/area_lights.h"
 #include "mediator/shading/environment.h"
 #include "mediator/shading/light_tree.h"
-#include "mediator/shading/shaped_lights.h"
 #include "mediator/shading/surfaces.h"
 
-// One light out of all, and a place on it. First the tree or one of the lights that are infinitely far, by
-// power; in the tree one emitter.
+// Samples one light, and a point on it. First chooses the light tree or one of the infinite lights by power;
+// in the tree, one emitter.
 SHADING_BEGIN
 
-// A place where light comes from, seen from a surface.
+// A sampled point of a light, as seen from a surface.
 struct LightSample {
-    vec3 radiance;   // that arrives when nothing is in between; for a delta light divided by its distance
-                     // squared
-    vec3 intensity;  // the light's own, towards the surface, whatever the distance
+    vec3 radiance;   // that arrives if unoccluded; of a delta light divided by its squared distance
+    vec3 intensity;  // of the light towards the surface, independent of the distance
     vec3 direction;  // to the light, unit length
     float pdf;       // per solid angle, choice of the light included; 0 = no light
-    bool delta;      // cannot be hit by chance: the pdf is of the choice alone
-    bool distant;    // infinitely far
-    vec3 target;     // where a shadow ray ends, if not; off the light's own surface
+    bool delta;      // cannot be hit by BSDF sampling: the pdf is of the choice alone
+    bool distant;    // at infinity
+    vec3 target;     // where a shadow ray ends, if not distant; offset from the light's surface
     int emitter;     // index, of the light tree's
-    float chance;    // of its choice
+    float chance;    // of the choice
 };
 
 inline LightSample no_light() {
@@ -67,10 +66,10 @@ inline LightSample sample_sphere_light(IN(LightSource) light, IN(Surface) surfac
                                        vec2 u) {
     LightSample found = no_light();
     const SphereView seen = view_sphere(light, surface.position);
-    found.direction = sample_cap(seen.axis, seen.cap, u);
+    found.direction = sample_cone(seen.axis, seen.one_minus_cos_half_angle, u);
     found.radiance = light.intensity;
     found.intensity = light.intensity;
-    found.pdf = probability * cap_pdf(seen.cap);
+    found.pdf = probability * cone_pdf(seen.one_minus_cos_half_angle);
     found.target = surface.position + sphere_distance(light, seen, found.direction) * found.direction;
     return found;
 }
@@ -81,13 +80,13 @@ inline LightSample sample_quad_light(IN(Emitter) emitter, IN(LightSource) light,
     const QuadView seen = view_quad(light, surface.position);
     const vec2 place = sample_quad(seen, light.half_size, u);
     found.target = light.position + place.x * light.edge_u + place.y * light.edge_v;
-    const Measured way = measure(found.target - surface.position);
-    const float facing = -dot(light.direction, way.direction);
+    const DirectionAndDistance to_light = direction_and_distance(found.target - surface.position);
+    const float facing = -dot(light.direction, to_light.direction);
     if (!(facing > 0.0f)) return no_light();
-    found.direction = way.direction;
+    found.direction = to_light.direction;
     found.radiance = light.intensity;
     found.intensity = light.intensity;
-    found.pdf = probability * quad_pdf(seen, emitter.inverse_root_area, way.distance, facing);
+    found.pdf = probability * quad_pdf(seen, emitter.inverse_root_area, to_light.distance, facing);
     return found;
 }
 
@@ -100,22 +99,22 @@ inline LightSample sample_mesh_light(IN(Scene) scene, IN(Emitter) emitter, float
     const Triangle triangle = triangle_of(mesh, corners);
     const PointWithError point = point_on(instance, triangle, b);
     const vec3 offset = point.position - surface.position;
-    const Measured way = measure(offset);
+    const DirectionAndDistance to_light = direction_and_distance(offset);
     const vec3 normal = face_normal(instance, triangle, vec3(0.0f));
-    const float facing = -dot(normal, way.direction);
+    const float facing = -dot(normal, to_light.direction);
     if (facing == 0.0f || (facing < 0.0f && material.double_sided == 0u)) return found;
-    found.direction = way.direction;
+    found.direction = to_light.direction;
     found.radiance = emission_at(scene, material, mesh, corners, b);
     if ((scene.features & FeatureAlpha) != 0u && material.alpha_mode != AlphaOpaque) {
-        // A ray that comes by chance stops here with this probability (stops_at).
+        // The probability with which rays stop here (stops_at).
         const float alpha = alpha_at(scene, material, mesh, corners, b);
         const float masked = alpha >= material.alpha_cutoff ? 1.0f : 0.0f;
         found.radiance *= material.alpha_mode == AlphaMask ? masked : clamp(alpha, 0.0f, 1.0f);
     }
     found.intensity = found.radiance;
     const float inverse_root_area = inverse_root_area_of(scene, emitter, instance, triangle);
-    found.pdf = probability * area_pdf(inverse_root_area, way.distance, abs(facing));
-    // By its own error and that of the segment's rounding on the way there.
+    found.pdf = probability * area_pdf(inverse_root_area, to_light.distance, abs(facing));
+    // Offset by the point's own error and the rounding error of the shadow ray's segment.
     const vec3 error = point.error + motion_error(scene, instance, mesh, triangle, b, point.position) +
                        2.0f * 5.9604644775390625e-8f * abs(offset);
     found.target = leave_surface(point.position, error, normal, -found.direction);
@@ -125,9 +124,9 @@ inline LightSample sample_mesh_light(IN(Scene) scene, IN(Emitter) emitter, float
 inline LightSample sample_instance_light(IN(Scene) scene, IN(Emitter) emitter, float probability,
                                          IN(Instance) instance, IN(Surface) surface, vec2 u) {
     Instance moved;
-    const bool still = stands_still(scene, instance.motion);
-    if (!still) moved = moved_instance(scene, instance, surface.time);
-    KEPT(Instance) here = still ? instance : moved;
+    const bool still = is_static(scene, instance.motion);
+    if (!still) moved = instance_in_motion(scene, instance, surface.time);
+    CONST_REF(Instance) here = still ? instance : moved;
     return sample_mesh_light(scene, emitter, probability, here,
                              mesh_at(scene, scene.meshes.items[instance.mesh], surface.time),
                              scene.materials.items[instance.material], surface, u);
@@ -140,7 +139,7 @@ inline LightSample sample_emitter(IN(Scene) scene, IN(Emitter) emitter, IN(Light
         return sample_instance_light(scene, emitter, probability, scene.instances.items[light.instance],
                                      surface, u);
     }
-    if ((scene.features & FeatureShapedLights) != 0u) {
+    if ((scene.features & FeatureAreaLights) != 0u) {
         if (light.kind == LightSphere) return sample_sphere_light(light, surface, probability, u);
         if (light.kind == LightQuad) return sample_quad_light(emitter, light, surface, probability, u);
     }
@@ -156,10 +155,10 @@ inline LightSample sample_distant(IN(Scene) scene, IN(LightSource) light, vec2 u
         return found;
     }
     LightSample found = sample_distant_light(light, -light.direction, light.intensity);
-    found.delta = !((scene.features & FeatureSuns) != 0u && light.cap > 0.0f);
+    found.delta = !((scene.features & FeatureSunDisks) != 0u && light.one_minus_cos_half_angle > 0.0f);
     if (found.delta) return found;
-    found.direction = sample_cap(found.direction, light.cap, u);
-    found.pdf *= cap_pdf(light.cap);
+    found.direction = sample_cone(found.direction, light.one_minus_cos_half_angle, u);
+    found.pdf *= cone_pdf(light.one_minus_cos_half_angle);
     return found;
 }
 
@@ -167,7 +166,7 @@ inline bool is_seen(IN(Scene) scene, IN(LightSource) light, uint layers) {
     return (scene.features & FeatureLayers) == 0u || (light.layers & layers) != 0u;
 }
 
-// Light is welcome from both sides where it goes through; a place in a medium has no normal.
+// Transmissive surfaces receive light from both sides; points in media have no normal.
 inline Receiver receiver_at(IN(Surface) surface) {
     const bool through = (surface.bsdf.lobes & FeatureRoughGlass) != 0u;
     return Receiver(surface.position, through ? vec3(0.0f) : surface.geometric_normal, vec3(0.0f));
@@ -177,9 +176,9 @@ inline LightSample sample_chosen(IN(Scene) scene, uint layers, IN(Surface) surfa
                                  IN(LightSource) light, float probability, vec2 u) {
     if (!is_seen(scene, light, layers)) return no_light();
     LightSource moved;
-    const bool still = stands_still(scene, light.motion);
-    if (!still) moved = moved_source(scene, light, surface.time);
-    KEPT(LightSource) here = still ? light : moved;
+    const bool still = is_static(scene, light.motion);
+    if (!still) moved = light_in_motion(scene, light, surface.time);
+    CONST_REF(LightSource) here = still ? light : moved;
     return sample_emitter(scene, emitter, here, probability, surface, u);
 }
 
@@ -193,10 +192,9 @@ inline LightSample sample_tree(IN(Scene) scene, uint layers, IN(Surface) surface
     return found;
 }
 
-// Of a light in none of the layers comes nothing: who chose it has lost the sample, so that the choice is the
-// same for all views. With a share p of the choice hidden, the light found has 1 / (1 - p) times the
-// variance.
-// `given`: an emitter that has been chosen already, if one has.
+// A light in none of the view's layers contributes nothing; choosing it wastes the sample, so that the choice
+// is the same for all views. If hidden lights have probability p, the variance grows by 1 / (1 - p). `given`:
+// an emitter that has been chosen already, if any.
 inline LightSample sample_light(IN(Scene) scene, uint layers, IN(Surface) surface, IN(ChosenEmitter) given,
                                 vec2 choice, vec2 u) {
     ChosenEmitter emitter = given;
@@ -205,7 +203,7 @@ inline LightSample sample_light(IN(Scene) scene, uint layers, IN(Surface) surfac
         const uint distant_count = scene.light_count - scene.tree_light_count;
         vec2 rest = choice;
         if (distant_count > 0u) {
-            const Choice chosen = choose(scene.sums, scene.light_sums, distant_count + 1u, choice.x);
+            const Choice chosen = choose(scene.cdfs, scene.light_cdf, distant_count + 1u, choice.x);
             if (chosen.index > 0u) {
                 const uint index = scene.tree_light_count + chosen.index - 1u;
                 if (!is_seen(scene, scene.lights.items[index], layers)) return no_light();
@@ -233,10 +231,10 @@ inline float mesh_light_pdf(IN(Scene) scene, IN(Surface) hit, IN(Receiver) recei
     if ((scene.features & FeatureMeshLights) == 0u || hit.light < 0) return 0.0f;
     const Emitter emitter = scene.emitters.items[scene.lights.items[hit.light].first_emitter + hit.triangle];
     if (emitter.node == NoLightNode) return 0.0f;
-    const Measured way = measure(hit.position - receiver.position);
-    const float cosine_there = abs(dot(hit.geometric_normal, way.direction));
+    const DirectionAndDistance to_light = direction_and_distance(hit.position - receiver.position);
+    const float cosine_there = abs(dot(hit.geometric_normal, to_light.direction));
     const float probability = scene.tree_probability * leaf_probability(scene, emitter.node, receiver);
-    return probability * area_pdf(inverse_root_area_at(scene, emitter, hit), way.distance, cosine_there);
+    return probability * area_pdf(inverse_root_area_at(scene, emitter, hit), to_light.distance, cosine_there);
 }
 
 // The same of a direction to the sky.

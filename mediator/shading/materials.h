@@ -4,7 +4,7 @@
 #include "mediator/shading/sobol.h"
 #include "mediator/shading/textures.h"
 
-// What a material is like at a point of an instance's triangle. `b`: barycentric weights of the second and
+// Material properties at a point of an instance's triangle. `b`: barycentric weights of the second and
 // third vertex.
 SHADING_BEGIN
 
@@ -12,7 +12,7 @@ inline bool emits(IN(Material) material) {
     return material.emission.x > 0.0f || material.emission.y > 0.0f || material.emission.z > 0.0f;
 }
 
-// White where there are none.
+// White if there are none.
 inline vec4 vertex_color(IN(Mesh) mesh, uvec3 corners, vec2 b) {
     if ((mesh.arrays & MeshColors) == 0u) return vec4(1.0f);
     return mesh.colors.items[corners.x] * (1.0f - b.x - b.y) + mesh.colors.items[corners.y] * b.x +
@@ -29,9 +29,9 @@ inline vec4 base_color_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh,
     return color;
 }
 
-// CommonSurfaceShader: by its own texture, and not that of the diffuse colour.
-inline float shader_alpha(IN(Scene) scene, IN(Material) material, IN(Shader) shader, IN(Mesh) mesh,
-                          uvec3 corners, vec2 b) {
+// CommonSurfaceShader has its own alpha texture.
+inline float shader_alpha(IN(Scene) scene, IN(Material) material, IN(SurfaceShaderParams) shader,
+                          IN(Mesh) mesh, uvec3 corners, vec2 b) {
     float alpha = material.base_color.w * vertex_color(mesh, corners, b).w;
     if (is_used(scene, shader.alpha_texture)) {
         const float texel = texel_of(scene, shader.alpha_texture, mesh, corners, b, 0.0f).w;
@@ -43,14 +43,14 @@ inline float shader_alpha(IN(Scene) scene, IN(Material) material, IN(Shader) sha
 // 1 for opaque materials.
 inline float alpha_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uvec3 corners, vec2 b) {
     if (material.alpha_mode == AlphaOpaque) return 1.0f;
-    if ((scene.features & FeatureShader) != 0u && material.shader >= 0) {
-        return shader_alpha(scene, material, scene.shaders.items[material.shader], mesh, corners, b);
+    if ((scene.features & FeatureSurfaceShader) != 0u && material.surface_shader >= 0) {
+        return shader_alpha(scene, material, scene.surface_shaders.items[material.surface_shader], mesh,
+                            corners, b);
     }
     return base_color_at(scene, material, mesh, corners, b, 0.0f).w;
 }
 
-// At the point itself, however wide the path: light that is sampled and light that is found by chance have to
-// be the same.
+// Without filtering by the ray cone: emission must be the same for light sampling and for BSDF sampling.
 inline vec3 emission_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uvec3 corners, vec2 b) {
     if (!is_used(scene, material.emission_texture)) return material.emission;
     return material.emission * vec3(texel_of(scene, material.emission_texture, mesh, corners, b, 0.0f));
@@ -65,11 +65,11 @@ inline bool alpha_stops(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, u
 }
 
 // Whether a surface with alpha stops a ray. Mask: by the cutoff. Blend: by a hash of the ray's seed and the
-// triangle, so that the answer does not depend on the order in which triangles are visited; on average a
-// share alpha of rays stops. The boundary of a body is met in any case, since whoever goes through comes into
-// the body or out of it: whether there is a surface as well, passes_boundary says.
+// triangle, so that the result does not depend on the order in which triangles are visited; on average a
+// fraction alpha of the rays stops. Medium boundaries always stop rays, since crossing one changes the
+// containing media; passes_boundary tests whether there is a surface as well.
 inline bool stops_at(IN(Scene) scene, uint instance, uint triangle, vec2 b, uint seed) {
-    if ((scene.features & FeatureMedia) != 0u && scene.instances.items[instance].body >= 0) return true;
+    if ((scene.features & FeatureMedia) != 0u && scene.instances.items[instance].medium >= 0) return true;
     return alpha_stops(scene, scene.materials.items[scene.instances.items[instance].material],
                        scene.meshes.items[scene.instances.items[instance].mesh], instance, triangle, b, seed);
 }

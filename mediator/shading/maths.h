@@ -3,12 +3,11 @@
 
 #include "mediator/shading/language.h"
 
-// Functions that drivers are free to get wrong by 2^-11 (Vulkan: sin, cos) or by as much as they like (pow
-// near 1, atan): our own polynomials, the same in C++ and in GLSL. Coefficients are minimax (Remez),
-// with an error of the polynomial itself below 2^-27 of the result. Bounds are against the exact result, in
-// units in the last place (ulp), with exactly rounded +, -, * and /; a device that divides to 2.5 ulp, or
-// contracts what is not PRECISE, may add as much again. Infinities and what is no number are no arguments;
-// numbers below 2^-126 count as 0.
+// Elementary functions. Vulkan drivers may be off by 2^-11 (sin, cos) or without bound (pow near 1, atan), so
+// these are polynomials, the same in C++ and in GLSL. Coefficients are minimax (Remez), with an error of the
+// polynomial itself below 2^-27 of the result. Bounds are against the exact result, in units in the last
+// place (ulp), with exactly rounded +, -, * and /; a device that divides to 2.5 ulp, or contracts what is not
+// PRECISE, may add as much again. Arguments must be finite; numbers below 2^-126 count as 0.
 //
 // sqrt is the device's: Vulkan bounds it by 1 / inversesqrt, 4.5 ulp (2 + 2.5), which is of the order of the
 // rounding around it, and a correcting step would cost a division.
@@ -17,7 +16,7 @@ SHADING_BEGIN
 inline constexpr float Pi = 3.14159265358979f;
 inline constexpr float InversePi = 0.318309886f;
 
-// As fmax and fmin: what is not a number loses. Written out, because compilers call the library for those.
+// As fmax and fmin: NaN is ignored. Written out, because compilers call the library for those.
 inline float greater_of(float a, float b) {
     return a > b || is_nan(b) ? a : b;
 }
@@ -28,7 +27,7 @@ inline float largest(vec3 v) {
     return greater_of(v.x, greater_of(v.y, v.z));
 }
 
-// An angle as the nearest multiple of pi/2 and the rest, at most pi/4 (and what rounding adds).
+// An angle as the nearest multiple of pi/2 and the remainder, at most pi/4 (plus rounding).
 struct ReducedAngle {
     uint quarter;
     float rest;
@@ -89,7 +88,7 @@ inline float exponential(float x) {
     return result * float_from_bits(uint(int(twos) - half_twos + 127) << 23);
 }
 
-// Natural logarithm. 1 ulp. Of 0 and less: minus infinity.
+// Natural logarithm. 1 ulp. For x <= 0: minus infinity.
 inline float logarithm(float x) {
     if (!(x >= 1.17549435e-38f)) return -infinity();
     // x = 2^twos m, m from sqrt(1/2) to sqrt(2), whose bits are 3f3504f3 and 3fb504f3.
@@ -122,7 +121,7 @@ inline float arc_tangent(float y, float x) {
     return y < 0.0f ? -angle : angle;
 }
 
-// 1 / sqrt(x) for x from 2^-125 to 2^127: 2 ulp. Of 0: some large number, so that 0 times it is 0. An
+// 1 / sqrt(x) for x from 2^-125 to 2^127: 2 ulp. For 0: a large number, so that 0 times it is 0. An
 // estimate from the bits (off by 3.5 %), then Newton's method, thrice.
 inline float inverse_sqrt(float x) {
     const float half_x = 0.5f * x;

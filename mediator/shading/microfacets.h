@@ -7,7 +7,7 @@
 // (z = normal) and point away from the surface; `alpha` is the roughness along its x and y.
 SHADING_BEGIN
 
-// A mirror within float accuracy: below, D overflows. Its energy is unchanged, only the lobe's width is.
+// Smallest alpha: a mirror within float accuracy; below, D overflows.
 inline constexpr float MinAlpha = 1e-4f;
 
 // D of the half vector. In a form that does not cancel: 1 - cos^2 comes from x and y.
@@ -25,16 +25,15 @@ inline float smith_lambda(vec3 w, vec2 alpha) {
     return 0.5f * (sqrt(1.0f + (x * x + y * y) / cos2) - 1.0f);
 }
 
-// Half vectors in proportion to what is visible from `wo` (Heitz 2018).
+// Samples visible normals from `wo` (Heitz 2018).
 inline vec3 sample_visible_normal(vec3 wo, vec2 alpha, vec2 u) {
     const vec3 stretched = unit_vector(vec3(alpha.x * wo.x, alpha.y * wo.y, wo.z));
     const float length2 = stretched.x * stretched.x + stretched.y * stretched.y;
     const vec3 t1 =
         length2 > 0.0f ? vec3(-stretched.y, stretched.x, 0.0f) / sqrt(length2) : vec3(1.0f, 0.0f, 0.0f);
     const vec3 t2 = cross(stretched, t1);
-    // The disk's point is pushed from the half that cannot be seen. In a form that does not cancel at the
-    // rim: half_chord^2 = 1 - p.x^2, above = half_chord - p.y, below = half_chord + p.y, height^2 = above *
-    // below.
+    // Warps the disk's point to the visible half, in a form that does not cancel at the rim: half_chord^2 = 1
+    // - p.x^2, above = half_chord - p.y, below = half_chord + p.y, height^2 = above * below.
     const vec2 p = sample_disk(u);
     const float s = 0.5f * (1.0f + stretched.z), rest = 0.25f * length2 / s;  // sum 1
     const float height = height_over_disk(u);
@@ -48,7 +47,7 @@ inline vec3 sample_visible_normal(vec3 wo, vec2 alpha, vec2 u) {
     return unit_vector(vec3(alpha.x * h.x, alpha.y * h.y, greater_of(1e-12f, h.z)));
 }
 
-// Light that facets with the normal h reflect from wi to wo, both above the surface, without loss.
+// Reflection from wi to wo, both above the surface, by facets of normal h with reflectance 1.
 struct Facets {
     float value;  // times the cosine of wi
     float pdf;    // of wi, per solid angle, with h by sample_visible_normal

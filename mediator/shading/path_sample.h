@@ -5,18 +5,18 @@
 
 RECORDS_BEGIN
 
-// What one sample found. Radiance is low + high, so that its bits do not depend on the channels asked for.
+// The result of one sample. Radiance is low + high, so that its bits do not depend on the channels requested.
 struct PathSample {
-    vec3 low;           // light outside
-    vec3 high;          // and inside of the view's path class
-    vec3 diffuse;       // of it, by the diffuse lobe of the first non-delta hit; where needed
-    float connections;  // grey intensity of the lights that were reached; where needed
-    vec3 albedo;        // of the first non-delta hit times the weight of the way to it
+    vec3 low;           // light outside of
+    vec3 high;          // and inside the view's path class
+    vec3 diffuse;       // part by the diffuse lobe of the first non-delta hit; if needed
+    float connections;  // grey intensity of the lights that were reached; if needed
+    vec3 albedo;        // of the first non-delta hit, times the throughput up to it
     vec3 normal;        // of the first non-delta hit
-    vec3 range;         // head light and ambient (Schwenk 2A.3); where asked for
+    vec3 headlight;     // headlight and ambient (Schwenk 2A.3); if requested
     float depth;        // of the first hit, along the view axis; infinite: nothing hit
     uint object;        // id of the first hit
-    float alpha;        // 1 where the camera sees something, else the background's
+    float alpha;        // 1 if the camera ray hits something, else the background's
 };
 
 RECORDS_END

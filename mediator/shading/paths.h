@@ -1,57 +1,57 @@
 #ifndef TESSERA_MEDIATOR_SHADING_PATHS_H
 #define TESSERA_MEDIATOR_SHADING_PATHS_H
 
-#include "mediator/shading/bodies.h"
-#include "mediator/shading/cones.h"
 #include "mediator/shading/maths.h"
+#include "mediator/shading/media.h"
 #include "mediator/shading/path_sample.h"
+#include "mediator/shading/ray_cones.h"
 #include "mediator/shading/sobol.h"
 
-// What a path carries.
+// The state of a path.
 SHADING_BEGIN
 
-// All that decides for which channels the light of a path counts.
-struct Way {
-    uint scatterings;    // between light and eye, from the first non-delta hit on
-    bool last_is_delta;  // of all, next to the light
-    vec3 diffuse_share;  // of its light: what the diffuse lobe of the first non-delta hit passed on
+// What determines to which path class the light of a path is added.
+struct PathClassInfo {
+    uint scatter_count;     // scattering events from the first non-delta hit on
+    bool last_is_delta;     // the last event before the light
+    vec3 diffuse_fraction;  // of the light: by the diffuse lobe of the first non-delta hit
 };
 
-// What perfect speculars have made of a path.
-struct Chain {
-    bool has_one_channel;  // of channel_of: the others went other ways
-    int environment;       // index of the shader whose environment it sees; -1: no more than the sky
+// State of a chain of perfect speculars.
+struct SpecularChain {
+    bool is_single_channel;  // only the colour channel of channel_of is left (dispersion)
+    int environment;         // index of the surface shader whose environment it sees; -1: the sky only
 };
 
-// Where a path is: what it still carries and what it has gathered.
+// A path: what it carries, and what it has gathered so far.
 struct Path {
     Sampler numbers;
-    uint vertex;  // surfaces scattered at so far
+    uint vertex;  // scattering events so far
     vec3 throughput;
-    float probability;  // of this branch, where all branches are followed
-    float bsdf_pdf;     // of the direction it travels; 0 = from the camera or a perfect specular
+    float probability;  // of this branch, if all branches are followed
+    float bsdf_pdf;     // of its direction; 0 = from the camera or a perfect specular
     vec3 last_position;
     vec3 last_normal;  // of the receiver there (light_tree.h)
-    Cone cone;
-    Chain chain;
-    uvec4 inside;  // what the ray goes through (bodies.h)
-    Way way;       // that light takes which is found next
+    RayCone cone;
+    SpecularChain chain;
+    uvec4 containing_media;    // media that the ray is in (containing_media.h)
+    PathClassInfo class_info;  // of the light that is added next
     PathSample found;
     uint rays;
 };
 
-inline Way direct_way() {
-    return Way(0u, false, vec3(0.0f));
+inline PathClassInfo direct_class_info() {
+    return PathClassInfo(0u, false, vec3(0.0f));
 }
 
-inline PathSample nothing_found() {
+inline PathSample empty_path_sample() {
     return PathSample(vec3(0.0f), vec3(0.0f), vec3(0.0f), 0.0f, vec3(0.0f), vec3(0.0f), vec3(0.0f),
                       infinity(), 0u, 0.0f);
 }
 
 inline Path start_path(IN(Sampler) numbers) {
-    return Path(numbers, 0u, vec3(1.0f), 1.0f, 0.0f, vec3(0.0f), vec3(0.0f), Cone(0.0f, 0.0f),
-                Chain(false, -1), nowhere(), direct_way(), nothing_found(), 0u);
+    return Path(numbers, 0u, vec3(1.0f), 1.0f, 0.0f, vec3(0.0f), vec3(0.0f), RayCone(0.0f, 0.0f),
+                SpecularChain(false, -1), no_media(), direct_class_info(), empty_path_sample(), 0u);
 }
 
 // Red, green or blue: in turn, from sample to sample.
@@ -69,20 +69,20 @@ inline uint shadow_seed(IN(Path) path) {
 
 // Pairs of random numbers: the first is the camera's, then each vertex has its own.
 inline constexpr uint CameraPair = 0u;
-inline constexpr uint LensPair = 0xffffffffu;  // no vertex comes so far
+inline constexpr uint LensPair = 0xffffffffu;  // beyond all vertices
 inline constexpr uint PairBsdfDirection = 0u, PairLobeAndRoulette = 1u, PairLightChoice = 2u,
                       PairLightPoint = 3u, PairsPerVertex = 4u;
-inline constexpr uint TimePair = 0xfffffffeu;  // nor here
-// A place in a medium that a branch of perfect speculars (speculars.h) is scattered at has the numbers of no
-// surface.
+inline constexpr uint TimePair = 0xfffffffeu;  // likewise
+// Offset of the vertex index for scattering points in a medium on a branch of perfect speculars
+// (specular_branches.h): a disjoint range of RNG dimensions.
 inline constexpr uint MediumVertex = 0x10000000u;
 
-// Of a leg from a vertex on through media: by how many there were before it.
-inline uint leg_pair(uint vertex, uint number) {
+// RNG pair of a segment after a vertex; `number`: index of the segment.
+inline uint segment_pair(uint vertex, uint number) {
     return 0x80000000u + (vertex * 64u + (number & 63u)) % 0x7ffffff0u;
 }
 
-// When a sample is taken, as a share of the time that the shutter is open; 0 where nothing moves.
+// Time of a sample, 0 to 1 over the shutter; 0 if nothing moves.
 inline float sample_time(FeatureBits features, IN(View) view, uint x, uint y, uint64_t index) {
     if ((features & (FeatureMotion | FeatureCameraMotion)) == 0u) return 0.0f;
     return sample_pair(make_sampler(x, y, view.seed, index), TimePair).x;
@@ -97,22 +97,22 @@ inline float grey(vec3 color) {
     return dot(color, vec3(0.299f, 0.587f, 0.114f));
 }
 
-inline bool keeps(IN(View) view, uint what) {
-    return (view.keeps & what) != 0u;
+inline bool records(IN(View) view, uint quantity) {
+    return (view.recorded_quantities & quantity) != 0u;
 }
 
-// Sorts light into the sample's path classes, as the view asks for.
-inline void add_light(INOUT(PathSample) found, IN(View) view, vec3 light, IN(Way) way) {
-    const vec3 diffuse = keeps(view, KeepsDiffuse) ? light * way.diffuse_share : vec3(0.0f);
+// Adds light to the sample's path classes, as the view requests.
+inline void add_light(INOUT(PathSample) found, IN(View) view, vec3 light, IN(PathClassInfo) class_info) {
+    const vec3 diffuse = records(view, RecordsDiffuse) ? light * class_info.diffuse_fraction : vec3(0.0f);
     found.diffuse += diffuse;
     if (view.path_class == ClassDiffuse) {
         found.high += diffuse;
         found.low += light - diffuse;
         return;
     }
-    const bool indirect = way.scatterings > 1u;
+    const bool indirect = class_info.scatter_count > 1u;
     const bool high = view.path_class == ClassAll || (view.path_class == ClassIndirect && indirect) ||
-                      (view.path_class == ClassCaustics && indirect && way.last_is_delta);
+                      (view.path_class == ClassCaustics && indirect && class_info.last_is_delta);
     if (high) {
         found.high += light;
     } else {
@@ -120,9 +120,9 @@ inline void add_light(INOUT(PathSample) found, IN(View) view, vec3 light, IN(Way
     }
 }
 
-// A light that a path reaches, by its own intensity.
+// Records the intensity of a light that a path reaches.
 inline void connect_light(INOUT(PathSample) found, IN(View) view, vec3 intensity) {
-    if (keeps(view, KeepsConnections)) found.connections += grey(intensity);
+    if (records(view, RecordsConnections)) found.connections += grey(intensity);
 }
 
 inline vec3 radiance_of(IN(PathSample) found) {

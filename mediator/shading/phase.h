@@ -3,20 +3,20 @@
 
 #include "mediator/shading/maths.h"
 
-// Scattering in a medium by Henyey and Greenstein (1941), isotropic for g = 0. The frame's z axis leads back to
-// where the path came from; densities are per solid angle, and the value is the density: no light is lost.
-// By the versine 1 - cos of the angle to where most goes, which does not cancel there.
+// Scattering in a medium by Henyey and Greenstein (1941), isotropic for g = 0. The frame's z axis points back
+// along the path; densities are per solid angle, and the value equals the density. Computed from the versine
+// 1 - cos of the angle to the peak direction, which does not cancel there.
 SHADING_BEGIN
 
-// |g| nearer to 1 turns light by less than a pixel's width, and would be a density without bound.
+// |g| closer to 1 would scatter by less than a pixel's width, with an unbounded density.
 inline constexpr float MaxAnisotropy = 0.9999f;
 
 inline float phase_value(float g, vec3 wi) {
     const float along = g < 0.0f ? wi.z : -wi.z;
     const float versine = along > 0.0f ? (wi.x * wi.x + wi.y * wi.y) / (1.0f + along) : 1.0f - along;
     const float a = abs(g);
-    const float reach2 = (1.0f - a) * (1.0f - a) + 2.0f * a * versine;
-    return 0.25f * InversePi * (1.0f - a) * (1.0f + a) / (reach2 * sqrt(reach2));
+    const float distance2 = (1.0f - a) * (1.0f - a) + 2.0f * a * versine;
+    return 0.25f * InversePi * (1.0f - a) * (1.0f + a) / (distance2 * sqrt(distance2));
 }
 
 // By inversion of the integral over the cosine.

@@ -5,8 +5,8 @@
 #include "mediator/shading/sampling.h"
 #include "mediator/shading/scaling.h"
 
-// Rectangles that shine on one side, as seen from a point: near ones are sampled by solid angle (Urena et al.
-// 2013), far ones, which look the same from all of their area, by that.
+// One-sided rectangular lights, as seen from a point. Near ones are sampled by solid angle (Urena et al.
+// 2013), far ones by area.
 SHADING_BEGIN
 
 // Density per solid angle of a point of a light of area 1 / inverse_root_area^2, seen at a distance and under
@@ -24,27 +24,27 @@ struct QuadView {
     vec2 high;
     float z;
     float unit;
-    float solid_angle;  // 0: too small or too far to be worth it
+    float solid_angle;  // 0: too small or too far, sampled by area
     float before;       // solid angle between x = 0 and low.x, less than 0 where that is less
 };
 
-// Of the rectangle between the foot of the point and (x, y), with the sign of x y.
+// Solid angle of the rectangle between the point's projection and (x, y), with the sign of x y.
 inline float corner_angle(float x, float y, float z) {
     return arc_tangent(x * y, z * sqrt(x * x + y * y + z * z));
 }
 
-// Farther than so many of its half diagonals, or smaller than this solid angle, which is a difference of
-// angles with the rounding of theirs, it is sampled by area.
+// Beyond this many half diagonals, or below this solid angle (a difference of angles, with their rounding
+// errors), a quad is sampled by area.
 inline constexpr float FarQuad = 4.0f, SmallQuad = 0.01f;
 
 inline QuadView view_quad(IN(LightSource) light, vec3 from) {
-    const vec3 way = light.position - from;
-    const float unit = greater_of(extent_of(way), greater_of(light.half_size.x, light.half_size.y));
-    const vec3 scaled = way / unit;
-    const vec2 middle = vec2(dot(scaled, light.edge_u), dot(scaled, light.edge_v));
+    const vec3 offset = light.position - from;
+    const float unit = greater_of(extent_of(offset), greater_of(light.half_size.x, light.half_size.y));
+    const vec3 scaled = offset / unit;
+    const vec2 center = vec2(dot(scaled, light.edge_u), dot(scaled, light.edge_v));
     const vec2 half_size = light.half_size / unit;
     QuadView seen =
-        QuadView(middle - half_size, middle + half_size, -dot(scaled, light.direction), unit, 0.0f, 0.0f);
+        QuadView(center - half_size, center + half_size, -dot(scaled, light.direction), unit, 0.0f, 0.0f);
     const bool is_far = dot(scaled, scaled) > FarQuad * FarQuad * dot(half_size, half_size);
     if (!(seen.z > 0.0f) || is_far) return seen;
     seen.before =
@@ -55,8 +55,8 @@ inline QuadView view_quad(IN(LightSource) light, vec3 from) {
     return seen;
 }
 
-// A place on it, from its middle along its edges: uniform over the solid angle, or over the area. First x:
-// the solid angle before it is the share u.x of all. Then y, whose sine over (x, z) is uniform.
+// A point relative to the center, along the edges: uniform over the solid angle, or over the area. First x:
+// the solid angle to its left is the fraction u.x of all. Then y, whose sine over (x, z) is uniform.
 inline vec2 sample_quad(IN(QuadView) seen, vec2 half_size, vec2 u) {
     if (!(seen.solid_angle > 0.0f)) return (2.0f * u - 1.0f) * half_size;
     const float z = seen.z;
@@ -78,7 +78,7 @@ inline vec2 sample_quad(IN(QuadView) seen, vec2 half_size, vec2 u) {
     return (vec2(x, y) - 0.5f * (seen.low + seen.high)) * seen.unit;
 }
 
-// Per solid angle; `distance` and `facing` of the direction that meets it.
+// Per solid angle; `distance` and `facing`: of the direction that hits it.
 inline float quad_pdf(IN(QuadView) seen, float inverse_root_area, float distance, float facing) {
     if (seen.solid_angle > 0.0f) return 1.0f / seen.solid_angle;
     return area_pdf(inverse_root_area, distance, facing);

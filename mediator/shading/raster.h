@@ -4,25 +4,25 @@
 #include "mediator/shading/bvh_ray.h"
 #include "mediator/shading/camera.h"
 #include "mediator/shading/paths.h"
-#include "mediator/shading/points.h"
+#include "mediator/shading/triangle_points.h"
 
-// First hits that a rasteriser finds. All pixels of one sample share their place in the neighbourhood of the
-// pixel's centre, so that a sample of the picture is one pass of a rasteriser.
+// Rasterised first hits. All pixels of one sample have the same subpixel offset, so that one sample of the
+// picture is one rasterisation pass.
 SHADING_BEGIN
 
-// Where that place is, as sample_pair tells it for a path of its own: that of the pixel which no picture has.
+// That offset: sample_pair of a pixel index outside of all pictures.
 inline constexpr uint RasterPixel = 0xffffffffu;
 inline vec2 raster_place(IN(View) view, uint64_t index) {
     return sample_pair(make_sampler(RasterPixel, RasterPixel, view.seed, index), CameraPair);
 }
 
-// What is nearer than this along the view axis is not drawn. Depth is its ratio to the distance, so it costs
-// no precision; with 2^-40, distances below 2^60 keep their depth and its slopes within the range of floats.
+// Near plane. Depth is its ratio to the distance (reversed z), so a small value costs no precision; with
+// 2^-40, depths and their slopes stay in the range of floats for distances below 2^60.
 inline constexpr float RasterNear = 9.0949470e-13f;
 
-// A square part of the picture: what one pass draws a part of.
+// A square cell of the picture; a pass draws a part of one.
 struct RasterCell {
-    vec2 scale;  // x of the cell, -1 to 1, is scale x (x at distance 1 - the picture's middle) + shift
+    vec2 scale;  // x of the cell, -1 to 1, is scale x (x at distance 1 - the image centre) + shift
     vec2 shift;
     uint x;  // of its first pixel
     uint y;
@@ -34,11 +34,11 @@ inline vec3 in_view(IN(View) view, vec3 from_eye) {
     return vec3(dot(from_eye, view.right), dot(from_eye, view.up), dot(from_eye, view.forward));
 }
 
-// In the clip space of Vulkan, depth growing towards the eye.
+// In Vulkan clip space, with reversed depth.
 inline vec4 raster_clip(IN(View) view, IN(RasterCell) cell, vec3 from_eye) {
     const vec3 v = in_view(view, from_eye);
-    return vec4((v.x - view.middle.x * v.z) * cell.scale.x + v.z * cell.shift.x,
-                (v.y - view.middle.y * v.z) * cell.scale.y + v.z * cell.shift.y, RasterNear, v.z);
+    return vec4((v.x - view.image_center.x * v.z) * cell.scale.x + v.z * cell.shift.x,
+                (v.y - view.image_center.y * v.z) * cell.scale.y + v.z * cell.shift.y, RasterNear, v.z);
 }
 
 inline vec3 seen_from(vec3 eye, IN(Instance) instance, vec3 corner) {
@@ -49,8 +49,8 @@ inline Triangle triangle_in(IN(Mesh) mesh, uint triangle) {
     return triangle_of(mesh, mesh.triangles.items[triangle]);
 }
 
-// Where a ray meets a triangle which a rasteriser says it meets; it rounds corners to parts of a pixel. Where
-// the ray just misses it, the nearest edge.
+// Intersects a ray with a triangle that was rasterised at its pixel. Rasterisers snap vertices to subpixels,
+// so the ray may just miss it: then the nearest edge is used.
 inline Hit raster_hit(IN(Scene) scene, IN(Ray) ray, uint instance_index, uint triangle_index) {
     const Instance instance = scene.instances.items[instance_index];
     const Triangle t = triangle_in(scene.meshes.items[instance.mesh], triangle_index);

@@ -10,9 +10,10 @@ struct Ray {
     vec3 direction;  // unit length
 };
 
-inline constexpr uint NoInstance = 0xffffffffu;  // of a Hit: nothing was hit
+inline constexpr uint NoInstance = 0xffffffffu;  // of a Hit: a miss
 
-// What a ray has gone through already: nothing up to `near` is hit, and up to `far` nothing of this instance.
+// Hits to skip because the ray has passed them already: all up to `near`, and those of one instance up to
+// `far`.
 struct Skip {
     uint instance;
     float near;
@@ -31,7 +32,7 @@ inline bool skips(IN(Skip) skip, uint instance, float distance) {
 }
 
 // A path starts exactly on its surface where the error bound is 0 (an axis-aligned plane through the origin):
-// hits nearer than this are that surface. The smallest number that no device takes for 0.
+// nearer hits are on that surface. The smallest number that no device flushes to 0.
 inline constexpr float NearestHit = 1.17549435e-38f;
 
 inline Skip skip_nothing() {

@@ -3,10 +3,10 @@
 
 #include "mediator/shading/language.h"
 
-// What a renderer looks up, as it lies in memory: the same bytes for C++ and GLSL (scalar layout; asserted in
-// layout.h). Places are relative to the render origin. Tables are ordered by object id: a function of the
-// scene's content alone. Arrays are reached by address: a host pointer on the CPU, a device address on a GPU;
-// a record says by a count or a flag whether an array is there.
+// The scene records that renderers read: the same bytes in C++ and GLSL (scalar layout, asserted in
+// layout.h). Positions are relative to the render origin. Tables are ordered by object id, so they depend on
+// the scene's content alone. Arrays are referred to by address: a host pointer on the CPU, a device address
+// on a GPU. A count or a flag in the record says whether an array is present.
 RECORDS_BEGIN
 
 ARRAY_OF(float, FloatArray, 4);
@@ -18,15 +18,15 @@ ARRAY_OF(uvec3, UVec3Array, 4);
 
 // Values as in scene/objects.h.
 inline constexpr uint TexelRgba8 = 0u, TexelRgba8Srgb = 1u, TexelRgbFloat = 2u;
-inline constexpr uint TexelRgba8Signed = 3u;  // bytes of -127 to 127: a use of Rgba8
+inline constexpr uint TexelRgba8Signed = 3u;  // signed bytes, -127 to 127; stored as Rgba8
 inline constexpr uint NormalTangent = 0u, NormalObject = 1u;
 inline constexpr uint WrapRepeat = 0u, WrapMirror = 1u, WrapClamp = 2u;
 inline constexpr uint TextureLinear = 0u, TextureNearest = 1u;
 inline constexpr uint AlphaOpaque = 0u, AlphaMask = 1u, AlphaBlend = 2u;
 
-// Rows from the top, without gaps. Rgba8: red in the lowest byte; RgbFloat: three floats a texel. Levels are
-// the same picture at half the size (rounded down, at least 1) and half of that and so on, one after the
-// other.
+// Rows are stored from the top, tightly packed. Rgba8: red in the lowest byte; RgbFloat: three floats per
+// texel. `levels` holds the mip levels one after the other; each has half the size of the one before (rounded
+// down, at least 1).
 struct Texture {
     UintArray texels;
     UintArray levels;
@@ -36,8 +36,8 @@ struct Texture {
     uint wrap_s;
     uint wrap_t;
     uint texture_filter;
-    uint level_count;  // without the picture itself
-    uint depth;        // slices, one after the other; only bodies look at more than the first
+    uint level_count;  // mip levels, without the full-size image
+    uint depth;        // slices, one after the other; only media use more than the first
 };
 
 // A use of a texture, with its transform: u' = dot(row_u, uv) + offset.x, and v' likewise.
@@ -64,14 +64,15 @@ struct Material {
     TextureUse normal_texture;
     TextureUse emission_texture;
     uint alpha_mode;
-    uint double_sided;  // 1 or 0, as all that could be a bool
+    uint double_sided;  // 1 or 0, as all boolean fields
     uint unlit;
-    uint thin;   // walls instead of a body
-    int extras;  // index; -1 = none
-    int shader;  // index; -1 = none
+    uint thin;           // thin-walled: no refraction, no interior medium
+    int extras;          // index; -1 = none
+    int surface_shader;  // index; -1 = none
 };
 
-// What few materials have. Textures that are looked up in a loop: written out, lookups are most of a kernel.
+// Rare parameters, kept out of line. Their textures are looked up in a loop: unrolled lookups would dominate
+// code size.
 inline constexpr uint ExtrasTransmission = 0u, ExtrasSpecular = 1u, ExtrasSpecularColor = 2u, ExtrasCoat = 3u,
                       ExtrasCoatRoughness = 4u, ExtrasSheenColor = 5u, ExtrasSheenRoughness = 6u,
                       ExtrasIridescence = 7u, ExtrasThickness = 8u, ExtrasTextureCount = 9u;
@@ -87,17 +88,17 @@ struct MaterialExtras {
     vec2 anisotropy_direction;  // cosine and sine of the angle to the tangent
     float iridescence;
     float film_index;
-    vec2 film_thickness;  // least and greatest, in nanometres
+    vec2 film_thickness;  // minimum and maximum, in nanometres
     TextureUse textures[ExtrasTextureCount];
     TextureUse coat_normal_texture;
     TextureUse anisotropy_texture;
 };
 
-inline constexpr uint ShaderSpecular = 0u, ShaderShininess = 1u, ShaderReflection = 2u,
-                      ShaderTransmission = 3u, ShaderTextureCount = 4u;
-// What only CommonSurfaceShader has (Schwenk 5.A.3); its diffuse part, emission and normal map are a
-// Material's.
-struct Shader {
+inline constexpr uint SurfaceShaderSpecular = 0u, SurfaceShaderShininess = 1u, SurfaceShaderReflection = 2u,
+                      SurfaceShaderTransmission = 3u, SurfaceShaderTextureCount = 4u;
+// Parameters that only CommonSurfaceShader has (Schwenk 5.A.3). Its diffuse part, emission and normal map are
+// in Material.
+struct SurfaceShaderParams {
     vec3 specular;
     float fresnel_blend;
     vec2 shininess;
@@ -105,25 +106,25 @@ struct Shader {
     float height_scale;
     vec3 transmission;
     uint normal_space;
-    vec3 index_of_refraction;  // inside / outside, for each channel
+    vec3 index_of_refraction;  // inside / outside, per colour channel
     uint inverts_alpha;
     vec3 environment;
-    int tangent_set;  // of texture coordinates, whose u grows along the tangent; -1: as the mesh says
+    int tangent_set;  // texture coordinate set whose u direction is the tangent; -1: the mesh's tangents
     vec3 normal_scale;
     int binormal_set;
     vec3 normal_bias;
-    TextureUse textures[ShaderTextureCount];
+    TextureUse textures[SurfaceShaderTextureCount];
     TextureUse alpha_texture;
     TextureUse height_texture;
     TextureUse environment_texture;
 };
 
-// Which of a mesh's arrays are there besides positions and triangles.
+// Which arrays a mesh has in addition to positions and triangles.
 inline constexpr uint MeshNormals = 1u, MeshTangents = 2u, MeshColors = 4u, MeshTexCoords = 8u,
-                      MeshTexCoords1 = 16u, MeshBends = 32u;
+                      MeshTexCoords1 = 16u, MeshDeforms = 32u;
 
-// Vertices at a step of a mesh's motion; normals where the mesh has some.
-struct MeshStep {
+// Vertices of a deforming mesh at one motion key; normals if the mesh has any.
+struct MeshKey {
     Vec3Array positions;
     Vec3Array normals;
 };
@@ -138,10 +139,10 @@ struct Mesh {
     Vec2Array tex_coords_1;
     uint arrays;
     uint triangle_count;
-    uint first_step;  // of MeshBends: index of the beginning's
-    uint steps;       // after it
-    float reach;      // of any coordinate at any step
-    float share;      // of a mesh at a time (motion.h): of the way from `positions` and `normals` to
+    uint first_key;          // of MeshDeforms: index of its first motion key
+    uint key_intervals;      // motion keys - 1
+    float max_abs_position;  // largest absolute coordinate at any key
+    float key_fraction;      // of a mesh at a time (motion.h): from `positions`, `normals` to
     Vec3Array next_positions;
     Vec3Array next_normals;
 };
@@ -149,18 +150,18 @@ struct Mesh {
 inline constexpr uint AllLayers = 0xffffffffu;
 inline constexpr int ShadowCatcher = -2;
 
-// Where something is at a step of its motion: world from its own space.
-struct Place {
+// A transform from object to world space, at one motion key.
+struct Affine3x4 {
     mat3 linear;
     vec3 translation;
 };
 
-// A way through places that stand together, at even steps of time; between them all goes in a straight line.
+// A range of motion keys at even times over the shutter; transforms are interpolated linearly between them.
 struct Motion {
-    uint first_place;
-    uint steps;   // after it; at least 1
-    float sizes;  // of any element of `linear` at any step, at most
-    vec3 reach;   // of the translation, likewise
+    uint first_key;
+    uint key_intervals;        // motion keys - 1, at least 1
+    float max_abs_linear;      // bound of any element of `linear` at any key
+    vec3 max_abs_translation;  // bound of the translation at any key
 };
 
 struct Instance {
@@ -171,127 +172,128 @@ struct Instance {
     mat3 linear;    // world from object
     vec3 translation;
     mat3 normals;       // cofactors of `linear` times a power of two: they turn normals, to their own side
-    uint alpha_tested;  // whether a hit has to be asked (stops_at)
+    uint alpha_tested;  // hits need the alpha test (stops_at)
     uint layers;        // not there for views that see none of them
-    int motion;         // index; -1 = it stands still
-    int body;           // index; -1 = nothing but its surface
+    int motion;         // index; -1 = static
+    int medium;         // index; -1 = no interior medium
 };
 
-inline constexpr uint BodyAbsorption = 0u, BodyScattering = 1u, BodyEmission = 2u, BodyTextureCount = 3u;
-// What a closed geometry is filled with (Schwenk 5.B.3), per metre of the world. Textures lie in the box around
-// the geometry, in its own space: u along x, v against y, slices along z.
-struct Body {
+inline constexpr uint MediumAbsorption = 0u, MediumScattering = 1u, MediumEmission = 2u,
+                      MediumTextureCount = 3u;
+// The participating medium inside a closed mesh (Schwenk 5.B.3); coefficients are per metre in world space.
+// Its textures fill the mesh's object-space bounding box: u along x, v along -y, slices along z.
+struct Medium {
     vec3 absorption;
-    int priority;  // where bodies overlap, the highest fills them; of equal ones that which was entered last
+    int priority;  // where media overlap, the highest one applies; among equals the one entered last
     vec3 scattering;
-    float anisotropy;  // Henyey and Greenstein's g
-    vec3 emission;     // radiance
-    uint open;         // its surface is none: rays go through
-    vec3 low;          // of the box
-    uint textured;     // whether any of the textures is there
+    float anisotropy;    // Henyey and Greenstein's g
+    vec3 emission;       // radiance
+    uint index_matched;  // the boundary has no surface: rays pass straight through
+    vec3 low;            // of the bounding box
+    uint textured;       // whether it has any texture
     vec3 inverse_size;
-    float index;  // of refraction; 0: without bound; -1: that of what is around it
-    TextureUse textures[BodyTextureCount];
+    float index;  // of refraction; 0: infinite; -1: that of the surrounding medium
+    TextureUse textures[MediumTextureCount];
 };
-// That a place is in at once; those of the least priority are forgotten.
-inline constexpr uint MaxBodies = 4u;
+// Media that a point can be in at once; those of the lowest priority beyond are dropped.
+inline constexpr uint MaxNestedMedia = 4u;
 
 inline constexpr uint LightPoint = 0u, LightSpot = 1u, LightDirectional = 2u, LightMesh = 3u,
                       LightEnvironment = 4u, LightSphere = 5u, LightQuad = 6u;
 
 struct LightSource {
     uint kind;
-    float probability;  // of being chosen, if it is infinitely far: the others are in the light tree
-    vec3 intensity;     // of what has a size (sphere, quad, sun): its radiance
+    float probability;  // selection probability of an infinite light; the others are in the light tree
+    vec3 intensity;     // of lights with a size (sphere, quad, sun disk): radiance
     vec3 position;
-    vec3 direction;  // in which it shines
+    vec3 direction;  // of emission
     float cos_inner;
     float cos_outer;
-    float radius;  // of a sphere
-    float cap;  // of a sun: 1 - the cosine of half the angle that it spans; 0 = no sun but a point in the sky
-    vec3 edge_u;  // of a quad: directions of its edges, of unit length
+    float radius;                    // of a sphere
+    float one_minus_cos_half_angle;  // of a directional light's angular diameter; 0 = delta
+    vec3 edge_u;                     // of a quad: directions of its edges, of unit length
     vec3 edge_v;
     vec2 half_size;      // along them
     uint instance;       // of a mesh light
     uint first_emitter;  // of a mesh light: that of its first triangle; else its own
     uint layers;         // as of an instance
-    int motion;          // of a light that is no mesh, likewise
+    int motion;          // as of an instance; not of a mesh light
 };
 
-// What the light tree chooses: a triangle of a mesh light, or a light of its own.
+// A leaf of the light tree: a triangle of a mesh light, or a punctual, sphere or quad light.
 struct Emitter {
     uint light;               // index
     uint triangle;            // of the mesh
-    uint node;                // its leaf; NoLightNode where no light comes from it
+    uint node;                // its leaf in the light tree; NoLightNode if it emits nothing
     float inverse_root_area;  // 1 / square root of its area in the world, which may leave the range of
-                              // floats; 0: its area changes, and is asked for (motion.h)
+                              // floats; 0: its area changes, and is computed at the sample's time (motion.h)
 };
 inline constexpr uint NoLightNode = 0xffffffffu;
 
-// A node of the light tree: all of its emitters, in short (Conty Estevez and Kulla 2018). Node 0 is the root;
-// children stand together.
+// A node of the light tree: bounds of all its emitters (Conty Estevez and Kulla 2018). Node 0 is the root;
+// children are contiguous.
 struct LightNode {
-    vec3 middle;  // of a ball around them
+    vec3 center;  // of their bounding sphere
     float radius;
-    vec3 axis;         // of a cone around the directions that they face
-    float cos_spread;  // of its half angle; -1: all directions
-    float cos_reach;   // of the angle to which each shines around its own direction
-    float power;       // as a share of the tree's; more than 0
-    uint link;         // the first child, or the emitter of a leaf; and the bits below
+    vec3 axis;                 // of the cone that bounds the emitters' normals
+    float cos_spread;          // of its half angle; -1: all directions
+    float cos_emission_angle;  // of the angle to which each shines around its own direction
+    float power;               // fraction of the tree's; more than 0
+    uint link;                 // the first child, or the emitter of a leaf; and the bits below
     uint parent;
 };
 inline constexpr uint LightLeaf = 0x80000000u, LightTwoSided = 0x40000000u, LightIndexBits = 0x03ffffffu;
-inline constexpr uint LightShaped = 0x08000000u;  // there are spheres or quads below
+inline constexpr uint LightContainsArea = 0x08000000u;  // the subtree has sphere or quad lights
 inline constexpr uint LightByPower =
-    0x04000000u;  // children are triangles of one flat lamp: power tells enough
+    0x04000000u;  // children are triangles of one flat emitter: choose by power alone
 inline constexpr uint LightCountShift = 28u, MaxLightChildren = 4u;  // two bits: children - 1
 
-// Light from infinitely far: color + strength x map. A map of width 0 is none.
+// The environment light: color + strength x map. Width 0: no map.
 struct Environment {
     Texture map;
     vec3 color;
     float strength;
     float rotation;
-    uint row_sums;     // index of the rows' cumulative weights
-    uint column_sums;  // index of the cumulative weights of the texels of each row
+    uint row_cdf;     // index of the rows' cumulative distribution
+    uint column_cdf;  // index of the cumulative distributions within each row
     uint emits;
-    vec4 visible_color;  // with alpha: what camera rays see that hit nothing, if it is
-    uint shows_color;    // and not the light
+    vec4 visible_color;  // background and alpha for camera rays that miss
+    uint shows_color;    // whether they see it instead of the environment light
     uint unused;         // keeps the size a multiple of an address's
 };
 
-// What occurs in a scene; what does not can be left out of a kernel.
+// Features that occur in a scene; kernels can be compiled without the others.
 inline constexpr uint FeatureTextures = 1u, FeatureNormalMaps = 2u, FeatureAlpha = 4u, FeatureSpecular = 8u,
-                      FeaturePlacedLights = 16u, FeatureMeshLights = 32u, FeatureEnvironment = 64u,
+                      FeaturePunctualLights = 16u, FeatureMeshLights = 32u, FeatureEnvironment = 64u,
                       FeatureEnvironmentMap = 128u;
-// Lobes that few materials have, and whether any material has extras.
+// Rare lobes, and whether any material has extras.
 inline constexpr uint FeatureCoat = 4096u, FeatureSheen = 8192u, FeatureRoughGlass = 16384u,
                       FeatureExtras = 32768u, FeatureIridescence = 0x8000000u;
-// Of a scene and a view together: some of it is in none of the view's layers.
+// Of a scene and view: some objects are in none of the view's layers.
 inline constexpr uint FeatureLayers = 256u;
-// More than one emitter; spheres and quads; suns.
-inline constexpr uint FeatureLightTree = 0x10000u, FeatureShapedLights = 0x20000u, FeatureSuns = 0x40000u;
+// More than one emitter; sphere and quad lights; directional lights with an angular diameter (sun disks).
+inline constexpr uint FeatureLightTree = 0x10000u, FeatureAreaLights = 0x20000u, FeatureSunDisks = 0x40000u;
 inline constexpr uint FeatureShadowCatcher = 0x80000u;
-// While the shutter is open something moves; of a view: its camera does.
+// Something moves while the shutter is open; of a view: its camera moves.
 inline constexpr uint FeatureMotion = 0x2000000u, FeatureCameraMotion = 0x4000000u;
 // CommonSurfaceShader.
-inline constexpr uint FeatureShader = 0x800000u;
-// Bodies that do something to light; some have no surface; some scatter; some have textures.
-inline constexpr uint FeatureMedia = 0x1000000u, FeatureOpenMedia = 0x10000000u,
+inline constexpr uint FeatureSurfaceShader = 0x800000u;
+// Media that affect light; some are index-matched (no surface); some scatter; some are textured.
+inline constexpr uint FeatureMedia = 0x1000000u, FeatureIndexMatchedMedia = 0x10000000u,
                       FeatureScattering = 0x20000000u, FeatureMediaTextures = 0x40000000u;
-// Of bodies that are glass, some may lie in others.
+// Some glass objects may be nested in others.
 inline constexpr uint FeatureNestedGlass = 0x80000000u;
 
 ARRAY_OF(Texture, TextureArray, 8);
 ARRAY_OF(Material, MaterialArray, 4);
 ARRAY_OF(MaterialExtras, MaterialExtrasArray, 4);
-ARRAY_OF(Shader, ShaderArray, 4);
+ARRAY_OF(SurfaceShaderParams, SurfaceShaderParamsArray, 4);
 ARRAY_OF(Mesh, MeshArray, 8);
-ARRAY_OF(MeshStep, MeshStepArray, 8);
-ARRAY_OF(Place, PlaceArray, 4);
+ARRAY_OF(MeshKey, MeshKeyArray, 8);
+ARRAY_OF(Affine3x4, Affine3x4Array, 4);
 ARRAY_OF(Motion, MotionArray, 4);
 ARRAY_OF(Instance, InstanceArray, 4);
-ARRAY_OF(Body, BodyArray, 4);
+ARRAY_OF(Medium, MediumArray, 4);
 ARRAY_OF(LightSource, LightSourceArray, 4);
 ARRAY_OF(Emitter, EmitterArray, 4);
 ARRAY_OF(LightNode, LightNodeArray, 4);
@@ -300,45 +302,45 @@ struct Scene {
     TextureArray textures;
     MaterialArray materials;
     MaterialExtrasArray extras;
-    ShaderArray shaders;
+    SurfaceShaderParamsArray surface_shaders;
     MeshArray meshes;
     InstanceArray instances;
-    LightSourceArray lights;  // those in the tree, then those infinitely far
+    LightSourceArray lights;  // those in the tree, then the infinite lights
     EmitterArray emitters;
     LightNodeArray light_nodes;
-    FloatArray sums;    // all cumulative sums: whoever has some knows the index of the first
+    FloatArray cdfs;    // all cumulative distributions; records hold the index of their first element
     FloatArray srgb;    // linear value of each byte (IEC 61966-2-1)
-    FloatArray energy;  // what lobes reflect (energy.h)
-    MeshStepArray mesh_steps;
-    PlaceArray places;
+    FloatArray energy;  // directional albedos of lobes (energy.h)
+    MeshKeyArray mesh_keys;
+    Affine3x4Array transform_keys;
     MotionArray motions;
-    BodyArray bodies;
+    MediumArray media;
     Environment environment;
     uint instance_count;
     uint light_count;
     uint tree_light_count;   // of them in the tree
-    uint light_sums;         // index of cumulative probabilities: of the tree, then of each distant light
+    uint light_cdf;          // index of the cumulative distribution: the tree, then each infinite light
     float tree_probability;  // of being chosen
-    int environment_light;   // index of the light source that stands for the environment, or -1
+    int environment_light;   // index of the environment's light source, or -1
     FeatureBits features;
-    float tree_scale;  // a power of two that brings the light tree's size near to 1
+    float tree_scale;  // a power of two that scales the light tree's extent to about 1
 };
 
 // Values as in view/view.h.
 inline constexpr uint FilterBox = 0u, FilterGaussian = 1u, FilterBlackmanHarris = 2u;
 inline constexpr uint RendererPathTracing = 0u, RendererWhitted = 1u, RendererRaster = 2u,
-                      RendererCoverage = 3u;
+                      RendererObjectId = 3u;
 inline constexpr uint ClassIndirect = 0u, ClassCaustics = 1u, ClassDiffuse = 2u, ClassAll = 3u,
                       ClassNone = 4u;
 inline constexpr uint RuleDemodulated = 0u, RuleConnections = 1u;
-// How light is found; the estimates agree in expectation. Only tests choose other than both.
+// Light sampling strategies; all have the same expectation. Only tests use others than StrategyBoth.
 inline constexpr uint StrategyBoth = 0u, StrategyLightsOnly = 1u, StrategyBsdfOnly = 2u;
-// Of places in media where light is looked for, that of both ways (equiangular.h).
+// Sampling of light in media by only one of the two techniques (equiangular.h).
 inline constexpr uint StrategyFlightOnly = 3u, StrategyEquiangularOnly = 4u;
 inline constexpr uint CameraPinhole = 0u, CameraOrthographic = 1u, CameraLens = 2u, CameraGaussian = 4u;
-// What a sample has to keep besides its light.
-inline constexpr uint KeepsDiffuse = 1u, KeepsConnections = 2u, KeepsRange = 4u;
-inline constexpr uint UnlimitedScatterings = 0xffffffffu;
+// Quantities that a sample records in addition to its radiance.
+inline constexpr uint RecordsDiffuse = 1u, RecordsConnections = 2u, RecordsHeadlight = 4u;
+inline constexpr uint UnlimitedScatterEvents = 0xffffffffu;
 
 struct View {
     uint64_t seed;
@@ -346,28 +348,28 @@ struct View {
     vec3 right;
     vec3 up;
     vec3 forward;
-    vec2 middle;  // of the picture, at distance 1 in front of the eye; orthographic: in metres
-    vec2 step;    // from pixel to pixel there; y down the picture
+    vec2 image_center;  // in the image plane at distance 1 from the eye; orthographic: in metres
+    vec2 step;          // pixel spacing there; y goes down the picture
     uint width;
     uint height;
     uint pixel_filter;
     float filter_radius;
-    uint max_scatterings;
+    uint max_scatter_events;
     uint renderer;
     uint path_class;
     uint feature_rule;
     uint channels;  // bits as in frame/channels.h
-    uint keeps;
+    uint recorded_quantities;
     uint transparent_background;
     uint strategy;
-    uint layers;  // that it sees
-    uint camera;  // bits, CameraPinhole for the usual one
+    uint layers;  // visible to the view
+    uint camera;  // bits; CameraPinhole = plain perspective
     float lens_radius;
     float focus_distance;
-    PlaceArray camera_places;  // where it moves: the beginning's and those of the steps after it
-    uint camera_steps;
-    uvec4 inside;  // instances of the bodies that the eye is in (bodies.h)
-    uint unused;   // keeps the size a multiple of an address's
+    Affine3x4Array camera_keys;  // motion keys of a moving camera, the first one at shutter open
+    uint camera_key_intervals;
+    uvec4 containing_media;  // instances of the media that the eye is in (containing_media.h)
+    uint unused;             // keeps the size a multiple of an address's
 };
 
 RECORDS_END
@@ -376,18 +378,18 @@ RECORDS_END
 
 SHADING_BEGIN
 
-// What most scenes have some of.
+// Features that most scenes use.
 inline constexpr uint CommonFeatures =
     FeatureTextures | FeatureSpecular | FeatureMeshLights | FeatureEnvironment | FeatureLightTree;
 
-// What a kernel was not compiled for is not there: the compiler sees it. What it was compiled for and is not
-// common is kept out of the way of what is.
-constexpr uint operator&(FeatureBits features, uint asked) {
-    const uint found = features.bits & (asked & SHADING_FEATURES);
+// Features that a kernel was not compiled for are constant 0, so the compiler removes their code. Rare
+// features that it was compiled for are marked as unlikely.
+constexpr uint operator&(FeatureBits features, uint requested) {
+    const uint found = features.bits & (requested & SHADING_FEATURES);
 #ifdef SHADING_HAS_ALL_FEATURES
     return found;
 #else
-    return (asked & CommonFeatures) != 0u ? found : uint(__builtin_expect(found, 0));
+    return (requested & CommonFeatures) != 0u ? found : uint(__builtin_expect(found, 0));
 #endif
 }
 

@@ -8,16 +8,16 @@ SHADING_BEGIN
 // Numbers as in frame/channels.h.
 inline constexpr uint ChannelRadiance = 0u, ChannelLowVariance = 1u, ChannelHighVariance = 2u,
                       ChannelAlbedo = 3u, ChannelNormal = 4u, ChannelDepth = 5u, ChannelObjectIndex = 6u,
-                      ChannelAlpha = 7u, ChannelRange = 8u, ChannelShadingFeature = 9u,
-                      ChannelIrradiance = 10u, ChannelEvenHalf = 11u, ChannelColor = 12u;
+                      ChannelAlpha = 7u, ChannelHeadlight = 8u, ChannelShadingFeature = 9u,
+                      ChannelIrradiance = 10u, ChannelHalfBufferA = 11u, ChannelColor = 12u;
 // Components of all channels together.
 inline constexpr uint MaxSampleValues = 33u;
 
 inline bool has_channel(IN(View) view, uint channel) {
     return ((view.channels >> channel) & 1u) != 0u;
 }
-// The values of a sample in the order of the channels, only of those that the view asks for, one after the
-// other to store_value(INOUT(Sink), float), which the includer defines with its type of sink.
+// Passes the values of a sample, in the order of the channels and only of those that the view requests, to
+// store_value(INOUT(Sink), float), which the including file defines with its type of sink.
 GENERIC(Sink)
 inline void put_number(INOUT(Sink) sink, IN(View) view, uint channel, float value) {
     if (has_channel(view, channel)) store_value(sink, value);
@@ -30,7 +30,7 @@ inline void put_vector(INOUT(Sink) sink, IN(View) view, uint channel, vec3 value
     store_value(sink, value.z);
 }
 
-// `index`: of the sample; only whether it is even counts.
+// `index`: of the sample; only its parity matters.
 GENERIC(Sink)
 inline void put_sample_values(INOUT(Sink) sink, IN(View) view, IN(PathSample) found, uint index) {
     const vec3 radiance = radiance_of(found);
@@ -43,12 +43,12 @@ inline void put_sample_values(INOUT(Sink) sink, IN(View) view, IN(PathSample) fo
     put_number(sink, view, ChannelObjectIndex, found.depth);
     put_number(sink, view, ChannelObjectIndex, float_from_bits(found.object));
     put_number(sink, view, ChannelAlpha, found.alpha);
-    put_vector(sink, view, ChannelRange, found.range);
+    put_vector(sink, view, ChannelHeadlight, found.headlight);
     put_number(sink, view, ChannelShadingFeature, shading_feature_of(found, view.feature_rule));
     put_vector(sink, view, ChannelIrradiance, irradiance_of(found));
     const bool even = index % 2u == 0u;
-    put_vector(sink, view, ChannelEvenHalf, even ? radiance : vec3(0.0f));
-    put_number(sink, view, ChannelEvenHalf, even ? 1.0f : 0.0f);
+    put_vector(sink, view, ChannelHalfBufferA, even ? radiance : vec3(0.0f));
+    put_number(sink, view, ChannelHalfBufferA, even ? 1.0f : 0.0f);
     put_vector(sink, view, ChannelColor, radiance);
 }
 

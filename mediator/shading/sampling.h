@@ -66,7 +66,7 @@ inline float power_heuristic(float pdf, float other) {
     return 1.0f / (1.0f + ratio * ratio);
 }
 
-// Filter importance sampling: where in the neighbourhood of the pixel's centre a sample lies. One axis; both
+// Filter importance sampling: the offset of a sample from the pixel's centre. One axis; both
 // filters are separable. Gaussian: sigma = radius / 3, cut at the radius. Blackman-Harris: by inversion of
 // its integral.
 inline float gaussian_offset(float u, float radius) {
@@ -110,12 +110,12 @@ inline float blackman_harris_integral(float t) {
 
 inline float blackman_harris_offset(float u, float radius) {
     float low = -1.0f, high = 1.0f;
-    for (int i = 0; i < 24; ++i) {  // bisection to the last bit that counts
-        const float middle = 0.5f * (low + high);
-        if (blackman_harris_integral(middle) < u) {
-            low = middle;
+    for (int i = 0; i < 24; ++i) {  // bisection to the last significant bit
+        const float mid = 0.5f * (low + high);
+        if (blackman_harris_integral(mid) < u) {
+            low = mid;
         } else {
-            high = middle;
+            high = mid;
         }
     }
     return 0.5f * (low + high) * radius;

@@ -3,8 +3,8 @@
 
 #include "mediator/shading/maths.h"
 
-// Lengths and directions of scenes so tiny or so huge that squares leave the range of floats. Devices are
-// slow at doubles or have none; scaling by powers of two costs no bits.
+// Lengths and directions in scenes so tiny or huge that squares over- or underflow. Doubles are slow or
+// missing on devices; scaling by powers of two is exact.
 SHADING_BEGIN
 
 // The exponent of the power of two that brings x > 0 into [1, 2), biased as in a float; towards the ends of
@@ -23,7 +23,7 @@ inline float extent_of(vec3 v) {
     return max(max(sizes.x, sizes.y), sizes.z);
 }
 
-// Of unit length; `otherwise` where v has no direction or is not finite.
+// Unit vector; `otherwise` if v has no direction or is not finite.
 inline vec3 direction_of(vec3 v, vec3 otherwise) {
     const float extent = extent_of(v);
     if (!(extent > 0.0f) || !is_finite(extent)) return otherwise;
@@ -31,21 +31,20 @@ inline vec3 direction_of(vec3 v, vec3 otherwise) {
     return scaled * (1.0f / sqrt(dot(scaled, scaled)));
 }
 
-// A vector as its direction, of unit length, and how far it reaches. Both 0 where it has none or is not
-// finite.
-struct Measured {
+// A vector as unit direction and length. Both 0 if it has no direction or is not finite.
+struct DirectionAndDistance {
     vec3 direction;
     float distance;
 };
 
-inline Measured measure(vec3 v) {
+inline DirectionAndDistance direction_and_distance(vec3 v) {
     const float extent = extent_of(v);
-    if (!(extent > 0.0f) || !is_finite(extent)) return Measured(vec3(0.0f), 0.0f);
+    if (!(extent > 0.0f) || !is_finite(extent)) return DirectionAndDistance(vec3(0.0f), 0.0f);
     const uint exponent = unit_exponent(extent);
     const vec3 scaled = v * float_from_bits(exponent << 23u);
     const float scaled_length = sqrt(dot(scaled, scaled));
-    return Measured(scaled * (1.0f / scaled_length),
-                    scaled_length * float_from_bits((254u - exponent) << 23u));
+    return DirectionAndDistance(scaled * (1.0f / scaled_length),
+                                scaled_length * float_from_bits((254u - exponent) << 23u));
 }
 
 SHADING_END

@@ -3,11 +3,11 @@
 
 #include "mediator/shading/maths.h"
 
-// Cloth: light that fibres standing off the surface reflect (Estevez and Kulla 2017, KHR_materials_sheen).
+// Cloth: reflection by fibres that stand off the surface (Estevez and Kulla 2017, KHR_materials_sheen).
 // Directions as in microfacets.h.
 SHADING_BEGIN
 
-// Below, the lobe is a line at the horizon, narrower than the steps of its table of energies.
+// Below, the lobe at the horizon is narrower than the resolution of its albedo table.
 inline constexpr float MinSheenRoughness = 0.07f;
 
 inline float sheen_alpha_of(float roughness) {

@@ -3,9 +3,9 @@
 
 #include "mediator/shading/language.h"
 
-// Random numbers of a path. Owen-scrambled Sobol points by absolute sample index (Burley 2020: hash-based
+// Sample sequence of a path. Owen-scrambled Sobol points by absolute sample index (Burley 2020: hash-based
 // nested uniform scrambling; constants of the permutation: Vegdahl's improvement of Laine and Karras 2011).
-// Dimensions come in pairs: each pair is a (0,2)-sequence of its own, its index and its two coordinates
+// Dimensions come in pairs: each pair is a separate (0,2)-sequence, its index and its two coordinates
 // scrambled by hashes of (pixel, pair), so that pairs and pixels are independent of each other and every
 // aligned power-of-two block of samples is stratified.
 SHADING_BEGIN
@@ -53,7 +53,7 @@ inline float unit_float(uint bits) {
     return float(bits >> 8) * 5.9604644775390625e-8f;
 }  // [0, 1 - 2^-24]
 
-// Where the numbers of one sample of one pixel come from.
+// Identifies the sequence of one sample of one pixel.
 struct Sampler {
     uint index;  // of the sample, low 32 bits
     uint seed;   // of (pixel, view's seed, high bits of the index)

@@ -1,41 +1,41 @@
 #ifndef TESSERA_MEDIATOR_SHADING_SURFACES_H
 #define TESSERA_MEDIATOR_SHADING_SURFACES_H
 
-#include "mediator/shading/bodies.h"
-#include "mediator/shading/cones.h"
+#include "mediator/shading/media.h"
 #include "mediator/shading/motion.h"
-#include "mediator/shading/points.h"
-#include "mediator/shading/shader_looks.h"
-#include "mediator/shading/specular.h"
+#include "mediator/shading/perfect_specular.h"
+#include "mediator/shading/ray_cones.h"
+#include "mediator/shading/surface_shader_eval.h"
+#include "mediator/shading/triangle_points.h"
 
 SHADING_BEGIN
 
-// What a path needs to know of the point it has reached.
+// A shading point: what a path needs to know of its current vertex.
 struct Surface {
     vec3 position;
     vec3 error;             // bound of the position's rounding error, per axis
-    vec3 geometric_normal;  // of unit length, to the side the path came from
+    vec3 geometric_normal;  // unit length, on the side that the path came from
     mat3 frame;             // shading frame, third axis = shading normal, same side
     vec3 albedo;
     vec3 emission;
-    Bsdf bsdf;          // of what is no perfect specular
-    Specular specular;  // perfect mirror, smooth coat and smooth glass; directions in the world
-    float rough_share;  // of the material that is no perfect specular
-    uint object;        // id
+    Bsdf bsdf;             // without perfect speculars
+    Specular specular;     // perfect mirror, smooth coat and smooth glass; directions in the world
+    float rough_fraction;  // fraction of the material without perfect speculars
+    uint object;           // id
     uint triangle;
     int light;        // index, if it is one
     float time;       // of the path
-    int environment;  // of perfect speculars: index of the shader that has one; -1 = none
+    int environment;  // index of the surface shader whose environment perfect speculars see; -1 = none
     bool scatters;
-    uint body;    // instance of the body whose boundary it is; NoInstance = of none
-    bool enters;  // it, whoever goes through
+    uint medium;  // instance of the medium that it bounds; NoInstance = none
+    bool enters;  // whether a ray that passes through enters the medium
 };
 
-// The bodies that light goes on in, in this direction.
-inline uvec4 inside_after(IN(Scene) scene, uvec4 inside, IN(Surface) surface, vec3 direction) {
-    if ((scene.features & FeatureMedia) == 0u || surface.body == NoInstance) return inside;
-    if (!(dot(direction, surface.geometric_normal) < 0.0f)) return inside;
-    return crossed(scene, inside, surface.body, surface.enters);
+// The containing media of a ray that leaves the surface in this direction.
+inline uvec4 media_after(IN(Scene) scene, uvec4 containing_media, IN(Surface) surface, vec3 direction) {
+    if ((scene.features & FeatureMedia) == 0u || surface.medium == NoInstance) return containing_media;
+    if (!(dot(direction, surface.geometric_normal) < 0.0f)) return containing_media;
+    return after_crossing(scene, containing_media, surface.medium, surface.enters);
 }
 
 inline vec3 to_local(IN(Surface) surface, vec3 world) {
@@ -45,7 +45,7 @@ inline vec3 to_world(IN(Surface) surface, vec3 local) {
     return surface.frame * local;
 }
 
-// What a normal map makes of the vertices' normal.
+// The shading normal after the normal map.
 inline vec3 mapped_normal(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(TextureUse) map,
                           float scale, uvec3 corners, vec2 b, float footprint, vec3 normal) {
     if ((scene.features & FeatureNormalMaps) == 0u || !is_used(scene, map)) return normal;
@@ -60,8 +60,8 @@ inline vec3 mapped_normal(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     return direction_of(tangent * n.x + bitangent * n.y + normal * n.z, normal);
 }
 
-// A normal of the front, on the side that `direction` comes to. One that faces away from the viewer describes
-// no surface that can be seen: the geometric one stands in.
+// The shading normal on the side that `direction` arrives on. If it faces away from the viewer, the geometric
+// normal is used instead.
 inline vec3 seen_normal(vec3 normal, vec3 face, vec3 direction) {
     const bool front = dot(face, direction) < 0.0f;
     const vec3 seen = front ? normal : -normal;
@@ -72,10 +72,10 @@ inline vec3 seen_normal(vec3 normal, vec3 face, vec3 direction) {
 inline vec3 shading_normal(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
                            IN(Triangle) t, uvec3 corners, vec2 b, float footprint, vec3 face,
                            vec3 direction) {
-    if (has_shader(scene, material)) {
-        const vec3 bumped =
-            shader_normal(scene, instance, scene.shaders.items[material.shader], material.normal_texture, t,
-                          mesh, corners, b, footprint, vertex_normal(instance, mesh, corners, b, face));
+    if (has_surface_shader(scene, material)) {
+        const vec3 bumped = shader_normal(
+            scene, instance, scene.surface_shaders.items[material.surface_shader], material.normal_texture, t,
+            mesh, corners, b, footprint, vertex_normal(instance, mesh, corners, b, face));
         return seen_normal(bumped, face, direction);
     }
     const vec3 normal = mapped_normal(scene, instance, mesh, material.normal_texture, material.normal_scale,
@@ -83,11 +83,11 @@ inline vec3 shading_normal(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh
     return seen_normal(normal, face, direction);
 }
 
-// Around the normal; x along the direction of anisotropy, where there is one.
+// Frame around the normal; x along the direction of anisotropy, if any.
 inline mat3 shading_frame(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
                           IN(Triangle) t, uvec3 corners, vec2 b, float footprint, vec3 normal) {
-    if (has_shader(scene, material)) {
-        const Shader shader = scene.shaders.items[material.shader];
+    if (has_surface_shader(scene, material)) {
+        const SurfaceShaderParams shader = scene.surface_shaders.items[material.surface_shader];
         if (shader.shininess.x == shader.shininess.y) return frame_around(normal);
         const vec3 x = shader_frame(instance, shader, edges_in_world(instance, t), mesh,
                                     material.normal_texture.set, corners, b, normal)[0];
@@ -104,9 +104,9 @@ inline mat3 shading_frame(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     return mat3(x, cross(normal, x), normal);
 }
 
-// Directions by the shading normal where they leave the surface on their own sides, else by the geometric
-// one: no light may get lost at the rim of a smooth body. Total reflection has to be that of both normals, or
-// light would run around inside of a smooth body for ever, which no light from outside can do.
+// Directions by the shading normal if they leave on the correct sides of the surface, else by the geometric
+// normal: no light may get lost at the silhouette of a smooth object. Total reflection must hold for both
+// normals, otherwise light could be trapped inside of a smooth object, which light from outside cannot be.
 inline Specular specular_at(IN(Surface) surface, IN(Mixture) mixture, IN(RoughGlass) glass, vec3 direction) {
     mat3 frame = surface.frame;
     Specular specular = make_specular(mixture, glass, -direction * frame);
@@ -127,26 +127,29 @@ inline Specular specular_at(IN(Surface) surface, IN(Mixture) mixture, IN(RoughGl
     return specular;
 }
 
-// A smooth coat is one more perfect mirror: by its own normal, but where base or glass are perfect as well,
-// which share one direction with it.
-inline void add_smooth_coat(INOUT(Surface) surface, IN(Look) look, IN(Mixture) mixture, vec3 direction) {
-    vec3 normal = surface.frame * look.coat_normal;
-    const bool shared_way = mixture.mirror > 0.0f || mixture.glass > 0.0f;
+// A smooth coat is an additional perfect mirror with its own normal, unless the base or glass is a perfect
+// specular as well: then they share one direction.
+inline void add_smooth_coat(INOUT(Surface) surface, IN(MaterialSample) material_sample, IN(Mixture) mixture,
+                            vec3 direction) {
+    vec3 normal = surface.frame * material_sample.coat_normal;
+    const bool shares_direction = mixture.mirror > 0.0f || mixture.glass > 0.0f;
     vec3 reflected = direction - 2.0f * dot(direction, normal) * normal;
-    if (!shared_way && !(dot(reflected, surface.geometric_normal) > 0.0f)) {
+    if (!shares_direction && !(dot(reflected, surface.geometric_normal) > 0.0f)) {
         normal = surface.geometric_normal;
         reflected = direction - 2.0f * dot(direction, normal) * normal;
     }
-    if (!shared_way) surface.specular.reflected = unit_vector(reflected);
+    if (!shares_direction) surface.specular.reflected = unit_vector(reflected);
     const float fresnel = CoatF0 + (1.0f - CoatF0) * schlick_weight(abs(dot(direction, normal)));
-    surface.specular.reflection += vec3(look.coat * fresnel * surface.bsdf.sheen_out);
+    surface.specular.reflection += vec3(material_sample.coat * fresnel * surface.bsdf.sheen_out);
 }
 
-inline void set_specular(INOUT(Surface) surface, IN(Look) look, IN(Mixture) mixture, vec3 direction) {
+inline void set_specular(INOUT(Surface) surface, IN(MaterialSample) material_sample, IN(Mixture) mixture,
+                         vec3 direction) {
     const bool perfect = mixture.mirror > 0.0f || mixture.glass > 0.0f;
-    const bool smooth_coat = (look.lobes & FeatureCoat) != 0u && is_smooth(surface.bsdf.coat_alpha);
+    const bool smooth_coat =
+        (material_sample.lobes & FeatureCoat) != 0u && is_smooth(surface.bsdf.coat_alpha);
     if (!perfect && !smooth_coat) return;
-    surface.rough_share = rough_share(mixture);
+    surface.rough_fraction = rough_fraction(mixture);
     if (perfect) {
         const float passes = surface.bsdf.coat_out * surface.bsdf.sheen_out;
         surface.specular = specular_at(surface, mixture, surface.bsdf.glass, direction);
@@ -154,13 +157,13 @@ inline void set_specular(INOUT(Surface) surface, IN(Look) look, IN(Mixture) mixt
         surface.specular.refraction *= passes;
     }
     if (smooth_coat) {
-        add_smooth_coat(surface, look, mixture, direction);
-        surface.rough_share *= surface.bsdf.coat_out;
+        add_smooth_coat(surface, material_sample, mixture, direction);
+        surface.rough_fraction *= surface.bsdf.coat_out;
     }
 }
 
-// By the shading normal or the geometric one, as specular_at.
-inline void set_shader_specular(INOUT(Surface) surface, IN(Scene) scene, IN(ShaderLobes) lobes,
+// By the shading normal or the geometric normal, as specular_at.
+inline void set_shader_specular(INOUT(Surface) surface, IN(Scene) scene, IN(SurfaceShaderLobes) lobes,
                                 vec3 direction) {
     const bool wanted = (scene.features & FeatureSpecular) != 0u && surface.scatters;
     if (!wanted || !is_perfect(lobes.perfect)) return;
@@ -175,43 +178,46 @@ inline void set_shader_specular(INOUT(Surface) surface, IN(Scene) scene, IN(Shad
         specular = perfect_specular(lobes.perfect, direction, up);
     }
     surface.specular = specular;
-    surface.rough_share = lesser_of(luminance(lobes.left), 0.99999994f);
+    surface.rough_fraction = lesser_of(luminance(lobes.left), 0.99999994f);
 }
 
 inline void set_scattering(INOUT(Surface) surface, IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
                            IN(Material) material, uvec3 corners, vec2 b, float footprint, vec3 face,
-                           vec3 direction, uvec4 inside) {
+                           vec3 direction, uvec4 containing_media) {
     const bool front = dot(face, direction) < 0.0f;
-    if (has_shader(scene, material)) {
-        const uint shader = uint(material.shader);
-        const ShaderLobes lobes = shader_lobes_at(scene, shader, mesh, corners, b, footprint, surface.albedo,
-                                                  front, -dot(direction, surface.frame[2]));
+    if (has_surface_shader(scene, material)) {
+        const uint shader = uint(material.surface_shader);
+        const SurfaceShaderLobes lobes =
+            shader_lobes_at(scene, shader, mesh, corners, b, footprint, surface.albedo, front,
+                            -dot(direction, surface.frame[2]));
         fill_shader_bsdf(surface.bsdf, lobes);
         set_shader_specular(surface, scene, lobes, direction);
-        if (largest(scene.shaders.items[shader].environment) > 0.0f) surface.environment = material.shader;
+        if (largest(scene.surface_shaders.items[shader].environment) > 0.0f)
+            surface.environment = material.surface_shader;
         return;
     }
     float n = material.index_of_refraction;
-    if ((scene.features & FeatureNestedGlass) != 0u && surface.body != NoInstance && material.thin == 0u) {
-        n = nested_index(scene, inside, surface.body, surface.enters);
+    if ((scene.features & FeatureNestedGlass) != 0u && surface.medium != NoInstance && material.thin == 0u) {
+        n = nested_index_of_refraction(scene, containing_media, surface.medium, surface.enters);
     }
-    Look look = look_at(scene, material, mesh, corners, b, footprint, surface.albedo, front, n);
-    if ((look.lobes & FeatureCoat) != 0u) {
+    MaterialSample material_sample =
+        evaluate_material(scene, material, mesh, corners, b, footprint, surface.albedo, front, n);
+    if ((material_sample.lobes & FeatureCoat) != 0u) {
         const MaterialExtras extras = scene.extras.items[material.extras];
         const vec3 mapped =
             mapped_normal(scene, instance, mesh, extras.coat_normal_texture, extras.coat_normal_scale,
                           corners, b, footprint, vertex_normal(instance, mesh, corners, b, face));
-        look.coat_normal = to_local(surface, seen_normal(mapped, face, direction));
+        material_sample.coat_normal = to_local(surface, seen_normal(mapped, face, direction));
     }
-    const Mixture mixture = make_mixture(look);
-    fill_bsdf(surface.bsdf, scene.energy, look, mixture, to_local(surface, -direction));
+    const Mixture mixture = make_mixture(material_sample);
+    fill_bsdf(surface.bsdf, scene.energy, material_sample, mixture, to_local(surface, -direction));
     if ((scene.features & FeatureSpecular) != 0u && surface.scatters) {
-        set_specular(surface, look, mixture, direction);
+        set_specular(surface, material_sample, mixture, direction);
     }
 }
 
 inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
-                          IN(Hit) hit, vec3 direction, float width, uvec4 inside) {
+                          IN(Hit) hit, vec3 direction, float width, uvec4 containing_media) {
     Surface surface;
     const uvec3 corners = mesh.triangles.items[hit.triangle];
     const vec2 b = hit.barycentric;
@@ -225,7 +231,7 @@ inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     const vec3 face = face_normal(instance, triangle, vec3(0.0f, 0.0f, 1.0f));
     const bool front = dot(face, direction) < 0.0f;
     surface.geometric_normal = front ? face : -face;
-    surface.body = has_body(scene, hit.instance) ? hit.instance : NoInstance;
+    surface.medium = has_medium(scene, hit.instance) ? hit.instance : NoInstance;
     surface.enters = front;
     const float footprint = triangle_footprint(scene, instance, triangle, abs(dot(face, direction)), width);
     surface.frame = shading_frame(
@@ -233,7 +239,7 @@ inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
         shading_normal(scene, instance, mesh, material, triangle, corners, b, footprint, face, direction));
 
     const vec3 color = vec3(base_color_at(scene, material, mesh, corners, b, footprint));
-    surface.albedo = clamp(color, 0.0f, 1.0f);  // vertex colours may say more than 1: no surface does
+    surface.albedo = clamp(color, 0.0f, 1.0f);  // vertex colours may exceed 1; albedos may not
     surface.scatters = material.unlit == 0u;
     surface.emission = vec3(0.0f);
     if (!surface.scatters) {
@@ -241,33 +247,35 @@ inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     } else if (emits(material) && (front || material.double_sided != 0u)) {
         surface.emission = emission_at(scene, material, mesh, corners, b);
     }
-    surface.rough_share = 1.0f;
+    surface.rough_fraction = 1.0f;
     surface.specular = no_specular();
     surface.environment = -1;
-    set_scattering(surface, scene, instance, mesh, material, corners, b, footprint, face, direction, inside);
+    set_scattering(surface, scene, instance, mesh, material, corners, b, footprint, face, direction,
+                   containing_media);
     return surface;
 }
 
 inline Surface surface_on(IN(Scene) scene, IN(Instance) instance, IN(Hit) hit, vec3 direction, float width,
-                          uvec4 inside, float time) {
+                          uvec4 containing_media, float time) {
     Instance moved;
-    const bool still = stands_still(scene, instance.motion);
-    if (!still) moved = moved_instance(scene, instance, time);
-    KEPT(Instance) here = still ? instance : moved;
-    Surface surface = surface_of(scene, here, mesh_at(scene, scene.meshes.items[instance.mesh], time),
-                                 scene.materials.items[instance.material], hit, direction, width, inside);
+    const bool still = is_static(scene, instance.motion);
+    if (!still) moved = instance_in_motion(scene, instance, time);
+    CONST_REF(Instance) here = still ? instance : moved;
+    Surface surface =
+        surface_of(scene, here, mesh_at(scene, scene.meshes.items[instance.mesh], time),
+                   scene.materials.items[instance.material], hit, direction, width, containing_media);
     surface.time = time;
     return surface;
 }
 
-// A place in a medium that a path is scattered at; by the feature FeatureMedia among its lobes.
+// A scattering point in a medium, marked by FeatureMedia among its lobes.
 inline Surface scattering_place(vec3 position, vec3 direction, float anisotropy, uint object, float time) {
     Surface surface;
     surface.position = position;
     surface.error = vec3(0.0f);
     surface.geometric_normal = vec3(0.0f);
     surface.frame = frame_around(-direction);
-    surface.albedo = vec3(1.0f);  // what is absorbed is the path's
+    surface.albedo = vec3(1.0f);  // absorption is in the path's throughput
     surface.emission = vec3(0.0f);
     surface.bsdf.lobes = FeatureMedia;
     surface.bsdf.anisotropy = anisotropy;
@@ -275,14 +283,14 @@ inline Surface scattering_place(vec3 position, vec3 direction, float anisotropy,
     surface.bsdf.sheen_out = 1.0f;
     surface.bsdf.reflectance = 1.0f;
     surface.specular = no_specular();
-    surface.rough_share = 1.0f;
+    surface.rough_fraction = 1.0f;
     surface.object = object;
     surface.triangle = 0u;
     surface.light = -1;
     surface.time = time;
     surface.environment = -1;
     surface.scatters = true;
-    surface.body = NoInstance;
+    surface.medium = NoInstance;
     surface.enters = false;
     return surface;
 }
@@ -291,7 +299,7 @@ inline bool is_in_medium(IN(Surface) surface) {
     return (surface.bsdf.lobes & FeatureMedia) != 0u;
 }
 
-// Where a ray meets the boundary of a body that has no surface.
+// Where a ray hits a medium boundary without a surface.
 struct Boundary {
     vec3 position;
     vec3 error;
@@ -316,22 +324,23 @@ inline Boundary boundary_at(IN(Scene) scene, IN(Hit) hit, vec3 direction, float 
                        mesh_at(scene, scene.meshes.items[instance.mesh], time), hit, direction);
 }
 
-// Whether a ray goes through what it hit as if there were no surface: a body's boundary that has none, or
-// none at this place by its alpha (alpha_stops).
+// Whether a ray passes through the hit as if there were no surface: a medium boundary without a surface, or
+// with alpha that lets it pass here (alpha_stops).
 inline bool passes_boundary(IN(Scene) scene, IN(Hit) hit, uint seed) {
-    if ((scene.features & FeatureOpenMedia) == 0u || !has_body(scene, hit.instance)) return false;
-    if (is_open(scene, hit.instance)) return true;
+    if ((scene.features & FeatureIndexMatchedMedia) == 0u || !has_medium(scene, hit.instance)) return false;
+    if (is_index_matched(scene, hit.instance)) return true;
     if ((scene.features & FeatureAlpha) == 0u) return false;
     return !alpha_stops(scene, scene.materials.items[scene.instances.items[hit.instance].material],
                         scene.meshes.items[scene.instances.items[hit.instance].mesh], hit.instance,
                         hit.triangle, hit.barycentric, seed);
 }
 
-// `direction`: of the ray that hit, unit length; `width`: of the path there (cones.h); `inside`: what bodies
-// it comes through.
-inline Surface make_surface(IN(Scene) scene, IN(Hit) hit, vec3 direction, float width, uvec4 inside,
+// `direction`: of the ray, unit length; `width`: of the path there (ray_cones.h); `containing_media`: the
+// media that it comes through.
+inline Surface make_surface(IN(Scene) scene, IN(Hit) hit, vec3 direction, float width, uvec4 containing_media,
                             float time) {
-    return surface_on(scene, scene.instances.items[hit.instance], hit, direction, width, inside, time);
+    return surface_on(scene, scene.instances.items[hit.instance], hit, direction, width, containing_media,
+                      time);
 }
 
 SHADING_END

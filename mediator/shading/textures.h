@@ -4,12 +4,12 @@
 #include "mediator/shading/maths.h"
 #include "mediator/shading/records.h"
 
-// Textures lie in buffers and are sampled here: not every device lets a shader choose among many of its own,
-// and theirs filter with fewer bits.
+// Textures are stored in buffers and filtered in software: not all devices support non-uniform texture
+// indexing, and hardware filtering has lower precision.
 SHADING_BEGIN
 
-// A texture coordinate in [0, 1]; 1 only where it does not repeat. Beyond 1e9 a float has no fraction left:
-// any place is as good.
+// A texture coordinate in [0, 1]; 1 only if it does not repeat. Beyond 1e9 a float has no fractional bits:
+// returns 0.
 inline float wrapped(float u, uint wrap) {
     if (!(abs(u) < 1e9f)) return 0.0f;
     if (wrap == WrapClamp) return clamp(u, 0.0f, 1.0f);
@@ -18,7 +18,7 @@ inline float wrapped(float u, uint wrap) {
     return min(there_and_back, 2.0f - there_and_back);
 }
 
-// A texel of -1 ... size: one step beyond an edge is the other edge where the texture repeats.
+// Wraps a texel index of -1 to size: one texel beyond an edge is the opposite edge if the texture repeats.
 inline uint wrapped_texel(int i, uint size, uint wrap) {
     const int last = int(size) - 1;
     if (wrap != WrapRepeat) return uint(clamp(i, 0, last));
@@ -33,7 +33,7 @@ inline vec4 texel_at(IN(Scene) scene, IN(Texture) map, uint index) {
     }
     const uint rgba = map.texels.items[index];
     if (map.format == TexelRgba8Signed) {
-        // Bytes of two's complement, in the upper byte of an int and back; -128 counts as -127.
+        // Signed bytes, sign-extended by shifts; -128 counts as -127.
         const vec4 bytes = vec4(float(int(rgba << 24u) >> 24), float(int(rgba << 16u) >> 24),
                                 float(int(rgba << 8u) >> 24), float(int(rgba) >> 24));
         return max(bytes * (1.0f / 127.0f), vec4(-1.0f));
@@ -47,8 +47,8 @@ inline vec4 texel_at(IN(Scene) scene, IN(Texture) map, uint index) {
     return vec4(float(r) * unit, float(g) * unit, float(b) * unit, alpha);
 }
 
-// Linear values (sRGB decoded before filtering), bilinear or nearest; RgbFloat has alpha 1. In a loop:
-// written out, the four texels of all lookups of a kernel are a good part of its code. `first`: index of the
+// Linear values (sRGB decoded before filtering), bilinear or nearest; RgbFloat has alpha 1. The loop is
+// deliberate: unrolled lookups are a large part of a kernel's code. `first`: index of the
 // first texel.
 inline vec4 lookup_from(IN(Scene) scene, IN(Texture) map, uint first, vec2 uv) {
     const bool nearest = map.texture_filter == TextureNearest;
@@ -60,7 +60,7 @@ inline vec4 lookup_from(IN(Scene) scene, IN(Texture) map, uint first, vec2 uv) {
     const float wy = nearest ? 0.0f : y - fy;
     const uint taps = nearest ? 1u : 4u;
     vec4 sum = vec4(0.0f);
-    KEEP_LOOP
+    NO_UNROLL
     for (uint i = 0u; i < taps; ++i) {
         const int dx = int(i & 1u), dy = int(i >> 1u);
         const uint column = wrapped_texel(int(fx) + dx, map.width, map.wrap_s);
@@ -75,8 +75,8 @@ inline vec4 lookup(IN(Scene) scene, IN(Texture) map, vec2 uv) {
     return lookup_from(scene, map, 0u, uv);
 }
 
-// Of a footprint of this area in texture coordinates: between the two levels whose texels are next to it in
-// size; one of a texel or less sees the picture itself.
+// Trilinear lookup with a footprint of this area in texture coordinates: between the two closest mip levels.
+// A footprint of a texel or less uses the full-size image.
 inline vec4 lookup_wide(IN(Scene) scene, IN(Texture) map, vec2 uv, float area) {
     const float covered = area * float(map.width) * float(map.height);
     float wanted = 0.0f;
@@ -84,16 +84,16 @@ inline vec4 lookup_wide(IN(Scene) scene, IN(Texture) map, vec2 uv, float area) {
         wanted = lesser_of(0.5f * 1.44269504f * logarithm(lesser_of(covered, 1e30f)), float(map.level_count));
     }
     const uint finer = uint(wanted);
-    const float coarser_share = wanted - float(finer);
-    const uint last = coarser_share > 0.0f ? finer + 1u : finer;
+    const float coarser_weight = wanted - float(finer);
+    const uint last = coarser_weight > 0.0f ? finer + 1u : finer;
     Texture level = map;
     uint first = 0u;
     vec4 sum = vec4(0.0f);
-    KEEP_LOOP
+    NO_UNROLL
     for (uint i = 0u; i <= last; ++i) {
         if (i >= finer) {
             const vec4 value = lookup_from(scene, level, first, uv);
-            sum += (i == finer ? 1.0f - coarser_share : coarser_share) * value;
+            sum += (i == finer ? 1.0f - coarser_weight : coarser_weight) * value;
         }
         first = i == 0u ? 0u : first + level.width * level.height;
         level.texels = map.levels;
@@ -107,7 +107,7 @@ inline bool is_used(IN(Scene) scene, IN(TextureUse) use) {
     return (scene.features & FeatureTextures) != 0u && use.texture >= 0;
 }
 
-// Of the set that the texture is used with; the origin where the mesh does not have it.
+// Of this texture coordinate set; 0 if the mesh does not have it.
 inline vec2 tex_coord_at(IN(Mesh) mesh, uint set, uvec3 corners, vec2 b) {
     if ((mesh.arrays & (set == 0u ? MeshTexCoords : MeshTexCoords1)) == 0u) return vec2(0.0f);
     Vec2Array coords = mesh.tex_coords;
@@ -116,7 +116,7 @@ inline vec2 tex_coord_at(IN(Mesh) mesh, uint set, uvec3 corners, vec2 b) {
            coords.items[corners.z] * b.y;
 }
 
-// `area`: of what is looked at, in texture coordinates; 0: a point.
+// `area`: of the footprint in texture coordinates; 0: a point.
 inline vec4 lookup_use(IN(Scene) scene, IN(TextureUse) use, vec2 uv, float area) {
     const vec2 place = vec2(use.row_u.x * uv.x + use.row_u.y * uv.y + use.offset.x,
                             use.row_v.x * uv.x + use.row_v.y * uv.y + use.offset.y);
@@ -124,7 +124,7 @@ inline vec4 lookup_use(IN(Scene) scene, IN(TextureUse) use, vec2 uv, float area)
     return lookup_wide(scene, scene.textures.items[use.texture], place, area * stretch);
 }
 
-// Of the parallelogram over two edges of a triangle, in texture coordinates.
+// Area of the parallelogram over two edges of a triangle, in texture coordinates.
 inline float tex_area(IN(Mesh) mesh, uint set, uvec3 corners) {
     const vec2 first = tex_coord_at(mesh, set, corners, vec2(0.0f));
     const vec2 p = tex_coord_at(mesh, set, corners, vec2(1.0f, 0.0f)) - first;
@@ -132,7 +132,7 @@ inline float tex_area(IN(Mesh) mesh, uint set, uvec3 corners) {
     return abs(p.x * q.y - p.y * q.x);
 }
 
-// `footprint`: the area that is looked at, as a share of that parallelogram (cones.h); 0: a point.
+// `footprint`: as a fraction of that parallelogram (ray_cones.h); 0: a point.
 inline vec4 texel_of(IN(Scene) scene, IN(TextureUse) use, IN(Mesh) mesh, uvec3 corners, vec2 b,
                      float footprint) {
     const float area = footprint > 0.0f ? footprint * tex_area(mesh, use.set, corners) : 0.0f;

@@ -16,12 +16,12 @@ constexpr auto enumerators(ViewTransform) {
     return std::to_array<std::string_view>({"neutral", "agx", "reinhard", "linear"});
 }
 
-inline constexpr double MaxExposure = 60.0;  // EV, either way
+inline constexpr double MaxExposure = 60.0;  // EV, in both directions
 
-// How scene-linear light becomes the 8-bit sRGB of a PNG, a JPEG or a terminal. No sample depends on it.
+// How scene-linear light is converted to 8-bit sRGB for PNG, JPEG or a terminal. Rendering does not depend on it.
 struct DisplayTransform {
     ViewTransform view_transform = ViewTransform::Neutral;
-    std::optional<double> exposure;  // EV: light is scaled by 2^exposure; none = measured once (auto)
+    std::optional<double> exposure;  // EV: light is scaled by 2^exposure; none = measured (auto)
     friend auto operator<=>(const DisplayTransform&, const DisplayTransform&) = default;
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "view_transform", &DisplayTransform::view_transform),

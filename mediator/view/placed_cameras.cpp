@@ -14,10 +14,10 @@ namespace {
 
 using namespace scene;
 
-// As far as a transform may reach.
+// Limit of the translation of a transform.
 constexpr double MaxCoordinate = 1e15;
 
-// Gram-Schmidt on the viewing direction first, so that what is looked at stays in the middle.
+// Gram-Schmidt, starting with the view direction, so that the image center stays the same.
 glm::dmat4 rigid(const glm::dmat4& matrix) {
     const glm::dvec3 z = glm::normalize(glm::dvec3(matrix[2]));
     const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(matrix[1]), z));
@@ -29,22 +29,23 @@ glm::dmat4 rigid(const glm::dmat4& matrix) {
     return result;
 }
 
-// Products of valid matrices may still be flat or overflow.
+// Products of valid matrices may still be singular or overflow.
 Expected<glm::dmat4> checked(const glm::dmat4& world_from_camera, const std::string& name) {
     for (glm::length_t column = 0; column < 4; ++column) {
-        // What is no number is not less, either.
+        // Also false for NaN.
         const glm::dvec3 size = glm::abs(glm::dvec3(world_from_camera[column]));
         if (!glm::all(glm::lessThan(size, glm::dvec3(MaxCoordinate))))
-            return failure(ErrorCode::InvalidInput,
-                           "camera '" + name +
-                               "' looks nowhere: the transforms above it are flat or too large; mend them");
+            return failure(
+                ErrorCode::InvalidInput,
+                "camera '" + name +
+                    "' has no valid direction: the transforms above it are singular or too large; fix them");
     }
     return world_from_camera;
 }
 
-class Walk {
+class CameraTraversal {
   public:
-    explicit Walk(const Scene& scene) : scene_(scene) {
+    explicit CameraTraversal(const Scene& scene) : scene_(scene) {
         if (const auto* root = scene.find_as<Root>(RootId)) open_.push_back({RootId, &root->children});
         while (!open_.empty()) {
             Step& step = open_.back();
@@ -57,7 +58,7 @@ class Walk {
         }
     }
 
-    // Transforms above, from the root down.
+    // The transforms above an object, from the root down.
     std::vector<ObjectId> path(ObjectId id) const {
         std::vector<ObjectId> path;
         while ((id = above_.at(id)) != RootId) path.push_back(id);
@@ -79,7 +80,7 @@ class Walk {
         const auto* transform = std::get_if<Transform>(&object);
         const auto* camera = std::get_if<Camera>(&object);
         if (transform == nullptr && camera == nullptr) return;
-        // Whatever hangs below was found the first time.
+        // Its subtree has been visited already.
         if (!above_.emplace(id, parent.id).second) return;
         if (transform != nullptr) {
             open_.push_back({id, &transform->children, parent.world * transform->matrix});
@@ -93,7 +94,7 @@ class Walk {
 
     const Scene& scene_;
     std::vector<Step> open_;
-    std::unordered_map<ObjectId, ObjectId> above_;  // of each transform and camera: where it is placed first
+    std::unordered_map<ObjectId, ObjectId> above_;  // the first parent of each transform and camera
 };
 
 Expected<PlacedCamera> chosen(const std::vector<PlacedCamera>& cameras, const std::string& choice) {
@@ -137,7 +138,7 @@ Concern concern(const Entry& entry) {
 }  // namespace
 
 std::vector<PlacedCamera> placed_cameras(const Scene& scene) {
-    return std::move(Walk(scene).cameras);
+    return std::move(CameraTraversal(scene).cameras);
 }
 
 CameraPose pose(const PlacedCamera& camera, std::uint32_t width, std::uint32_t height) {
@@ -161,22 +162,22 @@ FollowedCamera::FollowedCamera(const Scene& scene, std::string choice)
     : choice_(std::move(choice)), world_from_camera_(choose(scene)) {}
 
 Expected<glm::dmat4> FollowedCamera::choose(const Scene& scene) {
-    const Walk walk(scene);
-    const auto camera = chosen(walk.cameras, choice_);
+    const CameraTraversal traversal(scene);
+    const auto camera = chosen(traversal.cameras, choice_);
     path_.reset();
     if (!camera) return tl::unexpected(camera.error());
     name_ = camera->name;
-    path_ = walk.path(camera->id);
+    path_ = traversal.path(camera->id);
     return checked(camera->world_from_camera, name_);
 }
 
 bool FollowedCamera::follow(const ChangeList& changes, const Scene& scene) {
-    auto most = changes.is_snapshot() ? Concern::Graph : Concern::None;
-    for (const Entry& entry : changes.entries) most = std::max(most, concern(entry));
+    auto strongest = changes.is_snapshot() ? Concern::Graph : Concern::None;
+    for (const Entry& entry : changes.entries) strongest = std::max(strongest, concern(entry));
     Expected<glm::dmat4> now = world_from_camera_;
-    if (most == Concern::Graph) {
+    if (strongest == Concern::Graph) {
         now = choose(scene);
-    } else if (most == Concern::Matrix && path_) {
+    } else if (strongest == Concern::Matrix && path_) {
         glm::dmat4 world(1.0);
         for (const ObjectId id : *path_) world = world * scene.find_as<Transform>(id)->matrix;
         now = checked(rigid(world), name_);

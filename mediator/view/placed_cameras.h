@@ -11,45 +11,44 @@
 
 namespace tessera::view {
 
-// A Camera object as it stands in a scene; where it is placed several times, the first time.
+// A Camera object with its transform in the scene; the first one if it is instanced.
 struct PlacedCamera {
     ObjectId id;
     std::string name;
-    glm::dmat4 world_from_camera{1.0};  // rigid: scale and shear of its transforms are taken out; no numbers
-                                        // where they leave it no direction
+    glm::dmat4 world_from_camera{1.0};  // rigid: without scale and shear of its transforms; NaN if they
+                                        // are singular
     scene::Camera values;
-    std::vector<glm::dmat4> motion;  // world_from_camera at steps of time, as scene::Transform::motion
+    std::vector<glm::dmat4> motion;  // motion keys of world_from_camera, as scene::Transform::motion
 };
 
-// In the order of the graph, depth first. A view takes their values, since nodes know no cameras. Each
-// transform is walked once, where it is placed first, without recursion: time and memory are in proportion
-// to the scene, however deep its graph is and however much it shares.
+// In the order of the graph, depth first. Each transform is visited once, without recursion: time and memory are
+// proportional to the scene, for any depth and amount of sharing.
 std::vector<PlacedCamera> placed_cameras(const scene::Scene& scene);
 
 CameraPose pose(const PlacedCamera& camera, std::uint32_t width, std::uint32_t height);
 
-// By name, else by its number in the list from 0; "" = the first. The failure names those that there are. A
-// camera without a direction, or 1e15 m away, fails as well.
+// By name, else by its index in the list, from 0; "" = the first. The failure lists the cameras. A camera with a
+// singular transform, or beyond 1e15 m, fails as well.
 Expected<PlacedCamera> choose_camera(const scene::Scene& scene, const std::string& choice);
 
-// A chosen camera, followed from version to version. The graph is walked again only for changes that can make
-// it another camera; one that moves costs its own transforms.
+// A chosen camera, tracked from version to version. The graph is searched again only after changes that may select
+// another camera; if only its transforms change, the cost is theirs.
 class FollowedCamera {
   public:
-    // As choose_camera has it.
+    // `choice` as for choose_camera.
     FollowedCamera(const scene::Scene& scene, std::string choice);
 
-    // `changes` led to `scene`. True: it is somewhere else, there again or gone.
+    // `scene` is the state after `changes`. True: the camera moved, appeared or disappeared.
     bool follow(const scene::ChangeList& changes, const scene::Scene& scene);
 
-    // The failure says why there is none.
+    // The failure says why there is no camera.
     const Expected<glm::dmat4>& world_from_camera() const { return world_from_camera_; }
 
   private:
     Expected<glm::dmat4> choose(const scene::Scene& scene);
 
     std::string choice_, name_;
-    std::optional<std::vector<ObjectId>> path_;  // transforms above it, from the root down
+    std::optional<std::vector<ObjectId>> path_;  // the transforms above it, from the root down
     Expected<glm::dmat4> world_from_camera_;
 };
 

@@ -19,9 +19,9 @@
 
 namespace tessera::view {
 
-// Edges of the picture at distance 1 in front of the eye, so off-axis is the normal case; of an orthographic
-// one in metres. A thin lens is a disk around the eye, or around each orthographic ray's start, across the
-// axis; what lies in the plane at focus_distance along the axis is sharp.
+// The frustum: edges of the picture at distance 1 in front of the eye, off-axis in general; in metres for an
+// orthographic camera. A thin lens is a disk around the eye, or around the origin of each orthographic ray,
+// perpendicular to the axis; the focal plane is at focus_distance along the axis.
 struct CameraPose {
     glm::dmat4 world_from_camera{1.0};  // rigid; camera looks along -z, y up
     double left = -1.0, right = 1.0, bottom = -1.0, top = 1.0;
@@ -29,7 +29,7 @@ struct CameraPose {
     double lens_radius = 0.0;  // m; 0 = a pinhole
     double focus_distance = 1.0;
     scene::Aperture aperture = scene::Aperture::Uniform;
-    // As scene::Transform::motion: world_from_camera at even steps of time, each element in a straight line.
+    // Motion keys of world_from_camera, as scene::Transform::motion.
     std::vector<glm::dmat4> motion;
 
     glm::dvec4 edges() const { return {left, right, bottom, top}; }
@@ -45,7 +45,7 @@ struct CameraPose {
 
 CameraPose perspective(const glm::dmat4& world_from_camera, double vertical_fov, double aspect_ratio);
 
-// As a Camera object sees, in a picture of this aspect ratio, whatever its own is.
+// The pose of a Camera object, for this aspect ratio instead of its own.
 CameraPose pose(const scene::Camera& camera, const glm::dmat4& world_from_camera, double aspect_ratio);
 
 enum class Eye : std::uint8_t { Mono, Left, Right };
@@ -57,8 +57,8 @@ constexpr auto enumerators(PixelFilterKind) {
     return std::to_array<std::string_view>({"box", "gaussian", "blackman-harris"});
 }
 
-// Done by filter importance sampling: a sample counts for its own pixel alone. Radius in pixels: box 0.5;
-// gaussian 1.5 (sigma = radius / 3); Blackman-Harris 1.5.
+// By filter importance sampling: a sample contributes to one pixel. Radius in pixels: box 0.5; gaussian 1.5 (sigma =
+// radius / 3); Blackman-Harris 1.5.
 struct PixelFilter {
     PixelFilterKind kind = PixelFilterKind::Box;
     float radius = 0.5f;
@@ -67,17 +67,16 @@ struct PixelFilter {
 
 enum class Renderer : std::uint8_t {
     PathTracing,
-    Whitted,   // direct light and perfect speculars, every branch of them followed (Whitted 1980)
-    Raster,    // the same from first hits of a rasteriser, for navigation; all pixels of a sample share their
-               // place in the pixel. Orthographic views, views through a lens and what moves while the
-               // shutter is open find theirs by rays, as Whitted
-    Coverage,  // what the camera sees first of which object, in a colour for each, unlit (Schwenk 5.4.3)
+    Whitted,  // direct light and all branches of perfect specular reflection and refraction (Whitted 1980)
+    Raster,  // the same with rasterised first hits, for navigation; a sample has the same subpixel position in all
+             // pixels. Views with an orthographic camera, a lens or camera motion use Whitted instead
+    Coverage,  // first hits in one unlit colour per object (Schwenk 5.4.3)
 };
 constexpr auto enumerators(Renderer) {
     return std::to_array<std::string_view>({"path", "whitted", "raster", "coverage"});
 }
 
-// As --renderer has it: "path", "whitted", "raster", "coverage".
+// The name for --renderer: "path", "whitted", "raster", "coverage".
 std::string_view renderer_name(Renderer renderer);
 
 class RendererSet {
@@ -101,15 +100,15 @@ class RendererSet {
     std::uint32_t bits_ = 0;
 };
 
-// Of every back-end that traces rays.
+// The renderers of every back-end that traces rays.
 inline constexpr RendererSet TracingRenderers{Renderer::PathTracing, Renderer::Whitted, Renderer::Coverage};
 
-// Which paths go to the channel HighVariance (Schwenk 3.3). A path's scatterings are counted from the eye;
-// perfect speculars in front of the first other hit only show it somewhere else.
+// Which paths contribute to the channel HighVariance (Schwenk 3.3). Scattering events count from the first non-delta
+// hit on.
 enum class PathClass : std::uint8_t {
-    Indirect,  // more than one scattering from the first non-delta hit on
-    Caustics,  // the last scattering before the light is a perfect specular behind the first non-delta hit
-    Diffuse,   // light of the diffuse lobe at the first non-delta hit
+    Indirect,  // more than one scattering event from the first non-delta hit on
+    Caustics,  // the last scattering event before the light is perfectly specular, after the first non-delta hit
+    Diffuse,  // light of the diffuse lobe at the first non-delta hit
     All,
     None,
 };
@@ -117,11 +116,10 @@ constexpr auto enumerators(PathClass) {
     return std::to_array<std::string_view>({"indirect", "caustics", "diffuse", "all", "none"});
 }
 
-// What a sample adds to the shading feature, which was defined for paths that end at a light
-// (Lardinoije 4.2).
+// What a sample adds to the shading feature (Lardinoije 4.2).
 enum class FeatureRule : std::uint8_t {
-    Demodulated,  // grey of the diffuse irradiance, and of all light of other lobes
-    Connections,  // grey of the intensity of each light that next-event estimation or the path itself reaches
+    Demodulated,  // grey of the diffuse irradiance plus the radiance of other lobes
+    Connections,  // grey of the intensity of each light found by next event estimation or by the path itself
 };
 constexpr auto enumerators(FeatureRule) {
     return std::to_array<std::string_view>({"demodulated", "connections"});
@@ -129,10 +127,10 @@ constexpr auto enumerators(FeatureRule) {
 
 inline constexpr std::uint32_t UnlimitedBounces = std::numeric_limits<std::uint32_t>::max();
 
-inline constexpr std::uint32_t AllLayers = 0xffffffff;  // of objects: bit i is layer i
+inline constexpr std::uint32_t AllLayers = 0xffffffff;  // object layers: bit i is layer i
 
-// What to render, by value: a sample is a pure function of (scene content, view, pixel, sample index).
-// A new revision means: old film is of no use. A moved camera is a revision, never a scene version.
+// What to render, by value: a sample is a pure function of (scene content, view, pixel, sample index). A new revision
+// invalidates the film. Moving the camera makes a new revision, never a new scene version.
 struct View {
     ViewId id;
     std::uint64_t revision = 1;
@@ -146,10 +144,10 @@ struct View {
     Renderer renderer = Renderer::PathTracing;
     PathClass path_class = PathClass::Indirect;
     FeatureRule feature_rule = FeatureRule::Demodulated;
-    bool transparent_background = false;  // camera rays that leave the scene bring no light (alpha 0)
-    std::uint32_t layers = AllLayers;     // for its rays and its light there is nothing else
+    bool transparent_background = false;  // camera rays that miss have no radiance and alpha 0
+    std::uint32_t layers = AllLayers;     // object layers; all others do not exist for this view
     frame::ChannelSet channels;
-    std::string filter;  // NAME[:key=value,...] of the reconstruction, done on the master; empty = none
+    std::string filter;  // denoiser as NAME[:key=value,...], run on the master; empty = none
     friend bool operator==(const View&, const View&) = default;
     static constexpr auto describe(auto row) {
         constexpr auto camera = [](auto member) {

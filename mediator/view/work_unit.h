@@ -9,8 +9,7 @@
 
 namespace tessera::view {
 
-// What one node is asked to do at a time. Its content follows from these values alone; the id only names the
-// order.
+// One unit of work for a node. The result depends on these values alone; the id only identifies the request.
 struct WorkUnit {
     UnitId id;
     ViewId view;

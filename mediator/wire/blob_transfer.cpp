@@ -14,7 +14,7 @@ Expected<void> BlobFetcher::want(const scene::BlobRef& blob) {
     if (blob.empty() || store_->find(blob.hash)) return {};
     if (const auto known = partial_.find(blob.hash); known != partial_.end()) {
         Partial& partial = known->second;
-        if (partial.absent) partial.requested = partial.data.size();  // the peer may have it by now
+        if (partial.absent) partial.requested = partial.data.size();  // the peer may have it now
         partial.absent = false;
         return {};
     }
@@ -37,7 +37,7 @@ std::vector<BlobRequest> BlobFetcher::due(TimePoint now) {
     std::vector<BlobRequest> requests;
     std::uint32_t in_flight = 0;
     for (auto& [hash, partial] : partial_) {
-        // Silence: whatever was asked for is asked for again, from where the data end.
+        // No answer: request again from the end of the received data.
         if (partial.requested > partial.data.size() && now - partial.last_activity > limits_.retry_after) {
             partial.requested = partial.data.size();
         }
@@ -61,14 +61,14 @@ Expected<void> BlobFetcher::receive(BlobChunk&& chunk, TimePoint now) {
     const auto place = partial_.find(chunk.hash);
     if (place == partial_.end()) {
         if (store_->find(chunk.hash)) return {};  // a late duplicate
-        return failure(ErrorCode::InvalidInput, "a blob that nobody asked for");
+        return failure(ErrorCode::InvalidInput, "an unrequested blob");
     }
     Partial& partial = place->second;
     if (chunk.total != partial.total || chunk.offset + chunk.data.size() > partial.total) {
         return failure(ErrorCode::InvalidInput, "a blob of another size than announced");
     }
     partial.last_activity = now;
-    // In order only: what comes early is asked for again, what comes twice is known already.
+    // In order only: chunks that arrive early are requested again, duplicates are ignored.
     if (chunk.offset != partial.data.size()) {
         if (chunk.offset > partial.data.size()) partial.requested = partial.data.size();
         return {};

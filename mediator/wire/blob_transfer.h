@@ -10,14 +10,14 @@
 #include "mediator/scene/blob.h"
 #include "mediator/wire/messages.h"
 
-// Blobs go by want: whoever lacks one asks for a byte range, whoever has it answers with chunks of 1 MiB, so
-// a transfer resumes where it broke off. Pure state, no sockets.
+// Blobs are pulled: the receiver requests a byte range, the sender answers with chunks of 1 MiB, so an interrupted
+// transfer can resume. Pure state, no sockets.
 namespace tessera::wire {
 
 struct BlobLimits {
     std::uint64_t bytes_per_blob = 4ull << 30;
-    std::uint64_t bytes_total = 16ull << 30;  // quota of one peer's wants
-    std::uint32_t requests_in_flight = 8;     // chunks asked for and not yet here
+    std::uint64_t bytes_total = 16ull << 30;  // quota per peer
+    std::uint32_t requests_in_flight = 8;     // requested chunks that have not arrived
     Duration retry_after = std::chrono::seconds(3);
 };
 
@@ -27,12 +27,12 @@ class BlobFetcher {
     BlobFetcher(std::shared_ptr<scene::BlobStore> store, BlobLimits limits)
         : store_(std::move(store)), limits_(limits) {}
 
-    // Refused when over a limit; a blob that is in the store already is not wanted. One that was absent is
-    // asked for again.
+    // Fails when over a limit; does nothing for a blob that is in the store. One that was absent is requested again.
     Expected<void> want(const scene::BlobRef& blob);
-    std::vector<BlobRequest> due(TimePoint now);  // to send now: next ranges, and those that got no answer
-    // A verified whole blob goes into the store. InvalidInput: not asked for, beyond the size, or the wrong
-    // hash (what was received is dropped and asked for again).
+    std::vector<BlobRequest> due(
+        TimePoint now);  // requests to send now: next ranges, and those without an answer
+    // Puts a complete, verified blob into the store. InvalidInput: not requested, beyond the size, or a wrong hash (the
+    // received data is dropped and requested again).
     Expected<void> receive(BlobChunk&& chunk, TimePoint now);
     void absent(const Hash256& hash);  // the peer does not have it
     void forget_all();
@@ -43,8 +43,8 @@ class BlobFetcher {
   private:
     struct Partial {
         std::uint64_t total = 0;
-        std::vector<std::byte> data;  // grows with what came, never ahead of it
-        std::uint64_t requested = 0;  // end of what was asked for
+        std::vector<std::byte> data;  // grows with the received chunks, never ahead of them
+        std::uint64_t requested = 0;  // end of the requested range
         TimePoint last_activity{};
         bool absent = false;
     };
@@ -54,7 +54,7 @@ class BlobFetcher {
     std::uint64_t wanted_bytes_ = 0, received_bytes_ = 0;
 };
 
-// The giving side: BlobChunk for a range that exists, else BlobAbsent.
+// The sending side: BlobChunk for a range that exists, else BlobAbsent.
 BulkMessage answer(const BlobRequest& request, const scene::BlobStore& store);
 
 }  // namespace tessera::wire

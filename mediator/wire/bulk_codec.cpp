@@ -6,7 +6,7 @@
 #include "mediator/display/display.h"
 #include "mediator/wire/envelope.h"
 
-// Every bulk message: magic, number, then the fields of its rows, then raw data. Little-endian; enumerations and truths
+// Every bulk message: magic, number, then the fields of its rows, then raw data. Little-endian; enumerations and booleans
 // have 4 bytes.
 namespace tessera::wire {
 
@@ -88,7 +88,7 @@ frame::FilmTile get_film(ByteReader& in) {
     return film;
 }
 
-// Non-finite moments, or more samples than a block can hold, would poison what they are merged with.
+// Non-finite moments, or more samples than a block can hold, would corrupt the film they are merged with.
 const char* malformed_block(const frame::FilmTile& film) {
     const std::uint64_t limit = film.block.count();
     std::uint64_t accepted = 0;
@@ -164,13 +164,13 @@ void get_rows(ByteReader& in, T& value) {
     for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
         set_row<I>(value, [&]<class V>(V& part) {
             get(in, part);
-            if (!within<I, T>(part)) in.fail("an enumerator is not for here");
+            if (!within<I, T>(part)) in.fail("an enumerator is not allowed here");
         });
     });
     if (const char* what = why_malformed(value)) in.fail(what);
 }
 
-// Of what follows the header.
+// Size of the data after the header.
 std::size_t size_of_data(const BulkMessage& message) {
     return std::visit(
         []<class M>(const M& value) -> std::size_t {

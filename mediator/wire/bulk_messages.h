@@ -11,15 +11,15 @@
 #include "mediator/session/view_request.h"
 #include "mediator/view/view.h"
 
-// What goes over the bulk link: a fixed little-endian header, whose fields are the rows in their order, then raw planes.
+// Messages of the bulk link: a fixed little-endian header, whose fields are the rows in their order, then raw planes.
 namespace tessera::wire {
 
 inline constexpr std::size_t MaxChunk = std::size_t{1} << 20;
 
-// Null, or why a piece of so many bytes cannot be one of a whole.
+// Null, or why a chunk of this offset and size is invalid.
 constexpr const char* malformed_piece(std::uint64_t total, std::uint64_t offset, std::size_t size) {
     if (size > MaxChunk) return "a chunk is longer than 1 MiB";
-    return offset <= total && size <= total - offset ? nullptr : "a chunk reaches beyond its whole";
+    return offset <= total && size <= total - offset ? nullptr : "a chunk extends beyond the total size";
 }
 
 struct BulkHello {
@@ -47,7 +47,7 @@ struct BlobAbsent {
     Hash256 hash;
     static constexpr auto describe(auto row) { return std::tuple(row(1, "hash", &BlobAbsent::hash)); }
 };
-// Node to master: blocks of a unit; a unit that was stopped sends several, `part` of `parts`.
+// Node to master: film blocks of a unit; a stopped unit sends several, `part` of `parts`.
 struct FilmPart {
     UnitId unit;
     ViewId view;
@@ -69,15 +69,15 @@ struct FilmPart {
 // Master to client: a frame of a view, in front of its PictureChunks and FrameTiles, which have its number.
 struct FrameHeader {
     std::uint64_t view = 0, frame = 0;  // the client's number of the view; frames count from 1
-    Version version;                    // of the scene that is seen
+    Version version;                    // of the scene shown
     std::uint64_t revision = 0;         // of the view: grows with every change of its camera
-    std::uint32_t scale = 1;            // 8, 4, 2: a coarse picture of this part of the view's size
+    std::uint32_t scale = 1;            // 8, 4, 2: a coarse picture at 1/8, 1/4, 1/2 of the view's size
     std::uint32_t width = 0, height = 0, components = 0;
     session::PictureEncoding encoding = session::PictureEncoding::None;
     std::uint64_t picture_bytes = 0;
     Rect film_window;  // that the tiles cover; empty without film
     std::uint32_t film_tiles = 0;
-    std::uint64_t samples_least = 0, samples_most = 0, spp = 0;  // of a pixel, and how many there will be
+    std::uint64_t samples_least = 0, samples_most = 0, spp = 0;  // per pixel, and the final number
     bool complete = false;
     Hash256 film_hash;  // when complete, of a view whose every frame is delivered
     static constexpr auto describe(auto row) {
@@ -98,12 +98,14 @@ struct FrameHeader {
 struct FrameTile {
     std::uint64_t frame = 0;
     std::uint32_t index = 0, count = 0;
-    frame::FilmTile film;  // block means nothing here: the counts say all
+    frame::FilmTile film;  // `block` is unused: the counts are complete
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "frame", &FrameTile::frame), row(2, "index", &FrameTile::index),
                           row(3, "count", &FrameTile::count), row(4, "film", &FrameTile::film));
     }
-    const char* malformed() const { return index < count ? nullptr : "a tile is not one of its frame"; }
+    const char* malformed() const {
+        return index < count ? nullptr : "a tile's index is not below the tile count";
+    }
 };
 // Master to client: a piece of the picture that the frame's header describes.
 struct PictureChunk {
@@ -121,11 +123,11 @@ struct OutputPicture {
     std::uint64_t frame = 0;
     view::Eye eye = view::Eye::Mono;
     std::uint32_t eyes = 1;   // pictures of this frame for this output
-    Version version;          // of the scene that is seen
-    view::CameraPose camera;  // in display space, that it was rendered with
+    Version version;          // of the scene shown
+    view::CameraPose camera;  // camera it was rendered with, in display space
     std::uint32_t width = 0, height = 0;
     session::PictureEncoding encoding = session::PictureEncoding::Bytes;  // or Half
-    std::uint64_t samples = 0;                                            // of a pixel, the least
+    std::uint64_t samples = 0;                                            // per pixel, minimum
     std::uint64_t total = 0, offset = 0;                                  // bytes of the picture
     std::vector<std::byte> data;                                          // at most 1 MiB
     static constexpr auto describe(auto row) {

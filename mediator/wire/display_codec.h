@@ -9,8 +9,8 @@
 
 namespace tessera::wire {
 
-// The blob that describes a display. Decoding takes anything: what is malformed is an Error{InvalidInput};
-// what is decoded may still be no display that can be shown (master/display/display_check.h).
+// Codec of the blob that describes a display. Decoding accepts arbitrary bytes: malformed ones are an
+// Error{InvalidInput}; a decoded display may still be invalid (master/display/display_check.h).
 std::vector<std::byte> encode(const display::Display& display);
 Expected<display::Display> decode_display(std::span<const std::byte> bytes);
 

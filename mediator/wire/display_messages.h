@@ -8,12 +8,12 @@
 #include "mediator/scene/blob.h"
 #include "mediator/session/display.h"
 
-// What clients, output processes and the master say to each other about the display in front of the scene.
-// `request` is the asking client's number and comes back with the answer.
+// Messages between clients, output processes and the master about the display of the scene. `request` is the client's
+// request number and is repeated in the reply.
 namespace tessera::wire {
 
-// Puts a display in front of the scene, instead of the one there was. Its description and arrays are
-// blobs that the master asks the client for. Answered by RequestDone.
+// Opens a display of the scene and replaces the previous one. Its description and arrays are blobs that the master
+// requests from the client. Answered by RequestDone.
 struct OpenDisplay {
     std::uint64_t request = 0;
     scene::BlobRef description;  // an encoded display::Display
@@ -35,13 +35,13 @@ struct AdjustDisplay {
                           row(2, "adjustment", &AdjustDisplay::adjustment));
     }
 };
-// Where the tracked head is, in display space. The latest wins; no answer.
+// The pose of the tracked head in display space. The latest wins; no answer.
 struct MoveHead {
     display::Head head;
     static constexpr auto describe(auto row) { return std::tuple(row(1, "head", &MoveHead::head)); }
 };
 
-// This client shows the output of that name. Answered by OutputOpened, or by RequestDone with the reason.
+// This client presents the output of that name. Answered by OutputOpened, or by RequestDone with an error.
 struct JoinOutput {
     std::uint64_t request = 0;
     std::string name;
@@ -49,7 +49,7 @@ struct JoinOutput {
         return std::tuple(row(1, "request", &JoinOutput::request), row(2, "name", &JoinOutput::name));
     }
 };
-// Again, with request 0, when the display has changed. Pictures come when it is answered: OutputReady of
+// Sent again with request 0 when the display has changed. Pictures follow after it was answered with OutputReady of
 // frame 0.
 struct OutputOpened {
     std::uint64_t request = 0;
@@ -58,8 +58,7 @@ struct OutputOpened {
         return std::tuple(row(1, "request", &OutputOpened::request), row(2, "output", &OutputOpened::output));
     }
 };
-// All pictures of a frame are there, ready to be shown; pictures that were never of use for it are forgotten.
-// Frame 0: the description was taken in.
+// All pictures of a frame have arrived and it is ready to be presented. Frame 0: the description was loaded.
 struct OutputReady {
     std::uint64_t frame = 0;
     static constexpr auto describe(auto row) { return std::tuple(row(1, "frame", &OutputReady::frame)); }

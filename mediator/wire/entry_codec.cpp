@@ -11,7 +11,7 @@ constexpr auto enumerators(Action) {
     return std::to_array<std::string_view>({"create", "update", "remove"});
 }
 
-// Entry in proto/scene.proto, but for the object, whose layout depends on the mask.
+// Entry of proto/scene.proto without the object, whose fields depend on the mask.
 struct Head {
     ObjectId id;
     Action action = Action::Create;
@@ -29,7 +29,7 @@ void write_object(FormatWriter& out, const scene::Object& object, scene::FieldMa
     out.end(start);
 }
 
-// The object, read into the place where it stays; the mask may come behind it.
+// The encoded object, located in place; the mask may follow it.
 void read_object(FormatReader in, scene::Object& object, scene::FieldMask mask) {
     std::optional<std::span<const std::byte>> content;
     while (const std::uint32_t tag = in.tag()) {

@@ -3,8 +3,8 @@
 #include "mediator/codec/codec.h"
 #include "mediator/scene/change_list.h"
 
-// Private to wire/*.cpp: entries of change lists and edits. An update carries the fields of its mask only. What is
-// decoded may still be invalid as a scene.
+// Private to wire/*.cpp: entries of change lists and edits. An update carries the fields of its mask only. A decoded
+// entry may still be invalid in a scene.
 namespace tessera::codec {
 
 template <>

@@ -10,18 +10,17 @@
 
 namespace tessera::wire {
 
-// Bytes of the control link. Decoding takes anything: what is malformed, out of range, over a limit of
-// entries or of another protocol is an Error{InvalidInput} with a phrase that says what. Never throws for
-// content.
+// Encoding of the control link. Decoding accepts arbitrary bytes: data that is malformed, out of range, over a limit of
+// entries or of another protocol is an Error{InvalidInput} with the reason. Content never causes an exception.
 std::vector<std::byte> encode(const ControlMessage& message);
 Expected<ControlMessage> decode_control(std::span<const std::byte> bytes);
 
 // Bytes of the bulk link.
 std::vector<std::byte> encode(const BulkMessage& message);
 Expected<BulkMessage> decode_bulk(std::span<const std::byte> bytes);
-// Whether these bytes say that they are a bulk message, by their header alone.
+// Whether the header of these bytes is that of a bulk message.
 bool is_bulk(std::span<const std::byte> bytes);
-// Whether they say that they are film of a node; lets a loop pass film on without decoding it.
+// Whether the header is that of a node's film; lets an event loop forward film without decoding it.
 bool is_film(std::span<const std::byte> bytes);
 
 // Content of blobs that hold scene changes.

@@ -6,9 +6,8 @@
 
 #include "mediator/session/jobs.h"
 
-// What clients and the master say to each other about jobs: views that were requested as `detached`. A job is listed
-// to, fetched and cancelled by the user who submitted it, and by operators. `request` is the asking client's number and
-// comes back with the answer.
+// Messages between clients and the master about jobs: views requested as `detached`. Only the user who submitted a job
+// and operators may list, fetch and cancel it. `request` is the client's request number and is repeated in the reply.
 namespace tessera::wire {
 
 struct ReadJobs {
@@ -22,7 +21,7 @@ struct Jobs {
         return std::tuple(row(1, "request", &Jobs::request), row(2, "jobs", &Jobs::jobs));
     }
 };
-// Answered by RequestDone; then its frame and its ViewDone come as those of the client's view `number`.
+// Answered by RequestDone; then its frame and ViewDone are sent as those of the client's view `number`.
 struct FetchJob {
     std::uint64_t request = 0, number = 0;
     session::JobName job;
@@ -31,7 +30,7 @@ struct FetchJob {
                           row(3, "job", &FetchJob::job));
     }
 };
-// Ends it, and forgets its picture. Answered by RequestDone.
+// Ends the job and deletes its picture. Answered by RequestDone.
 struct CancelJob {
     std::uint64_t request = 0;
     session::JobName job;

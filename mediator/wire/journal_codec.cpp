@@ -27,7 +27,7 @@ const char* contradiction(const RecordedChange& change, std::size_t writers) {
     return nullptr;
 }
 
-// What the restored authority relies on without looking again: null, or what is wrong.
+// Checks everything that the restored authority relies on: null, or the error.
 const char* contradiction(const CheckpointState& state) {
     const std::size_t writers = state.writers.size();
     if (!state.scene.is_snapshot()) return "its scene is no snapshot";
@@ -72,12 +72,12 @@ Expected<JournalRecord> decode_journal_record(std::span<const std::byte> bytes) 
     return from_bytes<JournalRecord>(bytes);
 }
 
-std::vector<std::byte> encode(const KeptJob& job) {
+std::vector<std::byte> encode(const StoredJob& job) {
     return to_bytes(job);
 }
 
-Expected<KeptJob> decode_kept_job(std::span<const std::byte> bytes) {
-    return from_bytes<KeptJob>(bytes);
+Expected<StoredJob> decode_stored_job(std::span<const std::byte> bytes) {
+    return from_bytes<StoredJob>(bytes);
 }
 
 std::vector<std::byte> encode(const CheckpointState& state) {

@@ -9,13 +9,13 @@
 
 namespace tessera::wire {
 
-// Decoding takes anything: what is malformed or contradicts itself is an Error{InvalidInput}; never throws
-// for content.
+// Decoding accepts arbitrary bytes: malformed or inconsistent data is an Error{InvalidInput}; content never causes an
+// exception.
 std::vector<std::byte> encode(const JournalRecord& record);
 Expected<JournalRecord> decode_journal_record(std::span<const std::byte> bytes);
 
-std::vector<std::byte> encode(const KeptJob& job);
-Expected<KeptJob> decode_kept_job(std::span<const std::byte> bytes);
+std::vector<std::byte> encode(const StoredJob& job);
+Expected<StoredJob> decode_stored_job(std::span<const std::byte> bytes);
 
 // Everything but the blocks of film: those are encoded one by one, `views[i]` has the next
 // `block_counts[i]`.

@@ -15,24 +15,24 @@
 #include "mediator/session/jobs.h"
 #include "mediator/session/view_request.h"
 
-// What a session folder holds, as plain values: see master/journal.h and master/checkpoint.h for what they
-// mean, journal_codec.h for the bytes.
+// Records of a session folder as plain values: see master/scene/journal.h and master/scene/checkpoint_file.h for their
+// meaning, journal_codec.h for the encoding.
 namespace tessera::wire {
 
 inline constexpr std::size_t MaxRecorded = 16'000'000;  // entries of a list that is decoded
 
 struct RecordedEditor {
-    std::uint64_t number = 0;  // never given again
+    std::uint64_t number = 0;  // never reused
     std::string user;
     std::uint64_t key = 0;
     std::uint64_t first_id = 0, id_count = 0;
-    // The answer to the last edit; of one who only joined there is none.
+    // The answer to the last edit; absent if there was no edit.
     std::uint64_t last_sequence = 0;
     bool accepted = false;
     std::vector<std::string> problems;
     std::uint64_t transaction = 0;
     std::vector<std::string> notes;
-    std::uint64_t gesture = 0, gesture_transaction = 0;
+    std::uint64_t edit_group = 0, edit_group_transaction = 0;
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "number", &RecordedEditor::number), row(2, "user", &RecordedEditor::user),
                           row(3, "key", &RecordedEditor::key, FullWidth{}),
@@ -43,26 +43,26 @@ struct RecordedEditor {
                           row(8, "problems", &RecordedEditor::problems, Limit{MaxRecorded}),
                           row(9, "transaction", &RecordedEditor::transaction),
                           row(10, "notes", &RecordedEditor::notes, Limit{MaxRecorded}),
-                          row(11, "gesture", &RecordedEditor::gesture),
-                          row(12, "gesture_transaction", &RecordedEditor::gesture_transaction));
+                          row(11, "edit_group", &RecordedEditor::edit_group),
+                          row(12, "edit_group_transaction", &RecordedEditor::edit_group_transaction));
     }
 };
 
-// An accepted edit on its way to become a transaction: all that is needed to do it again after a restart.
+// An accepted edit: everything needed to replay it after a restart.
 struct RecordedEdit {
-    std::uint64_t editor = 0;  // 0: the master's own (the render origin); it is no transaction
-    std::uint64_t sequence = 0, gesture = 0;
+    std::uint64_t editor = 0;  // 0: by the master (the render origin); not a transaction
+    std::uint64_t sequence = 0, edit_group = 0;
     std::uint64_t undo = 0;  // the number of the transaction that it takes back; 0 = none
     std::string name, user;
     std::int64_t time = 0;              // ns since 1970
-    std::vector<scene::Entry> entries;  // as they were applied; of an undo, too
-    std::uint64_t transaction = 0;      // that it is, or is part of
-    Hash128 state_hash;                 // of the head with it
-    std::string text;                   // what it does, for people
+    std::vector<scene::Entry> entries;  // as applied, also of an undo
+    std::uint64_t transaction = 0;      // the transaction it belongs to
+    Hash128 state_hash;                 // of the head after it
+    std::string text;                   // readable summary
     static constexpr auto describe(auto row) {
         return std::tuple(
             row(1, "editor", &RecordedEdit::editor), row(2, "sequence", &RecordedEdit::sequence),
-            row(3, "gesture", &RecordedEdit::gesture), row(4, "undo", &RecordedEdit::undo),
+            row(3, "edit_group", &RecordedEdit::edit_group), row(4, "undo", &RecordedEdit::undo),
             row(5, "name", &RecordedEdit::name), row(6, "user", &RecordedEdit::user),
             row(7, "time", &RecordedEdit::time),
             row(8, "entries", &RecordedEdit::entries, Limit{scene::MaxEntries}),
@@ -87,7 +87,7 @@ struct RecordedTitle {
         return std::tuple(row(1, "title", &RecordedTitle::title), row(2, "owner", &RecordedTitle::owner));
     }
 };
-struct RecordedClose {  // back to the empty scene, nobody edits
+struct RecordedClose {  // resets to the empty scene, without editors
     static constexpr auto describe(auto) { return std::tuple(); }
 };
 
@@ -103,7 +103,7 @@ struct RecordedWriter {
 };
 struct RecordedFieldWriter {
     std::uint32_t field = 0;
-    std::uint64_t writer = 0;  // place in CheckpointState::writers, from 1; 0 = none
+    std::uint64_t writer = 0;  // index in CheckpointState::writers, from 1; 0 = none
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "field", &RecordedFieldWriter::field),
                           row(2, "writer", &RecordedFieldWriter::writer));
@@ -121,9 +121,9 @@ struct RecordedChange {
     ObjectId object;
     scene::FieldMask mask = 0;
     std::optional<scene::Object> before,
-        after;  // only the fields of the mask and the name, where both are there
+        after;  // if both exist: only the fields of the mask and the name
     std::vector<RecordedFieldWriter> writers_before, writers_after;
-    // A state as it travels, an update or a creation, and back; a removal has no state.
+    // Converts a state to and from an entry, an update or a creation; a removal has no state.
     std::optional<scene::Entry> entry(const std::optional<scene::Object>& state) const;
     static std::optional<scene::Object> state(std::optional<scene::Entry>&& entry);
     static constexpr auto describe(auto row) {
@@ -147,18 +147,19 @@ struct RecordedTransaction {
     std::uint64_t number = 0, editor = 0;
     std::uint32_t nature = 0;
     std::uint64_t author = 0;  // as RecordedFieldWriter::writer
-    std::uint64_t gesture = 0;
+    std::uint64_t edit_group = 0;
     std::uint32_t edits = 0;
     std::uint64_t undoes = 0, undone_by = 0;
     std::string text;
     std::vector<RecordedChange> changes;
     static constexpr auto describe(auto row) {
         using Self = RecordedTransaction;
-        return std::tuple(
-            row(1, "number", &Self::number), row(2, "editor", &Self::editor), row(3, "nature", &Self::nature),
-            row(4, "author", &Self::author), row(5, "gesture", &Self::gesture), row(6, "edits", &Self::edits),
-            row(7, "undoes", &Self::undoes), row(8, "undone_by", &Self::undone_by),
-            row(9, "text", &Self::text), row(10, "changes", &Self::changes, Limit{MaxRecorded}));
+        return std::tuple(row(1, "number", &Self::number), row(2, "editor", &Self::editor),
+                          row(3, "nature", &Self::nature), row(4, "author", &Self::author),
+                          row(5, "edit_group", &Self::edit_group), row(6, "edits", &Self::edits),
+                          row(7, "undoes", &Self::undoes), row(8, "undone_by", &Self::undone_by),
+                          row(9, "text", &Self::text),
+                          row(10, "changes", &Self::changes, Limit{MaxRecorded}));
     }
 };
 
@@ -169,12 +170,12 @@ struct SavedView {
     session::ViewRequest request;
     Hash128 scene_hash_of_film;
     std::vector<frame::FilmTile> blocks;
-    std::uint64_t block_count = 0;  // of one that was decoded: so many follow in the file
+    std::uint64_t block_count = 0;  // when decoded: the number of blocks that follow in the file
     static constexpr auto describe(auto row) {
         return std::tuple(
             row(1, "name", &SavedView::name), row(2, "owner_user", &SavedView::owner_user),
             row(3, "owner_key", &SavedView::owner_key, FullWidth{}), row(4, "number", &SavedView::number),
-            // Of folders of before there were requests.
+            // For folders written before view requests were stored.
             row(5, "view",
                 Computed{[](const SavedView&) { return std::optional<view::View>(); },
                          [](SavedView& saved, std::optional<view::View>&& view) {
@@ -195,12 +196,12 @@ struct SavedView {
     }
 };
 
-// A job was requested: its view, without film.
+// A job was submitted: its view, without film.
 struct RecordedJob {
     SavedView view;
     static constexpr auto describe(auto row) { return std::tuple(row(1, "view", &RecordedJob::view)); }
 };
-// It has ended, or was cancelled.
+// A job has ended or was cancelled.
 struct RecordedJobEnd {
     session::JobName job;
     static constexpr auto describe(auto row) { return std::tuple(row(1, "job", &RecordedJobEnd::job)); }
@@ -216,7 +217,7 @@ constexpr auto alternatives(const JournalRecord*) {
 }
 
 struct CheckpointState {
-    std::uint64_t journal = 0;  // the first segment that is not in it
+    std::uint64_t journal = 0;  // the first segment that is not included
     std::string title;
     scene::ChangeList scene;  // a snapshot
     std::uint64_t last_transaction = 0;
@@ -225,7 +226,7 @@ struct CheckpointState {
     std::vector<RecordedTransaction> transactions;  // oldest first
     std::vector<RecordedEditor> editors;
     std::vector<SavedView> views;                           // encoded without their blocks
-    std::uint32_t render_revision = frame::RenderRevision;  // of the blocks; 0: of before there were any
+    std::uint32_t render_revision = frame::RenderRevision;  // of the blocks; 0: older than render revisions
     std::optional<RecordedOwner> owner;
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "journal", &CheckpointState::journal),
@@ -241,13 +242,13 @@ struct CheckpointState {
     }
 };
 
-// A job that has ended, in a file of its own; its picture follows.
-struct KeptJob {
+// A finished job, in its own file; its picture follows.
+struct StoredJob {
     session::JobStatus status;
     std::uint32_t width = 0, height = 0, components = 0;  // of the picture
     static constexpr auto describe(auto row) {
-        return std::tuple(row(1, "status", &KeptJob::status), row(2, "width", &KeptJob::width),
-                          row(3, "height", &KeptJob::height), row(4, "components", &KeptJob::components));
+        return std::tuple(row(1, "status", &StoredJob::status), row(2, "width", &StoredJob::width),
+                          row(3, "height", &StoredJob::height), row(4, "components", &StoredJob::components));
     }
 };
 

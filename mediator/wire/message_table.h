@@ -9,15 +9,15 @@
 
 #include "mediator/base/description.h"
 
-// Messages of a link, one row each: the number and the name on the wire, the structure, and who may send it to a master.
+// The messages of a link, one row each: number and name on the wire, structure, and the roles that may send it to a master.
 namespace tessera::wire {
 
 enum class Senders : std::uint8_t {
-    Master,  // it alone: nobody sends this to a master
+    Master,  // sent by the master only
     Nodes,
     Editors,
-    Clients,  // viewers, too
-    Everybody,
+    Clients,  // including viewers
+    Everyone,
 };
 
 template <std::size_t N>
@@ -47,8 +47,8 @@ struct MessageTable {
         return From[message.index()];
     }
     static constexpr bool has(unsigned number) { return ((number == Rows::number) || ...); }
-    // No number twice, and none that stood for something else once.
-    static constexpr bool is_sound(std::initializer_list<unsigned> retired) {
+    // No duplicate numbers, and no retired ones.
+    static constexpr bool is_valid(std::initializer_list<unsigned> retired) {
         unsigned numbers[] = {Rows::number...};
         std::sort(std::begin(numbers), std::end(numbers));
         return std::adjacent_find(std::begin(numbers), std::end(numbers)) == std::end(numbers) &&

@@ -8,8 +8,8 @@
 #include "mediator/wire/session_messages.h"
 #include "mediator/wire/view_messages.h"
 
-// What goes over the links, as plain values; `envelope.h` turns them into bytes and back. A message arrives complete and
-// checked, or as an Error, never half.
+// All messages as plain values; `envelope.h` encodes and decodes them. A decoded message is complete and checked, else
+// decoding gives an Error.
 namespace tessera::wire {
 
 namespace table {
@@ -17,15 +17,15 @@ using enum Senders;
 
 // Numbers are those of the oneof in proto/control.proto, where retired ones are reserved.
 using Control = MessageTable<
-    MessageRow<1, "hello", Hello, Everybody>, MessageRow<2, "welcome", Welcome, Master>,
+    MessageRow<1, "hello", Hello, Everyone>, MessageRow<2, "welcome", Welcome, Master>,
     MessageRow<3, "refusal", Refusal, Master>, MessageRow<4, "unknown", Unknown, Master>,
-    MessageRow<5, "heartbeat", Heartbeat, Everybody>, MessageRow<6, "changes", Changes, Master>,
+    MessageRow<5, "heartbeat", Heartbeat, Everyone>, MessageRow<6, "changes", Changes, Master>,
     MessageRow<7, "changes_by_blob", ChangesByBlob, Master>,
     MessageRow<8, "version_report", VersionReport, Nodes>, MessageRow<9, "resync", Resync, Nodes>,
     MessageRow<10, "open_view", OpenView, Master>, MessageRow<11, "close_view", CloseView, Master>,
     MessageRow<12, "work", Work, Master>, MessageRow<13, "cancel_units", CancelUnits, Master>,
     MessageRow<14, "unit_released", UnitReleased, Nodes>, MessageRow<15, "leave", Leave, Master>,
-    MessageRow<16, "goodbye", Goodbye, Everybody>, MessageRow<17, "notice", Notice, Nodes>,
+    MessageRow<16, "goodbye", Goodbye, Everyone>, MessageRow<17, "notice", Notice, Nodes>,
     MessageRow<21, "submit_edit", SubmitEdit, Editors>,
     MessageRow<22, "submit_edit_by_blob", SubmitEditByBlob, Editors>,
     MessageRow<23, "edit_reply", EditReply, Master>, MessageRow<28, "status_request", StatusRequest, Clients>,
@@ -34,13 +34,13 @@ using Control = MessageTable<
     MessageRow<35, "request_done", RequestDone, Master>, MessageRow<36, "close_scene", CloseScene, Editors>,
     MessageRow<37, "read_scene", ReadScene, Clients>, MessageRow<38, "scene_content", SceneContent, Master>,
     MessageRow<39, "lock_objects", LockObjects, Editors>,
-    MessageRow<40, "set_presence", SetPresence, Clients>, MessageRow<41, "read_people", ReadPeople, Clients>,
-    MessageRow<42, "people", People, Master>, MessageRow<43, "read_history", ReadHistory, Clients>,
-    MessageRow<44, "history", History, Master>, MessageRow<45, "read_writers", ReadWriters, Clients>,
-    MessageRow<46, "writers", Writers, Master>, MessageRow<49, "frame_taken", FrameTaken, Clients>,
-    MessageRow<50, "pick", Pick, Clients>, MessageRow<51, "picked", Picked, Master>,
-    MessageRow<52, "read_trace", ReadTrace, Clients>, MessageRow<53, "trace", Trace, Master>,
-    MessageRow<54, "open_display", OpenDisplay, Editors>,
+    MessageRow<40, "set_presence", SetPresence, Clients>,
+    MessageRow<41, "read_members", ReadMembers, Clients>, MessageRow<42, "members", Members, Master>,
+    MessageRow<43, "read_history", ReadHistory, Clients>, MessageRow<44, "history", History, Master>,
+    MessageRow<45, "read_writers", ReadWriters, Clients>, MessageRow<46, "writers", Writers, Master>,
+    MessageRow<49, "frame_taken", FrameTaken, Clients>, MessageRow<50, "pick", Pick, Clients>,
+    MessageRow<51, "picked", Picked, Master>, MessageRow<52, "read_trace", ReadTrace, Clients>,
+    MessageRow<53, "trace", Trace, Master>, MessageRow<54, "open_display", OpenDisplay, Editors>,
     MessageRow<55, "close_display", CloseDisplay, Editors>,
     MessageRow<56, "adjust_display", AdjustDisplay, Editors>, MessageRow<57, "move_head", MoveHead, Editors>,
     MessageRow<58, "join_output", JoinOutput, Clients>, MessageRow<59, "output_opened", OutputOpened, Master>,
@@ -54,21 +54,21 @@ using Control = MessageTable<
 
 // The number is the second word of a bulk message. Add retired ones to the check below.
 using Bulk = MessageTable<
-    MessageRow<0, "bulk_hello", BulkHello, Everybody>, MessageRow<1, "blob_request", BlobRequest, Everybody>,
+    MessageRow<0, "bulk_hello", BulkHello, Everyone>, MessageRow<1, "blob_request", BlobRequest, Everyone>,
     MessageRow<2, "blob_chunk", BlobChunk, Editors>, MessageRow<3, "blob_absent", BlobAbsent, Editors>,
     MessageRow<4, "film_part", FilmPart, Nodes>, MessageRow<5, "frame_tile", FrameTile, Master>,
     MessageRow<6, "picture_chunk", PictureChunk, Master>,
     MessageRow<8, "output_picture", OutputPicture, Master>,
     MessageRow<9, "frame_header", FrameHeader, Master>>;
 
-static_assert(Control::is_sound({18, 19, 20, 24, 25, 26, 27, 30, 31, 47, 48}));
-static_assert(Bulk::is_sound({7}));
+static_assert(Control::is_valid({18, 19, 20, 24, 25, 26, 27, 30, 31, 47, 48}));
+static_assert(Bulk::is_valid({7}));
 }  // namespace table
 
 using ControlMessage = table::Control::Message;
 using BulkMessage = table::Bulk::Message;
 
-// Templates, so that these long lists cost nothing where nobody asks.
+// Templates, so that these long lists cost no compile time where they are not used.
 template <std::same_as<ControlMessage> M>
 constexpr auto alternatives(const M*) {
     return table::Control::alternatives();

@@ -17,7 +17,7 @@
 #include "mediator/view/view.h"
 #include "mediator/view/work_unit.h"
 
-// How peers greet and keep in touch, and what the master and its nodes say to each other.
+// Handshake and heartbeats of all peers, and messages between the master and its nodes.
 namespace tessera::wire {
 
 inline constexpr std::uint32_t ProtocolVersion = 2;
@@ -27,7 +27,7 @@ constexpr auto enumerators(PeerKind) {
     return std::to_array<std::string_view>({"client", "node"});
 }
 
-// First on the control link. The master answers Welcome or Refusal.
+// The first message on the control link. The master answers with Welcome or Refusal.
 struct Hello {
     std::uint32_t protocol = ProtocolVersion;
     PeerKind peer = PeerKind::Client;
@@ -40,8 +40,8 @@ struct Hello {
     std::uint32_t preferred_tile = 32;
     std::uint32_t concurrent_units = 1;
     bool reproducible = false;                              // pinned to AVX2 (design 1.6)
-    std::uint32_t render_revision = frame::RenderRevision;  // of its film; 0: of before there were any
-    // of a peer that reconnects: what it held in the same epoch, so that it is taken for the same
+    std::uint32_t render_revision = frame::RenderRevision;  // of its film; 0: older than render revisions
+    // of a reconnecting peer: its token of the same epoch, which identifies it
     std::uint64_t resume_token = 0;
     static constexpr auto describe(auto row) {
         constexpr auto channels = [](std::size_t word) {
@@ -65,7 +65,7 @@ struct Hello {
 
 struct Welcome {
     std::uint64_t peer_number = 0;  // a NodeId or SessionId
-    std::uint64_t token = 0;        // secret; first on the bulk link, and to resume
+    std::uint64_t token = 0;        // secret; authenticates the bulk link and reconnections
     std::uint64_t epoch = 0;
     Duration heartbeat_interval{};
     std::uint32_t missed_heartbeats = 3;
@@ -78,33 +78,33 @@ struct Welcome {
 };
 
 struct Refusal {
-    std::string reason;  // a sentence for a person
+    std::string reason;  // readable reason
     static constexpr auto describe(auto row) { return std::tuple(row(1, "reason", &Refusal::reason)); }
 };
 
-// "I do not know you": say hello again.
+// The master does not know the sender: it has to send Hello again.
 struct Unknown {
     static constexpr auto describe(auto) { return std::tuple(); }
 };
 
-// Both ways, every interval and whenever the state changes. Credits are absolute, so a lost one does no harm.
+// In both directions, every interval and whenever the state changes. Credits are absolute, so a lost one does no harm.
 struct Heartbeat {
     std::int64_t sent_at = 0;       // ns, sender's clock
-    std::int64_t echo_sent_at = 0;  // the other's latest sent_at, and how long it lay here
+    std::int64_t echo_sent_at = 0;  // the other's latest sent_at, and the time since its arrival
     std::int64_t echo_delay = 0;
     // of nodes
     session::NodePhase phase = session::NodePhase::Idle;
-    std::uint64_t progress = 0;  // samples finished since the start; grows while work goes on
-    Version version;             // committed with all blobs
-    std::vector<UnitId> in_hand;
-    std::uint32_t free_places = 0;
-    std::uint64_t last_work_sequence = 0;  // of the latest Work seen; younger ones are still on their way
+    std::uint64_t progress = 0;  // samples finished since the start; grows while rendering
+    Version version;             // built with all blobs
+    std::vector<UnitId> in_flight;
+    std::uint32_t free_slots = 0;
+    std::uint64_t last_work_sequence = 0;  // of the latest Work received; later ones have not arrived yet
     static constexpr auto describe(auto row) {
         return std::tuple(
             row(1, "sent_at", &Heartbeat::sent_at), row(2, "echo_sent_at", &Heartbeat::echo_sent_at),
             row(3, "echo_delay", &Heartbeat::echo_delay), row(4, "phase", &Heartbeat::phase),
             row(5, "progress", &Heartbeat::progress), row(6, "version", &Heartbeat::version),
-            row(7, "in_hand", &Heartbeat::in_hand), row(8, "free_places", &Heartbeat::free_places),
+            row(7, "in_flight", &Heartbeat::in_flight), row(8, "free_slots", &Heartbeat::free_slots),
             row(9, "last_work_sequence", &Heartbeat::last_work_sequence));
     }
 };
@@ -123,14 +123,14 @@ struct ChangesByBlob {
                           row(3, "blob", &ChangesByBlob::blob));
     }
 };
-// Node to master: committed with all blobs. Wrong hash = resync.
+// Node to master: a version was built with all blobs. A wrong hash leads to a resync.
 struct VersionReport {
     Version version;
     Hash128 state_hash;
     std::uint64_t triangles = 0, instances = 0, lights = 0, degenerate_triangles = 0;
     std::uint32_t entries = 0, relevant = 0, rebuilt = 0, refitted = 0, retransformed = 0;
     std::vector<std::string> ignored_kinds, problems;
-    std::int64_t received_at = 0, built_at = 0;  // ns, the node's clock: the list came, was committed
+    std::int64_t received_at = 0, built_at = 0;  // ns, the node's clock: list received, version built
     static constexpr auto describe(auto row) {
         return std::tuple(
             row(1, "version", &VersionReport::version), row(2, "state_hash", &VersionReport::state_hash),
@@ -148,13 +148,13 @@ struct VersionReport {
 };
 // Node to master: a gap, another epoch or a wrong hash; asks for a snapshot.
 struct Resync {
-    Version version;  // what it holds
+    Version version;  // the version it has
     std::string reason;
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "version", &Resync::version), row(2, "reason", &Resync::reason));
     }
 };
-// Node to master: its device has no room for this version; it keeps the last one that fitted, and tries the
+// Node to master: this version does not fit into its (device) memory; it keeps the last one that did and tries the
 // next.
 struct SceneRefused {
     Version version;
@@ -167,7 +167,7 @@ struct SceneRefused {
 // ---- work ----
 
 struct OpenView {
-    view::View view;  // again with a new revision: replaces
+    view::View view;  // a new revision replaces the old one
     static constexpr auto describe(auto row) { return std::tuple(row(1, "view", &OpenView::view)); }
 };
 struct CloseView {
@@ -190,7 +190,7 @@ constexpr auto enumerators(ReleaseReason) {
     return std::to_array<std::string_view>(
         {"cancelled", "other_version", "unknown_view", "leaving", "failed"});
 }
-// Node to master: no (more) film will come of this unit.
+// Node to master: no (more) film of this unit will be sent.
 struct UnitReleased {
     UnitId unit;
     ReleaseReason reason = ReleaseReason::Cancelled;
@@ -200,11 +200,11 @@ struct UnitReleased {
                           row(3, "message", &UnitReleased::message));
     }
 };
-// Master to node: drain and say goodbye.
+// Master to node: finish the units being rendered and disconnect.
 struct Leave {
     static constexpr auto describe(auto) { return std::tuple(); }
 };
-// A peer goes. `units_sent`: units whose film it has sent; everything else it held is handed back.
+// A peer disconnects. `units_sent`: units whose film was sent; all its other units are released.
 struct Goodbye {
     std::string reason;
     std::vector<UnitId> units_sent;

@@ -8,18 +8,18 @@
 #include "mediator/base/clock.h"
 #include "mediator/scene/change_list.h"
 #include "mediator/session/edits.h"
-#include "mediator/session/people.h"
+#include "mediator/session/members.h"
 #include "mediator/session/status.h"
 
-// What the members of a scene and the master say to each other about the scene and each other. `request` is the
-// asking client's number and comes back with the answer.
+// Messages between the members of a scene and the master. `request` is the client's request number and is repeated in
+// the reply.
 namespace tessera::wire {
 
-// Joins the scene that is open, or opens one; an exclusive scene has one member. Answered by SceneJoined, with a
-// place in the queue while the client has to wait; or by Refusal.
+// Joins the open scene, or opens one; an exclusive scene has one member. Answered by SceneJoined, with a position in
+// the queue while the client has to wait, or by Refusal.
 struct JoinScene {
-    std::string title;  // of a scene that is opened; one that is there keeps its own
-    std::string name;   // of the member, for people; made unique by the master
+    std::string title;  // of a newly opened scene; an open one keeps its title
+    std::string name;   // display name of the member; made unique by the master
     std::uint64_t key =
         0;  // chosen by the client, secret: the same editor again after a restart of the master
     bool no_wait = false;
@@ -32,8 +32,8 @@ struct JoinScene {
 };
 struct SceneJoined {
     Version version;                           // published
-    std::uint64_t first_id = 0, id_count = 0;  // lent to this editor for new objects
-    std::uint64_t last_sequence = 0;  // of its edits that were answered: later ones are to be sent again
+    std::uint64_t first_id = 0, id_count = 0;  // allocated to this editor for new objects
+    std::uint64_t last_sequence = 0;           // the last answered edit: later ones have to be sent again
     std::string title, name;
     std::uint32_t queue_place = 0;  // not 0: not joined yet; 1 = next
     static constexpr auto describe(auto row) {
@@ -44,17 +44,17 @@ struct SceneJoined {
             row(7, "queue_place", &SceneJoined::queue_place));
     }
 };
-// Answers what has no answer of its own.
+// The reply to requests without a specific reply.
 struct RequestDone {
     std::uint64_t request = 0;
     bool accepted = false;
-    std::string text;  // why not, or what it means
+    std::string text;  // error, or additional information
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "request", &RequestDone::request),
                           row(2, "accepted", &RequestDone::accepted), row(3, "text", &RequestDone::text));
     }
 };
-// The scene and its views go; whoever waits is next.
+// Closes the scene and its views; the next client in the queue is admitted.
 struct CloseScene {
     std::uint64_t request = 0;
     static constexpr auto describe(auto row) { return std::tuple(row(1, "request", &CloseScene::request)); }
@@ -83,7 +83,7 @@ struct EditReply {
     }
 };
 
-// What the scene is now: a change list from `known`, or a snapshot where the master no longer knows that.
+// Requests the current scene: a change list from `known`, or a snapshot if that version is too old.
 struct ReadScene {
     std::uint64_t request = 0;
     Version known;
@@ -94,7 +94,7 @@ struct ReadScene {
 struct SceneContent {
     std::uint64_t request = 0;
     scene::ChangeList list;
-    scene::BlobRef blob;  // not empty: the list is in this blob
+    scene::BlobRef blob;  // not empty: this blob contains the list
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "request", &SceneContent::request), row(2, "list", &SceneContent::list),
                           row(3, "blob", &SceneContent::blob));
@@ -111,7 +111,7 @@ struct LockObjects {
                           row(3, "release", &LockObjects::release));
     }
 };
-// What this member does, for the others; forgotten after `time_to_live`. No answer.
+// This member's current activity, shown to the others until `time_to_live` has passed. No answer.
 struct SetPresence {
     std::string text;
     std::vector<ObjectId> selection;
@@ -121,19 +121,19 @@ struct SetPresence {
                           row(3, "time_to_live", &SetPresence::time_to_live));
     }
 };
-struct ReadPeople {
+struct ReadMembers {
     std::uint64_t request = 0;
-    static constexpr auto describe(auto row) { return std::tuple(row(1, "request", &ReadPeople::request)); }
+    static constexpr auto describe(auto row) { return std::tuple(row(1, "request", &ReadMembers::request)); }
 };
-struct People {
+struct Members {
     std::uint64_t request = 0;
-    session::People content;
+    session::Members content;
     static constexpr auto describe(auto row) {
-        return std::tuple(row(1, "request", &People::request), row(2, "content", &People::content));
+        return std::tuple(row(1, "request", &Members::request), row(2, "content", &Members::content));
     }
 };
 
-// The latest transactions, youngest first.
+// Requests the latest transactions, newest first.
 struct ReadHistory {
     std::uint64_t request = 0;
     std::uint32_t count = 0;
@@ -149,7 +149,7 @@ struct History {
                           row(2, "transactions", &History::transactions));
     }
 };
-// Who wrote the fields of an object last; fields without a writer are as they came with the object.
+// Requests the last writers of an object's fields; fields without one are as they were created.
 struct ReadWriters {
     std::uint64_t request = 0;
     ObjectId object;
@@ -165,7 +165,7 @@ struct Writers {
     }
 };
 
-// How long the latest edits took.
+// Requests the latency traces of the latest edits.
 struct ReadTrace {
     std::uint64_t request = 0;
     std::uint32_t count = 0;

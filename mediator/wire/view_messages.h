@@ -7,22 +7,22 @@
 #include "mediator/session/edits.h"
 #include "mediator/session/view_summary.h"
 
-// What clients and the master say to each other about views. Their frames come over the bulk link. `request` is the
-// asking client's number and comes back with the answer; `number` is the client's own number of the view.
+// Messages between clients and the master about views. Frames are sent on the bulk link. `request` is the client's
+// request number and is repeated in the reply; `number` is the client's number of the view.
 namespace tessera::wire {
 
-// Again with the same number: another camera, size or quality, the latest wins. Answered by RequestDone; with
-// `request` 0 only a refusal is.
+// Requests a view, or changes the one with that number; the latest request wins. Answered by RequestDone; with
+// `request` 0 only if it is refused.
 struct RequestView {
     std::uint64_t request = 0, number = 0;
     session::ViewRequest wanted;
-    bool share = false;  // watch the view that has this name: of `wanted`, what is delivered means something
+    bool share = false;  // watch the view of that name; only the delivery settings of `wanted` are used
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "request", &RequestView::request), row(2, "number", &RequestView::number),
                           row(3, "wanted", &RequestView::wanted), row(4, "share", &RequestView::share));
     }
 };
-// The client is done with the view; or, with `deliver`, wants what there is of it as its last frame.
+// Closes the view; with `deliver` ends it and sends its current state as the last frame.
 struct EndView {
     std::uint64_t number = 0;
     bool deliver = false;
@@ -38,7 +38,7 @@ struct ViewProgress {
                           row(2, "progress", &ViewProgress::progress));
     }
 };
-// The stop rule has ended the view; `frame` shows its end.
+// The stop rule has ended the view; `frame` is its last frame.
 struct ViewDone {
     std::uint64_t number = 0, frame = 0;
     session::ViewSummary summary;
@@ -47,14 +47,14 @@ struct ViewDone {
                           row(3, "summary", &ViewDone::summary));
     }
 };
-// The next frame may come: one of a view is on its way at a time.
+// Acknowledges a frame, so that the next one is sent: one frame per view is in flight at a time.
 struct FrameTaken {
     std::uint64_t number = 0, frame = 0;
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "number", &FrameTaken::number), row(2, "frame", &FrameTaken::frame));
     }
 };
-// Another filter for the view of that name; "" = the one view there is. Answered by RequestDone.
+// Sets the filter of the view of that name; "" = the only view. Answered by RequestDone.
 struct SetViewFilter {
     std::uint64_t request = 0;
     std::string view;
@@ -65,7 +65,7 @@ struct SetViewFilter {
     }
 };
 
-// What is seen in the middle of a pixel.
+// Requests the surface at the center of a pixel.
 struct Pick {
     std::uint64_t request = 0, number = 0;
     std::uint32_t x = 0, y = 0;
@@ -76,10 +76,10 @@ struct Pick {
 };
 struct Picked {
     std::uint64_t request = 0;
-    session::Picked seen;
-    std::string problem;  // not empty: there is no answer, and why
+    session::PickResult result;
+    std::string problem;  // not empty: error
     static constexpr auto describe(auto row) {
-        return std::tuple(row(1, "request", &Picked::request), row(2, "seen", &Picked::seen),
+        return std::tuple(row(1, "request", &Picked::request), row(2, "result", &Picked::result),
                           row(3, "problem", &Picked::problem));
     }
 };

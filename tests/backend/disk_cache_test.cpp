@@ -26,7 +26,7 @@ struct DiskCacheTest : testing::Test {
     const fs::path folder = fs::temp_directory_path() / ("tessera-disk-cache-" + std::to_string(::getpid()));
 };
 
-TEST_F(DiskCacheTest, GivesBackWhatAnotherProcessKept) {
+TEST_F(DiskCacheTest, LoadsWhatAnotherProcessSaved) {
     DiskCache(folder, "tree", 1 << 20).save(key('a'), bytes('x'));
     DiskCache cache(folder, "tree", 1 << 20);
     EXPECT_EQ(cache.load(key('a')), std::optional(bytes('x')));
@@ -37,7 +37,7 @@ TEST_F(DiskCacheTest, GivesBackWhatAnotherProcessKept) {
     EXPECT_EQ(cache.load(key('e')), std::optional(Bytes()));
 }
 
-TEST_F(DiskCacheTest, WhatIsDamagedIsToldRemovedAndNotGiven) {
+TEST_F(DiskCacheTest, DamagedEntriesAreReportedRemovedAndNotLoaded) {
     DiskCache cache(folder, "tree", 1 << 20);
     for (const char name : {'a', 'b', 'c', 'd'}) cache.save(key(name), bytes(name));
     std::fstream(path('a')).seekp(500).put('?');  // in the data
@@ -53,7 +53,7 @@ TEST_F(DiskCacheTest, WhatIsDamagedIsToldRemovedAndNotGiven) {
     }
 }
 
-TEST_F(DiskCacheTest, TheLeastRecentlyUsedGoFirstAndOthersFilesStay) {
+TEST_F(DiskCacheTest, EvictsLeastRecentlyUsedFirstAndKeepsForeignFiles) {
     DiskCache cache(folder, "tree", 3500);
     std::ofstream(folder / "blob") << std::string(100000, 'b');
     for (const char name : {'a', 'b', 'c'}) {
@@ -69,7 +69,7 @@ TEST_F(DiskCacheTest, TheLeastRecentlyUsedGoFirstAndOthersFilesStay) {
     EXPECT_TRUE(fs::exists(folder / "blob"));
 }
 
-TEST_F(DiskCacheTest, WithoutAFolderNothingIsKept) {
+TEST_F(DiskCacheTest, WithoutAFolderNothingIsSaved) {
     DiskCache none("", "tree", 1 << 20);
     none.save(key('a'), bytes('a'));
     EXPECT_EQ(none.load(key('a')), std::nullopt);

@@ -1,4 +1,4 @@
-// What a lookup sees of a texture that is looked at by an area: two levels beside it.
+// Texture lookups with a footprint: interpolation between two mip levels.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,8 +12,8 @@
 namespace tessera::shading {
 namespace {
 
-// 16 x 8 texels and four levels. No level is the mean of the one below: each is noise of its own, so that
-// what came from where can be told.
+// 16 x 8 texels and four levels. Each level is independent noise instead of the mean of the finer one, so that
+// the level of a value is known.
 struct Footprints : testing::Test {
     Footprints() {
         CounterRandom random(11);
@@ -26,14 +26,14 @@ struct Footprints : testing::Test {
     }
     static uint width_of(uint level) { return 16u >> level; }
     static uint height_of(uint level) { return std::max(8u >> level, 1u); }
-    // Of a texel of a level, 0 being the picture.
+    // Of a texel of a mip level; level 0 is the full size.
     vec4 texel(uint level, uint x, uint y) const {
         std::size_t first = 0;
         for (uint i = 1; i < level; ++i) first += width_of(i) * height_of(i);
         const uint rgba = (level == 0 ? picture : levels)[first + y * width_of(level) + x];
         return vec4(rgba & 255u, (rgba >> 8u) & 255u, (rgba >> 16u) & 255u, rgba >> 24u) / 255.0f;
     }
-    // Between the middles of texels, in double; at the edges the last texel stays.
+    // Between the centers of texels, in double; at the edges the last texel stays.
     glm::dvec4 linear(uint level, double u, double v) const {
         const double x = u * width_of(level) - 0.5, y = v * height_of(level) - 0.5;
         const auto at = [&](int dx, int dy) {
@@ -66,9 +66,9 @@ struct Footprints : testing::Test {
                 .depth = 1};
 };
 
-// In the middle of every texel of every level, with an area as large as that texel. Rounding of the level
-// (a few 1e-7) and of the place (16 x 2^-24 of a texel) are all that may differ.
-TEST_F(Footprints, OfATexelsSizeAreThatTexel) {
+// At the center of every texel of every level, with an area as large as that texel. Rounding of the level
+// (a few 1e-7) and of the position (16 x 2^-24 of a texel) are the only differences.
+TEST_F(Footprints, OfOneTexelGiveThatTexel) {
     for (uint level = 0; level <= 4; ++level) {
         for (uint y = 0; y < height_of(level); ++y) {
             for (uint x = 0; x < width_of(level); ++x) {
@@ -81,18 +81,18 @@ TEST_F(Footprints, OfATexelsSizeAreThatTexel) {
     }
 }
 
-TEST_F(Footprints, BetweenTwoLevelsAreABlendOfBoth) {
+TEST_F(Footprints, BetweenTwoMipLevelsAreInterpolated) {
     CounterRandom random(12);
     for (int i = 0; i < 1000; ++i) {
         const double level = 4.0 * random.uniform(), u = random.uniform(), v = random.uniform();
         const auto finer = static_cast<uint>(level);
-        const double share = level - finer;
-        const glm::dvec4 expected = (1 - share) * linear(finer, u, v) + share * linear(finer + 1, u, v);
+        const double fraction = level - finer;
+        const glm::dvec4 expected = (1 - fraction) * linear(finer, u, v) + fraction * linear(finer + 1, u, v);
         EXPECT_LE(difference(seen(level, u, v), expected), 1e-5) << level << ' ' << u << ' ' << v;
     }
 }
 
-TEST_F(Footprints, OfLessThanATexelAndOfMoreThanAllAreTheEnds) {
+TEST_F(Footprints, AreClampedToTheFinestAndCoarsestMipLevel) {
     for (const double level : {-30.0, -1.0, 0.0})
         EXPECT_LE(difference(seen(level, 0.3, 0.6), linear(0, 0.3, 0.6)), 1e-5) << level;
     for (const double level : {4.0, 7.5, 60.0})

@@ -1,4 +1,4 @@
-// Trees of emitters, and what is chosen in them.
+// Light trees and sampling of them.
 #include "mediator/backend/tables/light_tree.h"
 
 #include <gtest/gtest.h>
@@ -37,15 +37,15 @@ std::vector<LightLeaf> some_leaves(std::size_t count, double edge, Kind kind, st
         switch (kind == Kind::All ? Kind(i % 3) : kind) {
             case Kind::Panels:
                 leaf.high += 0.02 * edge * glm::dvec3(random.uniform(), random.uniform(), random.uniform());
-                leaf.reach = 0.5 * pi;
+                leaf.emission_angle = 0.5 * pi;
                 leaf.two_sided = i % 4 == 0;
                 break;
             case Kind::Bulbs:
                 leaf.spread = pi;
-                leaf.reach = 0.5 * pi;
+                leaf.emission_angle = 0.5 * pi;
                 break;
             default:
-                leaf.reach = 0.1 + random.uniform();
+                leaf.emission_angle = 0.1 + random.uniform();
                 break;
         }
         leaves.push_back(leaf);
@@ -53,7 +53,7 @@ std::vector<LightLeaf> some_leaves(std::size_t count, double edge, Kind kind, st
     return leaves;
 }
 
-// A tree and a scene to choose in it.
+// A tree and a scene to sample it.
 struct Tree {
     explicit Tree(const std::vector<LightLeaf>& leaves) : emitters(leaves.size()) {
         for (shading::Emitter& emitter : emitters) emitter.node = shading::NoLightNode;
@@ -94,7 +94,7 @@ TEST_P(LightTrees, ProbabilitiesOfAllLeavesSumToOneAndNoneIsZero) {
     }
 }
 
-TEST_P(LightTrees, TheProbabilityOfAChoiceIsTheOneThatTheEmitterHas) {
+TEST_P(LightTrees, TheProbabilityOfASampleIsThatOfItsEmitter) {
     const auto [count, edge, kind] = GetParam();
     const Tree tree(some_leaves(static_cast<std::size_t>(count), edge, kind, 6));
     CounterRandom random(7);
@@ -108,7 +108,7 @@ TEST_P(LightTrees, TheProbabilityOfAChoiceIsTheOneThatTheEmitterHas) {
     }
 }
 
-TEST_P(LightTrees, NodesHoldWhatIsBelowThem) {
+TEST_P(LightTrees, NodesBoundTheirSubtrees) {
     const auto [count, edge, kind] = GetParam();
     const std::vector<LightLeaf> leaves = some_leaves(static_cast<std::size_t>(count), edge, kind, 8);
     const Tree tree(leaves);
@@ -117,9 +117,9 @@ TEST_P(LightTrees, NodesHoldWhatIsBelowThem) {
         const LightLeaf& leaf = leaves[i];
         for (std::uint32_t at = tree.emitters[i].node;; at = tree.nodes[at].parent) {
             const shading::LightNode& node = tree.nodes[at];
-            const glm::dvec3 middle = node.middle;
+            const glm::dvec3 center = node.center;
             for (const glm::dvec3& corner : {leaf.low, leaf.high}) {
-                EXPECT_LE(glm::length(corner - middle), double(node.radius) * (1.0 + 1e-7));
+                EXPECT_LE(glm::length(corner - center), double(node.radius) * (1.0 + 1e-7));
             }
             const double most = node.cos_spread > -1.0f ? std::acos(double(node.cos_spread)) : pi;
             double apart = std::acos(std::clamp(glm::dot(leaf.axis, glm::dvec3(node.axis)), -1.0, 1.0));
@@ -129,7 +129,7 @@ TEST_P(LightTrees, NodesHoldWhatIsBelowThem) {
                 EXPECT_FALSE(leaf.two_sided);
             }
             EXPECT_LE(std::min(pi, apart + leaf.spread), most + 1e-3);
-            EXPECT_LE(leaf.reach, std::acos(double(node.cos_reach)) + 1e-3);
+            EXPECT_LE(leaf.emission_angle, std::acos(double(node.cos_emission_angle)) + 1e-3);
             if (at == 0) break;
         }
     }
@@ -141,8 +141,8 @@ INSTANTIATE_TEST_SUITE_P(Emitters, LightTrees,
                                           testing::Values(Kind::Panels, Kind::Bulbs, Kind::Spots,
                                                           Kind::All)));
 
-// 24 bits of one number are too few to choose among thousands; all the same each gets its share.
-TEST(LightTree, ChoicesComeAsOftenAsTheirProbabilitiesSay) {
+// 24 random bits are few for thousands of emitters; all the same the frequencies are right.
+TEST(LightTree, SampleFrequenciesMatchTheProbabilities) {
     const Tree tree(some_leaves(300, 1.0, Kind::All, 9));
     const Receiver receiver{{0.3f, 0.4f, 0.5f}, {0.0f, 0.0f, 1.0f}, {}};
     constexpr std::uint32_t Samples = 1u << 20;
@@ -170,8 +170,9 @@ TEST(LightTree, ChoicesComeAsOftenAsTheirProbabilitiesSay) {
     EXPECT_NEAR(rest_found, rest_expected, 4.0 * std::sqrt(rest_expected) + 1.0);
 }
 
-TEST(LightTree, WhatIsNearAndFacesTheReceiverIsLikelier) {
-    LightLeaf near{.low = {0, 0, 1}, .high = {0, 0, 1}, .axis = {0, 0, -1}, .reach = 0.5 * pi, .power = 1.0};
+TEST(LightTree, NearEmittersFacingTheReceiverAreMoreLikely) {
+    LightLeaf near{
+        .low = {0, 0, 1}, .high = {0, 0, 1}, .axis = {0, 0, -1}, .emission_angle = 0.5 * pi, .power = 1.0};
     LightLeaf other = near;
     other.emitter = 1;
     const Receiver receiver{{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f}, {}};
@@ -195,15 +196,18 @@ TEST(LightTree, WhatIsNearAndFacesTheReceiverIsLikelier) {
     EXPECT_NEAR(odds(), 1.0, 1e-5);
     other.low = other.high = {0, 0, -1};
     EXPECT_NEAR(odds(), 1024.0, 2.0) << "below the receiver's horizon";
-    other = {
-        .low = {0, 0, 1}, .high = {0, 0, 1}, .axis = {0.5, 0, -std::sqrt(0.75)}, .reach = 0.4, .power = 1.0};
+    other = {.low = {0, 0, 1},
+             .high = {0, 0, 1},
+             .axis = {0.5, 0, -std::sqrt(0.75)},
+             .emission_angle = 0.4,
+             .power = 1.0};
     other.emitter = 1;
-    EXPECT_NEAR(odds(), 1024.0, 2.0) << "a spot beside whose cone it is";
-    other.reach = 0.6;
+    EXPECT_NEAR(odds(), 1024.0, 2.0) << "a spot light whose cone does not contain it";
+    other.emission_angle = 0.6;
     EXPECT_NEAR(odds(), 1.0 / std::sqrt(0.75), 1e-4);
 }
 
-TEST(LightTree, EmittersInOnePlaceAndOnALongLineAreAllThere) {
+TEST(LightTree, KeepsAllEmittersAtOnePositionAndOnALongLine) {
     for (const double factor : {0.0, 0.5}) {
         std::vector<LightLeaf> leaves;
         double place = 1.0;

@@ -19,12 +19,12 @@ inline scene::Transform transform(const glm::dmat4& matrix, std::vector<ObjectId
     return {.name = {}, .matrix = matrix, .children = std::move(children)};
 }
 
-// A scene made of lists, each of which leads to the next version: what a replica would be sent.
+// Builds a scene by change lists, each to the next version, like those sent to a replica.
 class SceneBuilder {
   public:
     SceneBuilder() { scene_.set_version({1, 0}); }
 
-    // The change list that makes these entries, applied here.
+    // Applies the entries and returns their change list.
     scene::ChangeList edit(std::vector<scene::Entry> entries) {
         scene::ChangeList list{
             scene_.version(), {scene_.version().epoch, scene_.version().number + 1}, std::move(entries), {}};

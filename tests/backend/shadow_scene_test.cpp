@@ -31,7 +31,7 @@ void expect_like_rebuilt(const ShadowScene& shadow) {
     ShadowScene rebuilt;
     ASSERT_TRUE(rebuilt.apply(snapshot(shadow.scene())));
     EXPECT_EQ(shadow.scene().state_hash(), rebuilt.scene().state_hash());
-    const Lowered &a = shadow.lowered(), &b = rebuilt.lowered();
+    const FlatScene &a = shadow.flat_scene(), &b = rebuilt.flat_scene();
     ASSERT_EQ(a.instances.size(), b.instances.size());
     for (std::size_t i = 0; i < a.instances.size(); ++i) {
         EXPECT_EQ(a.instances[i].geometry, b.instances[i].geometry);
@@ -63,7 +63,7 @@ struct ShadowSceneTest : testing::Test {
     ShadowScene shadow;
 };
 
-TEST_F(ShadowSceneTest, AMatrixMovesOnlyWhatHangsBelowIt) {
+TEST_F(ShadowSceneTest, AMatrixMovesOnlyItsSubtree) {
     ASSERT_TRUE(shadow.apply(builder.move(Left, moved(5, 0, 0))));
     expect_like_rebuilt(shadow);
     SceneDelta delta = shadow.take_delta();
@@ -81,12 +81,12 @@ TEST_F(ShadowSceneTest, AMatrixMovesOnlyWhatHangsBelowIt) {
     EXPECT_EQ(shadow.take_delta().moved_instances, (std::vector<std::uint32_t>{0, 1}));
 }
 
-TEST_F(ShadowSceneTest, MotionMovesWhatHangsBelow) {
+TEST_F(ShadowSceneTest, MotionMovesTheSubtree) {
     const scene::Update update{Right, scene::Fields<Transform>(&Transform::motion).bits(),
                                Transform{.motion = {moved(0, 9, 0)}}};
     ASSERT_TRUE(shadow.apply(builder.edit({update})));
     expect_like_rebuilt(shadow);
-    EXPECT_EQ(shadow.lowered().instances[1].motion, std::vector{moved(0, 9, 3)});
+    EXPECT_EQ(shadow.flat_scene().instances[1].motion, std::vector{moved(0, 9, 3)});
     const SceneDelta delta = shadow.take_delta();
     EXPECT_EQ(delta.moved_instances, (std::vector<std::uint32_t>{1}));
     EXPECT_TRUE(delta.lights_changed);
@@ -121,7 +121,7 @@ TEST_F(ShadowSceneTest, AddingAnInstanceChangesTheListButNotTheGeometry) {
         edit({SceneBuilder::update<Transform>(Left, &Transform::children, transform({}, {Inner, Mesh}))});
     EXPECT_TRUE(delta.instances_changed);
     EXPECT_TRUE(delta.geometries.empty());
-    EXPECT_EQ(shadow.lowered().instances.size(), 3u);
+    EXPECT_EQ(shadow.flat_scene().instances.size(), 3u);
 }
 
 TEST_F(ShadowSceneTest, ReparentingThatKeepsTheMembersIsNoChangeOfTheList) {
@@ -131,7 +131,7 @@ TEST_F(ShadowSceneTest, ReparentingThatKeepsTheMembersIsNoChangeOfTheList) {
     EXPECT_TRUE(delta.moved_instances.empty());
 }
 
-TEST_F(ShadowSceneTest, OtherLayersAreToldAsMovesOfWhatHangsBelow) {
+TEST_F(ShadowSceneTest, OtherLayersAreReportedAsMovesOfTheSubtree) {
     const auto put = [](ObjectId id, std::uint32_t layers) {
         return SceneBuilder::update<Transform>(id, &Transform::layers, Transform{.layers = layers});
     };
@@ -144,11 +144,11 @@ TEST_F(ShadowSceneTest, OtherLayersAreToldAsMovesOfWhatHangsBelow) {
     EXPECT_TRUE(delta.lights_changed);
     ASSERT_TRUE(shadow.apply(builder.edit({put(Right, 16)})));
     shadow.rollback();
-    EXPECT_EQ(shadow.lowered().instances.at(1).layers, 2u);
+    EXPECT_EQ(shadow.flat_scene().instances.at(1).layers, 2u);
     expect_like_rebuilt(shadow);
 }
 
-TEST_F(ShadowSceneTest, ARemovedAndANewGeometryAreTold) {
+TEST_F(ShadowSceneTest, RemovedAndNewGeometriesAreReported) {
     SceneDelta delta = edit({Remove{Mesh}, Create{ObjectId{21}, Geometry{}}});
     EXPECT_EQ(delta.removed_geometries, std::vector{Mesh});
     ASSERT_EQ(delta.geometries.size(), 1u);
@@ -162,7 +162,7 @@ TEST_F(ShadowSceneTest, ARemovedAndANewGeometryAreTold) {
     EXPECT_TRUE(delta.removed_geometries.empty());
 }
 
-TEST_F(ShadowSceneTest, ALightThatHangsNowhereChangesNoPlacedLight) {
+TEST_F(ShadowSceneTest, ALightOutsideTheGraphChangesNoPlacedLight) {
     edit({Create{ObjectId{31}, scene::Light{}}});
     EXPECT_FALSE(edit({SceneBuilder::update<scene::Light>(ObjectId{31}, &scene::Light::intensity, {})})
                      .lights_changed);
@@ -183,12 +183,12 @@ TEST_F(ShadowSceneTest, ASnapshotReplacesEverything) {
     EXPECT_TRUE(delta.removed_geometries.empty());
 }
 
-TEST_F(ShadowSceneTest, AGapAndACycleLeaveTheLastState) {
+TEST_F(ShadowSceneTest, AGapAndACycleKeepTheLastState) {
     const scene::Scene before = builder.scene();
     builder.move(Left, moved(8, 0, 0));
     EXPECT_FALSE(shadow.apply(builder.move(Left, moved(9, 0, 0))));  // one list was skipped
     EXPECT_EQ(shadow.scene().version(), before.version());
-    EXPECT_EQ(shadow.lowered().instances[0].world_from_object, moved(1, 0, 3));
+    EXPECT_EQ(shadow.flat_scene().instances[0].world_from_object, moved(1, 0, 3));
 
     SceneBuilder cyclic;
     cyclic.edit(start());
@@ -211,8 +211,8 @@ TEST_F(ShadowSceneTest, RollbackUndoesEveryListSinceTheLastDelta) {
     shadow.rollback();
     EXPECT_EQ(shadow.scene().state_hash(), hash);
     EXPECT_EQ(shadow.scene().version(), version);
-    ASSERT_EQ(shadow.lowered().instances.size(), 2u);
-    EXPECT_EQ(shadow.lowered().instances[0].world_from_object, moved(1, 0, 3));
+    ASSERT_EQ(shadow.flat_scene().instances.size(), 2u);
+    EXPECT_EQ(shadow.flat_scene().instances[0].world_from_object, moved(1, 0, 3));
     expect_like_rebuilt(shadow);
     EXPECT_FALSE(shadow.take_delta().everything);
 }

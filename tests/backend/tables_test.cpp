@@ -1,4 +1,4 @@
-// What a renderer looks up: made of a scene, the same for all back-ends.
+// The tables of a scene, which are the same for all back-ends.
 #include "mediator/backend/tables/tables.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <set>
 
 #include "mediator/shading/surfaces.h"
-#include "tests/backend/tables_stage.h"
+#include "tests/backend/tables_fixture.h"
 
 namespace tessera::backend {
 namespace {
@@ -19,9 +19,10 @@ using test::moved;
 using test::SceneBuilder;
 using test::transform;
 
-constexpr ObjectId Corner{2}, PaintId{3}, Place{4}, Picture{5}, Sun{6}, Sky{7}, Bulb{8}, Glow{9}, Panel{10};
+constexpr ObjectId Corner{2}, PaintId{3}, Place{4}, Picture{5}, Sun{6}, Sky{7}, Bulb{8}, Emissive{9},
+    Panel{10};
 
-struct Stage : test::TablesStage {
+struct Stage : test::TablesFixture {
     MeshCatalog::Result steps;
 
     // Two triangles of the areas 1/2 and 3/2 times the size squared, facing +z.
@@ -38,7 +39,7 @@ struct Stage : test::TablesStage {
     }
 };
 
-TEST(Tables, PlaceWhatTheGraphPlaces) {
+TEST(Tables, HaveAnInstanceForEachPlacedGeometry) {
     Stage stage;
     const SceneTables tables = stage.make(
         {Create{scene::RootId, scene::Root{.children = {Corner, Place}, .render_origin = {1000.0, 0.0, 0.0}}},
@@ -65,7 +66,7 @@ TEST(Tables, PlaceWhatTheGraphPlaces) {
     EXPECT_EQ(mesh.positions.items[mesh.triangles.items[1].z], glm::vec3(0.0f, 3.0f, 0.0f));
 }
 
-// Turned normals keep their direction and their side at any scale, and where a mirror turns space inside out.
+// Transformed normals keep their direction and side at any scale, and in mirrored instances.
 TEST(Tables, NormalsSurviveTinyHugeAndMirroredInstances) {
     for (const double scale : {1.0, 1e-25, 1e25, -1e-3}) {
         Stage stage;
@@ -80,13 +81,13 @@ TEST(Tables, NormalsSurviveTinyHugeAndMirroredInstances) {
     }
 }
 
-TEST(Tables, TheTreeAndDistantLightsAreChosenByPowerAndATenthUniformly) {
+TEST(Tables, TheTreeAndInfiniteLightsAreChosenByPowerAndATenthUniformly) {
     Stage stage;
-    const scene::Material glow{.emission = glm::vec3(2.0f)};
+    const scene::Material emissive{.emission = glm::vec3(2.0f)};
     const SceneTables tables = stage.make(
         {Create{scene::RootId, scene::Root{.children = {Corner, Bulb, Panel, Sun}, .background = Sky}},
-         Create{Corner, stage.corner(Glow, 2.0f)}, Create{Panel, stage.corner(PaintId)},
-         Create{PaintId, scene::Material{}}, Create{Glow, glow},
+         Create{Corner, stage.corner(Emissive, 2.0f)}, Create{Panel, stage.corner(PaintId)},
+         Create{PaintId, scene::Material{}}, Create{Emissive, emissive},
          Create{Bulb, scene::Light{.intensity = glm::vec3(3.0f)}},
          Create{Sun, scene::Light{.kind = scene::LightKind::Directional, .intensity = glm::vec3(0.2f)}},
          Create{Sky, scene::Background{.color = glm::vec3(0.5f)}}});
@@ -100,7 +101,7 @@ TEST(Tables, TheTreeAndDistantLightsAreChosenByPowerAndATenthUniformly) {
     EXPECT_EQ(tables.instances[0].light, 0);
     EXPECT_EQ(tables.instances[1].light, -1);
     EXPECT_EQ(tables.scene.environment_light, 3);
-    // The scene reaches from (0, 0) to (2, 6).
+    // The scene extends from (0, 0) to (2, 6).
     const double radius2 = (4.0 + 36.0) / 4.0;
     const std::array powers{8.0 * 2.0 * M_PI + 4.0 * M_PI * 3.0, M_PI * radius2 * 0.2,
                             4.0 * M_PI * M_PI * radius2 * 0.5};
@@ -112,16 +113,16 @@ TEST(Tables, TheTreeAndDistantLightsAreChosenByPowerAndATenthUniformly) {
         const double expected = 0.9 * powers[i] / total + 0.1 / 3.0;
         EXPECT_NEAR(probabilities[i], expected, 1e-6) << i;
         sum += expected;
-        EXPECT_NEAR(tables.sums[tables.scene.light_sums + i], sum, 1e-6) << i;
+        EXPECT_NEAR(tables.cdfs[tables.scene.light_cdf + i], sum, 1e-6) << i;
     }
-    EXPECT_EQ(tables.scene.features, shading::FeatureMeshLights | shading::FeaturePlacedLights |
+    EXPECT_EQ(tables.scene.features, shading::FeatureMeshLights | shading::FeaturePunctualLights |
                                          shading::FeatureEnvironment | shading::FeatureLightTree);
 }
 
-TEST(Tables, EachTriangleThatShinesIsAnEmitterOfItsPower) {
+TEST(Tables, EachEmissiveTriangleIsAnEmitterOfItsPower) {
     Stage stage;
     const std::array<glm::vec3, 6> texels{{{4, 4, 4}, {4, 4, 4}, {4, 4, 4}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
-    scene::Geometry painted = stage.corner(Glow);
+    scene::Geometry painted = stage.corner(Emissive);
     painted.indices = stage.blob(std::array{0u, 1u, 2u, 0u, 2u, 3u, 0u, 0u, 1u});
     // The texture's bright half.
     painted.tex_coords =
@@ -129,9 +130,9 @@ TEST(Tables, EachTriangleThatShinesIsAnEmitterOfItsPower) {
     const SceneTables tables =
         stage.make({Create{scene::RootId, scene::Root{.children = {Corner, Bulb}}}, Create{Corner, painted},
                     Create{Bulb, scene::Light{.intensity = glm::vec3(1.0f)}},
-                    Create{Glow, scene::Material{.emission = glm::vec3(2.0f),
-                                                 .emission_texture = {.texture = Picture},
-                                                 .double_sided = true}},
+                    Create{Emissive, scene::Material{.emission = glm::vec3(2.0f),
+                                                     .emission_texture = {.texture = Picture},
+                                                     .double_sided = true}},
                     Create{Picture, scene::Texture{.width = 3,
                                                    .height = 2,
                                                    .format = scene::TexelFormat::RgbFloat,
@@ -152,29 +153,29 @@ TEST(Tables, EachTriangleThatShinesIsAnEmitterOfItsPower) {
     EXPECT_NEAR(power(0) + power(1) + power(3), 1.0, 1e-6);
 }
 
-// Places between its texels tell nothing of a texture's brightest one, but what it may shine on is not dark.
-TEST(Tables, ATriangleWhoseLightWasMissedIsStillTried) {
+// The grid of samples misses the texture's brightest texel, but the triangle keeps some power.
+TEST(Tables, ATriangleWithAMissedBrightTexelIsStillSampled) {
     for (const float brightest : {0.0f, 100.0f}) {
         Stage stage;
         std::vector<glm::vec3> texels(64 * 64, glm::vec3(0.0f));
         texels[3] = glm::vec3(brightest);
-        scene::Geometry painted = stage.corner(Glow);
+        scene::Geometry painted = stage.corner(Emissive);
         painted.tex_coords =
             stage.blob(std::array<glm::vec2, 4>{{{0.5f, 0.5f}, {0.6f, 0.5f}, {0.6f, 0.6f}, {0.5f, 0.6f}}});
         scene::Texture map{.width = 64, .height = 64, .format = scene::TexelFormat::RgbFloat};
         map.texels = scene::reference(*stage.blobs->insert(std::as_bytes(std::span(texels))));
         const SceneTables tables =
             stage.make({Create{scene::RootId, scene::Root{.children = {Corner}}}, Create{Corner, painted},
-                        Create{Glow, scene::Material{.emission = glm::vec3(1.0f),
-                                                     .emission_texture = {.texture = Picture}}},
+                        Create{Emissive, scene::Material{.emission = glm::vec3(1.0f),
+                                                         .emission_texture = {.texture = Picture}}},
                         Create{Picture, map}});
         EXPECT_EQ(tables.light_nodes.size(), brightest > 0.0f ? 3u : 0u);
         EXPECT_EQ(tables.lights.size(), brightest > 0.0f ? 1u : 0u);
     }
 }
 
-// A checker of single texels: a point sees one of them, a wide path their mean.
-TEST(Tables, TexturesAreSeenAsWideAsAPathIs) {
+// A checker of single texels: a point lookup gives one of them, a wide footprint their mean.
+TEST(Tables, TexturesAreFilteredByTheFootprint) {
     Stage stage;
     std::vector<std::uint8_t> texels;
     for (std::uint32_t i = 0; i < 64 * 64; ++i)
@@ -190,11 +191,11 @@ TEST(Tables, TexturesAreSeenAsWideAsAPathIs) {
                     Create{Picture, map}});
     EXPECT_EQ(tables.textures.at(0).level_count, 6u);
     const shading::Scene scene = on_host(tables);
-    // In the middle of a texel of the first triangle.
+    // At the center of a texel of the first triangle.
     const auto seen = [&](float width) {
         const shading::Hit hit{
             .instance = 0, .triangle = 0, .barycentric = {8.0f / 64, 8.5f / 64}, .distance = 1.0f};
-        return shading::make_surface(scene, hit, {0.0f, 0.0f, -1.0f}, width, shading::nowhere(), 0.0f)
+        return shading::make_surface(scene, hit, {0.0f, 0.0f, -1.0f}, width, shading::no_media(), 0.0f)
             .albedo.x;
     };
     const float point = seen(0.0f);
@@ -206,8 +207,8 @@ TEST(Tables, TexturesAreSeenAsWideAsAPathIs) {
     EXPECT_TRUE(between > 0.1f && between < 0.4f) << between;
 }
 
-// Of a material that nothing placed has, of nothing at all, and of what only an edit brings in.
-TEST(Tables, OnlyTexturesThatAreUsedAreThere) {
+// Textures of an unused material, without users, and of a material that an edit adds.
+TEST(Tables, HaveOnlyTexturesInUse) {
     Stage stage;
     const auto map = [&](std::uint8_t value) {
         scene::Texture texture{.width = 2, .height = 1};
@@ -224,12 +225,12 @@ TEST(Tables, OnlyTexturesThatAreUsedAreThere) {
         {Create{scene::RootId, scene::Root{.children = {Corner, Panel}, .background = Sky}},
          Create{Sky, scene::Background{.environment = Bulb}}, Create{Bulb, map(1)}, Create{Picture, map(2)},
          Create{Unused, map(3)}, Create{Unseen, map(4)}, Create{Shine, map(5)}, Create{Coat, map(6)},
-         Create{Corner, stage.corner(PaintId)}, Create{Panel, stage.corner(Glow)},
+         Create{Corner, stage.corner(PaintId)}, Create{Panel, stage.corner(Emissive)},
          Create{PaintId, scene::Material{.emission_texture = {.texture = Shine},
                                          .clearcoat = 1.0f,
                                          .clearcoat_roughness_texture = {.texture = Coat}}},
-         Create{Glow, scene::SurfaceShader{.ambient_texture = {.texture = Unused},
-                                           .diffuse_texture = {.texture = Picture}}},
+         Create{Emissive, scene::SurfaceShader{.ambient_texture = {.texture = Unused},
+                                               .diffuse_texture = {.texture = Picture}}},
          Create{Sun, scene::Material{.base_color_texture = {.texture = Unseen}}}});
     EXPECT_EQ(only(tables), (std::set<std::uint8_t>{1, 2, 5, 6}));
     for (std::size_t i = 0; i < tables.textures.size(); ++i) {
@@ -241,20 +242,20 @@ TEST(Tables, OnlyTexturesThatAreUsedAreThere) {
     EXPECT_EQ(only(tables), (std::set<std::uint8_t>{1, 2, 4}));
 }
 
-TEST(Tables, WhatIsInLayersIsMarkedAndSoIsAViewThatDoesNotSeeAll) {
+TEST(Tables, LayersAndViewsWithHiddenLayersSetTheFeature) {
     Stage stage;
     scene::Transform place = transform(moved(0.0, 0.0, 0.0), {Corner, Bulb});
     place.layers = 6;
     const SceneTables tables = stage.make(
         {Create{scene::RootId, scene::Root{.children = {Panel, Place}, .background = Sky}},
-         Create{Place, place}, Create{Corner, stage.corner(Glow)}, Create{Panel, stage.corner(PaintId)},
+         Create{Place, place}, Create{Corner, stage.corner(Emissive)}, Create{Panel, stage.corner(PaintId)},
          Create{Bulb, scene::Light{}}, Create{PaintId, scene::Material{}},
-         Create{Glow, scene::Material{.emission = glm::vec3(2.0f)}},
+         Create{Emissive, scene::Material{.emission = glm::vec3(2.0f)}},
          Create{Sky, scene::Background{.color = glm::vec3(0.5f)}}});
     ASSERT_EQ(tables.lights.size(), 3u);
     EXPECT_EQ(tables.instances.at(0).layers, 6u);
     EXPECT_EQ(tables.instances.at(1).layers, 1u);
-    EXPECT_EQ(tables.lights[0].layers, 6u) << "the panel that glows";
+    EXPECT_EQ(tables.lights[0].layers, 6u) << "the emissive panel";
     EXPECT_EQ(tables.lights[1].layers, 6u) << "the bulb";
     EXPECT_EQ(tables.lights[2].layers, shading::AllLayers) << "the sky is for all";
     for (const std::uint32_t sees_all : {shading::AllLayers, 3u, 5u}) {
@@ -267,13 +268,13 @@ TEST(Tables, WhatIsInLayersIsMarkedAndSoIsAViewThatDoesNotSeeAll) {
     }
 }
 
-TEST(Tables, AFlattenedLampIsNoLightAndABlackSkyNeither) {
+TEST(Tables, ADegenerateLampAndABlackSkyAreNoLights) {
     Stage stage;
     const glm::dmat4 flat = glm::scale(glm::dmat4(1.0), glm::dvec3(0.0));
     const SceneTables tables = stage.make(
         {Create{scene::RootId, scene::Root{.children = {Place}, .background = Sky}},
-         Create{Place, transform(flat, {Corner, Sun})}, Create{Corner, stage.corner(Glow)},
-         Create{Glow, scene::Material{.emission = glm::vec3(2.0f)}},
+         Create{Place, transform(flat, {Corner, Sun})}, Create{Corner, stage.corner(Emissive)},
+         Create{Emissive, scene::Material{.emission = glm::vec3(2.0f)}},
          Create{Sun, scene::Light{.kind = scene::LightKind::Directional}}, Create{Sky, scene::Background{}}});
     EXPECT_TRUE(tables.lights.empty());
     EXPECT_EQ(tables.scene.light_count, 0u);
@@ -295,24 +296,24 @@ std::vector<scene::Entry> sky_with_a_map(Stage& stage) {
             Create{Sky, scene::Background{.color = glm::vec3(1.0f), .environment = Picture}}};
 }
 
-// Half of a texel's weight is its own, half its neighbourhood's.
-TEST(Tables, ASkyIsWeighedByItsTexelsAndTheirNeighbours) {
+// Half of a texel's weight is its own luminance, half that of its neighbourhood.
+TEST(Tables, EnvironmentWeightsIncludeNeighbouringTexels) {
     Stage stage;
     const SceneTables tables = stage.make(sky_with_a_map(stage));
     const shading::Environment& sky = tables.scene.environment;
     EXPECT_EQ(sky.map.width, 2u);
     EXPECT_EQ(sky.map.wrap_s, shading::WrapRepeat);
-    EXPECT_EQ(sky.map.wrap_t, shading::WrapClamp) << "whatever the texture says";
+    EXPECT_EQ(sky.map.wrap_t, shading::WrapClamp) << "independent of the texture";
     EXPECT_EQ(tables.textures.at(0).wrap_t, shading::WrapMirror);
     const double left = 0.5 * (2.0 + (2.0 + 2 * 4.0) / 3), right = 0.5 * (4.0 + (4.0 + 2 * 2.0) / 3);
-    EXPECT_NEAR(tables.sums[sky.column_sums], left / (left + right), 1e-6);
-    EXPECT_EQ(tables.sums[sky.column_sums + 1], 1.0f);
-    EXPECT_EQ(tables.sums[sky.row_sums], 1.0f);
+    EXPECT_NEAR(tables.cdfs[sky.column_cdf], left / (left + right), 1e-6);
+    EXPECT_EQ(tables.cdfs[sky.column_cdf + 1], 1.0f);
+    EXPECT_EQ(tables.cdfs[sky.row_cdf], 1.0f);
     EXPECT_EQ(tables.scene.features,
               shading::FeatureTextures | shading::FeatureEnvironment | shading::FeatureEnvironmentMap);
 }
 
-TEST(Tables, ATextureThatIsNotWholeIsNotThere) {
+TEST(Tables, AnIncompleteTextureIsLeftOut) {
     Stage stage;
     auto entries = sky_with_a_map(stage);
     std::get<scene::Texture>(std::get<Create>(entries[3]).object).height = 2;
@@ -323,8 +324,8 @@ TEST(Tables, ATextureThatIsNotWholeIsNotThere) {
     EXPECT_EQ(tables.scene.environment.emits, 1u) << "by its colour";
 }
 
-// On a device every array is somewhere else.
-TEST(Tables, AddressesAreTheReaders) {
+// On a device every array has another address.
+TEST(Tables, AddressesAreThoseOfTheReader) {
     Stage stage;
     SceneTables tables = stage.make(sky_with_a_map(stage));
     const auto at = [](const scene::BlobPtr& blob) {

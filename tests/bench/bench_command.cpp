@@ -12,8 +12,8 @@
 namespace tessera::tools::bench {
 
 Command bench_command(cli::CommandLine& program) {
-    cli::CommandLine& line = program.command(
-        "bench", "Measure speed against error, back-ends beside each other, edits and displays.");
+    cli::CommandLine& line =
+        program.command("bench", "Benchmarks: error and time of denoisers, back-ends, edits and displays.");
     const std::vector<Command> commands{backends_command(line), displays_command(line), filters_command(line),
                                         live_command(line), pictures_command(line)};
     return {"bench", [commands](std::string_view chosen) {

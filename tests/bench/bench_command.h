@@ -4,7 +4,7 @@
 
 namespace tessera::tools::bench {
 
-// tessera bench: measurements of what the program does, each a sub-command of its own.
+// tessera bench: benchmarks, each a sub-command.
 Command bench_command(cli::CommandLine& program);
 
 }  // namespace tessera::tools::bench

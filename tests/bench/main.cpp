@@ -5,10 +5,10 @@
 #include "client/tools/bench.h"
 #include "tests/bench/bench_command.h"
 
-// Started by `tessera bench`, with the words of that command line, or by its own name without the word `bench`.
+// Started by `tessera bench` with its arguments, or directly without the word `bench`.
 int main(int argc, char** argv) {
     using namespace tessera;
-    cli::CommandLine line("tessera", "Measurements of Tessera.");
+    cli::CommandLine line("tessera", "Benchmarks of Tessera.");
     const tools::Command command = tools::bench::bench_command(line);
     std::vector<const char*> words(argv, argv + argc);
     if (!tools::names_bench(argc, argv)) words.insert(words.begin() + 1, "bench");
@@ -17,6 +17,6 @@ int main(int argc, char** argv) {
     try {
         return command.run(line.chosen());
     } catch (const std::exception& error) {
-        return tools::complain("bench", tools::ExitInternal, error.what());
+        return tools::report_error("bench", tools::ExitInternal, error.what());
     }
 }

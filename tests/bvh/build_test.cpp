@@ -1,4 +1,4 @@
-// What a tree promises to the traversal.
+// Invariants that the traversal relies on.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -71,7 +71,7 @@ class Walk {
     std::size_t nodes_ = 0;
 };
 
-TEST(Build, EveryTriangleOnceWithinItsBoxes) {
+TEST(Build, EveryTriangleIsStoredOnceWithinItsBoxes) {
     BinaryTreeBuilder builder;
     CounterRandom random(11);
     for (const std::uint32_t count : {1u, 2u, 3u, 4u, 23u, 24u, 25u, 1000u, 20000u}) {
@@ -104,7 +104,7 @@ TEST(Build, DepthIsBounded) {
     Walk(tree, mesh.data());
 }
 
-TEST(Build, TooDeepMeansEven) {
+TEST(Build, TooDeepTreesAreBalanced) {
     BinaryTreeBuilder builder;
     for (const std::uint32_t count : {1u, 9u, 30u, 5000u}) {
         std::vector<Box> boxes;
@@ -130,7 +130,7 @@ TEST(Build, TooDeepMeansEven) {
     }
 }
 
-TEST(Build, AllInOnePlace) {
+TEST(Build, CoincidentTriangles) {
     BinaryTreeBuilder builder;
     TestMesh mesh;
     for (int i = 0; i < 5000; ++i) mesh.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
@@ -139,7 +139,7 @@ TEST(Build, AllInOnePlace) {
     Walk(tree, mesh.data());
 }
 
-TEST(Refit, IsTheTreeOfTheNewPositions) {
+TEST(Refit, FollowsNewPositions) {
     CounterRandom random(13);
     BinaryTreeBuilder builder;
     TestMesh mesh = ball(20, 5.0f, glm::vec3(0.0f));
@@ -151,13 +151,13 @@ TEST(Refit, IsTheTreeOfTheNewPositions) {
     for (glm::vec3& p : mesh.positions) p = p * glm::vec3(2.0f, 1.0f, 1.0f) + glm::vec3(0.0f, 3.0f, 0.0f);
     EXPECT_TRUE(refit_mesh(tree, mesh.data(), built.cost));
     Walk(tree, mesh.data());
-    // Torn apart: right, but worth a new tree.
+    // Torn apart: correct, but due for a rebuild.
     for (glm::vec3& p : mesh.positions) p = random_point(random, -5.0f, 5.0f);
     EXPECT_FALSE(refit_mesh(tree, mesh.data(), built.cost));
     Walk(tree, mesh.data());
 }
 
-TEST(Refit, TrianglesThatVanishAndThoseThatAppear) {
+TEST(Refit, VanishingAndAppearingTriangles) {
     BinaryTreeBuilder builder;
     TestMesh mesh;
     mesh.add({-9, -9, 3}, {9, -9, 3}, {0, 9, 3});

@@ -1,4 +1,4 @@
-// The same text on a device finds the same hits.
+// The same traversal code on a device finds the same hits.
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
@@ -41,11 +41,11 @@ class DeviceTrace : public VulkanTest {
   protected:
     std::vector<Hit> trace(const TracedScene& scene, std::span<const TestRay> rays, Traversal traversal,
                            std::uint32_t question = shading::BvhClosest) {
-        const bool plain = traversal == Traversal::Plain;
-        const Buffer pool = make_buffer(device(), plain ? scene.plain_pool() : scene.pool());
-        std::vector<shading::AskedRay> asked;
+        const bool plain = traversal == Traversal::Bvh2;
+        const Buffer pool = make_buffer(device(), plain ? scene.bvh2_pool() : scene.pool());
+        std::vector<shading::RayQuery> asked;
         for (const TestRay& ray : rays) asked.push_back({ray.origin, ray.near, ray.direction, ray.far});
-        const RayCast cast(device(), pool, plain ? scene.plain_top_place() : scene.top_place(), asked,
+        const RayCast cast(device(), pool, plain ? scene.bvh2_top_place() : scene.top_place(), asked,
                            {.traversal = traversal, .question = question, .passes_every = 3});
         cast.run();
         return cast.hits();
@@ -56,7 +56,7 @@ class DeviceTrace : public VulkanTest {
         const std::vector<TestRay> rays = rays_through(scene, 100'000);
         const std::vector<Hit> by_address = trace(scene, rays, Traversal::Address, question);
         const std::vector<Hit> as_texels = trace(scene, rays, Traversal::Texels, question);
-        const std::vector<Hit> plain = trace(scene, rays, Traversal::Plain, question);
+        const std::vector<Hit> plain = trace(scene, rays, Traversal::Bvh2, question);
         std::uint32_t hits = 0, different = 0, other_bits = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const Hit &found = as_texels[i], here = scene.trace(rays[i], question);
@@ -105,7 +105,7 @@ TEST_F(DeviceTrace, Instances) {
     expect_same(scene, shading::BvhAny | shading::BvhAlpha);
 }
 
-TEST_F(DeviceTrace, RaysAndScenesThatAreNone) {
+TEST_F(DeviceTrace, InvalidRaysAndEmptyScenes) {
     const float nan = std::nanf("");
     const std::vector<TestRay> rays{{glm::vec3(nan), glm::vec3(0, 0, 1)},
                                     {glm::vec3(0.0f), glm::vec3(nan)},
@@ -113,7 +113,7 @@ TEST_F(DeviceTrace, RaysAndScenesThatAreNone) {
                                     {glm::vec3(INFINITY), glm::vec3(0, 0, -1)}};
     CounterRandom random(55);
     const TracedScene some({random_mesh(random, 500, 1.0f)}, {{}}), none({}, {});
-    for (const Traversal traversal : {Traversal::Plain, Traversal::Address, Traversal::Texels}) {
+    for (const Traversal traversal : {Traversal::Bvh2, Traversal::Address, Traversal::Texels}) {
         EXPECT_EQ(trace(some, rays, traversal).size(), rays.size());
         for (const Hit& hit : trace(none, rays, traversal)) EXPECT_TRUE(missed(hit));
     }

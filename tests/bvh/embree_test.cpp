@@ -1,11 +1,11 @@
-// Beside Embree: same hits but for rounding, and the same offsets keep paths off the surfaces they leave.
+// Against Embree: same hits but for rounding, and the same offsets keep paths off the surfaces they leave.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "mediator/shading/points.h"
 #include "mediator/shading/sampling.h"
+#include "mediator/shading/triangle_points.h"
 #include "tests/bvh/traced_scene.h"
 
 namespace tessera::vulkan {
@@ -70,7 +70,7 @@ std::vector<TestInstance> turned_instances(std::uint32_t count, std::uint32_t me
     return instances;
 }
 
-TEST(BesideEmbree, SameHitsOfClosedBodies) {
+TEST(AgainstEmbree, SameHitsOnClosedMeshes) {
     const TracedScene scene({ball(24, 5.0f, {1.0f, 0.0f, 2.0f}), ball(9, 3.0f, glm::vec3(0.0f))},
                             turned_instances(30, 2));
     const Agreement agreement = compare(scene, inward_rays(100'000, 60.0f, 25.0f));
@@ -80,7 +80,7 @@ TEST(BesideEmbree, SameHitsOfClosedBodies) {
     EXPECT_LT(agreement.distance, 1e-6);
 }
 
-TEST(BesideEmbree, SameHitsOfTrianglesOfAllShapes) {
+TEST(AgainstEmbree, SameHitsOnTrianglesOfAllShapes) {
     CounterRandom random(23);
     const TracedScene scene({random_mesh(random, 2000, 10.0f)}, {{}});
     const Agreement agreement = compare(scene, inward_rays(100'000, 20.0f, 10.0f));
@@ -89,7 +89,7 @@ TEST(BesideEmbree, SameHitsOfTrianglesOfAllShapes) {
     EXPECT_LE(agreement.other_triangle, 3u);
 }
 
-TEST(BesideEmbree, SameOcclusion) {
+TEST(AgainstEmbree, SameOcclusion) {
     const TracedScene scene({ball(24, 5.0f, glm::vec3(0.0f))}, turned_instances(30, 1));
     CounterRandom random(24);
     std::uint32_t different = 0, occluded = 0;
@@ -136,7 +136,7 @@ void leave(const TestMesh& mesh, const TestInstance& placed, CounterRandom& rand
     }
 }
 
-TEST(BesideEmbree, SameOffsetsLeaveSurfaces) {
+TEST(AgainstEmbree, TheSameOffsetsAvoidSelfIntersection) {
     CounterRandom random(25);
     Again again;
     for (std::uint32_t round = 0; round < 200; ++round) {

@@ -1,4 +1,4 @@
-// Boxes in 8 bits hold what they stand for, exactly and as rays see them.
+// 8-bit quantised boxes enclose the exact boxes, also under the rounding of the ray test.
 #include "backends/vulkan/bvh/quantise.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ Node random_node(CounterRandom& random) {
     return made;
 }
 
-TEST(Quantise, HoldsTheExactBoxAndItsMargin) {
+TEST(Quantise, EnclosesTheExactBoxAndItsMargin) {
     CounterRandom random(41);
     for (int round = 0; round < 50'000; ++round) {
         const Node made = random_node(random);
@@ -100,7 +100,7 @@ TEST(Quantise, IsTight) {
 
 // Rays at points of the exact boxes, their corners and edges included, enter the quantised ones before and
 // leave them behind the point.
-TEST(Quantise, RaysThatMeetTheBoxEnterIt) {
+TEST(Quantise, RaysThatHitTheBoxEnterTheQuantisedBox) {
     CounterRandom random(43);
     for (int round = 0; round < 100'000; ++round) {
         const Node made = random_node(random);
@@ -115,17 +115,17 @@ TEST(Quantise, RaysThatMeetTheBoxEnterIt) {
                                                      box.low[axis], box.high[axis]);
         }
         if (box.low == box.high) continue;  // no triangle
-        // The ray passes exactly through target: the way is a power of two of the direction.
+        // The ray passes exactly through target: the offset is a power of two times the direction.
         const glm::vec3 size = box.high - box.low;
-        const float reach = std::max({size.x, size.y, size.z}) * std::exp2(uniform(random, -2.0f, 8.0f));
-        glm::vec3 origin = target + reach * glm::vec3(uniform(random, -1, 1), uniform(random, -1, 1),
-                                                      uniform(random, -1, 1));
+        const float distance = std::max({size.x, size.y, size.z}) * std::exp2(uniform(random, -2.0f, 8.0f));
+        glm::vec3 origin = target + distance * glm::vec3(uniform(random, -1, 1), uniform(random, -1, 1),
+                                                         uniform(random, -1, 1));
         if (random.below(4) == 0)
             origin[static_cast<int>(random.below(3))] = target[static_cast<int>(random.below(3))];
-        const glm::dvec3 way = glm::dvec3(target) - glm::dvec3(origin);
-        const glm::vec3 direction(way);
+        const glm::dvec3 offset = glm::dvec3(target) - glm::dvec3(origin);
+        const glm::vec3 direction(offset);
         if (direction == glm::vec3(0.0f)) continue;
-        if (glm::any(glm::notEqual(glm::dvec3(direction), way))) continue;
+        if (glm::any(glm::notEqual(glm::dvec3(direction), offset))) continue;
         std::array<glm::uvec4, shading::BvhNodeItems> items;
         std::memcpy(items.data(), &made.node, sizeof made.node);
         const auto meets = [&](float near, float far) {

@@ -40,7 +40,7 @@ std::vector<int> places_of_instances(const TopBvh& top, std::uint32_t count) {
     return places;
 }
 
-TEST(Top, HoldsEveryInstanceOnce) {
+TEST(Top, StoresEveryInstanceOnce) {
     BinaryTreeBuilder builder;
     for (const std::uint32_t count : {0u, 1u, 8u, 9u, 1000u}) {
         const TopBvh top = build_top(builder, some_instances(count));
@@ -71,7 +71,7 @@ TEST(Top, RefitFollowsMovedInstances) {
         << "places have nothing to do with the tree any more";
 }
 
-TEST(Top, RefitRefusesOtherInstances) {
+TEST(Top, RefitRejectsOtherInstances) {
     BinaryTreeBuilder builder;
     std::vector<PlacedMesh> instances = some_instances(20);
     TopBvh top = build_top(builder, instances);

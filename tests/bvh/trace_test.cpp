@@ -1,5 +1,5 @@
-// The tree must not show: a ray through it finds bit for bit what asking every triangle finds, and what
-// Embree finds but for rounding.
+// Traversal must not change results: a ray finds bit for bit what testing every triangle finds, and, but for
+// rounding, what Embree finds.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -64,7 +64,7 @@ void expect_tree_unseen(const TracedScene& scene, float size, std::uint32_t coun
     for (const TestRay& ray : rays_around(scene, size, count, layers)) {
         for (const std::uint32_t question : {shading::BvhClosest, shading::BvhAlpha}) {
             const Hit all = scene.ask_all(ray, question), found = scene.trace(ray, question);
-            EXPECT_TRUE(equal(all, scene.trace_plain(ray, question)));
+            EXPECT_TRUE(equal(all, scene.trace_bvh2(ray, question)));
             hits += all.instance != shading::NoInstance ? 1 : 0;
             if (equal(all, found)) continue;
             if (++different < 10) ADD_FAILURE() << "all: " << text(all) << ", tree: " << text(found);
@@ -86,12 +86,12 @@ TestInstance placed(std::uint32_t mesh, CounterRandom& random, float scale, floa
     return instance;
 }
 
-TEST(Trace, TreeIsUnseen) {
+TEST(Trace, MatchesBruteForce) {
     CounterRandom random(1);
     expect_tree_unseen(TracedScene({random_mesh(random, 500, 10.0f)}, {{}}), 10.0f, 6000);
 }
 
-TEST(Trace, TreeIsUnseenWithInstances) {
+TEST(Trace, MatchesBruteForceWithInstances) {
     CounterRandom random(2);
     std::vector<TestInstance> instances;
     for (std::uint32_t i = 0; i < 40; ++i) instances.push_back(placed(i % 3, random, 0.6f, 10.0f));
@@ -102,7 +102,7 @@ TEST(Trace, TreeIsUnseenWithInstances) {
     expect_tree_unseen(scene, 10.0f, 6000);
 }
 
-TEST(Trace, InstancesInOtherLayersAreNotThere) {
+TEST(Trace, InstancesInOtherLayersAreInvisible) {
     CounterRandom random(12);
     std::vector<TestInstance> instances;
     for (std::uint32_t i = 0; i < 120; ++i) {
@@ -113,11 +113,11 @@ TEST(Trace, InstancesInOtherLayersAreNotThere) {
     for (const std::uint32_t layers : {1u, 2u, 5u, 14u}) expect_tree_unseen(scene, 10.0f, 1500, layers);
     for (const TestRay& ray : rays_around(scene, 10.0f, 100, 16u)) {
         EXPECT_EQ(scene.trace(ray).instance, shading::NoInstance);
-        EXPECT_EQ(scene.trace_plain(ray).instance, shading::NoInstance);
+        EXPECT_EQ(scene.trace_bvh2(ray).instance, shading::NoInstance);
     }
 }
 
-TEST(Trace, TreeIsUnseenAtAllScales) {
+TEST(Trace, MatchesBruteForceAtAllScales) {
     for (const float size : {1e-12f, 1e-6f, 1e-3f, 1e3f, 1e6f, 1e12f}) {
         CounterRandom random(3);
         SCOPED_TRACE(size);
@@ -125,7 +125,7 @@ TEST(Trace, TreeIsUnseenAtAllScales) {
     }
 }
 
-TEST(Trace, TreeIsUnseenFarFromTheOrigin) {
+TEST(Trace, MatchesBruteForceFarFromTheOrigin) {
     CounterRandom random(4);
     TestMesh mesh = random_mesh(random, 200, 10.0f);
     for (glm::vec3& p : mesh.positions) p += glm::vec3(3e4f, -2e5f, 1e3f);
@@ -139,8 +139,8 @@ TEST(Trace, TreeIsUnseenFarFromTheOrigin) {
     }
 }
 
-// The rounding of the way to an object's space is larger than the object is.
-TEST(Trace, TreeIsUnseenWithSmallInstancesFarFromTheOrigin) {
+// The rounding error of the transform to object space is larger than the object.
+TEST(Trace, MatchesBruteForceWithSmallInstancesFarFromTheOrigin) {
     CounterRandom random(10);
     std::vector<TestInstance> instances;
     for (std::uint32_t i = 0; i < 100; ++i) {
@@ -160,7 +160,7 @@ TEST(Trace, TreeIsUnseenWithSmallInstancesFarFromTheOrigin) {
     EXPECT_GT(hits, 2'000u);
 }
 
-TEST(Trace, TreeIsUnseenByRaysFromAfar) {
+TEST(Trace, MatchesBruteForceForDistantRays) {
     CounterRandom random(5);
     const TracedScene scene({random_mesh(random, 300, 1.0f)}, {{}});
     for (std::uint32_t i = 0; i < 4000; ++i) {
@@ -171,7 +171,7 @@ TEST(Trace, TreeIsUnseenByRaysFromAfar) {
     }
 }
 
-TEST(Trace, CoincidentTrianglesGoToTheLowerOne) {
+TEST(Trace, CoincidentTrianglesResolveToTheLowerIndex) {
     CounterRandom random(6);
     TestMesh mesh = ball(8, 5.0f, glm::vec3(0.0f));
     const std::size_t count = mesh.triangles.size();
@@ -188,7 +188,7 @@ TEST(Trace, CoincidentTrianglesGoToTheLowerOne) {
     }
 }
 
-TEST(Trace, NothingToHit) {
+TEST(Trace, EmptyScenes) {
     const TestRay ray{glm::vec3(0.0f), glm::vec3(0.0f, 0.0f, 1.0f)};
     EXPECT_EQ(TracedScene({}, {}).trace(ray).instance, shading::NoInstance);
     const TracedScene empty({TestMesh{}}, {{}});
@@ -196,7 +196,7 @@ TEST(Trace, NothingToHit) {
     EXPECT_EQ(empty.trace(ray).distance, ray.far);
 }
 
-TEST(Trace, TrianglesThatAreNoneAreSkipped) {
+TEST(Trace, SkipsInvalidTriangles) {
     const float nan = std::nanf(""), inf = INFINITY;
     TestMesh mesh;
     mesh.add({nan, 0, 5}, {1, 0, 5}, {0, 1, 5});
@@ -212,7 +212,7 @@ TEST(Trace, TrianglesThatAreNoneAreSkipped) {
     EXPECT_EQ(hit.distance, 7.0f);
 }
 
-TEST(Trace, RaysThatAreNoneEnd) {
+TEST(Trace, InvalidRaysTerminate) {
     CounterRandom random(8);
     const TracedScene scene({random_mesh(random, 300, 1.0f)}, {{}});
     const float nan = std::nanf("");
@@ -223,7 +223,7 @@ TEST(Trace, RaysThatAreNoneEnd) {
     }
 }
 
-TEST(Trace, InstancesThatCannotBeHit) {
+TEST(Trace, SkipsDegenerateInstances) {
     CounterRandom random(9);
     TestInstance flat;
     flat.linear = glm::mat3({1, 0, 0}, {0, 1, 0}, {1, 1, 0});

@@ -49,7 +49,7 @@ TracedScene::TracedScene(std::vector<TestMesh> meshes, const std::vector<TestIns
     : meshes_(std::move(meshes)), instances_(instances) {
     for (const TestMesh& mesh : meshes_) trees_.push_back(build_mesh(builder_, mesh.data()));
     lay_out();
-    lay_out_plain();
+    build_bvh2();
     make_embree();
 }
 
@@ -80,18 +80,18 @@ void TracedScene::lay_out() {
     top_place_ = append(pool_, top_.row);
 }
 
-void TracedScene::lay_out_plain() {
-    plain_pool_.assign(1, glm::uvec4(0));
+void TracedScene::build_bvh2() {
+    bvh2_pool_.assign(1, glm::uvec4(0));
     std::vector<PlacedMesh> rows(meshes_.size());
     for (std::uint32_t i = 0; i < meshes_.size(); ++i) {
-        const PlainTree tree = build_plain_mesh(builder_, meshes_[i].data());
+        const Bvh2 tree = build_bvh2_mesh(builder_, meshes_[i].data());
         std::vector<shading::BvhTriangle> triangles(tree.primitives.size());
         write_triangles(tree.primitives, meshes_[i].data(), triangles);
         rows[i].box = trees_[i].box;
-        rows[i].nodes = append(plain_pool_, tree.nodes);
-        rows[i].triangles = append(plain_pool_, triangles);
+        rows[i].nodes = append(bvh2_pool_, tree.nodes);
+        rows[i].triangles = append(bvh2_pool_, triangles);
     }
-    plain_top_place_ = append(plain_pool_, build_plain_top(builder_, placed(rows)));
+    bvh2_top_place_ = append(bvh2_pool_, build_bvh2_top(builder_, placed(rows)));
 }
 
 void TracedScene::make_embree() {
@@ -141,10 +141,10 @@ shading::Hit TracedScene::trace(const TestRay& ray, std::uint32_t question) cons
                               ray.near, ray.far, question, ray.layers, ray.time, ThirdsPass{}, 0);
 }
 
-shading::Hit TracedScene::trace_plain(const TestRay& ray, std::uint32_t question) const {
-    return shading::plain_trace(shading::BvhItems{plain_pool_.data()}, plain_top_place_, ray.origin,
-                                ray.direction, ray.near, ray.far, question, ray.layers, ray.time,
-                                ThirdsPass{}, 0);
+shading::Hit TracedScene::trace_bvh2(const TestRay& ray, std::uint32_t question) const {
+    return shading::bvh2_trace(shading::BvhItems{bvh2_pool_.data()}, bvh2_top_place_, ray.origin,
+                               ray.direction, ray.near, ray.far, question, ray.layers, ray.time, ThirdsPass{},
+                               0);
 }
 
 shading::Hit TracedScene::ask_all(const TestRay& ray, std::uint32_t question) const {

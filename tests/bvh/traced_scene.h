@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
+#include "backends/vulkan/bvh/bvh2.h"
 #include "backends/vulkan/bvh/mesh_bvh.h"
-#include "backends/vulkan/bvh/plain_tree.h"
 #include "backends/vulkan/bvh/top_bvh.h"
 #include "mediator/base/random.h"
 #include "mediator/shading/bvh_trace.h"
@@ -44,14 +44,14 @@ struct ThirdsPass {
     }
 };
 
-// The same scene four times: in the pool, as plain trees, as a list of all triangles, and in Embree.
+// The same scene four times: in the pool, as binary BVHs, as a list of all triangles, and in Embree.
 class TracedScene final {
   public:
     TracedScene(std::vector<TestMesh> meshes, const std::vector<TestInstance>& instances);
 
     shading::Hit trace(const TestRay& ray, std::uint32_t question = shading::BvhClosest) const;
-    shading::Hit trace_plain(const TestRay& ray, std::uint32_t question = shading::BvhClosest) const;
-    // Every triangle asked, no boxes.
+    shading::Hit trace_bvh2(const TestRay& ray, std::uint32_t question = shading::BvhClosest) const;
+    // Brute force: tests every triangle, without boxes.
     shading::Hit ask_all(const TestRay& ray, std::uint32_t question = shading::BvhClosest) const;
     shading::Hit ask_embree(const TestRay& ray) const;
     bool embree_occluded(const TestRay& ray) const;
@@ -62,14 +62,14 @@ class TracedScene final {
     const TopBvh& top() const { return top_; }
     const std::vector<glm::uvec4>& pool() const { return pool_; }
     std::uint32_t top_place() const { return top_place_; }
-    const std::vector<glm::uvec4>& plain_pool() const { return plain_pool_; }
-    std::uint32_t plain_top_place() const { return plain_top_place_; }
-    // New positions, boxes by refit; instances stay. The plain trees are those of before.
+    const std::vector<glm::uvec4>& bvh2_pool() const { return bvh2_pool_; }
+    std::uint32_t bvh2_top_place() const { return bvh2_top_place_; }
+    // New positions, boxes by refit; instances stay. The binary BVHs are not rebuilt.
     void move(std::uint32_t mesh, const std::vector<glm::vec3>& positions);
 
   private:
     void lay_out();
-    void lay_out_plain();
+    void build_bvh2();
     std::vector<PlacedMesh> placed(const std::vector<PlacedMesh>& rows) const;
     void make_embree();
 
@@ -84,8 +84,8 @@ class TracedScene final {
     TopBvh top_;
     std::vector<glm::uvec4> pool_;
     std::uint32_t top_place_ = 0;
-    std::vector<glm::uvec4> plain_pool_;
-    std::uint32_t plain_top_place_ = 0;
+    std::vector<glm::uvec4> bvh2_pool_;
+    std::uint32_t bvh2_top_place_ = 0;
     std::unique_ptr<RTCDeviceTy, Release> device_;
     std::vector<std::unique_ptr<RTCSceneTy, Release>> embree_meshes_;
     std::unique_ptr<RTCSceneTy, Release> embree_;

@@ -1,4 +1,4 @@
-// Built trees on disk.
+// The disk cache of BVHs.
 #include "backends/vulkan/bvh/tree_cache.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "backends/vulkan/bvh/stored_tree.h"
+#include "backends/vulkan/bvh/tree_serialization.h"
 #include "tests/bvh/traced_scene.h"
 
 namespace tessera::vulkan {
@@ -36,14 +36,14 @@ struct TreeCacheTest : testing::Test {
     WideTree tree = build_mesh(builder, mesh.data());
 };
 
-TEST_F(TreeCacheTest, GivesTheTreeOfTheSameMeshToTheNextStart) {
-    ASSERT_GE(mesh.triangles.size(), TreeCache::FewestTriangles);
+TEST_F(TreeCacheTest, LoadsTheTreeOfTheSameMesh) {
+    ASSERT_GE(mesh.triangles.size(), TreeCache::MinTriangles);
     EXPECT_FALSE(TreeCache(folder).load(mesh.data(), hashes_of(mesh)));
     TreeCache(folder).save(tree, hashes_of(mesh));
     TreeCache cache(folder);
     const auto back = cache.load(mesh.data(), hashes_of(mesh));
     ASSERT_TRUE(back);
-    EXPECT_EQ(stored(*back), stored(tree));
+    EXPECT_EQ(serialize_tree(*back), serialize_tree(tree));
     EXPECT_EQ(
         std::memcmp(back->nodes.data(), tree.nodes.data(), tree.nodes.size() * sizeof(shading::BvhNode)), 0);
     MeshHashes others = hashes_of(mesh);
@@ -54,7 +54,7 @@ TEST_F(TreeCacheTest, GivesTheTreeOfTheSameMeshToTheNextStart) {
     EXPECT_TRUE(cache.take_notes().empty());
 }
 
-TEST_F(TreeCacheTest, SmallMeshesAndNoFolderKeepNothing) {
+TEST_F(TreeCacheTest, CachesNothingForSmallMeshesOrWithoutAFolder) {
     const TestMesh small = ball(24, 5.0f, glm::vec3(0.0f));
     TreeCache cache(folder), none("");
     cache.save(build_mesh(builder, small.data()), hashes_of(small));
@@ -64,8 +64,8 @@ TEST_F(TreeCacheTest, SmallMeshesAndNoFolderKeepNothing) {
     EXPECT_FALSE(none.load(mesh.data(), hashes_of(mesh)));
 }
 
-TEST_F(TreeCacheTest, NeverHoldsMoreThanItMay) {
-    const std::uint64_t limit = 2 * stored(tree).size() + 1000;
+TEST_F(TreeCacheTest, RespectsItsSizeLimit) {
+    const std::uint64_t limit = 2 * serialize_tree(tree).size() + 1000;
     TreeCache cache(folder, limit);
     for (int i = 0; i < 5; ++i) {
         for (glm::vec3& p : mesh.positions) p.x += 1.0f;
@@ -77,7 +77,7 @@ TEST_F(TreeCacheTest, NeverHoldsMoreThanItMay) {
     EXPECT_TRUE(cache.load(mesh.data(), hashes_of(mesh))) << "the last one is there";
 }
 
-TEST_F(TreeCacheTest, DamagedFilesAreToldOnceAndGone) {
+TEST_F(TreeCacheTest, DamagedFilesAreReportedOnceAndRemoved) {
     CounterRandom random(62);
     TreeCache cache(folder);
     for (int round = 0; round < 60; ++round) {
@@ -100,8 +100,8 @@ TEST_F(TreeCacheTest, DamagedFilesAreToldOnceAndGone) {
     }
 }
 
-// A whole file, but of another mesh's tree under this one's name.
-TEST_F(TreeCacheTest, AnotherMeshsTreeIsToldAndReplaced) {
+// An intact file that has the tree of another mesh under this mesh's name.
+TEST_F(TreeCacheTest, ATreeOfAnotherMeshIsReportedAndReplaced) {
     TestMesh other = mesh;
     for (glm::vec3& p : other.positions) p.x = -2.0f * p.y * p.x;
     TreeCache cache(folder);

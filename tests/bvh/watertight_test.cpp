@@ -1,4 +1,4 @@
-// No ray leaves a closed body through its edges and corners.
+// No ray leaves a closed mesh through its edges and corners.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -58,7 +58,7 @@ TEST(Watertight, BoxAlongTheAxes) {
     box.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
     EXPECT_EQ(escapes(box, {}, glm::vec3(0.0f), 100'000), 0u);
-    // From the middle exactly along axes and diagonals.
+    // From the center exactly along axes and diagonals.
     const TracedScene scene({box}, {{}});
     for (int x = -1; x <= 1; ++x) {
         for (int y = -1; y <= 1; ++y) {

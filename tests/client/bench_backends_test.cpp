@@ -13,13 +13,13 @@ namespace tessera::tools::bench {
 namespace {
 
 std::string refusal(const BackendsOptions& options) {
-    const auto plan = understand(options, tessera::bench::contenders());
+    const auto plan = parse_options(options, tessera::bench::bench_targets());
     return plan ? "" : plan.error().what();
 }
 
-TEST(BenchBackendsPlan, SaysWhatIsWrong) {
+TEST(BenchBackendsPlan, ReportsErrors) {
     EXPECT_EQ(refusal({}), "");
-    EXPECT_NE(refusal({.backends = "embre"}).find("choose of embree"), std::string::npos);
+    EXPECT_NE(refusal({.backends = "embre"}).find("choose from embree"), std::string::npos);
     EXPECT_NE(refusal({.scenes = "cornel"}).find("did you mean"), std::string::npos);
     EXPECT_NE(refusal({.scenes = "balls:many"}), "");
     EXPECT_NE(refusal({.output = "speed.txt"}).find(".csv"), std::string::npos);
@@ -29,12 +29,12 @@ TEST(BenchBackendsPlan, SaysWhatIsWrong) {
     EXPECT_NE(refusal({.repeat = 0}).find("--repeat"), std::string::npos);
 }
 
-TEST(BenchBackendsPlan, ADeviceIsForThoseThatChooseOne) {
+TEST(BenchBackendsPlan, DevicesRequireABackendWithDevices) {
     const auto plan =
-        understand({.device = "1"}, {{.name = "fixed"}, {.name = "free", .chooses_device = true}});
+        parse_options({.device = "1"}, {{.name = "fixed"}, {.name = "free", .chooses_device = true}});
     ASSERT_TRUE(plan);
-    EXPECT_EQ(plan->entrants.at(0).device, "");
-    EXPECT_EQ(plan->entrants.at(1).device, "1");
+    EXPECT_EQ(plan->targets.at(0).device, "");
+    EXPECT_EQ(plan->targets.at(1).device, "1");
 }
 
 // Also where the mesh lies below a transform already.
@@ -48,8 +48,8 @@ TEST(BenchBackendsEdits, AreARefitAndAMove) {
             EXPECT_TRUE(scope->apply(changes)) << name;
             return scope->commit().value();
         };
-        EXPECT_EQ(edit(scene.everything).triangles, scene.triangles) << name;
-        const backend::EditReport vertices = edit(scene.vertices), place = edit(scene.place);
+        EXPECT_EQ(edit(scene.snapshot).triangles, scene.triangles) << name;
+        const backend::EditReport vertices = edit(scene.deformation), place = edit(scene.movement);
         EXPECT_EQ(vertices.refitted, 1u) << name;
         EXPECT_EQ(vertices.rebuilt, 0u) << name;
         EXPECT_GE(place.retransformed, 1u) << name;
@@ -58,11 +58,11 @@ TEST(BenchBackendsEdits, AreARefitAndAMove) {
 }
 
 TEST(BenchBackendsReport, HasMediansAndRatiosToTheFirst) {
-    BackendsResults results{.scenes = {{.name = "a, \"b\"", .contenders = {{.name = "x"}, {.name = "y"}}}}};
-    for (const double rate : {1e6, 9e6, 2e6}) results.scenes[0].contenders[0].measured.add("samples", rate);
-    for (const double rate : {1e6, 3e6}) results.scenes[0].contenders[1].measured.add("samples", rate);
-    for (const int contender : {0, 1}) results.scenes[0].contenders[contender].measured.add("build_bytes", 0);
-    results.scenes[0].contenders[1].measured.add("build_bytes", 2e6);
+    BackendsResults results{.scenes = {{.name = "a, \"b\"", .targets = {{.name = "x"}, {.name = "y"}}}}};
+    for (const double rate : {1e6, 9e6, 2e6}) results.scenes[0].targets[0].measured.add("samples", rate);
+    for (const double rate : {1e6, 3e6}) results.scenes[0].targets[1].measured.add("samples", rate);
+    for (const int target : {0, 1}) results.scenes[0].targets[target].measured.add("build_bytes", 0);
+    results.scenes[0].targets[1].measured.add("build_bytes", 2e6);
 
     const auto json = nlohmann::json::parse(as_json(results));
     const auto& second = json["scenes"][0]["backends"][1]["measures"];

@@ -13,7 +13,7 @@ bool is_bench(std::vector<const char*> words) {
     return names_bench(static_cast<int>(words.size()), words.data());
 }
 
-TEST(BenchCommand, IsTheFirstWordThatIsNoConfiguration) {
+TEST(BenchCommand, IsTheFirstArgumentAfterConfigurationOptions) {
     EXPECT_TRUE(is_bench({"tessera", "bench"}));
     EXPECT_TRUE(is_bench({"tessera", "bench", "filters", "--quick"}));
     EXPECT_TRUE(is_bench({"tessera", "--config", "a.toml", "bench", "live"}));
@@ -24,8 +24,8 @@ TEST(BenchCommand, IsTheFirstWordThatIsNoConfiguration) {
     EXPECT_FALSE(is_bench({"tessera", "render", "bench"}));
 }
 
-// Beside this test there is no tessera-bench.
-TEST(BenchCommand, SaysHowToBuildAProgramThatIsNotThere) {
+// There is no tessera-bench in the folder of this test.
+TEST(BenchCommand, MissingProgramErrorSaysHowToBuildIt) {
     char name[] = "tessera", bench[] = "bench";
     char* words[] = {name, bench, nullptr};
     testing::internal::CaptureStderr();

@@ -59,7 +59,7 @@ TEST(BenchErrors, NoiseOfTheReferencesIsNotCounted) {
     EXPECT_NEAR(deviations / Trials / spread, 1.0, 0.35);
 }
 
-TEST(BenchErrors, AgainstExactReferencesItIsThePlainError) {
+TEST(BenchErrors, WithExactReferencesEqualsThePlainError) {
     const ReferencePair pair(truth(), truth());
     const SquaredErrors errors = squared_errors(shifted(truth(), 0.1f), pair);
     EXPECT_NEAR(errors.mse.value, 0.01, 1e-6);
@@ -68,9 +68,9 @@ TEST(BenchErrors, AgainstExactReferencesItIsThePlainError) {
     double expected = 0.0;
     for (const float r : truth().values) expected += 0.01 / (double(r) * r + pair.epsilon());
     EXPECT_NEAR(errors.relmse.all.value, expected / double(truth().values.size()), 1e-6);
-    EXPECT_EQ(seen_errors(truth(), pair).flip, 0.0);
-    EXPECT_NEAR(seen_errors(truth(), pair).ssim, 1.0, 1e-9);
-    EXPECT_GT(seen_errors(shifted(truth(), 0.1f), pair).flip, 0.0);
+    EXPECT_EQ(perceptual_errors(truth(), pair).flip, 0.0);
+    EXPECT_NEAR(perceptual_errors(truth(), pair).ssim, 1.0, 1e-9);
+    EXPECT_GT(perceptual_errors(shifted(truth(), 0.1f), pair).flip, 0.0);
 }
 
 TEST(BenchErrors, TheWorstThousandthIsTrimmed) {
@@ -94,7 +94,7 @@ TEST(BenchErrors, AConstantErrorDoesNotFlicker) {
     EXPECT_GT(temporal_relmse(first, shifted(second, 0.05f), before, after).all.value, 1e-3);
 }
 
-TEST(BenchErrors, ReferencesThatCannotBeComparedAreRefused) {
+TEST(BenchErrors, IncompatibleReferencesAreRejected) {
     EXPECT_THROW(ReferencePair(truth(), frame::Image(Width, Height - 1, 3)), Error);
     EXPECT_THROW(ReferencePair(frame::Image(4, 4, 1), frame::Image(4, 4, 1)), Error);
     frame::Image infinite = truth();
@@ -104,7 +104,7 @@ TEST(BenchErrors, ReferencesThatCannotBeComparedAreRefused) {
     EXPECT_THROW(squared_errors(frame::Image(2, 2, 3), pair), Error);
 }
 
-TEST(BenchCurve, AFilterWorthKTimesTheSamplesIsFoundToBeIt) {
+TEST(BenchCurve, EquivalentSppRecoversAKnownFactor) {
     std::vector<CurvePoint> points;
     for (const double n : {1.0, 4.0, 16.0, 64.0}) points.push_back({n, 3.0 / n});
     const ErrorCurve curve(points);
@@ -122,14 +122,14 @@ TEST(BenchCurve, AFilterWorthKTimesTheSamplesIsFoundToBeIt) {
     EXPECT_FALSE(curve.error_at(256.0).is_measured);
 }
 
-TEST(BenchCurve, OtherSlopesAreFollowedBetweenThePoints) {
+TEST(BenchCurve, InterpolatesOtherSlopesBetweenPoints) {
     const ErrorCurve curve({{4.0, 0.25}, {1.0, 1.0}, {16.0, 0.125}});  // any order; slopes -1 and -1/2
     EXPECT_NEAR(curve.cost_of(0.5).value, 2.0, 1e-9);
     EXPECT_NEAR(curve.cost_of(0.25 / std::sqrt(2.0)).value, 8.0, 1e-9);
     EXPECT_NEAR(curve.error_at(8.0).value, 0.25 / std::sqrt(2.0), 1e-9);
 }
 
-TEST(BenchCurve, WhatIsNotPositiveSaysNothing) {
+TEST(BenchCurve, NonPositiveValuesAreIgnored) {
     const ErrorCurve empty({{1.0, -0.1}, {4.0, 0.0}});
     EXPECT_EQ(empty.cost_of(0.1).value, 0.0);
     EXPECT_FALSE(empty.error_at(4.0).is_measured);

@@ -41,7 +41,7 @@ frame::FilmTile small_film() {
     return film;
 }
 
-TEST(BenchReferences, ComeBackAsTheyWereStored) {
+TEST(BenchReferences, RoundTrip) {
     const Folder folder;
     const ReferenceCache cache(folder.path());
     EXPECT_EQ(cache.load("a", "key").error().code(), ErrorCode::NotFound);
@@ -52,7 +52,7 @@ TEST(BenchReferences, ComeBackAsTheyWereStored) {
     EXPECT_EQ(film->counts, small_film().counts);
 }
 
-TEST(BenchReferences, OfSomethingElseAreNotTaken) {
+TEST(BenchReferences, OfOtherScenesAreRejected) {
     const Folder folder;
     const ReferenceCache cache(folder.path());
     cache.store("a", "key", small_film());
@@ -61,7 +61,7 @@ TEST(BenchReferences, OfSomethingElseAreNotTaken) {
     EXPECT_EQ(film.error().code(), ErrorCode::NotFound);
 }
 
-TEST(BenchReferences, DamagedFilesAreRefused) {
+TEST(BenchReferences, DamagedFilesAreRejected) {
     const Folder folder;
     const ReferenceCache cache(folder.path());
     cache.store("a", "key", small_film());
@@ -102,12 +102,12 @@ TEST(BenchReferences, AChangedByteNeverChangesThePicture) {
     EXPECT_TRUE(cache.load("a", "key"));
 }
 
-TEST(BenchPlan, UnderstandsListsOfFilters) {
+TEST(BenchPlan, ParsesFilterLists) {
     BenchOptions options;
     options.scenes = "cornell,grids";
     options.filters = "gauss:sigma=3,gauss";
     options.spp = "16,4,16";
-    const auto plan = understand(options, filter::catalog());
+    const auto plan = parse_options(options, filter::catalog());
     ASSERT_TRUE(plan) << plan.error().what();
     ASSERT_EQ(plan->filters.size(), 3u);
     EXPECT_EQ(to_text(plan->filters[0]), "none");
@@ -115,15 +115,15 @@ TEST(BenchPlan, UnderstandsListsOfFilters) {
     EXPECT_EQ(to_text(plan->filters[2]), "gauss");
     EXPECT_EQ(plan->sizes.front().spp, (std::vector<std::uint64_t>{4, 16}));
     options.filters.clear();
-    EXPECT_EQ(understand(options, filter::catalog())->filters.size(), filter::catalog().size());
+    EXPECT_EQ(parse_options(options, filter::catalog())->filters.size(), filter::catalog().size());
 }
 
-TEST(BenchPlan, NamesWhatIsWrong) {
+TEST(BenchPlan, ErrorsNameTheOption) {
     const auto message = [](const auto& change) {
         BenchOptions options;
         options.scenes = "cornell";
         change(options);
-        const auto plan = understand(options, filter::catalog());
+        const auto plan = parse_options(options, filter::catalog());
         return plan ? std::string() : std::string(plan.error().what());
     };
     EXPECT_EQ(message([](BenchOptions&) {}), "");
@@ -136,7 +136,7 @@ TEST(BenchPlan, NamesWhatIsWrong) {
               std::string::npos);
 }
 
-// Made-up measurements of two filters: `sharp` is worth 4 times the samples, `smear` has an error that stays.
+// Made-up measurements of two filters: `sharp` is equivalent to 4 times the samples, `smear` has an error that stays.
 BenchResults made_up() {
     BenchResults results{.software = "tessera", .threads = 2};
     results.filters = {{.text = "none", .name = "none", .is_consistent = true},
@@ -166,28 +166,28 @@ BenchResults made_up() {
     return results;
 }
 
-TEST(BenchAdvice, SaysWhatTheNumbersSay) {
+TEST(BenchAdvice, MatchesTheNumbers) {
     const BenchResults results = made_up();
     EXPECT_EQ(least_error(results.scenes[0], 1)->row->filter, "smear<&>");
     EXPECT_EQ(least_error(results.scenes[0], 16)->row->filter, "sharp");
     const auto found = convergence(results);
     ASSERT_EQ(found.size(), 3u);
-    EXPECT_TRUE(found[1].passes.empty());
+    EXPECT_TRUE(found[1].exceeded.empty());
     EXPECT_NEAR(found[1].worst, 0.25, 1e-9);
-    EXPECT_TRUE(found[2].passes.empty());  // 0.8 at 16 samples: not yet worse
+    EXPECT_TRUE(found[2].exceeded.empty());  // 0.8 at 16 samples: not yet worse
     EXPECT_EQ(found[2].worst_spp, 16u);
     EXPECT_EQ(standings(results, 16).front().filter, "sharp");
     EXPECT_NEAR(standings(results, 16).front().ratio, 4.0, 1e-9);
 }
 
-TEST(BenchAdvice, AFilterThatStaysBehindIsNamed) {
+TEST(BenchAdvice, NamesInferiorFilters) {
     BenchResults results = made_up();
     for (Row& row : results.scenes[0].sizes[0].rows) {
         if (row.filter == "smear<&>" && row.spp == 16) row.trimmed.to_unfiltered = 1.06;
     }
     const auto found = convergence(results);
-    ASSERT_EQ(found[2].passes.size(), 1u);
-    EXPECT_EQ(found[2].passes[0].spp, 16u);
+    ASSERT_EQ(found[2].exceeded.size(), 1u);
+    EXPECT_EQ(found[2].exceeded[0].spp, 16u);
     bool is_said = false;
     for (const std::string& sentence : advice(results)) {
         is_said |= sentence.find("Worse than no filter") != std::string::npos &&
@@ -196,7 +196,7 @@ TEST(BenchAdvice, AFilterThatStaysBehindIsNamed) {
     EXPECT_TRUE(is_said);
 }
 
-TEST(BenchHtml, HoldsEveryFilterAndNothingRaw) {
+TEST(BenchHtml, ContainsEveryFilterAndEscapesText) {
     const std::string html = as_html(made_up());
     for (const char* name : {">sharp<", ">none<", "smear&lt;&amp;&gt;"}) {
         EXPECT_NE(html.find(name), std::string::npos) << name;
@@ -212,7 +212,7 @@ TEST(BenchHtml, QuotesThePublishedTimes) {
     EXPECT_NE(html.find("sharp:way=long"), std::string::npos);
 }
 
-TEST(BenchSpeed, VariantsAreTheOtherMethods) {
+TEST(BenchSpeed, VariantsAreTheAlternativeMethods) {
     const auto everything = variants(*filter::parse_choice("pixel", filter::catalog()));
     std::vector<std::string> names;
     for (const filter::Choice& choice : everything) names.push_back(to_text(choice));
@@ -230,7 +230,7 @@ TEST(BenchHtml, Base64) {
     EXPECT_EQ(encoded("foobar"), "Zm9vYmFy");
 }
 
-TEST(BenchFilters, ASmallRunWritesItsReports) {
+TEST(BenchFilters, SmallRunWritesReports) {
     const Folder folder;
     BenchOptions options;
     options.output = folder.path().string();
@@ -241,7 +241,7 @@ TEST(BenchFilters, ASmallRunWritesItsReports) {
     options.large = "48x27";
     options.reference_spp = 16;
     options.jobs = 2;
-    auto plan = understand(options, filter::catalog());
+    auto plan = parse_options(options, filter::catalog());
     ASSERT_TRUE(plan) << plan.error().what();
     plan->path_views = 3;
     plan->measures_speed = false;
@@ -295,7 +295,7 @@ TEST(BenchFilters, ASmallRunWritesItsReports) {
               results->scenes[0].sizes[0].rows[1].errors.relmse.all.value);
 }
 
-TEST(BenchFilters, AStopEndsTheRun) {
+TEST(BenchFilters, StopEndsTheRun) {
     const Folder folder;
     BenchOptions options;
     options.output = folder.path().string();
@@ -304,7 +304,7 @@ TEST(BenchFilters, AStopEndsTheRun) {
     options.size = "32x18";
     options.large = "none";
     options.jobs = 1;
-    const auto plan = understand(options, filter::catalog());
+    const auto plan = parse_options(options, filter::catalog());
     ASSERT_TRUE(plan);
     std::stop_source stop;
     stop.request_stop();

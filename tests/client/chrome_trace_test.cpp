@@ -92,7 +92,7 @@ TEST(ChromeTrace, NoSliceEndsBeforeItBegins) {
     }
 }
 
-TEST(ChromeTrace, NothingIsAFileToo) {
+TEST(ChromeTrace, EmptyTraceIsValid) {
     EXPECT_EQ(slices_by_row(Json::parse(chrome_trace({}))).size(), 1u);
 }
 

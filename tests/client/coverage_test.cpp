@@ -1,4 +1,4 @@
-// What tessera coverage counts and tells.
+// Counting and reports of tessera coverage.
 #include "client/tools/coverage.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace tessera::tools {
 namespace {
 
-TEST(SampleGrid, IsAsSquareAsItCanBe) {
+TEST(SampleGrid, IsAsSquareAsPossible) {
     const auto grid = [](std::uint32_t samples) {
         const SampleGrid made = sample_grid(samples);
         return std::pair(made.across, made.down);
@@ -22,7 +22,7 @@ TEST(SampleGrid, IsAsSquareAsItCanBe) {
     EXPECT_EQ(grid(7), std::pair(7u, 1u));
 }
 
-TEST(SampleGrid, SpreadsAViewAndGathersItsPicture) {
+TEST(SampleGrid, EnlargesAViewAndAveragesItsPicture) {
     view::View view;
     view.width = 10;
     view.height = 6;
@@ -39,7 +39,7 @@ TEST(SampleGrid, SpreadsAViewAndGathersItsPicture) {
     EXPECT_EQ(means.values[1], (4 + 5 + 6 + 7 + 12 + 13 + 14 + 15) / 8.0f);
 }
 
-// Ten samples: five of 21, two of 20 and of 22, one of nothing. 23 is behind something.
+// Ten samples: five of 21, two of 20 and of 22, one without a hit. 23 is occluded.
 Coverage counted() {
     frame::FilmTile film({0, 0, 5, 2}, {0, 0}, {frame::Channel::Color, frame::Channel::ObjectIndex});
     const auto ids = film.plane(film.channels.first_plane(frame::Channel::ObjectIndex) + 1);
@@ -68,7 +68,7 @@ TEST(Coverage, IsSortedWithTiesById) {
     EXPECT_EQ(coverage.objects[2].name, "part 22");
 }
 
-TEST(Coverage, SharesAndBackgroundSumToOne) {
+TEST(Coverage, FractionsAndBackgroundSumToOne) {
     const auto json = nlohmann::json::parse(as_json(counted(), 2));
     double sum = json["background"]["share"];
     for (const auto& object : json["objects"]) sum += object["share"].get<double>();
@@ -81,21 +81,21 @@ TEST(Coverage, SharesAndBackgroundSumToOne) {
     EXPECT_NE(text.find("not seen: 1 object"), std::string::npos) << text;
 }
 
-TEST(Coverage, OptionsSpreadTheViewAndNeedNoPicture) {
+TEST(Coverage, OptionsEnlargeTheViewAndNeedNoOutput) {
     RenderOptions options;
     options.coverage = true;
     options.view.scene = "a.glb";
     options.view.size = "64x32";
-    const auto plan = understand(options);
+    const auto plan = parse_options(options);
     ASSERT_TRUE(plan) << plan.error().what();
     EXPECT_EQ(plan->view.view.renderer, view::Renderer::Coverage);
     EXPECT_EQ(plan->view.view.width, 256u);
     EXPECT_EQ(plan->job.stop.spp, 1u);
     EXPECT_FALSE(plan->view.view.channels.contains(frame::Channel::Color));
     options.spp = 4096;
-    EXPECT_TRUE(understand(options));
+    EXPECT_TRUE(parse_options(options));
     options.view.size = "1920x1080";
-    const auto large = understand(options);
+    const auto large = parse_options(options);
     ASSERT_FALSE(large);
     EXPECT_NE(std::string(large.error().what()).find("122880x69120"), std::string::npos);
 }

@@ -8,19 +8,20 @@ namespace tessera::tools {
 
 namespace {
 
-const Fact* find_fact(const Finding& finding, const std::string& key) {
-    const auto found = std::find_if(finding.facts.begin(), finding.facts.end(),
+const Fact* find_fact(const Diagnostic& diagnostic, const std::string& key) {
+    const auto found = std::find_if(diagnostic.facts.begin(), diagnostic.facts.end(),
                                     [&](const Fact& fact) { return fact.key == key; });
-    return found != finding.facts.end() ? &*found : nullptr;
+    return found != diagnostic.facts.end() ? &*found : nullptr;
 }
 
 TEST(Doctor, ListsVulkanDevicesWithWhatTheySupport) {
-    Findings findings;
-    examine_vulkan(findings);
-    ASSERT_FALSE(findings.empty());
-    const auto usable = std::find_if(findings.begin(), findings.end(),
-                                     [](const Finding& finding) { return finding.verdict == Verdict::Good; });
-    ASSERT_NE(usable, findings.end()) << "a software device is enough: " << findings.front().remedy;
+    Diagnostics diagnostics;
+    examine_vulkan(diagnostics);
+    ASSERT_FALSE(diagnostics.empty());
+    const auto usable =
+        std::find_if(diagnostics.begin(), diagnostics.end(),
+                     [](const Diagnostic& diagnostic) { return diagnostic.severity == Severity::Ok; });
+    ASSERT_NE(usable, diagnostics.end()) << "a software device is enough: " << diagnostics.front().remedy;
     EXPECT_TRUE(usable->subject.starts_with("Vulkan device ")) << usable->subject;
     EXPECT_TRUE(usable->remedy.empty()) << usable->remedy;
     for (const char* number : {"subgroup_size", "memory_bytes", "shared_memory_bytes"}) {
@@ -33,7 +34,7 @@ TEST(Doctor, ListsVulkanDevicesWithWhatTheySupport) {
     EXPECT_TRUE(std::holds_alternative<bool>(ray_query->value));
 }
 
-TEST(Findings, WriteBytesForPeople) {
+TEST(Diagnostics, FormatsByteCounts) {
     EXPECT_EQ(byte_text(0), "0 B");
     EXPECT_EQ(byte_text(1023), "1023 B");
     EXPECT_EQ(byte_text(32 << 10), "32.0 KiB");

@@ -13,7 +13,7 @@ std::string problem(std::string_view packet) {
     return head ? "" : head.error().what();
 }
 
-TEST(HeadPacket, PlacesAreReadAsTheyStand) {
+TEST(HeadPacket, ParsesPositions) {
     for (const char* text : {"0.25 1.75 -0.5", "head 0.25 1.75 -0.5", "  0.25\t+1.75  -5e-1 ",
                              "0.25 1.75 -.5\n", "head .25 1.75 -0.5\r\n"}) {
         const auto head = parse_head(text);
@@ -22,7 +22,7 @@ TEST(HeadPacket, PlacesAreReadAsTheyStand) {
     }
 }
 
-TEST(HeadPacket, TheQuaternionStartsWithItsRealPart) {
+TEST(HeadPacket, QuaternionStartsWithItsRealPart) {
     const auto head = parse_head("head 1 2 3 0 0 1 0");
     ASSERT_TRUE(head);
     EXPECT_EQ(head->position, glm::dvec3(1, 2, 3));
@@ -30,7 +30,7 @@ TEST(HeadPacket, TheQuaternionStartsWithItsRealPart) {
     EXPECT_NEAR(right.x, -1.0, 1e-15);
 }
 
-TEST(HeadPacket, QuaternionsOfAnyLengthBecomeUnit) {
+TEST(HeadPacket, QuaternionsAreNormalized) {
     for (const char* turn : {"4e-324 0 4e-324 0", "1e-200 0 1e-200 0", "0.001 0 0.001 0", "3 0 3 0",
                              "1e308 0 1e308 0", "1.7e308 0 1.7e308 0"}) {
         const auto head = parse_head("0 0 0 " + std::string(turn));
@@ -40,7 +40,7 @@ TEST(HeadPacket, QuaternionsOfAnyLengthBecomeUnit) {
     }
 }
 
-TEST(HeadPacket, WhatIsNoHeadIsRefusedWithTheReason) {
+TEST(HeadPacket, InvalidPacketsAreRejectedWithTheReason) {
     for (const char* text : {"", "\n", "head", "1", "1 2", "1 2 3 4", "1 2 3 4 5 6", "head head 1 2 3 4 5 6"})
         EXPECT_NE(problem(text), "") << text;
     EXPECT_NE(problem("1 2 3 4 5 6 7 8").find("more than 7"), std::string::npos);
@@ -55,7 +55,7 @@ TEST(HeadPacket, WhatIsNoHeadIsRefusedWithTheReason) {
     EXPECT_EQ(problem(std::string(507, ' ') + "1 2 3"), "");
 }
 
-TEST(HeadPacket, AFailureRepeatsNothingOfThePacket) {
+TEST(HeadPacket, ErrorsDoNotQuoteThePacket) {
     EXPECT_EQ(problem("\x1b[2J 2 3").find('\x1b'), std::string::npos);
 }
 
@@ -66,8 +66,8 @@ bool is_sound(const display::Head& head) {
            std::isfinite(head.position.z) && std::abs(length - 1.0) < 1e-12;
 }
 
-// Whatever comes: a sound head or a reason.
-TEST(HeadPacket, AnythingMayCome) {
+// Any input gives a valid head or an error.
+TEST(HeadPacket, AcceptsArbitraryBytes) {
     std::mt19937 random(11);
     const std::string likely = "0123456789+-.eE \t\n\rheadnaif";
     int read = 0;

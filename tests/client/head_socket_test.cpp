@@ -29,7 +29,7 @@ struct Tracker {
     }
 };
 
-TEST(HeadSocket, TheNewestThatCanBeReadWinsAndBadOnesAreCounted) {
+TEST(HeadSocket, NewestValidPacketWinsAndBadOnesAreCounted) {
     HeadSocket heads("127.0.0.1", 0);
     const Tracker tracker(heads);
     EXPECT_FALSE(heads.drain().newest);
@@ -49,7 +49,7 @@ TEST(HeadSocket, TheNewestThatCanBeReadWinsAndBadOnesAreCounted) {
     EXPECT_EQ(heads.drain().good, 0u);
 }
 
-TEST(HeadSocket, WaitsForAPacketOrTheLimit) {
+TEST(HeadSocket, WaitsForAPacketOrTheTimeout) {
     HeadSocket heads("127.0.0.1", 0);
     heads.wait(1ms);
     EXPECT_EQ(heads.drain().good, 0u);
@@ -59,7 +59,7 @@ TEST(HeadSocket, WaitsForAPacketOrTheLimit) {
     EXPECT_EQ(heads.drain().good, 1u);
 }
 
-TEST(HeadSocket, AddressesThatCannotBeHad) {
+TEST(HeadSocket, UnavailableAddressesAreErrors) {
     const auto code = [](const std::string& address, std::uint16_t port) {
         try {
             const HeadSocket heads(address, port);
@@ -70,7 +70,7 @@ TEST(HeadSocket, AddressesThatCannotBeHad) {
     };
     const HeadSocket first("127.0.0.1", 0);
     EXPECT_EQ(code("127.0.0.1", first.port()), ErrorCode::Unavailable);
-    EXPECT_EQ(code("192.0.2.1", 0), ErrorCode::Unavailable);  // of nobody: RFC 5737
+    EXPECT_EQ(code("192.0.2.1", 0), ErrorCode::Unavailable);  // not assigned: RFC 5737
     EXPECT_EQ(code("localhost", 0), ErrorCode::InvalidInput);
     EXPECT_EQ(code("", 0), ErrorCode::InvalidInput);
 }

@@ -25,7 +25,7 @@ struct Collecting : testing::Test {
     }
 };
 
-TEST_F(Collecting, PiecesBecomeAFrameOfBothEyes) {
+TEST_F(Collecting, AssemblesAStereoFrame) {
     EXPECT_FALSE(add(piece(1, view::Eye::Left, 0, 4, 6)));
     EXPECT_FALSE(add(piece(1, view::Eye::Left, 4, 2, 6)));
     const auto frame = add(piece(1, view::Eye::Right, 0, 6, 6));
@@ -35,7 +35,7 @@ TEST_F(Collecting, PiecesBecomeAFrameOfBothEyes) {
     EXPECT_EQ(frame->pictures[0].bytes.size(), 6u);
 }
 
-TEST_F(Collecting, AFrameThatComesAgainAfterABreakIsTakenFromItsBeginning) {
+TEST_F(Collecting, ResentFrameStartsOver) {
     EXPECT_FALSE(add(piece(7, view::Eye::Left, 0, 4, 6)));  // its rest is lost
     EXPECT_FALSE(add(piece(7, view::Eye::Left, 0, 6, 6)));  // also what came then
     EXPECT_FALSE(add(piece(7, view::Eye::Left, 0, 6, 6)));
@@ -46,7 +46,7 @@ TEST_F(Collecting, AFrameThatComesAgainAfterABreakIsTakenFromItsBeginning) {
     EXPECT_EQ(frame->pictures[1].eye, view::Eye::Right);
 }
 
-TEST_F(Collecting, WhatHasLostItsBeginningIsNoFrame) {
+TEST_F(Collecting, FrameWithoutItsBeginningIsDropped) {
     EXPECT_FALSE(add(piece(3, view::Eye::Right, 0, 6, 6)));
     EXPECT_FALSE(add(piece(3, view::Eye::Left, 4, 2, 6)));
     EXPECT_FALSE(add(piece(3, view::Eye::Left, 0, 6, 6)));
@@ -55,14 +55,14 @@ TEST_F(Collecting, WhatHasLostItsBeginningIsNoFrame) {
     EXPECT_EQ(frame->pictures[0].eye, view::Eye::Left);
 }
 
-TEST_F(Collecting, ANewerFrameDropsWhatIsNotComplete) {
+TEST_F(Collecting, NewerFrameDropsAnIncompleteOne) {
     EXPECT_FALSE(add(piece(1, view::Eye::Mono, 0, 4, 6)));
     const auto frame = add(piece(2, view::Eye::Mono, 0, 6, 6));
     ASSERT_TRUE(frame);
     EXPECT_EQ(frame->number, 2u);
 }
 
-TEST_F(Collecting, PiecesThatContradictEachOtherAreRefused) {
+TEST_F(Collecting, ContradictingPartsAreRejected) {
     EXPECT_FALSE(add(piece(1, view::Eye::Mono, 0, 4, 6)));
     EXPECT_FALSE(collector.add(piece(1, view::Eye::Mono, 5, 1, 6)));
     EXPECT_FALSE(add(piece(2, view::Eye::Mono, 0, 4, 6)));

@@ -30,26 +30,26 @@ Typed typed(std::vector<const char*> words) {
     return result;
 }
 
-TEST(FilterOption, DenoiseAloneTakesTheBestChoiceAndNotTheNextWord) {
+TEST(FilterOption, DenoiseWithoutValueUsesTheDefaultAndNotTheNextArgument) {
     const Typed result = typed({"--denoise", "room.glb"});
     EXPECT_FALSE(result.exit) << result.error;
     EXPECT_EQ(result.scene, "room.glb");
-    const auto filter = understand(result.filter);
+    const auto filter = parse_options(result.filter);
     ASSERT_TRUE(filter);
     EXPECT_TRUE(filter->starts_with("fdf")) << *filter;
 }
 
-TEST(FilterOption, BothNamesMeanTheSame) {
-    const auto denoised = understand(typed({"room.glb", "--denoise=gauss:sigma=3"}).filter);
-    const auto filtered = understand(typed({"room.glb", "--filter", "gauss:sigma=3"}).filter);
+TEST(FilterOption, DenoiseAndFilterAreSynonyms) {
+    const auto denoised = parse_options(typed({"room.glb", "--denoise=gauss:sigma=3"}).filter);
+    const auto filtered = parse_options(typed({"room.glb", "--filter", "gauss:sigma=3"}).filter);
     ASSERT_TRUE(denoised && filtered);
     EXPECT_EQ(*denoised, *filtered);
-    EXPECT_EQ(*understand(typed({"room.glb"}).filter), "");
+    EXPECT_EQ(*parse_options(typed({"room.glb"}).filter), "");
 }
 
-TEST(FilterOption, WhatIsWrongIsSaid) {
+TEST(FilterOption, ErrorsNameTheProblem) {
     const auto problem = [](std::vector<const char*> words) {
-        const auto filter = understand(typed(std::move(words)).filter);
+        const auto filter = parse_options(typed(std::move(words)).filter);
         return filter ? std::string() : std::string(filter.error().what());
     };
     EXPECT_NE(problem({"room.glb", "--denoise", "--filter", "fdf"}).find("give one of them"),
@@ -60,7 +60,7 @@ TEST(FilterOption, WhatIsWrongIsSaid) {
 
 TEST(DisplayTransformOptions, ExposureIsANumberOfStopsOrAuto) {
     const auto exposure = [](const char* text) {
-        return understand(typed({"room.glb", "--exposure", text}).display);
+        return parse_options(typed({"room.glb", "--exposure", text}).display);
     };
     EXPECT_FALSE(exposure("auto")->exposure);
     EXPECT_EQ(*exposure("1.5")->exposure, 1.5);
@@ -74,8 +74,8 @@ TEST(DisplayTransformOptions, ExposureIsANumberOfStopsOrAuto) {
 }
 
 TEST(DisplayTransformOptions, TransformsAreNamed) {
-    EXPECT_EQ(understand(typed({"room.glb"}).display)->view_transform, view::ViewTransform::Neutral);
-    EXPECT_EQ(understand(typed({"room.glb", "--view-transform", "agx"}).display)->view_transform,
+    EXPECT_EQ(parse_options(typed({"room.glb"}).display)->view_transform, view::ViewTransform::Neutral);
+    EXPECT_EQ(parse_options(typed({"room.glb", "--view-transform", "agx"}).display)->view_transform,
               view::ViewTransform::Agx);
     const Typed wrong = typed({"room.glb", "--view-transform", "agz"});
     EXPECT_EQ(wrong.exit.value_or(0), cli::ExitUsage);

@@ -1,4 +1,4 @@
-// Which exposure the pictures of a render have, whoever encodes them.
+// The exposure of rendered pictures, encoded by the client or the master.
 #include "client/tools/pictures.h"
 
 #include <gtest/gtest.h>
@@ -19,20 +19,20 @@ client::ViewResult lit(float radiance) {
     return result;
 }
 
-TEST(UsedTransform, IsMeasuredOfTheFirstPictureWithLight) {
+TEST(UsedTransform, IsMeasuredOnTheFirstNonBlackPicture) {
     const session::ViewRequest request;
     EXPECT_FALSE(used_transform({"a.png"}, request, lit(0.0f)).exposure) << "a sequence may fade in";
     EXPECT_NEAR(used_transform({"a.exr", "a.png"}, request, lit(0.72f)).exposure.value(), -2.0, 1e-5);
     EXPECT_FALSE(used_transform({"a.exr"}, request, lit(0.72f)).exposure) << "linear light needs none";
 }
 
-TEST(UsedTransform, KeepsWhatWasAskedFor) {
+TEST(UsedTransform, KeepsTheRequestedExposure) {
     session::ViewRequest request;
     request.display_transform = {view::ViewTransform::Agx, 1.5};
     EXPECT_EQ(used_transform({"a.png"}, request, lit(0.72f)), request.display_transform);
 }
 
-TEST(UsedTransform, IsThatOfTheMasterWhereItEncodedThePicture) {
+TEST(UsedTransform, IsTheMastersIfItEncodedThePicture) {
     client::ViewResult result = lit(0.72f);
     result.frame.picture.resize(8);
     result.frame.encoding = session::PictureEncoding::Png;

@@ -26,7 +26,7 @@ TEST(RenderedConsistency, NeverFivePercentWorseThanNoFilterInRenderedRooms) {
     options.large = "none";
     options.reference_spp = 512;
     options.jobs = 2;
-    auto plan = understand(options, filter::catalog());
+    auto plan = parse_options(options, filter::catalog());
     ASSERT_TRUE(plan) << plan.error().what();
     plan->path_spp.clear();
     plan->measures_speed = false;

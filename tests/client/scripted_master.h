@@ -11,12 +11,12 @@
 
 namespace tessera::client {
 
-// The master's end of one client, played by the test: expects messages in order and sends what it is told.
+// The master's end of a client connection, scripted by the test: expects messages in order and sends replies.
 class ScriptedMaster {
   public:
     explicit ScriptedMaster(net::LoopbackHub& hub) : channel_(hub.server()) {}
 
-    // The next control message but heartbeats; anything else than a T fails the test.
+    // The next control message except heartbeats; the test fails if it is not a T.
     template <class T>
     T expect() {
         return std::get<T>(next_control(Heartbeats::Skip));
@@ -31,7 +31,7 @@ class ScriptedMaster {
     void send(const wire::BulkMessage& message);
     void send_raw(net::Link link, net::Bytes bytes);
 
-    // The greeting up to the bulk link; returns what the client said.
+    // The handshake up to the bulk link; returns the client's hello.
     wire::Hello greet(const wire::Welcome& welcome = {.peer_number = 7,
                                                       .token = 70,
                                                       .epoch = 1,
@@ -42,12 +42,12 @@ class ScriptedMaster {
     enum class Heartbeats { Skip, Take };
     net::Message next(net::Link link);
     wire::ControlMessage next_control(Heartbeats heartbeats);
-    wire::BulkMessage next_bulk();  // but repeated tokens
+    wire::BulkMessage next_bulk();  // except repeated tokens
 
     std::unique_ptr<net::Channel> channel_;
     std::optional<net::PeerId> control_, bulk_;
     bool bulk_is_open_ = false;
-    std::vector<net::Message> kept_;  // of the other link, that came meanwhile
+    std::vector<net::Message> kept_;  // received from the other link
 };
 
 }  // namespace tessera::client

@@ -34,7 +34,7 @@ inline std::vector<scene::Entry> material(std::size_t name_length) {
     return {scene::Create{ObjectId{65536}, scene::Material{.name = std::string(name_length, 'm')}}};
 }
 
-// A session against a master that the test plays, over the loopback.
+// A session connected to a scripted master over loopback.
 class WithScriptedMaster : public testing::Test {
   protected:
     std::future<std::unique_ptr<Session>> connect(SessionSettings settings = {}) {
@@ -61,7 +61,7 @@ class WithScriptedMaster : public testing::Test {
         EXPECT_TRUE(std::holds_alternative<Joined>(joining.get()));
         return session;
     }
-    // Takes the request for a view.
+    // Receives the request for a view.
     wire::RequestView view_requested() {
         const auto request = master_.expect<wire::RequestView>();
         master_.send(wire::RequestDone{request.request, true, {}});

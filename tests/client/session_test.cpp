@@ -1,4 +1,4 @@
-// The session itself: greeting, joining, edits, breaks of the link.
+// Sessions: handshake, joining, edits, interruptions.
 #include "client/session.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ using std::chrono::milliseconds;
 
 class SessionTest : public WithScriptedMaster {};
 
-// Long, though each string is short.
+// Long in total, though each string is short.
 std::vector<scene::Entry> many_materials() {
     std::vector<scene::Entry> entries;
     for (std::uint64_t i = 0; i < 4000; ++i) {
@@ -21,19 +21,19 @@ std::vector<scene::Entry> many_materials() {
     return entries;
 }
 
-TEST_F(SessionTest, GreetsAsAClientAndOpensTheBulkLinkWithItsToken) {
-    auto session = connect({.name = "somebody", .host = "here", .pid = 42});
+TEST_F(SessionTest, SendsHelloAndOpensTheBulkLinkWithItsToken) {
+    auto session = connect({.name = "anna", .host = "here", .pid = 42});
     const wire::Hello hello = master_.greet();
     EXPECT_EQ(hello.protocol, wire::ProtocolVersion);
     EXPECT_EQ(hello.peer, wire::PeerKind::Client);
-    EXPECT_EQ(hello.name, "somebody");
+    EXPECT_EQ(hello.name, "anna");
     EXPECT_EQ(hello.pid, 42u);
     EXPECT_EQ(hello.resume_token, 0u);
     session.get().reset();
     EXPECT_EQ(master_.expect<wire::Goodbye>().units_sent.size(), 0u);
 }
 
-TEST_F(SessionTest, HeartbeatsGoOnWhileTheCallerIsAway) {
+TEST_F(SessionTest, HeartbeatsContinueWhileTheCallerIsIdle) {
     auto session = connect();
     master_.greet({.peer_number = 7,
                    .token = 70,
@@ -44,7 +44,7 @@ TEST_F(SessionTest, HeartbeatsGoOnWhileTheCallerIsAway) {
     EXPECT_GE(master_.count_heartbeats(milliseconds(400)), 5);
 }
 
-TEST_F(SessionTest, TellsThePlacesInTheQueueUntilTheSceneIsOpen) {
+TEST_F(SessionTest, ReportsQueuePositionsUntilTheSceneIsOpen) {
     const auto session = connected();
     std::vector<std::uint32_t> places;
     auto joining = in_background([&] {
@@ -64,7 +64,7 @@ TEST_F(SessionTest, TellsThePlacesInTheQueueUntilTheSceneIsOpen) {
     EXPECT_EQ(places, (std::vector<std::uint32_t>{2, 1}));
 }
 
-TEST_F(SessionTest, ABusyMasterIsAnOutcomeWhenNobodyWantsToWait) {
+TEST_F(SessionTest, BusyMasterIsAnOutcomeWithoutWaiting) {
     const auto session = connected();
     auto joining =
         in_background([&] { return session->join({.exclusive = true, .when_busy = WhenBusy::GiveUp}, {}); });
@@ -73,7 +73,7 @@ TEST_F(SessionTest, ABusyMasterIsAnOutcomeWhenNobodyWantsToWait) {
     EXPECT_EQ(std::get<Busy>(joining.get()).reason, "come back later");
 }
 
-TEST_F(SessionTest, ARefusalElsewhereIsAnError) {
+TEST_F(SessionTest, OtherRefusalsAreErrors) {
     const auto session = connected();
     auto joining = in_background([&] { return session->join({.exclusive = true}, {}); });
     master_.expect<wire::JoinScene>();
@@ -90,7 +90,7 @@ TEST_F(SessionTest, WaitingInTheQueueCanBeStopped) {
     EXPECT_TRUE(std::holds_alternative<Stopped>(joining.get()));
 }
 
-TEST_F(SessionTest, AShortEditGoesInOneMessage) {
+TEST_F(SessionTest, ShortEditIsOneMessage) {
     const auto session = joined();
     auto submitted = in_background([&] { return session->submit(material(10)); });
     const auto request = master_.expect<wire::SubmitEdit>();
@@ -103,7 +103,7 @@ TEST_F(SessionTest, AShortEditGoesInOneMessage) {
     EXPECT_EQ(result.version, (Version{1, 2}));
 }
 
-TEST_F(SessionTest, ALongEditGoesAsABlobInChunksThatTheMasterAsksFor) {
+TEST_F(SessionTest, LongEditIsABlobFetchedInChunks) {
     const auto session = joined();
     const auto entries = many_materials();
     auto submitted = in_background([&] { return session->submit(entries); });
@@ -125,7 +125,7 @@ TEST_F(SessionTest, ALongEditGoesAsABlobInChunksThatTheMasterAsksFor) {
     EXPECT_TRUE(submitted.get().accepted);
 }
 
-TEST_F(SessionTest, ServesTheBlobsOfItsStoreAndSaysWhichItLacks) {
+TEST_F(SessionTest, ServesBlobsAndReportsAbsentOnes) {
     const auto session = joined();
     const scene::BlobPtr blob = blobs_->insert(std::vector<std::byte>(100, std::byte{3}));
     master_.send(wire::BlobRequest{blob->hash(), 40});
@@ -136,7 +136,7 @@ TEST_F(SessionTest, ServesTheBlobsOfItsStoreAndSaysWhichItLacks) {
     EXPECT_EQ(master_.expect_bulk<wire::BlobAbsent>().hash, Hash256{});
 }
 
-TEST_F(SessionTest, AnEditThatIsNotTakenComesBackWithReasons) {
+TEST_F(SessionTest, RejectedEditReturnsTheReasons) {
     const auto session = joined();
     auto submitted = in_background([&] { return session->submit(material(1)); });
     master_.expect<wire::SubmitEdit>();
@@ -147,19 +147,19 @@ TEST_F(SessionTest, AnEditThatIsNotTakenComesBackWithReasons) {
     EXPECT_EQ(result.problems, std::vector<std::string>{"no such id"});
 }
 
-TEST_F(SessionTest, AMasterThatNeverAnswersIsUnavailable) {
+TEST_F(SessionTest, MasterWithoutAnswerIsUnavailable) {
     auto session = connect({.connect_limit = milliseconds(200)});
     expect_error(session, ErrorCode::Unavailable);
 }
 
-TEST_F(SessionTest, AMasterThatRefusesSaysWhy) {
+TEST_F(SessionTest, RefusalHasAReason) {
     auto session = connect();
     master_.expect<wire::Hello>();
     master_.send(wire::Refusal{"another protocol"});
     expect_error(session, ErrorCode::Refused);
 }
 
-TEST_F(SessionTest, AnEditUnderWayIsSentAgainAfterABreak) {
+TEST_F(SessionTest, UnansweredEditIsResentAfterReconnect) {
     const auto session = joined({}, quick_welcome());
     auto submitted = in_background([&] { return session->submit(material(3)); });
     EXPECT_EQ(master_.expect<wire::SubmitEdit>().edit.sequence, 1u);
@@ -169,7 +169,7 @@ TEST_F(SessionTest, AnEditUnderWayIsSentAgainAfterABreak) {
     EXPECT_TRUE(submitted.get().accepted);
 }
 
-TEST_F(SessionTest, AnUnknownPeerGreetsAgainWithItsToken) {
+TEST_F(SessionTest, UnknownPeerSendsHelloAgainWithItsToken) {
     auto connecting = connect();
     wire::Welcome welcome = quick_welcome();
     welcome.missed_heartbeats = 1000;
@@ -181,7 +181,7 @@ TEST_F(SessionTest, AnUnknownPeerGreetsAgainWithItsToken) {
     EXPECT_EQ(reconnects_, 0);
 }
 
-TEST_F(SessionTest, NonsenseOnEitherLinkIsIgnored) {
+TEST_F(SessionTest, MalformedMessagesAreIgnored) {
     const auto session = connected();
     for (const std::size_t length : {0u, 1u, 7u, 64u, 5000u}) {
         master_.send_raw(net::Link::Control, net::Bytes(length, std::byte{0xA5}));

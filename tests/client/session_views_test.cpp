@@ -1,4 +1,4 @@
-// Views of a session: tiles in any order, stops, refusals, and what becomes of them when the master goes.
+// Views of a session: tiles in any order, stops, refusals, and lost masters.
 #include <gtest/gtest.h>
 
 #include "client/render.h"
@@ -44,7 +44,7 @@ wire::ViewDone done(const wire::RequestView& request, session::ViewSummary summa
     return {.number = request.number, .frame = FrameNumber, .summary = std::move(summary)};
 }
 
-// A tile whose values say where they belong.
+// A tile whose values encode their pixel.
 wire::FrameTile tile(std::uint32_t index, std::uint32_t count, Rect rect) {
     wire::FrameTile tile{.frame = FrameNumber,
                          .index = index,
@@ -60,7 +60,7 @@ wire::FrameTile tile(std::uint32_t index, std::uint32_t count, Rect rect) {
     return tile;
 }
 
-TEST_F(SessionViewsTest, PutsTheTilesTogetherInAnyOrderAlsoBeforeTheSummary) {
+TEST_F(SessionViewsTest, AssemblesTilesInAnyOrderAlsoBeforeTheSummary) {
     const auto session = joined();
     std::vector<std::uint64_t> heard;
     auto rendered = in_background([&] {
@@ -96,8 +96,8 @@ TEST_F(SessionViewsTest, PutsTheTilesTogetherInAnyOrderAlsoBeforeTheSummary) {
     EXPECT_FALSE(end.deliver) << "the master may forget it";
 }
 
-// More than the link takes at a time.
-TEST_F(SessionViewsTest, NoTileOfAFloodIsLost) {
+// More than the link can queue.
+TEST_F(SessionViewsTest, NoTileOfABurstIsLost) {
     const auto session = joined();
     session::ViewRequest wanted = small_view();
     wanted.view.window = {0, 0, 30, 30};
@@ -116,7 +116,7 @@ TEST_F(SessionViewsTest, NoTileOfAFloodIsLost) {
     EXPECT_EQ(rendered.get().film()->nonfinite_samples, 900u);
 }
 
-TEST_F(SessionViewsTest, AStopAsksForWhatIsThere) {
+TEST_F(SessionViewsTest, StopRequestsTheSamplesMergedSoFar) {
     const auto session = joined();
     std::stop_source stop;
     auto rendered = in_background([&] { return render(*session, small_view(), {}, stop.get_token()); });
@@ -134,7 +134,7 @@ TEST_F(SessionViewsTest, AStopAsksForWhatIsThere) {
     EXPECT_EQ(result.film()->counts[0], 2u);
 }
 
-TEST_F(SessionViewsTest, AStopBeforeTheRequestFollowsIt) {
+TEST_F(SessionViewsTest, StopBeforeTheRequestIsSentAfterIt) {
     const auto session = joined();
     std::stop_source stop;
     stop.request_stop();
@@ -146,7 +146,7 @@ TEST_F(SessionViewsTest, AStopBeforeTheRequestFollowsIt) {
     EXPECT_FALSE(rendered.get().film());
 }
 
-TEST_F(SessionViewsTest, AViewThatIsRefusedIsAnError) {
+TEST_F(SessionViewsTest, RefusedViewIsAnError) {
     const auto session = joined();
     auto rendered = in_background([&] { return render(*session, small_view(), {}, {}); });
     const auto request = master_.expect<wire::RequestView>();
@@ -154,8 +154,8 @@ TEST_F(SessionViewsTest, AViewThatIsRefusedIsAnError) {
     expect_error(rendered, ErrorCode::Refused);
 }
 
-// Outside of the window, twice the same place, fewer pixels than it has, another count than the header's.
-TEST_F(SessionViewsTest, TilesThatDoNotFitAreAnError) {
+// Outside of the window, duplicate position, too few pixels, count differs from the header.
+TEST_F(SessionViewsTest, InconsistentTilesAreAnError) {
     const std::vector<std::vector<wire::FrameTile>> attacks{
         {tile(0, 1, {0, 0, 4, 3})}, {tile(0, 1, {5, 3, 2, 1})},
         {tile(0, 1, {1, 1, 1, 1})}, {tile(0, 1, {2, 1, 4, 2})},
@@ -181,8 +181,8 @@ TEST_F(SessionViewsTest, TilesThatDoNotFitAreAnError) {
     }
 }
 
-// A header that promises more than any frame has is no message at all; memory is taken for what has come.
-TEST_F(SessionViewsTest, AHeaderThatLiesCostsNoMemory) {
+// A header with impossible sizes is rejected; memory is allocated for received data only.
+TEST_F(SessionViewsTest, WrongHeaderAllocatesNoMemory) {
     const auto session = joined({.lost_limit = milliseconds(1000)});
     auto rendered = in_background([&] { return render(*session, small_view(), {}, {}); });
     const auto request = view_requested();
@@ -197,7 +197,7 @@ TEST_F(SessionViewsTest, AHeaderThatLiesCostsNoMemory) {
     expect_error(rendered, ErrorCode::Unavailable);
 }
 
-TEST_F(SessionViewsTest, AMasterThatLeavesForGoodEndsTheCall) {
+TEST_F(SessionViewsTest, MasterThatStopsEndsTheCall) {
     const auto session = joined({.lost_limit = milliseconds(500)});
     auto rendered = in_background([&] { return render(*session, small_view(), {}, {}); });
     (void)view_requested();
@@ -212,12 +212,12 @@ TEST_F(SessionViewsTest, AMasterThatLeavesForGoodEndsTheCall) {
     }
 }
 
-TEST_F(SessionViewsTest, AfterSilenceItComesBackAsTheSameAndTheFrameGoesOn) {
+TEST_F(SessionViewsTest, AfterATimeoutItResumesTheSessionAndTheFrameContinues) {
     std::vector<bool> away;
     const auto session = joined({.on_away = [&](bool is_away) { away.push_back(is_away); }}, quick_welcome());
     auto rendered = in_background([&] { return render(*session, small_view(), {}, {}); });
     (void)view_requested();
-    // Nothing is said: the next word is a greeting, over new sockets.
+    // No message: the next one is a hello, over new sockets.
     const wire::Hello again = master_.greet(quick_welcome());
     EXPECT_EQ(again.resume_token, 70u);
     EXPECT_GE(reconnects_, 1);
@@ -230,8 +230,8 @@ TEST_F(SessionViewsTest, AfterSilenceItComesBackAsTheSameAndTheFrameGoesOn) {
     EXPECT_EQ(away, (std::vector{true, false}));
 }
 
-// It was started anew, with what it had written down: the scene is there, and the view is requested again.
-TEST_F(SessionViewsTest, AMasterThatWasStartedAnewWithTheSceneGoesOnWithTheFrame) {
+// It was restarted with its journal: the scene is restored, and the view is requested again.
+TEST_F(SessionViewsTest, RestartedMasterWithTheSceneContinuesTheFrame) {
     const auto session = joined({}, quick_welcome());
     submit_an_edit(*session);
     auto rendered = in_background([&] { return render(*session, small_view(), {}, {}); });
@@ -249,7 +249,7 @@ TEST_F(SessionViewsTest, AMasterThatWasStartedAnewWithTheSceneGoesOnWithTheFrame
     EXPECT_EQ(rendered.get().summary.samples, 3u);
 }
 
-TEST_F(SessionViewsTest, AMasterThatHasLostTheSceneEndsTheFrame) {
+TEST_F(SessionViewsTest, MasterThatLostTheSceneEndsTheFrame) {
     const auto session = joined({}, quick_welcome());
     submit_an_edit(*session);
     auto rendered = in_background([&] { return render(*session, small_view(), {}, {}); });

@@ -1,4 +1,4 @@
-// Values of options, typed well and badly.
+// Parsing of option values, valid and invalid.
 #include "client/tools/values.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ TEST(Values, Sizes) {
     }
 }
 
-TEST(Values, LayersAreBitsOfAMask) {
+TEST(Values, LayersAreAMask) {
     EXPECT_EQ(*parse_layers("0"), 1u);
     EXPECT_EQ(*parse_layers("0,2,31"), 0x80000005u);
     for (const char* text : {"", "32", "-1", "1,", ",1", "1 2", "0x1", "all", "4294967296"}) {
@@ -23,7 +23,7 @@ TEST(Values, LayersAreBitsOfAMask) {
     }
 }
 
-TEST(Values, CropsLieInsideThePicture) {
+TEST(Values, CropsMustBeInsideThePicture) {
     const Size picture{100, 50};
     EXPECT_EQ(*parse_crop("10,20,30,30", picture), (Rect{10, 20, 30, 30}));
     EXPECT_EQ(*parse_crop("0,0,100,50", picture), (Rect{0, 0, 100, 50}));
@@ -62,14 +62,14 @@ TEST(Values, NodesToWaitFor) {
     }
 }
 
-TEST(Values, PixelsLieInsideThePicture) {
+TEST(Values, PixelsMustBeInsideThePicture) {
     EXPECT_EQ(parse_pixel("99,49", {100, 50})->y, 49u);
     for (const char* text : {"100,0", "0,50", "-1,0", "5", "5,5,5", ""}) {
         EXPECT_FALSE(parse_pixel(text, {100, 50})) << text;
     }
 }
 
-TEST(Values, FailuresNameTheTextAndShowOneThatWorks) {
+TEST(Values, ErrorsQuoteTheTextAndShowAValidOne) {
     const std::string message = parse_duration("800").error().what();
     EXPECT_NE(message.find("'800'"), std::string::npos) << message;
     EXPECT_NE(message.find("800ms"), std::string::npos) << message;

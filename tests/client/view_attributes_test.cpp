@@ -1,4 +1,4 @@
-// What an EXR keeps of its view: it comes back to the bit, and what is damaged is named.
+// View attributes of an EXR: exact round trip, and errors for damaged ones.
 #include "client/tools/view_attributes.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ view::View moving_view() {
     return view;
 }
 
-TEST(ViewAttributes, KeepACameraItsLensAndItsMotion) {
+TEST(ViewAttributes, RoundTripACameraWithLensAndMotion) {
     const view::View written = moving_view();
     const auto read = view_from_attributes(view_attributes(written));
     ASSERT_TRUE(read) << read.error().what();
@@ -31,8 +31,8 @@ TEST(ViewAttributes, KeepACameraItsLensAndItsMotion) {
     EXPECT_EQ(read->path_class, written.path_class);
 }
 
-// A file of a camera that stands still says no more than it did before there were others.
-TEST(ViewAttributes, SayNothingOfWhatIsNotThere) {
+// A static pinhole camera writes no motion or lens attributes.
+TEST(ViewAttributes, OmitDefaults) {
     const auto attributes = view_attributes({});
     EXPECT_EQ(attributes.size(), 2u);
     const auto read = view_from_attributes(attributes);
@@ -41,7 +41,7 @@ TEST(ViewAttributes, SayNothingOfWhatIsNotThere) {
     EXPECT_TRUE(read->camera.is_pinhole());
 }
 
-TEST(ViewAttributes, NameWhatIsDamaged) {
+TEST(ViewAttributes, ErrorsNameTheDamagedAttribute) {
     const auto good = view_attributes(moving_view());
     for (const char* name : {"tessera.camera.pose", "tessera.camera.optics", "tessera.camera.motion"}) {
         const std::string whole = good.at(name);

@@ -1,4 +1,4 @@
-// What render and probe have in common: views from options, cameras by name and number, the progress line.
+// Shared by render and probe: views from options, cameras by name and number, the progress line.
 #include "client/tools/view_options.h"
 
 #include <gtest/gtest.h>
@@ -20,10 +20,10 @@ TEST(Cameras, AreChosenByNameBeforeNumberAndFirstByDefault) {
     EXPECT_EQ(choose_camera(cameras(), std::nullopt)->name, "front");
     EXPECT_EQ(choose_camera(cameras(), "Top view")->name, "Top view");
     EXPECT_EQ(choose_camera(cameras(), "1")->name, "Top view");
-    EXPECT_EQ(choose_camera(cameras(), "0")->name, "0");  // the name stands over the number
+    EXPECT_EQ(choose_camera(cameras(), "0")->name, "0");  // names take precedence over numbers
 }
 
-TEST(Cameras, AMissingOneIsAFailureThatListsAllAndNamesTheNearest) {
+TEST(Cameras, UnknownCameraErrorListsAllAndSuggestsTheNearest) {
     const auto missing = choose_camera(cameras(), "frnt");
     ASSERT_FALSE(missing);
     const std::string message = missing.error().what();
@@ -34,12 +34,12 @@ TEST(Cameras, AMissingOneIsAFailureThatListsAllAndNamesTheNearest) {
     }
 }
 
-TEST(ViewOptions, BecomeAView) {
+TEST(ViewOptions, AreConvertedToAView) {
     ViewOptions options{
         .scene = "a.glb", .size = "64x32", .bounces = 3, .pixel_filter = "gaussian", .seed = 9};
     options.crop = "8,4,16,8";
     options.background = "0.25,0.5,1";
-    const auto plan = understand(options);
+    const auto plan = parse_options(options);
     ASSERT_TRUE(plan) << plan.error().what();
     EXPECT_EQ(plan->view.width, 64u);
     EXPECT_EQ(plan->view.window, (Rect{8, 4, 16, 8}));
@@ -51,30 +51,30 @@ TEST(ViewOptions, BecomeAView) {
     EXPECT_NEAR(view.camera.right / view.camera.top, 2.0, 1e-12);
 }
 
-TEST(ViewOptions, AFailureNamesTheOption) {
+TEST(ViewOptions, ErrorsNameTheOption) {
     ViewOptions options{.scene = "a.glb"};
     options.environment_strength = -1.0;
-    EXPECT_NE(std::string(understand(options).error().what()).find("--env-strength"), std::string::npos);
+    EXPECT_NE(std::string(parse_options(options).error().what()).find("--env-strength"), std::string::npos);
     options = {.scene = "a.glb", .size = "12"};
-    EXPECT_NE(std::string(understand(options).error().what()).find("--size"), std::string::npos);
+    EXPECT_NE(std::string(parse_options(options).error().what()).find("--size"), std::string::npos);
     options = {.scene = "a.glb"};
     options.crop = "0,0,99999,1";
-    EXPECT_NE(std::string(understand(options).error().what()).find("--crop"), std::string::npos);
+    EXPECT_NE(std::string(parse_options(options).error().what()).find("--crop"), std::string::npos);
 }
 
-TEST(ViewOptions, MorePixelsThanAMasterTakesAreRefusedHere) {
+TEST(ViewOptions, TooManyPixelsAreRejected) {
     ViewOptions options{.scene = "a.glb", .size = "16385x16384"};
-    EXPECT_NE(std::string(understand(options).error().what()).find("--size: more than 2^28"),
+    EXPECT_NE(std::string(parse_options(options).error().what()).find("--size: more than 2^28"),
               std::string::npos);
     options.crop = "0,0,16384,16384";
-    EXPECT_TRUE(understand(options));
+    EXPECT_TRUE(parse_options(options));
     RenderOptions coverage;
     coverage.coverage = true;
     coverage.view = {.scene = "a.glb", .size = "4000x4000"};
     coverage.spp = 64;
-    const auto plan = understand(coverage);
+    const auto plan = parse_options(coverage);
     ASSERT_FALSE(plan);
-    EXPECT_NE(std::string(plan.error().what()).find("--spp: every sample is a pixel"), std::string::npos);
+    EXPECT_NE(std::string(plan.error().what()).find("--spp: each sample is a pixel"), std::string::npos);
 }
 
 RenderOptions sequence_options() {
@@ -85,57 +85,57 @@ RenderOptions sequence_options() {
     return options;
 }
 
-std::string complaint(const RenderOptions& options) {
-    const auto plan = understand(options);
+std::string error_text(const RenderOptions& options) {
+    const auto plan = parse_options(options);
     return plan ? "none" : plan.error().what();
 }
 
-TEST(Sequences, StartAtTheFirstFramesTime) {
+TEST(Sequences, StartAtTheTimeOfTheFirstFrame) {
     RenderOptions options = sequence_options();
-    auto plan = understand(options);
+    auto plan = parse_options(options);
     ASSERT_TRUE(plan) << plan.error().what();
     EXPECT_EQ(plan->sequence->frames.first, 12u);
     EXPECT_EQ(plan->sequence->frames.last, 47u);
     EXPECT_EQ(plan->view.import.at, 0.5) << "24 frames per second";
     EXPECT_EQ(plan->view.import.motion, import::Motion::Sequence);
     options.fps = 48.0;
-    EXPECT_EQ(understand(options)->view.import.at, 0.25);
+    EXPECT_EQ(parse_options(options)->view.import.at, 0.25);
     options.frames.reset();
     options.fps.reset();
-    EXPECT_FALSE(understand(options)->sequence);
+    EXPECT_FALSE(parse_options(options)->sequence);
 }
 
-TEST(Sequences, OptionsThatDoNotFitAreRefused) {
+TEST(Sequences, ConflictingOptionsAreRejected) {
     const auto contains = [](const std::string& text, const char* part) {
         return text.find(part) != std::string::npos ? testing::AssertionSuccess()
                                                     : testing::AssertionFailure() << text;
     };
     RenderOptions options = sequence_options();
     options.outputs = {"out.%04d.png", "out.exr"};
-    EXPECT_TRUE(contains(complaint(options), "'out.exr' has no place for the number of a frame"));
+    EXPECT_TRUE(contains(error_text(options), "'out.exr' has no placeholder for the frame number"));
     for (const char* frames : {"3:2", "a:b", "1:2:3", "", "-1:2", "0:10000000"}) {
         options = sequence_options();
         options.frames = frames;
-        EXPECT_TRUE(contains(complaint(options), "--frames")) << frames;
+        EXPECT_TRUE(contains(error_text(options), "--frames")) << frames;
     }
     options = sequence_options();
     options.view.at = 1.0;
-    EXPECT_TRUE(contains(complaint(options), "--at and --frames exclude"));
+    EXPECT_TRUE(contains(error_text(options), "--at and --frames exclude"));
     options = sequence_options();
     options.fps = 0.0;
-    EXPECT_TRUE(contains(complaint(options), "--fps"));
+    EXPECT_TRUE(contains(error_text(options), "--fps"));
     options = sequence_options();
     options.frames.reset();
     options.skip_existing = true;
-    EXPECT_TRUE(contains(complaint(options), "--frames A:B"));
+    EXPECT_TRUE(contains(error_text(options), "--frames A:B"));
     options.skip_existing = false;
     options.view.animation = "walk";
-    EXPECT_TRUE(contains(complaint(options), "--animation"));
+    EXPECT_TRUE(contains(error_text(options), "--animation"));
     options.view.at = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_TRUE(contains(complaint(options), "--at"));
+    EXPECT_TRUE(contains(error_text(options), "--at"));
 }
 
-TEST(Sequences, NamesOfFrames) {
+TEST(Sequences, FrameNames) {
     EXPECT_EQ(frame_name("out.%04d.exr", 12), "out.0012.exr");
     EXPECT_EQ(frame_name("out.%04d.exr", 123456), "out.123456.exr");
     EXPECT_EQ(frame_name("%d/a.png", 7), "7/a.png");
@@ -145,7 +145,7 @@ TEST(Sequences, NamesOfFrames) {
     }
 }
 
-TEST(ProgressText, TellsShareSamplesRaysAndTimeLeft) {
+TEST(ProgressText, ShowsFractionSamplesRaysAndTimeLeft) {
     session::ViewRequest request;
     request.view.window = {0, 0, 10, 10};
     request.stop.spp = 64;
@@ -158,7 +158,7 @@ TEST(ProgressText, TellsShareSamplesRaysAndTimeLeft) {
     EXPECT_EQ(describe(progress, request), " 25 %   16 of 64 spp   2.0 Mrays/s   2 nodes   30 s left");
 }
 
-TEST(ProgressText, BearsAStartWithoutAnySample) {
+TEST(ProgressText, HandlesTheStartWithoutSamples) {
     session::ViewRequest request;
     request.view.window = {};
     request.stop.spp = 1;

@@ -7,7 +7,7 @@
 
 namespace tessera::test {
 
-// Two triangles that coincide, under one transform. Ids from `first` on; the arrays go to `blobs`.
+// Two coincident triangles under one transform. Ids from `first` on; the arrays are put into `blobs`.
 std::vector<scene::Entry> scene_entries(ObjectId first, scene::BlobStore& blobs);
 
 }  // namespace tessera::test

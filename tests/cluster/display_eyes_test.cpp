@@ -16,7 +16,7 @@ TEST_F(Displays, BothEyesHaveTheSameSamplesAndCamerasASeparationApart) {
     wall.outputs[0].stereo = display::Stereo::SideBySide;
     wall.outputs.pop_back();
     ann->open_display(wall);
-    Shower& left = show("left");
+    OutputClient& left = show("left");
     until([&] { return all_show(4); });
     const auto& pictures = left.frames.back().pictures;
     ASSERT_EQ(pictures.size(), 2u);
@@ -38,10 +38,10 @@ TEST_F(Displays, FiltersNeverBleedAcrossEyesAndOutputs) {
     wall.filter = "bilateral";
     wall.outputs[0].stereo = display::Stereo::SideBySide;
     ann->open_display(wall);
-    Shower& both = show("left");
+    OutputClient& both = show("left");
     until([&] { return all_show(4); });
     const client::OutputFrame together = both.frames.back();
-    // Each eye alone, as an output of its own: the same bytes.
+    // Each eye as a separate output: the same bytes.
     for (const auto& [stereo, eye] :
          {std::pair(display::Stereo::Left, 0), std::pair(display::Stereo::Right, 1)}) {
         wall.outputs[0].stereo = stereo;
@@ -78,7 +78,7 @@ TEST_F(Displays, LayersAreSwitchedAtRunTime) {
     wall.layers = {{"model", view::Renderer::PathTracing, 1, true},
                    {"gui", view::Renderer::Whitted, 2, true}};
     ann->open_display(wall);
-    Shower& left = show("left");
+    OutputClient& left = show("left");
     until([&] { return all_show(4); });
     const std::vector<std::byte> with_gui = left.frames.back().pictures[0].bytes;
     const auto switched = [&](std::uint32_t shown) {
@@ -88,7 +88,7 @@ TEST_F(Displays, LayersAreSwitchedAtRunTime) {
         return left.frames.back().pictures[0].bytes;
     };
     EXPECT_TRUE(switched(1) != with_gui) << "the model alone";
-    EXPECT_TRUE(switched(3) == with_gui) << "back again, to the bit";
+    EXPECT_TRUE(switched(3) == with_gui) << "the same bits again";
 }
 
 // Light of one colour over the part of the picture from `left` to `right` of it, -1 to 1, at a distance.
@@ -106,8 +106,8 @@ std::vector<Entry> shining_quad(client::Session& editor, BlobStore& blobs, const
                                   .positions = reference(*blobs.insert(std::as_bytes(std::span(corners))))}}};
 }
 
-// The later layer has something in front of the first and something behind.
-TEST_F(Displays, TheNearerLayerIsSeenWhicheverItIs) {
+// The later layer is partly in front of the first and partly behind it.
+TEST_F(Displays, LayersAreComposedByDepth) {
     cluster.add_node("embree");
     const ObjectId model = ann->new_id(), gui = ann->new_id();
     ObjectId red, green, blue;
@@ -123,7 +123,7 @@ TEST_F(Displays, TheNearerLayerIsSeenWhicheverItIs) {
     wall.layers = {{"model", view::Renderer::PathTracing, 1, true},
                    {"gui", view::Renderer::PathTracing, 2, true}};
     ann->open_display(wall);
-    Shower& left = show("left");
+    OutputClient& left = show("left");
     until([&] { return all_show(4); });
     const auto pixel = [&](std::size_t x) {
         std::array<int, 3> rgb{};
@@ -135,8 +135,8 @@ TEST_F(Displays, TheNearerLayerIsSeenWhicheverItIs) {
     EXPECT_EQ(pixel(48), (std::array{255, 0, 0})) << "the menu is behind";
 }
 
-// A stage is of the layers that were shown when it began, whatever is asked for while it goes on.
-TEST_F(Displays, LayersMaySwitchFasterThanPicturesCome) {
+// A pass renders the layers that were shown when it began, whatever is requested meanwhile.
+TEST_F(Displays, LayersMaySwitchFasterThanPicturesAreRendered) {
     cluster.add_node("null", {}, 20us);
     wall.layers = {{"model", view::Renderer::PathTracing, 1, true},
                    {"gui", view::Renderer::PathTracing, 2, false}};
@@ -146,14 +146,14 @@ TEST_F(Displays, LayersMaySwitchFasterThanPicturesCome) {
     show("right");
     for (const std::uint32_t shown : {3u, 1u, 3u, 2u, 3u, 1u, 2u, 3u, 1u, 3u}) {
         for (const std::uint32_t again : {shown, 3u, 1u, shown}) ann->adjust_display({.shown_layers = again});
-        const std::size_t before = showers["left"].frames.size();
-        until([&] { return showers["left"].frames.size() > before; });
+        const std::size_t before = output_clients["left"].frames.size();
+        until([&] { return output_clients["left"].frames.size() > before; });
     }
     until([&] { return all_show(4); });
     EXPECT_EQ(status().display.outputs.at(0).state, session::OutputState::Locked);
 }
 
-TEST_F(Displays, TheDifferenceOfOneEyeIsNotAskedFor) {
+TEST_F(Displays, MonoHasNoEyeDifference) {
     cluster.add_node("embree");
     wall.outputs[1].stereo = display::Stereo::Left;
     wall.stereo_difference = true;
@@ -162,7 +162,7 @@ TEST_F(Displays, TheDifferenceOfOneEyeIsNotAskedFor) {
     show("right");
     until([&] { return all_show(4); });
     for (const std::string& event : cluster.events())
-        EXPECT_EQ(event.find("left out"), std::string::npos) << event;
+        EXPECT_EQ(event.find("is skipped"), std::string::npos) << event;
 }
 
 // One back-end, so one scene, for both eyes and all outputs.
@@ -178,7 +178,7 @@ TEST_F(Displays, OneSceneCopyForAllEyes) {
     show("right");
     until([&] { return all_show(4); });
     EXPECT_EQ(made, 1);
-    EXPECT_EQ(showers["left"].frames.back().pictures.size(), 2u);
+    EXPECT_EQ(output_clients["left"].frames.back().pictures.size(), 2u);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ display::Output part_of_wall(const std::string& name, double left, double right)
     return output;
 }
 
-void Shower::step() {
+void OutputClient::step() {
     while (auto event = session->next_output_event(std::chrono::steady_clock::now(), {})) {
         if (auto* frame = std::get_if<client::OutputFrame>(&*event)) {
             if (answers) session->output_ready(frame->number);
@@ -47,20 +47,21 @@ void Displays::SetUp() {
     wall.rate = 1000;
 }
 
-Shower& Displays::show(const std::string& output) {
-    Shower& shower = showers[output];
-    shower.session = cluster.member(output, std::make_shared<BlobStore>(), net::Role::Viewer);
-    shower.session->join_output(output);
-    return shower;
+OutputClient& Displays::show(const std::string& output) {
+    OutputClient& output_client = output_clients[output];
+    output_client.session = cluster.member(output, std::make_shared<BlobStore>(), net::Role::Viewer);
+    output_client.session->join_output(output);
+    return output_client;
 }
 
-bool Displays::shows(const Shower& shower, std::uint64_t samples) {
-    return !shower.orders.empty() && !shower.frames.empty() && shower.frames.back().samples >= samples &&
-           shower.orders.back().frame == shower.frames.back().number;
+bool Displays::shows(const OutputClient& output_client, std::uint64_t samples) {
+    return !output_client.orders.empty() && !output_client.frames.empty() &&
+           output_client.frames.back().samples >= samples &&
+           output_client.orders.back().frame == output_client.frames.back().number;
 }
 
 bool Displays::all_show(std::uint64_t samples) const {
-    return std::all_of(showers.begin(), showers.end(),
+    return std::all_of(output_clients.begin(), output_clients.end(),
                        [&](const auto& entry) { return shows(entry.second, samples); });
 }
 

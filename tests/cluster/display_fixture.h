@@ -19,7 +19,7 @@ namespace tessera::test {
 display::Output part_of_wall(const std::string& name, double left, double right);
 
 // One output process: answers like tessera-display.
-struct Shower {
+struct OutputClient {
     std::unique_ptr<client::Session> session;
     std::vector<client::OutputFrame> frames;
     std::vector<session::PresentFrame> orders;
@@ -38,26 +38,26 @@ struct Displays : testing::Test {
     std::unique_ptr<client::Session> ann = cluster.member("ann", blobs);
     ObjectId first = ann->new_id();
     display::Display wall{.name = "wall"};
-    std::map<std::string, Shower> showers;
+    std::map<std::string, OutputClient> output_clients;
 
     void SetUp() override;
     ObjectId camera_id() const { return ObjectId{first.value + 6}; }
     ObjectId place_id() const { return ObjectId{first.value + 7}; }
 
-    Shower& show(const std::string& output);
+    OutputClient& show(const std::string& output);
     template <class Done>
     void until(const Done& done) {
         const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
         while (!done()) {
-            for (auto& [name, shower] : showers) shower.step();
+            for (auto& [name, output_client] : output_clients) output_client.step();
             if (std::chrono::steady_clock::now() > deadline) {
-                FAIL() << "it did not happen";
+                FAIL() << "timed out";
             }
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
     }
-    // The latest frame that came is the one that is to be seen, and has so many samples.
-    static bool shows(const Shower& shower, std::uint64_t samples);
+    // True if the latest frame received is the one presented, with at least this many samples.
+    static bool shows(const OutputClient& output_client, std::uint64_t samples);
     bool all_show(std::uint64_t samples) const;
     session::ClusterStatus status();
     void submit(const std::vector<scene::Entry>& entries);

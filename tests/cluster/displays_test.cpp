@@ -1,4 +1,4 @@
-// Displays: all outputs show the same frame of the same version, whoever stops, comes or goes.
+// Displays: all outputs show the same frame of the same version, whichever outputs stop, join or leave.
 #include <algorithm>
 #include <bit>
 #include <map>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST_F(Displays, AllOutputsAreToldToShowTheSameFramesOfTheSameVersion) {
+TEST_F(Displays, AllOutputsPresentTheSameFramesOfTheSameVersion) {
     cluster.add_node("null");
     cluster.add_node("null");
     ann->open_display(wall);
@@ -22,21 +22,21 @@ TEST_F(Displays, AllOutputsAreToldToShowTheSameFramesOfTheSameVersion) {
     show("right");
     until([&] { return all_show(4); });
     for (int i = 1; i < 10; ++i) {
-        const std::uint64_t before = showers["left"].frames.back().version.number;
+        const std::uint64_t before = output_clients["left"].frames.back().version.number;
         move_camera(0.1 * i);
-        until([&] { return all_show(4) && showers["left"].frames.back().version.number > before; });
+        until([&] { return all_show(4) && output_clients["left"].frames.back().version.number > before; });
     }
     std::map<std::uint64_t, std::set<std::uint64_t>> versions, samples;
     std::map<std::uint64_t, int> seen;
-    for (const auto& [name, shower] : showers) {
+    for (const auto& [name, output_client] : output_clients) {
         std::uint64_t last = 0;
-        for (const session::PresentFrame& order : shower.orders) {
-            EXPECT_GT(order.frame, last) << "frames only ever get newer";
+        for (const session::PresentFrame& order : output_client.orders) {
+            EXPECT_GT(order.frame, last) << "frames must get newer";
             last = order.frame;
             ++seen[order.frame];
             versions[order.frame].insert(order.version.number);
         }
-        for (const client::OutputFrame& frame : shower.frames) {
+        for (const client::OutputFrame& frame : output_client.frames) {
             versions[frame.number].insert(frame.version.number);
             samples[frame.number].insert(frame.samples);
         }
@@ -53,7 +53,7 @@ TEST_F(Displays, AllOutputsAreToldToShowTheSameFramesOfTheSameVersion) {
     EXPECT_EQ(now.outputs[0].samples, 4u);
 }
 
-TEST_F(Displays, CoarsePicturesComeFirst) {
+TEST_F(Displays, CoarsePicturesAreSentFirst) {
     cluster.add_node("null");
     for (display::Output& output : wall.outputs) {
         output.width = output.view_width = 256;
@@ -63,20 +63,20 @@ TEST_F(Displays, CoarsePicturesComeFirst) {
     show("right");
     ann->open_display(wall);
     until([&] {
-        for (auto& [name, shower] : showers) {
-            if (!shower.problem.empty()) {
-                shower.problem.clear();
-                shower.session->join_output(name);
+        for (auto& [name, output_client] : output_clients) {
+            if (!output_client.problem.empty()) {
+                output_client.problem.clear();
+                output_client.session->join_output(name);
             }
         }
-        return all_show(4) && showers["left"].frames.back().pictures[0].width == 256;
+        return all_show(4) && output_clients["left"].frames.back().pictures[0].width == 256;
     });
-    EXPECT_EQ(showers["left"].frames.front().pictures.at(0).bytes.size(),
-              std::size_t{3} * showers["left"].frames.front().pictures[0].width *
-                  showers["left"].frames.front().pictures[0].height);
+    EXPECT_EQ(output_clients["left"].frames.front().pictures.at(0).bytes.size(),
+              std::size_t{3} * output_clients["left"].frames.front().pictures[0].width *
+                  output_clients["left"].frames.front().pictures[0].height);
 }
 
-TEST_F(Displays, PicturesGetFinerInStep) {
+TEST_F(Displays, OutputsRefineTogether) {
     cluster.add_node("null", {}, 1us);
     wall.spp = 32;
     ann->open_display(wall);
@@ -85,8 +85,8 @@ TEST_F(Displays, PicturesGetFinerInStep) {
     until([&] { return all_show(32); });
     std::map<std::uint64_t, std::uint64_t> left;
     std::set<std::uint64_t> seen;
-    for (const client::OutputFrame& frame : showers["left"].frames) left[frame.number] = frame.samples;
-    for (const client::OutputFrame& frame : showers["right"].frames) {
+    for (const client::OutputFrame& frame : output_clients["left"].frames) left[frame.number] = frame.samples;
+    for (const client::OutputFrame& frame : output_clients["right"].frames) {
         if (left.contains(frame.number)) {
             EXPECT_EQ(left[frame.number], frame.samples) << "frame " << frame.number;
         }
@@ -102,9 +102,9 @@ TEST_F(Displays, AnOutputWithPriorityHasMoreSamples) {
     ann->open_display(wall);
     show("left");
     show("right");
-    until([&] { return shows(showers["left"], 4) && shows(showers["right"], 16); });
-    for (const client::OutputFrame& left : showers["left"].frames) {
-        for (const client::OutputFrame& right : showers["right"].frames) {
+    until([&] { return shows(output_clients["left"], 4) && shows(output_clients["right"], 16); });
+    for (const client::OutputFrame& left : output_clients["left"].frames) {
+        for (const client::OutputFrame& right : output_clients["right"].frames) {
             if (left.number == right.number) {  // coarse pictures have one sample a pixel
                 const bool is_coarse = right.pictures[0].width < 64;
                 EXPECT_EQ((is_coarse ? 1 : 4) * left.samples, right.samples);
@@ -116,8 +116,8 @@ TEST_F(Displays, AnOutputWithPriorityHasMoreSamples) {
 TEST_F(Displays, AnOutputThatStopsIsDroppedAndComesBack) {
     cluster.add_node("null");
     ann->open_display(wall);
-    Shower& left = show("left");
-    Shower& right = show("right");
+    OutputClient& left = show("left");
+    OutputClient& right = show("right");
     until([&] { return all_show(4); });
     right.answers = false;
     move_camera(1.0);
@@ -135,28 +135,28 @@ TEST_F(Displays, AnOutputThatStopsIsDroppedAndComesBack) {
     EXPECT_EQ(status().display.outputs[1].state, session::OutputState::Locked);
 }
 
-TEST_F(Displays, WhoComesLaterIsShownWhatTheOthersShow) {
+TEST_F(Displays, AnOutputThatJoinsLaterGetsTheCurrentFrame) {
     cluster.add_node("null");
     ann->open_display(wall);
-    Shower& left = show("left");
+    OutputClient& left = show("left");
     until([&] { return all_show(4); });
     const std::size_t before = left.orders.size();
-    Shower& right = show("right");
+    OutputClient& right = show("right");
     until([&] { return all_show(4); });
     EXPECT_EQ(right.orders.back().frame, left.orders.back().frame);
-    EXPECT_EQ(left.orders.size(), before) << "the others are not bothered";
+    EXPECT_EQ(left.orders.size(), before) << "the others must not be affected";
     right.session.reset();
-    showers.erase("right");
+    output_clients.erase("right");
     until([&] { return status().display.outputs[1].state == session::OutputState::Absent; });
     move_camera(2.0);
     until([&] { return left.orders.size() > before && all_show(4); });
 }
 
-TEST_F(Displays, NoPicturesComeBeforeTheDisplayIsTakenIn) {
+TEST_F(Displays, NoPicturesAreSentBeforeTheDisplayIsLoaded) {
     cluster.add_node("null");
     ann->open_display(wall);
-    Shower& left = show("left");
-    Shower& right = show("right");
+    OutputClient& left = show("left");
+    OutputClient& right = show("right");
     right.opens = false;
     until([&] { return shows(left, 4) && !right.opened.empty(); });
     move_camera(1.0);
@@ -164,7 +164,7 @@ TEST_F(Displays, NoPicturesComeBeforeTheDisplayIsTakenIn) {
     until([&] { return left.orders.size() > before && shows(left, 4); });
     EXPECT_TRUE(right.frames.empty());
     EXPECT_EQ(status().display.outputs[1].state, session::OutputState::Joining);
-    EXPECT_EQ(status().display.outputs[1].late, 0u) << "nobody waits for it";
+    EXPECT_EQ(status().display.outputs[1].late, 0u) << "it must not be waited for";
     wall.name = "another";
     ann->open_display(wall);
     until([&] { return right.opened.size() == 2; });
@@ -175,11 +175,11 @@ TEST_F(Displays, NoPicturesComeBeforeTheDisplayIsTakenIn) {
     until([&] { return all_show(4); });
 }
 
-TEST_F(Displays, OutputsHearThatTheirDisplayIsClosed) {
+TEST_F(Displays, OutputsAreNotifiedWhenTheirDisplayIsClosed) {
     cluster.add_node("null");
     ann->open_display(wall);
-    Shower& left = show("left");
-    Shower& right = show("right");
+    OutputClient& left = show("left");
+    OutputClient& right = show("right");
     until([&] { return all_show(4); });
     wall.outputs.pop_back();
     ann->open_display(wall);
@@ -191,10 +191,10 @@ TEST_F(Displays, OutputsHearThatTheirDisplayIsClosed) {
     EXPECT_NE(left.problem.find("closed"), std::string::npos) << left.problem;
 }
 
-TEST_F(Displays, HeadsMoveAndTheLatestPlaceCounts) {
+TEST_F(Displays, HeadsMoveAndTheLatestPoseIsUsed) {
     cluster.add_node("null");
     ann->open_display(wall);
-    Shower& left = show("left");
+    OutputClient& left = show("left");
     until([&] { return all_show(4); });
     for (int i = 0; i <= 200; ++i) ann->move_head({.position = {0.005 * i, 0, 0}});
     ann->move_head({.position = {0, 0, -3}});     // behind the wall: nothing could be seen
@@ -208,12 +208,12 @@ TEST_F(Displays, HeadsMoveAndTheLatestPlaceCounts) {
     EXPECT_EQ(left.frames.back().pictures[0].camera, expected);
 }
 
-// All samples are kept, also while more come.
-TEST_F(Displays, ExposureMakesOtherPicturesOfTheSameLight) {
+// All samples are kept while more are rendered.
+TEST_F(Displays, ExposureChangesPicturesWithoutRenderingAgain) {
     cluster.add_node("embree");
     wall.spp = 64;
     ann->open_display(wall);
-    Shower& left = show("left");
+    OutputClient& left = show("left");
     show("right");
     until([&] { return shows(left, 2); });
     const auto exposed = [&](double stops, std::uint64_t samples) {
@@ -229,17 +229,17 @@ TEST_F(Displays, ExposureMakesOtherPicturesOfTheSameLight) {
     const auto dark = left.frames.back().pictures[0].bytes;
     exposed(0.0, 64);
     until([&] { return left.frames.back().pictures[0].bytes > dark && all_show(64); });
-    EXPECT_EQ(left.orders.back().frame, showers["right"].orders.back().frame);
+    EXPECT_EQ(left.orders.back().frame, output_clients["right"].orders.back().frame);
 }
 
-// By its name alone, and at the origin: no picture of the scene is another for that.
-TEST_F(Displays, TheCameraMayComeLaterAndGoAgain) {
+// The camera is found by its name; creating it at the origin must not change the picture.
+TEST_F(Displays, TheCameraMayBeCreatedLaterAndRemoved) {
     cluster.add_node("null");
     const auto rename_camera = [&](const std::string& name) {
         submit({scene::Update{camera_id(), scene::Fields<scene::Camera>(&scene::Camera::name).bits(),
                               scene::Camera{.name = name}}});
     };
-    const auto is_told = [&] {
+    const auto is_logged = [&] {
         const auto events = cluster.events();
         return std::any_of(events.begin(), events.end(), [](const std::string& event) {
             return event.find("display 'wall' waits: the scene has no camera 'stage'") != std::string::npos;
@@ -247,8 +247,8 @@ TEST_F(Displays, TheCameraMayComeLaterAndGoAgain) {
     };
     wall.camera = "stage";
     ann->open_display(wall);
-    Shower& left = show("left");
-    until([&] { return !left.opened.empty() && is_told(); });
+    OutputClient& left = show("left");
+    until([&] { return !left.opened.empty() && is_logged(); });
     EXPECT_EQ(status().scene.views, 0u);
     EXPECT_TRUE(left.frames.empty());
     rename_camera("stage");
@@ -260,7 +260,7 @@ TEST_F(Displays, TheCameraMayComeLaterAndGoAgain) {
     until([&] { return left.frames.size() > before && all_show(4); });
 }
 
-TEST_F(Displays, WhatCannotBeShownIsRefusedWithTheReason) {
+TEST_F(Displays, InvalidDisplaysAreRefusedWithAReason) {
     const auto refused = [&](const auto& act, const std::string& reason) {
         try {
             act();
@@ -294,11 +294,11 @@ TEST_F(Displays, WhatCannotBeShownIsRefusedWithTheReason) {
     refused([&] { ann->adjust_display({.shown_layers = 4}); }, "it has: 0 'solid', 1 'menu'");
     refused([&] { ann->adjust_display({.shown_layers = 0}); }, "no layer of the display is shown");
     ann->adjust_display({.shown_layers = 2});
-    Shower& middle = show("middle");
-    until([&] { return !middle.problem.empty(); });
-    EXPECT_NE(middle.problem.find("no output 'middle'; it has: left, right"), std::string::npos);
+    OutputClient& center = show("middle");
+    until([&] { return !center.problem.empty(); });
+    EXPECT_NE(center.problem.find("no output 'middle'; it has: left, right"), std::string::npos);
     show("left");
-    until([&] { return !showers["left"].opened.empty(); });
+    until([&] { return !output_clients["left"].opened.empty(); });
     const auto twin = cluster.member("twin", std::make_shared<scene::BlobStore>(), net::Role::Viewer);
     twin->join_output("left");
     const auto event = twin->next_output_event(std::chrono::steady_clock::now() + 30s, {});
@@ -311,38 +311,40 @@ TEST_F(Displays, WhatCannotBeShownIsRefusedWithTheReason) {
 }
 
 // Nothing is assumed about the order between its links.
-TEST_F(Displays, AnOutputWhoseBulkLinkIsLateIsSentItsFrames) {
+TEST_F(Displays, AnOutputWithADelayedBulkLinkGetsItsFrames) {
     cluster.add_node("null");
     ann->open_display(wall);
     RawPeer peer(cluster.channel(net::Role::Viewer));
-    const auto listen_until = [&](const auto& done) {
+    const auto poll_until = [&](const auto& done) {
         const auto deadline = std::chrono::steady_clock::now() + 30s;
         while (!done() && std::chrono::steady_clock::now() < deadline) {
-            for (auto& [name, shower] : showers) shower.step();
-            peer.listen();
+            for (auto& [name, output_client] : output_clients) output_client.step();
+            peer.poll();
         }
         return done();
     };
-    peer.say(wire::Hello{.name = "late"});
+    peer.send(wire::Hello{.name = "late"});
     ASSERT_TRUE(peer.wait_for<wire::Welcome>());
-    peer.say(wire::JoinScene{.title = "test", .name = "late"});
-    peer.say(wire::JoinOutput{.request = 1, .name = "left"});
+    peer.send(wire::JoinScene{.title = "test", .name = "late"});
+    peer.send(wire::JoinOutput{.request = 1, .name = "left"});
     ASSERT_TRUE(peer.wait_for<wire::OutputOpened>());
-    peer.say(wire::OutputReady{});
-    Shower& right = show("right");  // so there are frames
-    ASSERT_TRUE(listen_until([&] { return shows(right, 4); }));
-    EXPECT_EQ(status().display.outputs[0].late, 0u) << "nobody waited for it";
-    peer.say(wire::BulkHello{peer.heard<wire::Welcome>()->token});
-    EXPECT_TRUE(listen_until([&] { return peer.heard<wire::OutputPicture>() != nullptr; }));
+    peer.send(wire::OutputReady{});
+    OutputClient& right = show("right");  // so there are frames
+    ASSERT_TRUE(poll_until([&] { return shows(right, 4); }));
+    EXPECT_EQ(status().display.outputs[0].late, 0u) << "it must not have been waited for";
+    peer.send(wire::BulkHello{peer.received<wire::Welcome>()->token});
+    EXPECT_TRUE(poll_until([&] { return peer.received<wire::OutputPicture>() != nullptr; }));
 }
 
 TEST_F(Displays, ThePatternIsSwitchedOnForAll) {
     ann->open_display(wall);
     show("left");
     show("right");
-    until([&] { return !showers["left"].opened.empty() && !showers["right"].opened.empty(); });
+    until([&] { return !output_clients["left"].opened.empty() && !output_clients["right"].opened.empty(); });
     ann->adjust_display({.pattern = true});
-    until([&] { return showers["left"].opened.back().pattern && showers["right"].opened.back().pattern; });
+    until([&] {
+        return output_clients["left"].opened.back().pattern && output_clients["right"].opened.back().pattern;
+    });
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST_P(FilteredPicture, HasTheSameBitsForAnyCluster) {
     ASSERT_TRUE(one.has_picture());
     EXPECT_EQ(one.summary.picture.filter, GetParam());
     EXPECT_EQ(one.frame.picture.size(), std::size_t{90} * 60 * 3 * sizeof(float));
-    EXPECT_FALSE(one.film()) << "nobody asked for it";
+    EXPECT_FALSE(one.film()) << "it was not requested";
     EXPECT_EQ(one.summary.samples_least, 6u);
     EXPECT_EQ(one.summary.samples_most, 6u);
     session::ViewRequest three = picture_request(GetParam(), Policy::Cooperative);
@@ -58,8 +58,8 @@ TEST_P(FilteredPicture, HasTheSameBitsForAnyCluster) {
     EXPECT_EQ(render(3, three).frame.picture, one.frame.picture);
 }
 
-// What comes over the wire is what the same film gives here.
-TEST_P(FilteredPicture, IsThatOfItsFilm) {
+// The picture received is the one that a local filter makes of the same film.
+TEST_P(FilteredPicture, IsMadeOfItsFilm) {
     session::ViewRequest request = picture_request(GetParam());
     request.film = true;
     const client::ViewResult result = render(2, request);
@@ -83,7 +83,7 @@ std::vector<std::string> filter_names() {
 }
 INSTANTIATE_TEST_SUITE_P(Filters, FilteredPicture, testing::ValuesIn(filter_names()));
 
-TEST(PictureRequest, RefusesWhatCannotBeWithAReason) {
+TEST(PictureRequest, InvalidRequestsAreRefusedWithAReason) {
     const auto message = [](auto change) {
         session::ViewRequest request = picture_request("gauss");
         change(request);
@@ -93,7 +93,7 @@ TEST(PictureRequest, RefusesWhatCannotBeWithAReason) {
             EXPECT_EQ(error.code(), ErrorCode::Refused);
             return std::string(error.what());
         }
-        ADD_FAILURE() << "it was taken";
+        ADD_FAILURE() << "it was accepted";
         return std::string();
     };
     EXPECT_NE(message([](auto& r) { r.view.filter = "gaus"; }).find("gauss"), std::string::npos);
@@ -102,7 +102,7 @@ TEST(PictureRequest, RefusesWhatCannotBeWithAReason) {
     EXPECT_NE(message([](auto& r) { r.stop.budget = -1s; }).find("negative"), std::string::npos);
 }
 
-TEST(PictureRequest, FilesAreWhatTheyAreCalled) {
+TEST(PictureRequest, FilesHaveTheirRequestedFormat) {
     const auto starts_with = [](PictureEncoding encoding, std::initializer_list<int> magic) {
         session::ViewRequest request = picture_request("none");
         request.picture = encoding;
@@ -117,7 +117,7 @@ TEST(PictureRequest, FilesAreWhatTheyAreCalled) {
     starts_with(PictureEncoding::Exr, {0x76, 0x2f, 0x31, 0x01});
 }
 
-// Three planes on nodes, wire and master, and the picture made of them; no filter can do with that.
+// Three planes on nodes, wire and master, and the picture made of them; filters need more.
 TEST(PictureRequest, OfColorAloneKeepsNoSecondMoments) {
     session::ViewRequest request = picture_request("none");
     request.film = true;
@@ -149,8 +149,8 @@ TEST(PictureRequest, WithABudgetEveryPixelHasTwoSamples) {
     EXPECT_GT(result.summary.picture.seconds_predicted, 0.0);
 }
 
-// Once the rate is known, a budget that is too small gives a smaller picture, brought back to size.
-TEST(PictureRequest, TooSmallABudgetGivesAnUpsampledPictureAndSaysSo) {
+// Once the rate is known, a budget that is too small renders a smaller picture and upsamples it.
+TEST(PictureRequest, ATooSmallBudgetGivesAnUpsampledPictureWithANote) {
     session::ViewRequest request = picture_request("gauss");
     request.stop.budget = 150ms;
     request.stop.adapts_size = true;
@@ -165,8 +165,8 @@ TEST(PictureRequest, TooSmallABudgetGivesAnUpsampledPictureAndSaysSo) {
     EXPECT_NE(result.summary.picture.notes.back().find("upsampled"), std::string::npos);
 }
 
-// The film so far stays; what the new filter reads comes with the samples from then on.
-TEST(PictureRequest, AnotherFilterInTheMiddleChangesNoSampleAndSaysWhatItAdds) {
+// The film is kept; the new filter's features are rendered with the samples from then on.
+TEST(PictureRequest, ChangingTheFilterKeepsTheSamplesAndReportsAddedChannels) {
     LoopbackCluster cluster;
     for (int i = 0; i < 2; ++i) cluster.add_node("null", {}, 5us);
     auto blobs = std::make_shared<scene::BlobStore>();

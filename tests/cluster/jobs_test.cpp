@@ -1,4 +1,4 @@
-// Jobs: views that go on when their client has left, and whose picture waits for it.
+// Jobs: views that continue when their client has left, and whose picture is stored.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -43,7 +43,7 @@ struct Jobs : testing::Test {
     }
 };
 
-TEST_F(Jobs, GoOnWithoutTheirClientAndTheirPictureIsTheOneItWouldHaveHad) {
+TEST_F(Jobs, ContinueWithoutTheirClientAndGiveTheSamePicture) {
     cluster.add_node("null", {}, 2us);
     submit(job_request("night"));
     const auto later = cluster.session(blobs);
@@ -58,14 +58,13 @@ TEST_F(Jobs, GoOnWithoutTheirClientAndTheirPictureIsTheOneItWouldHaveHad) {
     EXPECT_EQ(fetched.frame.picture, expected.frame.picture);
     EXPECT_EQ(fetched.frame.width, 90u);
     EXPECT_EQ(fetched.summary.samples_least, 8u);
-    EXPECT_EQ(later->fetch_job({.name = "night"}).frame.picture, expected.frame.picture)
-        << "as often as wanted";
+    EXPECT_EQ(later->fetch_job({.name = "night"}).frame.picture, expected.frame.picture) << "repeatable";
     later->cancel_job({.name = "night"});
     EXPECT_TRUE(later->jobs().empty());
     EXPECT_THROW((void)later->fetch_job({.name = "night"}), Error);
 }
 
-TEST_F(Jobs, TheSceneIsTheirsUntilTheyHaveEnded) {
+TEST_F(Jobs, KeepTheSceneOpenUntilTheyHaveEnded) {
     cluster.add_node("null", {}, 20us);
     submit(job_request("slow", 64));
     const auto other = cluster.session(blobs);
@@ -80,7 +79,7 @@ TEST_F(Jobs, TheSceneIsTheirsUntilTheyHaveEnded) {
     EXPECT_TRUE(std::holds_alternative<client::Joined>(joined)) << "the scene went with its last job";
 }
 
-TEST_F(Jobs, AreForTheirUserAndForOperators) {
+TEST_F(Jobs, AreVisibleToTheirUserAndToOperators) {
     cluster.add_node("null");
     submit(job_request("mine"));
     const auto editor = cluster.session(blobs);
@@ -101,7 +100,7 @@ TEST_F(Jobs, AreForTheirUserAndForOperators) {
     EXPECT_TRUE(editor->jobs().empty());
 }
 
-TEST_F(Jobs, WhatCannotBeOneIsRefusedWithTheReason) {
+TEST_F(Jobs, InvalidJobsAreRefusedWithAReason) {
     cluster.add_node("null");
     const auto session = cluster.batch(blobs);
     const auto refusal = [&](auto change) {
@@ -124,8 +123,8 @@ TEST_F(Jobs, WhatCannotBeOneIsRefusedWithTheReason) {
     EXPECT_NE(refusal([](auto& r) { r.name = "twice"; }).find("is kept"), std::string::npos);
 }
 
-// A client may wait for it all the same.
-TEST_F(Jobs, AClientThatStaysHasItsPictureTooAndAStopEndsTheJob) {
+// A connected client may wait for its result.
+TEST_F(Jobs, AConnectedClientGetsThePictureTooAndAStopEndsTheJob) {
     cluster.add_node("null", {}, 5us);
     const auto session = cluster.batch(blobs);
     session->request_view(1, job_request("both", 1u << 20));

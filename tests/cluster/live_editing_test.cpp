@@ -1,4 +1,4 @@
-// Several members of one live scene: what one edits the others read; what is wrong reaches nobody else.
+// Several members of one live scene: edits are visible to the others, errors only to their sender.
 #include <gtest/gtest.h>
 
 #include "mediator/scene/fields.h"
@@ -35,7 +35,7 @@ struct LiveEditing : testing::Test {
     }
 };
 
-TEST_F(LiveEditing, WhatOneEditsTheOthersRead) {
+TEST_F(LiveEditing, EditsAreVisibleToOtherMembers) {
     bob->refresh();
     ann->refresh();
     EXPECT_EQ(bob->scene().state_hash(), ann->scene().state_hash());
@@ -58,7 +58,7 @@ TEST_F(LiveEditing, ALongEditAndALongSceneTravelAsBlobs) {
     EXPECT_EQ(bob->scene().objects().size(), 3000u + 5u);
 }
 
-TEST_F(LiveEditing, ARefusedEditIsRefusedWholeAndNobodyElseNotices) {
+TEST_F(LiveEditing, ARefusedEditChangesNothing) {
     bob->refresh();
     const Version before = bob->scene().version();
     Transform dangling;
@@ -90,11 +90,11 @@ TEST_F(LiveEditing, NamesAreMadeUnique) {
     auto blobs = std::make_shared<BlobStore>();
     const auto other_ann = cluster.member("ann", blobs);
     std::vector<std::string> names;
-    for (const session::Person& person : bob->people().people) names.push_back(person.name);
+    for (const session::Member& member : bob->members().members) names.push_back(member.name);
     EXPECT_EQ(names, (std::vector<std::string>{"ann", "bob", "ann (2)"}));
 }
 
-TEST_F(LiveEditing, UndoTakesBackWhatStillIsOursAndTellsTheRest) {
+TEST_F(LiveEditing, UndoRevertsOwnChangesAndReportsTheOthers) {
     ASSERT_TRUE(ann->submit({paint({1, 0, 0, 1})}).accepted);
     ASSERT_TRUE(ann->undo().accepted);
     EXPECT_EQ(color(*bob, material()), Material{}.base_color);
@@ -122,7 +122,7 @@ TEST_F(LiveEditing, ADragIsOneTransaction) {
     EXPECT_EQ(color(*bob, material()), Material{}.base_color);
 }
 
-TEST_F(LiveEditing, ALockedObjectIsItsHoldersAlone) {
+TEST_F(LiveEditing, ALockedObjectCanOnlyBeEditedByItsHolder) {
     ann->lock({material()});
     const auto refused = bob->submit({paint({0, 0, 0, 1})});
     EXPECT_FALSE(refused.accepted);
@@ -132,20 +132,20 @@ TEST_F(LiveEditing, ALockedObjectIsItsHoldersAlone) {
     EXPECT_TRUE(ann->submit({paint({1, 0, 0, 1})}).accepted);
     ann.reset();  // locks go with their holder
     const auto deadline = std::chrono::steady_clock::now() + 30s;
-    while (bob->people().people.size() > 1 && std::chrono::steady_clock::now() < deadline) {
+    while (bob->members().members.size() > 1 && std::chrono::steady_clock::now() < deadline) {
     }
     EXPECT_TRUE(bob->submit({paint({0, 0, 0, 1})}).accepted);
 }
 
-TEST_F(LiveEditing, PresenceIsSeenUntilItsTimeIsOver) {
+TEST_F(LiveEditing, PresenceExpires) {
     ann->set_presence("looks at the lamp", {material()}, 10min);
     bob->set_presence("here for a moment", {}, 1ms);
-    (void)ann->people();
+    (void)ann->members();
     const auto deadline = std::chrono::steady_clock::now() + 30s;
     while (std::chrono::steady_clock::now() < deadline) {
-        const session::People people = bob->people();
-        if (people.people.at(1).text.empty() && !people.people.at(0).text.empty()) {
-            EXPECT_EQ(people.people[0].selection, std::vector<ObjectId>{material()});
+        const session::Members members = bob->members();
+        if (members.members.at(1).text.empty() && !members.members.at(0).text.empty()) {
+            EXPECT_EQ(members.members[0].selection, std::vector<ObjectId>{material()});
             return;
         }
     }
@@ -169,10 +169,10 @@ TEST_F(LiveEditing, AfterTheSceneIsClosedABatchMayOpenOne) {
     const auto opened =
         batch->join({.title = "batch", .exclusive = true, .when_busy = client::WhenBusy::GiveUp}, {});
     EXPECT_TRUE(std::holds_alternative<client::Joined>(opened));
-    EXPECT_THROW((void)bob->people(), Error) << "bob is in no scene any more";
+    EXPECT_THROW((void)bob->members(), Error) << "bob is no longer in a scene";
 }
 
-TEST_F(LiveEditing, ABatchDoesNotGetInWhileALiveSceneIsOpen) {
+TEST_F(LiveEditing, ABatchCannotJoinWhileALiveSceneIsOpen) {
     auto blobs = std::make_shared<BlobStore>();
     const auto batch = cluster.session(blobs);
     const auto outcome =

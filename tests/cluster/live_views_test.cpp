@@ -1,4 +1,4 @@
-// Views of a live scene: coarse first, the bits of a batch in the end, and nobody waits for a slow watcher.
+// Views of a live scene: coarse first, finally the bits of a batch, and slow watchers delay no others.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -53,7 +53,7 @@ struct LiveViews : testing::Test {
     static bool complete(const client::Frame& frame) { return frame.complete; }
 };
 
-TEST_F(LiveViews, CoarseFirstAndInTheEndTheBitsOfABatch) {
+TEST_F(LiveViews, CoarseFirstAndFinallyTheBitsOfABatch) {
     cluster.add_node("embree");
     cluster.add_node("embree");
     session::ViewRequest request = view_of(160, 130, 13);
@@ -66,7 +66,7 @@ TEST_F(LiveViews, CoarseFirstAndInTheEndTheBitsOfABatch) {
         if (scales.empty() || scales.back() != frame.scale) scales.push_back(frame.scale);
         EXPECT_FALSE(frame.picture.empty());
     }
-    EXPECT_TRUE(std::is_sorted(scales.rbegin(), scales.rend())) << "only ever finer";
+    EXPECT_TRUE(std::is_sorted(scales.rbegin(), scales.rend())) << "scales must not get coarser";
     EXPECT_EQ(scales.front(), 8u);
     const client::Frame& last = frames.back();
     EXPECT_EQ(last.samples_least, 13u);
@@ -84,14 +84,14 @@ TEST_F(LiveViews, CoarseFirstAndInTheEndTheBitsOfABatch) {
     EXPECT_EQ(to_hex(frame::film_hash(*batch.film())), to_hex(last.film_hash));
 }
 
-TEST_F(LiveViews, OnlyWhatChangesThePictureStartsItAnew) {
+TEST_F(LiveViews, OnlyEditsThatChangeThePictureRestartIt) {
     cluster.add_node("null");
     ann->request_view(1, view_of(64, 48, 4));
     const client::Frame before = frames_until(*ann, complete).back();
     ASSERT_TRUE(
         ann->submit({Update{first, Fields<Transform>(&Transform::name).bits(), Transform{.name = "renamed"}}})
             .accepted);
-    // The same picture is of the new version, too: said so, not rendered again.
+    // The same picture is valid for the new version: reported, not rendered again.
     const auto renamed =
         frames_until(*ann, [&](const client::Frame& frame) { return frame.version != before.version; });
     for (const client::Frame& frame : renamed) EXPECT_TRUE(frame.complete) << "rendered again for a name";
@@ -102,7 +102,7 @@ TEST_F(LiveViews, OnlyWhatChangesThePictureStartsItAnew) {
     EXPECT_GT(after.front().scale, 1u);
 }
 
-// A slider of a filter costs a picture, no sample: not while samples come, not when all are there.
+// Changing a filter parameter costs a picture but no samples, during rendering and after it.
 TEST_F(LiveViews, AnotherFilterKeepsTheFilm) {
     cluster.add_node("null");
     session::ViewRequest request = view_of(64, 48, 16);
@@ -118,11 +118,12 @@ TEST_F(LiveViews, AnotherFilterKeepsTheFilm) {
         frames_until(*ann, [&](const client::Frame& frame) { return frame.picture != before.picture; });
     for (const client::Frame& frame : frames) EXPECT_TRUE(frame.complete) << "rendered again for a filter";
     EXPECT_EQ(frames.back().film_hash, before.film_hash);
-    EXPECT_GT(frames.back().revision, before.revision) << "who asked can tell the new picture from the old";
+    EXPECT_GT(frames.back().revision, before.revision)
+        << "the client can distinguish the new picture from the old";
     EXPECT_EQ(units(), issued);
 }
 
-TEST_F(LiveViews, AFilterThatReadsMoreGetsItFromThenOn) {
+TEST_F(LiveViews, AFilterWithMoreFeaturesGetsThemFromThenOn) {
     cluster.add_node("null", {}, 20us);
     session::ViewRequest request = view_of(64, 48, 64);
     request.view.filter = "none";
@@ -134,12 +135,12 @@ TEST_F(LiveViews, AFilterThatReadsMoreGetsItFromThenOn) {
     request.view.filter = "bilateral";
     ann->request_view(1, request);
     for (const client::Frame& frame : frames_until(*ann, complete)) {
-        EXPECT_EQ(frame.scale, 1u) << "started anew";
+        EXPECT_EQ(frame.scale, 1u) << "restarted";
         EXPECT_GE(frame.samples_least, before.samples_least);
     }
 }
 
-TEST_F(LiveViews, WhileTheCameraIsDraggedPicturesGoOn) {
+TEST_F(LiveViews, PicturesContinueWhileTheCameraIsDragged) {
     cluster.add_node("null", {}, 2us);
     session::ViewRequest request = view_of(320, 240, 1024);
     ann->request_view(1, request);
@@ -147,14 +148,14 @@ TEST_F(LiveViews, WhileTheCameraIsDraggedPicturesGoOn) {
     const auto end = std::chrono::steady_clock::now() + 3s;
     for (int i = 0; std::chrono::steady_clock::now() < end; ++i) {
         request.view.camera.world_from_camera[3][0] = 0.001 * i;
-        ann->look(1, request.view.camera);
+        ann->set_camera(1, request.view.camera);
         while (auto frame = ann->next_frame(std::chrono::steady_clock::now() + 1ms, {}))
             revisions.insert(frame->revision);
     }
     EXPECT_GE(revisions.size(), 10u) << "a drag must not starve its own pictures";
 }
 
-TEST_F(LiveViews, WhileTheSceneIsEditedPicturesGoOn) {
+TEST_F(LiveViews, PicturesContinueWhileTheSceneIsEdited) {
     cluster.add_node("null", {}, 2us);
     ann->request_view(1, view_of(320, 240, 1024));
     std::set<std::uint64_t> versions;
@@ -168,12 +169,12 @@ TEST_F(LiveViews, WhileTheSceneIsEditedPicturesGoOn) {
     EXPECT_GE(versions.size(), 10u);
 }
 
-TEST_F(LiveViews, APickFindsObjectPlaceAndNormal) {
+TEST_F(LiveViews, APickFindsObjectPositionAndNormal) {
     cluster.add_node("embree");
     ann->request_view(1, view_of(101, 101, 1));
-    const session::Picked hit = ann->pick(1, 50, 50);
+    const session::PickResult hit = ann->pick(1, 50, 50);
     ASSERT_TRUE(hit.hit);
-    // Two in one place: which is met is the back-end's choice.
+    // Two coincident triangles: which one is hit depends on the back-end.
     EXPECT_TRUE(hit.object.value == first.value + 2 || hit.object.value == first.value + 3);
     EXPECT_NEAR(hit.position.x, 0.0, 1e-6);
     EXPECT_NEAR(hit.position.y, 0.0, 1e-6);
@@ -181,7 +182,7 @@ TEST_F(LiveViews, APickFindsObjectPlaceAndNormal) {
     EXPECT_NEAR(hit.distance, 3.0, 1e-6);
     EXPECT_NEAR(std::abs(hit.normal.z), 1.0, 1e-6);
     // tan(0.4) * 3 is half the picture's height at the triangle; pixel (50, 60) looks 10 pixels down.
-    const session::Picked lower = ann->pick(1, 50, 60);
+    const session::PickResult lower = ann->pick(1, 50, 60);
     EXPECT_NEAR(lower.position.y, -std::tan(0.4) * 3.0 * 10.0 / 50.5, 1e-6);
     EXPECT_FALSE(ann->pick(1, 0, 0).hit);
     EXPECT_THROW((void)ann->pick(1, 101, 0), Error);
@@ -192,7 +193,7 @@ TEST_F(LiveViews, APickFindsObjectPlaceAndNormal) {
     EXPECT_FALSE(ann->pick(3, 50, 50).hit) << "everything is in layer 0";
 }
 
-TEST_F(LiveViews, ASlowWatcherDelaysNobodyAndSeesTheNewest) {
+TEST_F(LiveViews, ASlowWatcherDelaysNoOtherAndGetsTheNewestFrame) {
     cluster.add_node("null");
     auto slow_blobs = std::make_shared<BlobStore>();
     const auto slow = cluster.member("slow", slow_blobs);
@@ -210,55 +211,55 @@ TEST_F(LiveViews, ASlowWatcherDelaysNobodyAndSeesTheNewest) {
         ++count;
         return frame.complete && frame.version == ann->scene().version();
     });
-    EXPECT_LE(count, 6u) << "one on its way when it stopped looking, then only of the newest version";
+    EXPECT_LE(count, 6u) << "one in flight when it stopped reading, then only the newest version";
 }
 
-TEST_F(LiveViews, AWatcherThatTakesNothingIsSentOneFrame) {
+TEST_F(LiveViews, AWatcherThatAcknowledgesNothingGetsOneFrame) {
     cluster.add_node("null");
     session::ViewRequest request = view_of(64, 48, 4);
     request.name = "main";
     ann->request_view(1, request);
     RawPeer watcher(cluster.channel(net::Role::Viewer));
-    ASSERT_TRUE(watcher.greet("watcher"));
-    watcher.say(wire::JoinScene{.title = "test", .name = "watcher"});
-    watcher.say(wire::RequestView{.number = 1, .wanted = {.name = "main"}, .share = true});
+    ASSERT_TRUE(watcher.connect("watcher"));
+    watcher.send(wire::JoinScene{.title = "test", .name = "watcher"});
+    watcher.send(wire::RequestView{.number = 1, .wanted = {.name = "main"}, .share = true});
     ASSERT_TRUE(watcher.wait_for<wire::FrameHeader>());
     for (int i = 1; i <= 20; ++i) {
         ASSERT_TRUE(ann->submit({paint({float(i), 0, 0})}).accepted);
         (void)frames_until(*ann, complete);
-        watcher.listen();
+        watcher.poll();
     }
-    EXPECT_FALSE(watcher.heard<wire::FrameHeader>(1));
-    watcher.say(wire::FrameTaken{.number = 1, .frame = 0});  // not the one on its way
-    for (int i = 0; i < 20; ++i) watcher.listen();
-    EXPECT_FALSE(watcher.heard<wire::FrameHeader>(1));
+    EXPECT_FALSE(watcher.received<wire::FrameHeader>(1));
+    watcher.send(wire::FrameTaken{.number = 1, .frame = 0});  // not the one in flight
+    for (int i = 0; i < 20; ++i) watcher.poll();
+    EXPECT_FALSE(watcher.received<wire::FrameHeader>(1));
 }
 
-// What the master had sent when the link broke may be lost.
-TEST_F(LiveViews, TheEndOfAViewIsSentAgainAfterABreakOfTheLink) {
+// Messages sent before the connection broke may be lost.
+TEST_F(LiveViews, TheResultOfAViewIsSentAgainAfterAReconnect) {
     cluster.add_node("null");
     session::ViewRequest request = view_of(64, 48, 4);
     request.frames = session::Frames::Last;
     request.picture = session::PictureEncoding::Png;
     RawPeer first_link(cluster.channel(net::Role::Viewer));
-    ASSERT_TRUE(first_link.greet("watcher"));
-    first_link.say(wire::JoinScene{.title = "test", .name = "watcher"});
-    first_link.say(wire::RequestView{.number = 1, .wanted = request});
+    ASSERT_TRUE(first_link.connect("watcher"));
+    first_link.send(wire::JoinScene{.title = "test", .name = "watcher"});
+    first_link.send(wire::RequestView{.number = 1, .wanted = request});
     ASSERT_TRUE(first_link.wait_for<wire::ViewDone>());
 
     RawPeer second_link(cluster.channel(net::Role::Viewer));
-    ASSERT_TRUE(second_link.greet("watcher", first_link.heard<wire::Welcome>()->token));
+    ASSERT_TRUE(second_link.connect("watcher", first_link.received<wire::Welcome>()->token));
     ASSERT_TRUE(second_link.wait_for<wire::ViewDone>());
-    EXPECT_EQ(second_link.heard<wire::Welcome>()->peer_number,
-              first_link.heard<wire::Welcome>()->peer_number);
-    const session::ViewSummary& once = first_link.heard<wire::ViewDone>()->summary;
-    const session::ViewSummary& again = second_link.heard<wire::ViewDone>()->summary;
+    EXPECT_EQ(second_link.received<wire::Welcome>()->peer_number,
+              first_link.received<wire::Welcome>()->peer_number);
+    const session::ViewSummary& once = first_link.received<wire::ViewDone>()->summary;
+    const session::ViewSummary& again = second_link.received<wire::ViewDone>()->summary;
     EXPECT_EQ(again.outcome, session::Outcome::Complete);
     EXPECT_EQ(again.samples, once.samples);
     EXPECT_TRUE(second_link.wait_for<wire::FrameHeader>()) << "and its picture";
 }
 
-TEST_F(LiveViews, WhatIsWrongWithAViewIsSaid) {
+TEST_F(LiveViews, InvalidViewsAreRefusedWithAReason) {
     session::ViewRequest request = view_of(64, 48, 4);
     request.view.camera.left = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THROW(ann->request_view(1, request), Error);
@@ -277,7 +278,7 @@ TEST_F(LiveViews, WhatIsWrongWithAViewIsSaid) {
     EXPECT_THROW(ann->request_view(2, request), Error);
 }
 
-TEST_F(LiveViews, WhoWaitsForANodeIsToldWhy) {
+TEST_F(LiveViews, AViewWaitingForANodeReportsWhy) {
     cluster.add_node("embree");
     session::ViewRequest request = view_of(64, 48, 1);
     request.view.renderer = view::Renderer::Raster;

@@ -7,7 +7,7 @@ namespace tessera::test {
 
 namespace {
 
-// Short, so that a dead node is noticed within a test's patience; long enough for a busy machine.
+// Short, so that a lost node is detected quickly; long enough for a busy machine.
 net::LivenessSettings quick_heartbeats() {
     return {.interval = std::chrono::milliseconds(100), .missed = 10};
 }
@@ -53,7 +53,7 @@ void LoopbackCluster::start_node(const std::string& kind, std::unique_ptr<backen
         clock_, settings, node::NodeCallbacks{.event = [](const node::Report&) {}, .reconnect = {}}));
     node::RenderNode& node = *nodes_.back();
     node_threads_.emplace_back([&node](std::stop_token stop) {
-        // At once: a node whose channel is cut could wait for ever for its goodbye to be heard.
+        // At once: a node whose channel is cut could wait for ever for its goodbye to be received.
         node.run(stop, stop);
     });
 }

@@ -18,7 +18,7 @@
 namespace tessera::test {
 
 // A master, nodes and clients in threads of this process, over the loopback, each with its own blob store.
-// Whatever a node's channel suffers by its fault plans, the picture must not change.
+// The picture must not change, whatever faults the fault plans inject into a node's channel.
 class LoopbackCluster {
   public:
     struct NodeFaults {
@@ -36,12 +36,12 @@ class LoopbackCluster {
     std::unique_ptr<client::Session> session(std::shared_ptr<scene::BlobStore> blobs,
                                              net::Role role = net::Role::Editor,
                                              const std::string& user = "editor");
-    // With the scene of scene_entries() open for it alone.
+    // With an exclusive scene of scene_entries().
     std::unique_ptr<client::Session> batch(const std::shared_ptr<scene::BlobStore>& blobs);
     // A member of the shared scene "test", which it joins.
     std::unique_ptr<client::Session> member(const std::string& name, std::shared_ptr<scene::BlobStore> blobs,
                                             net::Role role = net::Role::Editor);
-    // A peer that speaks for itself.
+    // A client controlled by the test.
     std::unique_ptr<net::Channel> channel(net::Role role) { return hub_.client(role); }
     std::vector<std::string> events() const;
 

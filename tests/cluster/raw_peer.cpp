@@ -2,12 +2,12 @@
 
 namespace tessera::test {
 
-void RawPeer::listen() {
-    say(wire::Heartbeat{.sent_at = 1});
+void RawPeer::poll() {
+    send(wire::Heartbeat{.sent_at = 1});
     const auto now = std::chrono::steady_clock::now();
-    for (auto received = channel_->receive(now + std::chrono::milliseconds(5));
-         std::holds_alternative<net::Message>(received); received = channel_->receive(now)) {
-        const net::Message& message = std::get<net::Message>(received);
+    for (auto event = channel_->receive(now + std::chrono::milliseconds(5));
+         std::holds_alternative<net::Message>(event); event = channel_->receive(now)) {
+        const net::Message& message = std::get<net::Message>(event);
         if (message.link == net::Link::Bulk) {
             if (auto bulk = wire::decode_bulk(message.bytes)) bulk_.push_back(std::move(*bulk));
         } else if (auto control = wire::decode_control(message.bytes)) {

@@ -10,38 +10,38 @@
 
 namespace tessera::test {
 
-// A client that the test plays message by message, and all that the master sent it.
+// A client that sends the test's messages, and all messages that it received.
 class RawPeer {
   public:
     explicit RawPeer(std::unique_ptr<net::Channel> channel) : channel_(std::move(channel)) {}
 
-    void say(const wire::ControlMessage& message) { say(net::Link::Control, wire::encode(message)); }
-    void say(const wire::BulkMessage& message) { say(net::Link::Bulk, wire::encode(message)); }
-    // Keeps what comes within a few milliseconds; heartbeats show that it is there.
-    void listen();
+    void send(const wire::ControlMessage& message) { send(net::Link::Control, wire::encode(message)); }
+    void send(const wire::BulkMessage& message) { send(net::Link::Bulk, wire::encode(message)); }
+    // Stores the messages of the next few milliseconds; sends a heartbeat.
+    void poll();
 
-    // The n-th message of that kind, if it came.
+    // The n-th message of that kind, if received.
     template <class T>
-    const T* heard(std::size_t n = 0) const {
+    const T* received(std::size_t n = 0) const {
         if (const T* message = nth<T>(control_, n)) return message;
         return nth<T>(bulk_, n);
     }
     template <class T>
     bool wait_for(std::size_t n = 0) {
         const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-        while (heard<T>(n) == nullptr && std::chrono::steady_clock::now() < deadline) listen();
-        return heard<T>(n) != nullptr;
+        while (received<T>(n) == nullptr && std::chrono::steady_clock::now() < deadline) poll();
+        return received<T>(n) != nullptr;
     }
-    // Both links are open after it; false: no answer. Returns to the session of the token, if there is one.
-    bool greet(const std::string& name, std::uint64_t resume_token = 0) {
-        say(wire::Hello{.name = name, .resume_token = resume_token});
+    // Opens both links; false: no answer. Resumes the session of the token, if given.
+    bool connect(const std::string& name, std::uint64_t resume_token = 0) {
+        send(wire::Hello{.name = name, .resume_token = resume_token});
         if (!wait_for<wire::Welcome>()) return false;
-        say(wire::BulkHello{heard<wire::Welcome>()->token});
+        send(wire::BulkHello{received<wire::Welcome>()->token});
         return true;
     }
 
   private:
-    void say(net::Link link, net::Bytes&& bytes) {
+    void send(net::Link link, net::Bytes&& bytes) {
         (void)channel_->send(link, net::ServerPeer, std::move(bytes));
     }
     template <class T, class Messages>

@@ -1,4 +1,4 @@
-// Views go to the nodes that have their renderer.
+// Views are rendered by the nodes that have their renderer.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A null back-end that draws, too: what it draws is its gradient.
+// A null back-end that also has the raster renderer, with the same gradient.
 class Drawing final : public backend::Backend {
   public:
     explicit Drawing(const backend::BackendSettings& settings)
@@ -57,7 +57,7 @@ struct RenderersTest : testing::Test {
     std::unique_ptr<client::Session> session;
 };
 
-TEST_F(RenderersTest, WithoutANodeThatDrawsAViewEndsWithTheRemedy) {
+TEST_F(RenderersTest, WithoutARasterNodeAViewEndsWithTheRemedy) {
     cluster.add_node("null");
     open();
     const client::ViewResult none = render(view::Renderer::Raster);
@@ -68,8 +68,8 @@ TEST_F(RenderersTest, WithoutANodeThatDrawsAViewEndsWithTheRemedy) {
     EXPECT_EQ(render(view::Renderer::PathTracing).summary.outcome, session::Outcome::Complete);
 }
 
-// From drawing to paths and back, on the same version of the scene.
-TEST_F(RenderersTest, OnlyNodesThatDrawGetUnitsOfAViewThatDraws) {
+// From raster to path and back, on the same version of the scene.
+TEST_F(RenderersTest, OnlyRasterNodesGetUnitsOfARasterView) {
     cluster.add_node("null");
     cluster.add_node(
         [](const backend::BackendSettings& settings) { return std::make_unique<Drawing>(settings); });

@@ -1,5 +1,4 @@
-// One picture, to the bit, for any number of nodes, any policy, and whatever happens to messages and nodes on
-// the way.
+// The same bits for any number of nodes, any policy, and any faults of messages and nodes.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -69,7 +68,7 @@ const std::array<Trouble, 3> Troubles{{
 
 class SameBits : public testing::TestWithParam<std::tuple<int, Policy, Trouble>> {};
 
-TEST_P(SameBits, WhateverTheClusterAndItsTroubles) {
+TEST_P(SameBits, ForAnyClusterAndAnyFaults) {
     const auto& [nodes, policy, trouble] = GetParam();
     LoopbackCluster cluster;
     for (int i = 0; i < nodes; ++i) {
@@ -104,7 +103,7 @@ TEST(Cluster, EmbreeGivesTheSameBitsOnOneNodeAndOnThree) {
     EXPECT_EQ(hash_of(render(cluster, request)), reference_hash(1, "embree"));
 }
 
-TEST(Cluster, ANodeCutOffInTheMiddleChangesNothing) {
+TEST(Cluster, ANodeDisconnectedWhileRenderingChangesNothing) {
     LoopbackCluster cluster;
     cluster.add_node("null", {}, 2us);
     cluster.add_node("null", {.control = {}, .bulk = {.cut_after_messages = 25}}, 2us);
@@ -113,10 +112,10 @@ TEST(Cluster, ANodeCutOffInTheMiddleChangesNothing) {
     const client::ViewResult result = render(cluster, request);
     EXPECT_EQ(hash_of(result), reference_hash(1));
     EXPECT_GT(result.summary.units.reissued, 0u)
-        << "film of the cut node never came: somebody had to do it again";
+        << "film of the cut node was lost: its units must be rendered again";
 }
 
-TEST(Cluster, ANodeThatComesLateHelps) {
+TEST(Cluster, ANodeThatJoinsLateGetsWork) {
     LoopbackCluster cluster;
     cluster.add_node("null", {}, 20us);
     std::jthread late([&cluster] {
@@ -129,7 +128,7 @@ TEST(Cluster, ANodeThatComesLateHelps) {
     EXPECT_EQ(result.summary.nodes.size(), 2u);
 }
 
-TEST(Cluster, SaysThatNobodyCame) {
+TEST(Cluster, ReportsThatNoNodeConnected) {
     LoopbackCluster cluster;
     auto blobs = std::make_shared<BlobStore>();
     const auto session = cluster.session(blobs);

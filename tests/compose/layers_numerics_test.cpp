@@ -1,4 +1,4 @@
-// What composing makes of numbers at the ends of their range.
+// Compositing of extreme values.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ void expect_same_bits(const Rgba& found, const Pixel& pixel) {
 const std::vector<std::array<float, 3>> HardColors{
     {0.1f, 1.0f / 3.0f, -0.0f}, {Largest, -Largest, Tiny}, {-Tiny, 0.0f, 1e-40f}};
 
-TEST(ComposeNumerics, OneLayerKeepsItsBits) {
+TEST(ComposeNumerics, SingleLayerIsBitIdentical) {
     for (const auto& color : HardColors) {
         for (const float alpha : {1.0f, 0.0f, 0.3f, Tiny}) {
             for (const float depth : {0.0f, -1.0f, 5.0f, Infinity, -Infinity, std::nanf("")}) {
@@ -35,8 +35,8 @@ TEST(ComposeNumerics, OneLayerKeepsItsBits) {
     }
 }
 
-// Not even the sign of a zero, or what is no number, comes through from behind.
-TEST(ComposeNumerics, AnOpaqueLayerInFrontKeepsItsBits) {
+// Not even the sign of a zero or a NaN comes through from behind.
+TEST(ComposeNumerics, OpaqueFrontLayerIsBitIdentical) {
     for (const auto& color : HardColors) {
         const Pixel front{color, 1.0f, 1.0f};
         for (const Pixel& behind :
@@ -48,7 +48,7 @@ TEST(ComposeNumerics, AnOpaqueLayerInFrontKeepsItsBits) {
     }
 }
 
-TEST(ComposeNumerics, WhatIsFiniteStaysFinite) {
+TEST(ComposeNumerics, FiniteInputGivesFiniteOutput) {
     const std::array values{0.0f,    -0.0f,    1.0f, -1.0f,  1e30f,       -1e30f,
                             Largest, -Largest, Tiny, 1e-38f, Largest / 2, 0.999999940395f};
     const std::array depths{0.0f, -0.0f, 1.0f, Largest, -Largest, Infinity, -Infinity, std::nanf(""), Tiny};
@@ -68,7 +68,7 @@ TEST(ComposeNumerics, WhatIsFiniteStaysFinite) {
 // Against the sum in double, sorted by the standard library. Every layer rounds its product, its sum and its
 // transmittance once, each by u = 2^-24 of what is at most the result for light that is not negative: 3 u a
 // layer.
-TEST(ComposeNumerics, IsTheSumFromTheFront) {
+TEST(ComposeNumerics, EqualsFrontToBackSum) {
     CounterRandom random(12);
     for (int turn = 0; turn < 2000; ++turn) {
         std::vector<Pixel> pixels(2 + random.below(7));

@@ -1,4 +1,4 @@
-// Pictures laid over each other by depth and alpha.
+// Compositing by depth and alpha.
 #include "master/render/compose/layers.h"
 
 #include <gtest/gtest.h>
@@ -13,9 +13,9 @@ const Pixel Red{{1.0f, 0.0f, 0.0f}, 1.0f, 2.0f};
 const Pixel GreenGlass{{0.0f, 0.5f, 0.0f}, 0.5f, 1.0f};  // premultiplied
 const Pixel Blue{{0.0f, 0.0f, 1.0f}, 1.0f, 3.0f};
 const Pixel Nothing{};
-const Pixel Sky{{0.25f, 0.5f, 0.75f}, 0.0f, Infinity};  // shines, and covers nothing
+const Pixel Sky{{0.25f, 0.5f, 0.75f}, 0.0f, Infinity};  // emits, and covers nothing
 
-TEST(Compose, TheNearestLiesOnTopWhateverTheList) {
+TEST(Compose, NearestLayerIsOnTopInAnyOrder) {
     EXPECT_EQ(composed({Red, GreenGlass}), (Rgba{0.5f, 0.5f, 0.0f, 1.0f}));
     EXPECT_EQ(composed({GreenGlass, Red}), (Rgba{0.5f, 0.5f, 0.0f, 1.0f}));
     EXPECT_EQ(composed({Blue, GreenGlass, Red}), (Rgba{0.5f, 0.5f, 0.0f, 1.0f}));
@@ -25,7 +25,7 @@ TEST(Compose, TheNearestLiesOnTopWhateverTheList) {
     EXPECT_EQ(composed({Blue, far_glass}), (Rgba{0.0f, 0.5f, 0.5f, 1.0f}));
 }
 
-TEST(Compose, OfEquallyNearOnesTheLaterIsInFront) {
+TEST(Compose, LaterLayerWinsAtEqualDepth) {
     Pixel red = Red, blue = Blue, glass = GreenGlass;
     red.depth = blue.depth = glass.depth = 7.0f;
     EXPECT_EQ(composed({red, blue}), (Rgba{0.0f, 0.0f, 1.0f, 1.0f}));
@@ -35,7 +35,7 @@ TEST(Compose, OfEquallyNearOnesTheLaterIsInFront) {
     EXPECT_EQ(composed({blue, glass, red, Nothing, glass}), (Rgba{0.5f, 0.5f, 0.0f, 1.0f}));
 }
 
-TEST(Compose, WhereNothingIsWhatIsBehindIsSeen) {
+TEST(Compose, TransparentPixelsShowTheLayerBehind) {
     EXPECT_EQ(composed({Nothing, Nothing}), (Rgba{0.0f, 0.0f, 0.0f, 0.0f}));
     EXPECT_EQ(composed({Red, Nothing}), (Rgba{1.0f, 0.0f, 0.0f, 1.0f}));
     EXPECT_EQ(composed({Sky, GreenGlass}), (Rgba{0.125f, 0.75f, 0.375f, 0.5f}));
@@ -44,7 +44,7 @@ TEST(Compose, WhereNothingIsWhatIsBehindIsSeen) {
 }
 
 // Against the definition, one pixel at a time; a size that no block divides.
-TEST(Compose, EveryPixelForItself) {
+TEST(Compose, PixelsAreIndependent) {
     constexpr std::uint32_t Width = 333, Height = 77;
     Stack stack(Width, Height, 2);
     const auto left = [](std::size_t i) {
@@ -68,7 +68,7 @@ TEST(Compose, EveryPixelForItself) {
     }
 }
 
-TEST(Compose, KeepsTheMemoryOfThePictureBefore) {
+TEST(Compose, ReusesMemory) {
     Stack stack(64, 64, 2);
     tbb::task_arena arena(2);
     filter::Planes out;
@@ -78,7 +78,7 @@ TEST(Compose, KeepsTheMemoryOfThePictureBefore) {
     EXPECT_EQ(out.values().data(), memory);
 }
 
-TEST(Compose, RefusesWhatDoesNotFit) {
+TEST(Compose, RejectsMismatchedSizes) {
     tbb::task_arena arena(1);
     filter::Planes out;
     const Stack stack(8, 8, 1), many(8, 8, master::MaxLayers + 1);

@@ -16,7 +16,7 @@ struct Pixel {
 };
 using Rgba = std::array<float, 4>;
 
-// Pictures of one size, one above the other in a list.
+// A stack of layers of the same size.
 class Stack {
   public:
     Stack(std::uint32_t width, std::uint32_t height, std::size_t layers)

@@ -1,4 +1,4 @@
-// What every back-end in the catalog owes the cluster.
+// The contract of every back-end in the catalog.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -56,7 +56,7 @@ struct BackendContract : testing::TestWithParam<std::string> {
     Rect whole{0, 0, 48, 32};
 };
 
-TEST_P(BackendContract, TellsWhatItCan) {
+TEST_P(BackendContract, ReportsItsCapabilities) {
     const Capabilities capabilities = backend->capabilities();
     EXPECT_TRUE(capabilities.channels.contains(frame::Channel::Radiance));
     EXPECT_GE(capabilities.preferred_tile, 1u);
@@ -66,7 +66,7 @@ TEST_P(BackendContract, TellsWhatItCan) {
     EXPECT_EQ(fresh()->capabilities().kind, capabilities.kind);
 }
 
-TEST_P(BackendContract, RefusesAUnitOfAnotherVersion) {
+TEST_P(BackendContract, RejectsAUnitOfAnotherVersion) {
     view::WorkUnit work = unit(whole, {0, 0});
     ++work.version.number;
     EXPECT_EQ(backend->render(view, work, {}).status, RenderStatus::Refused);
@@ -132,7 +132,7 @@ TEST_P(BackendContract, AChannelHasTheSameBitsAloneAndAmongOthers) {
     }
 }
 
-TEST_P(BackendContract, TheChannelsOfASampleFitTogether) {
+TEST_P(BackendContract, TheChannelsOfASampleAreConsistent) {
     using frame::Channel;
     const FilmTile film = render(*backend, whole, {6, 0});
     const auto value = [&](Channel channel, std::uint32_t component, std::size_t pixel) {
@@ -142,15 +142,15 @@ TEST_P(BackendContract, TheChannelsOfASampleFitTogether) {
         const bool hit = std::isfinite(value(Channel::Depth, 0, pixel));
         ASSERT_EQ(value(Channel::Alpha, 0, pixel), hit ? 1.0f : 0.0f);
         ASSERT_EQ(std::bit_cast<std::uint32_t>(value(Channel::ObjectIndex, 1, pixel)) != 0, hit);
-        ASSERT_EQ(value(Channel::EvenHalf, 3, pixel), 1.0f) << "the index is even";
+        ASSERT_EQ(value(Channel::HalfBufferA, 3, pixel), 1.0f) << "the index is even";
         for (std::uint32_t c = 0; c < 3; ++c) {
             const float radiance = value(Channel::Radiance, c, pixel);
             ASSERT_EQ(radiance,
                       value(Channel::LowVariance, c, pixel) + value(Channel::HighVariance, c, pixel));
-            ASSERT_EQ(value(Channel::EvenHalf, c, pixel), radiance);
+            ASSERT_EQ(value(Channel::HalfBufferA, c, pixel), radiance);
             ASSERT_EQ(value(Channel::Color, c, pixel), radiance);
-            ASSERT_GE(value(Channel::Range, c, pixel), 0.0f);
-            ASSERT_LE(value(Channel::Range, c, pixel), 1.0f);
+            ASSERT_GE(value(Channel::Headlight, c, pixel), 0.0f);
+            ASSERT_LE(value(Channel::Headlight, c, pixel), 1.0f);
             if (!hit) {
                 ASSERT_EQ(value(Channel::Albedo, c, pixel), 0.0f);
                 ASSERT_EQ(value(Channel::Normal, c, pixel), 0.0f);
@@ -159,13 +159,13 @@ TEST_P(BackendContract, TheChannelsOfASampleFitTogether) {
     }
     const FilmTile odd = render(*backend, whole, {7, 0});
     for (std::uint32_t c = 0; c < 4; ++c) {
-        for (const float half : odd.plane(view.channels.first_plane(Channel::EvenHalf) + c))
+        for (const float half : odd.plane(view.channels.first_plane(Channel::HalfBufferA) + c))
             ASSERT_EQ(half, 0.0f);
     }
 }
 
-// Every choice of a view renders whole blocks; the choices of light leave the geometry alone.
-TEST_P(BackendContract, ChoicesOfLightLeaveTheGeometryAlone) {
+// Every view option renders whole blocks; options of light transport do not affect the geometry channels.
+TEST_P(BackendContract, TransportOptionsDoNotAffectTheGeometry) {
     const FilmTile plain = render(*backend, whole, {0, 2});
     const auto expect_same_geometry = [&](const char* choice) {
         const FilmTile other = render(*backend, whole, {0, 2});
@@ -198,8 +198,8 @@ TEST_P(BackendContract, ChoicesOfLightLeaveTheGeometryAlone) {
     expect_same_geometry("renderer");
 }
 
-// What it says to have it renders; the rest it refuses with the remedy.
-TEST_P(BackendContract, HasTheRenderersThatItNames) {
+// It renders with the renderers of its capabilities, and rejects others with the remedy.
+TEST_P(BackendContract, HasTheRenderersOfItsCapabilities) {
     const view::RendererSet renderers = backend->capabilities().renderers;
     EXPECT_TRUE(renderers.contains(view::Renderer::PathTracing));
     for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted,
@@ -228,11 +228,11 @@ TEST_P(BackendContract, AnotherSeedIsAnotherPicture) {
     EXPECT_FALSE(frame::identical_bits(one, render(*backend, whole, {0, 2})));
 }
 
-TEST_P(BackendContract, AStopLeavesTheWholeAlignedBlocksOfAPrefix) {
+TEST_P(BackendContract, AStopLeavesWholeAlignedBlocks) {
     const std::uint64_t first = std::uint64_t{1} << 20;
-    const SampleBlock endless{first, 20};  // would outlast the test's own limit
+    const SampleBlock endless{first, 20};  // would exceed the time limit of the test
     std::size_t with_blocks = 0;
-    // On and on until there are blocks: a first one may wait for its kernel.
+    // Repeated until there are blocks: the first one may wait for its kernel.
     for (int attempt = 0; attempt < 8 || (with_blocks == 0 && attempt < 15); ++attempt) {
         std::stop_source stop;
         RenderResult result;
@@ -293,10 +293,10 @@ TEST_P(BackendContract, AnEditWithoutCommitLeavesTheLastGoodVersion) {
     EXPECT_TRUE(frame::identical_bits(before, render(*backend, whole, {0, 2})));
 }
 
-TEST_P(BackendContract, AListThatDoesNotFollowIsRefused) {
+TEST_P(BackendContract, AListFromAnotherVersionIsRejected) {
     const Version version = backend->version();
     const FilmTile before = render(*backend, whole, {0, 1});
-    builder.move(test::BlockAt, test::moved(0.2, 0, -1.5));  // never told
+    builder.move(test::BlockAt, test::moved(0.2, 0, -1.5));  // not applied
     {
         const auto scope = backend->begin_edit();
         const auto done = scope->apply(builder.move(test::BlockAt, test::moved(0.1, 0, -1.5)));
@@ -320,7 +320,7 @@ TEST_P(BackendContract, SeveralListsInOneEditEqualOneAtATime) {
     EXPECT_TRUE(frame::identical_bits(render(*backend, whole, {0, 3}), render(*stepwise, whole, {0, 3})));
 }
 
-TEST_P(BackendContract, AnEditReportTellsWhatWasTouched) {
+TEST_P(BackendContract, AnEditReportCountsTheChanges) {
     const auto scope = backend->begin_edit();
     ASSERT_TRUE(scope->apply(builder.move(test::BlockAt, test::moved(0.2, 0.1, -1.5))));
     const Expected<EditReport> report = scope->commit();
@@ -333,7 +333,7 @@ TEST_P(BackendContract, AnEditReportTellsWhatWasTouched) {
     EXPECT_TRUE(report->problems.empty());
 }
 
-TEST_P(BackendContract, AnEditWaitsForWhatIsBeingRendered) {
+TEST_P(BackendContract, AnEditWaitsForRunningRenders) {
     std::stop_source stop;
     std::atomic<bool> rendering = true;
     std::jthread renderer([&] {
@@ -347,14 +347,14 @@ TEST_P(BackendContract, AnEditWaitsForWhatIsBeingRendered) {
         stop.request_stop();
     });
     test::commit(*backend, {list});
-    // render() gave its hold back before the flag was set: allow for that moment.
+    // render() may release its lock before the flag is set: allow for that moment.
     for (int i = 0; i < 1000 && rendering; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     EXPECT_FALSE(rendering);
     EXPECT_TRUE(stop.stop_requested());
     EXPECT_EQ(backend->version(), list.to);
 }
 
-TEST_P(BackendContract, AProbeTellsSomethingAndLeavesThePictureAlone) {
+TEST_P(BackendContract, AProbeReturnsALogAndDoesNotAffectTheFilm) {
     const FilmTile before = render(*backend, whole, {0, 1});
     EXPECT_FALSE(backend->probe(view, 20, 16, 3).empty());
     EXPECT_TRUE(frame::identical_bits(before, render(*backend, whole, {0, 1})));
@@ -362,8 +362,8 @@ TEST_P(BackendContract, AProbeTellsSomethingAndLeavesThePictureAlone) {
 
 TEST_P(BackendContract, AnEmptySceneRenders) {
     const auto empty = fresh();
-    test::SceneBuilder nothing;
-    test::commit(*empty, {nothing.edit({scene::Create{scene::RootId, scene::Root{}}})});
+    test::SceneBuilder empty_scene;
+    test::commit(*empty, {empty_scene.edit({scene::Create{scene::RootId, scene::Root{}}})});
     const FilmTile film = render(*empty, whole, {0, 0});
     EXPECT_EQ(film.counts.at(0), 1u);
 }
@@ -377,7 +377,7 @@ std::vector<std::string> names() {
 INSTANTIATE_TEST_SUITE_P(Catalog, BackendContract, testing::ValuesIn(names()),
                          [](const auto& entry) { return entry.param; });
 
-TEST(Catalog, FindsByNameAndNamesTheChoicesOtherwise) {
+TEST(Catalog, FindsByNameOrListsTheChoices) {
     EXPECT_EQ(find_backend("null").name, "null");
     try {
         find_backend("nul");

@@ -10,7 +10,7 @@
 namespace tessera::test {
 
 inline constexpr ObjectId Floor{20}, Block{21}, FloorAt{10}, BlockAt{11}, BlockAlsoAt{12}, LampAt{13},
-    Lamp{30}, Red{40}, Glow{41}, Sky{50};
+    Lamp{30}, Red{40}, Emissive{41}, Sky{50};
 
 template <class T>
 scene::BlobRef array_blob(scene::BlobStore& store, const std::vector<T>& values) {
@@ -27,15 +27,15 @@ inline scene::Geometry square(scene::BlobStore& store, float size, ObjectId mate
     return geometry;
 }
 
-// A wall, two instances of one glowing square in front of it, a lamp and a grey sky, seen from +z.
+// A wall, two instances of an emissive square in front of it, a lamp and a grey sky, seen from +z.
 inline std::vector<scene::Entry> contract_scene(scene::BlobStore& store) {
     using scene::Create;
     scene::Root root;
     root.children = {FloorAt, BlockAt, BlockAlsoAt, LampAt};
     root.background = Sky;
-    scene::Material red, glow;
+    scene::Material red, emissive;
     red.base_color = {0.7f, 0.2f, 0.1f, 1.0f};
-    glow.emission = {2.0f, 1.5f, 1.0f};
+    emissive.emission = {2.0f, 1.5f, 1.0f};
     scene::Light lamp;
     lamp.intensity = {10.0f, 10.0f, 10.0f};
     scene::Background sky;
@@ -46,10 +46,10 @@ inline std::vector<scene::Entry> contract_scene(scene::BlobStore& store) {
             Create{BlockAlsoAt, transform(moved(0.6, 0.2, -2.5), {Block})},
             Create{LampAt, transform(moved(0, 1, 0), {Lamp})},
             Create{Floor, square(store, 1.2f, Red)},
-            Create{Block, square(store, 0.3f, Glow)},
+            Create{Block, square(store, 0.3f, Emissive)},
             Create{Lamp, lamp},
             Create{Red, red},
-            Create{Glow, glow},
+            Create{Emissive, emissive},
             Create{Sky, sky}};
 }
 

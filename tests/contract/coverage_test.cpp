@@ -1,4 +1,4 @@
-// The renderer coverage: which objects are seen, and how much of the picture they take.
+// The renderer `coverage`: visible objects and their parts of the picture.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -19,13 +19,13 @@ using frame::Channel;
 using Counts = std::map<std::uint32_t, int>;
 
 struct Square {
-    glm::dvec3 middle;
+    glm::dvec3 center;
     float size = 0.0f;  // half an edge
     float alpha = 1.0f;
 };
 constexpr std::uint32_t First = 100;  // id of the first square
 
-// Whatever its view: 64 x 64 pixels, metres from -1 to 1 at distance 1.
+// For any view: 64 x 64 pixels, metres from -1 to 1 at distance 1.
 view::View view_of(scene::Projection projection) {
     view::View view;
     view.id = ViewId{1};
@@ -50,7 +50,7 @@ struct CoverageRenderer : testing::TestWithParam<std::string> {
             entries.push_back(scene::Create{paint, material});
             entries.push_back(
                 scene::Create{ObjectId{First + i}, test::square(*blobs, squares[i].size, paint)});
-            const glm::dvec3& at = squares[i].middle;
+            const glm::dvec3& at = squares[i].center;
             entries.push_back(
                 scene::Create{place, test::transform(test::moved(at.x, at.y, at.z), {ObjectId{First + i}})});
             root.children.push_back(place);
@@ -77,8 +77,8 @@ struct CoverageRenderer : testing::TestWithParam<std::string> {
     std::unique_ptr<Backend> backend;
 };
 
-// Edges of squares are edges of pixels, so that not one sample may be wrong.
-TEST_P(CoverageRenderer, CountsWhatIsInFront) {
+// Edges of squares are pixel edges, so that no sample may be wrong.
+TEST_P(CoverageRenderer, CountsVisibleObjects) {
     const view::View view = view_of(scene::Projection::Orthographic);
     show({{{0.0, 0.0, -3.0}, 0.5f}});
     EXPECT_EQ(counts(film(view)), (Counts{{0, 3072}, {First, 1024}}));
@@ -90,15 +90,15 @@ TEST_P(CoverageRenderer, CountsWhatIsInFront) {
     EXPECT_EQ(counts(film(view)), (Counts{{0, 2560}, {First, 512}, {First + 1, 1024}}));
 }
 
-TEST_P(CoverageRenderer, SeesThroughAlphaByItsShare) {
+TEST_P(CoverageRenderer, SeesThroughAlphaStochastically) {
     show({{{0.0, 0.0, -3.0}, 1.0f}, {{0.0, 0.0, -2.0}, 0.5f, 0.25f}});
     const Counts seen = counts(film(view_of(scene::Projection::Orthographic)));
-    // 1024 samples, of which each is stopped with a chance of 1/4: 4 standard deviations.
+    // 1024 samples, each is stopped with probability 1/4: 4 standard deviations.
     EXPECT_NEAR(seen.at(First + 1), 256, 4.0 * std::sqrt(1024 * 0.25 * 0.75));
     EXPECT_EQ(seen.at(First) + seen.at(First + 1), 4096);
 }
 
-// Light plays no part: squares that shine have a colour like others, and where nothing is it is dark.
+// Unlit: emissive squares have a colour like others, and the background is black.
 TEST_P(CoverageRenderer, ShowsEachObjectInItsColor) {
     show({{{-0.5, 0.0, -3.0}, 0.25f}, {{0.5, 0.0, -3.0}, 0.25f}});
     const frame::FilmTile seen = film(view_of(scene::Projection::Orthographic), {0, 2});
@@ -115,7 +115,7 @@ TEST_P(CoverageRenderer, ShowsEachObjectInItsColor) {
     EXPECT_EQ(at(32, 32), glm::vec3(0.0f));
 }
 
-// Of each sample the nearest square in its ray's way, found by the equations of squares alone.
+// For each sample the nearest square on its ray, computed analytically.
 Counts brute_force(const view::View& view, const std::vector<Square>& squares) {
     const shading::View record = make_view(view, glm::dvec3(0.0));
     Counts seen;
@@ -129,8 +129,8 @@ Counts brute_force(const view::View& view, const std::vector<Square>& squares) {
             double nearest = 1e30;
             std::uint32_t object = 0;
             for (std::uint32_t i = 0; i < squares.size(); ++i) {
-                const double t = (squares[i].middle.z - origin.z) / direction.z;
-                const glm::dvec3 off = origin + t * direction - squares[i].middle;
+                const double t = (squares[i].center.z - origin.z) / direction.z;
+                const glm::dvec3 off = origin + t * direction - squares[i].center;
                 const double size = double(squares[i].size);
                 if (!(t > 0.0 && t < nearest) || std::fabs(off.x) > size || std::fabs(off.y) > size) continue;
                 nearest = t;
@@ -142,9 +142,8 @@ Counts brute_force(const view::View& view, const std::vector<Square>& squares) {
     return seen;
 }
 
-// Of the channels beside colour and object: how far it is along the view's axis, even where a ray goes there
-// at an angle, and that something is there at all.
-TEST_P(CoverageRenderer, KnowsHowFarObjectsAreAndWhereNoneIs) {
+// The other channels: depth along the view axis, also for oblique rays, and alpha.
+TEST_P(CoverageRenderer, HasDepthAndAlpha) {
     view::View view = view_of(scene::Projection::Perspective);
     view.channels = {Channel::Depth, Channel::Alpha};
     show({{{-1.0, 0.0, -2.0}, 0.75f}, {{1.0, 0.0, -4.0}, 0.75f}});

@@ -1,6 +1,5 @@
-// A filter that runs again on the same frame takes no memory: operator new is counted for the whole program, each
-// byte. What TBB takes for its tasks it takes from its own pools, which are not operator new: they are kept by
-// thread, and grow with whichever thread comes to help, not with frames.
+// A second run of a filter on the same frame allocates nothing: operator new is counted for the whole program. TBB
+// allocates tasks from its own pools, which do not use operator new and grow with the threads, not with frames.
 #include <atomic>
 #include <cstdlib>
 #include <new>
@@ -53,20 +52,20 @@ TEST_P(FilterAllocation, NoneInALaterRunOfTheSameSize) {
     EXPECT_EQ(noted_bytes, 0u) << name() << " allocates in its fourth run on one frame";
 }
 
-TEST(FilterAllocationCount, SeesASingleNumber) {
+TEST(FilterAllocationCount, CountsASingleNumber) {
     noted_bytes = 0;
     const std::vector<float> one(1);
     EXPECT_EQ(noted_bytes, sizeof(float));
 }
 
-// The same for what filters read.
+// The same for the inputs of filters.
 TEST(InputsAllocation, NoneForTheNextFilmOfTheSameSize) {
     using enum frame::Channel;
     const auto sampler = [](std::uint32_t x, std::uint32_t y, std::uint64_t sample) {
         return room(300, 260, x, y, sample);
     };
-    const frame::FilmTile film =
-        synthetic_film(300, 260, 4, {Radiance, Albedo, Normal, Depth, ObjectIndex, EvenHalf, Alpha}, sampler);
+    const frame::FilmTile film = synthetic_film(
+        300, 260, 4, {Radiance, Albedo, Normal, Depth, ObjectIndex, HalfBufferA, Alpha}, sampler);
     const view::View view = synthetic_view(300, 260);
     Inputs inputs;
     resolve_inputs(film, view, nullptr, inputs);

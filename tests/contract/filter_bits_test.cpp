@@ -1,4 +1,4 @@
-// The same samples give the same bits, whoever computes them, and a stop is honoured.
+// The same samples give the same bits on any number of threads, and a stop is honoured.
 #include <time.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ TEST_P(FilterBits, DoNotDependOnWhatTheInstanceDidBeforeUnlessItIsTemporal) {
     EXPECT_EQ(first_difference(fresh.numbers(inputs), used.numbers(inputs)), "") << name();
 }
 
-// --- the way of the samples into the film
+// --- from samples to the film
 
 constexpr std::uint32_t Width = 45, Height = 33;
 constexpr std::uint64_t Samples = 11;
@@ -85,7 +85,7 @@ void paste(const frame::FilmTile& tile, frame::FilmTile& frame) {
     }
 }
 
-// The whole frame from square tiles of `edge` pixels whose blocks arrive in an order of their own.
+// The whole frame from square tiles of `edge` pixels whose blocks arrive in a random order.
 frame::FilmTile assembled(std::int32_t edge, std::uint32_t order) {
     frame::FilmTile film(Rect{0, 0, Width, Height}, {0, 0}, EveryChannel);
     std::mt19937 shuffle(order);
@@ -122,7 +122,7 @@ TEST_P(FilterBits, DoNotDependOnTilesAndTheirOrder) {
 
 // --- stop
 
-// Processor time of this thread, which other programs do not lengthen; an arena of one runs in its caller.
+// CPU time of this thread, independent of other programs; an arena with one thread runs in its caller.
 template <class Work>
 double seconds_of(const Work& work) {
     const auto now = [] {
@@ -135,7 +135,7 @@ double seconds_of(const Work& work) {
     return now() - from;
 }
 
-TEST_P(FilterBits, AStopThatIsAlreadyAskedForCostsLittle) {
+TEST_P(FilterBits, AStopBeforeTheRunCostsLittle) {
     const Inputs inputs = room_inputs(160, 120, 4);
     Subject subject(entry(), inputs, 1);
     const std::vector<float> expected = subject.numbers(inputs);
@@ -154,7 +154,7 @@ TEST_P(FilterBits, AStopThatIsAlreadyAskedForCostsLittle) {
     EXPECT_EQ(first_difference(expected, subject.numbers(inputs)), "") << name() << " after a stop";
 }
 
-TEST_P(FilterBits, AStopOnTheWayIsToldOrComesTooLate) {
+TEST_P(FilterBits, AStopDuringTheRunIsReportedOrTooLate) {
     const Inputs inputs = room_inputs(160, 120, 4);
     Subject subject(entry(), inputs);
     const std::vector<float> expected = subject.numbers(inputs);

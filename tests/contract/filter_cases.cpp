@@ -26,14 +26,14 @@ CounterRandom stream(std::uint64_t seed, std::uint32_t x, std::uint32_t y, std::
 
 SyntheticSample miss() {
     SyntheticSample s;
-    s.albedo = s.normal = s.range = {};
+    s.albedo = s.normal = s.headlight = {};
     s.depth = Infinity;
     s.alpha = 0.0f;
     s.object = 0;
     return s;
 }
 
-// Every feature far from those of all neighbours, so that a window has no member but its centre.
+// Features that differ strongly between neighbours, so that only the center of a window gets weight.
 SyntheticSample lonely(std::uint32_t x, std::uint32_t y, std::uint64_t sample) {
     CounterRandom place = stream(3, x, y, 0), light = stream(4, x, y, sample);
     SyntheticSample s;
@@ -41,7 +41,7 @@ SyntheticSample lonely(std::uint32_t x, std::uint32_t y, std::uint64_t sample) {
     for (int c = 0; c < 3; ++c) {
         s.albedo[c] = 1e3f * number * static_cast<float>(place.uniform());
         s.normal[c] = static_cast<float>(2.0 * place.uniform() - 1.0);
-        s.range[c] = static_cast<float>(place.uniform());
+        s.headlight[c] = static_cast<float>(place.uniform());
         s.high[c] = 1e4f * number + static_cast<float>(light.uniform());
         s.irradiance[c] = 1e4f * number;
     }
@@ -51,7 +51,7 @@ SyntheticSample lonely(std::uint32_t x, std::uint32_t y, std::uint64_t sample) {
     return s;
 }
 
-// Values from 1e-`decades` to 1e+`decades` beside each other. Without noise the whole range of a float is
+// Neighbouring values from 1e-`decades` to 1e+`decades`. Without noise the whole range of a float is
 // asked for; with it the squares of the deviations have to be floats as well.
 SyntheticSample wide_range(std::uint32_t x, std::uint32_t y, std::uint64_t sample, double decades,
                            double noise) {
@@ -97,7 +97,7 @@ SyntheticSample room(std::uint32_t width, std::uint32_t height, std::uint32_t x,
         s.low[c] = 0.3f * s.albedo[c] * static_cast<float>(0.5 + direct);
         s.high[c] = s.albedo[c] * light;
         s.irradiance[c] = light;
-        s.range[c] = s.albedo[c] * (0.4f + 0.3f * (1.0f + s.normal[2]));
+        s.headlight[c] = s.albedo[c] * (0.4f + 0.3f * (1.0f + s.normal[2]));
     }
     s.shading = light;
     return s;
@@ -127,9 +127,9 @@ Inputs constant_inputs(std::uint32_t width, std::uint32_t height, std::uint64_t 
     });
 }
 
-std::vector<HostileCase> hostile_cases() {
+std::vector<MalformedCase> malformed_cases() {
     const auto is_hole = [](std::uint32_t x, std::uint32_t y) { return stream(2, x, y, 0).uniform() < 0.9; };
-    std::vector<HostileCase> cases;
+    std::vector<MalformedCase> cases;
     cases.push_back({"no samples anywhere", room_inputs(24, 18, 0)});
     cases.push_back(
         {"nine pixels of ten without samples", of_room(24, 18, 3, [&](auto& s, auto x, auto y, auto) {
@@ -144,7 +144,7 @@ std::vector<HostileCase> hostile_cases() {
     cases.push_back({"empty background", of_room(24, 18, 4, [](auto& s, auto...) { s = miss(); })});
     cases.push_back({"bright background", of_room(24, 18, 4, [](auto& s, auto...) {
                          s = miss();
-                         s.low = s.range = {5.0f, 6.0f, 7.0f};
+                         s.low = s.headlight = {5.0f, 6.0f, 7.0f};
                      })});
     cases.push_back({"no variance",
                      of_room(24, 18, 4, [](auto& s, auto x, auto y, auto) { s = room(24, 18, x, y, 0); })});
@@ -160,7 +160,7 @@ std::vector<HostileCase> hostile_cases() {
                          s = wide_range(x, y, i, 15.0, 1.0);
                      })});
     cases.push_back({"black", of_room(24, 18, 4, [](auto& s, auto...) {
-                         s.low = s.high = s.irradiance = s.albedo = s.range = {};
+                         s.low = s.high = s.irradiance = s.albedo = s.headlight = {};
                          s.shading = 0.0f;
                      })});
     for (const auto [width, height] : {std::array{1u, 1u}, {1u, 7u}, {3u, 2u}, {16u, 16u}}) {
@@ -170,7 +170,7 @@ std::vector<HostileCase> hostile_cases() {
 }
 
 Subject::Subject(const FilterEntry& entry, const Inputs& inputs, int threads)
-    : values(standard_values(entry.description)),
+    : values(default_values(entry.description)),
       filter(entry.make(inputs.width, inputs.height)),
       arena(threads) {}
 

@@ -7,17 +7,17 @@
 #include "master/filter/catalog.h"
 #include "tests/filter/synthetic.h"
 
-// Pictures that every filter of the table has to cope with.
+// Test pictures for every filter of the table.
 namespace tessera::filter::test {
 
 // A coherent scene with every channel: background above and a partly covered edge to it, albedo checker,
 // three orientations, a step in depth with an object's edge, direct light in `low`, Bernoulli light with rare
-// bright samples in `high`. Linear in nothing.
+// bright samples in `high`. No linear dependencies.
 SyntheticSample room(std::uint32_t width, std::uint32_t height, std::uint32_t x, std::uint32_t y,
                      std::uint64_t sample);
 Inputs room_inputs(std::uint32_t width, std::uint32_t height, std::uint64_t n);
 
-// What a sampler returns for a sample that put_sample must reject, so that counts differ between pixels.
+// Returned by a sampler for a sample that put_sample must reject, so that counts differ between pixels.
 SyntheticSample rejected();
 
 // A film of one colour without noise (premultiplied alpha 1), the features and rejected samples whatever
@@ -25,12 +25,12 @@ SyntheticSample rejected();
 inline constexpr std::array<float, 3> ConstantColor{0.7f, 0.3f, 1.5f};
 Inputs constant_inputs(std::uint32_t width, std::uint32_t height, std::uint64_t n, const Sampler& features);
 
-struct HostileCase {
+struct MalformedCase {
     std::string name;
     Inputs inputs;
 };
 // Finite inputs at the limits of what a film can be.
-std::vector<HostileCase> hostile_cases();
+std::vector<MalformedCase> malformed_cases();
 
 // A filter of the table with its values, used as the master does.
 class Subject {
@@ -47,9 +47,9 @@ class Subject {
     Report report;
 };
 
-// Where the two first differ in bits: empty when nowhere.
+// The first difference in bits; empty if there is none.
 std::string first_difference(std::span<const float> a, std::span<const float> b);
-// Where the first number is not finite: empty when all are.
+// The first number that is not finite; empty if all are.
 std::string first_not_finite(const Planes& planes);
 
 // One test per line of the catalog, by its name.

@@ -1,4 +1,4 @@
-// What every filter of the table owes the picture, however bad the film is.
+// The contract of every filter of the table, for any film.
 #include <algorithm>
 #include <cmath>
 
@@ -61,26 +61,27 @@ TEST_P(FilterContract, HolesAreFilledFromTheirNeighbours) {
 }
 
 TEST_P(FilterContract, IsFiniteWhateverTheFilm) {
-    for (const HostileCase& hostile : hostile_cases()) {
-        Subject subject(entry(), hostile.inputs);
+    for (const MalformedCase& malformed : malformed_cases()) {
+        Subject subject(entry(), malformed.inputs);
         subject.out.wants_maps = true;
         for (int run = 0; run < 2; ++run) {  // the second with a history, where there is one
-            const Planes& picture = subject.picture(hostile.inputs);
-            ASSERT_EQ(picture.components(), 4u) << name() << ": " << hostile.name;
-            ASSERT_EQ(picture.pixel_count(), hostile.inputs.pixel_count()) << name() << ": " << hostile.name;
-            EXPECT_EQ(first_not_finite(picture), "") << name() << ": " << hostile.name << ", run " << run;
-            EXPECT_FALSE(subject.report.stopped) << name() << ": " << hostile.name;
+            const Planes& picture = subject.picture(malformed.inputs);
+            ASSERT_EQ(picture.components(), 4u) << name() << ": " << malformed.name;
+            ASSERT_EQ(picture.pixel_count(), malformed.inputs.pixel_count())
+                << name() << ": " << malformed.name;
+            EXPECT_EQ(first_not_finite(picture), "") << name() << ": " << malformed.name << ", run " << run;
+            EXPECT_FALSE(subject.report.stopped) << name() << ": " << malformed.name;
         }
     }
 }
 
-TEST_P(FilterContract, NeedsNoChannelsButItsOwn) {
-    const frame::ChannelSet own = entry().description.channels(standard_values(entry().description));
+TEST_P(FilterContract, NeedsOnlyItsOwnChannels) {
+    const frame::ChannelSet own = entry().description.channels(default_values(entry().description));
     const Inputs inputs = synthetic_inputs(
         24, 18, 4, [](auto x, auto y, auto i) { return room(24, 18, x, y, i); }, own);
     Subject subject(entry(), inputs);
     EXPECT_EQ(first_not_finite(subject.picture(inputs)), "") << name();
-    // What it does not ask for does not change it; alpha is a component of the picture and left out here.
+    // Other channels have no effect; alpha is a component of the picture and left out here.
     frame::ChannelSet all = EveryChannel;
     if (!own.contains(Channel::Alpha)) {
         all.erase(Channel::Alpha);
@@ -142,16 +143,16 @@ TEST_P(FilterContract, AlphaHasTheWeightsOfTheRadiance) {
 // --- parameters
 
 std::vector<double> probes(const Parameter& parameter) {
-    if (parameter.choices.empty()) return {parameter.least, parameter.most};
+    if (parameter.choices.empty()) return {parameter.minimum, parameter.maximum};
     std::vector<double> all;
     for (std::size_t i = 0; i < parameter.choices.size(); ++i) all.push_back(static_cast<double>(i));
     return all;
 }
 
-// The values that some parameter is tried beside: the standard ones, and each choice of each other parameter,
-// since a number may have a meaning only within one of them.
+// The values of the other parameters while one is tested: the defaults, and each choice of each other parameter, since
+// a number may only be used with one of them.
 std::vector<Values> surroundings(const Description& description) {
-    std::vector<Values> all{standard_values(description)};
+    std::vector<Values> all{default_values(description)};
     for (std::size_t p = 0; p < description.parameters.size(); ++p) {
         for (std::size_t choice = 0; choice < description.parameters[p].choices.size(); ++choice) {
             all.push_back(all.front());
@@ -176,7 +177,7 @@ TEST_P(FilterContract, EveryParameterIsSafeOverItsRange) {
     }
 }
 
-// A session in four pictures: a film, more of it, the camera moved, the light changed.
+// A session of four pictures: a film, the same with more samples, a moved camera, changed lights.
 std::vector<Inputs> session() {
     std::vector<Inputs> pictures{room_inputs(36, 30, 2), room_inputs(36, 30, 5), room_inputs(36, 30, 1),
                                  room_inputs(36, 30, 1)};
@@ -217,7 +218,7 @@ TEST_P(FilterContract, EveryParameterIsLive) {
             if (seen) break;
         }
         EXPECT_TRUE(seen) << name() << ": " << description.parameters[p].name
-                          << " changes nothing in a session that goes on";
+                          << " has no effect in a running session";
     }
 }
 

@@ -1,5 +1,4 @@
-// What a filter must not do to a picture: carry light over edges, show tiles, worsen it where it says that it
-// does not.
+// What a filter must not do: blur light across edges, show tiles, increase the error if it is declared consistent.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -29,7 +28,7 @@ SyntheticSample lit(double albedo, std::array<float, 3> normal, double depth, st
     s.irradiance = {l, l, l};
     s.shading = l;
     const float facing = a * (1.0f + normal[2]) / 2.0f;
-    s.range = {facing, facing, facing};
+    s.headlight = {facing, facing, facing};
     return s;
 }
 
@@ -69,8 +68,8 @@ double column_mean(const Planes& picture, std::uint32_t x) {
     return sum / picture.height();
 }
 
-// The largest share of the step that arrived beyond the edge, of the means of the columns beside it; the mean
-// of a whole column has little noise.
+// The largest fraction of the step that leaked across the edge, from the means of the adjacent columns; the mean of a
+// whole column has little noise.
 double leak(const Planes& picture, const Edge& edge) {
     double worst = 0.0;
     for (std::uint32_t d = 0; d < 4; ++d) {
@@ -142,7 +141,7 @@ Inputs tiled_inputs() {
 
 // Compares the squared gradient across each border of two tiles with those inside the two, as pairs: `step`
 // for the mean along the border (a visible line), `noise` for single pixels. Student's t; 0 when tiles cannot
-// be seen, positive when their borders stand out.
+// be seen, positive when their borders are visible.
 struct SeamStatistic {
     double step = 0.0, noise = 0.0;
 };
@@ -197,7 +196,7 @@ TEST_P(FilterQuality, TilesDoNotShow) {
     EXPECT_LE(found.noise, SeamBound) << name() << ": stronger gradients at the borders of tiles";
 }
 
-TEST(FilterSeams, ABlurWithinTilesIsSeen) {
+TEST(FilterSeams, ABlurWithinTilesIsDetected) {
     const Inputs inputs = tiled_inputs();
     Planes blurred(SeamSize, SeamSize, 3);
     const auto radiance = inputs.color(1);
@@ -231,7 +230,7 @@ double relative_error(const Planes& picture, const Planes& truth) {
     return sum / (3.0 * static_cast<double>(truth.pixel_count()));
 }
 
-TEST_P(FilterQuality, IsConsistentIfItSaysSo) {
+TEST_P(FilterQuality, IsConsistentIfDeclaredSo) {
     if (!entry().description.consistent) GTEST_SKIP() << "is biased, and says so";
     constexpr std::uint32_t Width = 64, Height = 36;
     const Planes truth = shadowed_texture_truth(Width, Height);

@@ -1,4 +1,4 @@
-// Views that see only some layers of objects: what is hidden is not there, for no ray and no light.
+// Views of some object layers: hidden objects do not exist for any ray or light.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -16,7 +16,7 @@ using scene::Create, scene::Entry, scene::Transform;
 
 constexpr ObjectId Ghost{60}, GhostAt{61};
 
-// Puts what hangs below these into layers.
+// Sets the layers of these subtrees.
 void put(std::vector<Entry>& entries, std::initializer_list<ObjectId> transforms, std::uint32_t layers) {
     for (Entry& entry : entries) {
         auto* create = std::get_if<Create>(&entry);
@@ -27,7 +27,7 @@ void put(std::vector<Entry>& entries, std::initializer_list<ObjectId> transforms
 }
 
 struct Layers : testing::TestWithParam<std::string> {
-    // The null back-end's numbers are those of the whole scene, whatever is seen of it.
+    // The null back-end's values depend on the whole scene, visible or not.
     bool traces() const { return GetParam() != "null"; }
 
     void show(std::vector<Entry> entries) {
@@ -79,7 +79,7 @@ struct Layers : testing::TestWithParam<std::string> {
     std::unique_ptr<Backend> backend;
 };
 
-TEST_P(Layers, AViewSeesThoseThatItNames) {
+TEST_P(Layers, AViewSeesOnlyItsLayers) {
     show(haunted());
     for (const view::Renderer renderer : renderers()) {
         SCOPED_TRACE(view::renderer_name(renderer));
@@ -95,7 +95,7 @@ TEST_P(Layers, AViewSeesThoseThatItNames) {
     }
 }
 
-TEST_P(Layers, WhatIsHiddenLeavesNoTraceInAnyChannel) {
+TEST_P(Layers, HiddenObjectsAffectNoChannel) {
     if (!traces()) return;
     show(plain());
     const auto all = renderers();
@@ -109,7 +109,7 @@ TEST_P(Layers, WhatIsHiddenLeavesNoTraceInAnyChannel) {
     }
 }
 
-TEST_P(Layers, OneLayerForAllHasTheBitsOfNone) {
+TEST_P(Layers, OneLayerForAllGivesTheSameBitsAsNone) {
     if (!traces()) return;
     show(plain());
     const FilmTile expected = film(view::AllLayers, view::Renderer::PathTracing);
@@ -134,10 +134,10 @@ Mean mean_light(const FilmTile& film) {
     return mean;
 }
 
-// A lamp and a glowing square are hidden; the choice among lights still knows them, so samples are lost to
+// A lamp and an emissive square are hidden; the choice among lights still knows them, so samples are lost to
 // them and the bits are others. Components of a pixel go together, which the factor 3 of the variance allows
 // for.
-TEST_P(Layers, WhatIsHiddenLightsNothing) {
+TEST_P(Layers, HiddenObjectsEmitNothing) {
     if (!traces()) return;
     constexpr frame::SampleBlock Many{0, 6};
     std::vector<Entry> without = plain();
@@ -155,7 +155,7 @@ TEST_P(Layers, WhatIsHiddenLightsNothing) {
         const double error = std::sqrt(3.0 * (hidden.variance + expected[i].variance));
         EXPECT_LE(std::fabs(hidden.value - expected[i].value), 4.0 * error);
         EXPECT_LE(error, 0.01 * expected[i].value) << "this test would see little";
-        EXPECT_GT(shown.value, 1.5 * hidden.value) << "what is hidden shines a lot";
+        EXPECT_GT(shown.value, 1.5 * hidden.value) << "the hidden objects emit much of the light";
     }
 }
 
@@ -177,14 +177,14 @@ TEST_P(Layers, AProbeSeesWhatTheViewSees) {
     if (!traces()) return;
     show(haunted());
     view::View view = test::contract_view(backend->capabilities().channels);
-    const auto story = [&](std::uint32_t layers) {
+    const auto path_log = [&](std::uint32_t layers) {
         view.layers = layers;
         std::string text;
         for (const std::string& line : backend->probe(view, 26, 16, 0)) text += line + "\n";
         return text;
     };
-    EXPECT_NE(story(3).find(std::to_string(Ghost.value)), std::string::npos) << story(3);
-    EXPECT_NE(story(1), story(3));
+    EXPECT_NE(path_log(3).find(std::to_string(Ghost.value)), std::string::npos) << path_log(3);
+    EXPECT_NE(path_log(1), path_log(3));
 }
 
 std::vector<std::string> layered_backends() {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mediator/backend/lowering.h"
+#include "mediator/backend/flattening.h"
 
 namespace tessera::test {
 
@@ -26,18 +26,18 @@ scene::ChangeList RandomEdits::next() {
 }
 
 void RandomEdits::change(scene::SceneEditor& editor) {
-    const bool crowded = backend::lower(builder_.scene())->instances.size() > ManyInstances;
+    const bool crowded = backend::flatten(builder_.scene())->instances.size() > ManyInstances;
     switch (random_.below(12)) {
         case 0:
         case 1:
-            return crowded ? unhook(editor) : grow(editor);
+            return crowded ? remove_child(editor) : grow(editor);
         case 2:
-            return unhook(editor);
+            return remove_child(editor);
         case 3:
-            return crowded ? unhook(editor) : share(editor);
+            return crowded ? remove_child(editor) : add_shared_child(editor);
         case 4:
         case 5:
-            return bend(editor);
+            return deform(editor);
         case 6:
         case 7:
             return tint(editor);
@@ -62,14 +62,14 @@ void RandomEdits::grow(scene::SceneEditor& editor) {
     } else {
         editor.create(content_id, square(blobs_, 0.1f + 0.4f * unit(), any(ObjectKind::Material)));
     }
-    Transform made = transform(placement(), {content_id});
-    made.hint = static_cast<scene::MotionHint>(random_.below(3));
-    made.layers = layers();
-    editor.create(transform_id, made);
+    Transform created = transform(placement(), {content_id});
+    created.hint = static_cast<scene::MotionHint>(random_.below(3));
+    created.layers = layers();
+    editor.create(transform_id, created);
     hook(editor, any(ObjectKind::Transform), transform_id);
 }
 
-void RandomEdits::unhook(scene::SceneEditor& editor) {
+void RandomEdits::remove_child(scene::SceneEditor& editor) {
     const ObjectId victim = any(random_.below(3) == 0 ? ObjectKind::Geometry : ObjectKind::Transform);
     if (!victim || ids(ObjectKind::Geometry).size() < 3 || !editor.find(victim)) return;
     for (const ObjectId parent : ids(ObjectKind::Transform)) {
@@ -88,27 +88,27 @@ void RandomEdits::unhook(scene::SceneEditor& editor) {
     editor.remove(victim);
 }
 
-void RandomEdits::share(scene::SceneEditor& editor) {
+void RandomEdits::add_shared_child(scene::SceneEditor& editor) {
     const ObjectId a = any(ObjectKind::Transform);
     const ObjectId b = any(random_.below(2) == 0 ? ObjectKind::Geometry : ObjectKind::Transform);
     if (a < b) hook(editor, a, b);
 }
 
-void RandomEdits::bend(scene::SceneEditor& editor) {
+void RandomEdits::deform(scene::SceneEditor& editor) {
     const ObjectId id = any(ObjectKind::Geometry);
     if (!id || !editor.find(id)) return;
-    Geometry bent = square(blobs_, 0.1f + 0.4f * unit(), any(ObjectKind::Material));
-    bent.hint = static_cast<scene::MotionHint>(random_.below(3));
+    Geometry deformed = square(blobs_, 0.1f + 0.4f * unit(), any(ObjectKind::Material));
+    deformed.hint = static_cast<scene::MotionHint>(random_.below(3));
     switch (random_.below(4)) {
         case 0:
-            return editor.update<Geometry>(id, &Geometry::positions, bent);
+            return editor.update<Geometry>(id, &Geometry::positions, deformed);
         case 1:
-            return editor.update<Geometry>(id, &Geometry::material, bent);
+            return editor.update<Geometry>(id, &Geometry::material, deformed);
         case 2:
-            return editor.update<Geometry>(id, &Geometry::hint, bent);
+            return editor.update<Geometry>(id, &Geometry::hint, deformed);
         default:
-            bent.indices = array_blob<std::uint32_t>(blobs_, {0, 1, 2});
-            return editor.update<Geometry>(id, {&Geometry::indices, &Geometry::name}, bent);
+            deformed.indices = array_blob<std::uint32_t>(blobs_, {0, 1, 2});
+            return editor.update<Geometry>(id, {&Geometry::indices, &Geometry::name}, deformed);
     }
 }
 

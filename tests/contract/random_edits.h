@@ -7,7 +7,7 @@
 namespace tessera::test {
 
 // Starts from the contract scene and edits it at random, repeatably: transforms move, appear, are shared and
-// unhooked; geometries are made, bent, repainted and removed; lights, materials, hints, layers, sky and
+// removed from their parents; geometries are created, deformed, get other materials and are removed; lights, materials, hints, layers, sky and
 // render origin change. Never a cycle (a child's id is above its parent's), never more than some hundred
 // instances.
 class RandomEdits {
@@ -21,9 +21,9 @@ class RandomEdits {
   private:
     void change(scene::SceneEditor& editor);
     void grow(scene::SceneEditor& editor);
-    void unhook(scene::SceneEditor& editor);
-    void share(scene::SceneEditor& editor);
-    void bend(scene::SceneEditor& editor);
+    void remove_child(scene::SceneEditor& editor);
+    void add_shared_child(scene::SceneEditor& editor);
+    void deform(scene::SceneEditor& editor);
     void tint(scene::SceneEditor& editor);
     std::vector<ObjectId> ids(scene::ObjectKind kind) const;
     ObjectId any(scene::ObjectKind kind);

@@ -1,4 +1,4 @@
-// Incremental == rebuilt, for every back-end and for the shadow scene that they share.
+// Incremental == rebuilt, for every back-end and for the ShadowScene that they share.
 #include "tests/contract/random_edits.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace tessera::backend {
 namespace {
 
-void expect_equal(const Lowered& a, const Lowered& b, int step) {
+void expect_equal(const FlatScene& a, const FlatScene& b, int step) {
     ASSERT_EQ(a.instances.size(), b.instances.size()) << "step " << step;
     for (std::size_t i = 0; i < a.instances.size(); ++i) {
         ASSERT_EQ(a.instances[i].geometry, b.instances[i].geometry) << "step " << step;
@@ -40,12 +40,12 @@ TEST(ShadowSceneAtRandom, EqualsARebuiltOneAfterEveryEditAndEveryRollback) {
             ASSERT_TRUE(shadow.apply(since.back()));
             ShadowScene rebuilt;
             ASSERT_TRUE(rebuilt.apply(snapshot(edits.scene())));
-            expect_equal(shadow.lowered(), rebuilt.lowered(), step);
-            if (step % 7 == 6) {  // back and forth again
+            expect_equal(shadow.flat_scene(), rebuilt.flat_scene(), step);
+            if (step % 7 == 6) {  // undone and redone
                 shadow.rollback();
                 for (const scene::ChangeList& list : since)
                     ASSERT_TRUE(shadow.apply(list)) << "step " << step;
-                expect_equal(shadow.lowered(), rebuilt.lowered(), step);
+                expect_equal(shadow.flat_scene(), rebuilt.flat_scene(), step);
                 EXPECT_EQ(shadow.scene().state_hash(), edits.scene().state_hash());
             }
             if (step % 3 == 0) {
@@ -57,21 +57,21 @@ TEST(ShadowSceneAtRandom, EqualsARebuiltOneAfterEveryEditAndEveryRollback) {
 }
 
 // What the delta says, applied to a table of instances by hand, is the new table.
-TEST(ShadowSceneAtRandom, TheDeltaNamesEverythingThatMoved) {
+TEST(ShadowSceneAtRandom, TheDeltaHasEverythingThatMoved) {
     scene::BlobStore blobs;
     test::RandomEdits edits(4, blobs);
     ShadowScene shadow;
     ASSERT_TRUE(shadow.apply(edits.start()));
     shadow.take_delta();
-    Lowered known = shadow.lowered();
+    FlatScene known = shadow.flat_scene();
     for (int step = 0; step < 300; ++step) {
         for (int i = 0; i <= step % 3; ++i) ASSERT_TRUE(shadow.apply(edits.next()));
         const SceneDelta delta = shadow.take_delta();
-        if (delta.instances_changed) known.instances = shadow.lowered().instances;
+        if (delta.instances_changed) known.instances = shadow.flat_scene().instances;
         for (const std::uint32_t i : delta.moved_instances)
-            known.instances.at(i) = shadow.lowered().instances.at(i);
-        if (delta.lights_changed) known.lights = shadow.lowered().lights;
-        expect_equal(known, shadow.lowered(), step);
+            known.instances.at(i) = shadow.flat_scene().instances.at(i);
+        if (delta.lights_changed) known.lights = shadow.flat_scene().lights;
+        expect_equal(known, shadow.flat_scene(), step);
     }
 }
 

@@ -11,7 +11,7 @@
 #include "client/display_file/display_file.h"
 #include "mediator/display/frustum.h"
 #include "mediator/picture/png_writer.h"
-#include "tests/display/seen.h"
+#include "tests/display/camera_math.h"
 
 namespace tessera::display_file {
 
@@ -33,7 +33,7 @@ class CalibratedDisplay : public testing::Test {
     void write(const std::string& name, const std::string& bytes) {
         std::ofstream(folder_ / name, std::ios::binary) << bytes;
     }
-    template <class At>  // three floats of a place (u, v)
+    template <class At>  // three floats at (u, v)
     void write_pfm(const std::string& name, const At& at) {
         std::string bytes = "PF\n" + std::to_string(Width) + " " + std::to_string(Height) + "\n-1\n";
         for (std::uint32_t y = 0; y < Height; ++y) {
@@ -68,7 +68,7 @@ const std::string Output = "[[output]]\nname = 'a'\nsize = [64, 40]\n";
 const std::string Flat =
     Output + "lower_left = [-1, -1, -2]\nlower_right = [1, -1, -2]\nupper_left = [-1, 1, -2]\n";
 
-TEST_F(CalibratedDisplay, ADomeByItsPointsIsMetByEveryPixel) {
+TEST_F(CalibratedDisplay, EveryPixelOfADomeFromPointsIsAccurate) {
     // A zone of a sphere of three metres; pixels beyond a circle are masked.
     const auto dome = [](double u, double v) {
         const double azimuth = (u - 0.5) * 1.2, elevation = 0.9 - 0.8 * v;
@@ -92,15 +92,15 @@ TEST_F(CalibratedDisplay, ADomeByItsPointsIsMetByEveryPixel) {
         ASSERT_EQ(std::isnan(known.x), std::isnan(point.x));
         if (std::isnan(known.x)) continue;
         ++seen;
-        const glm::dvec2 place = display::seen_at(camera, point);
+        const glm::dvec2 place = display::image_position(camera, point);
         EXPECT_TRUE(place.x > -1e-9 && place.x < 1 + 1e-9 && place.y > -1e-9 && place.y < 1 + 1e-9);
-        const glm::dvec3 way = known - glm::dvec3(camera.world_from_camera[3]);
-        EXPECT_LT(glm::length(glm::cross(display::direction_through(camera, place), way)), 1e-6);
+        const glm::dvec3 direction = known - glm::dvec3(camera.world_from_camera[3]);
+        EXPECT_LT(glm::length(glm::cross(display::direction_through(camera, place), direction)), 1e-6);
     }
     EXPECT_GT(seen, 2000);
 }
 
-TEST_F(CalibratedDisplay, AWarpBendsThePictureOnItsWall) {
+TEST_F(CalibratedDisplay, WarpDistortsThePictureOnItsWall) {
     write_pfm("warp.pfm", [](double u, double v) { return glm::vec3(0.1 + 0.8 * u, v, 0.0); });
     const DisplayFile file = read(Flat + "warp = 'warp.pfm'\n");
     const auto points = values(file.display.outputs.at(0).points);
@@ -110,7 +110,7 @@ TEST_F(CalibratedDisplay, AWarpBendsThePictureOnItsWall) {
     EXPECT_EQ(file.display.outputs[0].plane.origin, glm::dvec3(-1, -1, -2));
 }
 
-TEST_F(CalibratedDisplay, AMeshBringsItsBrightness) {
+TEST_F(CalibratedDisplay, MeshBrightnessBecomesWeights) {
     write("warp.data", "2\n2 2\n-1.6 -1 0 0 1\n1.6 -1 1 0 0.5\n-1.6 1 0 1 1\n1.6 1 1 1 0.5\n");
     const DisplayFile file = read(Flat + "warp = 'warp.data'\n");
     const display::Output& output = file.display.outputs.at(0);
@@ -121,7 +121,7 @@ TEST_F(CalibratedDisplay, AMeshBringsItsBrightness) {
     EXPECT_NEAR(weights[Width - 1], 0.5f, 0.01f);
 }
 
-TEST_F(CalibratedDisplay, WeightsAndLiftAreLight) {
+TEST_F(CalibratedDisplay, WeightsAndLiftAreLinear) {
     const std::vector<std::uint8_t> rgb(2 * 2 * 3, 51);
     picture::write_png((folder_ / "w.png").string(), 2, 2, rgb);
     const DisplayFile file = read(Flat + "weights = 'w.png'\nlift = 'w.png'\n");
@@ -131,7 +131,7 @@ TEST_F(CalibratedDisplay, WeightsAndLiftAreLight) {
     EXPECT_EQ(blend.weights.columns, 2u);
 }
 
-TEST_F(CalibratedDisplay, WhatIsMissingOrWrongIsSaidAtItsKey) {
+TEST_F(CalibratedDisplay, ErrorsAreReportedAtTheirKey) {
     write("bad.pfm", "PF\n2 2\n-1\nxx");
     write("grey.pfm", "Pf\n1 1\n-1\nxxxx");
     const std::string file = (folder_ / "wall.toml").string();
@@ -149,7 +149,7 @@ TEST_F(CalibratedDisplay, WhatIsMissingOrWrongIsSaidAtItsKey) {
     expect(Flat + "points = 'a'\nwarp = 'b'\n", ":1:", "several of");
     expect(Output + "points = ''\n", ":4:1: output 'a': ", "");
     write_pfm("line.pfm", [](double u, double) { return glm::vec3(u, 0.0, -1.0); });
-    expect(Output + "points = 'line.pfm'\n", ":1:", "no surface");
+    expect(Output + "points = 'line.pfm'\n", ":1:", "do not form a surface");
     write_pfm("behind.pfm", [](double u, double v) { return glm::vec3(u, -v, -1.0); });
     expect(Output + "turn = 90\npoints = 'behind.pfm'\n", ":4:1: output 'a': ", "leave 'turn' out");
 }

@@ -1,4 +1,4 @@
-// PFM, PNG weights and warp meshes: what calibration tools leave, and what they must not.
+// Files of calibration tools: PFM, PNG weights and warp meshes, valid and malformed.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -33,7 +33,7 @@ std::string error_of(const auto& loaded) {
     return loaded ? "" : loaded.error().what();
 }
 
-TEST(Pfm, BothByteOrdersAndNumbersThatAreNone) {
+TEST(Pfm, ReadsBothByteOrdersAndNaN) {
     const std::vector<float> values{1, 2, 3, NoValue, NoValue, NoValue};
     for (const bool is_big : {false, true}) {
         const auto grid =
@@ -51,19 +51,19 @@ TEST(Pfm, BothByteOrdersAndNumbersThatAreNone) {
     EXPECT_EQ(grey->values[3], 4.0f);
 }
 
-TEST(Pfm, SaysWhatIsWrong) {
+TEST(Pfm, ErrorsNameTheCause) {
     const auto refused = [](const std::vector<std::byte>& bytes) {
         return error_of(parse_pfm(bytes, "w.pfm"));
     };
     EXPECT_NE(refused(pfm_bytes("P6\n2 1\n-1\n", {1, 2})).find("w.pfm: is no PFM"), std::string::npos);
     EXPECT_NE(refused(pfm_bytes("Pf\n2 1\n0\n", {1, 2})).find("scale"), std::string::npos);
-    EXPECT_NE(refused(pfm_bytes("Pf\n2 2\n-1\n", {1, 2})).find("8 bytes of numbers instead of 16"),
+    EXPECT_NE(refused(pfm_bytes("Pf\n2 2\n-1\n", {1, 2})).find("8 bytes of values instead of 16"),
               std::string::npos);
     EXPECT_NE(refused(pfm_bytes("Pf\n2 1\n-1\n", {1, 2, 3})).find("instead of 8"), std::string::npos);
     EXPECT_NE(refused(pfm_bytes("Pf\n0 1\n-1\n", {})).find("0 x 1 nodes"), std::string::npos);
     EXPECT_NE(refused(pfm_bytes("Pf\n70000 70000\n-1\n", {})).find("16384"), std::string::npos);
     EXPECT_NE(refused(pfm_bytes("Pf\n2 1\n-1\n", {1, INFINITY})).find("column 1, row 0"), std::string::npos);
-    EXPECT_NE(refused(pfm_bytes("Pf\n1 1\n-1\n", {NoValue})).find("no number at all"), std::string::npos);
+    EXPECT_NE(refused(pfm_bytes("Pf\n1 1\n-1\n", {NoValue})).find("only NaN"), std::string::npos);
     EXPECT_NE(refused({}), "");
     EXPECT_EQ(load_pfm("/no/such.pfm").error().code(), ErrorCode::NotFound);
 }
@@ -94,13 +94,13 @@ TEST(Mesh, NodesBecomePixelsAndRowsGoFromTheTop) {
     for (std::uint32_t y = 0; y < 4; ++y)
         for (std::uint32_t x = 0; x < 8; ++x) {
             const std::size_t pixel = y * 8 + x;
-            EXPECT_NEAR(mesh->places.values[2 * pixel], 0.25 + 0.5 * (x + 0.5) / 8, 1e-6);
-            EXPECT_NEAR(mesh->places.values[2 * pixel + 1], 0.25 + 0.5 * (y + 0.5) / 4, 1e-6);
+            EXPECT_NEAR(mesh->source_uv.values[2 * pixel], 0.25 + 0.5 * (x + 0.5) / 8, 1e-6);
+            EXPECT_NEAR(mesh->source_uv.values[2 * pixel + 1], 0.25 + 0.5 * (y + 0.5) / 4, 1e-6);
             EXPECT_NEAR(mesh->weights.values[pixel], 1.0 - 0.5 * (x + 0.5) / 8, 1e-6);
         }
 }
 
-TEST(Mesh, CellsAroundAnUnusedNodeShowNothing) {
+TEST(Mesh, CellsAroundUnusedNodesAreNotShown) {
     std::string text = "2\n3 2\n";
     for (const int y : {-1, 1})
         for (const int x : {-1, 0, 1})
@@ -109,12 +109,12 @@ TEST(Mesh, CellsAroundAnUnusedNodeShowNothing) {
     const auto mesh = parse_mesh(text, "m.data", 10, 10);
     ASSERT_TRUE(mesh) << error_of(mesh);
     for (std::size_t pixel = 0; pixel < 100; ++pixel) {
-        EXPECT_EQ(std::isnan(mesh->places.values[2 * pixel]), pixel % 10 >= 5);
+        EXPECT_EQ(std::isnan(mesh->source_uv.values[2 * pixel]), pixel % 10 >= 5);
         EXPECT_EQ(mesh->weights.values[pixel], pixel % 10 >= 5 ? 0.0f : 1.0f);
     }
 }
 
-TEST(Mesh, SaysTheLineThatIsWrong) {
+TEST(Mesh, ErrorsNameTheLine) {
     const auto refused = [](const std::string& text) { return error_of(parse_mesh(text, "m.data", 4, 4)); };
     EXPECT_NE(refused("two\n").find("m.data:1: "), std::string::npos);
     EXPECT_NE(refused("2\n2\n").find("m.data:2: "), std::string::npos);
@@ -125,8 +125,8 @@ TEST(Mesh, SaysTheLineThatIsWrong) {
     EXPECT_NE(refused("2\n2 2\n" + node + node + node + node + node).find("more lines"), std::string::npos);
 }
 
-// Whatever the bytes: a value or an error.
-TEST(CalibrationFiles, DamagedOnesAreRefusedOrRead) {
+// Any bytes give a value or an error.
+TEST(CalibrationFiles, DamagedFilesAreReadOrRejected) {
     CounterRandom random(5);
     const std::string mesh = "2\n2 2\n-1 -1 0 0 1\n1 -1 1 0 1\n-1 1 0 1 1\n1 1 1 1 1\n";
     std::vector<std::vector<std::byte>> seeds{pfm_bytes("PF\n2 1\n-1.0\n", {1, 2, 3, 4, 5, 6}),

@@ -1,4 +1,4 @@
-// tessera display check and pattern, as they are typed.
+// The commands tessera display check and pattern.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -66,7 +66,7 @@ TEST_F(DisplayCommands, CheckPrintsATableAndDrawsPlans) {
     EXPECT_GT(std::filesystem::file_size(folder_ / "p.svg"), 1000u);
 }
 
-TEST_F(DisplayCommands, WhatIsWrongHasACodeAndAPlace) {
+TEST_F(DisplayCommands, ErrorsHaveExitCodeAndPosition) {
     EXPECT_EQ(run({"check", in_folder("bad.toml")}), ExitBadInput);
     EXPECT_NE(error_.find("bad.toml:3:1: output 'a': there is no key 'sise'"), std::string::npos) << error_;
     EXPECT_EQ(run({"check", in_folder("none.toml")}), ExitBadInput);
@@ -77,7 +77,7 @@ TEST_F(DisplayCommands, WhatIsWrongHasACodeAndAPlace) {
     EXPECT_EQ(run({"check", in_folder("wall.toml"), "-o", in_folder("no/p.svg")}), ExitCannotWrite);
 }
 
-TEST_F(DisplayCommands, PatternWritesAPictureForEveryOutputAndEye) {
+TEST_F(DisplayCommands, PatternWritesOnePicturePerOutputAndEye) {
     ASSERT_EQ(run({"pattern", in_folder("wall.toml"), "-o", in_folder("out/pattern")}), 0) << error_;
     for (const char* name : {"w-1-1-left.png", "w-1-1-right.png", "w-2-1-left.png", "w-2-1-right.png"}) {
         const auto picture = picture_of(in_folder("out/pattern/" + std::string(name)));

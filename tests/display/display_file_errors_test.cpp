@@ -27,18 +27,18 @@ struct Wrong {
     const char* says;
 };
 
-TEST(DisplayFileErrors, SayWhereWhatAndHowToMendIt) {
+TEST(DisplayFileErrors, NamePositionCauseAndRemedy) {
     const std::string wall(WallText), output("[[output]]\nname = 'a'\n");
     const std::vector<Wrong> all{
         {"", "wall.toml:", "no outputs"},
-        {"[[output]\n", "wall.toml:1:", "no TOML"},
+        {"[[output]\n", "wall.toml:1:", "not valid TOML"},
         {output + "sise = [1, 2]\n", "wall.toml:3:1: output 'a': ", "did you mean 'size'?"},
         {"[displai]\n" + output, "wall.toml:1:", "did you mean 'display'?"},
         {output + "size = [0, 2]\n", "wall.toml:3:", "from 1 to 16384"},
         {output + "size = [1.5, 2]\n", "wall.toml:3:", "whole"},
         {output + "size = 3\n", "wall.toml:3:", "a list"},
         {output + "size = [nan, 2]\n", "wall.toml:3:", "nan"},
-        {output + "size = ['a', 2]\n", "wall.toml:3:", "a number must stand"},
+        {output + "size = ['a', 2]\n", "wall.toml:3:", "instead of a number"},
         {output + output, "wall.toml:4:", "names overlap"},
         {"[[output]]\n", "wall.toml:1:", "needs 'name'"},
         {"[[output]]\nname = '../x'\n", "wall.toml:2:", "letters"},
@@ -67,7 +67,8 @@ TEST(DisplayFileErrors, SayWhereWhatAndHowToMendIt) {
         {wall + "stereo = 'separate'\n[head]\nposition = [0, 0, -1.99]\nlook = [1, 0, 0]\n",
          "wall.toml:1:", "in front"},
         {wall + "columns = 9\nrows = 9\n", "wall.toml:6:", "81 outputs"},
-        {wall + "bezel = [0.01, 0]\ncolumns = 2\noverlap = [10, 0]\n", "wall.toml:1:", "one or the other"},
+        {wall + "bezel = [0.01, 0]\ncolumns = 2\noverlap = [10, 0]\n",
+         "wall.toml:1:", "give only one of them"},
         {"[[wall]]\nname = 'w'\nlower_left = [0, 0, -2]\nlower_right = [1, 0, -2]\nupper_left = [1, 1, -2]\n",
          "wall.toml:3:", "cross"},
         {"[[wall]]\nname = 'w'\nlower_left = [0, 0, -2]\nlower_right = [1, 0, -2]\nupper_left = [0, 0, -2]\n",
@@ -106,7 +107,7 @@ screen = "c"
 projector = { position = [0, 1, 0.5], look_at = [0, 0, -3], throw = 1.5 }
 )";
 
-// Taken or refused, but nothing else.
+// Accepted or rejected, without a crash.
 void expect_an_answer(const std::string& text) {
     scene::BlobStore blobs;
     try {
@@ -116,12 +117,12 @@ void expect_an_answer(const std::string& text) {
     }
 }
 
-TEST(DisplayFileErrors, TruncatedFilesGetAnAnswer) {
+TEST(DisplayFileErrors, TruncatedFilesDoNotCrash) {
     ASSERT_EQ(refusal(Whole), "taken");
     for (std::size_t length = 0; length < Whole.size(); ++length) expect_an_answer(Whole.substr(0, length));
 }
 
-TEST(DisplayFileErrors, RandomBytesGetAnAnswer) {
+TEST(DisplayFileErrors, RandomBytesDoNotCrash) {
     std::mt19937 random(1);
     for (int trial = 0; trial < 3000; ++trial) {
         std::string text(random() % 200, ' ');
@@ -130,7 +131,7 @@ TEST(DisplayFileErrors, RandomBytesGetAnAnswer) {
     }
 }
 
-TEST(DisplayFileErrors, ChangedBytesGetAnAnswer) {
+TEST(DisplayFileErrors, ChangedBytesDoNotCrash) {
     std::mt19937 random(2);
     constexpr std::string_view Likely = "[]{}=\"'.,-+e0123456789nai\n\t #";
     for (int trial = 0; trial < 3000; ++trial) {
@@ -141,7 +142,7 @@ TEST(DisplayFileErrors, ChangedBytesGetAnAnswer) {
     }
 }
 
-TEST(DisplayFileErrors, HostileNumbersGetAnAnswer) {
+TEST(DisplayFileErrors, MalformedNumbersDoNotCrash) {
     for (const char* number :
          {"nan", "-nan", "inf", "-inf", "1e308", "-1e308", "1e-308", "0", "-0.0", "9223372036854775807",
           "-9223372036854775808", "1e400", "0x7fffffffffffffff"}) {
@@ -154,7 +155,7 @@ TEST(DisplayFileErrors, HostileNumbersGetAnAnswer) {
     }
 }
 
-TEST(DisplayFileErrors, DeepNestingGetsAnAnswer) {
+TEST(DisplayFileErrors, DeepNestingDoesNotCrash) {
     expect_an_answer("x = " + std::string(100, '[') + std::string(100, ']'));
     expect_an_answer("x = " + std::string(100000, '['));
 }

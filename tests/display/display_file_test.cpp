@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "mediator/display/frustum.h"
-#include "tests/display/seen.h"
+#include "tests/display/camera_math.h"
 
 namespace tessera::display_file {
 
@@ -16,7 +16,7 @@ DisplayFile parsed(std::string_view text) {
     return parse_display(text, "wall.toml", blobs);
 }
 
-TEST(DisplayFile, OneMonitorTakesThreeLines) {
+TEST(DisplayFile, SingleMonitorNeedsThreeLines) {
     const DisplayFile file = parsed("[[output]]\nname = 'desk'\nsize = [2560, 1440]\n");
     ASSERT_EQ(file.display.outputs.size(), 1u);
     const display::Output& output = file.display.outputs[0];
@@ -72,7 +72,7 @@ blend = { left = 10, top = 20, shape = 2.0 }
 color = { gain = [0.9, 1.0, 1.1], gamma = 2.2, matrix = [1, 0.1, 0, 0, 1, 0, 0, 0.2, 1] }
 )";
 
-TEST(DisplayFile, EveryKeyArrives) {
+TEST(DisplayFile, ReadsEveryKey) {
     const DisplayFile file = parsed(AllKeys);
     const display::Display& d = file.display;
     EXPECT_EQ(d.name, "show");
@@ -85,7 +85,7 @@ TEST(DisplayFile, EveryKeyArrives) {
     EXPECT_EQ(d.max_bounces, 3u);
     EXPECT_EQ(d.exposure, -1.5);
     EXPECT_EQ(d.white, 4.0);
-    EXPECT_EQ(d.view_transform, view::ViewTransform::Reinhard) << "a white luminance is of that curve";
+    EXPECT_EQ(d.view_transform, view::ViewTransform::Reinhard) << "the white luminance belongs to that curve";
     EXPECT_TRUE(d.stereo_difference);
     EXPECT_EQ(d.eye_separation, 0.06);
     EXPECT_EQ(d.zero_parallax, 2.5);
@@ -150,14 +150,14 @@ color = { gain = 0.5 }
     EXPECT_EQ(file.geometry[1].screen, "w");
 }
 
-TEST(DisplayFile, SoftEdgesOfTurnedDevicesAreAtTheirOwnEdges) {
+TEST(DisplayFile, SoftEdgesFollowTurnedDevices) {
     const auto blend_of = [](int turn) {
         return parsed(
                    "[[wall]]\nname='w'\nlower_left=[-3,-1,-2]\nlower_right=[3,-1,-2]\nupper_left=[-3,1,-2]\n"
                    "columns=2\nsize=[400,300]\noverlap=[40,0]\nturn=" +
                    std::to_string(turn) + "\n")
             .display.outputs[0]
-            .blend;  // of the left one: its right edge as people see it
+            .blend;  // of the left one: its right edge as seen by viewers
     };
     EXPECT_EQ(blend_of(0).right, 40.0);
     EXPECT_EQ(blend_of(90).top, 40.0);  // turned clockwise its top edge is on the right
@@ -166,7 +166,7 @@ TEST(DisplayFile, SoftEdgesOfTurnedDevicesAreAtTheirOwnEdges) {
     EXPECT_EQ(blend_of(90).right, 0.0);
 }
 
-TEST(DisplayFile, PointsOfAProjectorAreBlobs) {
+TEST(DisplayFile, ProjectorPointsAreStoredAsBlobs) {
     scene::BlobStore blobs;
     const DisplayFile file = parse_display(R"(
 [[screen]]
@@ -217,7 +217,7 @@ TEST(DisplayFile, ProjectorsOnOneScreenGetSoftEdgesWhereTheyOverlap) {
     const auto values = [&](const display::Grid& grid) { return blobs.find(grid.values.hash)->as<float>(); };
     const display::Blend &left = file.display.outputs.at(0).blend, &right = file.display.outputs.at(1).blend;
     ASSERT_FALSE(left.weights.empty());
-    // Pictures of 2 m with middles 1.6 m apart: 0.4 m or 32 of 160 pixels are shared; pixels lie on pixels.
+    // Pictures of 2 m with centres 1.6 m apart: 0.4 m or 32 of 160 pixels overlap; pixels coincide.
     const auto of_left = values(left.weights), of_right = values(right.weights);
     const auto lift = values(left.lift);
     const std::size_t row = 50 * 160;
@@ -232,7 +232,7 @@ TEST(DisplayFile, ProjectorsOnOneScreenGetSoftEdgesWhereTheyOverlap) {
     EXPECT_EQ(of_left[row + 130] > of_left[row + 150], true);
 }
 
-TEST(DisplayFile, SoftEdgesThatTheFileNamesStand) {
+TEST(DisplayFile, ExplicitSoftEdgesAreKept) {
     const std::string text =
         std::string(TwoProjectors) + "[[adjust]]\noutput = 'left'\nblend = { right = 32 }\n";
     const DisplayFile file = parsed(text);

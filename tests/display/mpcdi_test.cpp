@@ -1,4 +1,4 @@
-// Archives of calibration tools: what they say, what display files become of them, and what is refused.
+// MPCDI archives of calibration tools: parsing, conversion to display files, and errors.
 #include "client/display_file/mpcdi.h"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ std::string archive_error(const Entries& entries) {
     return mpcdi ? "" : mpcdi.error().what();
 }
 
-// Reads the display file that an archive becomes, with its files, from a folder.
+// Imports an archive into a folder and reads the resulting display file.
 class ImportTest : public testing::Test {
   protected:
     ImportTest() {
@@ -102,7 +102,7 @@ TEST(Mpcdi, ReadsRegionsFrustaAndFrames) {
     expect_near(found.frame->forward, {0, 1, 0});
 }
 
-TEST(Mpcdi, TextAloneIsReadWhenItNamesNoFiles) {
+TEST(Mpcdi, ReadsTextWithoutFileReferences) {
     const auto read = [](const std::string& text) {
         return parse_mpcdi(std::as_bytes(std::span(text)), "a.mpcdi.xml");
     };
@@ -111,10 +111,11 @@ TEST(Mpcdi, TextAloneIsReadWhenItNamesNoFiles) {
     EXPECT_EQ(alone->regions[0].id, "p");
     const auto with_files = read(xml("a3", region("p"), files("p", Warp)));
     ASSERT_FALSE(with_files);
-    EXPECT_NE(std::string(with_files.error().what()).find("'w.pfm', but stands alone"), std::string::npos);
+    EXPECT_NE(std::string(with_files.error().what()).find("'w.pfm', but is not in an archive"),
+              std::string::npos);
 }
 
-TEST(Mpcdi, WeightsLoseTheirGammaAndLengthsTheirUnit) {
+TEST(Mpcdi, ConvertsWeightGammaAndLengthUnits) {
     const std::string points = pfm(2, 1, {100, 50, -200, 0, 0, 0});
     const std::string sets =
         files("r",
@@ -133,7 +134,7 @@ TEST(Mpcdi, WeightsLoseTheirGammaAndLengthsTheirUnit) {
     EXPECT_NEAR(found.lift.values[0], 0.2, 1e-6);
 }
 
-TEST_F(ImportTest, RegionsOfAFlatPictureLieWhereTheyAreInTheirBuffer) {
+TEST_F(ImportTest, FlatRegionsMapToTheirPartOfTheBuffer) {
     const std::string left = region("l", "", "x=\"0\" y=\"0\" xsize=\"0.6\" ysize=\"1\"");
     const std::string right = region("r", "", "x=\"0.4\" y=\"0\" xsize=\"0.6\" ysize=\"1\"");
     std::vector<float> warp;  // the left region is upside down
@@ -152,7 +153,7 @@ TEST_F(ImportTest, RegionsOfAFlatPictureLieWhereTheyAreInTheirBuffer) {
     EXPECT_NE(notices_[0].find("measure"), std::string::npos);
 }
 
-TEST_F(ImportTest, AFrustumBecomesAScreenWhereItLooks) {
+TEST_F(ImportTest, FrustumBecomesScreenAlongItsAxis) {
     const DisplayFile file = imported({{"mpcdi.xml", xml("3d", region("f", Frustum), "")}});
     const auto& points = file.geometry[0].points;
     glm::dvec3 middle(0.0);
@@ -163,7 +164,7 @@ TEST_F(ImportTest, AFrustumBecomesAScreenWhereItLooks) {
     EXPECT_GT(points.at(0, 0).y, points.at(0, 1).y);
 }
 
-TEST_F(ImportTest, PointsInSpaceAreTakenAsTheyAre) {
+TEST_F(ImportTest, PointsInSpaceAreUnchanged) {
     const std::string points = pfm(2, 2, {-1, 1, -3, 1, 1, -3, -1, -1, -3, 1, -1, -3});
     const DisplayFile file =
         imported({{"mpcdi.xml", xml("a3", region("p"), files("p", Warp))}, {"w.pfm", points}});
@@ -171,7 +172,7 @@ TEST_F(ImportTest, PointsInSpaceAreTakenAsTheyAre) {
     EXPECT_FALSE(file.display.outputs[0].points.empty());
 }
 
-TEST_F(ImportTest, ShaderLampsAreProjectorsInOurAxes) {
+TEST_F(ImportTest, ShaderLampsBecomeProjectorsInDisplayAxes) {
     const std::string lamp = std::string(Frustum).replace(std::string(Frustum).find("30"), 2, "0") + Frame;
     const std::string moved = std::string(lamp).replace(lamp.find("<posy>-2"), 8, "<posy>1");
     const DisplayFile file = imported({{"mpcdi.xml", xml("sl", region("p", moved), "")}});
@@ -208,10 +209,10 @@ TEST(MpcdiErrors, NameFileLineAndRemedy) {
     about({{"mpcdi.xml", xml("3d", region("r"), "")}}, "needs a <frustum>");
     about({{"mpcdi.xml", xml("a3", region("r"), "")}}, "needs a <geometryWarpFile>");
     about({{"mpcdi.xml", xml("sl", region("r", Frustum), "")}}, "<coordinateFrame>");
-    about({{"mpcdi.xml", xml("2d", region("r"), files("s", Warp))}}, "a region 's' that is not there");
+    about({{"mpcdi.xml", xml("2d", region("r"), files("s", Warp))}}, "region 's', which does not exist");
     about({{"mpcdi.xml", xml("2d", region("r"), files("r", Warp))}}, "'w.pfm' is not in the archive");
     about({{"mpcdi.xml", xml("2d", region("r"), files("r", Warp))}, {"w.pfm", "PF\n9 9\n-1\n"}},
-          "0 bytes of numbers instead of 972");
+          "0 bytes of values instead of 972");
     about({{"mpcdi.xml", xml("2d", region("r"), files("r", "<alphaMap><path>a.png</path></alphaMap>"))},
            {"a.png", "nothing"}},
           "not a PNG");
@@ -219,10 +220,10 @@ TEST(MpcdiErrors, NameFileLineAndRemedy) {
     about({{"mpcdi.xml", xml("3d", region("r", flat), "")}}, "the frustum is empty");
 }
 
-TEST(MpcdiErrors, NamesThatLeadOutAndBombsAreRefused) {
+TEST(MpcdiErrors, RejectsPathTraversalAndZipBombs) {
     const std::string text = xml("2d", region("r"), "");
     for (const char* name : {"../evil", "a/../../evil", "/etc/evil", "C:evil", "a\\..\\evil"})
-        EXPECT_NE(archive_error({{"mpcdi.xml", text}, {name, "x"}}).find("leads out of the archive"),
+        EXPECT_NE(archive_error({{"mpcdi.xml", text}, {name, "x"}}).find("points outside of the archive"),
                   std::string::npos)
             << name;
     EXPECT_EQ(archive_error({{"mpcdi.xml", text}, {"folder/..fine", "x"}}), "");
@@ -230,7 +231,7 @@ TEST(MpcdiErrors, NamesThatLeadOutAndBombsAreRefused) {
     for (int i = 0; i < 5000; ++i) many.push_back({"f" + std::to_string(i), ""});
     EXPECT_NE(archive_error(many).find("5001 entries"), std::string::npos);
 
-    // Says in its directory that it is larger than anything that may be unpacked.
+    // Its directory states a size above the limit.
     auto bytes = zipped({{"mpcdi.xml", text}});
     const std::uint32_t size = 0xfffffff0u;
     for (std::size_t i = 0; i + 46 < bytes.size(); ++i)
@@ -241,7 +242,7 @@ TEST(MpcdiErrors, NamesThatLeadOutAndBombsAreRefused) {
         << bomb.error().what();
 }
 
-TEST(MpcdiErrors, DamagedArchivesAreReadOrRefused) {
+TEST(MpcdiErrors, DamagedArchivesAreReadOrRejected) {
     const std::string sets = files("r", std::string(Warp) + "<alphaMap><path>a.png</path></alphaMap>");
     const auto whole = zipped({{"mpcdi.xml", xml("3d", region("r", Frustum), sets)},
                                {"w.pfm", pfm(2, 2, {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, NoPoint})},
@@ -262,7 +263,7 @@ TEST(MpcdiErrors, DamagedArchivesAreReadOrRefused) {
     }
     EXPECT_GT(refused, 1000);
     for (int round = 0; round < 2000;
-         ++round) {  // the text alone: what a bit flip seldom reaches behind deflate
+         ++round) {  // only the text, since bit flips of deflated data rarely reach the parser
         std::string text = xml("sl", region("r", std::string(Frustum) + Frame), sets);
         for (int flip = 0; flip < 1 + round % 3; ++flip)
             text[std::size_t(random.uniform() * double(text.size()))] = char(random.uniform() * 256.0);

@@ -1,4 +1,4 @@
-// Warp, blend, colour: what a device shows of an eye's picture.
+// From an eye's picture to the device: warp, blend, colour.
 #include "mediator/display/output_pipeline.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include "mediator/base/error.h"
 #include "mediator/base/random.h"
 #include "mediator/display/frustum.h"
-#include "tests/display/shown.h"
+#include "tests/display/pipeline_output.h"
 
 namespace tessera::display {
 namespace {
@@ -29,7 +29,7 @@ Picture numbered(std::uint32_t width, std::uint32_t height) {
             }};
 }
 
-TEST(OutputPipeline, BytesThatNeedNothingPass) {
+TEST(OutputPipeline, UnprocessedBytesAreCopied) {
     const scene::BlobStore none;
     OutputPipeline pipeline(screen(5, 3), none);
     const auto shown = show<std::uint8_t>(pipeline, {numbered(5, 3).bytes()});
@@ -40,8 +40,8 @@ TEST(OutputPipeline, BytesThatNeedNothingPass) {
                                          static_cast<std::uint8_t>(200 - i)}));
 }
 
-// A device of 3 x 2 that hangs on its side shows a picture of 2 x 3:  0 1 / 2 3 / 4 5.
-TEST(OutputPipeline, ATurnedDeviceIsSentThePictureTurnedTheOtherWay) {
+// A rotated device of 3 x 2 shows a picture of 2 x 3:  0 1 / 2 3 / 4 5.
+TEST(OutputPipeline, PictureIsRotatedAgainstTheDevice) {
     const scene::BlobStore none;
     const auto reds = [&](Turn turn, std::uint32_t width, std::uint32_t height) {
         Output output = screen(3, 2);
@@ -57,13 +57,13 @@ TEST(OutputPipeline, ATurnedDeviceIsSentThePictureTurnedTheOtherWay) {
     EXPECT_EQ(reds(Turn::Half, 3, 2), (std::vector{5, 4, 3, 2, 1, 0}));
 }
 
-TEST(OutputPipeline, TurnedLightIsThatOfTurnedBytes) {
+TEST(OutputPipeline, TurnedLinearLightEqualsTurnedBytes) {
     const scene::BlobStore none;
     for (const Turn turn : {Turn::Quarter, Turn::Half, Turn::ThreeQuarters}) {
         const bool is_on_side = turn != Turn::Half;
         Output plain = screen(24, 16), exact = plain;
         plain.turn = exact.turn = turn;
-        exact.color.gain = {1.0, 1.0, 1.0 - 1e-12};  // takes the long way
+        exact.color.gain = {1.0, 1.0, 1.0 - 1e-12};  // uses the general path
         OutputPipeline short_way(plain, none), long_way(exact, none);
         const Picture picture = is_on_side ? numbered(16, 24) : numbered(24, 16);
         EXPECT_EQ(show<std::uint8_t>(long_way, {picture.bytes()}).pictures,
@@ -71,7 +71,7 @@ TEST(OutputPipeline, TurnedLightIsThatOfTurnedBytes) {
     }
 }
 
-TEST(OutputPipeline, CoarsePicturesAreSpreadInLinearLight) {
+TEST(OutputPipeline, CoarsePicturesAreUpscaledInLinearLight) {
     const scene::BlobStore none;
     OutputPipeline pipeline(screen(16, 8), none);
     const auto flat = show<std::uint8_t>(pipeline, {Picture(2, 1, Rgb{77, 200, 3}).bytes()});
@@ -94,7 +94,7 @@ std::vector<Color> colors() {
     return result;
 }
 
-TEST(OutputPipeline, LightOfACodeIsThatCodeEverywhere) {
+TEST(OutputPipeline, ExactCodesAreNotDithered) {
     const scene::BlobStore none;
     for (const Color& color : colors()) {
         Output output = screen(256, 8);
@@ -106,7 +106,7 @@ TEST(OutputPipeline, LightOfACodeIsThatCodeEverywhere) {
             return Rgb{light, light, light};
         });
         const auto shown = show<std::uint8_t>(pipeline, {picture.half()});
-        // Of higher gammas the first codes are darker than the least half float.
+        // For higher gammas the first codes are darker than the smallest half float.
         const std::uint32_t first = color.gamma > 2.2 ? 4 : 0;
         for (std::uint32_t y = 0; y < 8; ++y)
             for (std::uint32_t code = first; code < 256; ++code)
@@ -114,7 +114,7 @@ TEST(OutputPipeline, LightOfACodeIsThatCodeEverywhere) {
     }
 }
 
-TEST(OutputPipeline, LightBetweenCodesIsKeptInTheMean) {
+TEST(OutputPipeline, DitheringPreservesMeanLight) {
     const scene::BlobStore none;
     for (const Color& color : colors()) {
         Output output = screen(8, 8);
@@ -130,7 +130,7 @@ TEST(OutputPipeline, LightBetweenCodesIsKeptInTheMean) {
             double mean = 0.0;
             for (std::uint32_t i = 0; i < 64; ++i)
                 mean += device.light(shown.at(8, i % 8, i / 8)[2] / 255.0) / 64.0;
-            // A 64th of the step between codes, half floats twice, and what counts as a code.
+            // A 64th of the step between codes, two half float roundings, and the tolerance of exact codes.
             const double step = 2.7 / (255.0 * device.device_value(asked));
             ASSERT_NEAR(mean / asked, 1.0, step / 64.0 + 3.0 * 0x1p-11)
                 << "gamma " << color.gamma << " " << asked;
@@ -156,7 +156,7 @@ Picture noise(std::uint32_t width, std::uint32_t height) {
             }};
 }
 
-TEST(Warp, AFlatWallShowsItsPictureWhereverTheEyeIs) {
+TEST(Warp, FlatWallPictureIsIndependentOfTheEye) {
     scene::BlobStore arrays;
     const Output output = on_wall(arrays, 64, 32);
     OutputPipeline warped(output, arrays), plain(screen(64, 32), arrays);
@@ -172,7 +172,7 @@ TEST(Warp, AFlatWallShowsItsPictureWhereverTheEyeIs) {
     }
 }
 
-TEST(Warp, ShiftedByOneAndAHalfPixelsShowsMeansAndBlackBeyondTheWall) {
+TEST(Warp, ShiftByOneAndAHalfPixelsInterpolatesAndIsBlackOutside) {
     scene::BlobStore arrays;
     const Output output = on_wall(arrays, 64, 32, 1.5);
     OutputPipeline pipeline(output, arrays);
@@ -185,7 +185,7 @@ TEST(Warp, ShiftedByOneAndAHalfPixelsShowsMeansAndBlackBeyondTheWall) {
     EXPECT_EQ(shown.at(64, 63, 9), (Rgb{0, 0, 0}));
 }
 
-TEST(Warp, PointsThatNobodySeesAreBlack) {
+TEST(Warp, InvisiblePointsAreBlack) {
     scene::BlobStore arrays;
     Output output = on_wall(arrays, 4, 4);
     std::vector<float> points;
@@ -201,7 +201,7 @@ TEST(Warp, PointsThatNobodySeesAreBlack) {
     EXPECT_EQ(shown.report.not_finite, 0u) << "of pictures";
 }
 
-TEST(Warp, WhatIsNotFiniteIsBlackAndCounted) {
+TEST(Warp, NonFinitePixelsAreBlackAndCounted) {
     const scene::BlobStore none;
     OutputPipeline pipeline(screen(13, 2), none);
     const Picture picture(13, 2, [](auto x, auto y) {
@@ -216,10 +216,10 @@ TEST(Warp, WhatIsNotFiniteIsBlackAndCounted) {
     EXPECT_EQ(shown.at(13, 4, 0), (std::array<std::uint8_t, 3>{0, 255, 255}));
 }
 
-// What is d away from the head has no parallax: the screen is thought there. Seen from an eye that stands
-// further apart by D / d the screen itself looks the same.
-TEST(Warp, AZeroParallaxIsAnotherSeparationForTheScreenItself) {
-    const ViewPlane plane = test::wall();
+// Points at distance d from the head have no parallax: a virtual screen is assumed there. The real screen looks the same
+// from eyes whose separation is scaled by D / d.
+TEST(Warp, ZeroParallaxEqualsScaledEyeSeparation) {
+    const ProjectionPlane plane = test::wall();
     const Head head{.position = {0.3, -0.2, 0.5}};
     const double far = 2.5, near = 1.7, separation = 0.064;
     const view::CameraPose picture = frustum(plane, head, view::Eye::Right, separation, near);
@@ -233,13 +233,14 @@ TEST(Warp, AZeroParallaxIsAnotherSeparationForTheScreenItself) {
         const glm::dvec4 local = glm::inverse(camera.world_from_camera) * glm::dvec4(point, 1.0);
         return glm::dvec2(local.x, local.y) / -local.z;
     };
-    for (const glm::dvec3 point : {glm::dvec3{0.7, 0.1, -2.0}, {-0.4, 0.3, -2.6}}) {  // one is bent away
-        const glm::dvec3 thought = head.position + near / far * (point - head.position);
-        EXPECT_NEAR(glm::length(seen(picture, thought) - seen(screen_itself, point)), 0.0, 1e-12);
+    for (const glm::dvec3 point :
+         {glm::dvec3{0.7, 0.1, -2.0}, {-0.4, 0.3, -2.6}}) {  // one is on a curved part
+        const glm::dvec3 virtual_point = head.position + near / far * (point - head.position);
+        EXPECT_NEAR(glm::length(seen(picture, virtual_point) - seen(screen_itself, point)), 0.0, 1e-12);
     }
 }
 
-TEST(Blend, RampsThatMeetAddUpToOne) {
+TEST(Blend, OverlappingRampsSumToOne) {
     const scene::BlobStore none;
     Output left = screen(40, 4), right = screen(40, 4);
     left.blend = {.right = 12, .shape = 2.0};
@@ -254,7 +255,7 @@ TEST(Blend, RampsThatMeetAddUpToOne) {
     EXPECT_NEAR(srgb.light(a.at(40, 27, 1)[2]), 1.0, 1e-6);
 }
 
-TEST(Blend, RampsOfATurnedDeviceAreThoseOfTheUprightPicture) {
+TEST(Blend, RampsOfTurnedDevicesMatchTheUprightPicture) {
     const scene::BlobStore none;
     for (const Turn turn : {Turn::None, Turn::Quarter, Turn::Half, Turn::ThreeQuarters}) {
         Output output = screen(8, 8);
@@ -277,7 +278,7 @@ TEST(Blend, RampsOfATurnedDeviceAreThoseOfTheUprightPicture) {
     }
 }
 
-TEST(Blend, LightBeyondWhiteIsCutOffBeforeItIsShared) {
+TEST(Blend, LightIsClampedBeforeBlending) {
     scene::BlobStore arrays;
     Output output = screen(8, 8);
     output.blend.weights = test::put(arrays, 1, 1, 1, Grid::Nodes::Edges, {0.25f});
@@ -307,7 +308,7 @@ TEST(Color, MatrixThenGainThenCurve) {
     EXPECT_EQ(bytes.at(8, 3, 0)[2], 255);
 }
 
-TEST(OutputPipeline, ThreadsChangeNothing) {
+TEST(OutputPipeline, ResultIsIndependentOfThreads) {
     scene::BlobStore arrays;
     Output output = on_wall(arrays, 101, 67, 0.3);
     output.blend = {.left = 20, .top = 9};
@@ -319,7 +320,7 @@ TEST(OutputPipeline, ThreadsChangeNothing) {
     EXPECT_EQ(shown(1), shown(4));
 }
 
-TEST(OutputPipeline, RefusesWhatDoesNotFit) {
+TEST(OutputPipeline, RejectsMismatchedSizes) {
     scene::BlobStore arrays;
     Output odd = screen(5, 5);
     odd.stereo = Stereo::SideBySide;
@@ -327,7 +328,7 @@ TEST(OutputPipeline, RefusesWhatDoesNotFit) {
     odd.stereo = Stereo::TopBottom;
     EXPECT_THROW(OutputPipeline(odd, arrays), Error);
     Output output = on_wall(arrays, 8, 8);
-    EXPECT_THROW(OutputPipeline(output, scene::BlobStore()), Error);  // its points are somewhere else
+    EXPECT_THROW(OutputPipeline(output, scene::BlobStore()), Error);  // its points are not in the store
     output.points.rows = 3;
     EXPECT_THROW(OutputPipeline(output, arrays), Error);
     OutputPipeline pipeline(screen(8, 8), arrays);

@@ -12,7 +12,8 @@ namespace tessera::display {
 
 namespace {
 
-Output flat(std::uint32_t width, std::uint32_t height, const ViewPlane& plane = view_plane(Wall{})) {
+Output flat(std::uint32_t width, std::uint32_t height,
+            const ProjectionPlane& plane = projection_plane(Wall{})) {
     return {.name = "Wall-1",
             .width = width,
             .height = height,
@@ -63,7 +64,7 @@ TEST(Pattern, RampsHaveEveryStepOfEightBits) {
     EXPECT_GE(steps(0.744, 2), 252u);
 }
 
-TEST(Pattern, EyesAreToldApart) {
+TEST(Pattern, EyesAreDistinguishable) {
     const Output output = flat(640, 400);
     const frame::Image mono = pattern(output, view::Eye::Mono), left = pattern(output, view::Eye::Left),
                        right = pattern(output, view::Eye::Right);
@@ -80,12 +81,12 @@ TEST(Pattern, EyesAreToldApart) {
     EXPECT_EQ(whiter(right, 10, 320), 0);
 }
 
-TEST(Pattern, GridLinesOfNeighboursLieOnEachOther) {
+TEST(Pattern, GridLinesOfNeighboursCoincide) {
     const Wall screen{.corner = {-1.83, -1, -2}, .across = {3.6, 0, 0}, .upward = {0, 1.0, 0}};
     const std::vector<Part> all =
         parts(screen, {.columns = 2, .width = 2000, .height = 1000, .overlap_across = 400});
-    const frame::Image left = pattern(flat(2000, 1000, view_plane(screen, all[0])), view::Eye::Mono);
-    const frame::Image right = pattern(flat(2000, 1000, view_plane(screen, all[1])), view::Eye::Mono);
+    const frame::Image left = pattern(flat(2000, 1000, projection_plane(screen, all[0])), view::Eye::Mono);
+    const frame::Image right = pattern(flat(2000, 1000, projection_plane(screen, all[1])), view::Eye::Mono);
     int lines = 0;
     for (std::uint32_t x = 10; x < 390; ++x) {  // row 20: neither text nor circle there
         EXPECT_NEAR(grey(left, 1600 + x, 20), grey(right, x, 20), 1e-4f) << x;
@@ -94,7 +95,7 @@ TEST(Pattern, GridLinesOfNeighboursLieOnEachOther) {
     EXPECT_GT(lines, 2);
 }
 
-TEST(Pattern, TheDevicesOwnIsPixelByPixel) {
+TEST(Pattern, RawPatternIsPixelExact) {
     Output output = flat(300, 200);
     output.turn = Turn::Quarter;
     output.blend.left = 20;
@@ -107,7 +108,7 @@ TEST(Pattern, TheDevicesOwnIsPixelByPixel) {
     EXPECT_EQ(plain.turn, Turn::Quarter);
 }
 
-TEST(PixelFont, LettersOfEveryNameHaveAFace) {
+TEST(PixelFont, HasGlyphsForAllNames) {
     std::set<std::uint64_t> faces;
     const std::string_view letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
     for (std::size_t i = 0; i < letters.size(); ++i) {

@@ -1,5 +1,4 @@
-// An output's pipeline that shows the next frame takes no memory: operator new is counted for the whole
-// program.
+// An output's pipeline allocates no memory per frame: counts operator new in the whole program.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -7,11 +6,11 @@
 #include <new>
 
 #include "mediator/display/frustum.h"
-#include "tests/display/shown.h"
+#include "tests/display/pipeline_output.h"
 
 namespace {
 
-constexpr std::size_t Noted = 1024;  // rows and planes may not be made anew; tasks of threads may
+constexpr std::size_t Noted = 1024;  // larger allocations are counted (rows, planes), thread tasks are not
 std::atomic<std::size_t> noted_bytes{0};
 
 void* take(std::size_t bytes, std::size_t alignment) {
@@ -45,7 +44,7 @@ void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
 namespace tessera::display {
 namespace {
 
-TEST(PipelineAllocation, NoneAfterTheFirstRunNotEvenWhenTheHeadMoves) {
+TEST(PipelineAllocation, NoAllocationAfterTheFirstRunEvenWhenTheHeadMoves) {
     scene::BlobStore arrays;
     Output output{.name = "screen", .width = 640, .height = 400, .stereo = Stereo::SideBySide};
     output.plane = test::wall();

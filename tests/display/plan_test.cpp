@@ -17,11 +17,11 @@ display_file::DisplayFile room(const std::string& metres) {
                                        "a&b.toml", blobs);
 }
 
-TEST(Plan, ShowsEveryOutputOnThePage) {
+TEST(Plan, DrawsEveryOutputOnThePage) {
     for (const char* metres : {"0.001", "1.5", "5000"}) {
         const Drawing drawing = plan(room(metres));
         for (const char* name : {"w-1-1", "w-2-1"}) {
-            // Beside a head a wall of two millimetres has no room for names.
+            // A wall of two millimetres next to a head is too small for names.
             const auto least = std::string_view(metres) == "0.001" ? 0 : 2;
             EXPECT_GE(std::ranges::count(drawing.words, name, &Words::text), least) << metres;
         }
@@ -38,7 +38,7 @@ TEST(Plan, ShowsEveryOutputOnThePage) {
     }
 }
 
-TEST(Plan, TheWallIsWhereItWasMeasured) {
+TEST(Plan, WallIsDrawnAtItsMeasuredPosition) {
     const Drawing drawing = plan(room("1.5"));
     // From the front the left output is a square left of the right one, from above both are one line.
     std::vector<glm::dvec4> boxes;
@@ -59,7 +59,7 @@ TEST(Plan, TheWallIsWhereItWasMeasured) {
     EXPECT_NEAR(boxes[2].z, boxes[3].x, 1e-9);
 }
 
-TEST(Plan, IsWrittenAsTextAndAsPixels) {
+TEST(Plan, WritesSvgAndPng) {
     const Drawing drawing = plan(room("2"));
     const std::string svg = as_svg(drawing);
     EXPECT_TRUE(svg.starts_with("<svg "));
@@ -71,7 +71,7 @@ TEST(Plan, IsWrittenAsTextAndAsPixels) {
     EXPECT_GT(std::ranges::count_if(canvas.rgb, [](std::uint8_t value) { return value < 255; }), 10000);
 }
 
-TEST(Plan, ACanvasCutsOffWhatIsOutside) {
+TEST(Plan, CanvasClipsShapes) {
     Canvas canvas(20, 10, 255);
     draw_line(canvas, {-1e9, -1e9}, {1e9, 1e9}, 3.0, {0, 0, 0});
     const std::vector<glm::dvec2> large{{-1e12, -5}, {1e12, -5}, {1e12, 5}, {-1e12, 5}};
@@ -81,7 +81,7 @@ TEST(Plan, ACanvasCutsOffWhatIsOutside) {
     EXPECT_EQ(canvas.rgb[3 * (6 * 20 + 15)], 255);
 }
 
-TEST(DisplayTable, AddsUpWhatAFrameNeeds) {
+TEST(DisplayTable, SumsPixelsAndBytesPerFrame) {
     const std::string table = as_table(room("2").display);
     // Two outputs, two eyes each, 1920 x 1080 pixels of three bytes.
     EXPECT_NE(table.find("2 outputs, 4 views, 8.29 megapixels and 24.88 MB a frame"), std::string::npos)

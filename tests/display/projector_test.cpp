@@ -10,7 +10,7 @@ namespace tessera::display {
 
 namespace {
 
-TEST(Projector, ThePictureOfOneThatHangsStraightIsARectangle) {
+TEST(Projector, AlignedProjectorHasRectangularPicture) {
     // Throw ratio 2 from 4 m: 2 m wide, 1 m high, moved up by half its height.
     const Projector projector{.position = {0, 0, 0},
                               .look_at = {0, 0, -4},
@@ -24,7 +24,7 @@ TEST(Projector, ThePictureOfOneThatHangsStraightIsARectangle) {
     EXPECT_NEAR(glm::distance(at(0, 1), glm::dvec3(-1, 0, -4)), 0.0, 1e-14);
 }
 
-TEST(Projector, WhereAPixelMeetsTheScreenItIsFoundAgain) {
+TEST(Projector, ProjectionInvertsIntersection) {
     const Projector projector{.position = {0.5, 1.8, 0.7},
                               .look_at = {-0.3, 0.1, -3.0},
                               .up = {0.1, 1.0, 0.0},
@@ -41,7 +41,7 @@ TEST(Projector, WhereAPixelMeetsTheScreenItIsFoundAgain) {
             const glm::dvec2 place{part(random), part(random)};
             const auto on_screen = hit(screen, projector.position, ray(camera, place.x, place.y));
             ASSERT_TRUE(on_screen);
-            const auto again = place_in_picture(camera, *on_screen);
+            const auto again = image_coordinates(camera, *on_screen);
             ASSERT_TRUE(again);
             EXPECT_NEAR(again->x, place.x, 1e-12);
             EXPECT_NEAR(again->y, place.y, 1e-12);
@@ -53,7 +53,7 @@ TEST(Projector, WhereAPixelMeetsTheScreenItIsFoundAgain) {
     EXPECT_NEAR(glm::length(*hit(screens[2], projector.position, ray(camera, 0.2, 0.3))), 4.0, 1e-12);
 }
 
-TEST(Projector, OneBehindACurvedScreenMeetsTheNearSide) {
+TEST(Projector, ProjectorBehindCurvedScreenHitsNearSide) {
     const Screen screen = Cylinder{.radius = 2.0, .from = -0.5, .to = 0.5, .bottom = -1, .top = 1};
     const auto front = hit(screen, {0, 0, 1.5}, {0, 0, -1});
     const auto rear = hit(screen, {0, 0, -5}, {0, 0, 1});
@@ -62,15 +62,15 @@ TEST(Projector, OneBehindACurvedScreenMeetsTheNearSide) {
     EXPECT_NEAR(rear->z, -2.0, 1e-14);
 }
 
-TEST(Projector, LightThatLeavesTheScreenMeetsNothing) {
+TEST(Projector, RaysAwayFromTheScreenDoNotHit) {
     EXPECT_FALSE(hit(Wall{}, {0, 0, 0}, {0, 0, 1}));
     EXPECT_FALSE(hit(Wall{}, {0, 0, 0}, {1, 0, 0}));
     EXPECT_FALSE(hit(Cylinder{}, {0, 0, 0}, {0, 1, 0}));
     EXPECT_FALSE(hit(Dome{}, {0, 0, 3}, {0, 0, 1}));
-    EXPECT_FALSE(place_in_picture(pose({}, 1.0), {0, 0, 1}));
+    EXPECT_FALSE(image_coordinates(pose({}, 1.0), {0, 0, 1}));
 }
 
-TEST(Projector, OneThatLooksNowhereIsRefused) {
+TEST(Projector, RejectsNullDirection) {
     EXPECT_THROW(pose({.look_at = {0, 0, 0}}, 1.0), Error);
     EXPECT_THROW(pose({.look_at = {0, 3, 0}}, 1.0), Error);
 }

@@ -1,10 +1,10 @@
-// Both eyes in one picture, and nothing of one in the other.
+// Packing both eyes into one picture, without crosstalk.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "mediator/display/frustum.h"
-#include "tests/display/shown.h"
+#include "tests/display/pipeline_output.h"
 
 namespace tessera::display {
 namespace {
@@ -30,7 +30,7 @@ Rgb right_color(std::uint32_t x, std::uint32_t y) {
     return {0.0f, static_cast<float>(x) / 32, static_cast<float>(y) / 32};
 }
 
-test::Shown<float> shown(Output output) {
+test::PipelineOutput<float> shown(Output output) {
     output.color.gamma = 1.0;  // light itself
     const scene::BlobStore none;
     OutputPipeline pipeline(output, none);
@@ -45,7 +45,7 @@ Rgb mean(const Rgb& a, const Rgb& b) {
     return {0.5f * (a[0] + b[0]), 0.5f * (a[1] + b[1]), 0.5f * (a[2] + b[2])};
 }
 
-TEST(StereoPacking, SideBySideIsSqueezedToMeansOfTwoColumns) {
+TEST(StereoPacking, SideBySideAveragesPairsOfColumns) {
     const auto picture = shown(screen(Stereo::SideBySide));
     for (std::uint32_t y = 0; y < 8; ++y)
         for (std::uint32_t x = 0; x < 4; ++x) {
@@ -54,7 +54,7 @@ TEST(StereoPacking, SideBySideIsSqueezedToMeansOfTwoColumns) {
         }
 }
 
-TEST(StereoPacking, TopBottomIsSqueezedToMeansOfTwoRows) {
+TEST(StereoPacking, TopBottomAveragesPairsOfRows) {
     const auto picture = shown(screen(Stereo::TopBottom));
     for (std::uint32_t y = 0; y < 4; ++y)
         for (std::uint32_t x = 0; x < 8; ++x) {
@@ -114,7 +114,7 @@ TEST(StereoPacking, DuboisAnaglyphKeepsWhiteAndKeepsEyesApart) {
 }
 
 // Each eye's part of the device has exactly its own white or black: with pictures of any size, and warped.
-TEST(StereoPacking, EyesNeverMixAcrossTheBorder) {
+TEST(StereoPacking, EyesDoNotMixAtTheBorder) {
     scene::BlobStore arrays;
     for (const Stereo stereo : {Stereo::SideBySide, Stereo::TopBottom, Stereo::InterlacedRows,
                                 Stereo::Separate, Stereo::AnaglyphPlain})

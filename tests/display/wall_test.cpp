@@ -17,7 +17,7 @@ std::string refusal(const glm::dvec3& lower_left, const glm::dvec3& lower_right,
     return "";
 }
 
-TEST(Wall, CornersThatMakeNoRectangleAreRefused) {
+TEST(Wall, RejectsNonRectangularCorners) {
     const glm::dvec3 a{0, 0, -1}, b{2, 0, -1}, c{0, 1, -1}, d{2, 1, -1};
     EXPECT_EQ(refusal(a, b, c), "");
     EXPECT_EQ(refusal(a, b, c, d), "");
@@ -31,13 +31,13 @@ TEST(Wall, CornersThatMakeNoRectangleAreRefused) {
     EXPECT_NE(refusal(a, b, glm::dvec3(0.3, 1, -1)).find("degrees"), std::string::npos);
 }
 
-TEST(Wall, SmallMistakesOfTheTapeAreStraightened) {
+TEST(Wall, CorrectsSmallMeasurementErrors) {
     const Wall straight = wall({0, 0, 0}, {2, 0, 0}, {0.005, 1, 0});
     EXPECT_NEAR(straight.upward.x, 0.0, 1e-15);
     EXPECT_NEAR(straight.upward.y, std::hypot(1.0, 0.005), 1e-15);
 }
 
-TEST(WallGrid, WhatBezelsHideIsNotShown) {
+TEST(WallGrid, BezelsHideTheirPart) {
     const Wall screen = wall({0, 0, 0}, {3.1, 0, 0}, {0, 2.05, 0});
     const std::vector<Part> all = parts(
         screen,
@@ -52,7 +52,7 @@ TEST(WallGrid, WhatBezelsHideIsNotShown) {
     }
 }
 
-TEST(WallGrid, PixelsOfAnOverlapLieOnEachOther) {
+TEST(WallGrid, PixelsOfOverlapsCoincide) {
     const Wall screen = wall({0, 0, 0}, {3.6, 0, 0}, {0, 1, 0});  // 2 x 2000 - 400 pixels of a millimetre
     const std::vector<Part> all =
         parts(screen, {.columns = 2, .rows = 1, .width = 2000, .height = 1000, .overlap_across = 400});
@@ -62,7 +62,7 @@ TEST(WallGrid, PixelsOfAnOverlapLieOnEachOther) {
     EXPECT_EQ(all[0].bottom, 0.0);
 }
 
-TEST(WallGrid, WhatLeavesNothingIsRefused) {
+TEST(WallGrid, RejectsGridsWithoutVisiblePixels) {
     const Wall screen = wall({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     EXPECT_THROW(parts(screen, {.columns = 3, .bezel_across = 0.5}), Error);
     EXPECT_THROW(parts(screen, {.columns = 2, .width = 100, .overlap_across = 51}), Error);

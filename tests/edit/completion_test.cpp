@@ -13,7 +13,7 @@ using testing::IsEmpty;
 
 class CompletionTest : public testing::Test {
   protected:
-    // At the bar.
+    // Completes at the bar.
     std::vector<std::string> at(std::string text) {
         const std::size_t cursor = text.find('|');
         text.erase(cursor, 1);
@@ -91,7 +91,7 @@ TEST_F(CompletionTest, OfFiles) {
     EXPECT_THAT(at("load " + path + "/nowhere/|"), IsEmpty());
 }
 
-TEST_F(CompletionTest, OnlyLooksAtWhatIsBeforeTheCursor) {
+TEST_F(CompletionTest, IgnoresTextAfterTheCursor) {
     EXPECT_THAT(at("show lights/s|un lights/bulb"), ElementsAre("lights/spot ", "lights/sun "));
     EXPECT_NO_THROW(complete("show", 1000, target_.scene()));
 }

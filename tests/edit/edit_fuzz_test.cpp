@@ -2,8 +2,7 @@
 #include "mediator/base/random.h"
 #include "tests/edit/fake_target.h"
 
-// Random bytes and damaged scripts: an error, or a valid scene; never anything else, and no change by what
-// failed.
+// Random bytes and damaged scripts result in an error or a valid scene; failures change nothing.
 namespace tessera::edit {
 namespace {
 

@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Runs the command on a scene of its own.
+// Runs the command on a local scene.
 class EditTool : public testing::Test {
   protected:
     int run(std::vector<std::string> arguments, const std::string& piped = {}) {
@@ -72,7 +72,7 @@ TEST_F(EditTool, MistakesNameFileLineAndColumn) {
     EXPECT_EQ(out_, "");
 }
 
-TEST_F(EditTool, TellsWhatItCannotRead) {
+TEST_F(EditTool, ReportsUnreadableScripts) {
     EXPECT_EQ(run({(folder_.path() / "none.txt").string()}), ExitBadInput);
     EXPECT_EQ(run({folder_.path().string()}), ExitBadInput);
     EXPECT_EQ(run({"a.txt", "-c", "list"}), cli::ExitUsage);

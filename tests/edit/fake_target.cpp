@@ -9,7 +9,7 @@ FakeTarget::FakeTarget() : interpreter_(*this, [this](std::string_view text) { p
 }
 
 Expected<SubmitReply> FakeTarget::submit(std::vector<scene::Entry> entries, const std::string& label) {
-    if (submits_++ >= refuse_from) return SubmitReply{false, 0, {"somebody holds it"}};
+    if (submits_++ >= refuse_from) return SubmitReply{false, 0, {"another client holds it"}};
     const scene::Scene before = rich_.scene;
     if (const auto applied = rich_.scene.apply_entries(entries); !applied) {
         return SubmitReply{false, 0, {applied.error().what()}};
@@ -51,8 +51,8 @@ Expected<std::vector<FieldWriter>> FakeTarget::writers(ObjectId object) {
     return std::vector<FieldWriter>{{1, 7, "anna"}};
 }
 
-Expected<std::vector<Person>> FakeTarget::people() {
-    return std::vector<Person>{{"anna", "editor", "paints", true, {id_of("left")}},
+Expected<std::vector<Member>> FakeTarget::members() {
+    return std::vector<Member>{{"anna", "editor", "paints", true, {id_of("left")}},
                                {"wall", "", "", false, {}}};
 }
 

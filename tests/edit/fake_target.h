@@ -12,8 +12,7 @@
 
 namespace tessera::edit {
 
-// A local scene that behaves like a master's: checks what is submitted, remembers transactions, takes them
-// back.
+// A local scene that behaves like one of a master: validates submissions, records transactions and undoes them.
 class FakeTarget : public EditTarget {
   public:
     FakeTarget();
@@ -27,14 +26,14 @@ class FakeTarget : public EditTarget {
     Expected<std::string> redo() override;
     Expected<std::vector<HistoryLine>> history(std::uint32_t count) override;
     Expected<std::vector<FieldWriter>> writers(ObjectId object) override;
-    Expected<std::vector<Person>> people() override;
+    Expected<std::vector<Member>> members() override;
     Expected<void> lock(const std::vector<ObjectId>& objects) override;
     Expected<void> unlock(const std::vector<ObjectId>& objects) override;
     Expected<scene::BlobPtr> blob(const scene::BlobRef& reference) override;
     Expected<void> wait(Duration duration) override;
     Expected<void> close() override;
 
-    // Runs it and gives what it printed; a failure's text is in error().
+    // Runs the script and returns its output; error() has the error message.
     bool script(std::string_view text);
     bool line(std::string_view text);
     const std::string& printed() const { return printed_; }

@@ -26,7 +26,7 @@ TEST(Graph, MoveAddsInTheParentsFrame) {
     EXPECT_EQ(target.named<scene::Transform>("wheel").matrix, expected);
 }
 
-TEST(Graph, RotateTurnsAboutTheOwnOrigin) {
+TEST(Graph, RotateIsAboutTheLocalOrigin) {
     FakeTarget target;
     ASSERT_TRUE(
         target.script("set transforms/left.matrix 1 0 0 0 0 1 0 0 0 0 1 0 5 6 7 1\n"
@@ -41,24 +41,24 @@ TEST(Graph, RotateTurnsAboutTheOwnOrigin) {
     EXPECT_EQ(matrix[3], glm::dvec4(5, 6, 7, 1));
 }
 
-TEST(Graph, ScaleGoesAlongTheOwnAxes) {
+TEST(Graph, ScaleIsAlongTheLocalAxes) {
     FakeTarget target;
     ASSERT_TRUE(target.script("scale transforms/left 2\nscale transforms/left 1 1 0.5")) << target.error();
     const glm::dmat4 matrix = target.named<scene::Transform>("left").matrix;
     EXPECT_EQ(glm::dvec3(matrix[0][0], matrix[1][1], matrix[2][2]), glm::dvec3(2, -4, 3));
 }
 
-TEST(Graph, WhatIsNoTransformIsNotMoved) {
+TEST(Graph, OnlyTransformsCanBeMoved) {
     FakeTarget target;
     EXPECT_FALSE(target.script("move lights/bulb 1 2 3"));
-    EXPECT_THAT(target.error(), HasSubstr("1:6: lights/bulb is no transform"));
+    EXPECT_THAT(target.error(), HasSubstr("1:6: lights/bulb is not a transform"));
     EXPECT_FALSE(target.script("rotate transforms/left 0 0 0 90"));
     EXPECT_FALSE(target.script("rotate transforms/left w 90"));
     EXPECT_FALSE(target.script("scale transforms/left 1 2"));
     EXPECT_FALSE(target.script("move transforms/left 1 2"));
 }
 
-TEST(Graph, CreateMakesAnObjectWithItsFieldsInItsPlace) {
+TEST(Graph, CreateMakesAnObjectWithFieldsAndParent) {
     FakeTarget target;
     ASSERT_TRUE(
         target.script("create light key kind=spot intensity=10,9,8 outer_cone_angle=0.5 in transforms/left\n"
@@ -79,16 +79,16 @@ TEST(Graph, CreateMakesAnObjectWithItsFieldsInItsPlace) {
     EXPECT_EQ(target.labels.size(), 1u) << "one transaction";
 }
 
-TEST(Graph, CreateRefusesWhatCannotBe) {
+TEST(Graph, CreateRejectsInvalidArguments) {
     FakeTarget target;
     for (const auto& [line, text] : {std::pair("create geometry box", "cannot be typed"),
                                      {"create texture t", "cannot be typed"},
                                      {"create root r", "one root"},
-                                     {"create material m in root", "leave 'in' out"},
-                                     {"create light l in lights/bulb", "holds no objects"},
-                                     {"create light l in", "lacks the path"},
-                                     {"create light l in root x=1", "nothing may stand behind"},
-                                     {"create light l kind", "no FIELD=VALUE"},
+                                     {"create material m in root", "omit 'in'"},
+                                     {"create light l in lights/bulb", "cannot have children"},
+                                     {"create light l in", "needs the path"},
+                                     {"create light l in root x=1", "unexpected 'x=1' after 'in PARENT'"},
+                                     {"create light l kind", "not FIELD=VALUE"},
                                      {"create light l knd=spot", "did you mean 'kind'?"},
                                      {"create lamp l", "no kind of object"},
                                      {"create light", "needs more"}}) {
@@ -103,7 +103,7 @@ TEST(Graph, AttachAndDetach) {
     ASSERT_TRUE(target.script("attach lights/bulb in root")) << target.error();
     EXPECT_TRUE(contains(root_children(target), bulb));
     EXPECT_FALSE(target.script("attach lights/bulb in root"));
-    EXPECT_THAT(target.error(), HasSubstr("is in root already"));
+    EXPECT_THAT(target.error(), HasSubstr("is already in root"));
     ASSERT_TRUE(target.script("detach lights/bulb from root")) << target.error();
     EXPECT_FALSE(contains(root_children(target), bulb));
     EXPECT_TRUE(contains(target.named<scene::Transform>("left").children, bulb));
@@ -115,7 +115,7 @@ TEST(Graph, AttachAndDetach) {
     EXPECT_FALSE(target.script("attach materials/\"my \\\"red\\\"\" in root"));
 }
 
-TEST(Graph, ACycleIsRefusedWithItsLine) {
+TEST(Graph, CycleIsRejectedWithItsLine) {
     FakeTarget target;
     EXPECT_FALSE(target.script("move transforms/left 1 0 0\n\nattach transforms/left in transforms/wheel"));
     EXPECT_THAT(target.error(), HasSubstr("test.txt:3:1: "));
@@ -123,7 +123,7 @@ TEST(Graph, ACycleIsRefusedWithItsLine) {
     EXPECT_TRUE(target.labels.empty());
 }
 
-TEST(Graph, RemoveUnlinksEverywhereAndKeepsWhatItUsed) {
+TEST(Graph, RemoveClearsReferencesAndKeepsDependencies) {
     FakeTarget target;
     const std::size_t before = target.scene().objects().size();
     ASSERT_TRUE(
@@ -137,7 +137,7 @@ TEST(Graph, RemoveUnlinksEverywhereAndKeepsWhatItUsed) {
     EXPECT_FALSE(target.script("remove root"));
 }
 
-TEST(Graph, RemoveWithRTakesWhatOnlyItUsed) {
+TEST(Graph, RecursiveRemoveDeletesUnusedDependencies) {
     FakeTarget target;
     const std::size_t before = target.scene().objects().size();
     // The wheel's second square is used by nothing else; the first is in the root, too, and keeps its

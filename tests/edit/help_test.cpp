@@ -1,7 +1,7 @@
 #include "client/edit/help.h"
 
 #include "client/edit/commands.h"
-#include "client/edit/path_book.h"
+#include "client/edit/path_index.h"
 #include "client/edit/values.h"
 #include "tests/edit/fake_target.h"
 
@@ -17,7 +17,8 @@ TEST(Help, HasEveryCommandAndField) {
         EXPECT_THAT(help_text(command.name), testing::StartsWith(std::string(command.usage) + "\n"));
         EXPECT_THAT(manual, HasSubstr(help_text(command.name)));
         EXPECT_TRUE(command.usage.starts_with(command.name));
-        EXPECT_TRUE(command.most == 0 || !command.arguments.empty()) << command.name << " completes nothing";
+        EXPECT_TRUE(command.max_arguments == 0 || !command.arguments.empty())
+            << command.name << " completes nothing";
     }
     for (const scene::KindRow& row : scene::Kinds) {
         const std::string text = help_text(row.plural);
@@ -43,7 +44,7 @@ TEST(Help, IsACommand) {
     EXPECT_EQ(target.printed(), help_text("set"));
     EXPECT_FALSE(target.script("help sett"));
     EXPECT_THAT(target.error(),
-                HasSubstr("test.txt:1:6: there is no help about 'sett'; did you mean 'set'?"));
+                HasSubstr("test.txt:1:6: there is no help topic 'sett'; did you mean 'set'?"));
 }
 
 }  // namespace

@@ -5,7 +5,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(Paths, ShortAndFullOnesNameTheSame) {
+TEST(Paths, ShortAndFullPathsAreEquivalent) {
     FakeTarget target;
     const std::string id = std::to_string(target.id_of("wood").value);
     EXPECT_TRUE(target.script("set textures/wood.name a\n")) << target.error();
@@ -70,10 +70,10 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{"show lights/qqqqqqqqqq", "13", "see 'list lights'"},
                     Wrong{"show transforms/wheel", "17", "transforms/wheel@13, transforms/wheel@14"},
                     Wrong{"show bulb", "6", "KIND/NAME"}, Wrong{"show lights", "6", "lights/NAME"},
-                    Wrong{"show lights/", "6", "lacks a name"}, Wrong{"show lights/a@b", "15", "quote names"},
+                    Wrong{"show lights/", "6", "has no name"}, Wrong{"show lights/a@b", "15", "quote names"},
                     Wrong{"show lights/@4000", "6", "there is no object 4000"},
                     Wrong{"show lights/@2", "6", "object 2 is textures/wood@2"},
-                    Wrong{"show lights/@99999999999999999999999", "14", "is no id"}));
+                    Wrong{"show lights/@99999999999999999999999", "14", "is not an id"}));
 
 }  // namespace
 }  // namespace tessera::edit

@@ -6,7 +6,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-TEST(PromptLines, AreTransactionsOfTheirOwn) {
+TEST(PromptLines, AreSeparateTransactions) {
     FakeTarget target;
     ASSERT_TRUE(target.line("set lights/bulb.intensity 1"));
     ASSERT_TRUE(target.line(""));
@@ -19,7 +19,7 @@ TEST(PromptLines, AreTransactionsOfTheirOwn) {
     EXPECT_THAT(target.printed(), HasSubstr("1 1 1"));
 }
 
-TEST(PromptLines, BeginHoldsThemBackUntilCommit) {
+TEST(PromptLines, BeginDefersThemUntilCommit) {
     FakeTarget target;
     ASSERT_TRUE(target.line("begin"));
     EXPECT_TRUE(target.interpreter().is_in_transaction());
@@ -39,7 +39,7 @@ TEST(PromptLines, BeginHoldsThemBackUntilCommit) {
     EXPECT_EQ(target.labels.size(), 1u);
 }
 
-TEST(PromptLines, RollbackForgetsThem) {
+TEST(PromptLines, RollbackDiscardsThem) {
     FakeTarget target;
     const Hash128 before = target.scene().state_hash();
     ASSERT_TRUE(target.line("begin"));
@@ -49,20 +49,20 @@ TEST(PromptLines, RollbackForgetsThem) {
     EXPECT_EQ(target.scene().state_hash(), before);
 }
 
-TEST(PromptLines, ARefusedCommitKeepsTheTransaction) {
+TEST(PromptLines, RejectedCommitKeepsTheTransaction) {
     FakeTarget target;
     ASSERT_TRUE(target.line("begin"));
     ASSERT_TRUE(target.line("create light new"));
     target.refuse_from = 0;
     EXPECT_FALSE(target.line("commit"));
-    EXPECT_THAT(target.error(), HasSubstr("somebody holds it"));
+    EXPECT_THAT(target.error(), HasSubstr("another client holds it"));
     EXPECT_TRUE(target.interpreter().is_in_transaction());
     target.refuse_from = ~std::size_t{0};
     ASSERT_TRUE(target.line("commit")) << target.error();
     target.named<scene::Light>("new");
 }
 
-TEST(PromptLines, SeeWhatOthersHaveDone) {
+TEST(PromptLines, SeeEditsOfOthers) {
     FakeTarget target;
     ASSERT_TRUE(target.line("list lights"));
     ASSERT_TRUE(target.script("create light theirs"));

@@ -19,8 +19,8 @@
 namespace tessera::edit {
 namespace {
 
-// A terminal with somebody at its keyboard, who types when there is a prompt: before that the terminal is not
-// in the prompt's hands.
+// A terminal with a simulated user, who types once the prompt is shown: before that, the
+// prompt does not control the terminal.
 class Terminal {
   public:
     Terminal() {
@@ -34,13 +34,13 @@ class Terminal {
     Terminal(const Terminal&) = delete;
     Terminal& operator=(const Terminal&) = delete;
 
-    // As soon as this prompt, which was not shown before, is there.
+    // Waits until this prompt is shown for the first time.
     void will_type(const std::string& keys, const std::string& prompt) {
         const std::lock_guard lock(mutex_);
         keys_ = keys;
         prompt_ = prompt;
     }
-    // Everything that was shown. No more prompt afterwards.
+    // All output. No prompt is shown afterwards.
     std::string finish() {
         if (in_ == nullptr) return seen_;
         fclose(in_);
@@ -79,7 +79,7 @@ class Terminal {
 class PromptTest : public testing::Test {
   protected:
     void SetUp() override { ASSERT_EQ(setenv("TERM", "vt100", 1), 0); }
-    // The lines that come out when these keys are typed, up to the end.
+    // The lines that the prompt returns for these keys, until the end of input.
     std::vector<std::string> lines(const std::vector<std::string>& keys) {
         Terminal terminal;
         std::vector<std::string> result;
@@ -133,17 +133,17 @@ TEST_F(PromptTest, RemembersLinesInAFile) {
               fs::perms::none);
 }
 
-TEST_F(PromptTest, AHistoryThatCannotBeWrittenIsNone) {
+TEST_F(PromptTest, UnwritableHistoryIsIgnored) {
     history_ = "/proc/nowhere/history";
     EXPECT_THAT(lines({"list\n", "\x04"}), testing::ElementsAre("list", "(end)"));
 }
 
 TEST_F(PromptTest, TheHistoryIsInTheStateFolder) {
     ASSERT_EQ(setenv("XDG_STATE_HOME", "/a/state", 1), 0);
-    EXPECT_EQ(usual_history_file(), "/a/state/tessera/edit_history");
+    EXPECT_EQ(default_history_file(), "/a/state/tessera/edit_history");
     ASSERT_EQ(setenv("XDG_STATE_HOME", "relative", 1), 0);
     ASSERT_EQ(setenv("HOME", "/home/anna", 1), 0);
-    EXPECT_EQ(usual_history_file(), "/home/anna/.local/state/tessera/edit_history");
+    EXPECT_EQ(default_history_file(), "/home/anna/.local/state/tessera/edit_history");
 }
 
 }  // namespace

@@ -16,14 +16,14 @@ TEST(Scripts, AreOneTransaction) {
     EXPECT_EQ(target.named<scene::Light>("bulb").intensity, glm::vec3(2.0f));
 }
 
-TEST(Scripts, CommitCutsTransactions) {
+TEST(Scripts, CommitSeparatesTransactions) {
     FakeTarget target;
     ASSERT_TRUE(target.script("set lights/bulb.intensity 1\ncommit\ncommit\nset lights/sun.intensity 2"))
         << target.error();
     EXPECT_THAT(target.labels, ElementsAre("set lights/bulb.intensity 1", "set lights/sun.intensity 2"));
 }
 
-TEST(Scripts, WhatChangesNothingIsNoTransaction) {
+TEST(Scripts, EmptyTransactionsAreNotSent) {
     FakeTarget target;
     ASSERT_TRUE(
         target.script("set lights/bulb.intensity 1\nset lights/bulb.intensity 3,2,0.1\n"
@@ -31,7 +31,7 @@ TEST(Scripts, WhatChangesNothingIsNoTransaction) {
     EXPECT_TRUE(target.labels.empty());
 }
 
-TEST(Scripts, AMistakeInLine40HasChangedNothing) {
+TEST(Scripts, MistakeInLine40ChangesNothing) {
     FakeTarget target;
     std::string text;
     for (int line = 1; line < 40; ++line)
@@ -45,7 +45,7 @@ TEST(Scripts, AMistakeInLine40HasChangedNothing) {
     EXPECT_EQ(target.printed(), "");
 }
 
-TEST(Scripts, WhatTheMasterRefusesTakesBackWhatStoodBefore) {
+TEST(Scripts, RejectedTransactionUndoesEarlierOnes) {
     FakeTarget target;
     target.refuse_from = 2;
     const Hash128 before = target.scene().state_hash();
@@ -53,22 +53,22 @@ TEST(Scripts, WhatTheMasterRefusesTakesBackWhatStoodBefore) {
         target.script("set lights/bulb.intensity 1\ncommit\nset lights/sun.intensity 1\ncommit\n"
                       "set lights/spot.intensity 1\ncommit\nmove transforms/left 1 0 0"));
     EXPECT_THAT(target.error(),
-                testing::StartsWith("test.txt:5:1: the master does not take it: somebody holds it"));
-    EXPECT_THAT(target.error(), HasSubstr("were taken back: 2"));
+                testing::StartsWith("test.txt:5:1: the master rejects it: another client holds it"));
+    EXPECT_THAT(target.error(), HasSubstr("transactions undone: 2"));
     EXPECT_EQ(target.scene().state_hash(), before);
     EXPECT_THAT(target.calls, ElementsAre("submit 1", "submit 2", "undo 2", "undo 1"));
 }
 
-TEST(Scripts, WhatCannotBeTakenBackIsTold) {
+TEST(Scripts, FailedUndoIsReported) {
     FakeTarget target;
     target.refuse_from = 1;
     target.refuse_undo = true;
     EXPECT_FALSE(target.script("set lights/bulb.intensity 1\ncommit\nset lights/sun.intensity 1"));
     EXPECT_THAT(target.error(),
-                HasSubstr("transaction 1 before it stays, it could not be taken back: it is too old"));
+                HasSubstr("transaction 1 before it could not be undone and remains: it is too old"));
 }
 
-TEST(Scripts, WhatIsNoEditHappensInItsPlace) {
+TEST(Scripts, ActionsRunInOrderWithEdits) {
     FakeTarget target;
     ASSERT_TRUE(
         target.script("lock lights/bulb\nset lights/bulb.intensity 1\nwait 0.5\nunlock lights/bulb\ncommit\n"
@@ -79,18 +79,18 @@ TEST(Scripts, WhatIsNoEditHappensInItsPlace) {
     EXPECT_EQ(target.printed(), "undone: set lights/bulb.intensity 1\n");
 }
 
-TEST(Scripts, BehindAnUndoNothingMayReadTheScene) {
+TEST(Scripts, SceneCannotBeReadAfterUndo) {
     FakeTarget target;
     ASSERT_TRUE(target.script("set lights/bulb.intensity 1"));
     const Hash128 before = target.scene().state_hash();
     for (const char* line :
          {"set lights/bulb.intensity 2", "show lights/bulb", "list", "save x.glb", "lock lights/bulb"}) {
         EXPECT_FALSE(target.script("undo\n" + std::string(line))) << line;
-        EXPECT_THAT(target.error(), HasSubstr("a script of their own"));
+        EXPECT_THAT(target.error(), HasSubstr("a separate script"));
         EXPECT_THAT(target.error(), HasSubstr("test.txt:2:1: "));
     }
     EXPECT_FALSE(target.script("set lights/bulb.intensity 2\nundo"));
-    EXPECT_THAT(target.error(), HasSubstr("not committed"));
+    EXPECT_THAT(target.error(), HasSubstr("uncommitted edits"));
     EXPECT_EQ(target.scene().state_hash(), before);
     EXPECT_TRUE(target.script("undo 1\nwait 0\nlog\nredo")) << target.error();
 }
@@ -108,7 +108,7 @@ TEST(Scripts, RollbackAndQuit) {
     EXPECT_FALSE(target.script("set lights/bulb.intensity 1\nbegin"));
 }
 
-TEST(Scripts, AnEditMayBeWrongForAWhile) {
+TEST(Scripts, IntermediateStatesMayBeInvalid) {
     FakeTarget target;
     ASSERT_TRUE(target.script("set lights/spot.inner_cone_angle 1\nset lights/spot.outer_cone_angle 1.2"))
         << target.error();
@@ -116,7 +116,7 @@ TEST(Scripts, AnEditMayBeWrongForAWhile) {
     EXPECT_THAT(target.error(), HasSubstr("test.txt:1:1: "));
 }
 
-TEST(Scripts, LogAndPeopleAreForPeople) {
+TEST(Scripts, LogAndMembersArePrinted) {
     FakeTarget target;
     ASSERT_TRUE(target.script("set lights/bulb.intensity 1\ncommit\nset lights/bulb.intensity 2"));
     ASSERT_TRUE(target.script("log 1"));
@@ -134,9 +134,9 @@ TEST(Scripts, UnknownCommandsNameTheNearest) {
     EXPECT_FALSE(target.script("\n  shwo lights/bulb"));
     EXPECT_EQ(target.error(), "test.txt:2:3: there is no command 'shwo'; did you mean 'show'?");
     EXPECT_FALSE(target.script("show"));
-    EXPECT_THAT(target.error(), HasSubstr("test.txt:1:5: 'show' needs more: show PATH"));
+    EXPECT_THAT(target.error(), HasSubstr("test.txt:1:5: 'show' needs more arguments: show PATH"));
     EXPECT_FALSE(target.script("show root root"));
-    EXPECT_THAT(target.error(), HasSubstr("test.txt:1:11: 'root' is too much"));
+    EXPECT_THAT(target.error(), HasSubstr("test.txt:1:11: unexpected argument 'root'"));
 }
 
 TEST(Scripts, CloseEndsThem) {

@@ -1,4 +1,4 @@
-#include "client/edit/path_book.h"
+#include "client/edit/path_index.h"
 #include "client/edit/script_error.h"
 #include "client/edit/values.h"
 #include "mediator/scene/fields.h"
@@ -10,8 +10,7 @@ namespace {
 using scene::ObjectKind;
 using testing::HasSubstr;
 
-// For every field a value other than the default, as it is typed, and how it is shown; and one that is wrong.
-// A blob has no value that can be typed.
+// For every field: a non-default value as typed, as printed, and an invalid one. Blobs cannot be typed.
 struct FieldCase {
     std::string typed, shown, wrong;
 };
@@ -153,7 +152,7 @@ const std::map<std::string, FieldCase> Cases{
     {"background.visible_color", {"0.8 0.1 0.1 0.5", "0.8 0.1 0.1 0.5", "0.8 0.1"}},
 };
 
-// With the fields that all kinds have, and the arrays.
+// Including the common fields and the arrays.
 std::map<std::string, FieldCase> cases() {
     std::map<std::string, FieldCase> all = Cases;
     for (const char* kind : {"root", "transform", "geometry", "material", "texture", "light", "camera",
@@ -169,9 +168,9 @@ std::map<std::string, FieldCase> cases() {
     return all;
 }
 
-TEST(Values, EveryFieldOfEveryKindIsReadAndShown) {
+TEST(Values, EveryFieldRoundTrips) {
     FakeTarget target;
-    const PathBook book(target.scene());
+    const PathIndex book(target.scene());
     const auto read = [&](const Word& word) { return book.read(target.scene(), word); };
     const auto write = [&](ObjectId id) { return book.path(target.scene(), id); };
     const auto all = cases();
@@ -219,7 +218,7 @@ TEST(Values, ThreeNumbersKeepAlpha) {
     EXPECT_EQ(target.named<scene::Material>("my \"red\"").base_color.a, 0.25f);
 }
 
-TEST(Values, PartsOfATextureSlotThatAreNotNamedStay) {
+TEST(Values, OmittedPartsOfATextureSlotAreKept) {
     FakeTarget target;
     ASSERT_TRUE(target.script("set materials/\"my \\\"red\\\"\".base_color_texture scale=4,5"))
         << target.error();
@@ -248,18 +247,18 @@ TEST(Values, ErrorsNameTheNearest) {
     EXPECT_THAT(
         target.error(),
         HasSubstr(
-            "test.txt:1:22: 'spott' is none of point, spot, directional, sphere or quad; did you mean"));
+            "test.txt:1:22: 'spott' is not one of point, spot, directional, sphere or quad; did you mean"));
     EXPECT_FALSE(target.script("set lights/bulb.intensity 1 2 x"));
-    EXPECT_THAT(target.error(), HasSubstr("test.txt:1:31: 'x' is no number"));
+    EXPECT_THAT(target.error(), HasSubstr("test.txt:1:31: 'x' is not a valid number"));
     EXPECT_FALSE(target.script("set lights/bulb.intensity 1 2"));
-    EXPECT_THAT(target.error(), HasSubstr("test.txt:1:30: the value ends too early: write 3 numbers"));
+    EXPECT_THAT(target.error(), HasSubstr("test.txt:1:30: the value is incomplete: write 3 numbers"));
     EXPECT_FALSE(target.script("set lights/bulb.intensity 1 2 3 4"));
-    EXPECT_THAT(target.error(), HasSubstr("test.txt:1:33: '4' does not belong here"));
+    EXPECT_THAT(target.error(), HasSubstr("test.txt:1:33: '4' is not expected here"));
     EXPECT_FALSE(target.script("set textures/wood.texels 1"));
     EXPECT_THAT(target.error(), HasSubstr("load FILE"));
 }
 
-TEST(Values, RangesAreTheScenesMatter) {
+TEST(Values, RangesAreCheckedByTheScene) {
     FakeTarget target;
     EXPECT_FALSE(target.script("set materials/\"my \\\"red\\\"\".roughness 2"));
     EXPECT_THAT(target.error(), HasSubstr("test.txt:1:1: material 5"));

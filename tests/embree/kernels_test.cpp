@@ -1,4 +1,4 @@
-// A kernel that was compiled for some features finds the bits of the one with all.
+// Kernels compiled for some features compute the same bits as the kernel with all features.
 #include <cstring>
 #include <functional>
 
@@ -11,7 +11,7 @@ const std::vector<const Kernel*> Kernels{&PlainKernel,  &LightsKernel, &CoatedKe
                                          &GlassKernel,  &FilmKernel,   &ShaderKernel,
                                          &MovingKernel, &FoggyKernel,  &FullKernel};
 
-// Speculars, colours, alpha, lights of most kinds, a sky.
+// Perfect speculars, colours, alpha, most kinds of lights, an environment.
 void add_plain(Model& model) {
     model.floor(model.material(chalk(glm::vec3(0.7f))), 3.0f, -1.0f);
     scene::Material veil = chalk({0.2f, 0.8f, 0.3f});
@@ -67,9 +67,9 @@ void add_moving(Model& model) {
 
 void add_fog(Model& model) {
     add_plain(model);
-    model.filled_with({.absorption = glm::vec3(0.1f), .scattering = glm::vec3(0.2f)});
+    model.set_medium({.absorption = glm::vec3(0.1f), .scattering = glm::vec3(0.2f)});
     model.box(ObjectId{}, {-2.5f, -2.5f, -0.9f}, {2.5f, 2.5f, 2.5f});
-    model.filled_with_nothing();
+    model.clear_medium();
 }
 
 void add_lights(Model& model) {
@@ -98,8 +98,8 @@ void add_all(Model& model) {
     model.sphere(model.material(chalk(glm::vec3(0.9f))), {1.2, -0.9, 0.3}, 0.3);
 }
 
-std::vector<PathSample> samples(const World& world, const view::View& view, const Kernel* kernel) {
-    PathTracer tracer(world.tables(), world.scene(), view);
+std::vector<PathSample> samples(const SceneAdapter& adapter, const view::View& view, const Kernel* kernel) {
+    PathTracer tracer(adapter.tables(), adapter.scene(), view);
     if (kernel != nullptr) tracer.set_kernel(*kernel);
     std::vector<PathSample> found;
     std::uint64_t rays = 0;
@@ -111,14 +111,14 @@ std::vector<PathSample> samples(const World& world, const view::View& view, cons
     return found;
 }
 
-std::vector<PathSample> told(const World& world, const view::View& view) {
-    const PathTracer tracer(world.tables(), world.scene(), view);
+std::vector<PathSample> samples_with_path_log(const SceneAdapter& adapter, const view::View& view) {
+    const PathTracer tracer(adapter.tables(), adapter.scene(), view);
     std::vector<PathSample> found;
-    std::vector<std::string> story;
+    std::vector<std::string> path_log;
     std::uint64_t rays = 0;
     for (std::uint64_t sample = 0; sample < 4; ++sample) {
         for (std::uint32_t i = 0; i < view.width * view.height; ++i) {
-            found.push_back(tracer.trace(i % view.width, i / view.width, sample, rays, &story));
+            found.push_back(tracer.trace(i % view.width, i / view.width, sample, rays, &path_log));
         }
     }
     return found;
@@ -136,24 +136,24 @@ struct KernelCase {
 
 class KernelsTest : public testing::TestWithParam<KernelCase> {};
 
-TEST_P(KernelsTest, AllThatMayBeTakenFindTheSameBits) {
+TEST_P(KernelsTest, AllSupportingKernelsComputeTheSameBits) {
     Model model;
     GetParam().add(model);
-    const World& world = model.build();
+    const SceneAdapter& adapter = model.build();
     for (const auto renderer :
          {view::Renderer::PathTracing, view::Renderer::Whitted, view::Renderer::Coverage}) {
         view::View view = small_view({0, 0, 4}, 0.9, 32);
         view.renderer = renderer;
         view.channels = frame::ChannelSet::all();
-        const PathTracer tracer(world.tables(), world.scene(), view);
+        const PathTracer tracer(adapter.tables(), adapter.scene(), view);
         EXPECT_EQ(&tracer.kernel(), GetParam().chosen);
-        const std::vector<PathSample> all = samples(world, view, &FullKernel);
+        const std::vector<PathSample> all = samples(adapter, view, &FullKernel);
         for (const Kernel* kernel : Kernels) {
-            if ((world.tables().scene.features & ~kernel->features) != 0) continue;
-            EXPECT_TRUE(same_bits(samples(world, view, kernel), all))
+            if ((adapter.tables().scene.features & ~kernel->features) != 0) continue;
+            EXPECT_TRUE(same_bits(samples(adapter, view, kernel), all))
                 << "features " << kernel->features << ", renderer " << static_cast<int>(renderer);
         }
-        EXPECT_TRUE(same_bits(told(world, view), all));
+        EXPECT_TRUE(same_bits(samples_with_path_log(adapter, view), all));
     }
 }
 
@@ -168,7 +168,7 @@ INSTANTIATE_TEST_SUITE_P(
                     KernelCase{"Foggy", add_fog, &FoggyKernel}, KernelCase{"All", add_all, &FullKernel}),
     [](const auto& kernel) { return std::string(kernel.param.name); });
 
-TEST(Kernels, HaveWhatTheyAreChosenForAndComeBeforeThoseWithMore) {
+TEST(Kernels, SupportTheirFeaturesAndAreOrderedBySize) {
     for (std::uint32_t bit = 0; bit < 32; ++bit) {
         EXPECT_NE(kernel_for(1u << bit).features & (1u << bit), 0u) << bit;
     }

@@ -1,4 +1,4 @@
-// A mesh that deforms keeps its tree.
+// Deforming meshes are refitted, not rebuilt.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <ctime>
 
 #include "backends/embree/path_tracer.h"
-#include "backends/embree/world.h"
+#include "backends/embree/scene_adapter.h"
 #include "tests/backend/scene_builder.h"
 #include "tests/statistics/scene_model.h"
 
@@ -50,7 +50,7 @@ std::vector<std::uint32_t> quads() {
 struct Sea {
     std::shared_ptr<scene::BlobStore> blobs = std::make_shared<scene::BlobStore>();
     DeviceHandle device = make_device({.threads = 1, .blobs = blobs});
-    World world{device.get(), blobs};
+    SceneAdapter adapter{device.get(), blobs};
     test::SceneBuilder builder;
 
     explicit Sea(scene::MotionHint hint) {
@@ -64,8 +64,8 @@ struct Sea {
         return scene::reference(*blobs->insert(std::as_bytes(std::span(values))));
     }
     backend::EditReport edit(const scene::ChangeList& list) {
-        EXPECT_TRUE(world.apply(list));
-        const auto report = world.commit();
+        EXPECT_TRUE(adapter.apply(list));
+        const auto report = adapter.commit();
         EXPECT_TRUE(report);
         return report ? *report : backend::EditReport{};
     }
@@ -77,7 +77,7 @@ struct Sea {
 
 std::vector<PathSample> picture(const Sea& sea) {
     const view::View view = test::small_view({0, 0, 2}, 1.0, 48);
-    const PathTracer tracer(sea.world.tables(), sea.world.scene(), view);
+    const PathTracer tracer(sea.adapter.tables(), sea.adapter.scene(), view);
     std::vector<PathSample> samples;
     std::uint64_t rays = 0;
     for (std::uint32_t i = 0; i < 48 * 48; ++i) samples.push_back(tracer.trace(i % 48, i / 48, 0, rays));
@@ -88,7 +88,7 @@ bool same_refitted_bits(const std::vector<PathSample>& a, const std::vector<Path
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(PathSample)) == 0;
 }
 
-TEST(Refit, ShowsWhatARebuiltMeshShows) {
+TEST(Refit, MatchesARebuild) {
     Sea refitted(scene::MotionHint::Animated), rebuilt(scene::MotionHint::Unflagged);
     std::vector<PathSample> before = picture(rebuilt);
     EXPECT_TRUE(same_refitted_bits(picture(refitted), before));
@@ -102,8 +102,8 @@ TEST(Refit, ShowsWhatARebuiltMeshShows) {
     }
 }
 
-// By processor time, so that others at work do not count. A refit is a pass over boxes: a tenth of a build or
-// less; half of it is what nothing but a build can take.
+// By CPU time, so that other processes do not matter. A refit is one pass over the boxes, a tenth of a build
+// or less; more than half means that Embree rebuilt the tree.
 TEST(Refit, TakesLessThanHalfOfABuild) {
     Sea refitted(scene::MotionHint::Animated), rebuilt(scene::MotionHint::Unflagged);
     std::vector<double> ratios;

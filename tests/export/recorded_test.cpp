@@ -1,6 +1,6 @@
-// Files and hashes that the first release wrote: they are read as long as the format says 1. In `recorded/` each
-// field of each kind differs from its initial value in one object at least; every_update.changes brings objects
-// with initial values to the same, with a few odd bits.
+// Files and hashes of the first release, readable as long as the format version is 1. In `recorded/`, each
+// field of each kind differs from its initial value in at least one object; every_update.changes gives
+// objects with initial values the same values.
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -119,13 +119,13 @@ void make_rich(RichScene& to) {
     const ObjectId picture_id = maker.add(picture), data_id = maker.add(data), sky_id = maker.add(sky);
 
     const ObjectId red = maker.add(colorful(picture_id, data_id));
-    scene::Geometry bending = square(maker, 1.0f, red);
+    scene::Geometry deformed = square(maker, 1.0f, red);
     for (const float lift : {0.5f, 0.75f}) {
-        bending.motion_positions.push_back(
+        deformed.motion_positions.push_back(
             maker.blob<glm::vec3>({{0, 0, lift}, {1, 0, 0}, {0, 1, 0}, {1, 1, lift}}));
-        bending.motion_normals.push_back(maker.blob(std::vector<glm::vec3>(4, {lift, 0, 1})));
+        deformed.motion_normals.push_back(maker.blob(std::vector<glm::vec3>(4, {lift, 0, 1})));
     }
-    const ObjectId one = maker.add(bending);
+    const ObjectId one = maker.add(deformed);
     scene::Geometry other = square(maker, 2.5f, ObjectId{});
     other.name = "square part 1";
     other.normals = other.tangents = other.tex_coords = other.tex_coords_1 = other.colors = {};

@@ -3,9 +3,9 @@
 #include "mediator/scene/blob.h"
 #include "mediator/scene/scene.h"
 
-// A small valid scene that has everything: all kinds, all three lights, every field of a material off its
-// default, shared transforms, byte and float maps, attachments, names that no file system would like. Ids are
-// consecutive from 2.
+// A small valid scene with all features: all kinds, all three light types, every field of a material
+// different from its default, shared transforms, byte and float textures, attachments, names that are invalid
+// as file names. Ids are consecutive from 2.
 namespace tessera::exporting {
 
 struct RichScene {

@@ -25,7 +25,7 @@ class TesseraFileTest : public testing::Test {
     RichScene rich_;
 };
 
-TEST_F(TesseraFileTest, KeepsEverythingToTheBit) {
+TEST_F(TesseraFileTest, KeepsEverythingBitExact) {
     const auto read = import::read_tessera(file_);
     ASSERT_TRUE(read) << read.error().what();
     scene::Scene scene;
@@ -66,7 +66,7 @@ TEST_F(TesseraFileTest, OtherIdsChangeNothingButIds) {
     EXPECT_EQ(imported.root.children.size(), 3u);
 }
 
-TEST_F(TesseraFileTest, TooFewIdsAreTold) {
+TEST_F(TesseraFileTest, TooFewIdsAreAnError) {
     import::ImportOptions options;
     options.first_id = ObjectId{100};
     options.end_id = ObjectId{105};
@@ -82,7 +82,7 @@ TEST_F(TesseraFileTest, OptionsReplaceTheBackground) {
     EXPECT_EQ(import::named<scene::Background>(imported, "evening").color, *options.background);
 }
 
-TEST_F(TesseraFileTest, ASceneWithoutACameraGetsOneUnlessItIsToBeLeft) {
+TEST_F(TesseraFileTest, ASceneWithoutACameraGetsOneIfAskedFor) {
     scene::Scene bare;
     ASSERT_TRUE(bare.apply_entries({scene::Create{scene::RootId, scene::Root{}}}));
     ASSERT_TRUE(write_tessera(bare, rich_.blobs, file_));
@@ -94,7 +94,7 @@ TEST_F(TesseraFileTest, ASceneWithoutACameraGetsOneUnlessItIsToBeLeft) {
     EXPECT_TRUE(left.objects.empty());
 }
 
-TEST_F(TesseraFileTest, AMissingBlobIsToldAndTheOldFileStays) {
+TEST_F(TesseraFileTest, AMissingBlobIsAnErrorAndTheOldFileStays) {
     const auto before = std::filesystem::file_size(file_);
     const scene::BlobStore empty;
     for (const char* name : {"scene.tessera", "other.tessera", "other.glb"}) {
@@ -106,14 +106,14 @@ TEST_F(TesseraFileTest, AMissingBlobIsToldAndTheOldFileStays) {
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1) << "no leftovers";
 }
 
-TEST_F(TesseraFileTest, AFolderThatIsNotThereIsTold) {
+TEST_F(TesseraFileTest, AMissingFolderIsAnError) {
     const auto written = write_scene(rich_.scene, rich_.blobs, folder_.path() / "no" / "where.tessera");
     ASSERT_FALSE(written);
     EXPECT_EQ(written.error().code(), ErrorCode::Io);
     EXPECT_THAT(written.error().what(), testing::HasSubstr("check the folder"));
 }
 
-TEST_F(TesseraFileTest, OtherEndingsAreRefused) {
+TEST_F(TesseraFileTest, OtherExtensionsAreRejected) {
     const auto written = write_scene(rich_.scene, rich_.blobs, folder_.path() / "scene.obj");
     ASSERT_FALSE(written);
     EXPECT_EQ(written.error().code(), ErrorCode::InvalidInput);

@@ -1,4 +1,4 @@
-// What is typed after --filter.
+// Parsing of --filter.
 #include "mediator/filter/choice.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ TEST(FilterChoice, NamesAndValues) {
     EXPECT_EQ(parse_choice("", catalog())->entry->description.name, "none");
 }
 
-TEST(FilterChoice, RefusesWithTheReasonAndTheRemedy) {
+TEST(FilterChoice, RejectsWithReasonAndRemedy) {
     const auto message = [](std::string_view text) {
         const auto choice = parse_choice(text, catalog());
         return choice ? std::string("accepted") : std::string(choice.error().what());
@@ -37,7 +37,7 @@ TEST(FilterChoice, RefusesWithTheReasonAndTheRemedy) {
 TEST(FilterChoice, ColorIsEnoughWithoutAFilter) {
     using enum frame::Channel;
     const auto lacks = [](std::string_view filter, frame::ChannelSet there) {
-        return lacking(*parse_choice(filter, catalog()), there);
+        return missing_channels(*parse_choice(filter, catalog()), there);
     };
     EXPECT_EQ(lacks("", {Color}), frame::ChannelSet{});
     EXPECT_EQ(lacks("none", {Color, Depth}), frame::ChannelSet{});
@@ -53,13 +53,13 @@ TEST(FilterChoice, EveryDescriptionIsUsable) {
         for (const Parameter& parameter : filter.parameters) {
             EXPECT_FALSE(parameter.meaning.empty()) << filter.name << " " << parameter.name;
             if (parameter.choices.empty()) {
-                EXPECT_LE(parameter.least, parameter.standard) << filter.name << " " << parameter.name;
-                EXPECT_LE(parameter.standard, parameter.most) << filter.name << " " << parameter.name;
+                EXPECT_LE(parameter.minimum, parameter.default_value) << filter.name << " " << parameter.name;
+                EXPECT_LE(parameter.default_value, parameter.maximum) << filter.name << " " << parameter.name;
             } else {
-                EXPECT_LT(parameter.standard, double(parameter.choices.size())) << filter.name;
+                EXPECT_LT(parameter.default_value, double(parameter.choices.size())) << filter.name;
             }
         }
-        EXPECT_TRUE(filter.channels(standard_values(filter)).contains(frame::Channel::Radiance))
+        EXPECT_TRUE(filter.channels(default_values(filter)).contains(frame::Channel::Radiance))
             << filter.name;
     }
 }

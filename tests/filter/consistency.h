@@ -4,8 +4,8 @@
 
 namespace tessera::filter {
 
-// Pictures to measure whether a filter is consistent: SYN-1, whose edges features show, and light whose fine
-// texture no feature shows, with exponentially distributed samples.
+// Pictures to measure consistency: SYN-1, whose edges are visible in the features, and finely textured light
+// that no feature shows, with exponentially distributed samples.
 enum class ConsistencyScene { ShadowedTexture, LightTexture };
 
 // relMSE of the filtered picture over that of the unfiltered, 96 x 54, n samples per pixel.

@@ -28,8 +28,7 @@ Planes filled(std::uint32_t width, std::uint32_t height, std::uint32_t component
     return planes;
 }
 
-// Everything the same everywhere: radiance 0.5, albedo 0.5, normal z, shading 1, known exactly from 4
-// samples.
+// Constant inputs: radiance 0.5, albedo 0.5, normal z, shading 1, known exactly from 4 samples.
 Inputs plain(std::uint32_t width, std::uint32_t height, bool with_alpha = false) {
     Inputs inputs;
     inputs.width = width;
@@ -54,7 +53,7 @@ float pair_distance(const NlmSettings& settings, float va, float vb, float varia
            (NlmEpsilon + settings.k * settings.k * both);
 }
 
-// E-L4 ... E-L7 as they are written.
+// E-L4 ... E-L7 as published.
 float direct_nl_means(const Planes& values, const Planes& variances, const Planes& classes,
                       const NlmSettings& settings, int x, int y) {
     const int width = static_cast<int>(values.width()), height = static_cast<int>(values.height());
@@ -98,20 +97,20 @@ struct ShadingCase {
     Planes values, variances, classes;
 };
 
-// Light and shadow with noise of known variance; a background, and holes here and there.
+// Light and shadow with noise of known variance; a background, and some holes.
 ShadingCase noisy_shading(std::uint32_t width, std::uint32_t height, std::uint64_t seed) {
-    ShadingCase made{Planes(width, height, 1), Planes(width, height, 1), Planes(width, height, 1)};
+    ShadingCase result{Planes(width, height, 1), Planes(width, height, 1), Planes(width, height, 1)};
     std::mt19937_64 random(seed);
     std::normal_distribution<float> normal;
     for (std::uint32_t y = 0; y < height; ++y) {
         for (std::uint32_t x = 0; x < width; ++x) {
             const float sigma = x < width / 2 ? 0.1f : 0.3f, light = x + y < width ? 1.0f : 2.0f;
-            made.values.row(0, y)[x] = light + sigma * normal(random);
-            made.variances.row(0, y)[x] = sigma * sigma;
-            made.classes.row(0, y)[x] = random() % 17 == 0 ? Hole : y < height / 4 ? Background : Surface;
+            result.values.row(0, y)[x] = light + sigma * normal(random);
+            result.variances.row(0, y)[x] = sigma * sigma;
+            result.classes.row(0, y)[x] = random() % 17 == 0 ? Hole : y < height / 4 ? Background : Surface;
         }
     }
-    return made;
+    return result;
 }
 
 Planes nl_means(const ShadingCase& shading, const NlmSettings& settings) {
@@ -154,8 +153,8 @@ TEST(FdfNlMeans, WithoutNoiseNothingCrossesAnEdge) {  // LT8
     }
     std::ranges::fill(shading.values.values(), 0.7f);
     for (const NlmForm form : {NlmForm::Standard, NlmForm::Thesis}) {
-        const auto made = nl_means(shading, {.form = form});
-        for (const float v : made.values()) ASSERT_NEAR(v, 0.7f, 1e-6);
+        const auto result = nl_means(shading, {.form = form});
+        for (const float v : result.values()) ASSERT_NEAR(v, 0.7f, 1e-6);
     }
 }
 
@@ -177,7 +176,7 @@ TEST(FdfNlMeans, FollowsTheVariances) {  // the same values are noise or detail
     EXPECT_GT(spread(), 10.0 * known);
 }
 
-// Two pixels: what weight does the right one get in the left one's result?
+// Two pixels: the weight of the right one in the left one's result.
 double weight_of_two(Inputs inputs, const std::string& options = "") {
     for (std::uint32_t c = 0; c < 3; ++c) {
         mean(inputs, Channel::Radiance).plane(c)[0] = 0.0f;
@@ -216,7 +215,7 @@ TEST(Fdf, AWeightIsOneOverEAtEachThreshold) {  // LT10
     EXPECT_NEAR(weight_of_two(inputs, ",t_max=0.2"), e, 2e-5);
 }
 
-TEST(Fdf, TheLargestDistanceDecides) {  // LT11
+TEST(Fdf, TheWeightUsesTheLargestDistance) {  // LT11
     Inputs inputs = plain(2, 1);
     mean(inputs, Channel::Albedo).plane(1)[1] += 0.06f;
     const double weight = weight_of_two(inputs);
@@ -234,7 +233,7 @@ TEST(Fdf, ShadingCountsInProportionToTheSamplesOfThePoorerPixel) {  // LT12, L13
     EXPECT_NEAR(weight_of_two(shaded_pair(0.5f, 1000.0f, 4.0f)), at4, 1e-4);
 }
 
-// Features that vary like a picture's, with counts of their own in every pixel, a background and holes.
+// Features that vary as in a picture, with different counts in every pixel, a background and holes.
 Inputs varied(std::uint32_t width, std::uint32_t height, bool with_alpha) {
     Inputs inputs = plain(width, height, with_alpha);
     std::mt19937_64 random(9);
@@ -257,7 +256,7 @@ Inputs varied(std::uint32_t width, std::uint32_t height, bool with_alpha) {
     return inputs;
 }
 
-// E-L8, E-L9 as they are written, with the counts.
+// E-L8, E-L9 as published, with the counts.
 double direct_bilateral(const Inputs& inputs, const Planes& shading, const Planes& classes, int radius, int x,
                         int y, std::uint32_t component) {
     const auto index = [&](int i, int j) {
@@ -333,7 +332,7 @@ TEST(Fdf, EqualsTheDirectSums) {
     }
 }
 
-TEST(Fdf, ColourHasNoSayInTheWeights) {  // LT13
+TEST(Fdf, WeightsDoNotDependOnColour) {  // LT13
     Inputs inputs = varied(70, 40, false);
     const Bilateral before = bilateral(inputs, {});
     std::ranges::reverse(mean(inputs, Channel::Radiance).values());
@@ -344,8 +343,8 @@ TEST(Fdf, ColourHasNoSayInTheWeights) {  // LT13
 
 TEST(Fdf, StaysWithinTheValuesOfItsWindow) {
     const Inputs inputs = varied(70, 40, false);
-    const auto made = bilateral(inputs, {});
-    for (const float v : made.picture.values()) {
+    const auto result = bilateral(inputs, {});
+    for (const float v : result.picture.values()) {
         ASSERT_GE(v, 0.0f);
         ASSERT_LE(v, 1.0f + 1e-6f);
     }
@@ -395,7 +394,7 @@ TEST(Fdf, FiniteAtAnyRangeAndThreshold) {
     }
 }
 
-TEST(Fdf, WithoutFeaturesItSaysSoAndStillFilters) {
+TEST(Fdf, WithoutFeaturesItWarnsAndStillFilters) {
     Inputs inputs = plain(20, 20);
     for (const Channel channel :
          {Channel::Albedo, Channel::Normal, Channel::Depth, Channel::ShadingFeature}) {

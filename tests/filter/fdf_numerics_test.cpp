@@ -1,4 +1,5 @@
-// What the feature distance filter gains on "SYN-1" of the notes: shadows on textures, exact features.
+// Error reduction of the feature distance filter on "SYN-1" of the notes: shadows on textures, exact
+// features.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -176,7 +177,7 @@ TEST(FdfNumerics, NeverWorseThanUnfiltered) {  // L36
 }
 
 TEST(FdfNumerics, CountsMayDifferBetweenPixels) {  // L13
-    // The left half has 4 samples, the right half 256: as if each were filtered in a picture of its own.
+    // The left half has 4 samples, the right half 256: as if each were filtered in a separate picture.
     Inputs mixed = shadows(256);
     const Inputs few = shadows(4);
     const auto take_left = [&](Planes& to, const Planes& from) {

@@ -1,4 +1,4 @@
-// What windows read: guides, light without albedo, and holes that take from the nearest pixel.
+// The inputs of windowed filters: guides, demodulated light, and holes filled from the nearest pixel.
 #include "master/filter/features.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ class FeaturesTest : public testing::Test {
 TEST_F(FeaturesTest, AHoleTakesFromTheNearestPixelWithSamples) {
     constexpr std::uint32_t Width = 40, Height = 30;
     const auto is_hole = [](auto x, auto y) { return mix(x + 1000 * y) % 10 != 0; };
-    // Every pixel has its own index as its radiance, so that one sees where a value comes from.
+    // Every pixel has its own index as its radiance, to identify where a value comes from.
     const Inputs inputs = synthetic_inputs(Width, Height, 1, [&](auto x, auto y, auto) {
         SyntheticSample s;
         s.high[0] = is_hole(x, y) ? NAN : static_cast<float>(x + Width * y);
@@ -50,7 +50,7 @@ TEST_F(FeaturesTest, AHoleTakesFromTheNearestPixelWithSamples) {
     EXPECT_LE(farther, Width * Height / 100);  // the sweeps miss few
 }
 
-TEST_F(FeaturesTest, LightTimesAlbedoIsThePictureAgain) {
+TEST_F(FeaturesTest, RemodulationRestoresThePicture) {
     const Inputs inputs = synthetic_inputs(32, 24, 2, [](auto x, auto y, auto i) {
         SyntheticSample s = shadowed_texture(32, 24, x, y, i);
         if (x < 8) s.albedo = {0.0f, 0.005f, 0.8f};
@@ -58,7 +58,7 @@ TEST_F(FeaturesTest, LightTimesAlbedoIsThePictureAgain) {
         return s;
     });
     ASSERT_TRUE(features.prepare(inputs, true, context));
-    EXPECT_EQ(features.albedo().row(0, 5)[3], 1.0f);  // too dark to be divided by
+    EXPECT_EQ(features.albedo().row(0, 5)[3], 1.0f);  // too dark to divide by
     EXPECT_EQ(features.albedo().row(1, 5)[3], 1.0f);
     EXPECT_EQ(features.albedo().row(2, 5)[3], 0.8f);
     Planes picture = features.color();
@@ -70,7 +70,7 @@ TEST_F(FeaturesTest, LightTimesAlbedoIsThePictureAgain) {
     }
 }
 
-TEST_F(FeaturesTest, DepthGuidesKnowMisses) {
+TEST_F(FeaturesTest, DepthGuidesSeparateMisses) {
     const Inputs inputs = synthetic_inputs(4, 1, 1, [](auto x, auto, auto) {
         SyntheticSample s;
         s.depth = std::array{1.0f, 2.0f, 4.0f, std::numeric_limits<float>::infinity()}[x];

@@ -1,4 +1,5 @@
-// The guided filter: its sums, its solver, the whole against the definition, and what a linear model keeps.
+// The guided filter: its sums, its solver, the whole against the definition, and preservation of linear
+// models.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -81,7 +82,7 @@ TEST(GuidedRidge, SolvesSystemsSideBySide) {
     }
 }
 
-// He's two steps as they are written, in double, one component.
+// He's two steps as published, in double, one component.
 std::vector<double> by_definition(const Planes& guides, const Planes& color, const Planes& known, int radius,
                                   double ridge) {
     const int width = static_cast<int>(color.width()), height = static_cast<int>(color.height());
@@ -158,7 +159,7 @@ TEST(GuidedModels, EqualTheDefinitionAcrossTilesAndStrips) {
     EXPECT_LT(worst, 2e-5);
 }
 
-TEST(Guided, WhatIsLinearInTheFeaturesIsKept) {
+TEST(Guided, KeepsLightLinearInTheFeatures) {
     // Light 0.7 on a random albedo; and light that rises along a slanted plane, whose disparity is linear in
     // x.
     const Inputs texture = synthetic_inputs(64, 64, 1, [](auto x, auto y, auto) {

@@ -35,7 +35,7 @@ struct Fitting {
         result.solve(window(), weights.data());
         return result;
     }
-    // The largest difference of the model to what is there, over centres, pixels and colours.
+    // The largest difference between model and data, over centres, pixels and colours.
     float worst() {
         const nfor::Fit model = fit();
         float most = 0.0f;
@@ -55,7 +55,7 @@ struct Fitting {
     std::vector<float> weights, values;
 };
 
-TEST(NforFit, ReproducesWhatIsLinearInTheVariables) {
+TEST(NforFit, ReproducesLinearFunctionsOfTheVariables) {
     Fitting f;
     for (std::size_t i = 0; i < Fitting::Plane; ++i) {
         for (std::size_t c = 0; c < nfor::Colors; ++c) {
@@ -66,12 +66,12 @@ TEST(NforFit, ReproducesWhatIsLinearInTheVariables) {
     EXPECT_LT(f.worst(), 1e-4f);
 }
 
-TEST(NforFit, SaysNothingThatFeaturesDoNotSay) {
+TEST(NforFit, PredictsNothingThatFeaturesDoNotExplain) {
     Fitting f;
     EXPECT_GT(f.worst(), 0.2f);  // colours are random
 }
 
-TEST(NforFit, TakesFeaturesThatRepeatEachOther) {
+TEST(NforFit, AcceptsDuplicateFeatures) {
     Fitting f;
     for (std::size_t i = 0; i < Fitting::Plane; ++i) {
         for (std::size_t feature = 1; feature < nfor::FeatureCount; ++feature) {
@@ -82,7 +82,7 @@ TEST(NforFit, TakesFeaturesThatRepeatEachOther) {
     EXPECT_LT(f.worst(), 1e-4f);
 }
 
-// What is predicted at the centre, relative to its colour, and the weighted mean of the window.
+// The prediction at the centre, relative to its colour, and the weighted mean of the window.
 TEST(NforFit, IsTheWeightedMeanWhereNoiseExplainsAll) {
     for (const bool equal_features : {false, true}) {
         Fitting f;
@@ -122,7 +122,7 @@ TEST(NforFit, EqualFeaturesChangeNothing) {
     }
 }
 
-TEST(NforFit, WithoutWeightItIsFiniteAndSaysSo) {
+TEST(NforFit, WithoutWeightItIsFiniteAndUnknown) {
     Fitting f;
     std::ranges::fill(f.weights, 0.0f);
     const nfor::Fit model = f.fit();
@@ -130,8 +130,8 @@ TEST(NforFit, WithoutWeightItIsFiniteAndSaysSo) {
     for (const nfor::Tap& tap : f.taps) EXPECT_TRUE(std::isfinite(model.at(f.window(), tap)[0][0]));
 }
 
-// A bent surface: light linear in a normal that turns over the picture and in an albedo that waves.
-SyntheticSample bent(std::uint32_t x, std::uint32_t y, std::uint64_t i, double noise) {
+// A curved surface: light linear in a normal that rotates across the picture and in a wavy albedo.
+SyntheticSample curved_surface(std::uint32_t x, std::uint32_t y, std::uint64_t i, double noise) {
     const double angle = 2.0 * x / 64.0 + 0.5 * std::sin(0.2 * y);
     CounterRandom random(mix(3), mix((std::uint64_t{y} << 32 | x) ^ mix(i)));
     SyntheticSample s;
@@ -142,35 +142,37 @@ SyntheticSample bent(std::uint32_t x, std::uint32_t y, std::uint64_t i, double n
     return s;
 }
 
-TEST(Nfor, KeepsWhatIsLinearInFeatures) {
-    const Inputs exact = synthetic_inputs(64, 48, 1, [](auto x, auto y, auto) { return bent(x, y, 0, 0.0); });
+TEST(Nfor, KeepsLightLinearInTheFeatures) {
+    const Inputs exact =
+        synthetic_inputs(64, 48, 1, [](auto x, auto y, auto) { return curved_surface(x, y, 0, 0.0); });
     const Inputs clean =
-        synthetic_inputs(64, 48, 8, [](auto x, auto y, auto i) { return bent(x, y, i, 0.0); });
+        synthetic_inputs(64, 48, 8, [](auto x, auto y, auto i) { return curved_surface(x, y, i, 0.0); });
     const Inputs noisy =
-        synthetic_inputs(64, 48, 8, [](auto x, auto y, auto i) { return bent(x, y, i, 1.0); });
+        synthetic_inputs(64, 48, 8, [](auto x, auto y, auto i) { return curved_surface(x, y, i, 1.0); });
     const Planes& truth = exact.mean(frame::Channel::Radiance);
     const Planes picture = run_filter("nfor", clean).picture;
     for (std::size_t i = 0; i < truth.values().size(); ++i) {
         EXPECT_NEAR(picture.values()[i], truth.values()[i], 1e-4f);
     }
-    // A mean over like pixels leaves more error, as it has to cut where the light changes.
+    // A mean over similar pixels has more error, since it cannot follow changes of the light.
     const double unfiltered = mean_squared_error(noisy.mean(frame::Channel::Radiance), truth);
     const double first_order = mean_squared_error(run_filter("nfor:fade=off", noisy).picture, truth);
     EXPECT_LT(first_order, 0.05 * unfiltered);
     EXPECT_LT(first_order, 0.7 * mean_squared_error(run_filter("statmc:fade=off", noisy).picture, truth));
 }
 
-TEST(Nfor, FiltersWithoutHalvesAndSaysSo) {
+TEST(Nfor, FiltersWithoutHalfBuffersAndWarns) {
     const Inputs noisy =
-        synthetic_inputs(64, 48, 8, [](auto x, auto y, auto i) { return bent(x, y, i, 1.0); },
+        synthetic_inputs(64, 48, 8, [](auto x, auto y, auto i) { return curved_surface(x, y, i, 1.0); },
                          {frame::Channel::Radiance, frame::Channel::Normal});
-    const Inputs exact = synthetic_inputs(64, 48, 1, [](auto x, auto y, auto) { return bent(x, y, 0, 0.0); });
+    const Inputs exact =
+        synthetic_inputs(64, 48, 1, [](auto x, auto y, auto) { return curved_surface(x, y, 0, 0.0); });
     const Planes& truth = exact.mean(frame::Channel::Radiance);
     EXPECT_LT(mean_squared_error(run_filter("nfor", noisy).picture, truth),
               0.2 * mean_squared_error(noisy.mean(frame::Channel::Radiance), truth));
 }
 
-TEST(Nfor, KeepsAnEdgeThatOnlyTheLightHas) {
+TEST(Nfor, KeepsAnEdgeThatNoFeatureShows) {
     const Inputs inputs = synthetic_inputs(48, 32, 256, [](auto x, auto y, auto i) {
         CounterRandom random(mix(7), mix((std::uint64_t{y} << 32 | x) ^ mix(i)));
         SyntheticSample s;

@@ -1,4 +1,4 @@
-// Multi-scale NL-means of the colour: the fast form against the definition, and what it keeps.
+// Multi-scale NL-means of the colour: the fast form against the definition, and what it preserves.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ Planes random_planes(std::uint32_t width, std::uint32_t height, std::uint32_t co
     return planes;
 }
 
-// E-L4 and E-L5 as they are written, in double.
+// E-L4 and E-L5 as published, in double.
 Planes by_definition(const Planes& match, const Planes& color, const Planes& known, int radius, int patch,
                      double k, double epsilon) {
     const int width = static_cast<int>(color.width()), height = static_cast<int>(color.height());
@@ -116,14 +116,14 @@ TEST_F(NlmTest, ARampIsKept) {
     });
     for (float& variance : inputs.variances[0].values()) variance = 1e-4f;
     const Output out = run_filter("nlm", inputs);
-    for (std::uint32_t y = 44; y < 52; ++y) {  // farther from the borders than three scales reach
+    for (std::uint32_t y = 44; y < 52; ++y) {  // beyond the influence of the borders at three scales
         for (std::uint32_t x = 44; x < 52; ++x) {
             ASSERT_NEAR(out.picture.row(0, y)[x], inputs.color(0)[x + 96 * y], 2e-6f) << x << ", " << y;
         }
     }
 }
 
-TEST_F(NlmTest, CoarseScalesTakeAwaySlowNoise) {
+TEST_F(NlmTest, CoarseScalesRemoveLowFrequencyNoise) {
     const Inputs inputs = synthetic_inputs(96, 96, 4, [](auto x, auto y, auto i) {
         CounterRandom random(5, mix((std::uint64_t{y} << 32 | x) ^ mix(i)));
         SyntheticSample s;
@@ -148,7 +148,7 @@ TEST_F(NlmTest, CoarseScalesTakeAwaySlowNoise) {
               0.7 * slow_error(run_filter("nlm:scales=1", inputs).picture));
 }
 
-TEST_F(NlmTest, OneSampleHasTheVarianceAroundIt) {
+TEST_F(NlmTest, OneSampleHasTheVarianceOfItsNeighbourhood) {
     const auto noisy = [](auto x, auto y, auto i) { return shadowed_texture(96, 96, x, y, i); };
     const Inputs inputs = synthetic_inputs(96, 96, 1, noisy);
     const Planes truth = shadowed_texture_truth(96, 96);
@@ -158,7 +158,7 @@ TEST_F(NlmTest, OneSampleHasTheVarianceAroundIt) {
 
 // --- scales
 
-TEST_F(NlmTest, HalvingKeepsConstantsAndKnowsVariances) {
+TEST_F(NlmTest, HalvingKeepsConstantsAndPropagatesVariances) {
     Planes flat(21, 13, 1), half, half_variance;
     std::ranges::fill(flat.values(), 3.0f);
     halve(flat, half, context);

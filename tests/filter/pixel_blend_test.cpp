@@ -22,7 +22,7 @@ TEST(BlendFactor, GivesTheGoldenVectors) {
                             Vector{1.0f, 0.001f, 0.01f, 0.095825}, Vector{2.0f, 2.0f, 1.0f, 0.5}}) {
         EXPECT_NEAR(blend_factor(v.u, v.f, v.t), v.s, 1e-6) << v.u << " " << v.f << " " << v.t;
     }
-    // The discriminant is 0 but for rounding.
+    // The discriminant is 0 except for rounding.
     EXPECT_NEAR(blend_factor(11.0f, 1.1f, 1.0f), 1.0 / 11.0, 1e-3);
 }
 
@@ -88,7 +88,7 @@ TEST(BlendFactor, HasTheSlopesOfTheAppendix) {
         const double numerator = -2 * f * q + u * f - f * f - t * u - t * f;
         EXPECT_NEAR(fixed / (numerator / (2 * (u + f) * (u + f) * q)), 1.0, 1e-4);  // 3.24
         EXPECT_LT(numerator, -f * f);                                               // 3.25
-        // And so does the implementation, as far as float lets one see.
+        // And so does the implementation, within the precision of float.
         const double d = 0.02;
         const double seen =
             (blend_factor(float(u + d), float(f), 1.0f) - blend_factor(float(u - d), float(f), 1.0f)) /
@@ -149,7 +149,7 @@ TEST(CentralWeight, IsThatOfGaussiansAndOfASinglePixel) {
     EXPECT_EQ(central_weight(1.0f), 1.0f);
 }
 
-TEST(SpikeClamp, KeepsWithinTheFactor) {
+TEST(SpikeClamp, StaysWithinTheFactor) {
     EXPECT_EQ(clamp_spike(100.0f, 1.0f, 2.0f), 2.0f);
     EXPECT_EQ(clamp_spike(0.0f, 1.0f, 2.0f), 0.5f);
     EXPECT_EQ(clamp_spike(1.3f, 1.0f, 2.0f), 1.3f);
@@ -199,7 +199,7 @@ TEST(FilterDue, IsAtPowersOfTwoFromFourOn) {
         last = n;
     }
     EXPECT_EQ(passes, (std::vector<std::uint64_t>{4, 8, 16, 32, 64}));
-    EXPECT_TRUE(filter_due(100, 20));  // several were missed: one pass
+    EXPECT_TRUE(filter_due(100, 20));  // several steps were missed: one pass
     EXPECT_FALSE(filter_due(100, 64));
     EXPECT_FALSE(filter_due(100, 70));
 }

@@ -71,8 +71,8 @@ TEST(PixelFilter, HalvesTheErrorAtFourSamplesAndLowersItLater) {
     }
 }
 
-// What the threshold promises, the fade may take back. The simple root leaves out the covariance, whose share
-// grows as the adaptive kernels shrink.
+// Without the convergence blend, which may exceed the threshold. The simple root ignores the covariance,
+// which grows as the adaptive kernels shrink.
 TEST(PixelFilter, MeetsTheThresholdInTheMedian) {
     constexpr int Seeds = 64;
     for (const char* choice : {"pixel:fade=off,root=simple", "pixel:fade=off"}) {
@@ -124,7 +124,7 @@ TEST(AdaptiveWidths, StayNearTheGuideLineAndHelpCaustics) {
     }
 }
 
-TEST(SpikeClamp, BoundsASpikeAndSparesAConvergedPixel) {
+TEST(SpikeClamp, BoundsASpikeAndKeepsAConvergedPixel) {
     for (const float variance : {0.05f, 1e-6f}) {
         const Inputs inputs = pixel_inputs(48, 48, [&](std::uint32_t x, std::uint32_t y) {
             const bool spike = x == 24 && y == 24;
@@ -194,7 +194,7 @@ TEST(Schedule, IsOffForSinglePictures) {
     for (const std::uint64_t n : {1, 2, 5, 6}) EXPECT_TRUE(film.filters(n)) << n;
 }
 
-TEST(Schedule, StartsAnewWhenSomethingHasChanged) {
+TEST(Schedule, RestartsAfterAChange) {
     Growing film("pixel:schedule=on");
     EXPECT_TRUE(film.filters(5));
     EXPECT_FALSE(film.filters(6));
@@ -204,7 +204,7 @@ TEST(Schedule, StartsAnewWhenSomethingHasChanged) {
     EXPECT_TRUE(film.filters(7, {.film_restarted = true}));
     EXPECT_TRUE(film.filters(7, {.lights_or_materials = true}));
     EXPECT_TRUE(film.filters(7, {.geometry = true}));
-    EXPECT_TRUE(film.filters(6));  // fewer samples than at the last pass: another film
+    EXPECT_TRUE(film.filters(6));  // fewer samples than at the last pass: a new film
     EXPECT_FALSE(film.filters(3, {.film_restarted = true}));
     EXPECT_TRUE(film.filters(4));
     EXPECT_FALSE(film.filters(5));
@@ -212,7 +212,7 @@ TEST(Schedule, StartsAnewWhenSomethingHasChanged) {
     EXPECT_TRUE(film.filters(5));
 }
 
-// Between passes new samples come in through the unfiltered light, whose variance is known to shrink.
+// Between passes new samples contribute through the unfiltered light, whose variance decreases.
 TEST(Schedule, TakesNewSamplesBetweenPasses) {
     const Planes truth = shadowed_texture_truth(32, 32);
     Growing scheduled("pixel:schedule=on"), always("pixel");
@@ -222,7 +222,7 @@ TEST(Schedule, TakesNewSamplesBetweenPasses) {
     always.show(31);
     const double between = relative_error(scheduled.picture(), truth);
     EXPECT_LT(between, at_pass);
-    // The last pass has seen half of the samples.
+    // The last pass used half of the samples.
     EXPECT_LT(between, 2.0 * relative_error(always.picture(), truth));
 }
 
@@ -231,11 +231,12 @@ TEST(PixelFilter, FillsHolesFromPixelsThatLookLikeTheirNeighbours) {
         for (const double missing : {0.1, 0.7}) {
             const Inputs inputs = pixel_inputs(64, 64, [&](std::uint32_t x, std::uint32_t y) {
                 if (noise(9, x, y) < missing) {
-                    return PixelLight{.range = 0.0f, .depth = std::numeric_limits<float>::infinity(), .n = 0};
+                    return PixelLight{
+                        .headlight = 0.0f, .depth = std::numeric_limits<float>::infinity(), .n = 0};
                 }
                 const float light = x < 32 ? 1.0f : 0.25f;
                 return PixelLight{
-                    .high = light, .variance = light * light, .range = x < 32 ? 0.9f : 0.1f, .low = 2.0f};
+                    .high = light, .variance = light * light, .headlight = x < 32 ? 0.9f : 0.1f, .low = 2.0f};
             });
             const Output out = run_filter(std::string("pixel:method=") + method, inputs);
             for (std::uint32_t y = 0; y < 64; ++y) {
@@ -279,17 +280,18 @@ TEST(PixelFilter, HasTheSameBitsOnAnyNumberOfThreads) {
     }
 }
 
-TEST(PixelFilter, AsksForNormalsOnlyWhenTheyCount) {
+TEST(PixelFilter, RequestsNormalsOnlyWhenUsed) {
     const Choice plain = parse_choice("pixel", catalog()).value();
-    EXPECT_EQ(plain.channels(), (frame::ChannelSet{Channel::Radiance, Channel::LowVariance,
-                                                   Channel::HighVariance, Channel::Depth, Channel::Range}));
+    EXPECT_EQ(plain.channels(),
+              (frame::ChannelSet{Channel::Radiance, Channel::LowVariance, Channel::HighVariance,
+                                 Channel::Depth, Channel::Headlight}));
     EXPECT_TRUE(parse_choice("pixel:normals=on", catalog()).value().channels().contains(Channel::Normal));
 }
 
-TEST(PixelFilter, DoesWithoutChannelsAndSaysSo) {
+TEST(PixelFilter, FiltersWithoutOptionalChannelsAndWarns) {
     Inputs inputs = shadows(4);
     inputs.means[static_cast<std::size_t>(Channel::HighVariance)] = {};
-    inputs.means[static_cast<std::size_t>(Channel::Range)] = {};
+    inputs.means[static_cast<std::size_t>(Channel::Headlight)] = {};
     const Choice choice = parse_choice("pixel", catalog()).value();
     tbb::task_arena arena(2);
     Output out;

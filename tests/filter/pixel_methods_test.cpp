@@ -1,5 +1,5 @@
-// The cross-bilateral filters of the pixel filter on made-up pictures: variance reduction, edges, antialiased
-// edges (Schwenk 3.3.3, 3.6).
+// The cross-bilateral filters of the pixel filter on synthetic pictures: variance reduction, edges,
+// antialiased edges (Schwenk 3.3.3, 3.6).
 #include <gtest/gtest.h>
 
 #include <array>
@@ -19,15 +19,15 @@ struct Spread {
     double variance = 0.0, reduction = 0.0;
 };
 
-template <class Range, class Counts>
-Spread spread_of(const std::string& choice, std::uint32_t size, int pictures, const Range& range,
+template <class Headlight, class Counts>
+Spread spread_of(const std::string& choice, std::uint32_t size, int pictures, const Headlight& headlight,
                  const Counts& counts) {
     Spread spread;
     double number = 0.0;
     for (int picture = 0; picture < pictures; ++picture) {
         const Inputs inputs = pixel_inputs(size, size, [&](std::uint32_t x, std::uint32_t y) {
             const float value = noise(static_cast<std::uint64_t>(picture) + 1, x, y);
-            return PixelLight{.high = value, .variance = 1.0f / 12.0f, .range = range(x, y)};
+            return PixelLight{.high = value, .variance = 1.0f / 12.0f, .headlight = headlight(x, y)};
         });
         const Output out = run_filter(choice, inputs, true);
         const Planes& reduction = map_of(out, "reduction");
@@ -53,7 +53,7 @@ struct Flat {
 
 class Reduction : public testing::TestWithParam<Flat> {};
 
-TEST_P(Reduction, IsTheVarianceThatIsLeft) {
+TEST_P(Reduction, IsTheRemainingVariance) {
     const auto& [method, sigma, tolerance] = GetParam();
     constexpr std::uint32_t Size = 96;
     const auto border = static_cast<std::uint32_t>(4.0 * sigma);
@@ -76,8 +76,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, Reduction,
                              return tested.param.method + std::to_string(int(tested.param.sigma));
                          });
 
-// Stripes and checkers leave the filter parts of its window.
-TEST(Reduction, IsEstimatedWithinAFifthBesideEdges) {
+// With stripes and checkers only parts of the window are similar.
+TEST(Reduction, IsEstimatedWithinAFifthNextToEdges) {
     const auto checker = [](std::uint32_t x, std::uint32_t y) {
         return (x / 12 + y / 12) % 2 == 0 ? 0.2f : 0.8f;
     };
@@ -108,14 +108,14 @@ double leak(const std::string& choice, const std::function<void(PixelLight&)>& r
     return worst;
 }
 
-TEST_P(Leak, IsNothingAcrossEdgesOfTheRangeBuffer) {
+TEST_P(Leak, IsZeroAcrossHeadlightEdges) {
     const std::string choice = FilteredLight + ",method=" + GetParam();
     // A step of 5 sigma_c in each of three channels: 8.7 together.
-    EXPECT_LT(leak(choice, [](PixelLight& light) { light.range += 5.0f * 0.02f; }), 1e-5);
-    EXPECT_GT(leak(choice, [](PixelLight& light) { light.range += 0.005f; }), 0.1);
+    EXPECT_LT(leak(choice, [](PixelLight& light) { light.headlight += 5.0f * 0.02f; }), 1e-5);
+    EXPECT_GT(leak(choice, [](PixelLight& light) { light.headlight += 0.005f; }), 0.1);
 }
 
-TEST_P(Leak, IsNothingAcrossDepths) {
+TEST_P(Leak, IsZeroAcrossDepths) {
     const std::string choice = FilteredLight + ",method=" + GetParam();
     EXPECT_LT(leak(choice, [](PixelLight& light) { light.depth += 6.0f * 2.0f; }), 1e-5);
     EXPECT_GT(leak(choice, [](PixelLight& light) { light.depth += 0.5f; }), 0.1);
@@ -123,7 +123,7 @@ TEST_P(Leak, IsNothingAcrossDepths) {
     EXPECT_LT(leak(choice, [](PixelLight& light) { light.depth = Miss; }), 1e-5);
 }
 
-TEST_P(Leak, IsNothingAcrossNormalsWhenTheyCount) {
+TEST_P(Leak, IsZeroAcrossNormalsWhenUsed) {
     const std::string choice = FilteredLight + ",method=" + GetParam();
     const auto tilted = [](PixelLight& light) { light.normal_z = 0.0f; };
     EXPECT_LT(leak(choice + ",normals=on", tilted), 1e-5);
@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, Leak, testing::Values("separable", "brute", "a
 TEST(Misses, AreFilteredAmongThemselves) {
     constexpr float Miss = std::numeric_limits<float>::infinity();
     const Inputs inputs = pixel_inputs(48, 48, [](std::uint32_t x, std::uint32_t y) {
-        return PixelLight{.high = noise(5, x, y), .variance = 1.0f / 12.0f, .range = 0.0f, .depth = Miss};
+        return PixelLight{.high = noise(5, x, y), .variance = 1.0f / 12.0f, .headlight = 0.0f, .depth = Miss};
     });
     for (const char* method : {"separable", "brute", "atrous"}) {
         const Output out = run_filter(FilteredLight + ",method=" + method, inputs);
@@ -144,8 +144,8 @@ TEST(Misses, AreFilteredAmongThemselves) {
     }
 }
 
-// Rows and columns see less of a checkerboard than the plane does, so that the methods differ by their bias;
-// both give way to the samples.
+// Rows and columns cover less of a checkerboard than the plane, so that the methods differ by their bias;
+// with more samples both converge.
 TEST(Separable, ComesCloserToBruteForceWithSamplesAndIsAsGood) {
     const Planes truth = shadowed_texture_truth(96, 96);
     double last = 23.0;
@@ -185,7 +185,7 @@ TEST(Separable, IsFiveTimesFasterThanBruteForce) {
     EXPECT_GT(seconds_of("pixel:method=brute,adaptive=off") / seconds_of("pixel:adaptive=off"), 5.0);
 }
 
-// Two regions and a column between them that belongs to both.
+// Two regions and a mixed column between them.
 TEST(EdgeModel, FindsTheCoverage) {
     using namespace pixel;
     constexpr std::ptrdiff_t Pitch = 64;
@@ -210,12 +210,12 @@ TEST(EdgeModel, FindsTheCoverage) {
         EXPECT_NEAR(model.coverage[0], coverage, 0.02);
         EXPECT_NEAR(model.belief[0], 1.0f, 1e-4f);
         EXPECT_EQ(model.belief[4], 0.0f);  // within one region
-        target[0] = target[0] + 5.0f;      // beside the way from one to the other
+        target[0] = target[0] + 5.0f;      // off the line from one to the other
         EXPECT_LT(edge_model<4>(sources, target, 1, -Pitch, Pitch).belief[0], 0.01f);
     }
 }
 
-TEST(AntialiasRecovery, QuietensEdgePixelsAndKeepsTheirMean) {
+TEST(AntialiasRecovery, ReducesNoiseOfEdgePixelsAndKeepsTheirMean) {
     constexpr std::uint32_t Size = 64, Edge = 32;
     for (const float coverage : {0.25f, 0.5f, 0.7f}) {
         double recovered = 0.0, plain = 0.0, unfiltered = 0.0, mean = 0.0, number = 0.0;
@@ -227,12 +227,12 @@ TEST(AntialiasRecovery, QuietensEdgePixelsAndKeepsTheirMean) {
                 const float light = 0.3f + 0.7f * part;
                 const float value = light * (0.5f + noise(seed, x, y));
                 return PixelLight{
-                    .high = value, .variance = light * light / 12.0f, .range = 0.2f + 0.6f * part};
+                    .high = value, .variance = light * light / 12.0f, .headlight = 0.2f + 0.6f * part};
             });
             const Output with = run_filter(FilteredLight, inputs);
             const Output without = run_filter(FilteredLight + ",aa_recovery=off", inputs);
             // Along the edge the one-dimensional sweeps find its other pixels, which is fair; a diagonal edge
-            // has none, so rows are looked at one by one.
+            // has none, so rows are checked one by one.
             for (std::uint32_t y = 12; y < Size - 12; ++y) {
                 const auto square = [&](float value) { return (value - expected) * (value - expected); };
                 recovered += square(with.picture.row(0, y)[Edge]);

@@ -22,8 +22,8 @@ Inputs pixel_inputs(std::uint32_t width, std::uint32_t height,
     const auto variance = [&](Channel channel) -> Planes& {
         return inputs.variances[static_cast<std::size_t>(channel)];
     };
-    for (const Channel channel :
-         {Channel::Radiance, Channel::LowVariance, Channel::HighVariance, Channel::Range, Channel::Normal}) {
+    for (const Channel channel : {Channel::Radiance, Channel::LowVariance, Channel::HighVariance,
+                                  Channel::Headlight, Channel::Normal}) {
         mean(channel) = Planes(width, height, 3);
     }
     for (const Channel channel : {Channel::Radiance, Channel::LowVariance, Channel::HighVariance}) {
@@ -43,7 +43,7 @@ Inputs pixel_inputs(std::uint32_t width, std::uint32_t height,
                 mean(Channel::Radiance).row(c, y)[x] = p.low + p.high;
                 mean(Channel::LowVariance).row(c, y)[x] = p.low;
                 mean(Channel::HighVariance).row(c, y)[x] = p.high;
-                mean(Channel::Range).row(c, y)[x] = p.range;
+                mean(Channel::Headlight).row(c, y)[x] = p.headlight;
                 variance(Channel::Radiance).row(c, y)[x] = p.variance;
                 variance(Channel::HighVariance).row(c, y)[x] = p.variance;
             }

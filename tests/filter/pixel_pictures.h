@@ -6,15 +6,15 @@
 
 namespace tessera::filter {
 
-// What a made-up pixel shows the pixel filter.
+// One synthetic pixel for the pixel filter.
 struct PixelLight {
     float high = 0.0f, variance = 0.0f;  // grey; of the mean
-    float range = 0.5f, depth = 1.0f;
+    float headlight = 0.5f, depth = 1.0f;
     float n = 4.0f;
     float low = 0.0f, alpha = 1.0f, normal_z = 1.0f;
 };
 
-// Inputs without samples behind them: every number as given.
+// Inputs built directly from these values, without samples.
 Inputs pixel_inputs(std::uint32_t width, std::uint32_t height,
                     const std::function<PixelLight(std::uint32_t x, std::uint32_t y)>& light);
 

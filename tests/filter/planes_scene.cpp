@@ -80,7 +80,7 @@ Inputs photograph(const PlanesScene& scene, const view::CameraPose& camera, cons
     Inputs inputs = synthetic_inputs(shot.width, shot.height, shot.n, sampler, Channels);
     inputs.camera = camera;
     inputs.path_class = view::PathClass::Diffuse;
-    // What a film holds where no sample fell.
+    // The values of a film without samples.
     for (std::size_t i = 0; i < inputs.pixel_count() && shot.coverage < 1.0; ++i) {
         CounterRandom random(mix(shot.seed + 99), i);
         if (random.uniform() < shot.coverage) continue;

@@ -8,12 +8,12 @@
 namespace tessera::filter {
 
 // A wall and, in front of it, a square board (object 2), as an analytic scene for pinholes. Textured albedo;
-// the irradiance is the chance that a sample finds the light, times the light's strength.
+// the irradiance is the probability that a sample finds the light, times the light's strength.
 struct PlanesScene {
-    glm::dvec3 origin{0.0};           // where all of it is
+    glm::dvec3 origin{0.0};           // of the whole scene
     double wall = 10.0, board = 5.0;  // distances along -z from the origin
     double board_half = 1.0, board_x = 0.0;
-    double tilt = 0.0;      // of the wall: z grows by so much per unit of x
+    double tilt = 0.0;      // of the wall: change of z per unit of x
     double shadow_x = 1e9;  // the wall is in shadow (a tenth of the light) on this side and beyond
     float strength = 1.0f;
     bool textured = true;
@@ -30,20 +30,20 @@ struct PlanesScene {
                              double x, double y) const;
 };
 
-// A camera at origin + offset that looks along -z, turned by `yaw` about y.
+// A camera at origin + offset facing -z, rotated by `yaw` about y.
 view::CameraPose looking_at(const PlanesScene& scene, glm::dvec3 offset, std::uint32_t width,
                             std::uint32_t height, double yaw = 0.0);
 
 struct Shot {
     std::uint32_t width = 96, height = 64;
     std::uint64_t n = 1, seed = 1;
-    double coverage = 1.0;  // chance that a pixel has samples at all
+    double coverage = 1.0;  // probability that a pixel has samples
     bool noise = true;      // otherwise every sample is the expectation
     bool jitter = false;    // samples anywhere in the pixel, not in its centre
 };
 Inputs photograph(const PlanesScene& scene, const view::CameraPose& camera, const Shot& shot);
 
-// What samples in the centres of the pixels converge to: 3 components.
+// The limit of samples at the pixel centres: 3 components.
 Planes truth_of(const PlanesScene& scene, const view::CameraPose& camera, std::uint32_t width,
                 std::uint32_t height);
 

@@ -1,4 +1,4 @@
-// Progressive SVGF after films that began anew: what is kept, where it goes, when it is dropped.
+// Progressive SVGF after restarted films: which history is kept, reprojected and dropped.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -108,12 +108,12 @@ TEST(PsvgfHistory, NeverCountsASampleTwice) {
     EXPECT_EQ(largest_difference(direct.map("irradiance"), step_by_step.map("irradiance")), 0.0);
 }
 
-TEST(PsvgfHistory, AFilmThatGoesOnForgetsWhatWasBefore) {
+TEST(PsvgfHistory, AGrowingFilmReplacesTheHistory) {
     PlanesScene scene = wall_alone();
     const auto camera = looking_at(scene, {}, Width, Height);
     const Inputs last = photograph(scene, camera, {.n = 256, .seed = 2});
     Session session("");
-    scene.strength = 4.0f;  // history that is plainly wrong, and nobody says so
+    scene.strength = 4.0f;  // the history is wrong, without a reported change
     session.restart(photograph(scene, camera, {.n = 64, .seed = 1}));
     session.restart(last);
     Session fresh("");
@@ -162,7 +162,7 @@ TEST(PsvgfHistory, AFilmWithoutSamplesChangesNothing) {
     EXPECT_NEAR(session.age(3, 3), 8.0f, 1e-4);
 }
 
-TEST(PsvgfHistory, AStoppedRunLeavesTheOneBefore) {
+TEST(PsvgfHistory, AStoppedRunKeepsThePreviousState) {
     const PlanesScene scene = wall_alone();
     const auto camera = looking_at(scene, {}, Width, Height);
     const auto filter = psvgf().make(Width, Height);
@@ -197,7 +197,7 @@ TEST(PsvgfHistory, FeedbackWaitsForOneWholeSample) {  // DT24
             first_difference = k;
         }
     }
-    EXPECT_EQ(first_difference, 5);  // 0.3 k >= 1 at k = 4: what goes back then is seen in the next frame
+    EXPECT_EQ(first_difference, 5);  // 0.3 k >= 1 at k = 4: the feedback is visible in the next frame
 }
 
 // A step of light at x = 0 of the wall, before and after its edge moved.
@@ -215,7 +215,7 @@ double shadow_error(Session& session, const PlanesScene& scene, const view::Came
     return error / power;
 }
 
-TEST(PsvgfHistory, ChangedLightIsDoubted) {  // DT31
+TEST(PsvgfHistory, ChangedLightShortensTheHistory) {  // DT31
     PlanesScene scene = wall_alone();
     const auto camera = looking_at(scene, {}, Width, Height);
     scene.shadow_x = -1.5;
@@ -232,7 +232,7 @@ TEST(PsvgfHistory, ChangedLightIsDoubted) {  // DT31
     const double error = shadow_error(tested, moved, camera);
     EXPECT_LT(error, 0.1);
     EXPECT_LT(error, 0.5 * shadow_error(blind, moved, camera));
-    // Without a change nothing is doubted.
+    // Without a change no history is distrusted.
     Session still("taa=off,r0=0");
     still.restart(photograph(scene, camera, {.n = 64, .seed = 1}));
     still.restart(photograph(scene, camera, {.n = 4, .seed = 20}), light);
@@ -265,7 +265,7 @@ TEST(PsvgfHistory, ResetForgets) {
     Output out, alone;
     Inputs second = photograph(scene, camera, {.n = 4, .seed = 2});
     second.changes.film_restarted = true;
-    const Values values = standard_values(psvgf().description);
+    const Values values = default_values(psvgf().description);
     filter->run(photograph(scene, camera, {.n = 64, .seed = 1}), values, out, {arena, {}});
     filter->reset();
     filter->run(second, values, out, {arena, {}});

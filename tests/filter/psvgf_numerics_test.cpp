@@ -1,5 +1,4 @@
-// Progressive SVGF where floats run out: far origins, infinite depth, no samples, grazing planes, huge
-// ranges.
+// Progressive SVGF at numerical limits: far origins, infinite depth, no samples, grazing planes, huge ranges.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +36,7 @@ bool all_finite(const Planes& planes) {
     return std::ranges::all_of(planes.values(), [](float v) { return std::isfinite(v); });
 }
 
-// Two frames with a move in between, everything on.
+// Two frames with a camera move in between, all stages enabled.
 Output moved(const PlanesScene& scene, double scale, const std::string& choice, std::uint64_t n = 2) {
     Session session(choice);
     const glm::dvec3 to = scale * glm::dvec3(0.2, 0.1, -0.3);

@@ -1,4 +1,4 @@
-// Progressive SVGF while camera and surfaces move: history goes with what it belongs to.
+// Progressive SVGF while camera and surfaces move: history follows its surfaces.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -65,7 +65,7 @@ TEST_P(PsvgfMove, HistoryFollowsTheSurfaces) {  // DT6
     };
     session.restart(picture_of(from, 1000));
     session.restart(picture_of(to, 1));
-    // Where a point was not to be seen before, by geometry.
+    // Pixels whose point was not visible before, computed from the geometry.
     std::vector<bool> hidden, dropped;
     double error = 0.0, kept = 0.0;
     const auto sharp = picture_of(to, 1);
@@ -103,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(Cameras, PsvgfMove,
                                          Move{{0.0, 0.0, -0.8}, 0.0}, Move{{0.1, 0.05, 0.3}, 0.05},
                                          Move{{0.0, 0.0, 0.0}, -0.1}));
 
-TEST(PsvgfHistory, StandsStillExactlyWhenTheCameraDoes) {  // DT22: no drift over 100 frames
+TEST(PsvgfHistory, IsExactForAStaticCamera) {  // DT22: no drift over 100 frames
     PlanesScene scene;
     scene.tilt = 0.3;
     const auto camera = looking_at(scene, {0.37, 0.11, 0.0}, Width, Height, 0.1);
@@ -113,7 +113,7 @@ TEST(PsvgfHistory, StandsStillExactlyWhenTheCameraDoes) {  // DT22: no drift ove
     const Planes kept = session.map("irradiance");
     const Inputs still = [&] {
         Inputs inputs = first;
-        std::ranges::fill(inputs.counts.values(), 1e-20f);  // surfaces, but nothing to add
+        std::ranges::fill(inputs.counts.values(), 1e-20f);  // surfaces, but practically no samples
         return inputs;
     }();
     for (int k = 0; k < 100; ++k) session.restart(still);

@@ -8,14 +8,14 @@
 #include "mediator/filter/choice.h"
 #include "tests/filter/planes_scene.h"
 
-// What tests of progressive SVGF over many frames have in common.
+// Helpers for tests of progressive SVGF over many frames.
 namespace tessera::filter {
 
 inline const FilterEntry& psvgf() {
     return *parse_choice("psvgf", catalog()).value().entry;
 }
 
-// A filter that lives on, as for a view.
+// A filter that persists over frames, as for a view.
 class Session {
   public:
     explicit Session(const std::string& choice)
@@ -48,7 +48,7 @@ class Session {
     Report report_;
 };
 
-// Nothing but the accumulation: no wavelet, no fade, no antialiasing.
+// Accumulation only: no wavelet, no convergence blend, no antialiasing.
 inline const std::string Raw = "levels=0,fade=off,taa=off,feedback=0,";
 
 inline constexpr std::uint32_t Width = 96, Height = 64;

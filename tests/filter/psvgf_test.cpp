@@ -1,4 +1,4 @@
-// Progressive SVGF on pictures that stand still (Dundr 2, tests DT of the notes).
+// Progressive SVGF on static pictures (Dundr 2, tests DT of the notes).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ TEST(Psvgf, IsConsistent) {
         const double filtered = psvgf_error(run_filter("psvgf", inputs).picture, truth);
         EXPECT_LE(filtered, (n <= 16 ? 0.15 : 0.25) * unfiltered) << n;
     }
-    // Without the fade, too strong a filter is not.
+    // Without the convergence blend, a filter that is too strong is not.
     const Inputs inputs = psvgf_shadows(1024);
     EXPECT_GT(psvgf_error(run_filter("psvgf:sigma_l=100,fade=off", inputs).picture, truth),
               psvgf_error(run_filter("none", inputs).picture, truth));
@@ -63,7 +63,7 @@ TEST(Psvgf, ErrorFallsWithEverySample) {  // DT20
     }
 }
 
-TEST(Psvgf, TheRestGoesThroughUnfilteredOrFiltered) {
+TEST(Psvgf, TheRestIsUnfilteredOrFiltered) {
     Inputs inputs = synthetic_inputs(PsvgfWidth, PsvgfHeight, 8, [](auto x, auto y, auto i) {
         SyntheticSample s = shadowed_texture(PsvgfWidth, PsvgfHeight, x, y, i, 1);
         const SyntheticSample other = shadowed_texture(PsvgfWidth, PsvgfHeight, x, y, i, 2);
@@ -94,7 +94,7 @@ TEST(Psvgf, TheRestGoesThroughUnfilteredOrFiltered) {
               0.3 * psvgf_error(all, truth));
 }
 
-TEST(Psvgf, OtherPathClassesAreServedByTheIrradiance) {
+TEST(Psvgf, OtherPathClassesUseTheIrradiance) {
     Inputs inputs = psvgf_shadows(8);
     const Planes diffuse = run_filter("psvgf", inputs).picture;
     inputs.path_class = view::PathClass::Indirect;
@@ -108,7 +108,7 @@ TEST(Psvgf, OtherPathClassesAreServedByTheIrradiance) {
 }
 
 TEST(Psvgf, PartlyCoveredPixelsKeepTheirLight) {
-    // A white surface under constant light covers pixels of a column by a half; what is behind is black.
+    // A white surface under constant light covers half of the pixels of a column; the background is black.
     const auto sampler = [](std::uint32_t x, std::uint32_t, std::uint64_t i) {
         SyntheticSample s;
         const bool covered = x < 48 || (x == 48 && i % 2 == 0);
@@ -151,15 +151,15 @@ TEST(Psvgf, ConstantLightStays) {  // DT13
     }
 }
 
-// Where the light across a vertical edge at the middle passes 10 and 90 % of its step.
+// The distance between 10 and 90 % of the step of light across a vertical edge at the centre.
 double edge_width(const Planes& picture) {
     std::vector<double> profile(PsvgfWidth);
     for (std::uint32_t y = 0; y < PsvgfHeight; ++y) {
         for (std::uint32_t x = 0; x < PsvgfWidth; ++x) profile[x] += picture.row(0, y)[x] / PsvgfHeight;
     }
     const double dark = profile.front(), bright = profile.back();
-    const auto crossing = [&](double share) {
-        const double level = dark + share * (bright - dark);
+    const auto crossing = [&](double fraction) {
+        const double level = dark + fraction * (bright - dark);
         for (std::uint32_t x = 1; x < PsvgfWidth; ++x) {
             if (profile[x] >= level) {
                 return x - 1 + (level - profile[x - 1]) / std::max(profile[x] - profile[x - 1], 1e-9);
@@ -191,7 +191,7 @@ TEST(Psvgf, SteepSidesAreFilteredOnceDepthIsIgnored) {  // DT27
     const auto residual = [](const std::string& choice) {
         Inputs inputs = synthetic_inputs(PsvgfWidth, PsvgfHeight, 4, [](auto x, auto y, auto i) {
             SyntheticSample s = shadowed_texture(PsvgfWidth, PsvgfHeight, x, y, i);
-            // Strips of a few pixels, each ever so steep: slopes differ from pixel to pixel.
+            // Strips of a few pixels, each very steep: slopes differ from pixel to pixel.
             CounterRandom jitter(3, std::uint64_t{y} << 32 | x);
             s.depth = static_cast<float>(1.0 + 2.0 * (x % 4) + 1.5 * jitter.uniform());
             CounterRandom random(5, (std::uint64_t{y} << 32 | x) ^ mix(i));
@@ -229,7 +229,7 @@ TEST(Psvgf, HolesAreFilled) {
               0.2 * psvgf_error(run_filter("none", inputs).picture, truth));
 }
 
-TEST(Psvgf, WithoutItsChannelsItSaysSo) {
+TEST(Psvgf, WithoutItsChannelsItWarns) {
     const Inputs inputs = synthetic_inputs(
         PsvgfWidth, PsvgfHeight, 2,
         [](auto x, auto y, auto i) { return shadowed_texture(PsvgfWidth, PsvgfHeight, x, y, i); },
@@ -237,8 +237,8 @@ TEST(Psvgf, WithoutItsChannelsItSaysSo) {
     const FilterEntry& entry = *parse_choice("psvgf", catalog()).value().entry;
     tbb::task_arena arena(2);
     Output out;
-    const Report report = entry.make(PsvgfWidth, PsvgfHeight)
-                              ->run(inputs, standard_values(entry.description), out, {arena, {}});
+    const Report report =
+        entry.make(PsvgfWidth, PsvgfHeight)->run(inputs, default_values(entry.description), out, {arena, {}});
     ASSERT_EQ(report.notes.size(), 1u);
     EXPECT_NE(report.notes[0].find("unfiltered"), std::string::npos);
     EXPECT_TRUE(std::ranges::equal(out.picture.values(), inputs.mean(frame::Channel::Radiance).values()));

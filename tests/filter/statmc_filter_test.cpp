@@ -48,7 +48,7 @@ TEST(StudentQuantile, ItsTableOfSquaresIsCloseEverywhere) {
     }
 }
 
-// Two pixels of n normal samples each; how often the average of either takes in the other.
+// Two pixels of n normal samples each; how often the average of either includes the other.
 struct Joined {
     double rate = 0.0;
     bool always_both = true;
@@ -88,7 +88,7 @@ TEST(StatMc, EqualMeansAreJoinedAtTheStatedRate) {
     }
 }
 
-TEST(StatMc, DifferentMeansPartWhenThereAreEnoughSamples) {
+TEST(StatMc, DifferentMeansSeparateWithEnoughSamples) {
     // The difference is 1 standard deviation of a sample; sqrt(n / 2) standard errors.
     EXPECT_GT(joined(4, 1.0, 1.0, "confidence=0.95,pooled=0").rate, 0.6);
     EXPECT_LT(joined(64, 1.0, 1.0, "confidence=0.95,pooled=0").rate, 0.01);
@@ -117,11 +117,11 @@ TEST(StatMc, EqualSamplesAreNotExactSamples) {
     const auto [least, most] = std::ranges::minmax(moderated.picture.plane(0));
     EXPECT_GT(least, 0.25f);
     EXPECT_LT(most, 0.75f);
-    // What the trap does without.
+    // The error without moderated variances.
     EXPECT_GT(mean_squared_error(own.picture, truth), 2.0 * mean_squared_error(moderated.picture, truth));
 }
 
-TEST(StatMc, ANeighbourhoodsVarianceFadesWithTheSamples) {
+TEST(StatMc, TheNeighbourhoodsVarianceVanishesWithTheSamples) {
     // One pixel without noise in a noisy square.
     for (const std::uint64_t n : {1, 2, 8, 128}) {
         const Inputs inputs = synthetic_inputs(
@@ -153,7 +153,7 @@ Inputs edge(std::uint64_t n, double dark, double bright) {
         Color);
 }
 
-TEST(StatMc, KeepsAnEdgeThatOnlyTheLightHas) {
+TEST(StatMc, KeepsAnEdgeThatNoFeatureShows) {
     const Inputs inputs = edge(256, 1.0, 2.0);
     const Output out = run_filter("statmc", inputs);
     for (std::uint32_t y = 0; y < 24; ++y) {
@@ -162,7 +162,7 @@ TEST(StatMc, KeepsAnEdgeThatOnlyTheLightHas) {
     }
 }
 
-TEST(StatMc, KeepsWhatFeaturesShowWithFewSamples) {
+TEST(StatMc, KeepsFeatureEdgesAtFewSamples) {
     Inputs inputs = synthetic_inputs(40, 24, 4, [](auto x, auto y, auto i) {
         CounterRandom random(mix(8), mix((std::uint64_t{y} << 32 | x) ^ mix(i)));
         SyntheticSample s = grey((x < 20 ? 0.8 : 1.2) * 2.0 * random.uniform());
@@ -180,7 +180,7 @@ TEST(StatMc, KeepsWhatFeaturesShowWithFewSamples) {
 }
 
 TEST(StatMc, ManySamplesWeighMoreThanFew) {
-    // Right: 1 sample in each pixel; left: 64. Those of one sample must not carry their noise over.
+    // Right: 1 sample in each pixel; left: 64. Pixels with one sample must not spread their noise.
     const auto sampler = [](auto x, auto y, auto i) {
         CounterRandom random(mix(9), mix((std::uint64_t{y} << 32 | x) ^ mix(i)));
         SyntheticSample s = grey(2.0 * random.uniform());
@@ -196,7 +196,7 @@ TEST(StatMc, ManySamplesWeighMoreThanFew) {
     }
 }
 
-TEST(StatMc, FillsHolesFromWhatIsAround) {
+TEST(StatMc, FillsHolesFromNeighbours) {
     const Inputs inputs = synthetic_inputs(
         20, 20, 8,
         [](auto x, auto y, auto) { return x / 5 == 1 && y / 5 == 2 ? grey(std::nan("")) : grey(0.25); },

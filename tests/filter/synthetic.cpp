@@ -28,11 +28,11 @@ void append(std::vector<float>& values, const SyntheticSample& s, frame::Channel
     add(Channel::Depth, std::array{s.depth});
     add(Channel::ObjectIndex, std::array{s.depth, std::bit_cast<float>(s.object)});
     add(Channel::Alpha, std::array{s.alpha});
-    add(Channel::Range, s.range);
+    add(Channel::Headlight, s.headlight);
     add(Channel::ShadingFeature, std::array{s.shading});
     add(Channel::Irradiance, s.irradiance);
     const float one = even ? 1.0f : 0.0f;
-    add(Channel::EvenHalf, std::array{one * radiance[0], one * radiance[1], one * radiance[2], one});
+    add(Channel::HalfBufferA, std::array{one * radiance[0], one * radiance[1], one * radiance[2], one});
     add(Channel::Color, radiance);
 }
 
@@ -106,7 +106,7 @@ SyntheticSample shadowed_texture(std::uint32_t width, std::uint32_t height, std:
     for (int c = 0; c < 3; ++c) {
         s.high[c] = here.albedo[c] * found;
         s.irradiance[c] = found;
-        s.range[c] = here.albedo[c] * (1.0f + here.normal[2]) / 2.0f;
+        s.headlight[c] = here.albedo[c] * (1.0f + here.normal[2]) / 2.0f;
     }
     s.shading = found;
     return s;

@@ -1,4 +1,4 @@
-// Pictures brought back to full size by features.
+// Upsampling of pictures guided by features.
 #include "master/filter/upsample.h"
 
 #include <gtest/gtest.h>

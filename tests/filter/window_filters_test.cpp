@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t WindowSize = 65, Middle = 32;
 
-// One bright pixel, or whatever `light` says, on flat features or those of `change`.
+// One bright pixel, or the values of `light`, on flat features or those of `change`.
 Inputs picture_of(const std::function<float(std::uint32_t, std::uint32_t)>& light,
                   const std::function<void(SyntheticSample&, std::uint32_t, std::uint32_t)>& change = {}) {
     return synthetic_inputs(WindowSize, WindowSize, 2, [&](auto x, auto y, auto) {
@@ -90,7 +90,7 @@ TEST(Bilateral, FarFeaturesDoNotMix) {
         "background");
 }
 
-TEST(Bilateral, TheColourHasNoSay) {
+TEST(Bilateral, WeightsDoNotDependOnColour) {
     const auto light = [](auto x, auto y) {
         return std::exp(0.1f * static_cast<float>((x * 31 + y * 17) % 50));
     };

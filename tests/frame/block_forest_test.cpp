@@ -45,7 +45,7 @@ TEST(BlockForest, GivesTheSameBitsForAnyCutOrderAndDuplication) {
             shuffle(blocks, random);
             BlockForest forest;
             for (const SampleBlock& block : blocks) {
-                EXPECT_NE(forest.insert(canonical_film(block)), Outcome::Contradiction);
+                EXPECT_NE(forest.insert(canonical_film(block)), Outcome::Conflict);
             }
             EXPECT_TRUE(forest.missing(spp).empty());
             EXPECT_EQ(forest.sample_count(), spp);
@@ -55,7 +55,7 @@ TEST(BlockForest, GivesTheSameBitsForAnyCutOrderAndDuplication) {
     }
 }
 
-TEST(BlockForest, KnowsWhatIsInsideAndWhatReplaces) {
+TEST(BlockForest, ReportsDuplicatesAndReplacements) {
     BlockForest forest;
     EXPECT_EQ(forest.insert(canonical_film({0, 2})), Outcome::Merged);
     EXPECT_EQ(forest.insert(canonical_film({2, 1})), Outcome::Duplicate);
@@ -67,16 +67,16 @@ TEST(BlockForest, KnowsWhatIsInsideAndWhatReplaces) {
     EXPECT_TRUE(identical_bits(forest.merged(), canonical_film({0, 3})));
 }
 
-TEST(BlockForest, OtherBitsForTheSameSamplesAreAContradictionAndStayOut) {
+TEST(BlockForest, OtherBitsForTheSameSamplesAreAConflictAndRejected) {
     BlockForest forest;
     forest.insert(canonical_film({0, 1}));
     FilmTile forged = canonical_film({0, 1});
     forged.planes[0] = std::nextafter(forged.planes[0], 1e9f);
-    EXPECT_EQ(forest.insert(forged), Outcome::Contradiction);
+    EXPECT_EQ(forest.insert(forged), Outcome::Conflict);
     EXPECT_TRUE(identical_bits(forest.merged(), canonical_film({0, 1})));
 }
 
-TEST(BlockStack, HoldsThePrefixAsItsMaximalAlignedBlocks) {
+TEST(BlockStack, HoldsMaximalAlignedBlocks) {
     BlockStack stack;
     for (std::uint64_t i = 0; i < 11; ++i) {
         FilmTile tile = stack.recycled(SmallTile, {i, 0}, SomeChannels);

@@ -1,4 +1,4 @@
-// Sets of channels hold more than there are, and say which of theirs are none.
+// Channel sets can hold unknown channels, and report them.
 #include "mediator/frame/channels.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace tessera::frame {
 namespace {
 
-TEST(Channels, EveryRowSaysWhatItIs) {
+TEST(Channels, EveryRowHasADescription) {
     std::set<std::string_view> names;
     for (const ChannelInfo& entry : ChannelTable) {
         EXPECT_TRUE(names.insert(entry.name).second) << entry.name;
@@ -21,7 +21,7 @@ TEST(Channels, EveryRowSaysWhatItIs) {
     EXPECT_FALSE(channel_by_name("no such channel"));
 }
 
-TEST(Channels, PlanesLieInTheOrderOfTheNumbers) {
+TEST(Channels, PlanesAreInTheOrderOfTheNumbers) {
     const ChannelSet set{Channel::Color, Channel::Radiance, Channel::Depth};
     EXPECT_EQ(set.first_plane(Channel::Radiance), 0u);
     EXPECT_EQ(set.first_plane(Channel::Depth), 6u);

@@ -37,13 +37,13 @@ TEST(Merge, KeepsTheNearestAndOnTiesTheEarlierSample) {
     EXPECT_EQ(film.counts[0], 4u);
 }
 
-TEST(Merge, MovesIdsThatLookLikeANaNBitByBit) {
+TEST(Merge, CopiesIdsThatLookLikeANaNBitByBit) {
     FilmTile film = one_pixel(0, 1.0f, 5.0f, 1);
     merge(film, one_pixel(1, 1.0f, 1.0f, 0x7f800001u));
     EXPECT_EQ(object_of(film), 0x7f800001u);
 }
 
-TEST(Merge, ARejectedSampleCountsNowhereButInItsCounter) {
+TEST(Merge, ARejectedSampleOnlyIncrementsItsCounter) {
     const FilmTile rejected = one_pixel(1, std::numeric_limits<float>::quiet_NaN(), 5.0f, 2);
     EXPECT_EQ(rejected.nonfinite_samples, 1u);
     EXPECT_EQ(rejected.counts[0], 0u);
@@ -57,7 +57,7 @@ TEST(Merge, ARejectedSampleCountsNowhereButInItsCounter) {
     EXPECT_EQ(infinite.nonfinite_samples, 1u);
 }
 
-TEST(Resolve, DividesOnceAndKnowsNoneAndOne) {
+TEST(Resolve, HandlesNoneAndOneSample) {
     FilmTile empty({0, 0, 1, 1}, {0, 0}, {Channel::Radiance, Channel::Depth});
     EXPECT_EQ(resolve(empty, Channel::Radiance).values[0], 0.0f);
     EXPECT_EQ(resolve(empty, Channel::Depth).values[0], Infinity);
@@ -70,7 +70,7 @@ TEST(Resolve, DividesOnceAndKnowsNoneAndOne) {
               1.0f);  // M2 = 2, n = 2: 2 / (2 * 1)
 }
 
-TEST(FilmHash, SeesEveryBitAndEveryCount) {
+TEST(FilmHash, DependsOnEveryBitAndEveryCount) {
     const FilmTile film = canonical_film({0, 2});
     const Hash256 hash = film_hash(film);
     for (std::size_t i = 0; i < film.planes.size(); i += 7) {

@@ -1,4 +1,4 @@
-// Parts and materials as a configurator chooses them.
+// Configuration of parts and materials.
 #include "client/import/configure.h"
 
 #include <gtest/gtest.h>
@@ -58,7 +58,7 @@ TEST(Configure, HiddenPartsAreNoLongerPlaced) {
     EXPECT_EQ(material_of(scene, part), "");
 }
 
-TEST(Configure, UnknownNamesAreErrorsThatTellWhatThereIs) {
+TEST(Configure, UnknownNamesAreErrorsThatListTheNames) {
     ImportedScene scene = loaded(test::scenes_folder() / "still.glb");
     const auto message = [&](const Configuration& configuration) {
         const auto done = configure(scene, configuration);

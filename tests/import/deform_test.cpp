@@ -14,8 +14,8 @@
 namespace tessera::import {
 namespace {
 
-BendingMesh triangle() {
-    BendingMesh mesh;
+DeformableMesh triangle() {
+    DeformableMesh mesh;
     mesh.rest.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     mesh.rest.normals.assign(3, {0, 0, 1});
     mesh.rest.tangents.assign(3, {1, 0, 0, 1});
@@ -24,35 +24,36 @@ BendingMesh triangle() {
 }
 
 TEST(Deform, TargetsAddByTheirWeights) {
-    BendingMesh mesh = triangle();
+    DeformableMesh mesh = triangle();
     mesh.targets.resize(2);
     mesh.targets[0].positions = {{0, 0, 2}, {0, 0, 0}, {1, 0, 0}};
     mesh.targets[0].normals = {{3, 0, 3}, {0, 0, 0}, {0, 0, 0}};
     mesh.targets[1].positions = {{0, 4, 0}, {0, 0, 0}, {0, 0, 0}};
     mesh.targets[1].tangents = {{0, 2, 0}, {0, 0, 0}, {0, 0, 0}};
-    const MeshData bent = bend(mesh, std::vector<double>{0.5, -0.25}, {});
-    EXPECT_EQ(bent.positions[0], glm::vec3(0, -1, 1));
-    EXPECT_EQ(bent.positions[1], glm::vec3(1, 0, 0));
-    EXPECT_EQ(bent.positions[2], glm::vec3(0.5, 1, 0));
-    EXPECT_NEAR(glm::distance(bent.normals[0], glm::normalize(glm::vec3(1.5, 0, 2.5))), 0.0, 1e-6);
-    EXPECT_NEAR(glm::distance(glm::vec3(bent.tangents[0]), glm::normalize(glm::vec3(1, -0.5, 0))), 0.0, 1e-6);
-    EXPECT_EQ(bend(mesh, std::vector<double>{0.5}, {}).positions[0], glm::vec3(0, 0, 1))
+    const MeshData deformed = deform(mesh, std::vector<double>{0.5, -0.25}, {});
+    EXPECT_EQ(deformed.positions[0], glm::vec3(0, -1, 1));
+    EXPECT_EQ(deformed.positions[1], glm::vec3(1, 0, 0));
+    EXPECT_EQ(deformed.positions[2], glm::vec3(0.5, 1, 0));
+    EXPECT_NEAR(glm::distance(deformed.normals[0], glm::normalize(glm::vec3(1.5, 0, 2.5))), 0.0, 1e-6);
+    EXPECT_NEAR(glm::distance(glm::vec3(deformed.tangents[0]), glm::normalize(glm::vec3(1, -0.5, 0))), 0.0,
+                1e-6);
+    EXPECT_EQ(deform(mesh, std::vector<double>{0.5}, {}).positions[0], glm::vec3(0, 0, 1))
         << "a target without a weight counts nothing";
 }
 
-TEST(Deform, AVertexBetweenTwoJointsIsBetweenTheirPlaces) {
-    BendingMesh mesh = triangle();
+TEST(Deform, AVertexOfTwoJointsIsBlended) {
+    DeformableMesh mesh = triangle();
     mesh.sets.push_back(
         {{{0, 1, 0, 0}, {0, 1, 0, 0}, {1, 0, 0, 0}}, {{1, 0, 0, 0}, {0.25, 0.75, 0, 0}, {1, 0, 0, 0}}});
     const std::vector<glm::dmat4> joints{glm::translate(glm::dmat4(1.0), {0.0, 0.0, 4.0}),
                                          glm::rotate(glm::dmat4(1.0), glm::radians(90.0), {0.0, 1.0, 0.0})};
-    const MeshData bent = bend(mesh, {}, joints);
-    EXPECT_NEAR(glm::distance(bent.positions[0], {0, 0, 4}), 0.0, 1e-6);
-    // (1, 0, 4) and (0, 0, -1), three parts of the latter.
-    EXPECT_NEAR(glm::distance(bent.positions[1], {0.25, 0, 0.25}), 0.0, 1e-6);
-    EXPECT_NEAR(glm::distance(bent.positions[2], {0, 1, 0}), 0.0, 1e-6);
-    EXPECT_NEAR(glm::distance(bent.normals[2], {1, 0, 0}), 0.0, 1e-6);
-    EXPECT_NEAR(glm::distance(bent.tangents[2], {0, 0, -1, 1}), 0.0, 1e-6);
+    const MeshData deformed = deform(mesh, {}, joints);
+    EXPECT_NEAR(glm::distance(deformed.positions[0], {0, 0, 4}), 0.0, 1e-6);
+    // (1, 0, 4) and (0, 0, -1), the latter with weight 3/4.
+    EXPECT_NEAR(glm::distance(deformed.positions[1], {0.25, 0, 0.25}), 0.0, 1e-6);
+    EXPECT_NEAR(glm::distance(deformed.positions[2], {0, 1, 0}), 0.0, 1e-6);
+    EXPECT_NEAR(glm::distance(deformed.normals[2], {1, 0, 0}), 0.0, 1e-6);
+    EXPECT_NEAR(glm::distance(deformed.tangents[2], {0, 0, -1, 1}), 0.0, 1e-6);
 }
 
 glm::dmat4 some_matrix(CounterRandom& random) {
@@ -63,14 +64,14 @@ glm::dmat4 some_matrix(CounterRandom& random) {
     return matrix;
 }
 
-// Blends of points instead of matrices; normals as cross products of what lay in the surface.
+// Blends points instead of matrices; normals are cross products of deformed edges.
 TEST(Deform, AgreesWithBruteForceForEightJointsPerVertex) {
     CounterRandom random(4711);
     int mirrored = 0;
     for (int round = 0; round < 200; ++round) {
         std::vector<glm::dmat4> joints;
         for (int i = 0; i < 9; ++i) joints.push_back(some_matrix(random));
-        BendingMesh mesh = triangle();
+        DeformableMesh mesh = triangle();
         mesh.sets.resize(2);
         for (JointSet& set : mesh.sets) {
             for (int v = 0; v < 3; ++v) {
@@ -80,7 +81,7 @@ TEST(Deform, AgreesWithBruteForceForEightJointsPerVertex) {
             }
         }
         normalize_weights(mesh.sets);
-        const MeshData bent = bend(mesh, {}, joints);
+        const MeshData deformed = deform(mesh, {}, joints);
         for (int v = 0; v < 3; ++v) {
             const auto vertex = static_cast<std::size_t>(v);
             const auto blend = [&](const glm::dvec4& point) {
@@ -93,15 +94,15 @@ TEST(Deform, AgreesWithBruteForceForEightJointsPerVertex) {
                 return sum;
             };
             const glm::dvec3 place = blend(glm::dvec4(glm::dvec3(mesh.rest.positions[vertex]), 1.0));
-            EXPECT_NEAR(glm::distance(glm::dvec3(bent.positions[vertex]), place), 0.0, 1e-6);
+            EXPECT_NEAR(glm::distance(glm::dvec3(deformed.positions[vertex]), place), 0.0, 1e-6);
             const glm::dvec3 x = blend({1, 0, 0, 0}), y = blend({0, 1, 0, 0}), z = blend({0, 0, 1, 0});
             const double side = glm::dot(glm::cross(x, y), z) < 0.0 ? -1.0 : 1.0;
             mirrored += side < 0.0 ? 1 : 0;
             EXPECT_NEAR(
-                glm::distance(glm::dvec3(bent.normals[vertex]), side * glm::normalize(glm::cross(x, y))), 0.0,
-                1e-5);
-            EXPECT_NEAR(glm::distance(glm::dvec3(bent.tangents[vertex]), glm::normalize(x)), 0.0, 1e-5);
-            EXPECT_EQ(double(bent.tangents[vertex].w), side);
+                glm::distance(glm::dvec3(deformed.normals[vertex]), side * glm::normalize(glm::cross(x, y))),
+                0.0, 1e-5);
+            EXPECT_NEAR(glm::distance(glm::dvec3(deformed.tangents[vertex]), glm::normalize(x)), 0.0, 1e-5);
+            EXPECT_EQ(double(deformed.tangents[vertex].w), side);
         }
     }
     EXPECT_GT(mirrored, 100) << "both sides are to be seen";
@@ -121,19 +122,19 @@ TEST(Deform, WeightsAreDividedByTheirSum) {
     }
 }
 
-TEST(Deform, FlatNormalsAreThoseOfTheBentTriangles) {
-    BendingMesh mesh = triangle();
+TEST(Deform, FlatNormalsAreThoseOfTheDeformedTriangles) {
+    DeformableMesh mesh = triangle();
     mesh.is_flat = true;
     mesh.targets.push_back({{{0, 0, 0}, {0, 0, 1}, {0, 0, 0}}, {}, {}});
-    const MeshData bent = bend(mesh, std::vector<double>{1.0}, {});
-    for (const glm::vec3& normal : bent.normals)
+    const MeshData deformed = deform(mesh, std::vector<double>{1.0}, {});
+    for (const glm::vec3& normal : deformed.normals)
         EXPECT_NEAR(glm::distance(normal, glm::normalize(glm::vec3(-1, 0, 1))), 0.0, 1e-6);
 }
 
-TEST(Deform, PosesBeyondAllNumbersAreRefused) {
-    BendingMesh mesh = triangle();
+TEST(Deform, PosesThatAreNotFiniteAreRejected) {
+    DeformableMesh mesh = triangle();
     mesh.targets.push_back({{{1e38f, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {}, {}});
-    EXPECT_THROW(bend(mesh, std::vector<double>{100.0}, {}), Error);
+    EXPECT_THROW(deform(mesh, std::vector<double>{100.0}, {}), Error);
 }
 
 }  // namespace

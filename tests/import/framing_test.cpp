@@ -12,7 +12,7 @@
 namespace tessera::import {
 namespace {
 
-// What the corners of a box span of a picture, both axes from -1 to 1.
+// Extent of the projected corners of a box; both picture axes are -1 to 1.
 struct Seen {
     glm::dvec2 lower{1e30}, upper{-1e30};
     double nearest = 1e30;  // along the axis
@@ -34,7 +34,7 @@ struct Seen {
     }
 };
 
-// Flat ones of each orientation, long, tall, a cube, a stick, tiny, huge and far away.
+// Flat boxes of each orientation, long, tall, a cube, a stick, tiny, huge and far away.
 const Bounds Boxes[] = {{{-5, 0, -5}, {5, 0, 5}},
                         {{-2, -1, 0}, {2, 1, 0}},
                         {{0, -1, -2}, {0, 1, 2}},
@@ -47,7 +47,7 @@ const Bounds Boxes[] = {{{-5, 0, -5}, {5, 0, 5}},
                         {{-1e9, -1e8, -1e9}, {1e9, 1e8, 1e9}},
                         {{1e6, 1e6, 1e6}, {1e6 + 2, 1e6 + 1, 1e6 + 3}}};
 
-TEST(Framing, IsTightAndLeavesNothingOut) {
+TEST(Framing, IsTightAndShowsEverything) {
     for (const Bounds& box : Boxes) {
         for (const double fov : {0.2, 0.7, 2.0}) {
             for (const double aspect : {0.5, 1.0, 16.0 / 9.0, 4.0}) {
@@ -59,7 +59,7 @@ TEST(Framing, IsTightAndLeavesNothingOut) {
                     EXPECT_NEAR(std::max(size.x, size.y), 1.0 - 2.0 * FramingMargin, 1e-6);
                 }
                 for (int k = 0; k < 2; ++k) {
-                    EXPECT_NEAR(seen.lower[k], -seen.upper[k], 1e-6) << "in the middle";
+                    EXPECT_NEAR(seen.lower[k], -seen.upper[k], 1e-6) << "centred";
                     EXPECT_GE(seen.lower[k], -1.0) << box.upper.x << ' ' << aspect;
                     EXPECT_LE(seen.upper[k], 1.0) << box.upper.x << ' ' << aspect;
                 }
@@ -76,7 +76,7 @@ TEST(Framing, OfNothingAndOfAPointIsOfABoxAroundIt) {
     EXPECT_LT(glm::length(of_point[3] - of_unit[3] - glm::dvec4(7.0, 7.0, 7.0, 0.0)), 1e-12);
 }
 
-// From the file to the pose: the picture's shape is the importer's option.
+// The aspect ratio is an option of the importer.
 TEST(Framing, ComesWithAFileThatHasNoCamera) {
     SceneFile file;
     const int at = file.positions({{0, 0, 0}, {30, 0, 0}, {0, 0, -2}});

@@ -1,13 +1,13 @@
 #include <glm/geometric.hpp>
 #include <set>
 
-#include "mediator/backend/lowering.h"
+#include "mediator/backend/flattening.h"
 #include "mediator/scene/fields.h"
 #include "mediator/scene/validate.h"
 #include "tests/import/animated_file.h"
 #include "tests/import/inspect.h"
 
-// Animations, skins and morph targets of glTF against poses worked out by hand.
+// glTF animations, skins and morph targets against poses computed by hand.
 namespace tessera::import {
 namespace {
 
@@ -18,7 +18,7 @@ using testing::ElementsAre;
 ImportedScene load_animated(const SceneFile& file, const ImportOptions& options = {}) {
     const TestFolder folder;
     ImportedScene scene = loaded(folder.write("scene.glb", file.glb()), options);
-    expect_sound(scene, options);
+    expect_consistent(scene, options);
     return scene;
 }
 
@@ -26,15 +26,15 @@ ImportedScene at(double seconds, Motion motion = Motion::Still) {
     return load_animated(moving_file(), {.at = seconds, .motion = motion});
 }
 
-// Where the vertices of a geometry are seen, over all its instances.
+// World positions of the vertices of a geometry, over all instances.
 std::vector<glm::dvec3> seen(const ImportedScene& imported, const std::string& name) {
     scene::Scene scene;
     if (const auto applied = scene.apply_entries(entries(imported, RootEntry::Create)); !applied)
         ADD_FAILURE() << applied.error().what();
     for (const scene::Problem& problem : scene::validate(scene)) ADD_FAILURE() << problem.message;
-    const auto lowered = backend::lower(scene);
+    const auto flat_scene = backend::flatten(scene);
     std::vector<glm::dvec3> points;
-    for (const backend::Instance& instance : lowered->instances) {
+    for (const backend::Instance& instance : flat_scene->instances) {
         const auto& geometry = *scene.find_as<Geometry>(instance.geometry);
         if (geometry.name != name) continue;
         for (const glm::vec3& position : values<glm::vec3>(imported, geometry.positions))
@@ -49,7 +49,7 @@ void expect_places(const std::vector<glm::dvec3>& points, const std::vector<glm:
         EXPECT_NEAR(glm::distance(points[i], expected[i]), 0.0, 2e-6) << i;
 }
 
-TEST(GltfAnimation, WithoutATimeTheRestIsSeenAndAnimationsAreListed) {
+TEST(GltfAnimation, WithoutATimeTheRestPoseIsUsedAndAnimationsAreListed) {
     const ImportedScene scene = load_animated(moving_file());
     expect_places(seen(scene, "arm"), {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {1, 2, 0}});
     EXPECT_EQ(named<Transform>(scene, "cart").matrix, glm::dmat4(1.0));
@@ -57,7 +57,7 @@ TEST(GltfAnimation, WithoutATimeTheRestIsSeenAndAnimationsAreListed) {
     EXPECT_EQ(scene.animations[2].name, "smile");
     EXPECT_EQ(scene.animations[1].seconds, 1.0);
     EXPECT_TRUE(has_notice(scene, "0 'drive' (2 s), 1 'wave' (1 s)"));
-    EXPECT_TRUE(has_notice(scene, "the pose at rest is drawn"));
+    EXPECT_TRUE(has_notice(scene, "the rest pose is drawn"));
     EXPECT_EQ(scene.playback, nullptr);
 }
 
@@ -76,7 +76,7 @@ TEST(GltfAnimation, MorphWeightsMoveOneNodeOnly) {
     expect_places(seen(scene, "face.2"), {{0, 0, 0}, {0.25, 0, 0}, {0, 0.25, 0}});
 }
 
-TEST(GltfAnimation, CamerasRideAlong) {
+TEST(GltfAnimation, CamerasFollowTheirNodes) {
     const ImportedScene scene = at(1.0);
     ASSERT_EQ(scene.cameras.size(), 1u);
     EXPECT_EQ(glm::dvec3(scene.cameras[0].world_from_camera[3]), glm::dvec3(5, 0, 5));
@@ -95,18 +95,19 @@ TEST(GltfAnimation, OneIsChosenByNameOrNumber) {
                 testing::HasSubstr("no animation 'run'; it has: 0 'drive', 1 'wave'"));
 }
 
-TEST(GltfAnimation, OfTwoThatMoveTheSameTheFirstIsPlayed) {
+TEST(GltfAnimation, OfTwoThatAnimateTheSamePropertyTheFirstIsPlayed) {
     SceneFile file = moving_file();
     const int times = file.accessor(file.view(std::vector<float>{0, 1}), Component::Float, "SCALAR", 2);
     file.add("animations", animation("up", times, file.positions({{0, 9, 0}, {0, 9, 0}}), 0, "translation"));
     const ImportedScene scene = load_animated(file, {.at = 1.0});
     EXPECT_EQ(named<Transform>(scene, "cart").matrix[3], glm::dvec4(5, 0, 0, 1));
-    EXPECT_TRUE(has_notice(scene, "animation 'up' moves what one before it moves"));
+    EXPECT_TRUE(
+        has_notice(scene, "animation 'up' animates properties that an earlier animation also animates"));
     EXPECT_EQ(named<Transform>(load_animated(file, {.at = 1.0, .animation = "up"}), "cart").matrix[3],
               glm::dvec4(0, 9, 0, 1));
 }
 
-TEST(GltfAnimation, WeightsAtRestAreTheNodesElseTheMeshs) {
+TEST(GltfAnimation, RestWeightsAreThoseOfTheNodeElseTheMesh) {
     SceneFile file;
     const int place = file.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
     const std::string primitive = R"({"attributes":{"POSITION":)" + std::to_string(place) +
@@ -117,12 +118,12 @@ TEST(GltfAnimation, WeightsAtRestAreTheNodesElseTheMeshs) {
     file.add("nodes", R"({"mesh":0,"weights":[0]})");
     file.add("scenes", R"({"nodes":[0,1,2]})");
     const ImportedScene scene = load_animated(file);
-    EXPECT_EQ(scene.counts.geometries, 2u) << "nodes that bend it alike share it";
+    EXPECT_EQ(scene.counts.geometries, 2u) << "nodes with the same deformation share it";
     expect_places(seen(scene, "m.2"), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
     EXPECT_EQ(seen(scene, "m")[1], glm::dvec3(3, 0, 0));
 }
 
-TEST(GltfAnimation, LayersOfTheNodeStayWhereverASkinTakesItsMesh) {
+TEST(GltfAnimation, SkinnedMeshesKeepTheLayersOfTheirNode) {
     const SceneFile file = moving_file();
     std::string json = file.json();
     const std::string body = R"("name":"body",)";
@@ -133,15 +134,15 @@ TEST(GltfAnimation, LayersOfTheNodeStayWhereverASkinTakesItsMesh) {
     EXPECT_EQ(named<Transform>(scene, "body").matrix, glm::dmat4(1.0)) << "its own is ignored";
 }
 
-// The models' own words: a bar whose upper end bends, and a cube that is squashed.
-TEST(GltfAnimation, ModelsOfOthers) {
+// Sample models: a skinned bar whose upper end rotates, and a morphed cube.
+TEST(GltfAnimation, SampleModels) {
     const std::filesystem::path models = "/usr/share/assimp/models/glTF2";
     const std::filesystem::path bar = models / "simple_skin/simple_skin.gltf";
-    const ImportedScene rest = loaded(bar), bent = loaded(bar, {.at = 1.0});
-    const auto before = seen(rest, "mesh 0"), after = seen(bent, "mesh 0");
+    const ImportedScene rest = loaded(bar), deformed = loaded(bar, {.at = 1.0});
+    const auto before = seen(rest, "mesh 0"), after = seen(deformed, "mesh 0");
     ASSERT_EQ(before.size(), 10u);
-    // Bound half a metre to the left and one below the joint at (0, 1, 0): so it rests half a metre left of
-    // its bind pose, and at 1 s its top has turned by 90 degrees about (0, 1, 0).
+    // Bound half a metre to the left and one below the joint at (0, 1, 0): so its rest pose is half a metre
+    // left of its bind pose, and at 1 s its top has turned by 90 degrees about (0, 1, 0).
     EXPECT_NEAR(glm::distance(before[9], {0.5, 2, 0}), 0.0, 1e-6);
     EXPECT_NEAR(glm::distance(after[9], {-1, 1.5, 0}), 0.0, 1e-3) << "the file says 0.707";
     EXPECT_NEAR(glm::distance(after[0], before[0]), 0.0, 1e-6);
@@ -166,7 +167,7 @@ void expect_same(const ImportedScene& a, const ImportedScene& b) {
         EXPECT_EQ(a.cameras[i].world_from_camera, b.cameras[i].world_from_camera);
 }
 
-TEST(GltfAnimation, StepsLeadToWhatTheFileIsAtThatTime) {
+TEST(GltfAnimation, MovingToATimeEqualsAnImportAtThatTime) {
     ImportedScene scene = at(0.0, Motion::Sequence);
     scene::Scene mirror;
     ASSERT_TRUE(mirror.apply_entries(entries(scene, RootEntry::Create)));
@@ -177,19 +178,19 @@ TEST(GltfAnimation, StepsLeadToWhatTheFileIsAtThatTime) {
         SCOPED_TRACE(seconds);
         const auto step = move_to(scene, seconds);
         ASSERT_TRUE(step) << step.error().what();
-        expect_sound(scene);
+        expect_consistent(scene);
         expect_same(scene, at(seconds, Motion::Sequence));
         ASSERT_TRUE(mirror.apply_entries(step->entries));
         scene::Scene direct;
         ASSERT_TRUE(direct.apply_entries(entries(scene, RootEntry::Create)));
-        EXPECT_EQ(mirror.state_hash(), direct.state_hash()) << "the updates say all that changed";
+        EXPECT_EQ(mirror.state_hash(), direct.state_hash()) << "the updates contain everything that changed";
         EXPECT_EQ(step->entries.empty(), seconds == 2.75) << "after 2 s all keys are over";
     }
 }
 
-// From 0.5 s on for 0.75 s: the cart goes from 2.5 m to 6.25 m, the hand turns by 45 degrees and then stands
-// still, the weight goes from 0.5 to 1 and back to 0.75.
-TEST(GltfShutter, WhatMovesGetsSteps) {
+// From 0.5 s on for 0.75 s: the cart goes from 2.5 m to 6.25 m, the hand turns by 45 degrees and then stops,
+// the weight goes from 0.5 to 1 and back to 0.75.
+TEST(GltfShutter, AnimatedObjectsGetMotionKeys) {
     const ImportOptions options{.at = 0.5, .shutter = 0.75};
     const ImportedScene scene = load_animated(moving_file(), options);
     EXPECT_EQ(scene.playback, nullptr);
@@ -212,8 +213,8 @@ TEST(GltfShutter, WhatMovesGetsSteps) {
     expect_valid(scene);
 }
 
-// Of what the steps say at their times is what the file says.
-TEST(GltfShutter, ItsStepsAreThePosesOfTheirTimes) {
+// Each motion key equals an import of the file at its time.
+TEST(GltfShutter, MotionKeysAreThePosesAtTheirTimes) {
     const ImportedScene scene = load_animated(moving_file(), {.at = 0.25, .shutter = 1.5});
     const Geometry& arm = named<Geometry>(scene, "arm");
     ASSERT_EQ(arm.motion_positions.size(), 15u);
@@ -226,7 +227,7 @@ TEST(GltfShutter, ItsStepsAreThePosesOfTheirTimes) {
     }
 }
 
-TEST(GltfShutter, OpensAnewAtEachFrame) {
+TEST(GltfShutter, OpensAgainAtEachFrame) {
     const ImportOptions options{.at = 0.0, .shutter = 0.5, .motion = Motion::Sequence};
     ImportedScene scene = load_animated(moving_file(), options);
     scene::Scene mirror;
@@ -235,14 +236,14 @@ TEST(GltfShutter, OpensAnewAtEachFrame) {
         SCOPED_TRACE(seconds);
         const auto step = move_to(scene, seconds);
         ASSERT_TRUE(step) << step.error().what();
-        expect_sound(scene);
+        expect_consistent(scene);
         ImportOptions again = options;
         again.at = seconds;
         expect_same(scene, load_animated(moving_file(), again));
         ASSERT_TRUE(mirror.apply_entries(step->entries));
         scene::Scene direct;
         ASSERT_TRUE(direct.apply_entries(entries(scene, RootEntry::Create)));
-        EXPECT_EQ(mirror.state_hash(), direct.state_hash()) << "the updates say all that changed";
+        EXPECT_EQ(mirror.state_hash(), direct.state_hash()) << "the updates contain everything that changed";
     }
     EXPECT_TRUE(named<Transform>(scene, "cart").motion.empty()) << "all keys are over";
     EXPECT_TRUE(named<Geometry>(scene, "face").motion_positions.empty());
@@ -256,10 +257,10 @@ TEST(GltfShutter, NeedsATimeAndALength) {
     EXPECT_FALSE(import_scene(file, {.at = 0.0, .shutter = std::nan("")}));
 }
 
-TEST(GltfAnimation, WhatHasNoVolumeComesAndGoes) {
+TEST(GltfAnimation, DegenerateInstancesAreHiddenAndShownAgain) {
     ImportedScene scene = at(0.0, Motion::Sequence);
     EXPECT_TRUE(seen(scene, "face.2").empty());
-    EXPECT_TRUE(has_notice(scene, "leaves it no volume"));
+    EXPECT_TRUE(has_notice(scene, "transform is degenerate"));
     ASSERT_TRUE(move_to(scene, 1.0));
     EXPECT_EQ(seen(scene, "face.2").size(), 3u);
     ASSERT_TRUE(move_to(scene, 0.0));

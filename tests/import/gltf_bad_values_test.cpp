@@ -4,8 +4,7 @@
 #include "tests/import/inspect.h"
 #include "tests/import/scene_file.h"
 
-// Values of glTF's materials that nobody can use: told by file, material, field and remedy; their defaults
-// stand.
+// Invalid values in glTF materials: reported with file, material, field and remedy, and replaced by defaults.
 namespace tessera::import {
 namespace {
 
@@ -22,18 +21,18 @@ ImportedScene with_material(const std::string& material) {
     file.add("scenes", R"({"nodes":[0]})");
     const TestFolder folder;
     ImportedScene scene = loaded(folder.write("scene.glb", file.glb()));
-    expect_sound(scene);
+    expect_consistent(scene);
     expect_valid(scene);
     return scene;
 }
 
 struct Case {
-    std::string field;  // with its owners, '/' between
+    std::string field;  // JSON path, separated by '/'
     std::string value;
     std::string cause;
 };
 
-// The field as JSON, in its owners.
+// The field as JSON, within its parent objects.
 std::string nested(const std::string& path, const std::string& value) {
     const std::size_t slash = path.find('/');
     if (slash == path.npos) return '"' + path + "\":" + value;
@@ -63,17 +62,17 @@ TEST(GltfBadValues, NumbersFromZeroToOne) {
     for (const char* field : Numbers) {
         expect_default({field, "-1", "outside 0 to 1"});
         expect_default({field, "1.5", "outside 0 to 1"});
-        expect_default({field, "\"rough\"", "no number"});
-        expect_default({field, "null", "no number"});
+        expect_default({field, "\"rough\"", "not a number"});
+        expect_default({field, "null", "not a number"});
     }
 }
 
-TEST(GltfBadValues, NumbersThatJsonCannotSay) {
+TEST(GltfBadValues, NumbersThatAreNotValidJson) {
     for (const char* value : {"NaN", "-NaN", "Infinity", "-Infinity", "1e999", "nan"}) {
-        expect_default({"pbrMetallicRoughness/roughnessFactor", value, "no number"});
+        expect_default({"pbrMetallicRoughness/roughnessFactor", value, "not a number"});
         expect_default(
-            {"pbrMetallicRoughness/baseColorFactor", "[1," + std::string(value) + ",0,1]", "no 4 numbers"});
-        expect_default({"emissiveFactor", "[0,0," + std::string(value) + "]", "no 3 numbers"});
+            {"pbrMetallicRoughness/baseColorFactor", "[1," + std::string(value) + ",0,1]", "not 4 numbers"});
+        expect_default({"emissiveFactor", "[0,0," + std::string(value) + "]", "not 3 numbers"});
     }
 }
 
@@ -87,7 +86,8 @@ TEST(GltfBadValues, OtherNumbers) {
     expect_default({"extensions/KHR_materials_volume/attenuationDistance", "0", "outside 1e-12 to 1e+12"});
     expect_default(
         {"extensions/KHR_materials_iridescence/iridescenceThicknessMinimum", "-1", "outside 0 to 1e+12"});
-    expect_default({"extensions/KHR_materials_iridescence/iridescenceThicknessMaximum", "[]", "no number"});
+    expect_default(
+        {"extensions/KHR_materials_iridescence/iridescenceThicknessMaximum", "[]", "not a number"});
     expect_default(
         {"extensions/KHR_materials_anisotropy/anisotropyRotation", "1e9", "outside -1e+06 to 1e+06"});
     expect_default({"alphaCutoff", "-0.5", "outside 0 to 1e+12"});
@@ -95,9 +95,9 @@ TEST(GltfBadValues, OtherNumbers) {
 
 TEST(GltfBadValues, Colors) {
     expect_default({"pbrMetallicRoughness/baseColorFactor", "[2,0,0,1]", "outside 0 to 1"});
-    expect_default({"pbrMetallicRoughness/baseColorFactor", "[1,0,0]", "no 4 numbers"});
-    expect_default({"pbrMetallicRoughness/baseColorFactor", "\"red\"", "no 4 numbers"});
-    expect_default({"emissiveFactor", "[1,1]", "no 3 numbers"});
+    expect_default({"pbrMetallicRoughness/baseColorFactor", "[1,0,0]", "not 4 numbers"});
+    expect_default({"pbrMetallicRoughness/baseColorFactor", "\"red\"", "not 4 numbers"});
+    expect_default({"emissiveFactor", "[1,1]", "not 3 numbers"});
     expect_default({"emissiveFactor", "[-1,0,0]", "outside 0 to 1e+12"});
     expect_default({"extensions/KHR_materials_volume/attenuationColor", "[0,2,0]", "outside 0 to 1"});
     expect_default(
@@ -105,13 +105,13 @@ TEST(GltfBadValues, Colors) {
     expect_default({"extensions/KHR_materials_sheen/sheenColorFactor", "[0,0,1.1]", "outside 0 to 1"});
 }
 
-TEST(GltfBadValues, WordsFlagsAndOwners) {
+TEST(GltfBadValues, EnumeratorsFlagsAndObjects) {
     expect_default({"alphaMode", "\"GLASS\"", "none of OPAQUE, MASK and BLEND"});
     expect_default({"doubleSided", "1", "neither true nor false"});
-    expect_default({"pbrMetallicRoughness", "[\"rough\"]", "no object"});
-    expect_default({"extensions", "7", "no object"});
-    expect_default({"extensions/KHR_materials_clearcoat", "7", "no object"});
-    expect_default({"extensions/KHR_materials_unlit", "true", "no object"});
+    expect_default({"pbrMetallicRoughness", "[\"rough\"]", "not an object"});
+    expect_default({"extensions", "7", "not an object"});
+    expect_default({"extensions/KHR_materials_clearcoat", "7", "not an object"});
+    expect_default({"extensions/KHR_materials_unlit", "true", "not an object"});
 }
 
 TEST(GltfBadValues, Textures) {
@@ -128,9 +128,9 @@ TEST(GltfBadValues, Textures) {
           "extensions/KHR_materials_anisotropy/anisotropyTexture",
           "extensions/KHR_materials_iridescence/iridescenceTexture",
           "extensions/KHR_materials_iridescence/iridescenceThicknessTexture"}) {
-        expect_default({field, R"({"index":0.2})", "no object whose index is a whole number"});
-        expect_default({field, R"({"index":-1})", "no object whose index is a whole number"});
-        expect_default({field, "\"wood.png\"", "no object whose index is a whole number"});
+        expect_default({field, R"({"index":0.2})", "not an object with an integer index"});
+        expect_default({field, R"({"index":-1})", "not an object with an integer index"});
+        expect_default({field, "\"wood.png\"", "not an object with an integer index"});
     }
 }
 
@@ -142,10 +142,10 @@ TEST(GltfBadValues, MembersOfATexture) {
     const std::string field = "material 'paint': pbrMetallicRoughness/baseColorTexture/";
     const ImportedScene transform = read(
         R"("texCoord":-1,"extensions":{"KHR_texture_transform":{"offset":[1],"scale":[1,"x"],"rotation":"90"}})");
-    for (const char* wrong :
-         {"texCoord is -1, no whole number", "extensions/KHR_texture_transform/offset is [1], no 2 numbers",
-          "extensions/KHR_texture_transform/scale is [1,\"x\"], no 2 numbers",
-          "extensions/KHR_texture_transform/rotation is \"90\", no number"}) {
+    for (const char* wrong : {"texCoord is -1, not a non-negative integer",
+                              "extensions/KHR_texture_transform/offset is [1], not 2 numbers",
+                              "extensions/KHR_texture_transform/scale is [1,\"x\"], not 2 numbers",
+                              "extensions/KHR_texture_transform/rotation is \"90\", not a number"}) {
         EXPECT_TRUE(has_notice(transform, field + wrong));
     }
     scene::TextureSlot slot = named<Material>(transform, "paint").base_color_texture;
@@ -153,10 +153,10 @@ TEST(GltfBadValues, MembersOfATexture) {
     slot.texture = {};
     EXPECT_EQ(slot, scene::TextureSlot{});
     EXPECT_TRUE(has_notice(read(R"("extensions":{"KHR_texture_transform":9})"),
-                           "KHR_texture_transform is 9, no object"));
+                           "KHR_texture_transform is 9, not an object"));
 }
 
-TEST(GltfBadValues, GoodOnesBesideBadOnesStay) {
+TEST(GltfBadValues, ValidOnesNextToInvalidOnesAreKept) {
     const ImportedScene scene = with_material(
         R"({"name":"paint","pbrMetallicRoughness":{"baseColorFactor":[1],"roughnessFactor":0.25},
             "extras":{"is":[1.5,"NaN"]},"alphaMode":"BLEND"})");
@@ -167,7 +167,7 @@ TEST(GltfBadValues, GoodOnesBesideBadOnesStay) {
 }
 
 // What the specification allows, and what programs write for 0 and 1 in single precision.
-TEST(GltfBadValues, TheEdgesOfTheRangesAreGood) {
+TEST(GltfBadValues, TheEndsOfTheRangesAreValid) {
     const ImportedScene scene = with_material(
         R"({"name":"paint","pbrMetallicRoughness":{"baseColorFactor":[1.00000012,0,-1e-8,1],"roughnessFactor":0},
             "emissiveFactor":[0,1,0],"alphaCutoff":2,"extensions":{"KHR_materials_ior":{"ior":0},
@@ -181,14 +181,14 @@ TEST(GltfBadValues, TheEdgesOfTheRangesAreGood) {
     EXPECT_FALSE(has_notice(scene, "material 'paint'"));
 }
 
-TEST(GltfBadValues, BrightEmissiveFactorsAreTakenAndTold) {
+TEST(GltfBadValues, BrightEmissiveFactorsAreUsedAndReported) {
     const ImportedScene scene = with_material(R"({"name":"lamp","emissiveFactor":[5,1,0]})");
     EXPECT_EQ(named<Material>(scene, "lamp").emission, glm::vec3(5, 1, 0));
     EXPECT_TRUE(has_notice(scene, "material 'lamp': emissiveFactor is [5,1,0], above 1"));
-    EXPECT_TRUE(has_notice(scene, "write KHR_materials_emissive_strength"));
+    EXPECT_TRUE(has_notice(scene, "export it as KHR_materials_emissive_strength"));
 }
 
-TEST(GltfBadValues, ManyMakeAShortList) {
+TEST(GltfBadValues, ManyGiveAShortList) {
     std::string wrong;
     SceneFile file;
     for (int i = 0; i < 500; ++i) file.add("materials", R"({"doubleSided":7})");
@@ -200,11 +200,11 @@ TEST(GltfBadValues, ManyMakeAShortList) {
     EXPECT_TRUE(has_notice(scene, "436 other wrong values of materials"));
 }
 
-TEST(GltfBadValues, MaterialsThatAreNone) {
-    EXPECT_TRUE(has_notice(with_material("7"), "material 0: it is 7, no object"));
+TEST(GltfBadValues, MaterialsThatAreNotObjects) {
+    EXPECT_TRUE(has_notice(with_material("7"), "material 0: it is 7, not an object"));
 }
 
-TEST(GltfBadValues, TexturesWithoutAPictureNameTheirMaterials) {
+TEST(GltfBadValues, TexturesWithoutAnImageNameTheirMaterials) {
     SceneFile file;
     file.add("images", R"({"uri":"lost.png"})");
     file.add("textures", R"({"source":0})");
@@ -224,13 +224,13 @@ TEST(GltfBadValues, TexturesWithoutAPictureNameTheirMaterials) {
     file.add("scenes", R"({"nodes":[0]})");
     const TestFolder folder;
     const ImportedScene scene = loaded(folder.write("scene.gltf", file.gltf()));
-    expect_sound(scene);
+    expect_consistent(scene);
     EXPECT_TRUE(has_notice(scene, "there is no file 'lost.png' in the scene's folder"));
     EXPECT_TRUE(has_notice(scene,
                            "material 'a': texture 'lost.png' cannot be used (its file cannot be read: "
-                           "put it beside the scene): the plain factor stands for it"));
+                           "put it into the scene's folder): only the factor is used"));
     EXPECT_TRUE(has_notice(scene, "material 'b': texture 'lost.png' cannot be used"));
-    EXPECT_TRUE(has_notice(scene, "a magenta checker stands for it"));
+    EXPECT_TRUE(has_notice(scene, "a magenta checkerboard replaces it"));
     EXPECT_TRUE(has_notice(scene, "material 'c': texture 1 cannot be used (it names no image"));
     EXPECT_TRUE(
         has_notice(scene, "material 'd': texture 9 cannot be used (the file has 2 textures: correct"));
@@ -254,7 +254,8 @@ TEST(GltfBadValues, ColoursOfVerticesAreClampedAsTheSpecificationSays) {
     const TestFolder folder;
     const ImportedScene scene = loaded(folder.write("scene.glb", file.glb()));
     expect_valid(scene);
-    EXPECT_TRUE(has_notice(scene, "mesh 'bright': vertex colours beyond 0 to 1 are clamped, as glTF has it"));
+    EXPECT_TRUE(
+        has_notice(scene, "mesh 'bright': vertex colours outside 0 to 1 are clamped, as glTF specifies"));
     EXPECT_THAT(values<glm::vec4>(scene, named<scene::Geometry>(scene, "bright").colors),
                 testing::ElementsAre(glm::vec4(1, 0, 0, 1), glm::vec4(0, 1, 0, 1), glm::vec4(0.5f, 0, 0, 1)));
     EXPECT_TRUE(has_notice(scene, "mesh 'odd': vertex colours"));

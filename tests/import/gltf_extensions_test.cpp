@@ -1,4 +1,4 @@
-// Extensions that a glTF file uses: which are read, ignored or listed.
+// glTF extensions: supported, ignored, listed.
 #include "tests/import/inspect.h"
 #include "tests/import/scene_file.h"
 

@@ -1,4 +1,4 @@
-// Fields of ours in the extras of glTF files that are not as they should be.
+// Invalid values in the tessera_* extras of glTF files.
 #include "tests/import/inspect.h"
 #include "tests/import/scene_file.h"
 
@@ -8,7 +8,7 @@ namespace {
 ImportedScene load_extras(const SceneFile& file) {
     const TestFolder folder;
     ImportedScene scene = loaded(folder.write("scene.glb", file.glb()));
-    expect_sound(scene);
+    expect_consistent(scene);
     expect_valid(scene);
     return scene;
 }
@@ -25,9 +25,9 @@ SceneFile with_light(const std::string& extras) {
     return file;
 }
 
-TEST(GltfExtras, OfAnotherTypeOrOutOfRangeAreToldAndTheRestIsTaken) {
+TEST(GltfExtras, OfAnotherTypeOrOutOfRangeAreReportedAndTheRestIsUsed) {
     const ImportedScene scene = load_extras(with_light(
-        R"({"tessera_light":{"kind":"quad","radius":-1,"size":[1],"angle":"wide","outer_cone_angle":1e40,"glow":1,"heat":2}})"));
+        R"({"tessera_light":{"kind":"quad","radius":-1,"size":[1],"angle":"wide","outer_cone_angle":1e40,"gamma":1,"heat":2}})"));
     const auto& light = named<scene::Light>(scene, "lamp");
     EXPECT_EQ(light.kind, scene::LightKind::Quad);
     EXPECT_EQ(light.radius, scene::Light{}.radius);
@@ -38,11 +38,11 @@ TEST(GltfExtras, OfAnotherTypeOrOutOfRangeAreToldAndTheRestIsTaken) {
           "its size cannot be used (it is of another type): its default is used, correct it",
           "its angle cannot be used (it is of another type)",
           "its outer_cone_angle cannot be used (outer_cone_angle is inf: it has to be from 0 to",
-          "its extras have no field 'glow' and 1 others: what they say is ignored"})
+          "its extras have no field 'gamma' and 1 others: these are ignored"})
         EXPECT_TRUE(has_notice(scene, part));
 }
 
-TEST(GltfExtras, ThatAreNoObjectsAreOfSomebodyElse) {
+TEST(GltfExtras, ThatAreNotObjectsAreIgnored) {
     for (const char* extras : {"{}", "null", "7", R"("tessera_light")", R"({"tessera_light":[1,2]})"}) {
         const ImportedScene scene = load_extras(with_light(extras));
         EXPECT_EQ(named<scene::Light>(scene, "lamp").kind, scene::LightKind::Point) << extras;
@@ -52,7 +52,7 @@ TEST(GltfExtras, ThatAreNoObjectsAreOfSomebodyElse) {
     EXPECT_TRUE(has_notice(scene, "its kind cannot be used"));
 }
 
-TEST(GltfExtras, OfBodiesMayBeMissing) {
+TEST(GltfExtras, OfMediaMayBeMissing) {
     for (const char* media :
          {"", R"({"tessera_media":[]})", R"({"tessera_media":7})", R"({"tessera_media":[1,2,3,4]})"}) {
         SceneFile file;
@@ -63,12 +63,13 @@ TEST(GltfExtras, OfBodiesMayBeMissing) {
         file.add("scenes", R"({"nodes":[0]})");
         if (*media) file.set("extras", media);
         const ImportedScene scene = load_extras(file);
-        EXPECT_TRUE(has_notice(scene, "medium 3 is missing: bodies of it are empty")) << media;
+        EXPECT_TRUE(has_notice(scene, "medium 3 is missing: the meshes that use it have no interior medium"))
+            << media;
         EXPECT_TRUE(all<scene::Geometry>(scene).at(0)->material) << "its surface is there";
     }
 }
 
-TEST(GltfExtras, OfATextureDepthThatDoesNotFitMakeOneSlice) {
+TEST(GltfExtras, OfAnInvalidTextureDepthGiveOneSlice) {
     for (const char* depth : {"3", "0", "-1", R"("deep")"}) {
         SceneFile file;
         file.add_triangle();
@@ -82,7 +83,7 @@ TEST(GltfExtras, OfATextureDepthThatDoesNotFitMakeOneSlice) {
         file.add("scenes", R"({"nodes":[1]})");
         file.set("scene", "1");
         const ImportedScene scene = load_extras(file);
-        EXPECT_TRUE(has_notice(scene, "its height is no multiple of its tessera_depth")) << depth;
+        EXPECT_TRUE(has_notice(scene, "its height is not a multiple of its tessera_depth")) << depth;
         const auto& texture = *all<scene::Texture>(scene).at(0);
         EXPECT_EQ(glm::uvec3(texture.width, texture.height, texture.depth), glm::uvec3(4, 4, 1));
     }

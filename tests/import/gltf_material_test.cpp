@@ -28,7 +28,7 @@ ImportedScene with_materials(SceneFile& file, const std::vector<std::string>& ma
     file.add("scenes", R"({"nodes":[0]})");
     const TestFolder folder;
     ImportedScene scene = loaded(folder.write("scene.glb", file.glb()), options);
-    expect_sound(scene);
+    expect_consistent(scene);
     return scene;
 }
 
@@ -111,7 +111,7 @@ TEST(GltfMaterial, EveryLobeOfTheExtensionsIsRead) {
     }
 }
 
-TEST(GltfMaterial, WhatIsWrongInExtensionsIsLeftOut) {
+TEST(GltfMaterial, InvalidValuesInExtensionsAreIgnored) {
     SceneFile file;
     const ImportedScene scene = with_materials(file, {R"({"name":"odd","extensions":{
         "KHR_materials_clearcoat":7,"KHR_materials_sheen":{"sheenColorFactor":[1,2],"sheenRoughnessFactor":-3,
@@ -126,8 +126,8 @@ TEST(GltfMaterial, WhatIsWrongInExtensionsIsLeftOut) {
         has_notice(scene, "material 'odd': extensions/KHR_materials_sheen/sheenRoughnessFactor is -3"));
 }
 
-// glTF: without KHR_materials_volume walls are thin; who wants what most programs show says so.
-TEST(GltfMaterial, GlassWithoutAVolumeIsThinUnlessAskedFor) {
+// glTF: thin-walled without KHR_materials_volume, unless --solid-glass.
+TEST(GltfMaterial, GlassWithoutAVolumeIsThinWalledUnlessSolidGlass) {
     const std::string glass =
         R"({"name":"pane","extensions":{"KHR_materials_transmission":{"transmissionFactor":1}}})";
     SceneFile file;
@@ -140,7 +140,7 @@ TEST(GltfMaterial, GlassWithoutAVolumeIsThinUnlessAskedFor) {
     EXPECT_FALSE(has_notice(solid, "--solid-glass"));
 }
 
-TEST(GltfMaterial, ForNumbersOutOfRangeTheDefaultsStand) {
+TEST(GltfMaterial, NumbersOutOfRangeGetTheirDefaults) {
     SceneFile file;
     const ImportedScene scene = with_materials(file, {R"({"name":"wild","emissiveFactor":[-1,1e300,0],
         "pbrMetallicRoughness":{"baseColorFactor":[2,-1,0.5,1],"metallicFactor":-3,"roughnessFactor":7}})"});
@@ -168,7 +168,7 @@ TEST(GltfMaterial, AMissingMaterialIsTheDefaultOne) {
 TEST(GltfTexture, IsDecodedToTexelsFromTheTop) {
     SceneFile file;
     file.image(png(3, 2, {10, 20, 30, 40}));
-    ImportOptions dark;  // without the sky's texture
+    ImportOptions dark;  // without the texture of the default environment
     dark.background = glm::vec3(0.0f);
     const ImportedScene scene =
         with_materials(file, {R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})"}, dark);
@@ -183,7 +183,7 @@ TEST(GltfTexture, IsDecodedToTexelsFromTheTop) {
     EXPECT_EQ(scene.counts.textures, 1u);
 }
 
-TEST(GltfTexture, UsedBothWaysIsTwoObjectsOverOneBlob) {
+TEST(GltfTexture, UsedAsColorAndDataIsTwoObjectsOverOneBlob) {
     SceneFile file;
     file.image(png(1, 1, {1, 2, 3, 4}));
     const ImportedScene scene = with_materials(file, {R"({"name":"both","pbrMetallicRoughness":{
@@ -236,7 +236,7 @@ TEST(GltfTexture, TransformsAndCoordinateSetsAreKept) {
     EXPECT_EQ(values<glm::vec2>(scene, it.tex_coords_1)[0], glm::vec2(5, 5));
 }
 
-TEST(GltfTexture, ASecondSetThatNobodyReadsIsLeftOut) {
+TEST(GltfTexture, AnUnusedSecondSetIsLeftOut) {
     SceneFile file;
     file.image(png(1, 1, {1, 2, 3, 4}));
     const ImportedScene scene =
@@ -252,7 +252,7 @@ TEST(GltfTexture, AThirdCoordinateSetIsNoticed) {
     EXPECT_TRUE(has_notice(scene, "material 'many': its textures use more than two sets"));
 }
 
-// A material whose colour and normals come from the one image of the file.
+// A material that uses the image of the file for colour and normals.
 ImportedScene with_image(SceneFile& file) {
     ImportedScene scene = with_materials(file, {R"({"name":"shown","pbrMetallicRoughness":{
         "baseColorTexture":{"index":0}},"normalTexture":{"index":0}})"});
@@ -266,7 +266,7 @@ ImportedScene with_image(SceneFile& file) {
     return scene;
 }
 
-TEST(GltfTexture, AMissingFileIsAMagentaChecker) {
+TEST(GltfTexture, AMissingFileIsAMagentaCheckerboard) {
     SceneFile file;
     file.add("images", R"({"uri":"nowhere.png"})");
     file.add("textures", R"({"source":0})");
@@ -275,25 +275,25 @@ TEST(GltfTexture, AMissingFileIsAMagentaChecker) {
     EXPECT_TRUE(has_notice(scene, "texture 'nowhere.png' cannot be used"));
 }
 
-TEST(GltfTexture, AMissingTextureIsAMagentaChecker) {
+TEST(GltfTexture, AMissingTextureIsAMagentaCheckerboard) {
     SceneFile file;
     EXPECT_TRUE(has_notice(with_image(file), "texture 0 cannot be used (the file has 0 textures"));
 }
 
-TEST(GltfTexture, NoiseIsAMagentaChecker) {
+TEST(GltfTexture, NoiseIsAMagentaCheckerboard) {
     SceneFile file;
-    file.image("this is no picture at all, whatever its type says");
+    file.image("this is not an image, whatever its type says");
     EXPECT_TRUE(has_notice(with_image(file), "cannot be used"));
 }
 
-TEST(GltfTexture, ACutOffImageIsAMagentaChecker) {
+TEST(GltfTexture, ATruncatedImageIsAMagentaCheckerboard) {
     SceneFile file;
     const std::string whole = png(16, 16, {1, 2, 3, 4});
     file.image(std::string_view(whole).substr(0, whole.size() / 2));
     EXPECT_TRUE(has_notice(with_image(file), "damaged"));
 }
 
-TEST(GltfTexture, ImagesThatLieAboutTheirSizeAreRefusedBeforeDecoding) {
+TEST(GltfTexture, ImagesWithAFalseSizeAreRejectedBeforeDecoding) {
     {
         SceneFile file;
         file.image(png(2, 2, {1, 2, 3, 4}, 16000, 8000));
@@ -316,12 +316,12 @@ TEST(GltfTexture, ImagesThatLieAboutTheirSizeAreRefusedBeforeDecoding) {
     }
 }
 
-TEST(GltfTexture, AViewBeyondItsBufferIsAMagentaChecker) {
+TEST(GltfTexture, AViewBeyondItsBufferIsAMagentaCheckerboard) {
     SceneFile file;
     file.add("bufferViews", R"({"buffer":0,"byteOffset":4000000000,"byteLength":4000000000})");
     file.add("images", R"({"bufferView":0,"mimeType":"image/png"})");
     file.add("textures", R"({"source":0})");
-    EXPECT_TRUE(has_notice(with_image(file), "reaches beyond its buffer"));
+    EXPECT_TRUE(has_notice(with_image(file), "extends beyond its buffer"));
 }
 
 }  // namespace

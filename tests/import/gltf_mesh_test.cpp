@@ -17,7 +17,7 @@ ImportedScene scene_of(SceneFile& file, const std::string& primitive) {
     file.add("scenes", R"({"nodes":[0]})");
     const TestFolder folder;
     ImportedScene scene = loaded(folder.write("scene.glb", file.glb()));
-    expect_sound(scene);
+    expect_consistent(scene);
     return scene;
 }
 
@@ -40,7 +40,7 @@ TEST(GltfMesh, WithoutIndicesTakesVerticesInOrder) {
     const Geometry& mesh = named<Geometry>(scene, "it");
     EXPECT_THAT(values<std::uint32_t>(scene, mesh.indices), ElementsAre(0, 1, 2, 3, 4, 5));
     EXPECT_EQ(values<glm::vec3>(scene, mesh.positions)[3], glm::vec3(0, 0, 1));
-    EXPECT_TRUE(mesh.normals.empty()) << "a mesh without normals is flat: none are made up";
+    EXPECT_TRUE(mesh.normals.empty()) << "a mesh without normals is flat-shaded: none are generated";
     EXPECT_EQ(scene.counts.triangles, 2u);
     EXPECT_EQ(scene.counts.degenerate_triangles, 0u);
 }
@@ -81,9 +81,9 @@ TEST(GltfMesh, StripsAndFansKeepTheWinding) {
     }
 }
 
-// Octahedra of 4/3 r^3 and prisms of 3 sqrt(3)/4 r^2 a metre, r = 0.2 % of the diagonal; their volume is
-// positive where all faces look outwards.
-TEST(GltfMesh, PointsAndLinesAreThinBodies) {
+// Octahedra of volume 4/3 r^3 and prisms of 3 sqrt(3)/4 r^2 per metre, r = 0.2 % of the diagonal; the volume
+// is positive if all faces are outward.
+TEST(GltfMesh, PointsAndLinesBecomeOctahedraAndTubes) {
     const double r = 0.002 * std::sqrt(2.0), octahedron = 4.0 / 3.0 * r * r * r;
     const double prism = 0.75 * std::sqrt(3.0) * r * r;
     const struct {
@@ -97,7 +97,7 @@ TEST(GltfMesh, PointsAndLinesAreThinBodies) {
         const int at = file.positions({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
         const ImportedScene scene = scene_of(
             file, primitive(attribute("POSITION", at), ",\"mode\":" + std::to_string(expected.mode)));
-        EXPECT_TRUE(has_notice(scene, "mesh 'it': its points and lines are drawn as thin bodies"));
+        EXPECT_TRUE(has_notice(scene, "mesh 'it': its points and lines are drawn as octahedra and tubes"));
         EXPECT_EQ(scene.counts.triangles, expected.triangles);
         EXPECT_EQ(scene.counts.degenerate_triangles, 0u);
         const Geometry& mesh = named<Geometry>(scene, "it");
@@ -202,7 +202,7 @@ ImportedScene normal_mapped(const std::vector<glm::vec2>& tex_coords, bool with_
     return scene_of(file, primitive(attributes, R"(,"material":0,"indices":)" + std::to_string(indices)));
 }
 
-TEST(GltfMesh, TangentsAreMadeWhereANormalMapWantsThem) {
+TEST(GltfMesh, TangentsAreGeneratedForNormalMaps) {
     const ImportedScene upright = normal_mapped({{0, 1}, {1, 1}, {0, 0}, {1, 0}}, true);
     for (const glm::vec4& tangent : values<glm::vec4>(upright, named<Geometry>(upright, "it").tangents)) {
         EXPECT_NEAR(glm::distance(tangent, glm::vec4(1, 0, 0, 1)), 0.0f, 1e-6f);
@@ -214,7 +214,7 @@ TEST(GltfMesh, TangentsAreMadeWhereANormalMapWantsThem) {
 }
 
 TEST(GltfMesh, AMirroredSeamSplitsItsVertices) {
-    // The second triangle runs back through the texture from the shared edge.
+    // The second triangle is mirrored in texture space at the shared edge.
     const ImportedScene scene = normal_mapped({{0, 1}, {1, 1}, {0.5f, 0}, {0, 0.5f}}, true);
     const auto tangents = values<glm::vec4>(scene, named<Geometry>(scene, "it").tangents);
     int left_handed = 0, right_handed = 0;
@@ -234,7 +234,7 @@ TEST(GltfMesh, ANormalMapOnAMeshWithoutNormalsMakesItFlat) {
     EXPECT_THAT(values<glm::vec4>(scene, mesh.tangents), testing::SizeIs(6));
 }
 
-TEST(GltfMesh, NormalsWithoutLengthAreMadeFromTriangles) {
+TEST(GltfMesh, ZeroNormalsAreRecomputedFromTriangles) {
     SceneFile file;
     const int at = file.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
     const float nan = std::numeric_limits<float>::quiet_NaN();

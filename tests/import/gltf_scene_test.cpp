@@ -4,7 +4,7 @@
 #include <glm/matrix.hpp>
 #include <numbers>
 
-#include "mediator/backend/lowering.h"
+#include "mediator/backend/flattening.h"
 #include "mediator/scene/validate.h"
 #include "tests/import/inspect.h"
 #include "tests/import/scene_file.h"
@@ -18,30 +18,30 @@ using testing::ElementsAre;
 ImportedScene load(const SceneFile& file, const ImportOptions& options = {}) {
     const TestFolder folder;
     ImportedScene scene = loaded(folder.write("scene.glb", file.glb()), options);
-    expect_sound(scene, options);
+    expect_consistent(scene, options);
     return scene;
 }
 
-// A mesh of one triangle; its number is 0.
+// A mesh of one triangle, with index 0.
 void add_mesh(SceneFile& file, const std::string& more = "") {
     const int at = file.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
     file.add("meshes",
              R"({"primitives":[{"attributes":{"POSITION":)" + std::to_string(at) + "}" + more + "}]}");
 }
 
-backend::Lowered lowered(const ImportedScene& imported) {
+backend::FlatScene flattened(const ImportedScene& imported) {
     scene::Scene scene;
     const auto applied = scene.apply_entries(entries(imported, RootEntry::Create));
     if (!applied) ADD_FAILURE() << applied.error().what();
     for (const scene::Problem& problem : scene::validate(scene)) ADD_FAILURE() << problem.message;
-    const auto result = backend::lower(scene);
+    const auto result = backend::flatten(scene);
     if (!result) ADD_FAILURE() << result.error().what();
-    return result.value_or(backend::Lowered{});
+    return result.value_or(backend::FlatScene{});
 }
 
 TEST(GltfScene, NestedTransformsMultiplyFromTheRootDown) {
-    // Move by (10, 0, 0), then turn by 90 degrees about y (x goes to -z), then scale by 2, 3, 4: the point
-    // (1, 1, 1) of the mesh becomes (2, 3, 4), then (4, 3, -2), then (14, 3, -2).
+    // Translate by (10, 0, 0), then rotate by 90 degrees about y (x goes to -z), then scale by 2, 3, 4: the
+    // point (1, 1, 1) of the mesh becomes (2, 3, 4), then (4, 3, -2), then (14, 3, -2).
     SceneFile file;
     add_mesh(file);
     const double half = std::numbers::sqrt2 / 2;
@@ -50,7 +50,7 @@ TEST(GltfScene, NestedTransformsMultiplyFromTheRootDown) {
                           R"(],"children":[2]})");
     file.add("nodes", R"({"matrix":[2,0,0,0, 0,3,0,0, 0,0,4,0, 0,0,0,1],"mesh":0})");
     file.add("scenes", R"({"nodes":[0]})");
-    const backend::Lowered flat = lowered(load(file));
+    const backend::FlatScene flat = flattened(load(file));
     ASSERT_EQ(flat.instances.size(), 1u);
     const glm::dvec4 point = flat.instances[0].world_from_object * glm::dvec4(1, 1, 1, 1);
     EXPECT_NEAR(point.x, 14.0, 1e-5);
@@ -94,7 +94,7 @@ TEST(GltfScene, EqualArraysAreOneBlob) {
     file.add("nodes", R"({"mesh":0})");
     file.add("nodes", R"({"mesh":1})");
     file.add("scenes", R"({"nodes":[0,1]})");
-    ImportOptions dark;  // without the sky's array
+    ImportOptions dark;  // without the texels of the default environment
     dark.background = glm::vec3(0.0f);
     const ImportedScene scene = load(file, dark);
     EXPECT_EQ(scene.counts.geometries, 2u);
@@ -118,7 +118,7 @@ TEST(GltfScene, GpuInstancesAreTransformsOverOneGeometry) {
     const ImportedScene scene = load(file);
     EXPECT_EQ(scene.counts.geometries, 1u);
     EXPECT_EQ(scene.counts.instances, 2u);
-    const backend::Lowered flat = lowered(scene);
+    const backend::FlatScene flat = flattened(scene);
     ASSERT_EQ(flat.instances.size(), 2u);
     const glm::dvec4 a = flat.instances[0].world_from_object * glm::dvec4(1, 0, 0, 1);
     const glm::dvec4 b = flat.instances[1].world_from_object * glm::dvec4(1, 0, 0, 1);
@@ -148,13 +148,13 @@ TEST(GltfScene, LayersAreInTheExtrasOfNodes) {
     for (std::size_t i = 0; i < extras.size(); ++i) {
         EXPECT_EQ(named<Transform>(scene, "n" + std::to_string(i)).layers, expected[i]) << extras[i];
     }
-    const auto told = std::count_if(scene.notices.begin(), scene.notices.end(), [](const std::string& text) {
+    const auto count = std::count_if(scene.notices.begin(), scene.notices.end(), [](const std::string& text) {
         return text.find("tessera_layers") != std::string::npos;
     });
-    EXPECT_EQ(told, 3);
+    EXPECT_EQ(count, 3);
 }
 
-TEST(GltfScene, GpuInstancesOfUnequalLengthsDrawOneAndSaySo) {
+TEST(GltfScene, GpuInstancesOfUnequalLengthsDrawOneAndReportIt) {
     SceneFile file;
     add_mesh(file);
     const int translation = file.positions({{1, 0, 0}, {2, 0, 0}});
@@ -233,7 +233,7 @@ TEST(GltfScene, CamerasAreListedWithTheirRigidPose) {
     EXPECT_EQ(named<scene::Camera>(scene, "near").vertical_fov, 0.5);
 }
 
-TEST(GltfScene, ASceneWithoutACameraIsFramed) {
+TEST(GltfScene, ASceneWithoutACameraGetsAFramingCamera) {
     SceneFile file;
     const int at = file.positions({{-3, -2, -1}, {5, 4, 7}, {5, -2, 7}});
     file.add("meshes", R"({"primitives":[{"attributes":{"POSITION":)" + std::to_string(at) + "}}]}");
@@ -280,21 +280,21 @@ TEST(GltfScene, PunctualLightsAreReadAndCountAsLight) {
     EXPECT_TRUE(has_notice(scene, "cone angles"));
     EXPECT_TRUE(has_notice(scene, "intensity is negative"));
     EXPECT_TRUE(has_notice(scene, "its light 5 is missing"));
-    EXPECT_FALSE(has_notice(scene, "soft sky"));
+    EXPECT_FALSE(has_notice(scene, "default environment"));
     EXPECT_EQ(all<scene::Background>(scene)[0]->color, glm::vec3(0));
 }
 
-TEST(GltfScene, ASceneWithoutLightGetsASoftSkyUnlessTheBackgroundIsGiven) {
+TEST(GltfScene, ASceneWithoutLightGetsADefaultEnvironmentUnlessTheBackgroundIsGiven) {
     SceneFile file;
     file.add_triangle();
     const ImportedScene dark = load(file);
-    EXPECT_TRUE(has_notice(dark, "no light: a soft sky was added"));
+    EXPECT_TRUE(has_notice(dark, "no light: a default environment (overcast sky) was added"));
     EXPECT_TRUE(all<scene::Background>(dark)[0]->environment);
 
     ImportOptions options;
     options.background = glm::vec3(0.1f, 0.2f, 0.3f);
     const ImportedScene given = load(file, options);
-    EXPECT_FALSE(has_notice(given, "soft sky"));
+    EXPECT_FALSE(has_notice(given, "default environment"));
     EXPECT_FALSE(all<scene::Background>(given)[0]->environment);
     EXPECT_EQ(all<scene::Background>(given)[0]->color, glm::vec3(0.1f, 0.2f, 0.3f));
 
@@ -310,7 +310,7 @@ TEST(GltfScene, EmissiveMeshesCountAsLight) {
     file.add("scenes", R"({"nodes":[0]})");
     const ImportedScene scene = load(file);
     EXPECT_EQ(scene.counts.emissive_geometries, 1u);
-    EXPECT_FALSE(has_notice(scene, "soft sky"));
+    EXPECT_FALSE(has_notice(scene, "default environment"));
 }
 
 TEST(GltfScene, IdsStartWhereTheOptionsSayAndEndThereToo) {
@@ -331,7 +331,7 @@ TEST(GltfScene, EntriesCreateOrUpdateTheRoot) {
     SceneFile file;
     file.add_triangle();
     const ImportedScene imported = load(file);
-    EXPECT_EQ(lowered(imported).instances.size(), 1u);
+    EXPECT_EQ(flattened(imported).instances.size(), 1u);
 
     scene::Scene scene;
     scene::Root root;

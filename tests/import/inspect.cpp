@@ -20,7 +20,7 @@ class Soundness {
             EXPECT_EQ(create.id.value, next++);
             const std::string name = std::visit([](const auto& value) { return value.name; }, create.object);
             EXPECT_FALSE(name.empty());
-            EXPECT_TRUE(names_.emplace(create.object.index(), name).second) << name << " is there twice";
+            EXPECT_TRUE(names_.emplace(create.object.index(), name).second) << name << " exists twice";
             kinds_[create.id] = scene::kind(create.object);
         }
     }
@@ -33,7 +33,7 @@ class Soundness {
         EXPECT_FALSE(scene_.cameras.empty());
         EXPECT_GT(scene_.counts.triangles, 0u);
         EXPECT_GT(scene_.counts.instances, 0u);
-        EXPECT_EQ(used_.size(), blobs_.size()) << "some blobs are of no use";
+        EXPECT_EQ(used_.size(), blobs_.size()) << "some blobs are unreferenced";
     }
 
   private:
@@ -129,7 +129,7 @@ class Soundness {
 
 }  // namespace
 
-void expect_sound(const ImportedScene& scene, const ImportOptions& options) {
+void expect_consistent(const ImportedScene& scene, const ImportOptions& options) {
     Soundness(scene, options).check();
 }
 

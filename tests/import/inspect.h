@@ -9,10 +9,10 @@
 #include "client/import/import.h"
 #include "mediator/scene/objects.h"
 
-// Looks into imported scenes.
+// Helpers to inspect imported scenes.
 namespace tessera::import {
 
-// Fails the test with the error's text and gives an empty scene.
+// Fails the test with the error's message and returns an empty scene.
 inline ImportedScene loaded(const std::filesystem::path& file, const ImportOptions& options = {}) {
     Expected<ImportedScene> scene = import_scene(file, options);
     if (scene) return std::move(*scene);
@@ -70,11 +70,11 @@ inline testing::AssertionResult has_notice(const ImportedScene& scene, const std
     return testing::AssertionFailure() << "no notice says '" << part << "'; there are:" << seen;
 }
 
-// What every imported scene owes: consecutive ids, unique names, blobs that are there and no larger than
-// said, references to objects that exist, geometry in range.
-void expect_sound(const ImportedScene& scene, const ImportOptions& options = {});
+// Invariants of imported scenes: consecutive ids, unique names, existing blobs of the right size, references
+// to existing objects, indices in range.
+void expect_consistent(const ImportedScene& scene, const ImportOptions& options = {});
 
-// What a master and its nodes ask of a scene: they would take it.
+// Checks the scene as a master and its nodes do.
 void expect_valid(const ImportedScene& imported);
 
 }  // namespace tessera::import

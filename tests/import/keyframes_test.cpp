@@ -19,7 +19,7 @@ double at(const KeyTrack& track, double seconds) {
     return value;
 }
 
-TEST(Keyframes, StepsHoldTheKeyBefore) {
+TEST(Keyframes, StepInterpolationHoldsThePreviousKey) {
     const KeyTrack track{.interpolation = Interpolation::Step, .times = {1, 2, 4}, .values = {10, 20, 40}};
     EXPECT_EQ(at(track, -3.0), 10.0);
     EXPECT_EQ(at(track, 1.999), 10.0);
@@ -29,7 +29,7 @@ TEST(Keyframes, StepsHoldTheKeyBefore) {
     EXPECT_EQ(at(track, 99.0), 40.0);
 }
 
-TEST(Keyframes, LinesJoinKeysAndEndsStay) {
+TEST(Keyframes, LinearInterpolationIsConstantBeyondTheEnds) {
     const KeyTrack track{.times = {1, 2, 4}, .values = {10, 20, 0}};
     EXPECT_EQ(at(track, 0.0), 10.0);
     EXPECT_DOUBLE_EQ(at(track, 1.25), 12.5);
@@ -38,7 +38,7 @@ TEST(Keyframes, LinesJoinKeysAndEndsStay) {
     EXPECT_EQ(at({.times = {3}, .values = {7}}, 0.0), 7.0) << "one key is a constant";
 }
 
-// At a quarter of the way the Hermite basis is 27/32, 9/64, 5/32, -3/64; tangents count times the 2 seconds.
+// At t = 1/4 the Hermite basis is 27/32, 9/64, 5/32, -3/64; tangents count times the 2 seconds.
 TEST(Keyframes, SplinesFollowTheirTangents) {
     const KeyTrack track{
         .interpolation = Interpolation::CubicSpline, .times = {1, 3}, .values = {99, 2, 3, -1, 5, 99}};
@@ -60,7 +60,7 @@ void expect_turn_about_y(const glm::dvec4& rotation, double degrees) {
     EXPECT_NEAR(glm::distance(rotation, {0.0, std::sin(half), 0.0, std::cos(half)}), 0.0, 1e-7) << degrees;
 }
 
-TEST(Keyframes, RotationsGoTheShorterArcAtEvenSpeed) {
+TEST(Keyframes, RotationsUseSlerpAlongTheShorterArc) {
     const float half = std::numbers::sqrt2_v<float> / 2;
     for (const float sign : {1.0f, -1.0f}) {  // q and -q are one rotation
         const KeyTrack quarter = turns({0, 0, 0, 1, 0, sign * half, 0, sign * half});
@@ -72,7 +72,7 @@ TEST(Keyframes, RotationsGoTheShorterArcAtEvenSpeed) {
     expect_turn_about_y(sample_rotation(turns({0, 0, 0, 2, 0, 1e-10f, 0, 3}), 1.5), 0.0);
 }
 
-TEST(Keyframes, RotationsOfSplinesHaveLengthOneEvenThroughZero) {
+TEST(Keyframes, SplineRotationsAreNormalizedEvenThroughZero) {
     const KeyTrack through_zero =
         turns({0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1, 0, 0, 0, 0},
               Interpolation::CubicSpline);
@@ -93,7 +93,7 @@ std::string cause(const KeyTrack& track) {
     return "fine";
 }
 
-TEST(Keyframes, WhatCannotBeSampledIsRefused) {
+TEST(Keyframes, InvalidTracksAreRejected) {
     constexpr float Infinity = std::numeric_limits<float>::infinity(),
                     NaN = std::numeric_limits<float>::quiet_NaN();
     using testing::HasSubstr;
@@ -103,12 +103,12 @@ TEST(Keyframes, WhatCannotBeSampledIsRefused) {
     EXPECT_THAT(cause({.times = {0, 2, 1}, .values = {0, 1, 2}}), HasSubstr("key 2 is not after"));
     EXPECT_THAT(cause({.times = {NaN}, .values = {0}}), HasSubstr("not finite"));
     EXPECT_THAT(cause({.times = {0, Infinity}, .values = {0, 1}}), HasSubstr("not finite"));
-    EXPECT_THAT(cause({.times = {0, 1}, .values = {0}}), HasSubstr("1 numbers where 2 keys ask for 2"));
+    EXPECT_THAT(cause({.times = {0, 1}, .values = {0}}), HasSubstr("1 values, but 2 keys need 2"));
     EXPECT_THAT(cause({.interpolation = Interpolation::CubicSpline, .times = {0}, .values = {0}}),
-                HasSubstr("ask for 3"));
+                HasSubstr("need 3"));
     EXPECT_THAT(cause({.times = {0}, .values = {NaN}}), HasSubstr("not finite"));
     EXPECT_THAT(cause({.times = {0}, .values = {1e20f}}), HasSubstr("beyond"));
-    EXPECT_THAT(cause(turns({0, 0, 0, 1, 0, 0, 0, 0})), HasSubstr("key 1 is no quaternion"));
+    EXPECT_THAT(cause(turns({0, 0, 0, 1, 0, 0, 0, 0})), HasSubstr("key 1 is not a quaternion"));
 }
 
 }  // namespace

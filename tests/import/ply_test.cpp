@@ -39,7 +39,7 @@ TEST(Ply, ReadsTextWithEveryAttributeAndCutsPolygonsIntoFans) {
                           Faces +
                           "0 0 0 0 0 1 255 0 188 0 0\n1 0 0 0 0 1 0 0 0 1 0\n1 1 0 0 0 1 0 0 0 1 1\n"
                           "0 1 0 0 0 1 0 0 0 0 1\n2 1.5 2.5\n0\n4 0 1 2 3\n"));
-    expect_sound(scene);
+    expect_consistent(scene);
     const scene::Geometry& mesh = named<scene::Geometry>(scene, "square");
     EXPECT_EQ(scene.counts.triangles, 2u);
     EXPECT_EQ(scene.counts.degenerate_triangles, 0u);
@@ -70,19 +70,19 @@ TEST(Ply, ReadsBinaryOfEitherByteOrder) {
                          "property short ignored\r\nproperty float z\r\nelement face 1\r\n"
                          "property list ushort uint vertex_index\r\nend_header\r\n" +
                          data));
-        expect_sound(scene);
+        expect_consistent(scene);
         EXPECT_THAT(values<glm::vec3>(scene, all<scene::Geometry>(scene)[0]->positions),
                     ElementsAre(glm::vec3(0, 0, 0.5f), glm::vec3(2, 0, 0.5f), glm::vec3(0, 3, 0.5f)));
     }
 }
 
-TEST(Ply, DamageIsOneClearError) {
+TEST(Ply, MalformedFilesAreOneClearError) {
     const std::string begin = "ply\nformat ascii 1.0\n";
     const std::string points = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
     EXPECT_THAT(ply_error(""), HasSubstr("does not begin"));
     EXPECT_THAT(ply_error(begin), HasSubstr("no end"));
-    EXPECT_THAT(ply_error(begin + "element vertex 99999999999\nend_header\n"), HasSubstr("cannot hold"));
-    EXPECT_THAT(ply_error(begin + "element vertex -1\nend_header\n"), HasSubstr("cannot hold"));
+    EXPECT_THAT(ply_error(begin + "element vertex 99999999999\nend_header\n"), HasSubstr("can hold"));
+    EXPECT_THAT(ply_error(begin + "element vertex -1\nend_header\n"), HasSubstr("can hold"));
     EXPECT_THAT(ply_error(begin + "property float x\nend_header\n"), HasSubstr("property float x"));
     EXPECT_THAT(ply_error(begin + "element face 0\nproperty list float int vertex_indices\nend_header\n"),
                 HasSubstr("list float"));
@@ -90,8 +90,9 @@ TEST(Ply, DamageIsOneClearError) {
                 HasSubstr("lack x, y or z"));
     EXPECT_THAT(ply_error("ply\nend_header\n"), HasSubstr("lacks the format"));
     EXPECT_THAT(ply_error(begin + Vertices + Faces + points), HasSubstr("too early"));
-    EXPECT_THAT(ply_error(begin + Vertices + Faces + points + "9000 0 1 2\n"), HasSubstr("claims more"));
-    EXPECT_THAT(ply_error(begin + Vertices + Faces + points + "3 0 one 2\n"), HasSubstr("no number"));
+    EXPECT_THAT(ply_error(begin + Vertices + Faces + points + "9000 0 1 2\n"),
+                HasSubstr("longer than the data"));
+    EXPECT_THAT(ply_error(begin + Vertices + Faces + points + "3 0 one 2\n"), HasSubstr("not a number"));
     EXPECT_THAT(ply_error(begin + Vertices + "end_header\n" + points), HasSubstr("only points"));
 }
 
@@ -103,9 +104,9 @@ TEST(Ply, WrongIndicesAndPositionsAreAPlaceholder) {
           "0 0 0\n1 0 0\nnan 1 0\n0 1 0\n3 0 1 2\n"}) {
         const TestFolder folder;
         const ImportedScene scene = loaded(folder.write("shape.ply", begin + data));
-        expect_sound(scene);
+        expect_consistent(scene);
         EXPECT_EQ(scene.counts.placeholders, 1u) << data;
-        EXPECT_TRUE(has_notice(scene, "mesh 'shape' is bad"));
+        EXPECT_TRUE(has_notice(scene, "mesh 'shape' is invalid"));
     }
 }
 

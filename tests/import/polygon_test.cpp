@@ -19,7 +19,7 @@ double doubled_area(const Outline& outline, const std::array<std::uint32_t, 3>& 
     return glm::dot(glm::cross(b - a, c - a), normal);
 }
 
-// Every triangle turned as the outline, and together just its area: no gap, no overlap.
+// Every triangle has the winding of the outline, and their areas add up to its area: no gaps, no overlaps.
 void expect_tiling(const Outline& outline) {
     const glm::dvec3 area = polygon_area(outline);
     const auto triangles = triangles_of_polygon(outline, PolygonShape::Any);

@@ -11,10 +11,10 @@
 #include <string_view>
 #include <vector>
 
-// Small scene files for tests, made in a folder of their own.
+// Creates small scene files for tests in a temporary folder.
 namespace tessera::import {
 
-// A folder that goes with its object.
+// A temporary folder, removed by the destructor.
 class TestFolder {
   public:
     TestFolder();
@@ -23,7 +23,7 @@ class TestFolder {
     TestFolder& operator=(const TestFolder&) = delete;
 
     const std::filesystem::path& path() const { return path_; }
-    std::filesystem::path write(const std::string& name, std::string_view bytes) const;  // returns where
+    std::filesystem::path write(const std::string& name, std::string_view bytes) const;  // returns the path
 
   private:
     std::filesystem::path path_;
@@ -31,10 +31,10 @@ class TestFolder {
 
 enum class Component { Byte = 5120, UByte = 5121, Short = 5122, UShort = 5123, UInt = 5125, Float = 5126 };
 
-// Collects arrays and JSON and gives a .glb, or a .gltf with its buffer as a data URI.
+// Collects arrays and JSON into a .glb, or a .gltf with its buffer as a data URI.
 class SceneFile {
   public:
-    // Appends the array to the buffer and makes a buffer view; returns its number.
+    // Appends the array to the buffer and creates a buffer view; returns its index.
     template <class T>
     int view(const std::vector<T>& values, int stride = 0) {
         return view_of_bytes({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)},
@@ -51,7 +51,7 @@ class SceneFile {
     int indices(const std::vector<std::uint32_t>& values) {
         return accessor(view(values), Component::UInt, "SCALAR", values.size());
     }
-    int image(std::string_view encoded);  // and a texture of the same number
+    int image(std::string_view encoded);  // and a texture of the same index
 
     // Appends an element to a top-level array such as "meshes"; returns its index.
     int add(const std::string& array, const std::string& element);
@@ -75,7 +75,8 @@ class SceneFile {
 std::string glb_of(std::string json, std::string buffer);
 std::string base64(std::string_view bytes);
 
-// An RGBA PNG, stored without compression. `claimed_width` other than 0 makes its header lie.
+// An RGBA PNG, stored without compression. `claimed_width` other than 0 is written to the header instead of
+// the true width.
 std::string png(std::uint32_t width, std::uint32_t height, glm::u8vec4 color, std::uint32_t claimed_width = 0,
                 std::uint32_t claimed_height = 0);
 

@@ -6,13 +6,13 @@
 #include "tests/import/scene_file.h"
 #include "tests/support/folders.h"
 
-// The scenes and environments that come with the project.
+// The scenes and environments in tests/scenes.
 namespace tessera::import {
 namespace {
 
 TEST(Scenes, TheRoom) {
     const ImportedScene scene = loaded(test::scenes_folder() / "room-1.glb");
-    expect_sound(scene);
+    expect_consistent(scene);
     expect_valid(scene);
     EXPECT_NEAR(static_cast<double>(scene.counts.triangles), 79e3, 1e3);
     EXPECT_EQ(scene.counts.instances, 12u);
@@ -27,7 +27,7 @@ TEST(Scenes, TheRoom) {
 
 TEST(Scenes, TheStudio) {
     const ImportedScene scene = loaded(test::scenes_folder() / "studio-1.glb");
-    expect_sound(scene);
+    expect_consistent(scene);
     expect_valid(scene);
     EXPECT_NEAR(static_cast<double>(scene.counts.triangles), 25e3, 1e3);
     EXPECT_EQ(scene.counts.emissive_geometries, 2u);
@@ -35,21 +35,21 @@ TEST(Scenes, TheStudio) {
     EXPECT_EQ(scene.counts.placeholders, 0u);
 }
 
-TEST(Scenes, TheStillLifeIsLitByWhatTheUserBrings) {
+TEST(Scenes, TheStillLifeIsLitByTheGivenEnvironment) {
     ImportOptions options;
     const ImportedScene dark = loaded(test::scenes_folder() / "still.glb");
-    expect_sound(dark);
+    expect_consistent(dark);
     expect_valid(dark);
     EXPECT_NEAR(static_cast<double>(dark.counts.triangles), 9e3, 1e3);
-    EXPECT_TRUE(has_notice(dark, "soft sky"));
+    EXPECT_TRUE(has_notice(dark, "default environment"));
 
     for (const char* name : {"env-studio.exr", "env-sunset.exr", "env-night.exr"}) {
         options.environment = test::scenes_folder() / name;
         options.environment_strength = 2.0f;
         const ImportedScene scene = loaded(test::scenes_folder() / "still.glb", options);
-        expect_sound(scene);
+        expect_consistent(scene);
         expect_valid(scene);
-        EXPECT_FALSE(has_notice(scene, "soft sky"));
+        EXPECT_FALSE(has_notice(scene, "default environment"));
         const scene::Background& background = *all<scene::Background>(scene)[0];
         EXPECT_EQ(background.strength, 2.0f);
         const auto& map = object<scene::Texture>(scene, background.environment);
@@ -65,7 +65,7 @@ TEST(Scenes, TheStillLifeIsLitByWhatTheUserBrings) {
     }
 }
 
-TEST(Scenes, AnEnvironmentThatIsNoPictureIsAnErrorThatNamesIt) {
+TEST(Scenes, AnInvalidEnvironmentIsAnErrorThatNamesIt) {
     ImportOptions options;
     options.environment = test::scenes_folder() / "still.glb";
     const auto refused = import_scene(test::scenes_folder() / "still.glb", options);
@@ -74,14 +74,14 @@ TEST(Scenes, AnEnvironmentThatIsNoPictureIsAnErrorThatNamesIt) {
     EXPECT_THAT(refused.error().what(), testing::HasSubstr("environment"));
 }
 
-TEST(Scenes, ARadiancePictureIsAnEnvironmentToo) {
+TEST(Scenes, ARadianceImageIsAnEnvironmentToo) {
     const TestFolder folder;
     ImportOptions options;
     std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n";
     for (int i = 0; i < 8; ++i) hdr += "\x80\x40\x20\x82";  // 2^(130 - 136) * (128, 64, 32)
     options.environment = folder.write("sky.hdr", hdr);
     const ImportedScene scene = loaded(test::scenes_folder() / "still.glb", options);
-    expect_sound(scene);
+    expect_consistent(scene);
     const auto& map = object<scene::Texture>(scene, all<scene::Background>(scene)[0]->environment);
     EXPECT_EQ(map.width, 4u);
     EXPECT_EQ(map.height, 2u);

@@ -12,16 +12,16 @@ inline std::string x3d(const std::string& scene, const std::string& version = "3
            "\n</Scene></X3D>\n";
 }
 
-// The scene's nodes, read; sound, whatever was in them.
+// Imports a scene with these nodes, and checks that the result is valid.
 inline ImportedScene read_x3d(const std::string& scene, const ImportOptions& options = {}) {
     const TestFolder folder;
     ImportedScene read = loaded(folder.write("a.x3d", x3d(scene)), options);
-    expect_sound(read, options);
+    expect_consistent(read, options);
     expect_valid(read);
     return read;
 }
 
-// A mesh's triangles as points, one after the other.
+// The corners of all triangles of a mesh.
 inline std::vector<glm::vec3> points_of(const ImportedScene& scene, const scene::Geometry& geometry) {
     const auto positions = values<glm::vec3>(scene, geometry.positions);
     std::vector<glm::vec3> points;

@@ -5,7 +5,7 @@
 namespace tessera::import {
 namespace {
 
-// An Appearance around the nodes, with a sphere; pictures of every name are there.
+// An Appearance with the nodes, on a sphere; every image name exists.
 ImportedScene read_appearance(const std::string& nodes, const std::string& version = "3.3",
                               const std::string& geometry = "<Sphere/>") {
     const TestFolder folder;
@@ -15,7 +15,7 @@ ImportedScene read_appearance(const std::string& nodes, const std::string& versi
     folder.write("clear.png", png(1, 1, {200, 100, 50, 128}));
     ImportedScene scene = loaded(folder.write(
         "a.x3d", x3d("<Shape><Appearance>" + nodes + "</Appearance>" + geometry + "</Shape>", version)));
-    expect_sound(scene);
+    expect_consistent(scene);
     expect_valid(scene);
     return scene;
 }
@@ -27,7 +27,7 @@ T only(const ImportedScene& scene) {
     return found.empty() ? T{} : *found.front();
 }
 
-// Names of the fields in which the two differ, the name aside.
+// Names of the fields that differ, except for the name.
 template <class T>
 std::vector<std::string> differences(T a, T b) {
     a.name = b.name = "";
@@ -144,7 +144,7 @@ TEST(X3dSurfaceShader, TheOtherSpellings) {
     EXPECT_EQ(scene.counts.emissive_geometries, 1u);
 }
 
-TEST(X3dSurfaceShader, BadValuesAreToldAndTheirDefaultsStand) {
+TEST(X3dSurfaceShader, InvalidValuesAreReportedAndGetTheirDefaults) {
     const ImportedScene scene = read_appearance(
         "<CommonSurfaceShader DEF='gold' diffuseFactor='2 0 0' shininessFactor='1 2 3' alphaFactor='-0.5' "
         "relativeIndexOfRefraction='0' fresnelBlend='nan' normalSpace='WORLD' "
@@ -153,10 +153,11 @@ TEST(X3dSurfaceShader, BadValuesAreToldAndTheirDefaultsStand) {
         "<ImageTexture containerField='normalTexture' url='lost.png'/></CommonSurfaceShader>");
     for (const char* problem :
          {"<CommonSurfaceShader DEF='gold'> diffuseFactor is '2 0 0', outside 0 to 1",
-          "shininessFactor is '1 2 3', no 2 numbers", "alphaFactor is '-0.5', outside 0 to 1",
+          "shininessFactor is '1 2 3', not 2 numbers", "alphaFactor is '-0.5', outside 0 to 1",
           "relativeIndexOfRefraction is '0', outside 0.01 to 100",
-          "fresnelBlend is 'nan', 'nan' is no number", "normalSpace is 'WORLD', neither TANGENT nor OBJECT",
-          "tangentTextureCoordinatesId is no whole number", "<ImageTexture> skipped",
+          "fresnelBlend is 'nan', 'nan' is not a valid number",
+          "normalSpace is 'WORLD', neither TANGENT nor OBJECT",
+          "tangentTextureCoordinatesId is not an integer", "<ImageTexture> skipped",
           "<ImageTexture> of <CommonSurfaceShader DEF='gold'>'s specularTexture cannot be used (there is no "
           "file "
           "'lost.png'",
@@ -167,10 +168,10 @@ TEST(X3dSurfaceShader, BadValuesAreToldAndTheirDefaultsStand) {
     }
     const auto shader = only<scene::SurfaceShader>(scene);
     EXPECT_THAT(differences(shader, scene::SurfaceShader{}), testing::ElementsAre("specular_texture"))
-        << "the magenta checker; a normal map that is missing is none";
+        << "the magenta checkerboard; a missing normal map is ignored";
 }
 
-TEST(X3dSurfaceShader, ItTakesThePlaceOfAMaterialAndIsShared) {
+TEST(X3dSurfaceShader, ItReplacesAMaterialAndIsShared) {
     const TestFolder folder;
     const std::string shape =
         "<Shape><Appearance><Material/><CommonSurfaceShader USE='s'/></Appearance><Box/></Shape>";
@@ -183,7 +184,7 @@ TEST(X3dSurfaceShader, ItTakesThePlaceOfAMaterialAndIsShared) {
     EXPECT_EQ(scene.counts.geometries, 2u);
 }
 
-TEST(X3dSurfaceShader, AHighlightLongerThanWideHasTangents) {
+TEST(X3dSurfaceShader, AnAnisotropicHighlightHasTangents) {
     const auto has_tangents = [](const std::string& shininess) {
         const ImportedScene scene =
             read_appearance("<CommonSurfaceShader shininessFactor='" + shininess + "'/>");
@@ -194,14 +195,14 @@ TEST(X3dSurfaceShader, AHighlightLongerThanWideHasTangents) {
 }
 
 // Of a sphere of radius 1, with both sides: pi L 2 A / (4 pi R^2) in the sphere around its box, R^2 = 3, so
-// about 2.1 L against 0.2 (Glow).
-TEST(X3dMaterial, WhatGlowsFaintlyIsNoLight) {
+// about 2.1 L against 0.2 (EmissiveLights).
+TEST(X3dMaterial, FaintEmissionIsNoLight) {
     EXPECT_TRUE(has_notice(read_appearance("<Material emissiveColor='0.05 0.05 0.05'/>"),
-                           "no light but what glows faintly"));
-    for (const char* shining :
+                           "only faint emission as light"));
+    for (const char* emissive :
          {"<Material emissiveColor='0.2 0.2 0.2'/>", "<CommonSurfaceShader emissionFactor='0.2 0.2 0.2'/>",
           "<Material/><CommonVolumeShader emissionFactor='0.01 0 0'/>"}) {
-        EXPECT_FALSE(has_notice(read_appearance(shining), "soft sky")) << shining;
+        EXPECT_FALSE(has_notice(read_appearance(emissive), "default environment")) << emissive;
     }
 }
 
@@ -223,7 +224,7 @@ TEST(X3dMaterial, DefaultsAndFields) {
     EXPECT_EQ(material.alpha, 0.75f);
 }
 
-TEST(X3dMaterial, PicturesAndColoursOfVerticesReplaceTheDiffuseColour) {
+TEST(X3dMaterial, ImagesAndVertexColoursReplaceTheDiffuseColour) {
     const auto diffuse = [](const std::string& picture, const std::string& version) {
         const ImportedScene scene = read_appearance(
             "<Material diffuseColor='0.5 0.5 0.5'/><ImageTexture url='" + picture + "'/>", version);
@@ -279,7 +280,7 @@ TEST(X3dVolumeShader, DefaultsAndFields) {
     EXPECT_EQ(full.counts.emissive_geometries, 1u);
     EXPECT_TRUE(has_notice(read_appearance("<CommonVolumeShader scatteringFactor='-1 0 0'><Rayleigh "
                                            "containerField='phaseFunction'/></CommonVolumeShader>"),
-                           "<Rayleigh> is no phase function that is known"));
+                           "<Rayleigh> is an unknown phase function"));
 }
 
 }  // namespace

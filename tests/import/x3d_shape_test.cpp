@@ -20,7 +20,7 @@ ImportedScene read_textured(const std::string& geometry, const std::string& appe
     const TestFolder folder;
     folder.write("t t.png", png(2, 2, {200, 100, 50, 255}));
     ImportedScene scene = loaded(folder.write("a.x3d", x3d("<Shape>" + appearance + geometry + "</Shape>")));
-    expect_sound(scene);
+    expect_consistent(scene);
     return scene;
 }
 
@@ -38,7 +38,7 @@ struct Solid {
         indices = values<std::uint32_t>(scene, mesh.indices);
     }
 
-    double volume() const {  // by the divergence theorem: right only if closed and turned outside
+    double volume() const {  // by the divergence theorem; valid for closed meshes with outward faces
         double sum = 0.0;
         for (std::size_t i = 0; i < indices.size(); i += 3) {
             const glm::dvec3 a(positions[indices[i]]), b(positions[indices[i + 1]]),
@@ -47,13 +47,13 @@ struct Solid {
         }
         return sum;
     }
-    // The texture coordinate where a vertex lies, of those whose normal points along `facing`.
+    // The texture coordinate at a position, of the vertex whose normal points along `facing`.
     glm::vec2 tex_coord_at(const glm::vec3& position, const glm::vec3& facing) const {
         for (std::size_t i = 0; i < positions.size(); ++i) {
             if (glm::distance(positions[i], position) < 1e-4f && glm::dot(normals[i], facing) > 0.5f)
                 return tex_coords[i];
         }
-        ADD_FAILURE() << "no vertex lies there";
+        ADD_FAILURE() << "no vertex at this position";
         return {};
     }
     void expect_normals_outside() const {
@@ -67,28 +67,28 @@ struct Solid {
     }
 };
 
-TEST(X3dSolids, VolumesOfTheDefaults) {
+TEST(X3dPrimitives, VolumesOfTheDefaults) {
     EXPECT_NEAR(Solid("<Box/>").volume(), 8.0, 1e-6);
     EXPECT_NEAR(Solid("<Sphere/>").volume(), 4.0 / 3.0 * Pi, 0.004 * 4.0 / 3.0 * Pi);
     EXPECT_NEAR(Solid("<Cylinder/>").volume(), 2.0 * Pi, 0.002 * 2.0 * Pi);
     EXPECT_NEAR(Solid("<Cone/>").volume(), 2.0 / 3.0 * Pi, 0.002 * 2.0 / 3.0 * Pi);
 }
 
-TEST(X3dSolids, VolumesOfTheirFields) {
+TEST(X3dPrimitives, VolumesOfTheirFields) {
     EXPECT_NEAR(Solid("<Box size='1 2 3'/>").volume(), 6.0, 1e-5);
     EXPECT_NEAR(Solid("<Sphere radius='2'/>").volume(), 32.0 / 3.0 * Pi, 0.15);
     EXPECT_NEAR(Solid("<Cylinder radius='0.5' height='3'/>").volume(), 0.75 * Pi, 0.01);
     EXPECT_NEAR(Solid("<Cone bottomRadius='2' height='3'/>").volume(), 4.0 * Pi, 0.03);
 }
 
-TEST(X3dSolids, NormalsPointOutside) {
+TEST(X3dPrimitives, NormalsPointOutside) {
     for (const char* solid : {"<Box size='1 2 3'/>", "<Sphere/>", "<Cylinder/>", "<Cone height='1'/>"}) {
         SCOPED_TRACE(solid);
         Solid(solid).expect_normals_outside();
     }
 }
 
-TEST(X3dSolids, PartsCanBeLeftOut) {
+TEST(X3dPrimitives, PartsCanBeLeftOut) {
     const auto triangles = [](const char* solid) { return Solid(solid).indices.size() / 3; };
     EXPECT_EQ(triangles("<Cylinder top='false' bottom='false'/>"), 144u);
     EXPECT_EQ(triangles("<Cylinder side='false' top='false'/>"), 70u);
@@ -96,7 +96,7 @@ TEST(X3dSolids, PartsCanBeLeftOut) {
     EXPECT_TRUE(has_notice(read_x3d("<Shape><Cone bottom='false' side='false'/></Shape>"), "no triangles"));
 }
 
-TEST(X3dSolids, TexturesLieAsTheStandardSays) {
+TEST(X3dPrimitives, TextureCoordinatesFollowTheStandard) {
     const Solid box("<Box/>");
     const glm::vec2 upper_left(0, 0), upper_right(1, 0), lower_left(0, 1);
     EXPECT_EQ(box.tex_coord_at({-1, 1, 1}, {0, 0, 1}), upper_left);
@@ -107,7 +107,7 @@ TEST(X3dSolids, TexturesLieAsTheStandardSays) {
     EXPECT_EQ(box.tex_coord_at({1, 1, -1}, {0, 1, 0}), upper_right);
     EXPECT_EQ(box.tex_coord_at({-1, -1, 1}, {0, -1, 0}), upper_left);
     EXPECT_EQ(box.tex_coord_at({-1, -1, -1}, {0, -1, 0}), lower_left);
-    // Round ones begin at the back and go by the left (-x) to the front.
+    // The u axis of cylinders starts at the back and runs over the left (-x) to the front.
     for (const char* round : {"<Cylinder/>", "<Sphere/>"}) {
         const Solid solid(round);
         const float y = std::string(round) == "<Sphere/>" ? 0.0f : 1.0f, v = y > 0.0f ? 0.0f : 0.5f;
@@ -121,7 +121,7 @@ TEST(X3dSolids, TexturesLieAsTheStandardSays) {
 
 constexpr const char* Square = "<Coordinate point='0 0 0, 2 0 0, 2 1 0, 0 1 0'/>";
 
-TEST(X3dFaces, PolygonsOfAnySize) {
+TEST(X3dFaceSets, PolygonsOfAnySize) {
     const ImportedScene scene =
         read_x3d("<Shape><IndexedFaceSet coordIndex='0 1 2 3 -1, 0 1 2 -1, 1 2 -1 -1 3 0 1'>" +
                  std::string(Square) + "</IndexedFaceSet></Shape>");
@@ -133,7 +133,7 @@ TEST(X3dFaces, PolygonsOfAnySize) {
                 ElementsAre(glm::vec3(0, 0, 0), glm::vec3(2, 0, 0), glm::vec3(2, 1, 0)));
 }
 
-TEST(X3dFaces, ClockwiseFacesAreTurned) {
+TEST(X3dFaceSets, ClockwiseFacesAreFlipped) {
     const ImportedScene scene =
         read_x3d("<Shape><IndexedFaceSet ccw='false' solid='false' creaseAngle='0.1' coordIndex='0 1 2'>" +
                  std::string(Square) + "</IndexedFaceSet></Shape>");
@@ -142,7 +142,7 @@ TEST(X3dFaces, ClockwiseFacesAreTurned) {
     EXPECT_THAT(values<glm::vec3>(scene, only_geometry(scene).normals), Each(glm::vec3(0, 0, -1)));
 }
 
-TEST(X3dFaces, ConcavePolygons) {
+TEST(X3dFaceSets, ConcavePolygons) {
     const ImportedScene scene = read_x3d(
         "<Shape><IndexedFaceSet convex='false' coordIndex='0 1 2 3 4'><Coordinate point='0 0 0 2 0 0 2 2 0 "
         "1 0.5 0 0 2 0'/></IndexedFaceSet></Shape>");
@@ -157,7 +157,7 @@ TEST(X3dFaces, ConcavePolygons) {
 }
 
 // Two squares that meet at the z axis.
-TEST(X3dFaces, CreaseAngle) {
+TEST(X3dFaceSets, CreaseAngle) {
     const std::string fold = "<Shape><IndexedFaceSet creaseAngle='";
     const std::string mesh =
         "' coordIndex='0 1 2 3 -1 1 4 5 2'><Coordinate point='-1 0 1, 0 0 1, 0 0 0, -1 0 0, "
@@ -177,7 +177,7 @@ TEST(X3dFaces, CreaseAngle) {
     }
 }
 
-TEST(X3dFaces, EveryArrayHasItsOwnIndices) {
+TEST(X3dFaceSets, EveryArrayHasItsOwnIndices) {
     const ImportedScene scene = read_textured(
         "<IndexedFaceSet coordIndex='0 1 2 -1 0 2 3' normalIndex='1 1 1 -1 0 0 0' texCoordIndex='3 2 1 -1 3 "
         "1 0' "
@@ -200,7 +200,7 @@ TEST(X3dFaces, EveryArrayHasItsOwnIndices) {
     EXPECT_EQ(coordinates[indices[5]], glm::vec2(0.0f, 1.0f));
 }
 
-TEST(X3dFaces, WithoutIndicesOfTheirOwnArraysFollowThePoints) {
+TEST(X3dFaceSets, ArraysWithoutIndicesFollowThePoints) {
     const ImportedScene scene = read_x3d(
         "<Shape><IndexedFaceSet coordIndex='3 2 1 -1 0 1 3' normalPerVertex='false'>" + std::string(Square) +
         "<Normal vector='1 0 0 0 1 0'/><ColorRGBA color='1 0 0 1 0 1 0 1 0 0 1 1 0 0 0 0.5'/>"
@@ -212,7 +212,7 @@ TEST(X3dFaces, WithoutIndicesOfTheirOwnArraysFollowThePoints) {
     EXPECT_EQ(values<glm::vec3>(scene, mesh.normals)[indices[5]], glm::vec3(0, 1, 0));
 }
 
-TEST(X3dFaces, TriangleSetsAreSmoothUnlessTheySayOtherwise) {
+TEST(X3dFaceSets, TriangleSetsAreSmoothByDefault) {
     const std::string mesh =
         "index='0 1 2 0 2 3 1'><Coordinate point='0 0 0 1 0 0 0 1 0 0 0 1'/></IndexedTriangleSet></Shape>";
     const ImportedScene smooth = read_x3d("<Shape><IndexedTriangleSet " + mesh);
@@ -253,12 +253,12 @@ TEST(X3dTextures, OneFileIsDecodedOnce) {
     const std::string shape =
         "<Shape><Appearance><Material/><ImageTexture url='\"t.png\"'/></Appearance><Box/></Shape>";
     const ImportedScene scene = loaded(folder.write("a.x3d", x3d(shape + shape)));
-    expect_sound(scene);
+    expect_consistent(scene);
     EXPECT_EQ(scene.counts.textures, 2u) << "two nodes";
     EXPECT_EQ(all<scene::Texture>(scene)[0]->texels, all<scene::Texture>(scene)[1]->texels);
 }
 
-TEST(X3dTextures, AMissingPictureIsAPlaceholder) {
+TEST(X3dTextures, AMissingImageIsAPlaceholder) {
     const ImportedScene scene = read_x3d(
         "<Shape><Appearance><Material DEF='brick'/><ImageTexture url='\"https://far.example/a.png\" "
         "\"b.png\"'/></Appearance><Box/></Shape>"
@@ -270,7 +270,7 @@ TEST(X3dTextures, AMissingPictureIsAPlaceholder) {
     EXPECT_EQ(scene.counts.placeholders, 2u);
     EXPECT_TRUE(
         has_notice(read_x3d("<Shape><Appearance><ImageTexture url='../a.png'/></Appearance><Box/></Shape>"),
-                   "put the file beside the scene"));
+                   "put the file into that folder"));
 }
 
 }  // namespace

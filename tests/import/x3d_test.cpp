@@ -19,7 +19,7 @@ glm::dvec3 moved(const glm::dmat4& matrix, const glm::dvec3& point) {
     return glm::dvec3(matrix * glm::dvec4(point, 1.0));
 }
 
-// The transform that holds the object.
+// The parent transform of the object.
 const scene::Transform& parent_of(const ImportedScene& scene, const scene::Object& child) {
     ObjectId id;
     for (const scene::Create& create : scene.objects) {
@@ -30,7 +30,7 @@ const scene::Transform& parent_of(const ImportedScene& scene, const scene::Objec
             if (each == id) return *transform;
         }
     }
-    ADD_FAILURE() << "no transform holds it";
+    ADD_FAILURE() << "it has no parent transform";
     static const scene::Transform none;
     return none;
 }
@@ -62,9 +62,9 @@ TEST(X3d, TransformsFieldByField) {
     expect_near(point("scale='2 3 4'"), {2, 6, 12});
     expect_near(point("rotation='0 0 2 1.5707963267948966'"), {-2, 1, 3});
     expect_near(point("center='1 2 3' scale='5 5 5' rotation='1 0 0 2'"), {1, 2, 3});
-    // Scale 2 along the axis (1 1 0): that part of the point, (1.5 1.5 0), comes in once more.
+    // Scale 2 along the axis (1 1 0): adds that component of the point, (1.5 1.5 0).
     expect_near(point("scaleOrientation='0 0 1 0.7853981633974483' scale='2 1 1'"), {2.5, 3.5, 3});
-    // All together, in the order of the standard: scale, turn, move.
+    // Combined, in the order of the standard: scale, rotate, translate.
     expect_near(
         point("translation='10 0 0' rotation='0 0 1 1.5707963267948966' scale='2 1 1' center='1 0 0'"),
         {10 + 1 - 2, 0, 3});
@@ -78,7 +78,7 @@ TEST(X3d, GroupsNest) {
     EXPECT_EQ(all<scene::Transform>(scene).size(), 5u);
 }
 
-TEST(X3d, WhatIsUsedAgainIsShared) {
+TEST(X3d, NodesUsedAgainAreShared) {
     const ImportedScene scene = read_x3d(
         "<Transform DEF='T' translation='1 0 0'><Shape DEF='S'><Appearance DEF='A'><Material DEF='M'/>"
         "</Appearance><Sphere DEF='G'/></Shape></Transform><Transform translation='0 5 0'><Transform "
@@ -92,7 +92,7 @@ TEST(X3d, WhatIsUsedAgainIsShared) {
     EXPECT_EQ(named<scene::Transform>(scene, "T").children.size(), 1u);
 }
 
-TEST(X3d, TheNearestDefinitionBeforeCounts) {
+TEST(X3d, TheNearestEarlierDefinitionIsUsed) {
     const ImportedScene scene = read_x3d(
         "<Shape DEF='S'><Box/></Shape><Transform DEF='a'><Shape USE='S'/></Transform>"
         "<Shape DEF='S'><Cone/></Shape><Transform DEF='b'><Shape USE='S'/></Transform>");
@@ -121,7 +121,7 @@ TEST(X3d, LightsAndTheirDefaults) {
     EXPECT_EQ(read_x3d(box + "<DirectionalLight on='false'/>").counts.lights, 0u);
 }
 
-TEST(X3d, LightsShineWhereTheySay) {
+TEST(X3d, LightsPointInTheirDirection) {
     const ImportedScene scene = read_x3d(
         "<Shape><Box/></Shape><Transform translation='0 0 1'><SpotLight DEF='s' location='1 2 3' "
         "direction='0 -3 0' beamWidth='1' cutOffAngle='0.5' color='1 0.5 0' intensity='2' radius='5' "
@@ -155,7 +155,7 @@ TEST(X3d, Viewpoints) {
     expect_near(moved(placed.cameras[0].world_from_camera, {0, 0, -1}), {1, 0, 5});
 }
 
-TEST(X3d, ACameraInSeveralPlacesIsOne) {
+TEST(X3d, ACameraWithSeveralInstancesIsOne) {
     const ImportedScene scene = read_x3d(
         "<Shape><Box/></Shape><Transform translation='1 0 0'><Viewpoint DEF='v'/></Transform>"
         "<Transform translation='2 0 0'><Viewpoint USE='v'/></Transform>");
@@ -175,7 +175,7 @@ TEST(X3d, BackgroundOfOneColour) {
     EXPECT_TRUE(all<scene::Texture>(other).empty());
 }
 
-TEST(X3d, BackgroundOfBandsIsAMap) {
+TEST(X3d, BackgroundGradientIsATexture) {
     const ImportedScene scene = read_x3d(
         "<Shape><Box/></Shape><Background skyColor='1 0 0  0 1 0' skyAngle='1.5707963' "
         "groundColor='0 0 0 0 0 1' groundAngle='0.7853982'/>");
@@ -193,12 +193,13 @@ TEST(X3d, BackgroundOfBandsIsAMap) {
     expect_near(at(std::numbers::pi - 0.5 * row), {0, 0, 0}, row);
 }
 
-TEST(X3d, NodesThatAreNotReadAreCountedByKind) {
+TEST(X3d, UnsupportedNodesAreCountedByKind) {
     const ImportedScene scene = read_x3d(
         "<WorldInfo/><Shape><Box/><MetadataString/></Shape>\n<Text/><Shape><Text/></Shape><Script/>"
         "<ROUTE/><Box/>");
-    EXPECT_TRUE(has_notice(scene, "<Text> skipped: not read, or not in such a place (line 4 and 1 more)"));
-    EXPECT_TRUE(has_notice(scene, "<Script> skipped: not read, or not in such a place (line 4)"));
+    EXPECT_TRUE(
+        has_notice(scene, "<Text> skipped: unsupported, or not supported in this place (line 4 and 1 more)"));
+    EXPECT_TRUE(has_notice(scene, "<Script> skipped: unsupported, or not supported in this place (line 4)"));
     EXPECT_TRUE(has_notice(scene, "<Box> skipped"));
     for (const std::string& notice : scene.notices) {
         EXPECT_EQ(notice.find("Metadata"), notice.npos);

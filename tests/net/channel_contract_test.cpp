@@ -1,4 +1,4 @@
-// What every channel promises (mediator/net/channel.h), over each transport alike.
+// The contract of every channel (mediator/net/channel.h), tested for each transport.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -16,7 +16,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-// One server and the way to make clients of it.
+// One server and a factory of its clients.
 struct Rig {
     std::unique_ptr<Channel> server;
     std::function<std::unique_ptr<Channel>()> client;
@@ -53,7 +53,7 @@ Rig curve() {
             }};
 }
 
-// The decorator, told to do no harm.
+// The fault injection without faults.
 Rig harmless_faults(const std::function<Rig()>& make) {
     Rig rig = make();
     rig.server = with_faults(std::move(rig.server), {}, {});
@@ -91,7 +91,7 @@ std::size_t limit_of_link(Link link) {
     return link == Link::Control ? ControlLimit : BulkLimit;
 }
 
-// Sends until the queue is full; the number that was accepted.
+// Sends until the queue is full; returns the number of accepted messages.
 std::uint64_t fill(Channel& channel, Link link, PeerId peer, std::size_t size) {
     for (std::uint64_t sent = 0; sent < 1'000'000; ++sent) {
         Bytes bytes = numbered(sent, size);
@@ -101,7 +101,7 @@ std::uint64_t fill(Channel& channel, Link link, PeerId peer, std::size_t size) {
         EXPECT_EQ(bytes, numbered(sent, size)) << "a refused message was taken";
         return sent;
     }
-    ADD_FAILURE() << "a queue without bound";
+    ADD_FAILURE() << "the queue is unbounded";
     return 0;
 }
 
@@ -155,7 +155,7 @@ TEST_P(ChannelContract, ServersFullQueueBlocksAndLosesNothing) {
     const std::uint64_t sent = fill(server(), Link::Bulk, peer, 65536);
     EXPECT_GT(sent, 0u);
     EXPECT_EQ(server().send(Link::Bulk, reading, numbered(1)), SendResult::Sent)
-        << "a full peer must not hold up another";
+        << "a full peer must not block another";
     EXPECT_TRUE(next_message(*other).has_value());
     expect_numbers(client(), Link::Bulk, sent);
 }
@@ -283,7 +283,7 @@ TEST_P(ChannelContract, ClosedStaysClosed) {
     EXPECT_EQ(std::get<NoMessage>(server().receive(in(seconds(30)))), NoMessage::Closed);
 }
 
-TEST_P(ChannelContract, TellsTheRoleOfThePeer) {
+TEST_P(ChannelContract, ReportsTheRoleOfThePeer) {
     ASSERT_EQ(client().send(Link::Bulk, ServerPeer, numbered(1)), SendResult::Sent);
     EXPECT_EQ(next_message(server())->role, Role::Operator);
 }

@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Two clocks and the way between them; the master's runs true.
+// Two clocks and the network delay between them; the master's clock is exact.
 struct Pair {
     std::int64_t now = 1'000'000'000'000;  // of our clock
     std::int64_t offset = 0;               // theirs less ours, at `started`
@@ -49,7 +49,7 @@ TEST(ClockOffset, NothingIsKnownBeforeTheFirstExchange) {
     EXPECT_FALSE(clock.offset(TimePoint{}).has_value());
 }
 
-TEST(ClockOffset, RandomDelaysNeverLeaveTheBound) {
+TEST(ClockOffset, RandomDelaysStayWithinTheBound) {
     std::mt19937_64 random(1);
     std::exponential_distribution<double> delay(1.0 / 2e6);  // 2 ms
     std::uniform_int_distribution<std::int64_t> start(-1'000'000'000'000'000, 1'000'000'000'000'000);
@@ -62,11 +62,11 @@ TEST(ClockOffset, RandomDelaysNeverLeaveTheBound) {
             pair.now += 1'000'000'000;
             pair.expect_truth("a second later");
         }
-        EXPECT_EQ(pair.clock.size(), PeerClock::Kept) << "no jump where there was none";
+        EXPECT_EQ(pair.clock.size(), PeerClock::MaxExchanges) << "no jump where there was none";
     }
 }
 
-TEST(ClockOffset, TheExchangeWithTheShortestRoundTripIsStated) {
+TEST(ClockOffset, TheExchangeWithTheShortestRoundTripIsUsed) {
     Pair pair{.offset = 7'000'000};
     pair.exchange(5ms, 1s, 30us);
     pair.exchange(100us, 1s, 100us);
@@ -99,7 +99,7 @@ TEST(ClockOffset, DriftIsPartOfTheBound) {
             pair.exchange(1ms, 0s, 400us);
             pair.expect_truth("while it drifts");
         }
-        EXPECT_EQ(pair.clock.size(), PeerClock::Kept) << "drift is no jump";
+        EXPECT_EQ(pair.clock.size(), PeerClock::MaxExchanges) << "drift is no jump";
     }
 }
 
@@ -118,7 +118,7 @@ TEST(ClockOffset, AJumpDropsWhatWasBefore) {
     }
 }
 
-TEST(ClockOffset, AJumpInTheMiddleOfAnExchangeIsSurvived) {
+TEST(ClockOffset, AJumpDuringAnExchangeIsHandled) {
     for (const std::int64_t jump : std::vector<std::int64_t>{-80'000'000, 80'000'000}) {
         Pair pair;
         pair.exchange(100us, 0s, 100us);
@@ -134,15 +134,15 @@ TEST(ClockOffset, AJumpInTheMiddleOfAnExchangeIsSurvived) {
     }
 }
 
-TEST(ClockOffset, OneFalseExchangeIsForgottenWithTheNextTrueOne) {
+TEST(ClockOffset, OneWrongExchangeIsDroppedWithTheNextValidOne) {
     Pair pair;
     pair.exchange(100us, 0s, 100us);
     pair.clock.add({.sent = pair.now, .received_there = 5, .sent_there = 6, .received = pair.now + 2});
     pair.exchange(100us, 0s, 100us);
-    pair.expect_truth("after the lie");
+    pair.expect_truth("after the wrong exchange");
 }
 
-TEST(ClockOffset, WhatCannotBeIsIgnoredAndHugeNumbersOverflowNothing) {
+TEST(ClockOffset, ImpossibleTimesAreIgnoredAndHugeOnesDoNotOverflow) {
     constexpr std::int64_t Most = std::numeric_limits<std::int64_t>::max();
     constexpr std::int64_t Least = std::numeric_limits<std::int64_t>::min();
     Pair pair;
@@ -160,9 +160,11 @@ TEST(ClockOffset, WhatCannotBeIsIgnoredAndHugeNumbersOverflowNothing) {
     }
     pair.clock.add({.sent = 10, .received_there = 5, .sent_there = 5, .received = 9});  // back before sent
     pair.clock.add(
-        {.sent = 10, .received_there = 6, .sent_there = 5, .received = 12});  // answered before heard
-    pair.clock.add(
-        {.sent = 10, .received_there = 5, .sent_there = 9, .received = 12});  // lay longer than away
+        {.sent = 10, .received_there = 6, .sent_there = 5, .received = 12});  // answered before received
+    pair.clock.add({.sent = 10,
+                    .received_there = 5,
+                    .sent_there = 9,
+                    .received = 12});  // delayed longer at the peer than the round trip
     EXPECT_EQ(pair.clock.size(), 1u);
     EXPECT_EQ(pair.stated().offset, before.offset);
     EXPECT_TRUE(pair.clock.offset(TimePoint{Duration(Most)}).has_value());
@@ -173,7 +175,7 @@ TEST(ClockOffset, WhatCannotBeIsIgnoredAndHugeNumbersOverflowNothing) {
 }
 
 TEST(ClockOffset, AHeartbeatHoldsAllFourTimes) {
-    // Sent at 1000, there at 5100 (their clock is 4000 ahead, 100 on the way), answered 50 later, back at
+    // Sent at 1000, there at 5100 (their clock is 4000 ahead, 100 in transit), answered 50 later, back at
     // 1250.
     PeerClock clock;
     clock.heartbeat(5150, 1000, 50, TimePoint{1250ns});

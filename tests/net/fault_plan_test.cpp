@@ -23,7 +23,7 @@ struct Faulty {
         : client(with_faults(hub.client(Role::Node), control, bulk)) {}
 };
 
-// What arrives of Count numbered messages once nothing is under way any more.
+// The numbers of Count messages that arrive once none is in transit.
 std::vector<std::uint64_t> sent_through(const FaultPlan& plan, Link link = Link::Control) {
     Faulty faulty(plan, plan);
     std::vector<std::uint64_t> numbers;
@@ -57,7 +57,7 @@ std::vector<std::uint64_t> received_through(const FaultPlan& plan) {
     return numbers;
 }
 
-TEST(FaultPlan, OneSeedOneHistory) {
+TEST(FaultPlan, IsDeterministicForASeed) {
     const FaultPlan plan{.seed = 11, .lose = 0.3, .duplicate = 0.2};
     const auto first = sent_through(plan);
     EXPECT_EQ(first, sent_through(plan));
@@ -69,7 +69,7 @@ TEST(FaultPlan, OneSeedOneHistory) {
     EXPECT_NE(first, received_through(plan)) << "so do directions";
 }
 
-TEST(FaultPlan, LosesAndDuplicatesAsOftenAsAsked) {
+TEST(FaultPlan, LosesAndDuplicatesAtTheGivenRates) {
     for (const auto& numbers :
          {sent_through({.seed = 1, .lose = 0.5}), received_through({.seed = 1, .lose = 0.5})}) {
         EXPECT_NEAR(static_cast<double>(numbers.size()), Count * 0.5, 5 * std::sqrt(Count * 0.25));
@@ -110,7 +110,7 @@ TEST(FaultPlan, ReorderingLosesNothing) {
     }
 }
 
-TEST(FaultPlan, ACutIsForBothDirectionsOfItsLinkOnly) {
+TEST(FaultPlan, ACutAffectsBothDirectionsOfItsLinkOnly) {
     Faulty faulty({.cut_after_messages = 3});
     for (std::uint64_t i = 0; i < 2; ++i) faulty.client->send(Link::Control, ServerPeer, numbered(i));
     PeerId control = ServerPeer;
@@ -140,7 +140,7 @@ TEST(FaultPlan, AFullQueueOfOnePeerDoesNotHoldUpAnother) {
         ++sent;
         server->receive(in(0s));
     }
-    EXPECT_LT(sent, 100'000u) << "a queue without bound";
+    EXPECT_LT(sent, 100'000u) << "the queue is unbounded";
     EXPECT_EQ(server->send(Link::Control, peers[1], numbered(9)), SendResult::Sent);
     server->receive(in(10ms));
     EXPECT_TRUE(next_message(*quick, 0s).has_value());

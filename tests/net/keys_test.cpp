@@ -103,7 +103,7 @@ TEST_F(KeyFiles, AnExportHoldsOnePairAndTheMastersPublicKeyOnly) {
     EXPECT_EQ(error_of([&] { KeyDirectory(folder_ / "render-2.key").master(); }).first, ErrorCode::NotFound);
 }
 
-TEST_F(KeyFiles, AddRefusesWhatWouldOverwriteOrMislead) {
+TEST_F(KeyFiles, AddRefusesExistingNamesAndFiles) {
     keys_.add("a", Role::Viewer, folder_ / "a.key");
     const auto before = keys_.allowed().size();
     const auto add = [&](const std::string& name, Role role, const std::string& file) {
@@ -130,13 +130,13 @@ TEST_F(KeyFiles, RevokeTakesTheKeyOffTheListAndItsLocalPairAway) {
     EXPECT_NO_THROW(keys_.master());
 }
 
-TEST_F(KeyFiles, NamesNeverLeadOutOfTheFolder) {
+TEST_F(KeyFiles, NamesCannotEscapeTheFolder) {
     for (const char* name : {"../keys/node", "/etc/passwd", "..", ""}) {
         EXPECT_EQ(error_of([&] { keys_.client(name); }).first, ErrorCode::InvalidInput) << name;
     }
 }
 
-TEST_F(KeyFiles, PairsThatDoNotBelongTogetherAreTold) {
+TEST_F(KeyFiles, MismatchedPairsAreReported) {
     std::filesystem::copy_file(folder_ / "keys/viewer.public", folder_ / "keys/node.public",
                                std::filesystem::copy_options::overwrite_existing);
     const auto [code, text] = error_of([&] { keys_.client("node"); });
@@ -144,14 +144,14 @@ TEST_F(KeyFiles, PairsThatDoNotBelongTogetherAreTold) {
     EXPECT_NE(text.find("node.secret"), std::string::npos);
 }
 
-TEST_F(KeyFiles, MissingFoldersSayHowToMakeThem) {
+TEST_F(KeyFiles, MissingFoldersNameTheCommandThatCreatesThem) {
     const auto [code, text] = error_of([&] { KeyDirectory(folder_ / "nowhere").client("node"); });
     EXPECT_EQ(code, ErrorCode::NotFound);
     EXPECT_NE(text.find("tessera keys"), std::string::npos);
     EXPECT_EQ(error_of([&] { KeyDirectory(folder_ / "nowhere").allowed(); }).first, ErrorCode::NotFound);
 }
 
-TEST_F(KeyFiles, AllowedListsThatAreWrongNameTheLine) {
+TEST_F(KeyFiles, ErrorsInAllowListsNameTheLine) {
     const std::string a = make_key_pair().public_key, b = make_key_pair().public_key;
     const auto parse = [&](const std::string& text) { return parse_allowed("list", text); };
     EXPECT_EQ(parse("# comment\n\n  \na viewer " + a + "\nb node " + b + " \n").size(), 2u);
@@ -165,7 +165,7 @@ TEST_F(KeyFiles, AllowedListsThatAreWrongNameTheLine) {
     }
 }
 
-TEST_F(KeyFiles, EveryTruncationOfAnExportIsRefusedOrWhole) {
+TEST_F(KeyFiles, EveryTruncationOfAnExportIsRefusedOrComplete) {
     const KeyExport exported{
         .name = "x", .role = Role::Editor, .keys = {make_key_pair(), keys_.master().public_key}};
     const std::string text = export_text(exported);

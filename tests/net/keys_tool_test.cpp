@@ -45,7 +45,7 @@ TEST_F(KeysTool, CreatesListsAddsAndRevokes) {
     EXPECT_EQ(out_.str().find("render-2"), std::string::npos);
 }
 
-TEST_F(KeysTool, FailuresHaveTheirExitCodesAndWords) {
+TEST_F(KeysTool, FailuresHaveTheirExitCodesAndMessages) {
     EXPECT_EQ(run({.action = "list"}), ExitBadInput);
     EXPECT_NE(errors_.find("tessera keys"), std::string::npos);
     ASSERT_EQ(run({}), 0);
@@ -57,7 +57,7 @@ TEST_F(KeysTool, FailuresHaveTheirExitCodesAndWords) {
     EXPECT_NE(errors_.find("did you mean 'revoke'"), std::string::npos) << errors_;
 }
 
-TEST_F(KeysTool, MissingOrNeedlessWordsAreWrongUsage) {
+TEST_F(KeysTool, MissingOrExtraArgumentsAreUsageErrors) {
     ASSERT_EQ(run({}), 0);
     EXPECT_EQ(run({.action = "add"}), cli::ExitUsage);
     EXPECT_EQ(run({.action = "add", .name = "a", .role = "node"}), cli::ExitUsage);
@@ -67,7 +67,7 @@ TEST_F(KeysTool, MissingOrNeedlessWordsAreWrongUsage) {
     EXPECT_EQ(net::KeyDirectory(folder_ / "keys").allowed().size(), 4u);
 }
 
-TEST(KeysCommand, TakesItsWordsFromTheCommandLine) {
+TEST(KeysCommand, ParsesItsArguments) {
     net::TemporaryFolder folder;
     const std::string keys = folder / "keys", file = folder / "n.key";
     const auto tessera = [](std::vector<const char*> words) {

@@ -25,11 +25,11 @@ TEST(Liveness, AHeartbeatIsDueAtOnceAndThenEveryInterval) {
     EXPECT_TRUE(liveness.heartbeat_due(at(2500ms)));
 }
 
-TEST(Liveness, SilenceOfAllMissedIntervalsIsDeath) {
+TEST(Liveness, TimesOutAfterAllMissedIntervals) {
     struct Case {
         std::vector<Duration> heard;
         Duration now;
-        bool dead;
+        bool timed_out;
     };
     const std::vector<Case> cases{
         {{}, 2999ms, false},
@@ -38,49 +38,49 @@ TEST(Liveness, SilenceOfAllMissedIntervalsIsDeath) {
         {{2s}, 5s, true},
         {{2s, 4900ms}, 7s, false},
         {{2900ms}, 3s, false},
-        {{4s, 1s}, 6999ms, false},  // what was heard
-                                    // earlier does not undo
-                                    // what was heard later
+        {{4s, 1s}, 6999ms, false},  // an earlier time
+                                    // does not replace
+                                    // a later one
         {{4s, 1s}, 7s, true},
     };
     for (const Case& one : cases) {
         Liveness liveness(Settings, at(0s));
-        for (const Duration heard : one.heard) liveness.heard(at(heard));
-        EXPECT_EQ(liveness.dead(at(one.now)), one.dead) << one.now.count();
+        for (const Duration heard : one.heard) liveness.on_message(at(heard));
+        EXPECT_EQ(liveness.timed_out(at(one.now)), one.timed_out) << one.now.count();
     }
 }
 
 // A loop that sleeps until next_event() must find something to do then, or it spins.
-TEST(Liveness, SomethingIsDueAtTheNextEventAndNothingBefore) {
+TEST(Liveness, NextEventIsTheFirstTimeThatSomethingIsDue) {
     Liveness liveness(Settings, at(0s));
     liveness.sent_heartbeat(at(0s));
     TimePoint now = at(0s);
-    for (int i = 0; i < 20 && !liveness.dead(now); ++i) {
+    for (int i = 0; i < 20 && !liveness.timed_out(now); ++i) {
         const TimePoint next = liveness.next_event();
         ASSERT_GT(next, now);
-        EXPECT_FALSE(liveness.heartbeat_due(next - 1ns) || liveness.dead(next - 1ns));
-        ASSERT_TRUE(liveness.heartbeat_due(next) || liveness.dead(next));
+        EXPECT_FALSE(liveness.heartbeat_due(next - 1ns) || liveness.timed_out(next - 1ns));
+        ASSERT_TRUE(liveness.heartbeat_due(next) || liveness.timed_out(next));
         now = next;
         liveness.sent_heartbeat(now);
     }
     EXPECT_EQ(now, at(3s));
 }
 
-TEST(Liveness, BackoffDoublesUpToItsGreatestAndStartsAnewWhenHeard) {
+TEST(Liveness, BackoffDoublesUpToItsMaximumAndResetsOnAMessage) {
     Liveness liveness(Settings, at(0s));
     const std::vector<Duration> expected{100ms, 200ms, 400ms, 800ms, 1600ms, 3200ms, 5s, 5s};
     for (const Duration backoff : expected) EXPECT_EQ(liveness.next_backoff(), backoff);
-    liveness.heard(at(60s));
+    liveness.on_message(at(60s));
     EXPECT_EQ(liveness.next_backoff(), 100ms);
 }
 
-TEST(Liveness, ARestartCountsSilenceAnewButKeepsTheBackoff) {
+TEST(Liveness, ARestartResetsTheTimeoutButKeepsTheBackoff) {
     Liveness liveness(Settings, at(0s));
-    ASSERT_TRUE(liveness.dead(at(10s)));
+    ASSERT_TRUE(liveness.timed_out(at(10s)));
     liveness.next_backoff();
     liveness.restarted(at(10s));
-    EXPECT_FALSE(liveness.dead(at(12s)));
-    EXPECT_TRUE(liveness.dead(at(13s)));
+    EXPECT_FALSE(liveness.timed_out(at(12s)));
+    EXPECT_TRUE(liveness.timed_out(at(13s)));
     EXPECT_EQ(liveness.next_backoff(), 200ms);
 }
 

@@ -12,7 +12,7 @@ namespace tessera::net {
 
 TimePoint in(Duration duration);  // from now
 
-// The server's endpoint is tcp://127.0.0.1 on two free ports; tries others while they are being taken away.
+// The server's endpoint is tcp://127.0.0.1 on two free ports; retries if other processes take them.
 struct TcpServer {
     std::unique_ptr<ZmqServer> channel;
     std::string endpoint, bulk_endpoint;
@@ -26,10 +26,10 @@ std::uint64_t number_of(const Bytes& bytes);
 // Sends, reading nothing, until it is Sent or Closed; WouldBlock after a generous while.
 SendResult send_patiently(Channel& channel, Link link, PeerId peer, Bytes bytes);
 
-// The next message, passing over wakes; nothing after `limit`.
+// The next message, ignoring wakes; nothing after `limit`.
 std::optional<Message> next_message(Channel& channel, Duration limit = std::chrono::seconds(10));
 
-// A folder of its own that goes away with it.
+// A temporary folder, removed by the destructor.
 class TemporaryFolder {
   public:
     TemporaryFolder();

@@ -6,7 +6,7 @@ namespace tessera::net {
 
 namespace {
 
-TEST(PeerTable, NumbersEndsOnceAndFindsThem) {
+TEST(PeerTable, NumbersEachPeerOnce) {
     PeerTable table(8);
     PeerId next = 1;
     const PeerId a = table.number("a", "", next), b = table.number("b", "", next);
@@ -15,10 +15,10 @@ TEST(PeerTable, NumbersEndsOnceAndFindsThem) {
     EXPECT_EQ(table.find(b)->routing_id, "b");
     table.forget(b);
     EXPECT_EQ(table.find(b), nullptr);
-    EXPECT_GT(table.number("b", "", next), b) << "a number is never given again";
+    EXPECT_GT(table.number("b", "", next), b) << "numbers are never reused";
 }
 
-TEST(PeerTable, ForgetsWhoWasUnusedForLongest) {
+TEST(PeerTable, EvictsTheLeastRecentlyUsed) {
     PeerTable table(3);
     PeerId next = 1;
     const PeerId a = table.number("a", "", next), b = table.number("b", "", next),
@@ -32,7 +32,7 @@ TEST(PeerTable, ForgetsWhoWasUnusedForLongest) {
     EXPECT_NE(table.find(b), nullptr);
 }
 
-TEST(PeerTable, StaysBoundedWhateverComes) {
+TEST(PeerTable, StaysBounded) {
     PeerTable table(100);
     PeerId next = 1;
     for (int i = 0; i < 10'000; ++i) table.number(std::to_string(i), "user", next);
@@ -41,13 +41,13 @@ TEST(PeerTable, StaysBoundedWhateverComes) {
     EXPECT_EQ(table.find(next - 101), nullptr);
 }
 
-TEST(PeerTable, ARoutingIdInOtherHandsIsAnotherPeer) {
+TEST(PeerTable, ARoutingIdOfAnotherUserIsAnotherPeer) {
     PeerTable table(8);
     PeerId next = 1;
     const PeerId victim = table.number("id", "node:victim:k1", next);
     const PeerId thief = table.number("id", "viewer:thief:k2", next);
     EXPECT_NE(thief, victim);
-    EXPECT_EQ(table.find(victim), nullptr) << "what is meant for the victim must not reach the thief";
+    EXPECT_EQ(table.find(victim), nullptr) << "messages for the old user must not reach the new one";
     EXPECT_EQ(table.find(thief)->user_id, "viewer:thief:k2");
     EXPECT_EQ(table.count(), 1u);
 }

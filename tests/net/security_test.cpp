@@ -1,4 +1,4 @@
-// Who may speak: CURVE keys, the allow-list, roles, and the facts about libzmq that it all stands on.
+// Authentication: CURVE keys, the allow-list, roles, and the libzmq behaviour they rely on.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 constexpr int EnforceDomain = 93;
 
-// Does a CURVE server of libzmq without ZAP handler accept a key that nobody told it of?
+// Whether a CURVE server of libzmq without a ZAP handler accepts unknown keys.
 enum class Enforcement { Off, On };
 enum class Mechanism { Null, Curve };
 bool accepts_stranger(const std::string& domain, Enforcement enforcement, Mechanism mechanism) {
@@ -80,7 +80,7 @@ class Security : public testing::Test {
     TcpServer server_;
 };
 
-TEST_F(Security, EveryRoleIsSeenAsWhatItsKeySaysOnBothLinks) {
+TEST_F(Security, TheRoleIsThatOfTheKeyOnBothLinks) {
     for (const Role role : {Role::Viewer, Role::Editor, Role::Node, Role::Operator}) {
         const auto peer = client(keys_.client(name(role)));
         for (const Link link : {Link::Control, Link::Bulk}) {
@@ -113,7 +113,7 @@ TEST_F(Security, AnUnknownKeyIsRefusedOnEachSocket) {
     }
 }
 
-TEST_F(Security, AClientWithoutKeysIsNotHeardOnEitherSocket) {
+TEST_F(Security, AClientWithoutKeysIsRejectedOnEachSocket) {
     const auto open = make_zmq_client(make_zmq_context(), {.endpoint = server_.endpoint, .keys = {}});
     for (const Link link : {Link::Control, Link::Bulk}) open->send(link, ServerPeer, numbered(1));
     EXPECT_FALSE(next_message(*server_.channel, milliseconds(300)).has_value());
@@ -124,7 +124,7 @@ TEST_F(Security, AClientWithoutKeysIsNotHeardOnEitherSocket) {
     EXPECT_EQ(message->user, "node");
 }
 
-TEST_F(Security, AMasterWithoutTheRightKeyGetsNothing) {
+TEST_F(Security, AMasterWithAnotherKeyReceivesNothing) {
     ClientKeys keys = keys_.client("editor");
     keys.server_public_key = make_key_pair().public_key;
     const auto deceived = client(keys);
@@ -132,7 +132,7 @@ TEST_F(Security, AMasterWithoutTheRightKeyGetsNothing) {
     EXPECT_FALSE(next_message(*server_.channel, milliseconds(300)).has_value());
 }
 
-TEST_F(Security, AKeyAddedLaterComesInAfterReload) {
+TEST_F(Security, AKeyAddedLaterIsAcceptedAfterReload) {
     keys_.add("late", Role::Viewer, folder_ / "late.key");
     const auto late = client(KeyDirectory(folder_ / "late.key").client("whatever"));
     late->send(Link::Control, ServerPeer, numbered(1));
@@ -146,7 +146,7 @@ TEST_F(Security, AKeyAddedLaterComesInAfterReload) {
     EXPECT_EQ(message->role, Role::Viewer);
 }
 
-TEST_F(Security, ARevokedUserIsNeitherHeardNorToldNorLetInAgain) {
+TEST_F(Security, ARevokedUserCannotSendReceiveOrReconnect) {
     const auto revoked = client(added("guest", Role::Editor)), other = client(keys_.client("viewer"));
     ASSERT_EQ(revoked->send(Link::Control, ServerPeer, numbered(1)), SendResult::Sent);
     const auto first = next_message(*server_.channel);
@@ -175,7 +175,7 @@ TEST_F(Security, ARevokedUserIsNeitherHeardNorToldNorLetInAgain) {
     EXPECT_EQ(heard->user, "viewer");
 }
 
-TEST_F(Security, ANameGivenToANewKeyDoesNotReviveTheOldOne) {
+TEST_F(Security, ReusingANameDoesNotReactivateTheRevokedKey) {
     const auto old = client(added("guest", Role::Operator));
     old->send(Link::Control, ServerPeer, numbered(1));
     ASSERT_TRUE(next_message(*server_.channel).has_value());
@@ -189,7 +189,7 @@ TEST_F(Security, ANameGivenToANewKeyDoesNotReviveTheOldOne) {
     }));
 }
 
-TEST_F(Security, ABrokenAllowListLeavesTheOldOneStanding) {
+TEST_F(Security, AnInvalidAllowListKeepsTheOldOne) {
     const auto peer = client(keys_.client("node"));
     peer->send(Link::Control, ServerPeer, numbered(1));
     ASSERT_TRUE(next_message(*server_.channel).has_value());
@@ -199,7 +199,7 @@ TEST_F(Security, ABrokenAllowListLeavesTheOldOneStanding) {
     EXPECT_TRUE(next_message(*server_.channel).has_value());
 }
 
-TEST_F(Security, ServersOfOneContextHaveListsOfTheirOwn) {
+TEST_F(Security, ServersOfOneContextHaveSeparateLists) {
     const KeyDirectory others(folder_ / "others");
     others.create();
     TcpServer second = make_tcp_server(context_, others);

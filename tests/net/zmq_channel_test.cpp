@@ -1,4 +1,4 @@
-// What only the ZeroMQ channel has: addresses, hostile peers, new connections, bounds.
+// Specific to the ZeroMQ channel: addresses, misbehaving peers, reconnection, bounds.
 #include "mediator/net/zmq_channel.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ ErrorCode code_of(const Call& call) {
     return ErrorCode::Internal;
 }
 
-// A peer that obeys no rule of ours.
+// A peer that sends arbitrary multi-part messages.
 struct RawDealer {
     explicit RawDealer(const std::string& endpoint) : socket(context, zmq::socket_type::dealer) {
         socket.set(zmq::sockopt::linger, 0);
@@ -40,7 +40,7 @@ struct RawDealer {
     zmq::socket_t socket;
 };
 
-TEST(ZmqAddresses, AreCheckedAndLoopbackIsKnownByValue) {
+TEST(ZmqAddresses, AreValidatedAndLoopbackIsDetected) {
     EXPECT_EQ(addresses_of("tcp://127.0.0.1:7420").bulk, "tcp://127.0.0.1:7421");
     EXPECT_EQ(addresses_of("inproc://a").bulk, "inproc://a.bulk");
     for (const char* loopback :
@@ -107,10 +107,10 @@ TEST(ZmqChannel, DropsAndCountsMessagesOfManyParts) {
     EXPECT_EQ(server.channel->dropped().malformed, 3u);
 }
 
-TEST(ZmqChannel, NeverDeliversAnOversizeMessageAndServesOthersOn) {
+TEST(ZmqChannel, NeverDeliversAnOversizeMessageAndKeepsServingOthers) {
     TcpServer server = make_tcp_server(make_zmq_context());
-    RawDealer hostile(server.endpoint), slightly(server.endpoint), good(server.endpoint);
-    hostile.send(50 << 20);
+    RawDealer oversized(server.endpoint), slightly(server.endpoint), good(server.endpoint);
+    oversized.send(50 << 20);
     slightly.send(ControlLimit + 1);  // what encryption may add: libzmq lets it through, we do not
     good.send(7);
     const auto message = next_message(*server.channel);
@@ -120,7 +120,7 @@ TEST(ZmqChannel, NeverDeliversAnOversizeMessageAndServesOthersOn) {
     EXPECT_EQ(server.channel->dropped().malformed, 1u);
 }
 
-TEST(ZmqChannel, SurvivesBytesThatAreNoZmtp) {
+TEST(ZmqChannel, SurvivesInvalidZmtp) {
     TcpServer server = make_tcp_server(make_zmq_context());
     zmq::context_t context;
     zmq::socket_t stream(context, zmq::socket_type::stream);
@@ -136,7 +136,7 @@ TEST(ZmqChannel, SurvivesBytesThatAreNoZmtp) {
     EXPECT_TRUE(next_message(*server.channel).has_value());
 }
 
-TEST(ZmqChannel, ReconnectsToANewServerAtTheSamePlace) {
+TEST(ZmqChannel, ReconnectsToANewServerAtTheSameAddress) {
     const auto context = make_zmq_context();
     TcpServer server = make_tcp_server(context);
     const auto client = make_zmq_client(context, {.endpoint = server.endpoint, .keys = {}});
@@ -160,7 +160,7 @@ TEST(ZmqChannel, ReconnectsToANewServerAtTheSamePlace) {
     EXPECT_TRUE(next_message(*client).has_value());
 }
 
-// Memory that a peer can take of a server that reads nothing: two queues and what the kernel holds.
+// The memory that a peer can use on a server that does not read: two queues and the kernel's buffers.
 TEST(ZmqChannel, AFloodIsBoundedByTheByteBudget) {
     TcpServer server = make_tcp_server(make_zmq_context());
     const auto client = make_zmq_client(make_zmq_context(), {.endpoint = server.endpoint, .keys = {}});

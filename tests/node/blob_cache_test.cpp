@@ -25,7 +25,7 @@ struct BlobCacheTest : testing::Test {
     const fs::path folder = fs::temp_directory_path() / ("tessera-cache-test-" + std::to_string(::getpid()));
 };
 
-TEST_F(BlobCacheTest, OutlivesTheProcessThatWroteIt) {
+TEST_F(BlobCacheTest, PersistsAcrossProcesses) {
     const scene::Blob one = blob('a');
     BlobCache(folder, 1 << 20).save(one);
     const scene::BlobPtr loaded = BlobCache(folder, 1 << 20).load(reference(one));
@@ -36,7 +36,7 @@ TEST_F(BlobCacheTest, OutlivesTheProcessThatWroteIt) {
     EXPECT_EQ(BlobCache(folder, 1 << 20).load(reference(blob('b'))), nullptr);
 }
 
-TEST_F(BlobCacheTest, WhatIsDamagedIsRemovedAndNotServed) {
+TEST_F(BlobCacheTest, DamagedFilesAreRemoved) {
     const scene::Blob one = blob('a'), two = blob('b');
     BlobCache cache(folder, 1 << 20);
     cache.save(one);
@@ -48,7 +48,7 @@ TEST_F(BlobCacheTest, WhatIsDamagedIsRemovedAndNotServed) {
     EXPECT_EQ(file_count(), 0u);
 }
 
-TEST_F(BlobCacheTest, TheLeastRecentlyUsedGoFirst) {
+TEST_F(BlobCacheTest, EvictsTheLeastRecentlyUsed) {
     BlobCache cache(folder, 3500);
     const scene::Blob a = blob('a'), b = blob('b'), c = blob('c'), d = blob('d');
     const auto age = [&](const scene::Blob& which, int hours) {
@@ -65,13 +65,13 @@ TEST_F(BlobCacheTest, TheLeastRecentlyUsedGoFirst) {
     for (const scene::Blob* which : {&a, &c, &d}) EXPECT_TRUE(cache.load(reference(*which)));
 }
 
-TEST_F(BlobCacheTest, WhatIsLargerThanTheLimitIsNotKept) {
+TEST_F(BlobCacheTest, BlobsLargerThanTheLimitAreNotStored) {
     BlobCache cache(folder, 500);
     cache.save(blob('a'));
     EXPECT_EQ(file_count(), 0u);
 }
 
-TEST_F(BlobCacheTest, AFolderThatCannotBeMadeIsAnError) {
+TEST_F(BlobCacheTest, AFolderThatCannotBeCreatedIsAnError) {
     std::ofstream(folder.string()) << "a file";
     EXPECT_THROW(BlobCache(folder, 500), Error);
 }

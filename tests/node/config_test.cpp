@@ -36,7 +36,7 @@ bool mentions(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }
 
-TEST(NodeOptions, TakesWhatIsTyped) {
+TEST(NodeOptions, ParsesItsOptions) {
     const Parsed parsed = parse({"--master", "tcp://a:1", "--insecure", "--backend", "null", "--threads=3",
                                  "--simulate-cost", "20us", "--name", "left"});
     ASSERT_FALSE(parsed.exit) << parsed.err;
@@ -48,7 +48,7 @@ TEST(NodeOptions, TakesWhatIsTyped) {
     EXPECT_FALSE(parsed.options.host.empty());
 }
 
-TEST(NodeOptions, AWrongOptionExits64WithTheNearestOne) {
+TEST(NodeOptions, AnUnknownOptionExits64WithTheClosestOne) {
     const Parsed parsed = parse({"--master", "tcp://a:1", "--insecure", "--thraeds", "3"});
     EXPECT_EQ(parsed.exit, 64);
     EXPECT_TRUE(mentions(parsed.err, "'--thraeds'") && mentions(parsed.err, "'--threads'")) << parsed.err;
@@ -72,7 +72,7 @@ TEST(NodeOptions, ADeviceIsOfferedOnlyWhereABackEndHasAChoice) {
         parse({"--master", "tcp://a:1", "--insecure", "--backend", "null", "--device", "0"});
     EXPECT_EQ(null_device.exit, 64);
     EXPECT_TRUE(mentions(null_device.err, "--device")) << null_device.err;
-    EXPECT_EQ(mentions(parse({"--help"}).out, "--device"), backend::offers_devices());
+    EXPECT_EQ(mentions(parse({"--help"}).out, "--device"), backend::has_device_choice());
     for (const backend::BackendEntry& entry : backend::catalog()) {
         EXPECT_TRUE(backend::check_device(entry, ""));
         EXPECT_EQ(backend::check_device(entry, "0").has_value(), entry.chooses_device);
@@ -84,7 +84,7 @@ TEST(NodeOptions, ADeviceIsOfferedOnlyWhereABackEndHasAChoice) {
     }
 }
 
-TEST(NodeOptions, WhatIsMissingOrContradictsExits64) {
+TEST(NodeOptions, MissingOrContradictoryOptionsExit64) {
     EXPECT_EQ(parse({"--insecure"}).exit, 64);
     EXPECT_EQ(parse({"--master", "tcp://a:1"}).exit, 64);
     EXPECT_EQ(parse({"--master", "a:1", "--insecure"}).exit, 64);
@@ -112,7 +112,7 @@ struct ConfigFileTest : testing::Test {
             .string();
 };
 
-TEST_F(ConfigFileTest, HoldsTheSameOptionsAndGivesWayToWhatIsTyped) {
+TEST_F(ConfigFileTest, HasTheSameOptionsAndIsOverriddenByTheCommandLine) {
     const std::string content = "master = \"tcp://a:1\"\ninsecure = true\nthreads = 5\nname = \"left\"\n";
     const Parsed plain = with(content);
     ASSERT_FALSE(plain.exit) << plain.err;
@@ -123,7 +123,7 @@ TEST_F(ConfigFileTest, HoldsTheSameOptionsAndGivesWayToWhatIsTyped) {
     EXPECT_EQ(typed.options.threads, 2u);
 }
 
-TEST_F(ConfigFileTest, ItsMistakesExit64AndSayWhere) {
+TEST_F(ConfigFileTest, ItsErrorsExit64WithTheirLine) {
     const Parsed unknown = with("mastr = \"tcp://a:1\"\ninsecure = true\n");
     EXPECT_EQ(unknown.exit, 64);
     EXPECT_TRUE(mentions(unknown.err, "'--master'")) << unknown.err;
@@ -142,7 +142,7 @@ TEST(Durations, AreWrittenWithTheirUnit) {
     }
 }
 
-TEST(Nearest, IsNearOrNothing) {
+TEST(Nearest, IsCloseOrNothing) {
     EXPECT_EQ(nearest("rende", {"render", "probe"}), "render");
     EXPECT_EQ(nearest("xyzzy", {"render", "probe"}), std::nullopt);
     EXPECT_EQ(nearest("", {}), std::nullopt);

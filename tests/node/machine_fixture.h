@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "node/machine.h"
+#include "node/node_state_machine.h"
 #include "tests/backend/scene_builder.h"
 
 namespace tessera::test {
@@ -13,7 +13,7 @@ namespace tessera::test {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-// A machine with two workers, the master's side of the talk, and a clock that is moved by hand.
+// A state machine with two workers, the master's side of the protocol, and a manual clock.
 struct MachineTest : testing::Test {
     static constexpr std::uint64_t Epoch = 1;
 
@@ -34,13 +34,13 @@ struct MachineTest : testing::Test {
         collect();
     }
 
-    // Lets the machine act and keeps what it wants done.
+    // Runs the state machine and stores its actions.
     void collect() {
         machine->tick(now);
         for (node::Action& action : machine->take_actions()) actions.push_back(std::move(action));
     }
 
-    void tell(wire::ControlMessage message) {
+    void send(wire::ControlMessage message) {
         machine->control(std::move(message), now);
         collect();
     }
@@ -50,7 +50,7 @@ struct MachineTest : testing::Test {
         collect();
     }
 
-    // The contents of all actions of a kind, which are forgotten then.
+    // Removes and returns all actions of a kind.
     template <class A>
     std::vector<A> take() {
         std::vector<A> found;
@@ -65,8 +65,8 @@ struct MachineTest : testing::Test {
     std::vector<M> sent() {
         std::vector<M> found;
         std::erase_if(actions, [&](node::Action& action) {
-            auto* send = std::get_if<node::SendControl>(&action);
-            auto* content = send ? std::get_if<M>(&send->message) : nullptr;
+            auto* control = std::get_if<node::SendControl>(&action);
+            auto* content = control ? std::get_if<M>(&control->message) : nullptr;
             if (content) found.push_back(std::move(*content));
             return content != nullptr;
         });
@@ -79,14 +79,14 @@ struct MachineTest : testing::Test {
     }
 
     void welcome(std::uint64_t number = 1, std::uint64_t epoch = Epoch) {
-        tell(wire::Welcome{.peer_number = number,
+        send(wire::Welcome{.peer_number = number,
                            .token = 100 + number,
                            .epoch = epoch,
                            .heartbeat_interval = seconds(1),
                            .missed_heartbeats = 3});
     }
 
-    // Lets the build at hand succeed.
+    // Completes the current build successfully.
     void build() {
         ASSERT_EQ(take<node::BuildScene>().size(), 1u);
         machine->built({}, now);
@@ -96,9 +96,9 @@ struct MachineTest : testing::Test {
     // Welcomed, with the first version built and the view open.
     void synced() {
         welcome();
-        tell(wire::Changes{builder.edit({scene::Create{scene::RootId, scene::Root{}}})});
+        send(wire::Changes{builder.edit({scene::Create{scene::RootId, scene::Root{}}})});
         build();
-        tell(wire::OpenView{view});
+        send(wire::OpenView{view});
         actions.clear();
     }
 
@@ -111,7 +111,7 @@ struct MachineTest : testing::Test {
                 .block = {0, 3}};
     }
     view::WorkUnit unit(std::uint64_t id) const { return unit(id, builder.scene().version()); }
-    void work(std::uint64_t id) { tell(wire::Work{++sequence, unit(id)}); }
+    void work(std::uint64_t id) { send(wire::Work{++sequence, unit(id)}); }
 
     static node::UnitOutcome done(const view::WorkUnit& unit) {
         node::UnitOutcome outcome;
@@ -130,7 +130,7 @@ struct MachineTest : testing::Test {
     TimePoint now{seconds(1000)};
     SceneBuilder builder;
     view::View view;
-    std::optional<node::NodeMachine> machine;
+    std::optional<node::NodeStateMachine> machine;
     std::vector<node::Action> actions;
     std::uint64_t sequence = 0;
 };

@@ -1,15 +1,15 @@
-// Joining, keeping the link, leaving.
+// Joining, heartbeats and reconnection, leaving.
 #include "tests/node/machine_fixture.h"
 
 namespace tessera::node {
 namespace {
 
-using State = NodeMachine::State;
+using State = NodeStateMachine::State;
 using test::milliseconds;
 using test::seconds;
 struct MachineLinkTest : test::MachineTest {};
 
-TEST_F(MachineLinkTest, SaysHelloFirstAndAnswersTheWelcomeWithItsTokenAndAHeartbeat) {
+TEST_F(MachineLinkTest, SendsHelloFirstAndAnswersWelcomeWithItsTokenAndAHeartbeat) {
     EXPECT_EQ(machine->state(), State::Joining);
     const auto hellos = sent<wire::Hello>();
     ASSERT_EQ(hellos.size(), 1u);
@@ -23,7 +23,7 @@ TEST_F(MachineLinkTest, SaysHelloFirstAndAnswersTheWelcomeWithItsTokenAndAHeartb
     EXPECT_EQ(bulk[0].token, 101u);
     const wire::Heartbeat beat = last_heartbeat();
     EXPECT_EQ(beat.phase, session::NodePhase::Syncing);
-    EXPECT_EQ(beat.free_places, 4u);
+    EXPECT_EQ(beat.free_slots, 4u);
 }
 
 TEST_F(MachineLinkTest, GoesThroughItsStates) {
@@ -35,11 +35,11 @@ TEST_F(MachineLinkTest, GoesThroughItsStates) {
     EXPECT_EQ(machine->state(), State::Working);  // until the film is out
     machine->film_sent(UnitId{1});
     EXPECT_EQ(machine->state(), State::Idle);
-    tell(wire::Leave{});
+    send(wire::Leave{});
     EXPECT_EQ(machine->state(), State::Left);
 }
 
-TEST_F(MachineLinkTest, SilenceMeansNewSocketsWithGrowingPausesAndAHelloThatResumes) {
+TEST_F(MachineLinkTest, ATimeoutReconnectsWithBackoffAndResumes) {
     synced();
     pass(milliseconds(3001));
     EXPECT_EQ(machine->state(), State::Joining);
@@ -57,24 +57,24 @@ TEST_F(MachineLinkTest, SilenceMeansNewSocketsWithGrowingPausesAndAHelloThatResu
     for (std::size_t i = 1; i < pauses.size(); ++i) EXPECT_GT(pauses[i], pauses[i - 1]);
 }
 
-TEST_F(MachineLinkTest, BackUnderTheSameNumberItKeepsItsUnits) {
+TEST_F(MachineLinkTest, WelcomedUnderTheSameNumberItKeepsItsUnits) {
     synced();
     work(1);
-    tell(wire::Unknown{});
+    send(wire::Unknown{});
     EXPECT_EQ(machine->state(), State::Joining);
-    EXPECT_EQ(take<HoldBulk>().size(), 1u);
+    EXPECT_EQ(take<PauseBulk>().size(), 1u);
     EXPECT_EQ(sent<wire::Hello>().size(), 1u);
-    tell(wire::Unknown{});
-    EXPECT_TRUE(sent<wire::Hello>().empty());  // the answer is on its way
+    send(wire::Unknown{});
+    EXPECT_TRUE(sent<wire::Hello>().empty());  // the answer has not arrived yet
     actions.clear();
     welcome();
     const wire::Heartbeat beat = last_heartbeat();
-    EXPECT_EQ(beat.in_hand, std::vector{UnitId{1}});
+    EXPECT_EQ(beat.in_flight, std::vector{UnitId{1}});
     EXPECT_EQ(beat.version, builder.scene().version());
     EXPECT_TRUE(take<StopUnit>().empty());
     sequence = 0;  // numbers start again
     work(2);
-    EXPECT_EQ(last_heartbeat().in_hand, (std::vector{UnitId{1}, UnitId{2}}));
+    EXPECT_EQ(last_heartbeat().in_flight, (std::vector{UnitId{1}, UnitId{2}}));
 }
 
 TEST_F(MachineLinkTest, AnotherNumberDropsUnitsAndFilmButKeepsTheScene) {
@@ -82,12 +82,12 @@ TEST_F(MachineLinkTest, AnotherNumberDropsUnitsAndFilmButKeepsTheScene) {
     work(1);
     actions.clear();
     welcome(2);
-    EXPECT_EQ(take<DropFilm>().size(), 1u);
+    EXPECT_EQ(take<DiscardPendingFilm>().size(), 1u);
     EXPECT_EQ(take<StopUnit>().size(), 1u);
     const wire::Heartbeat beat = last_heartbeat();
-    EXPECT_TRUE(beat.in_hand.empty());
+    EXPECT_TRUE(beat.in_flight.empty());
     EXPECT_EQ(beat.version, builder.scene().version());
-    finish(1);  // comes late and is nobody's
+    finish(1);  // arrives late and is ignored
     EXPECT_TRUE(take<SendFilm>().empty());
     EXPECT_TRUE(sent<wire::UnitReleased>().empty());
 }
@@ -110,7 +110,7 @@ TEST_F(MachineLinkTest, HeartbeatsComeInTimeAndEchoTheMasters) {
     synced();
     pass(milliseconds(900));
     EXPECT_TRUE(sent<wire::Heartbeat>().empty());
-    tell(wire::Heartbeat{.sent_at = 77});
+    send(wire::Heartbeat{.sent_at = 77});
     pass(milliseconds(150));
     const wire::Heartbeat beat = last_heartbeat();
     EXPECT_EQ(beat.echo_sent_at, 77);
@@ -121,12 +121,12 @@ TEST_F(MachineLinkTest, HeartbeatsComeInTimeAndEchoTheMasters) {
 }
 
 TEST_F(MachineLinkTest, ARefusalEndsItWithTheReason) {
-    tell(wire::Refusal{"protocol 2 is spoken here"});
+    send(wire::Refusal{"protocol 2 is spoken here"});
     EXPECT_EQ(machine->state(), State::Left);
     EXPECT_NE(machine->failure_text().find("protocol 2 is spoken here"), std::string::npos);
 }
 
-TEST_F(MachineLinkTest, DrainingFinishesWhatIsRenderedAndHandsBackTheRest) {
+TEST_F(MachineLinkTest, DrainingFinishesRunningUnitsAndReleasesTheOthers) {
     synced();
     for (std::uint64_t id = 1; id <= 4; ++id) work(id);
     EXPECT_EQ(take<Render>().size(), 2u);
@@ -139,7 +139,7 @@ TEST_F(MachineLinkTest, DrainingFinishesWhatIsRenderedAndHandsBackTheRest) {
     EXPECT_EQ(released[0].reason, wire::ReleaseReason::Leaving);
     const wire::Heartbeat beat = last_heartbeat();
     EXPECT_EQ(beat.phase, session::NodePhase::Leaving);
-    EXPECT_EQ(beat.free_places, 0u);
+    EXPECT_EQ(beat.free_slots, 0u);
     EXPECT_TRUE(take<StopUnit>().empty());
 
     work(5);
@@ -157,7 +157,7 @@ TEST_F(MachineLinkTest, DrainingFinishesWhatIsRenderedAndHandsBackTheRest) {
     EXPECT_EQ(machine->state(), State::Left);
 }
 
-TEST_F(MachineLinkTest, AskedTwiceItLeavesAtOnce) {
+TEST_F(MachineLinkTest, ASecondLeaveIsImmediate) {
     synced();
     work(1);
     actions.clear();
@@ -171,10 +171,10 @@ TEST_F(MachineLinkTest, AskedTwiceItLeavesAtOnce) {
     EXPECT_EQ(machine->state(), State::Left);
 }
 
-TEST_F(MachineLinkTest, WhatNoMasterSendsIsCountedAndHarmless) {
+TEST_F(MachineLinkTest, UnexpectedMessagesAreCountedAndHarmless) {
     synced();
-    tell(wire::Hello{});
-    tell(wire::StatusReply{});
+    send(wire::Hello{});
+    send(wire::StatusReply{});
     machine->bulk(wire::BlobRequest{}, now);
     machine->malformed("nonsense", now);
     EXPECT_EQ(machine->counters().malformed_messages, 4u);

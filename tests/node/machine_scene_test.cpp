@@ -1,11 +1,11 @@
-// Keeping the scene: change lists, blobs, builds.
+// Scene updates: change lists, blobs, builds.
 #include "mediator/wire/envelope.h"
 #include "tests/node/machine_fixture.h"
 
 namespace tessera::node {
 namespace {
 
-using State = NodeMachine::State;
+using State = NodeStateMachine::State;
 using test::milliseconds;
 using test::seconds;
 
@@ -17,7 +17,7 @@ struct MachineSceneTest : test::MachineTest {
 
 TEST_F(MachineSceneTest, ReportsAVersionWhenItIsBuilt) {
     welcome();
-    tell(wire::Changes{builder.edit({scene::Create{scene::RootId, scene::Root{}}})});
+    send(wire::Changes{builder.edit({scene::Create{scene::RootId, scene::Root{}}})});
     EXPECT_TRUE(sent<wire::VersionReport>().empty());
     EXPECT_EQ(last_heartbeat().phase, session::NodePhase::Building);
     ASSERT_EQ(take<BuildScene>().size(), 1u);
@@ -35,16 +35,16 @@ TEST_F(MachineSceneTest, ReportsAVersionWhenItIsBuilt) {
     EXPECT_EQ(machine->state(), State::Idle);
 }
 
-TEST_F(MachineSceneTest, AReportTellsWhenTheFirstListOfItsBuildCameAndWhenItWasBuilt) {
+TEST_F(MachineSceneTest, AReportHasTheTimesOfItsFirstListAndOfTheBuild) {
     const auto ns = [](TimePoint time) { return time.time_since_epoch().count(); };
     synced();
     const TimePoint first = now;
-    tell(wire::Changes{camera(50)});
+    send(wire::Changes{camera(50)});
     pass(milliseconds(10));
     const TimePoint second = now;
-    tell(wire::Changes{camera(51)});  // these two wait for the build of the first
+    send(wire::Changes{camera(51)});  // these two wait for the build of the first
     pass(milliseconds(10));
-    tell(wire::Changes{camera(52)});
+    send(wire::Changes{camera(52)});
     pass(milliseconds(10));
     build();
     const TimePoint built = now;
@@ -61,13 +61,13 @@ TEST_F(MachineSceneTest, AReportTellsWhenTheFirstListOfItsBuildCameAndWhenItWasB
 
 TEST_F(MachineSceneTest, ListsBeforeASnapshotDoNotCountAsReceived) {
     synced();
-    tell(wire::Changes{camera(50)});
-    tell(wire::Changes{camera(51)});
+    send(wire::Changes{camera(50)});
+    send(wire::Changes{camera(51)});
     pass(milliseconds(10));
     const scene::ChangeList lost = camera(52);
-    tell(wire::Changes{camera(53)});  // a gap
+    send(wire::Changes{camera(53)});  // a gap
     pass(milliseconds(10));
-    tell(wire::Changes{snapshot(builder.scene())});
+    send(wire::Changes{snapshot(builder.scene())});
     build();  // of 50
     build();
     const auto reports = sent<wire::VersionReport>();
@@ -76,35 +76,35 @@ TEST_F(MachineSceneTest, ListsBeforeASnapshotDoNotCountAsReceived) {
     EXPECT_EQ(reports[1].received_at, now.time_since_epoch().count());
 }
 
-TEST_F(MachineSceneTest, HeartbeatsGoOnDuringABuild) {
+TEST_F(MachineSceneTest, HeartbeatsContinueDuringABuild) {
     welcome();
-    tell(wire::Changes{builder.edit({scene::Create{scene::RootId, scene::Root{}}})});
+    send(wire::Changes{builder.edit({scene::Create{scene::RootId, scene::Root{}}})});
     actions.clear();
     for (int i = 0; i < 5; ++i) {
-        tell(wire::Heartbeat{.sent_at = 1});
+        send(wire::Heartbeat{.sent_at = 1});
         pass(seconds(1));
         EXPECT_EQ(last_heartbeat().phase, session::NodePhase::Building);
     }
 }
 
-TEST_F(MachineSceneTest, AGapAsksForASnapshotOnceAndTheSnapshotHealsIt) {
+TEST_F(MachineSceneTest, AGapRequestsOneSnapshotThatRepairsIt) {
     synced();
     camera(50);  // gets lost
-    tell(wire::Changes{camera(51)});
+    send(wire::Changes{camera(51)});
     const auto resyncs = sent<wire::Resync>();
     ASSERT_EQ(resyncs.size(), 1u);
     EXPECT_EQ(resyncs[0].version.number, 1u);
-    tell(wire::Changes{camera(52)});
+    send(wire::Changes{camera(52)});
     EXPECT_TRUE(sent<wire::Resync>().empty());
     for (int i = 0; i < 4; ++i) {
-        tell(wire::Heartbeat{.sent_at = 1});
+        send(wire::Heartbeat{.sent_at = 1});
         pass(seconds(1));
     }
     EXPECT_EQ(sent<wire::Resync>().size(), 1u);  // the request may have got lost too
-    tell(wire::Changes{snapshot(builder.scene())});
+    send(wire::Changes{snapshot(builder.scene())});
     build();
     EXPECT_EQ(sent<wire::VersionReport>().back().state_hash, builder.scene().state_hash());
-    tell(wire::Changes{camera(53)});
+    send(wire::Changes{camera(53)});
     build();
     EXPECT_EQ(machine->counters().resyncs, 2u);
 }
@@ -113,7 +113,7 @@ TEST_F(MachineSceneTest, AnotherEpochIsAResync) {
     synced();
     scene::ChangeList list = camera(50);
     list.from.epoch = list.to.epoch = Epoch + 5;
-    tell(wire::Changes{list});
+    send(wire::Changes{list});
     EXPECT_EQ(sent<wire::Resync>().size(), 1u);
     EXPECT_TRUE(take<BuildScene>().empty());
 }
@@ -121,24 +121,24 @@ TEST_F(MachineSceneTest, AnotherEpochIsAResync) {
 TEST_F(MachineSceneTest, ADuplicateIsHarmlessAndReportedAgain) {
     synced();
     const scene::ChangeList list = camera(50);
-    tell(wire::Changes{list});
+    send(wire::Changes{list});
     build();
     actions.clear();
-    tell(wire::Changes{list});
+    send(wire::Changes{list});
     EXPECT_TRUE(take<BuildScene>().empty());
     EXPECT_TRUE(sent<wire::Resync>().empty());
     EXPECT_EQ(sent<wire::VersionReport>().size(), 1u);
 }
 
-TEST_F(MachineSceneTest, AWrongHashIsAResyncAndTheSecondAtTheSameVersionTheEnd) {
+TEST_F(MachineSceneTest, AWrongHashIsAResyncAndASecondOneAtTheSameVersionIsFatal) {
     synced();
     scene::ChangeList list = camera(50);
     list.state_hash.low ^= 1;
-    tell(wire::Changes{list});
+    send(wire::Changes{list});
     EXPECT_EQ(sent<wire::Resync>().size(), 1u);
     scene::ChangeList wrong = snapshot(builder.scene());
     wrong.state_hash.low ^= 1;
-    tell(wire::Changes{wrong});
+    send(wire::Changes{wrong});
     EXPECT_EQ(machine->state(), State::Left);
     EXPECT_EQ(sent<wire::Goodbye>().size(), 1u);
     EXPECT_NE(machine->failure_text().find("twice at version 2"), std::string::npos);
@@ -146,23 +146,23 @@ TEST_F(MachineSceneTest, AWrongHashIsAResyncAndTheSecondAtTheSameVersionTheEnd) 
 
 TEST_F(MachineSceneTest, AFailedBuildStartsOverFromASnapshot) {
     synced();
-    tell(wire::Changes{camera(50)});
+    send(wire::Changes{camera(50)});
     ASSERT_EQ(take<BuildScene>().size(), 1u);
     BuildOutcome outcome;
     outcome.report = failure(ErrorCode::Internal, "went wrong");
     machine->built(std::move(outcome), now);
     collect();
     ASSERT_EQ(sent<wire::Resync>().size(), 1u);
-    EXPECT_EQ(last_heartbeat().version, Version{});  // nobody knows what the back-end holds
-    tell(wire::Changes{snapshot(builder.scene())});
+    EXPECT_EQ(last_heartbeat().version, Version{});  // the back-end's state is unknown
+    send(wire::Changes{snapshot(builder.scene())});
     build();
     EXPECT_EQ(last_heartbeat().version, builder.scene().version());
 }
 
-TEST_F(MachineSceneTest, AVersionWithoutRoomIsToldAndTheNextOneTried) {
+TEST_F(MachineSceneTest, AVersionThatDoesNotFitIsReportedAndTheNextOneTried) {
     synced();
     const Version fits = builder.scene().version();
-    tell(wire::Changes{camera(50)});
+    send(wire::Changes{camera(50)});
     ASSERT_EQ(take<BuildScene>().size(), 1u);
     const Version too_large = builder.scene().version();
     BuildOutcome outcome;
@@ -173,27 +173,27 @@ TEST_F(MachineSceneTest, AVersionWithoutRoomIsToldAndTheNextOneTried) {
     ASSERT_EQ(refused.size(), 1u);
     EXPECT_EQ(refused[0].version, too_large);
     EXPECT_EQ(refused[0].reason, "3 GiB of 2");
-    EXPECT_EQ(last_heartbeat().version, fits) << "the back-end keeps the last good one";
+    EXPECT_EQ(last_heartbeat().version, fits) << "the back-end keeps the last version that fits";
     for (int i = 0; i < 8; ++i) {
-        tell(wire::Heartbeat{.sent_at = 1});
+        send(wire::Heartbeat{.sent_at = 1});
         pass(seconds(1));
     }
     EXPECT_TRUE(sent<wire::Resync>().empty()) << "the same version would not fit either";
     EXPECT_EQ(machine->state(), State::Idle);
 
-    tell(wire::Changes{camera(51)});
+    send(wire::Changes{camera(51)});
     ASSERT_EQ(sent<wire::Resync>().size(), 1u);
-    tell(wire::Changes{snapshot(builder.scene())});
+    send(wire::Changes{snapshot(builder.scene())});
     build();
     EXPECT_EQ(last_heartbeat().version, builder.scene().version());
 }
 
 TEST_F(MachineSceneTest, ListsThatCameDuringABuildAreBuiltTogether) {
     synced();
-    tell(wire::Changes{camera(50)});
+    send(wire::Changes{camera(50)});
     ASSERT_EQ(take<BuildScene>().size(), 1u);
-    tell(wire::Changes{camera(51)});
-    tell(wire::Changes{camera(52)});
+    send(wire::Changes{camera(51)});
+    send(wire::Changes{camera(52)});
     EXPECT_TRUE(take<BuildScene>().empty());
     machine->built({}, now);
     collect();
@@ -208,14 +208,14 @@ TEST_F(MachineSceneTest, BlobsAreFetchedBeforeTheBuildAndTheOldVersionIsRendered
     scene::Geometry geometry;
     geometry.positions = reference(*blob);
     const Version old = builder.scene().version();
-    tell(wire::Changes{builder.edit({scene::Create{ObjectId{60}, geometry}})});
+    send(wire::Changes{builder.edit({scene::Create{ObjectId{60}, geometry}})});
     EXPECT_TRUE(take<BuildScene>().empty());
     EXPECT_EQ(last_heartbeat().phase, session::NodePhase::Syncing);
     const auto requests = take<SendBulk>();
     ASSERT_EQ(requests.size(), 1u);
     EXPECT_EQ(std::get<wire::BlobRequest>(requests[0].message).hash, blob->hash());
 
-    tell(wire::Work{++sequence, unit(1, old)});
+    send(wire::Work{++sequence, unit(1, old)});
     EXPECT_EQ(take<Render>().size(), 1u);
 
     machine->bulk(wire::BlobChunk{blob->hash(), 300, 0, {blob->bytes().begin(), blob->bytes().end()}}, now);
@@ -226,21 +226,21 @@ TEST_F(MachineSceneTest, BlobsAreFetchedBeforeTheBuildAndTheOldVersionIsRendered
     EXPECT_EQ(builds[0].build.unchecked[0], ObjectId{60});
 }
 
-TEST_F(MachineSceneTest, ABlobThatTheMasterLacksIsAskedForAgain) {
+TEST_F(MachineSceneTest, ABlobThatTheMasterLacksIsRequestedAgain) {
     synced();
     const auto blob = std::make_shared<const scene::Blob>(std::vector<std::byte>(300));
     scene::Geometry geometry;
     geometry.positions = reference(*blob);
-    tell(wire::Changes{builder.edit({scene::Create{ObjectId{60}, geometry}})});
+    send(wire::Changes{builder.edit({scene::Create{ObjectId{60}, geometry}})});
     ASSERT_EQ(take<SendBulk>().size(), 1u);
     machine->bulk(wire::BlobAbsent{blob->hash()}, now);
     collect();
     EXPECT_TRUE(take<SendBulk>().empty());
-    tell(wire::Heartbeat{.sent_at = 1});
+    send(wire::Heartbeat{.sent_at = 1});
     pass(seconds(1));
     std::size_t requests = 0;
-    for (const SendBulk& send : take<SendBulk>())
-        requests += std::holds_alternative<wire::BlobRequest>(send.message);
+    for (const SendBulk& action : take<SendBulk>())
+        requests += std::holds_alternative<wire::BlobRequest>(action.message);
     ASSERT_EQ(requests, 1u);
     machine->bulk(wire::BlobChunk{blob->hash(), 300, 0, {blob->bytes().begin(), blob->bytes().end()}}, now);
     collect();
@@ -253,9 +253,9 @@ TEST_F(MachineSceneTest, ASnapshotByBlobIsFetchedReadAndBuilt) {
     camera(50);
     const auto blob = std::make_shared<const scene::Blob>(wire::encode(snapshot(builder.scene())));
     const wire::ChangesByBlob announced{{Epoch, 0}, builder.scene().version(), reference(*blob)};
-    tell(announced);
+    send(announced);
     EXPECT_TRUE(take<BuildScene>().empty());
-    tell(wire::Changes{camera(51)});  // overtakes nothing: its turn comes after the blob's
+    send(wire::Changes{camera(51)});  // overtakes nothing: its turn comes after the blob's
     blobs->insert(blob);
     pass(Duration(1));
     const auto builds = take<BuildScene>();
@@ -264,22 +264,22 @@ TEST_F(MachineSceneTest, ASnapshotByBlobIsFetchedReadAndBuilt) {
     EXPECT_EQ(builds[0].build.scene().version(), builder.scene().version());
 }
 
-TEST_F(MachineSceneTest, ABlobThatHoldsNoChangeListIsAResync) {
+TEST_F(MachineSceneTest, ABlobThatIsNotAChangeListIsAResync) {
     welcome();
     const auto blob = std::make_shared<const scene::Blob>(std::vector<std::byte>(100, std::byte{0xee}));
     blobs->insert(blob);
-    tell(wire::ChangesByBlob{{Epoch, 0}, {Epoch, 7}, reference(*blob)});
+    send(wire::ChangesByBlob{{Epoch, 0}, {Epoch, 7}, reference(*blob)});
     EXPECT_EQ(sent<wire::Resync>().size(), 1u);
 }
 
-TEST_F(MachineSceneTest, WithACacheItLooksThereFirst) {
+TEST_F(MachineSceneTest, TheCacheIsSearchedFirst) {
     settings.cache = "somewhere";
     restart();
     synced();
     const auto blob = std::make_shared<const scene::Blob>(std::vector<std::byte>(300));
     scene::Geometry geometry;
     geometry.positions = reference(*blob);
-    tell(wire::Changes{builder.edit({scene::Create{ObjectId{60}, geometry}})});
+    send(wire::Changes{builder.edit({scene::Create{ObjectId{60}, geometry}})});
     const auto loads = take<LoadBlobs>();
     ASSERT_EQ(loads.size(), 1u);
     EXPECT_TRUE(take<SendBulk>().empty());

@@ -30,25 +30,25 @@ struct MachineWorkTest : test::MachineTest {
 TEST_F(MachineWorkTest, CreditsAreAbsolute) {
     for (std::uint64_t id = 1; id <= 3; ++id) work(id);
     wire::Heartbeat beat = last_heartbeat();
-    EXPECT_EQ(beat.in_hand, (std::vector{UnitId{1}, UnitId{2}, UnitId{3}}));
-    EXPECT_EQ(beat.free_places, 1u);
+    EXPECT_EQ(beat.in_flight, (std::vector{UnitId{1}, UnitId{2}, UnitId{3}}));
+    EXPECT_EQ(beat.free_slots, 1u);
     EXPECT_EQ(beat.last_work_sequence, 3u);
     EXPECT_EQ(beat.phase, session::NodePhase::Rendering);
     EXPECT_EQ(take<Render>().size(), 2u);
     finish(1);
     beat = last_heartbeat();
-    EXPECT_EQ(beat.in_hand.size(), 3u);  // its film is not out yet
-    EXPECT_EQ(beat.free_places, 1u);
+    EXPECT_EQ(beat.in_flight.size(), 3u);  // its film is not out yet
+    EXPECT_EQ(beat.free_slots, 1u);
     EXPECT_EQ(beat.progress, 8u * 64u);
     EXPECT_EQ(take<Render>().size(), 1u);
     machine->film_sent(UnitId{1});
     collect();
     beat = last_heartbeat();
-    EXPECT_EQ(beat.in_hand, (std::vector{UnitId{2}, UnitId{3}}));
-    EXPECT_EQ(beat.free_places, 2u);
+    EXPECT_EQ(beat.in_flight, (std::vector{UnitId{2}, UnitId{3}}));
+    EXPECT_EQ(beat.free_slots, 2u);
 }
 
-TEST_F(MachineWorkTest, FilmTellsWhereItBelongs) {
+TEST_F(MachineWorkTest, FilmNamesItsUnitViewAndVersion) {
     work(1);
     UnitOutcome outcome = done(unit(1));
     outcome.result.rays = 99;
@@ -66,22 +66,22 @@ TEST_F(MachineWorkTest, FilmTellsWhereItBelongs) {
     EXPECT_EQ(part.film.block, (frame::SampleBlock{0, 3}));
 }
 
-TEST_F(MachineWorkTest, RepeatedAndOvertakenWorkIsDropped) {
-    tell(wire::Work{5, unit(1)});
-    tell(wire::Work{5, unit(1)});
-    tell(wire::Work{4, unit(2)});
-    tell(wire::Work{6, unit(1)});
+TEST_F(MachineWorkTest, RepeatedAndOutdatedWorkIsDropped) {
+    send(wire::Work{5, unit(1)});
+    send(wire::Work{5, unit(1)});
+    send(wire::Work{4, unit(2)});
+    send(wire::Work{6, unit(1)});
     const wire::Heartbeat beat = last_heartbeat();
-    EXPECT_EQ(beat.in_hand, std::vector{UnitId{1}});
+    EXPECT_EQ(beat.in_flight, std::vector{UnitId{1}});
     EXPECT_EQ(beat.last_work_sequence, 6u);
     EXPECT_EQ(take<Render>().size(), 1u);
 }
 
-TEST_F(MachineWorkTest, WhatItCannotRenderItHandsBackWithAReason) {
+TEST_F(MachineWorkTest, UnitsThatCannotBeRenderedAreReleasedWithAReason) {
     const auto reason = [&](auto change) {
         view::WorkUnit bad = unit(100 + sequence);
         change(bad);
-        tell(wire::Work{++sequence, bad});
+        send(wire::Work{++sequence, bad});
         return only_release().reason;
     };
     EXPECT_EQ(reason([](auto& bad) { bad.view = ViewId{9}; }), ReleaseReason::UnknownView);
@@ -97,40 +97,40 @@ TEST_F(MachineWorkTest, WhatItCannotRenderItHandsBackWithAReason) {
     EXPECT_EQ(reason([](auto& bad) { bad.block = {1, 1}; }), ReleaseReason::Failed);
     EXPECT_EQ(reason([](auto& bad) { bad.block = {0, 40}; }), ReleaseReason::Failed);
     EXPECT_TRUE(take<Render>().empty());
-    EXPECT_EQ(last_heartbeat().free_places, 4u);
+    EXPECT_EQ(last_heartbeat().free_slots, 4u);
 }
 
-TEST_F(MachineWorkTest, AViewThatMakesNoSenseIsNotOpened) {
+TEST_F(MachineWorkTest, AnInvalidViewIsNotOpened) {
     view::View bad = view;
     bad.id = ViewId{2};
     bad.window = {0, 0, 65, 64};
-    tell(wire::OpenView{bad});
+    send(wire::OpenView{bad});
     bad.window = {0, 0, 64, 64};
     bad.channels = {frame::Channel::Depth};  // the back-end has only radiance
-    tell(wire::OpenView{bad});
+    send(wire::OpenView{bad});
     EXPECT_EQ(sent<wire::Notice>().size(), 2u);
     bad.channels = view.channels;
     bad.renderer = view::Renderer::Raster;  // which draws, and the back-end traces
-    tell(wire::OpenView{bad});
+    send(wire::OpenView{bad});
     const auto refusals = sent<wire::Notice>();
     ASSERT_EQ(refusals.size(), 1u);
     EXPECT_NE(refusals.back().text.find("the renderer raster"), std::string::npos) << refusals.back().text;
     view::WorkUnit unit_of_it = unit(1);
     unit_of_it.view = bad.id;
-    tell(wire::Work{++sequence, unit_of_it});
+    send(wire::Work{++sequence, unit_of_it});
     EXPECT_EQ(only_release().reason, ReleaseReason::UnknownView);
 }
 
-TEST_F(MachineWorkTest, AFloodBeyondTheCreditsIsHandedBack) {
+TEST_F(MachineWorkTest, UnitsFarBeyondTheCreditsAreReleased) {
     for (std::uint64_t id = 1; id <= 200; ++id) work(id);
     const auto released = sent<wire::UnitReleased>();
     EXPECT_GT(released.size(), 100u);
-    EXPECT_EQ(released.size() + last_heartbeat().in_hand.size(), 200u);
+    EXPECT_EQ(released.size() + last_heartbeat().in_flight.size(), 200u);
 }
 
-TEST_F(MachineWorkTest, CancellingReleasesWhatWaitsAndStopsWhatIsRendered) {
+TEST_F(MachineWorkTest, CancellingReleasesWaitingUnitsAndStopsRunningOnes) {
     for (std::uint64_t id = 1; id <= 3; ++id) work(id);
-    tell(wire::CancelUnits{{UnitId{1}, UnitId{3}, UnitId{77}}});
+    send(wire::CancelUnits{{UnitId{1}, UnitId{3}, UnitId{77}}});
     EXPECT_EQ(only_release().unit, UnitId{3});
     const auto stops = take<StopUnit>();
     ASSERT_EQ(stops.size(), 1u);
@@ -150,7 +150,7 @@ TEST_F(MachineWorkTest, CancellingReleasesWhatWaitsAndStopsWhatIsRendered) {
 
 TEST_F(MachineWorkTest, AUnitThatEndedBeforeItWasStoppedSendsItsFilm) {
     work(1);
-    tell(wire::CancelUnits{{UnitId{1}}});
+    send(wire::CancelUnits{{UnitId{1}}});
     finish(1);
     EXPECT_EQ(take<SendFilm>().size(), 1u);
     machine->film_sent(UnitId{1});
@@ -162,7 +162,7 @@ TEST_F(MachineWorkTest, ANewRevisionEndsTheUnitsOfTheOldWithoutFilm) {
     for (std::uint64_t id = 1; id <= 3; ++id) work(id);
     actions.clear();
     ++view.revision;
-    tell(wire::OpenView{view});
+    send(wire::OpenView{view});
     EXPECT_EQ(only_release().unit, UnitId{3});
     EXPECT_EQ(take<StopUnit>().size(), 2u);
     stopped(1);
@@ -171,20 +171,20 @@ TEST_F(MachineWorkTest, ANewRevisionEndsTheUnitsOfTheOldWithoutFilm) {
 
     view::View old = view;
     --old.revision;
-    tell(wire::OpenView{old});  // late: the newer one stays
+    send(wire::OpenView{old});  // late: the newer one stays
     work(4);
     EXPECT_TRUE(sent<wire::UnitReleased>().empty());
 }
 
 TEST_F(MachineWorkTest, AClosedViewHasNoUnits) {
     work(1);
-    tell(wire::CloseView{view.id});
+    send(wire::CloseView{view.id});
     EXPECT_EQ(take<StopUnit>().size(), 1u);
     work(2);
     EXPECT_EQ(only_release().reason, ReleaseReason::UnknownView);
 }
 
-TEST_F(MachineWorkTest, AFailingUnitIsHandedBackWithTheWayToReplayIt) {
+TEST_F(MachineWorkTest, AFailingUnitIsReleasedWithTheCommandThatReproducesIt) {
     work(1);
     UnitOutcome outcome;
     outcome.error = "unit 1 failed: replay it";
@@ -195,16 +195,16 @@ TEST_F(MachineWorkTest, AFailingUnitIsHandedBackWithTheWayToReplayIt) {
     EXPECT_EQ(released.message, "unit 1 failed: replay it");
 }
 
-TEST_F(MachineWorkTest, ANewVersionHandsBackWhatWaitsAndTakesWhatWasSentForIt) {
+TEST_F(MachineWorkTest, ANewVersionReleasesWaitingUnitsAndAcceptsItsOwn) {
     for (std::uint64_t id = 1; id <= 3; ++id) work(id);
     actions.clear();
     const scene::ChangeList list = builder.edit({scene::Create{ObjectId{50}, scene::Camera{}}});
-    tell(wire::Changes{list});
+    send(wire::Changes{list});
     EXPECT_EQ(take<BuildScene>().size(), 1u);
     EXPECT_EQ(only_release().unit, UnitId{3});
-    tell(wire::Work{++sequence, unit(4, list.from)});
+    send(wire::Work{++sequence, unit(4, list.from)});
     EXPECT_EQ(only_release().reason, ReleaseReason::OtherVersion);
-    tell(wire::Work{++sequence, unit(5, list.to)});
+    send(wire::Work{++sequence, unit(5, list.to)});
     EXPECT_TRUE(sent<wire::UnitReleased>().empty());
     finish(1);
     finish(2);

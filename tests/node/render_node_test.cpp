@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 using session::NodePhase;
 using wire::ReleaseReason;
 
-// The null back-end, with edits that take as long as the test wants.
+// The null back-end with edits of a given duration.
 class SlowBackend final : public backend::Backend {
   public:
     SlowBackend(std::unique_ptr<backend::Backend> inner, Duration edit_time)
@@ -62,14 +62,14 @@ struct RenderNodeTest : testing::Test {
     void start_synced(std::unique_ptr<backend::Backend> with) {
         start(std::move(with));
         master.welcome();
-        master.tell(wire::Changes{builder.edit(test::contract_scene(master.blobs))});
+        master.send(wire::Changes{builder.edit(test::contract_scene(master.blobs))});
         EXPECT_EQ(master.expect<wire::VersionReport>().state_hash, builder.scene().state_hash());
         view = test::contract_view({frame::Channel::Radiance});
-        master.tell(wire::OpenView{view});
+        master.send(wire::OpenView{view});
     }
 
     void work(std::uint64_t id, frame::SampleBlock block = {0, 2}) {
-        master.tell(wire::Work{++sequence, unit(id, block)});
+        master.send(wire::Work{++sequence, unit(id, block)});
     }
     view::WorkUnit unit(std::uint64_t id, frame::SampleBlock block = {0, 2}) const {
         return {.id = UnitId{id},
@@ -109,16 +109,16 @@ TEST_F(RenderNodeTest, FetchesBuildsRendersAndSendsTheSameBitsAsTheBackEndAlone)
         EXPECT_TRUE(frame::identical_bits(part.film, expected.blocks.at(0)));
         EXPECT_EQ(part.rays, 4u * 256u);
     }
-    const wire::Heartbeat beat =
-        master.expect_heartbeat([](const auto& b) { return b.in_hand.empty() && b.last_work_sequence == 3; });
+    const wire::Heartbeat beat = master.expect_heartbeat(
+        [](const auto& b) { return b.in_flight.empty() && b.last_work_sequence == 3; });
     EXPECT_EQ(beat.progress, 3u * 4u * 256u);
-    EXPECT_EQ(beat.free_places, 4u);
+    EXPECT_EQ(beat.free_slots, 4u);
 }
 
-TEST_F(RenderNodeTest, HeartbeatsGoOnWhileItBuilds) {
+TEST_F(RenderNodeTest, HeartbeatsContinueWhileItBuilds) {
     start(std::make_unique<SlowBackend>(null_backend(), 600ms));
     master.welcome();
-    master.tell(wire::Changes{builder.edit(test::contract_scene(master.blobs))});
+    master.send(wire::Changes{builder.edit(test::contract_scene(master.blobs))});
     master.expect_heartbeat([](const auto& beat) { return beat.phase == NodePhase::Building; });
     int building = 0;
     while (master.expect<wire::Heartbeat>().phase == NodePhase::Building) ++building;
@@ -131,32 +131,32 @@ TEST_F(RenderNodeTest, BadGeometryFromTheNetworkIsReported) {
     auto entries = test::contract_scene(master.blobs);
     auto& geometry = std::get<scene::Geometry>(std::get<scene::Create>(entries[5]).object);
     geometry.indices = test::array_blob<std::uint32_t>(master.blobs, {0, 1, 4'000'000'000u});
-    master.tell(wire::Changes{builder.edit(std::move(entries))});
+    master.send(wire::Changes{builder.edit(std::move(entries))});
     EXPECT_FALSE(master.expect<wire::VersionReport>().problems.empty());
 }
 
-TEST_F(RenderNodeTest, ABlobThatComesLateIsWaitedFor) {
+TEST_F(RenderNodeTest, ADelayedBlobIsWaitedFor) {
     start(null_backend());
     master.welcome();
     scene::BlobStore elsewhere;
-    master.tell(wire::Changes{builder.edit(test::contract_scene(elsewhere))});
+    master.send(wire::Changes{builder.edit(test::contract_scene(elsewhere))});
     master.expect_heartbeat(
-        [](const auto& beat) { return beat.phase == NodePhase::Syncing && beat.free_places == 4; });
+        [](const auto& beat) { return beat.phase == NodePhase::Syncing && beat.free_slots == 4; });
     test::contract_scene(master.blobs);
     EXPECT_EQ(master.expect<wire::VersionReport>().version, builder.scene().version());
 }
 
-TEST_F(RenderNodeTest, CancellingALongUnitGivesItsPlaceBack) {
+TEST_F(RenderNodeTest, CancellingALongUnitFreesItsSlot) {
     start_synced(null_backend(1us));
     work(1, {0, 20});
-    master.expect_heartbeat([](const auto& beat) { return beat.in_hand.size() == 1; });
+    master.expect_heartbeat([](const auto& beat) { return beat.in_flight.size() == 1; });
     std::this_thread::sleep_for(20ms);
-    master.tell(wire::CancelUnits{{UnitId{1}}});
+    master.send(wire::CancelUnits{{UnitId{1}}});
     EXPECT_EQ(master.expect<wire::UnitReleased>().reason, ReleaseReason::Cancelled);
-    master.expect_heartbeat([](const auto& beat) { return beat.free_places == 4; });
+    master.expect_heartbeat([](const auto& beat) { return beat.free_slots == 4; });
 }
 
-TEST_F(RenderNodeTest, DrainsWhenAskedAndSaysWhatItSent) {
+TEST_F(RenderNodeTest, DrainsAndReportsTheUnitsSent) {
     start_synced(null_backend(20us));
     for (std::uint64_t id = 1; id <= 4; ++id) work(id, {0, 4});
     master.expect_heartbeat([](const auto& beat) { return beat.last_work_sequence == 4; });
@@ -175,20 +175,20 @@ TEST_F(RenderNodeTest, DrainsWhenAskedAndSaysWhatItSent) {
     EXPECT_EQ(result.counters.units_released, 2u);
 }
 
-TEST_F(RenderNodeTest, ToldToLeaveAtOnceItDoesNotFinish) {
+TEST_F(RenderNodeTest, LeavingAtOnceFinishesNoUnits) {
     start_synced(null_backend(100us));
     work(1, {0, 20});
-    master.expect_heartbeat([](const auto& beat) { return beat.in_hand.size() == 1; });
+    master.expect_heartbeat([](const auto& beat) { return beat.in_flight.size() == 1; });
     at_once.request_stop();
     EXPECT_TRUE(master.expect<wire::Goodbye>().units_sent.empty());
     thread.join();
 }
 
-TEST_F(RenderNodeTest, NonsenseOnTheWireIsDroppedAndCounted) {
+TEST_F(RenderNodeTest, MalformedMessagesAreDroppedAndCounted) {
     start_synced(null_backend());
     for (std::size_t size : {0u, 1u, 7u, 300u}) {
-        master.tell_raw(net::Link::Control, net::Bytes(size, std::byte{0xa5}));
-        master.tell_raw(net::Link::Bulk, net::Bytes(size, std::byte{0xa5}));
+        master.send_raw(net::Link::Control, net::Bytes(size, std::byte{0xa5}));
+        master.send_raw(net::Link::Bulk, net::Bytes(size, std::byte{0xa5}));
     }
     work(1);
     EXPECT_EQ(master.expect_bulk<wire::FilmPart>().unit, UnitId{1});
@@ -200,12 +200,12 @@ TEST_F(RenderNodeTest, NonsenseOnTheWireIsDroppedAndCounted) {
 TEST_F(RenderNodeTest, ARefusalEndsTheRunWithItsReason) {
     start(null_backend());
     master.expect<wire::Hello>();
-    master.tell(wire::Refusal{"not here"});
+    master.send(wire::Refusal{"not here"});
     thread.join();
     EXPECT_NE(result.failure.find("not here"), std::string::npos);
 }
 
-TEST_F(RenderNodeTest, SilenceOfTheMasterBringsAnotherHello) {
+TEST_F(RenderNodeTest, ATimeoutOfTheMasterIsFollowedByAnotherHello) {
     NodeSettings settings;
     settings.liveness.interval = 20ms;
     settings.liveness.min_backoff = 10ms;
@@ -216,7 +216,7 @@ TEST_F(RenderNodeTest, SilenceOfTheMasterBringsAnotherHello) {
     master.heartbeats = false;
     EXPECT_EQ(master.expect<wire::Hello>().resume_token, 0u);
     EXPECT_EQ(master.expect<wire::Hello>().resume_token, 0u);
-    master.tell(wire::Welcome{
+    master.send(wire::Welcome{
         .peer_number = 3, .token = 33, .epoch = 1, .heartbeat_interval = 20ms, .missed_heartbeats = 3});
     EXPECT_EQ(master.expect<wire::Hello>().resume_token, 33u);
     EXPECT_GE(reconnects, 1);

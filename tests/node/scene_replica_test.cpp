@@ -8,7 +8,7 @@
 namespace tessera::node {
 namespace {
 
-using Verdict = SceneReplica::Verdict;
+using CheckResult = SceneReplica::CheckResult;
 
 struct SceneReplicaTest : testing::Test {
     SceneReplicaTest() { replica.start_epoch(1); }
@@ -22,26 +22,26 @@ struct SceneReplicaTest : testing::Test {
 
 TEST_F(SceneReplicaTest, OnlyTheNextVersionOrASnapshotIsAccepted) {
     const auto one = camera(2), two = camera(3), three = camera(4);
-    EXPECT_EQ(replica.offer(one), Verdict::Accepted);
-    EXPECT_EQ(replica.offer(one), Verdict::Duplicate);
-    EXPECT_EQ(replica.offer(three), Verdict::Gap);
-    EXPECT_EQ(replica.offer(two), Verdict::Accepted);
-    EXPECT_EQ(replica.offer(one), Verdict::Duplicate);
-    EXPECT_EQ(replica.offer(snapshot(builder.scene())), Verdict::Accepted);
-    EXPECT_EQ(replica.offer(three), Verdict::Duplicate);
-    EXPECT_EQ(replica.offer(snapshot(builder.scene())), Verdict::Duplicate);
+    EXPECT_EQ(replica.receive(one), CheckResult::Accepted);
+    EXPECT_EQ(replica.receive(one), CheckResult::Duplicate);
+    EXPECT_EQ(replica.receive(three), CheckResult::Gap);
+    EXPECT_EQ(replica.receive(two), CheckResult::Accepted);
+    EXPECT_EQ(replica.receive(one), CheckResult::Duplicate);
+    EXPECT_EQ(replica.receive(snapshot(builder.scene())), CheckResult::Accepted);
+    EXPECT_EQ(replica.receive(three), CheckResult::Duplicate);
+    EXPECT_EQ(replica.receive(snapshot(builder.scene())), CheckResult::Duplicate);
 
     scene::ChangeList jump = camera(5);  // a list that claims to lead two versions on
     ++jump.to.number;
-    EXPECT_EQ(replica.offer(jump), Verdict::Gap);
+    EXPECT_EQ(replica.receive(jump), CheckResult::Gap);
     scene::ChangeList foreign = snapshot(builder.scene());
     foreign.to.epoch = 2;
-    EXPECT_EQ(replica.offer(foreign), Verdict::Gap);
+    EXPECT_EQ(replica.receive(foreign), CheckResult::Gap);
 }
 
 TEST_F(SceneReplicaTest, AVersionCountsOnlyWhenItIsBuilt) {
     const auto one = camera(2);
-    replica.offer(one);
+    replica.receive(one);
     ASSERT_TRUE(replica.advance());
     EXPECT_EQ(replica.version(), Version{});
     EXPECT_TRUE(replica.is_behind());
@@ -53,8 +53,8 @@ TEST_F(SceneReplicaTest, AVersionCountsOnlyWhenItIsBuilt) {
     EXPECT_FALSE(replica.is_behind());
 }
 
-TEST_F(SceneReplicaTest, ABuildOfAnEpochThatIsOverMeansNothing) {
-    replica.offer(camera(2));
+TEST_F(SceneReplicaTest, ABuildOfAnOldEpochIsIgnored) {
+    replica.receive(camera(2));
     ASSERT_TRUE(replica.advance());
     ASSERT_TRUE(replica.take_build());
     replica.start_epoch(2);
@@ -67,8 +67,8 @@ TEST_F(SceneReplicaTest, AListWaitsForItsOwnBlobsButNotForThoseOfLaterOnes) {
     scene::Geometry geometry;
     geometry.positions = {blake2b({}), 12};
     const auto one = camera(2), two = builder.edit({scene::Create{ObjectId{3}, geometry}});
-    replica.offer(one);
-    replica.offer(two);
+    replica.receive(one);
+    replica.receive(two);
     ASSERT_TRUE(replica.advance());
     EXPECT_EQ(replica.missing(), std::vector{geometry.positions});
     const auto build = replica.take_build();
@@ -77,28 +77,28 @@ TEST_F(SceneReplicaTest, AListWaitsForItsOwnBlobsButNotForThoseOfLaterOnes) {
     EXPECT_TRUE(build->unchecked.empty());
 }
 
-TEST_F(SceneReplicaTest, ASnapshotMakesEarlierListsAndTheirBlobsPointless) {
+TEST_F(SceneReplicaTest, ASnapshotSupersedesEarlierListsAndTheirBlobs) {
     scene::Geometry geometry;
     geometry.positions = {blake2b({}), 12};
-    replica.offer(builder.edit({scene::Create{ObjectId{3}, geometry}}));
+    replica.receive(builder.edit({scene::Create{ObjectId{3}, geometry}}));
     ASSERT_TRUE(replica.advance());
     builder.edit({scene::Remove{ObjectId{3}}});
-    EXPECT_EQ(replica.offer(snapshot(builder.scene())), Verdict::Accepted);
+    EXPECT_EQ(replica.receive(snapshot(builder.scene())), CheckResult::Accepted);
     ASSERT_TRUE(replica.advance());
     EXPECT_TRUE(replica.missing().empty());
     EXPECT_TRUE(replica.take_build());
 }
 
-TEST_F(SceneReplicaTest, ABlobThatALaterListLetsGoOfIsNotWaitedFor) {
+TEST_F(SceneReplicaTest, ABlobThatALaterListReleasesIsNotWaitedFor) {
     const auto bytes = [](unsigned char value) { return std::vector<std::byte>(12, std::byte(value)); };
     scene::Geometry old, now;
     old.positions = {blake2b(bytes(1)), 12};
     now.positions = {blake2b(bytes(2)), 12};
     const scene::Fields<scene::Geometry> shape{&scene::Geometry::positions};
-    replica.offer(builder.edit({scene::Create{ObjectId{3}, old}}));
-    replica.offer(builder.edit({test::SceneBuilder::update(ObjectId{3}, shape, now)}));
+    replica.receive(builder.edit({scene::Create{ObjectId{3}, old}}));
+    replica.receive(builder.edit({test::SceneBuilder::update(ObjectId{3}, shape, now)}));
     const auto last = builder.edit({scene::Create{ObjectId{4}, old}, scene::Remove{ObjectId{4}}});
-    replica.offer(last);
+    replica.receive(last);
     ASSERT_TRUE(replica.advance());
     EXPECT_EQ(replica.missing(), std::vector{now.positions});
     EXPECT_FALSE(replica.take_build());
@@ -122,7 +122,7 @@ TEST_F(SceneReplicaTest, AVersionWhoseBlobsAreHereIsBuiltThoughThoseOfALaterOneA
         } else {
             lists.push_back(builder.edit({test::SceneBuilder::update(ObjectId{3}, shape, geometry)}));
         }
-        replica.offer(lists.back());
+        replica.receive(lists.back());
     }
     blobs->insert(bytes(1));
     ASSERT_TRUE(replica.advance());
@@ -132,11 +132,11 @@ TEST_F(SceneReplicaTest, AVersionWhoseBlobsAreHereIsBuiltThoughThoseOfALaterOneA
     EXPECT_EQ(replica.missing(), (std::vector<scene::BlobRef>{{blake2b(bytes(2)), 12}}));
 }
 
-// The back-end reads the objects that the replica has checked: a list whose hash nobody looks at again is good.
-TEST_F(SceneReplicaTest, TheBackEndHoldsTheSameObjectsAndHashesNone) {
+// The back-end shares the objects that the replica has checked and does not check the hash of a list again.
+TEST_F(SceneReplicaTest, TheBackEndSharesTheObjectsWithoutHashingThemAgain) {
     const auto backend = backend::find_backend("null").make({.blobs = blobs});
-    for (std::uint64_t id = 2; id < 300; ++id) replica.offer(camera(id));
-    replica.offer(builder.edit(
+    for (std::uint64_t id = 2; id < 300; ++id) replica.receive(camera(id));
+    replica.receive(builder.edit(
         {scene::Remove{ObjectId{7}},
          test::SceneBuilder::update(ObjectId{8}, scene::Fields<scene::Camera>(&scene::Camera::name),
                                     scene::Camera{.name = "eight"})}));
@@ -154,7 +154,7 @@ TEST_F(SceneReplicaTest, TheBackEndHoldsTheSameObjectsAndHashesNone) {
     for (const auto& [id, object] : replica.scene().objects())
         EXPECT_EQ(scope->scene().find(id), object.get());
 
-    replica.offer(camera(400));  // the replica goes on; the back-end's scene stays
+    replica.receive(camera(400));  // the replica goes on; the back-end's scene stays
     ASSERT_TRUE(replica.advance());
     EXPECT_EQ(scope->scene().find(ObjectId{400}), nullptr);
 }

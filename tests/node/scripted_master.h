@@ -10,23 +10,23 @@
 
 namespace tessera::test {
 
-// The master's end of a loopback channel, driven step by step by a test. Keeps heartbeats going while it
-// waits and serves blobs; everything else waits to be expected.
+// The master's end of a loopback channel, driven step by step by a test. Sends heartbeats and serves
+// blobs while it waits; other messages are queued for expect().
 class ScriptedMaster {
   public:
     explicit ScriptedMaster(net::LoopbackHub& hub) : channel_(hub.server()) {}
 
-    void tell(const wire::ControlMessage& message) {
+    void send(const wire::ControlMessage& message) {
         if (channel_->send(net::Link::Control, control_peer_, wire::encode(message)) !=
             net::SendResult::Sent) {
             throw std::runtime_error("the scripted master could not send");
         }
     }
-    void tell_raw(net::Link link, net::Bytes bytes) {
+    void send_raw(net::Link link, net::Bytes bytes) {
         channel_->send(link, link == net::Link::Control ? control_peer_ : bulk_peer_, std::move(bytes));
     }
 
-    // The next control message of this kind; others of other kinds are passed over. Throws after a generous
+    // The next control message of this kind; messages of other kinds are skipped. Throws after a generous
     // while.
     template <class M>
     M expect() {
@@ -36,7 +36,7 @@ class ScriptedMaster {
     M expect_bulk() {
         return next<M>(bulk_);
     }
-    // Heartbeats until one is as wanted.
+    // Waits for a heartbeat that satisfies the predicate.
     template <class Predicate>
     wire::Heartbeat expect_heartbeat(const Predicate& wanted) {
         for (;;) {
@@ -47,7 +47,7 @@ class ScriptedMaster {
 
     wire::Hello welcome(std::uint64_t number = 1) {
         const wire::Hello hello = expect<wire::Hello>();
-        tell(wire::Welcome{.peer_number = number,
+        send(wire::Welcome{.peer_number = number,
                            .token = 100 + number,
                            .epoch = 1,
                            .heartbeat_interval = std::chrono::milliseconds(50),
@@ -55,7 +55,7 @@ class ScriptedMaster {
         return hello;
     }
 
-    // Answers, or stays silent.
+    // Whether it answers.
     scene::BlobStore blobs;
     bool heartbeats = true;
 
@@ -88,7 +88,7 @@ class ScriptedMaster {
                 auto decoded = wire::decode_bulk(message->bytes);
                 if (!decoded) throw decoded.error();
                 if (const auto* request = std::get_if<wire::BlobRequest>(&*decoded)) {
-                    tell_raw(net::Link::Bulk, wire::encode(wire::answer(*request, blobs)));
+                    send_raw(net::Link::Bulk, wire::encode(wire::answer(*request, blobs)));
                 } else {
                     bulk_.push_back(std::move(*decoded));
                 }

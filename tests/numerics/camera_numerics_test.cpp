@@ -1,5 +1,5 @@
-// Rays of lenses and parallel views against geometry in double, where floats run out: far cameras, near
-// focus.
+// Rays of lenses and orthographic views against geometry in double, at the limits of float precision: distant
+// cameras, near focus.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -39,7 +39,7 @@ glm::dvec2 at_depth(const view::View& view, const Ray& ray, double depth) {
     return glm::dvec2(start) + glm::dvec2(along) * ((depth + start.z) / -along.z);
 }
 
-TEST(LensNumerics, AllRaysOfAPointMeetInThePlaneOfFocus) {
+TEST(LensNumerics, RaysOfAPointMeetInTheFocalPlane) {
     CounterRandom random(5);
     for (const auto projection : {scene::Projection::Perspective, scene::Projection::Orthographic}) {
         for (const double focus : {1e-3, 0.5, 3.0, 1e4}) {
@@ -53,7 +53,7 @@ TEST(LensNumerics, AllRaysOfAPointMeetInThePlaneOfFocus) {
                     const glm::dvec2 expected =
                         at_depth(sharp, camera_ray(pinhole, x, y, u, vec2(0.5f)), focus);
                     const Ray ray = camera_ray(lens, x, y, u, vec2(random.uniform(), random.uniform()));
-                    // Each coordinate is a sum of the place, the way over the lens and the direction's
+                    // Each coordinate is a sum of the position, the lens offset and the direction's
                     // roundings, all times at most the focus distance and the larger of 1 and the ratio.
                     const double size = focus * std::max(1.0, ratio) + 1.0;
                     EXPECT_LT(glm::distance(at_depth(blurred, ray, focus), expected), 12.0 * Ulp * size)
@@ -67,7 +67,7 @@ TEST(LensNumerics, AllRaysOfAPointMeetInThePlaneOfFocus) {
 // A point at depth d is spread over a disk of radius R |1 - d / f|, in proportion to the aperture. E[x^2]
 // over the unit disk: 1/4 if uniform; for the Gaussian, whose integral is (1 - exp(-2 r^2)) / a with a = 1 -
 // exp(-2): E[r^2] / 2 = (1 + (1 - a) ln(1 - a) / a) / 4.
-TEST(LensNumerics, TheCircleOfConfusionHasItsRadiusAndItsSpread) {
+TEST(LensNumerics, TheCircleOfConfusionHasTheRightRadiusAndVariance) {
     constexpr uint Count = 1u << 18;
     const double a = 1.0 - std::exp(-2.0);
     const double gaussian = (1.0 + (1.0 - a) * std::log(1.0 - a) / a) / 4.0;
@@ -77,12 +77,12 @@ TEST(LensNumerics, TheCircleOfConfusionHasItsRadiusAndItsSpread) {
         const View record = backend::make_view(view, {});
         for (const double depth : {0.5, 1.0, 8.0}) {
             const double radius = 0.2 * std::fabs(1.0 - depth / 2.0);
-            const glm::dvec2 middle = at_depth(view, camera_ray(record, 20, 40, vec2(0.5f)), depth);
+            const glm::dvec2 center = at_depth(view, camera_ray(record, 20, 40, vec2(0.5f)), depth);
             double most = 0.0, squares_x = 0.0, squares_y = 0.0, product = 0.0;
             for (uint i = 0; i < Count; ++i) {
                 const vec2 lens = sample_pair(make_sampler(20, 40, 3, i), 7u);
                 const glm::dvec2 from =
-                    at_depth(view, camera_ray(record, 20, 40, vec2(0.5f), lens), depth) - middle;
+                    at_depth(view, camera_ray(record, 20, 40, vec2(0.5f), lens), depth) - center;
                 most = std::max(most, glm::length(from));
                 squares_x += from.x * from.x / Count;
                 squares_y += from.y * from.y / Count;
@@ -100,7 +100,7 @@ TEST(LensNumerics, TheCircleOfConfusionHasItsRadiusAndItsSpread) {
     }
 }
 
-TEST(ParallelNumerics, RaysAreParallelHoweverFarTheCameraIs) {
+TEST(ParallelNumerics, RaysAreParallelAtAnyDistance) {
     const double metres = 20.0;
     for (const double far : {0.0, 1e6, 1e12}) {
         view::View view = lens_view(0.0, 1.0);
@@ -124,7 +124,7 @@ TEST(ParallelNumerics, RaysAreParallelHoweverFarTheCameraIs) {
     }
 }
 
-TEST(PinholeNumerics, WithoutALensNothingElseCounts) {
+TEST(PinholeNumerics, LensParametersHaveNoEffectWithoutALens) {
     const View record = backend::make_view(lens_view(0.0, 1e-3, scene::Aperture::Gaussian), {});
     EXPECT_EQ(record.camera, CameraPinhole);
     for (const vec2 lens : {vec2(0.0f), vec2(0.3f, 0.9f)}) {
@@ -135,7 +135,7 @@ TEST(PinholeNumerics, WithoutALensNothingElseCounts) {
     }
 }
 
-TEST(PinholeNumerics, ARasteriserDrawsWhatAPinholeSeesAndRaysTheRest) {
+TEST(PinholeNumerics, OnlyPinholeCamerasAreRasterised) {
     view::View view = lens_view(0.0, 1.0);
     view.renderer = view::Renderer::Raster;
     EXPECT_EQ(backend::make_view(view, {}).renderer, RendererRaster);

@@ -1,4 +1,4 @@
-// Lights at the ends of sizes, powers and places, against closed forms in double.
+// Lights of extreme sizes, powers and positions, against closed forms in double.
 #include <gtest/gtest.h>
 
 #include "tests/statistics/panels.h"
@@ -24,13 +24,13 @@ TEST(LightNumerics, EmittersOfAMicrometre) {
     Model model;
     add_ground(model);
     add_panels(model, panels, Sides::One);
-    const World& world = model.build();
+    const SceneAdapter& world = model.build();
     for (const Strategy strategy : {Strategy::Both, Strategy::LightsOnly}) {
         expect_light(seen_by(world, at_origin(0.3), strategy, 16), reflected(panels));
     }
 }
 
-// A floodlight of 100 m and a spark of 1e-6 m beside the ground; either may be the brighter one.
+// A floodlight of 100 m and a spark of 1e-6 m near the ground; either can be the brighter one.
 TEST(LightNumerics, AHugeAndATinyEmitter) {
     for (const double tiny : {1e6, 1e10, 1e14}) {
         const Panel flood{{{{-50.0f, -50.0f, 40.0f}, {-50.0f, 50.0f, 40.0f}, {50.0f, -50.0f, 40.0f}}}, 1.0};
@@ -38,8 +38,8 @@ TEST(LightNumerics, AHugeAndATinyEmitter) {
         Model model;
         add_ground(model);
         add_panels(model, {flood, spark}, Sides::One);
-        const World& world = model.build();
-        // Between eye and spark nothing stands: the eye looks from beside.
+        const SceneAdapter& world = model.build();
+        // The eye looks from the side, so that nothing is between eye and spark.
         expect_light(seen_by(world, at_origin(0.3), Strategy::Both, 1024), reflected({flood, spark}));
     }
 }
@@ -53,20 +53,20 @@ TEST(LightNumerics, FarFromTheRenderOrigin) {
     model.placed_at(origin);
     model.floor(model.material(ground), 1.0f, 0.0f);
     add_panels(model, panels, Sides::One);
-    const World& world = model.build();
+    const SceneAdapter& world = model.build();
     view::View view = small_view(origin + glm::dvec3(0.0, 0.0, 0.3), 1e-3);
     view.max_bounces = 0;
     expect_light(seen_by(world, view, Strategy::Both, 1024), reflected(panels));
 }
 
-TEST(LightNumerics, WorldsOfAnySize) {
+TEST(LightNumerics, ScenesOfAnySize) {
     for (const double size : {1e-12, 1e-6, 1e6, 1e12}) {
         const std::vector<Panel> panels = dome(6, 3.0, 7);
         Model model;
         model.scaled_by(size);
         add_ground(model);
         add_panels(model, panels, Sides::One);
-        const World& world = model.build();
+        const SceneAdapter& world = model.build();
         SCOPED_TRACE(size);
         for (const Strategy strategy : {Strategy::Both, Strategy::LightsOnly}) {
             expect_light(seen_by(world, at_origin(0.3 * size), strategy, 1024), reflected(panels));
@@ -74,8 +74,8 @@ TEST(LightNumerics, WorldsOfAnySize) {
     }
 }
 
-// Triangles without area or light among others, and light that shows the ground its back alone.
-TEST(LightNumerics, DegenerateDarkAndTurnedAway) {
+// Emitters among which some have no area or emission, or face away from the ground.
+TEST(LightNumerics, DegenerateDarkAndBackFacingEmitters) {
     std::vector<Panel> panels = dome(6, 3.0, 8);
     const double expected = reflected(panels);
     for (std::size_t i = 0; i < 10; ++i) {
@@ -99,22 +99,22 @@ TEST(LightNumerics, DegenerateDarkAndTurnedAway) {
     EXPECT_EQ(seen_by(behind.build(), at_origin(0.3), Strategy::Both, 16).value, 0.0);
 }
 
-// A sphere is a point from outside, however small, large, near or far.
+// From outside a sphere light equals a point light, at any size and distance.
 TEST(LightNumerics, SpheresOfAnySizeAtAnyDistance) {
     for (const double distance : {1e-9, 1.0, 1e9}) {
-        for (const double share : {1e-12, 1e-6, 1e-3, 0.5, 0.999, 0.999999}) {
+        for (const double ratio : {1e-12, 1e-6, 1e-3, 0.5, 0.999, 0.999999}) {
             Model model;
             add_ground(model, static_cast<float>(distance));
-            const double radius = share * distance;
+            const double radius = ratio * distance;
             model.light({.kind = scene::LightKind::Sphere,
                          .intensity = glm::vec3(static_cast<float>(distance * distance)),
                          .radius = static_cast<float>(radius)},
                         glm::translate(glm::dmat4(1.0), {0.0, 0.0, distance}));
-            const World& world = model.build();
-            SCOPED_TRACE(testing::Message() << distance << " " << share);
+            const SceneAdapter& world = model.build();
+            SCOPED_TRACE(testing::Message() << distance << " " << ratio);
             for (const Strategy strategy : {Strategy::Both, Strategy::LightsOnly}) {
-                // An eye inside of it sees its light, too.
-                const double in_front = share > 0.7 ? 1.0 / (M_PI * share * share) : 0.0;
+                // An eye inside the sphere sees its light, too.
+                const double in_front = ratio > 0.7 ? 1.0 / (M_PI * ratio * ratio) : 0.0;
                 expect_light(seen_by(world, at_origin(0.3 * distance), strategy, 256),
                              GroundAlbedo / M_PI + in_front);
             }
@@ -123,7 +123,7 @@ TEST(LightNumerics, SpheresOfAnySizeAtAnyDistance) {
 }
 
 // 0.25 degrees across, radiance 1e9, in a sky of 0.01: as a directional light and as a texel of a map.
-TEST(LightNumerics, AFierceSunInADimSky) {
+TEST(LightNumerics, AnIntenseSunDiskInADimSky) {
     const double half_angle = 0.125 / 180.0 * M_PI;
     const double irradiance = 1e9 * M_PI * std::pow(std::sin(half_angle), 2.0);
     Model model;
@@ -137,20 +137,20 @@ TEST(LightNumerics, AFierceSunInADimSky) {
                  GroundAlbedo * (0.01 + irradiance / M_PI));
 }
 
-TEST(LightNumerics, AFierceSunInAMap) {
+TEST(LightNumerics, AnIntenseSunInAnEnvironmentMap) {
     constexpr std::uint32_t Width = 1440, Height = 720;  // a quarter of a degree each
     constexpr std::uint32_t Column = 400, Row = 250;
     std::vector<glm::vec3> texels(std::size_t{Width} * Height, glm::vec3(0.01f));
     texels[std::size_t{Row} * Width + Column] = glm::vec3(1e9f);
-    // The map's +y is up there; here up is +z: the ground stands upright.
+    // The map's +y is up there; here up is +z: the ground is vertical.
     Model model;
     model.quad(model.material(chalk(glm::vec3(GroundAlbedo))),
                {{{-1.0f, 0.0f, 1.0f}, {1.0f, 0.0f, 1.0f}, {1.0f, 0.0f, -1.0f}, {-1.0f, 0.0f, -1.0f}}});
     scene::Texture map{.width = Width, .height = Height, .format = scene::TexelFormat::RgbFloat};
     const scene::TextureSlot slot = model.texture(map, texels);
     model.sky(scene::Background{.environment = slot.texture});
-    const World& world = model.build();
-    // Bilinear filtering spreads the texel as a tent over two texels each way.
+    const SceneAdapter& world = model.build();
+    // Bilinear filtering spreads the texel as a tent over two texels in each direction.
     double sun = 0.0;
     constexpr int Steps = 2000;
     for (int i = 0; i < Steps; ++i) {

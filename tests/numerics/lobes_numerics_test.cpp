@@ -1,13 +1,13 @@
-// Lobes where floats run out: mirrors that are hardly rough, light along the surface, indices of refraction
-// next to 1, the edge of total reflection. Against the same formulas in double, of the same floats; u = 2^-24
-// is the rounding of one operation.
+// Lobes at the limits of float precision: very smooth metals, grazing light, indices of refraction near 1, the
+// critical angle. Compared with the same formulas in double on the same floats; u = 2^-24 is the rounding of one
+// operation.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "mediator/shading/specular.h"
+#include "mediator/shading/perfect_specular.h"
 #include "tests/statistics/chi_squared.h"
 #include "tests/statistics/lobes.h"
 
@@ -32,9 +32,9 @@ double lambda(const glm::dvec3& w, const glm::dvec2& a) {
     return 0.5 * (std::sqrt(1.0 + (x * x + y * y) / (w.z * w.z)) - 1.0);
 }
 
-// D: 7 u of the slope, squared, 1 of the square, 4 of the rest. Lambda: 5 u beside 1; with D and the
+// D: 7 u of the slope, squared, 1 of the square, 4 of the rest. Lambda: 5 u next to 1; with D and the
 // quotients, 32 u.
-TEST(GgxNumerics, ValuesAreThoseOfDoubles) {
+TEST(GgxNumerics, ValuesMatchDoublePrecision) {
     for (const float ax : Alphas) {
         for (const float ay : {ax, 1.0f}) {
             for (const float cosine : Cosines) {
@@ -62,8 +62,8 @@ TEST(GgxNumerics, ValuesAreThoseOfDoubles) {
     }
 }
 
-// Draws half vectors and compares how they lie with what facets are seen: over the azimuth and a coordinate
-// v in [0, 1]. `seen`: the density of (v, azimuth / 2 pi) among the facets that are seen.
+// Samples half vectors and compares their distribution with the visible facets, over the azimuth and a coordinate
+// v in [0, 1]. `seen`: the density of (v, azimuth / 2 pi) of visible facets.
 template <class Sample, class Coordinate, class Seen>
 void expect_normals(const Sample& sample, const Coordinate& coordinate, const Seen& seen) {
     constexpr int Rings = 16, Sectors = 16, Fine = 64, Count = 100'000;
@@ -77,7 +77,7 @@ void expect_normals(const Sample& sample, const Coordinate& coordinate, const Se
     }
     double all = 0.0;
     for (const double cell : expected) all += cell;
-    EXPECT_NEAR(all / Count, 1.0, 2e-3) << "what is seen of all facets is the surface";
+    EXPECT_NEAR(all / Count, 1.0, 2e-3) << "the projected visible facets are the surface";
     CounterRandom random(21);
     for (int i = 0; i < Count; ++i) {
         const glm::vec3 h = sample(random);
@@ -97,7 +97,7 @@ float number(CounterRandom& random) {
 // Slopes over alpha, t, have the density 1 / (pi (1 + t^2)^2), so 1 / (1 + t^2) is even; v is 1 - its root.
 // Of those G1 (1 + t_x alpha tan) is seen. No direction along the facet is a float away from the formula's: u
 // of h.z near 1 is nothing of alpha = 1e-4's slopes, which are x and y over z.
-TEST(GgxNumerics, NormalsLieAsTheyAreSeen) {
+TEST(GgxNumerics, SampledNormalsFollowTheVisibleDistribution) {
     for (const float alpha : Alphas) {
         for (const float cosine : Cosines) {
             SCOPED_TRACE(testing::Message() << alpha << " " << cosine);
@@ -122,7 +122,7 @@ TEST(GgxNumerics, NormalsLieAsTheyAreSeen) {
 }
 
 // cos^(e + 2) is even; of its facets min(1 + tan tan_h cos(azimuth), 2) is seen.
-TEST(BlinnNumerics, NormalsLieAsTheyAreSeen) {
+TEST(BlinnNumerics, SampledNormalsFollowTheVisibleDistribution) {
     for (const float exponent : {0.0f, 1.0f, 128.0f, 4096.0f, 65536.0f}) {
         for (const float cosine : Cosines) {
             SCOPED_TRACE(testing::Message() << exponent << " " << cosine);
@@ -142,14 +142,15 @@ TEST(BlinnNumerics, NormalsLieAsTheyAreSeen) {
     }
 }
 
-// What is drawn never comes back heavier than it went in, and the mean over a white mirror is 1: 4.5 standard
-// errors, and 3e-3 for the steps of the tables that late light is taken from.
-TEST(GgxNumerics, WhiteMetalIsWhiteHoweverRough) {
+// Sample weights never exceed 1, and the mean over a white mirror is 1: 4.5 standard errors, and 3e-3 for the
+// resolution of the energy compensation tables.
+TEST(GgxNumerics, WhiteMetalIsWhiteAtAnyRoughness) {
     for (const float alpha : Alphas) {
         for (const float cosine : Cosines) {
             const glm::vec3 out = towards(cosine, 0.3);
-            const Look look = plain_look(glm::vec3(1.0f), 1.0f, std::sqrt(alpha), 0.0f, 1.5f, 1.5f);
-            const Bsdf bsdf = test::make_bsdf(look, {1.0f, 0.0f}, out);
+            const MaterialSample material_sample =
+                default_material_sample(glm::vec3(1.0f), 1.0f, std::sqrt(alpha), 0.0f, 1.5f, 1.5f);
+            const Bsdf bsdf = test::make_bsdf(material_sample, {1.0f, 0.0f}, out);
             CounterRandom random(22);
             constexpr int Count = 20'000;
             double sum = 0.0, squares = 0.0;
@@ -166,10 +167,10 @@ TEST(GgxNumerics, WhiteMetalIsWhiteHoweverRough) {
             const double mean = sum / Count;
             const double error = std::sqrt(std::max(0.0, squares / Count - mean * mean) / Count);
             EXPECT_LE(mean, 1.0 + 4.5 * error + 3e-3) << alpha << " " << cosine;
-            // What is late of a lobe this smooth is left out: LeastLate in the mean, and most of it along the
-            // surface.
+            // Multiple scattering of a lobe this smooth is left out: MinMultiscatter in the mean, mostly at grazing
+            // angles.
             if (cosine >= 0.1f) {
-                const double left_out = cosine >= 0.5f ? double(LeastLate) : 0.01;
+                const double left_out = cosine >= 0.5f ? double(MinMultiscatter) : 0.01;
                 EXPECT_GE(mean, 1.0 - 4.5 * error - 3e-3 - left_out) << alpha << " " << cosine;
             }
         }
@@ -186,7 +187,7 @@ double reflectance(double cosine, double inside, double n) {
 // Amplitudes are off by at most 4 u (of terms of the size of their sum), and the squared cosine on the far
 // side by 5 u of 1 (3 of sin^2, 1 each of n^2 and the quotient): towards the thinner side it is
 // 1 - sin^2 / n^2, which counts where it is near 0.
-TEST(FresnelNumerics, AtIndicesNextToOneAndAtTheEdgeOfTotalReflection) {
+TEST(FresnelNumerics, IsAccurateNearIndexOneAndTotalReflection) {
     constexpr float Next = 1.0f + 0x1p-23f;
     for (const float n : {1.0f + 1e-6f, 1.0f - 1e-6f, Next, 1.0f - 0x1p-24f, 1.0001f, 0.9999f, 1.5f,
                           1.0f / 1.5f, 2.4f, 1.0f / 2.4f}) {
@@ -219,7 +220,7 @@ TEST(FresnelNumerics, AtIndicesNextToOneAndAtTheEdgeOfTotalReflection) {
 }
 
 // Snell's law in double: the direction on the far side, off by the root of what rounding makes of its cosine.
-TEST(RefractionNumerics, DirectionsAreThoseOfDoublesUpToTheEdge) {
+TEST(RefractionNumerics, DirectionsMatchDoublePrecisionUpToTheCriticalAngle) {
     constexpr Mixture Glass{.dielectric = 0.0f, .glass = 1.0f};
     for (const float n : {1.0f + 1e-6f, 1.0f - 1e-6f, 1.0f + 0x1p-23f, 1.5f, 1.0f / 1.5f}) {
         const double eta = double(n);
@@ -241,22 +242,22 @@ TEST(RefractionNumerics, DirectionsAreThoseOfDoublesUpToTheEdge) {
     }
 }
 
-// Rough glass beside its own limits: an index next to 1 is no boundary, for which half vectors would be made
-// of rounding; from there on, however smooth, nothing is more than all and nothing is no number.
-TEST(RoughGlassNumerics, IsFiniteAndLosesNoMoreThanShadowing) {
+// Rough glass at its limits: an index near 1 is treated as no boundary, since half vectors would be rounding noise;
+// beyond that, at any roughness, weights are finite and at most 1.
+TEST(RoughGlassNumerics, IsFiniteAndLosesOnlyShadowedLight) {
     for (const float eta : {1.0f + 1e-6f, 1.00011f, 0.99989f, 1.0f / 1.5f, 1.5f}) {
         for (const float alpha : {1e-4f, 2e-4f, 1e-2f, 1.0f}) {
             for (const float cosine : Cosines) {
                 const glm::vec3 out = towards(cosine, 0.3);
-                Look look = plain_look(glm::vec3(1.0f), 0.0f, std::sqrt(alpha), 1.0f,
-                                       eta < 1.0f ? 1.0f / eta : eta, eta);
-                look.lobes = FeatureRoughGlass;
-                const Mixture mixture = make_mixture(look);
+                MaterialSample material_sample = default_material_sample(
+                    glm::vec3(1.0f), 0.0f, std::sqrt(alpha), 1.0f, eta < 1.0f ? 1.0f / eta : eta, eta);
+                material_sample.lobes = FeatureRoughGlass;
+                const Mixture mixture = make_mixture(material_sample);
                 if (!is_boundary(eta) || is_smooth(alpha)) {
                     EXPECT_EQ(mixture.rough_glass, 0.0f) << eta << " " << alpha;
                     continue;
                 }
-                const Bsdf bsdf = test::make_bsdf(look, mixture, out);
+                const Bsdf bsdf = test::make_bsdf(material_sample, mixture, out);
                 CounterRandom random(23);
                 constexpr int Count = 4000;
                 double sum = 0.0, squares = 0.0;

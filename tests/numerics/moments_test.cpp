@@ -15,7 +15,7 @@
 // Bounds, with u = 2^-24 the unit roundoff of float, d the deviation, r = |mean| / d, n = 2^k samples.
 // Mean. A level of the tree computes (a + b) / 2: one rounding, of the sum, since halving is exact. A
 // relative error of at most u per level averages over the siblings, so the error after k levels is at most k
-// u |mean|, 20 u for k = 20, if every rounding pushes the same way. They do not: roundings on one level are
+// u |mean|, 20 u for k = 20, if all roundings have the same sign. They do not: roundings on one level are
 // independent across the tree, and averaging 2^j of them divides their deviation by 2^(j/2). Only the last
 // few levels count: the sum of u 2^(-j/2) / sqrt(3) over j >= 0 in quadrature is below u. 4 u leaves a factor
 // for ties that happen to agree, and for samples of one size whose sums round alike. M2. A level adds (a -
@@ -111,7 +111,7 @@ TEST(FilmMoments, OfFirefliesStayWithinTheBounds) {
     EXPECT_LE(static_cast<double>(std::abs(film.plane(3)[0] - exact.m2) / exact.m2), 8.0 * 2.0 * Epsilon);
 }
 
-TEST(DoubleMoments, HoldOneMillionthWhereTheNaiveFormLosesAll) {
+TEST(DoubleMoments, KeepAccuracyWhereTheNaiveFormFails) {
     constexpr std::size_t N = 1 << 16;
     std::mt19937_64 random(11);
     std::normal_distribution<double> distribution(1e6, 1e-2);
@@ -129,7 +129,7 @@ TEST(DoubleMoments, HoldOneMillionthWhereTheNaiveFormLosesAll) {
     EXPECT_EQ(parts[0].n, N);
 }
 
-TEST(DoubleMoments, OfRandomUnequalPartsHoldToo) {
+TEST(DoubleMoments, OfRandomUnequalPartsKeepAccuracy) {
     std::mt19937_64 random(12);
     std::normal_distribution<double> distribution(1e6, 1e-2);
     Moments<double> all;
@@ -152,7 +152,7 @@ TEST(DoubleMoments, OfRandomUnequalPartsHoldToo) {
     EXPECT_NEAR(all.m2 / static_cast<double>(m2), 1.0, 1e-6);
 }
 
-TEST(Moments, OfNothingChangeNothing) {
+TEST(Moments, MergingEmptyMomentsIsANoOp) {
     const Moments<float> some{3, 2.5f, 7.0f}, none{};
     for (const auto& both : {merged(some, none), merged(none, some)}) {
         EXPECT_EQ(both.n, 3u);
@@ -163,7 +163,7 @@ TEST(Moments, OfNothingChangeNothing) {
     EXPECT_EQ(merged(none, none).m2, 0.0f);
 }
 
-TEST(Moments, OfTwoSinglesAreExact) {
+TEST(Moments, OfTwoSingleSamplesAreExact) {
     const auto both = merged<float>({1, 3.0f, 0.0f}, {1, 7.0f, 0.0f});
     EXPECT_EQ(both.n, 2u);
     EXPECT_EQ(both.mean, 5.0f);
@@ -179,7 +179,7 @@ TEST(Moments, OfUnequalCountsFollowTheGeneralForm) {
 }
 
 // A pixel that lost samples makes its whole tile take the general form: its neighbours must not notice.
-TEST(FilmMoments, UnequalCountsInOnePixelLeaveTheOthersBits) {
+TEST(FilmMoments, UnequalCountsInOnePixelDoNotAffectOthers) {
     const Rect two{0, 0, 2, 1};
     const auto tile = [&](std::uint64_t sample, float left, float right) {
         FilmTile made(two, {sample, 0}, {Channel::Radiance});

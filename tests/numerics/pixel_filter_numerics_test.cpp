@@ -1,4 +1,4 @@
-// The pixel filter at the ends of its ranges: widths, radiances, depths, sample counts.
+// The pixel filter at extreme inputs: widths, radiances, depths, sample counts.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -31,17 +31,17 @@ void expect_finite(const std::function<PixelLight(std::uint32_t, std::uint32_t)>
     }
 }
 
-TEST(PixelNumerics, ConstantLightStaysWhateverTheCounts) {
+TEST(PixelNumerics, ConstantLightIsPreservedForAnySampleCounts) {
     for (const float light : {1e-30f, 1e-3f, 1.0f, 1e6f, 1e25f}) {
         for (const float variance : {0.0f, 1e-4f, 0.1f, 10.0f}) {
             const Inputs inputs = pixel_inputs(Width, Height, [&](std::uint32_t x, std::uint32_t y) {
                 const float n = std::floor(6.0f * noise(1, x, y));
                 PixelLight p{.high = light,
                              .variance = variance * light * light,
-                             .range = noise(2, x, y),
+                             .headlight = noise(2, x, y),
                              .n = n,
                              .low = 0.5f * light};
-                if (n == 0.0f) p = {.range = 0.0f, .depth = Infinity, .n = 0.0f, .alpha = 0.0f};
+                if (n == 0.0f) p = {.headlight = 0.0f, .depth = Infinity, .n = 0.0f, .alpha = 0.0f};
                 if (n < 2.0f) p.variance = 0.0f;
                 return p;
             });
@@ -57,11 +57,12 @@ TEST(PixelNumerics, ConstantLightStaysWhateverTheCounts) {
     }
 }
 
-TEST(PixelNumerics, NothingAtAll) {
+TEST(PixelNumerics, NoSamples) {
     expect_finite([](std::uint32_t, std::uint32_t) {
-        return PixelLight{.range = 0.0f, .depth = Infinity, .n = 0.0f, .alpha = 0.0f};
+        return PixelLight{.headlight = 0.0f, .depth = Infinity, .n = 0.0f, .alpha = 0.0f};
     });
-    expect_finite([](std::uint32_t, std::uint32_t) { return PixelLight{.range = 0.0f, .depth = Infinity}; });
+    expect_finite(
+        [](std::uint32_t, std::uint32_t) { return PixelLight{.headlight = 0.0f, .depth = Infinity}; });
 }
 
 TEST(PixelNumerics, OneOrTwoSamples) {
@@ -70,7 +71,7 @@ TEST(PixelNumerics, OneOrTwoSamples) {
             return PixelLight{.high = noise(1, x, y), .variance = n < 2.0f ? 0.0f : 0.3f, .n = n};
         });
     }
-    // One sample of a pixel says nothing about its variance: it shows the filtered light.
+    // A single sample gives no variance: the pixel shows the filtered light.
     const Inputs inputs = pixel_inputs(Width, Height, [](std::uint32_t x, std::uint32_t y) {
         return PixelLight{.high = noise(1, x, y) < 0.3f ? 1.0f : 0.0f, .n = 1.0f};
     });
@@ -93,7 +94,7 @@ TEST(PixelNumerics, HugeDynamicRange) {
 TEST(PixelNumerics, Denormals) {
     expect_finite([](std::uint32_t x, std::uint32_t y) {
         return PixelLight{
-            .high = 1e-40f * noise(1, x, y), .variance = 1e-44f, .range = 1e-42f, .depth = 1e-41f};
+            .high = 1e-40f * noise(1, x, y), .variance = 1e-44f, .headlight = 1e-42f, .depth = 1e-41f};
     });
 }
 
@@ -109,9 +110,9 @@ TEST(PixelNumerics, DepthsOfEveryScale) {
 }
 
 TEST(PixelNumerics, WindowsThatRejectEverything) {
-    // Every pixel is unlike every other: what comes out is what went in.
+    // All pixels are dissimilar: the output equals the input.
     const Inputs inputs = pixel_inputs(Width, Height, [](std::uint32_t x, std::uint32_t y) {
-        return PixelLight{.high = noise(1, x, y), .variance = 1.0f, .range = float(x + Width * y)};
+        return PixelLight{.high = noise(1, x, y), .variance = 1.0f, .headlight = float(x + Width * y)};
     });
     for (const std::string& choice : {std::string("pixel:aa_recovery=off"), std::string("pixel:method=brute"),
                                       std::string("pixel:method=atrous")}) {
@@ -124,7 +125,7 @@ TEST(PixelNumerics, WindowsThatRejectEverything) {
 
 TEST(PixelNumerics, EveryRangeOfEveryParameter) {
     const Inputs inputs = pixel_inputs(Width, Height, [](std::uint32_t x, std::uint32_t y) {
-        return PixelLight{.high = noise(1, x, y), .variance = 0.2f, .range = noise(4, x / 5, y / 5)};
+        return PixelLight{.high = noise(1, x, y), .variance = 0.2f, .headlight = noise(4, x / 5, y / 5)};
     });
     for (const char* choice : {"pixel:t=10",
                                "pixel:t=0.000001",
@@ -158,7 +159,7 @@ TEST(PixelNumerics, PicturesOfFewPixels) {
     for (const std::uint32_t width : {1u, 2u, 7u, 8u, 9u, 33u}) {
         for (const std::uint32_t height : {1u, 2u, 130u}) {
             const Inputs inputs = pixel_inputs(width, height, [](std::uint32_t x, std::uint32_t y) {
-                return PixelLight{.high = noise(1, x, y), .variance = 0.3f, .range = noise(2, x, y)};
+                return PixelLight{.high = noise(1, x, y), .variance = 0.3f, .headlight = noise(2, x, y)};
             });
             for (const std::string& choice : Methods) {
                 const Output out = run_filter(choice, inputs);

@@ -1,4 +1,4 @@
-// The bounds that mediator/shading/maths.h states, against double.
+// The error bounds stated in mediator/shading/maths.h, checked against double.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ void PrintTo(const OfOne& c, std::ostream* out) {
 class MathsOfOne : public testing::TestWithParam<OfOne> {};
 
 // Every 997th float, so that all exponents and ends of intervals are met.
-TEST_P(MathsOfOne, KeepsItsBound) {
+TEST_P(MathsOfOne, StaysWithinItsErrorBound) {
     const OfOne& c = GetParam();
     double worst = 0.0;
     float at = c.first;
@@ -58,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(
                     OfOne{"inverse_sqrt", inverse_sqrt, [](double x) { return 1.0 / std::sqrt(x); },
                           0x1p-125f, 0x1p127f, 2.0}));
 
-// x and y of all sizes beside each other.
+// all combinations of magnitudes of x and y.
 template <class Check>
 void for_random_pairs(float exponents, const Check& check) {
     std::mt19937 random(1);
@@ -69,7 +69,7 @@ void for_random_pairs(float exponents, const Check& check) {
     }
 }
 
-TEST(Maths, ArcTangentKeepsItsBound) {
+TEST(Maths, ArcTangentStaysWithinItsErrorBound) {
     double worst = 0.0;
     for (const float exponents : {1.0f, 60.0f}) {
         for_random_pairs(exponents, [&](float x, float y) {
@@ -84,7 +84,7 @@ TEST(Maths, ArcTangentKeepsItsBound) {
     EXPECT_EQ(arc_tangent(0.0f, 1.0f), 0.0f);
 }
 
-TEST(Maths, PowerKeepsItsBound) {
+TEST(Maths, PowerStaysWithinItsErrorBound) {
     double worst = 0.0;
     for_random_pairs(3.0f, [&](float x, float y) {
         x = std::fabs(x);
@@ -99,7 +99,7 @@ TEST(Maths, PowerKeepsItsBound) {
     EXPECT_EQ(power(1.0f, 1e9f), 1.0f);
 }
 
-TEST(Maths, EndsOfRangesAreAsStated) {
+TEST(Maths, LimitsAreAsDocumented) {
     EXPECT_EQ(exponential(0.0f), 1.0f);
     EXPECT_EQ(exponential(100.0f), infinity());
     EXPECT_EQ(exponential(-infinity()), 0.0f);

@@ -1,4 +1,4 @@
-// Float arithmetic of the shared transport against double, where floats run out: huge pictures, tiny, huge
+// Float arithmetic of the shared transport against double, at the limits of precision: huge pictures, tiny, huge
 // and needle-like triangles, coordinates far outside of a texture.
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include "mediator/base/random.h"
 #include "mediator/shading/camera.h"
 #include "mediator/shading/environment.h"
-#include "mediator/shading/points.h"
 #include "mediator/shading/textures.h"
+#include "mediator/shading/triangle_points.h"
 
 namespace tessera::shading {
 namespace {
@@ -21,7 +21,7 @@ constexpr double TransportUlp = 0x1p-24;
 
 // A ray leads to its own place within the pixel, up to a few roundings of the picture's edge: in a picture of
 // 65,536 pixels that is 1 % of a pixel.
-TEST(CameraNumerics, HugePicturesKeepThePlaceInThePixel) {
+TEST(CameraNumerics, HugePicturesKeepSubpixelPositions) {
     struct Picture {
         std::uint32_t size;
         double left, right;
@@ -54,8 +54,8 @@ glm::dvec3 random_direction(CounterRandom& random) {
 }
 
 // Of needles as thin as 1 : 100,000, small as atoms and large as galaxies, in the middle of their
-// coordinates.
-TEST(TriangleNumerics, NormalsAreThoseOfDoubles) {
+// coordinate range.
+TEST(TriangleNumerics, NormalsMatchDoublePrecision) {
     CounterRandom random(3);
     const Instance instance{.linear = glm::mat3(1.0f), .normals = glm::mat3(1.0f)};
     for (const double size : {1.0, 1e-10, 1e-25, 1e18}) {
@@ -79,16 +79,16 @@ TEST(TriangleNumerics, NormalsAreThoseOfDoubles) {
     EXPECT_EQ(face_normal(instance, none, glm::vec3(0.0f, 1.0f, 0.0f)), glm::vec3(0.0f, 1.0f, 0.0f));
 }
 
-TEST(ScalingNumerics, DirectionsAndDistancesAreThoseOfDoubles) {
+TEST(ScalingNumerics, DirectionsAndDistancesMatchDoublePrecision) {
     CounterRandom random(4);
     for (double size = 1e-37; size < 1e38; size *= 10.0) {
         const glm::dvec3 direction = random_direction(random);
-        const Measured measured = measure(glm::vec3(size * direction));
-        EXPECT_NEAR(measured.distance / size, 1.0, 8.0 * TransportUlp) << size;
-        EXPECT_LT(glm::length(glm::dvec3(measured.direction) - direction), 8.0 * TransportUlp) << size;
+        const DirectionAndDistance offset = direction_and_distance(glm::vec3(size * direction));
+        EXPECT_NEAR(offset.distance / size, 1.0, 8.0 * TransportUlp) << size;
+        EXPECT_LT(glm::length(glm::dvec3(offset.direction) - direction), 8.0 * TransportUlp) << size;
     }
-    EXPECT_EQ(measure(glm::vec3(0.0f)).distance, 0.0f);
-    EXPECT_EQ(measure({1.0f, INFINITY, 0.0f}).distance, 0.0f);
+    EXPECT_EQ(direction_and_distance(glm::vec3(0.0f)).distance, 0.0f);
+    EXPECT_EQ(direction_and_distance({1.0f, INFINITY, 0.0f}).distance, 0.0f);
     EXPECT_EQ(direction_of(glm::vec3(0.0f), {0.0f, 1.0f, 0.0f}), glm::vec3(0.0f, 1.0f, 0.0f));
 }
 
@@ -100,7 +100,7 @@ std::int64_t wrapped_index(std::int64_t i, std::int64_t size, std::uint32_t wrap
     return rest < size ? rest : period - 1 - rest;
 }
 
-TEST(TextureNumerics, LookupsAreThoseOfDoublesOverManyRepeats) {
+TEST(TextureNumerics, LookupsMatchDoublePrecisionOverManyRepeats) {
     constexpr std::uint32_t Width = 5, Height = 3;
     std::array<glm::vec3, Width * Height> texels;
     CounterRandom random(5);
@@ -121,7 +121,7 @@ TEST(TextureNumerics, LookupsAreThoseOfDoublesOverManyRepeats) {
             for (int i = 0; i < 20000; ++i) {
                 const glm::vec2 uv(12.0 * random.uniform() - 6.0, 12.0 * random.uniform() - 6.0);
                 const double x = double(uv.x) * Width, y = double(uv.y) * Height;
-                // At the edge of a texel both neighbours are right.
+                // At the edge of a texel both neighbours are correct.
                 if (filter == TextureNearest &&
                     (std::fabs(x - std::round(x)) < 1e-4 || std::fabs(y - std::round(y)) < 1e-4)) {
                     continue;
@@ -142,21 +142,21 @@ TEST(TextureNumerics, LookupsAreThoseOfDoublesOverManyRepeats) {
     }
 }
 
-// Beside the poles of a map, where the height of a direction tells its angle no more.
-TEST(SkyNumerics, PlacesAndDensitiesNearThePolesAreThoseOfDoubles) {
+// Next to the poles of a map, where the height of a direction no longer determines its angle accurately.
+TEST(SkyNumerics, CoordinatesAndDensitiesNearThePolesMatchDoublePrecision) {
     constexpr std::uint32_t Size = 4;
     std::array<glm::vec3, Size * Size> texels;
     texels.fill(glm::vec3(1.0f));
     std::array<float, Size + Size * Size> sums;  // of the rows, and of the texels of each row: all alike
     for (std::uint32_t i = 0; i < sums.size(); ++i) sums[i] = float(i % Size + 1) / Size;
-    const Scene scene{.sums = {sums.data()},
+    const Scene scene{.cdfs = {sums.data()},
                       .environment = {.map = {.texels = {reinterpret_cast<const uint*>(texels.data())},
                                               .width = Size,
                                               .height = Size,
                                               .format = TexelRgbFloat},
                                       .strength = 1.0f,
-                                      .row_sums = 0,
-                                      .column_sums = Size},
+                                      .row_cdf = 0,
+                                      .column_cdf = Size},
                       .features = FeatureEnvironmentMap};
     CounterRandom random(6);
     for (int i = 0; i < 2000; ++i) {
@@ -166,13 +166,13 @@ TEST(SkyNumerics, PlacesAndDensitiesNearThePolesAreThoseOfDoubles) {
                                   -std::sin(theta) * std::cos(phi));
         const double sine = glm::length(glm::dvec2(direction.x, direction.z));
         const double angle = side > 0.0 ? std::asin(sine) : M_PI - std::asin(sine);
-        EXPECT_NEAR(direction_place(direction, scene.environment.rotation).y, angle / M_PI, 2e-7);
+        EXPECT_NEAR(direction_to_uv(direction, scene.environment.rotation).y, angle / M_PI, 2e-7);
         const double expected = 1.0 / (2.0 * M_PI * M_PI * sine);
         EXPECT_NEAR(sky_at(scene, direction).pdf / expected, 1.0, 1e-6) << theta;
     }
 }
 
-TEST(TextureNumerics, CoordinatesThatAreNoPlaceFindSomeTexel) {
+TEST(TextureNumerics, NonFiniteCoordinatesReturnSomeTexel) {
     const std::array<std::uint32_t, 2> texels{0xff0000ffu, 0xff0000ffu};
     for (const std::uint32_t wrap : {WrapRepeat, WrapMirror, WrapClamp}) {
         const Texture map{.texels = {texels.data()}, .width = 2, .height = 1, .wrap_s = wrap, .wrap_t = wrap};

@@ -9,7 +9,7 @@
 
 namespace tessera::test {
 
-// A bench scene: those made in code by name, the others from tests/scenes.
+// A benchmark scene: procedural ones by name, the others from tests/scenes.
 tools::bench::BenchScene bench_scene(const std::string& name);
 
 // With the scene's camera and 8 bounces; radiance, albedo, normal and depth.

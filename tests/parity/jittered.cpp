@@ -23,9 +23,9 @@ class Jitter {
         : random_(seed, shading::float_bits(origin.x) ^ shading::float_bits(origin.y)) {}
 
     float operator()(float value) {
-        const std::uint64_t way = random_.below(3);
+        const std::uint64_t choice = random_.below(3);
         constexpr float Infinity = std::numeric_limits<float>::infinity();
-        return way == 0 ? value : std::nextafter(value, way == 1 ? Infinity : -Infinity);
+        return choice == 0 ? value : std::nextafter(value, choice == 1 ? Infinity : -Infinity);
     }
     glm::vec3 operator()(const glm::vec3& v) { return {(*this)(v.x), (*this)(v.y), (*this)(v.z)}; }
 
@@ -52,25 +52,25 @@ bool trace_occluded(const JitteredContext& context, const glm::vec3& origin, con
 }  // namespace
 
 JitteredEmbree::JitteredEmbree(const tools::bench::BenchScene& scene)
-    : device_(embree::make_device({.blobs = blobs_})), world_(device_.get(), blobs_) {
+    : device_(embree::make_device({.blobs = blobs_})), adapter_(device_.get(), blobs_) {
     for (const scene::BlobPtr& blob : scene.blobs) blobs_->insert(blob);
-    if (auto applied = world_.apply(scene::snapshot(scene.content)); !applied) throw applied.error();
-    if (auto committed = world_.commit(); !committed) throw committed.error();
+    if (auto applied = adapter_.apply(scene::snapshot(scene.content)); !applied) throw applied.error();
+    if (auto committed = adapter_.commit(); !committed) throw committed.error();
 }
 
 frame::FilmTile JitteredEmbree::film(const view::View& view, const Rect& tile, std::uint64_t sample) const {
     frame::FilmTile film(tile, {sample, 0}, view.channels);
-    shading::Scene scene = backend::on_host(world_.tables());
-    const auto places = backend::camera_places(view.camera, world_.tables().render_origin);
-    shading::View record = backend::make_view(view, world_.tables().render_origin);
-    record.camera_places.items = places.data();
-    scene.features = backend::features_for(world_.tables(), record);
+    shading::Scene scene = backend::on_host(adapter_.tables());
+    const auto places = backend::camera_keys(view.camera, adapter_.tables().render_origin);
+    shading::View record = backend::make_view(view, adapter_.tables().render_origin);
+    record.camera_keys.items = places.data();
+    scene.features = backend::features_for(adapter_.tables(), record);
     std::size_t pixel = 0;
     for (std::int32_t y = tile.y; y < tile.bottom(); ++y) {
         for (std::int32_t x = tile.x; x < tile.right(); ++x, ++pixel) {
             const auto px = static_cast<std::uint32_t>(x), py = static_cast<std::uint32_t>(y);
             const float time = shading::sample_time(scene.features, record, px, py, sample);
-            const JitteredContext context{{{}, {scene, record, world_.scene(), time}}};
+            const JitteredContext context{{{}, {scene, record, adapter_.scene(), time}}};
             const shading::Path path = shading::trace_sample(context, px, py, sample);
             const shading::SampleValues values =
                 shading::sample_values(record, path.found, static_cast<std::uint32_t>(sample));

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "backends/embree/world.h"
+#include "backends/embree/scene_adapter.h"
 #include "mediator/frame/film_tile.h"
 #include "tests/bench/scenes/scenes.h"
 
 namespace tessera::test {
 
-// The Embree back-end's rays under the same transport, but components of the directions it asks in, and the
-// place and distance of the hits it finds, are one float higher, one lower or as they are, at random.
+// The Embree back-end with perturbed rays: the components of ray directions, and the position and distance of
+// hits, are changed by one float up, one down or not at all, at random.
 class JitteredEmbree {
   public:
     explicit JitteredEmbree(const tools::bench::BenchScene& scene);
@@ -17,7 +17,7 @@ class JitteredEmbree {
   private:
     std::shared_ptr<scene::BlobStore> blobs_ = std::make_shared<scene::BlobStore>();
     embree::DeviceHandle device_;
-    embree::World world_;
+    embree::SceneAdapter adapter_;
 };
 
 }  // namespace tessera::test

@@ -1,4 +1,4 @@
-// Both back-ends see what moves alike, sample by sample.
+// Both back-ends agree on moving scenes, sample by sample.
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -43,14 +43,14 @@ glm::dmat4 turned(double angle, const glm::dvec3& axis) {
 }
 
 using Corners = std::array<glm::vec3, 4>;
-Corners square(float edge, const glm::vec3& place, const glm::vec3& bend = glm::vec3(0.0f)) {
+Corners square(float edge, const glm::vec3& place, const glm::vec3& offset = glm::vec3(0.0f)) {
     return {{place + glm::vec3(-edge, -edge, 0), place + glm::vec3(edge, -edge, 0),
-             place + glm::vec3(edge, edge, 0) + bend, place + glm::vec3(-edge, edge, 0)}};
+             place + glm::vec3(edge, edge, 0) + offset, place + glm::vec3(-edge, edge, 0)}};
 }
 
-// A floor; a ball, a lamp and a screen that go their ways; a light that passes.
+// A floor; a ball, a lamp and a screen that move independently; a moving light.
 void put(SceneModel& model, const glm::dmat4& frame) {
-    model.framed_by(frame);
+    model.set_frame(frame);
     const ObjectId grey = model.material(chalk(glm::vec3(0.6f)));
     model.floor(grey, 3.0f, 0.0f);
     const glm::dmat4 back = glm::inverse(frame);
@@ -58,11 +58,11 @@ void put(SceneModel& model, const glm::dmat4& frame) {
                  frame * moved({0.5, 0.5, 0.2}) * turned(0.3, {0, 0, 1}) * back});
     model.sphere(grey, {-0.8, 0.0, 0.6}, 0.5, Normals::Smooth, 12);
     model.moves({frame * turned(0.5, {0, 1, 0}) * back});
-    model.bending_quad(model.material(lamp(5.0f)),
-                       {square(0.5f, {0.5f, 0, 2}), square(0.3f, {0.2f, 0, 2.2f}, {0.2f, 0, -0.4f})});
+    model.deforming_quad(model.material(lamp(5.0f)),
+                         {square(0.5f, {0.5f, 0, 2}), square(0.3f, {0.2f, 0, 2.2f}, {0.2f, 0, -0.4f})});
     model.moves({});
-    model.bending_quad(grey, {square(0.4f, {0.8f, 0.2f, 0.9f}), square(0.4f, {0.6f, 0.2f, 0.8f}),
-                              square(0.5f, {0.3f, -0.4f, 0.9f})});
+    model.deforming_quad(grey, {square(0.4f, {0.8f, 0.2f, 0.9f}), square(0.4f, {0.6f, 0.2f, 0.8f}),
+                                square(0.5f, {0.3f, -0.4f, 0.9f})});
     model.moves({frame * moved({2.0, 0, 0}) * back});
     model.light({.kind = scene::LightKind::Sphere, .intensity = glm::vec3(1.0f), .radius = 0.2f},
                 moved({-1, -1.5, 1.2}));
@@ -79,7 +79,7 @@ view::View view_of(const glm::dmat4& frame) {
     return view;
 }
 
-// Of pixels of a few samples: how many are others, and whether the mean is the same.
+// For a few samples: the fraction of pixels that differ, and whether the means agree.
 void expect_same(SceneModel& ours, SceneModel& theirs, const view::View& view, double share) {
     const Shot vulkan = shot("vulkan", ours), embree = shot("embree", theirs);
     double sum = 0.0, squares = 0.0, count = 0.0, others = 0.0, light = 0.0;
@@ -116,7 +116,7 @@ TEST(MotionParity, MirroredAndStretched) {
     expect_same(ours, theirs, view_of(frame), 0.005);
 }
 
-// A float has 1e-4 m at 1 km: edges of what is seen move by that.
+// Floats have a resolution of 1e-4 m at 1 km, which moves edges.
 TEST(MotionParity, FarAway) {
     const glm::dmat4 frame = moved({1000.0, -300.0, 200.0});
     SceneModel ours, theirs;
@@ -125,7 +125,7 @@ TEST(MotionParity, FarAway) {
     expect_same(ours, theirs, view_of(frame), 0.05);
 }
 
-// The same without anything that bends, and by the renderer of perfect speculars.
+// The same without deforming meshes, and by the renderer of perfect speculars.
 TEST(MotionParity, ByWhitted) {
     SceneModel ours, theirs;
     put(ours, glm::dmat4(1.0));

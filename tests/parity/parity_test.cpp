@@ -1,5 +1,4 @@
-// The Vulkan back-end sees the light that the Embree one sees, sample by sample: the scenes are those of the
-// benches whose light comes without caustics.
+// The Vulkan and Embree back-ends agree sample by sample, in the benchmark scenes without caustics.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +24,7 @@ bool agree(float a, float b) {
     return a == b || std::fabs(a - b) <= Tolerance * std::max(1.0f, std::fabs(b));
 }
 
-// Pixels of which any component of any channel is another.
+// Number of pixels in which any component of any channel differs.
 std::uint64_t disagreements(const FilmTile& film, const FilmTile& reference) {
     std::vector<bool> differs(film.pixel_count());
     for (const frame::ChannelInfo& info : frame::channel_table()) {
@@ -53,12 +52,12 @@ struct PairedMean {
         }
     }
     double mean() const { return sum / count; }
-    // By which the rounding of the values, half an ulp of theirs, may move the mean: it need not cancel.
+    // Bound of the mean's error by the rounding of the values, half an ulp each.
     double rounding() const { return 6e-8 * size / count; }
     double error() const { return std::sqrt(squares - sum * sum / count) / count; }
 };
 
-// Samples that are another in each of two pictures of one scene than in the Embree back-end's.
+// Samples of two pictures of a scene that differ from the Embree back-end's.
 struct Counts {
     std::uint64_t vulkan = 0, control = 0;
 };

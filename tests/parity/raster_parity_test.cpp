@@ -1,4 +1,4 @@
-// What is drawn has the light that Embree's rays find.
+// Rasterised pictures match those of Embree's rays.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,9 +42,9 @@ std::array<BatchMeans, 3> means_of(const Renderer& renderer, const view::View& v
 
 class RasterParity : public testing::TestWithParam<const char*> {};
 
-// The samples lie elsewhere in their pixels, so the means are compared: each within 4 standard errors of the
-// difference, which a right renderer leaves in one of 1,300 runs of these 12 numbers; the samples are fixed.
-TEST_P(RasterParity, HasTheMeanLightAndColoursOfRays) {
+// The subpixel positions differ, so means are compared: each within 4 standard errors of the difference,
+// which a correct renderer exceeds in 1 of 1,300 runs of these 12 numbers; the samples are fixed.
+TEST_P(RasterParity, MatchesTheMeansOfTracedRays) {
     const tools::bench::BenchScene scene = bench_scene(GetParam());
     const Renderer embree("embree", scene), vulkan("vulkan", scene);
     view::View view = square_view(scene, RasterSize);

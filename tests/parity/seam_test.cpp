@@ -1,4 +1,4 @@
-// A picture whose tiles come from both back-ends in turn shows no seams.
+// Pictures with alternating tiles of both back-ends have no visible seams.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ bool is_vulkans(std::int32_t x, std::int32_t y) {
 
 enum class Source { Embree, Mixed };
 
-// Mixed: like a chessboard, fields of 16 x 16 pixels from either back-end.
+// Mixed: a chessboard with fields of 16 x 16 pixels, alternately from either back-end.
 frame::Image picture_of(const std::string& name, Source source, frame::SampleBlock block) {
     const tools::bench::BenchScene scene = bench_scene(name);
     view::View view = square_view(scene, SeamSize);
@@ -42,7 +42,7 @@ float brightness(const frame::Image& picture, std::int32_t x, std::int32_t y) {
 }
 
 // (a - b) / (a + b) of all neighbours a, b with the border of a chessboard between them, a on its white side;
-// the board is moved by `shift`. Shifted by half a field its borders lie inside of fields of the picture.
+// the board is moved by `shift`. Shifted by half a field, its borders are inside the fields of the picture.
 std::vector<double> contrasts(const frame::Image& picture, std::int32_t shift) {
     std::vector<double> found;
     const auto add = [&](std::int32_t x0, std::int32_t y0, std::int32_t x1, std::int32_t y1) {
@@ -83,7 +83,8 @@ double step_score(const frame::Image& picture) {
     return rank_score(contrasts(picture, 0), contrasts(picture, Edge / 2));
 }
 
-// Sizes of the borders' contrasts against those at the same places of a picture without borders: other noise.
+// Absolute contrasts of the borders against those at the same positions of a picture without borders: a
+// difference in noise.
 double noise_score(const frame::Image& picture, const frame::Image& control) {
     std::vector<double> ours = contrasts(picture, 0), theirs = contrasts(control, 0);
     for (double& value : ours) value = std::fabs(value);
@@ -91,14 +92,14 @@ double noise_score(const frame::Image& picture, const frame::Image& control) {
     return rank_score(ours, theirs);
 }
 
-// The picture with its Vulkan fields changed: c becomes factor (c (1 - share) + share other).
-frame::Image hurt(frame::Image picture, float factor, float share, const frame::Image& other) {
+// The picture with its Vulkan fields changed: c becomes factor (c (1 - fraction) + fraction other).
+frame::Image with_seams(frame::Image picture, float factor, float fraction, const frame::Image& other) {
     for (std::size_t i = 0; i < picture.pixel_count(); ++i) {
         const auto at = static_cast<std::int32_t>(i);
         if (!is_vulkans(at % SeamSize, at / SeamSize)) continue;
         for (std::size_t c = 0; c < 3; ++c) {
             float& value = picture.pixel(i)[c];
-            value = factor * ((1.0f - share) * value + share * other.pixel(i)[c]);
+            value = factor * ((1.0f - fraction) * value + fraction * other.pixel(i)[c]);
         }
     }
     return picture;
@@ -115,10 +116,9 @@ TEST_P(Seams, BordersOfTilesAreLikeTheirInterior) {
     EXPECT_LE(std::fabs(step_score(picture)), Most);
     EXPECT_LE(std::fabs(noise_score(picture, control)), Most);
 
-    // Such seams would be seen: 3 % more light in one back-end's tiles, or noise as of a fifth of the
-    // samples.
-    const frame::Image brighter = hurt(picture, 1.03f, 0.0f, control);
-    const frame::Image noisier = hurt(picture, 1.0f, -1.0f, control);
+    // The test detects seams: 3 % more light in one back-end's tiles, or the noise of a fifth of the samples.
+    const frame::Image brighter = with_seams(picture, 1.03f, 0.0f, control);
+    const frame::Image noisier = with_seams(picture, 1.0f, -1.0f, control);
     EXPECT_GT(std::fabs(step_score(brighter)), Most);
     EXPECT_GT(std::fabs(noise_score(noisier, control)), Most);
     std::printf("%s: step %.2f (3 %% more light: %.2f), noise %.2f (a fifth of the samples: %.2f)\n",

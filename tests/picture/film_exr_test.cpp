@@ -39,13 +39,13 @@ class FilmExr : public testing::Test {
     std::filesystem::path folder_;
 };
 
-TEST_F(FilmExr, StatisticsComeBackToTheBit) {
+TEST_F(FilmExr, RoundTripsStatisticsBitByBit) {
     frame::FilmTile original = film();
     original.rect.x = 3;
     original.rect.y = 4;
     frame::Image filtered(37, 23, 4);
     for (std::size_t i = 0; i < filtered.values.size(); ++i) filtered.values[i] = float(i) * 0.5f;
-    write_film_exr(file("a.exr"), {64, 32, original, {{"tessera.seed", "5"}}}, filtered, Statistics::Saved);
+    write_film_exr(file("a.exr"), {64, 32, original, {{"tessera.seed", "5"}}}, filtered, Statistics::Include);
     const FilmFile back = read_film_exr(file("a.exr"));
     EXPECT_TRUE(frame::identical_bits(back.film, original));
     EXPECT_EQ(back.width, 64u);
@@ -59,18 +59,18 @@ TEST_F(FilmExr, StatisticsComeBackToTheBit) {
     }
 }
 
-TEST_F(FilmExr, OfColorAloneColorIsThePicture) {
+TEST_F(FilmExr, WithOnlyColorColorIsThePicture) {
     const frame::FilmTile color = frame::with_channels(film(), {frame::Channel::Color});
-    write_film_exr(file("a.exr"), {37, 23, color, {}}, {}, Statistics::Saved);
+    write_film_exr(file("a.exr"), {37, 23, color, {}}, {}, Statistics::Include);
     EXPECT_TRUE(frame::identical_bits(read_film_exr(file("a.exr")).film, color));
     const Picture main = read_exr(file("a.exr"));
     EXPECT_EQ(main.image.values, frame::resolve(color, frame::Channel::Color).values);
     const frame::FilmTile albedo = frame::with_channels(film(), {frame::Channel::Albedo});
-    write_film_exr(file("b.exr"), {37, 23, albedo, {}}, {}, Statistics::Saved);
+    write_film_exr(file("b.exr"), {37, 23, albedo, {}}, {}, Statistics::Include);
     EXPECT_THROW(read_film_exr(file("b.exr")), Error) << "no picture is in it";
 }
 
-TEST_F(FilmExr, WithoutStatisticsItSaysHowToGetThem) {
+TEST_F(FilmExr, WithoutStatisticsTheErrorHasTheRemedy) {
     write_film_exr(file("a.exr"), {37, 23, film(), {}});
     try {
         (void)read_film_exr(file("a.exr"));
@@ -84,7 +84,7 @@ TEST_F(FilmExr, WithoutStatisticsItSaysHowToGetThem) {
 }
 
 TEST_F(FilmExr, DamageIsAnErrorAndNeverACrash) {
-    write_film_exr(file("a.exr"), {37, 23, film(), {}}, {}, Statistics::Saved);
+    write_film_exr(file("a.exr"), {37, 23, film(), {}}, {}, Statistics::Include);
     std::ifstream in(file("a.exr"), std::ios::binary);
     const std::string good((std::istreambuf_iterator<char>(in)), {});
     CounterRandom random(3);
@@ -105,11 +105,11 @@ TEST_F(FilmExr, DamageIsAnErrorAndNeverACrash) {
     }
 }
 
-TEST_F(FilmExr, NumbersThatNoSampleCanGiveAreDamage) {
+TEST_F(FilmExr, ImpossibleValuesAreDamage) {
     for (const float value : {std::numeric_limits<float>::quiet_NaN(), -1.0f}) {
         frame::FilmTile bad = film();
         bad.plane(4)[7] = value;  // M2 of green radiance
-        write_film_exr(file("a.exr"), {37, 23, bad, {}}, {}, Statistics::Saved);
+        write_film_exr(file("a.exr"), {37, 23, bad, {}}, {}, Statistics::Include);
         EXPECT_THROW(read_film_exr(file("a.exr")), Error) << value;
     }
 }
@@ -128,7 +128,7 @@ TEST_F(FilmExr, EncodedPicturesKeepAlpha) {
         EXPECT_GT(encode_picture(image, format, {}).size(), 20u);
     }
     image.values[0] = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_GT(encode_picture(image, FileFormat::Png, {}).size(), 20u) << "what is no number is black";
+    EXPECT_GT(encode_picture(image, FileFormat::Png, {}).size(), 20u) << "NaN is black";
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ TEST(Metrics, GrowWithTheNoise) {
     }
 }
 
-TEST(Metrics, RefusePicturesOfOtherSizes) {
+TEST(Metrics, RejectPicturesOfOtherSizes) {
     EXPECT_THROW(mse(uniform(1.0f, 8), uniform(1.0f, 9)), Error);
     EXPECT_THROW(relmse(uniform(1.0f, 8), uniform(1.0f, 9)), Error);
     EXPECT_THROW(ssim(uniform(1.0f, 8), uniform(1.0f, 9)), Error);

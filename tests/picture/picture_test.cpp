@@ -62,7 +62,7 @@ frame::FilmTile some_film(const Rect& window) {
     return film;
 }
 
-TEST_F(PictureTest, ExrComesBackToTheBitInItsWindow) {
+TEST_F(PictureTest, ExrRoundTripsBitByBitInItsWindow) {
     const Rect window{5, 7, 13, 9};
     const frame::FilmTile film = some_film(window);
     write_film_exr(file("a.exr"), {64, 32, film, {{"tessera/seed", "5"}}});
@@ -118,7 +118,7 @@ TEST_F(PictureTest, DamagedHdrIsAnError) {
     }
 }
 
-TEST_F(PictureTest, WhatCannotBeWrittenLeavesNothing) {
+TEST_F(PictureTest, AFailedWriteLeavesNoFile) {
     EXPECT_THROW(write_film_exr(file("no/folder/a.exr"), {4, 4, some_film({0, 0, 4, 4}), {}}), Error);
     EXPECT_THROW(write_png(file("no/folder/a.png"), 1, 1, std::array<std::uint8_t, 3>{}), Error);
     EXPECT_EQ(files(), 0u);

@@ -11,7 +11,7 @@
 namespace tessera::picture {
 namespace {
 
-TEST(SrgbBytes, RoundsAsTheFormulaDoes) {
+TEST(SrgbBytes, RoundsLikeTheFormula) {
     const SrgbBytes to_srgb;
     // Every float is too many: all with these leading bits, which hit every entry of the table many times.
     for (std::uint32_t bits = 0; bits <= std::bit_cast<std::uint32_t>(1.0f); bits += 1021) {
@@ -39,7 +39,7 @@ TEST(SrgbBytes, ThresholdsAreExact) {
     }
 }
 
-TEST(SrgbBytes, WhatIsNoLightIsBlackAndMoreThanWhiteIsWhite) {
+TEST(SrgbBytes, InvalidValuesAreBlackAndValuesAboveOneAreWhite) {
     const SrgbBytes to_srgb;
     EXPECT_EQ(to_srgb(std::numeric_limits<float>::quiet_NaN()), 0);
     EXPECT_EQ(to_srgb(-1.0f), 0);

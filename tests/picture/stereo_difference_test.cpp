@@ -43,7 +43,7 @@ TEST(StereoDifference, EyesThatSeeTheSameSurfaceAgree) {
     }
 }
 
-TEST(StereoDifference, NoiseAndABrighterEyeShow) {
+TEST(StereoDifference, DetectsNoiseAndABrighterEye) {
     const Painted left(-0.03, 2.0);
     Painted right(0.03, 2.0);
     for (auto* plane : {&right.red, &right.green, &right.blue}) {
@@ -52,7 +52,7 @@ TEST(StereoDifference, NoiseAndABrighterEyeShow) {
     EXPECT_NEAR(stereo_difference(left.view(), right.view()).mean, 0.2, 0.01);  // 0.5 / 2.5
 }
 
-TEST(StereoDifference, WhatOnlyOneEyeSeesDoesNotCount) {
+TEST(StereoDifference, IgnoresWhatOnlyOneEyeSees) {
     const Painted left(-0.03, 2.0);
     Painted right(0.03, 2.0);
     // Something near hides the right half from the right eye.
@@ -66,7 +66,7 @@ TEST(StereoDifference, WhatOnlyOneEyeSeesDoesNotCount) {
     EXPECT_NEAR(difference.shared, 0.5, 0.05);
 }
 
-TEST(StereoDifference, NothingToCompareIsNoDifference) {
+TEST(StereoDifference, IsZeroWithNothingToCompare) {
     Painted left(-0.03, 2.0), right(0.03, 2.0);
     for (float& depth : left.depth) depth = std::numeric_limits<float>::infinity();
     EXPECT_EQ(stereo_difference(left.view(), right.view()).mean, 0.0);

@@ -1,4 +1,4 @@
-// Exposure and view transforms: known inputs to known bytes, and nothing that light can be breaks them.
+// Exposure and view transforms: known inputs give known bytes, and any input is handled.
 #include "mediator/picture/view_transform.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ frame::Image pixels(std::initializer_list<std::array<float, 3>> colors) {
 }
 
 // Calculated from the specifications in double precision, apart from this code.
-TEST(ViewTransform, KnownLightHasKnownBytes) {
+TEST(ViewTransform, MapsKnownValuesToKnownBytes) {
     const frame::Image light = pixels({{0.18f, 0.18f, 0.18f},
                                        {1, 1, 1},
                                        {4, 4, 4},
@@ -55,7 +55,7 @@ TEST(ViewTransform, AStopDoublesTheLight) {
         EXPECT_EQ(srgb_bytes(light, {kind, 1.0}), srgb_bytes(twice, {kind, 0.0}));
 }
 
-TEST(ViewTransform, OfAnyLightIsFiniteAndNotNegative) {
+TEST(ViewTransform, OfAnyValueIsFiniteAndNotNegative) {
     constexpr float Infinity = std::numeric_limits<float>::infinity();
     const float hard[] = {0.0f,  -0.0f, -1.0f, 1e-45f,    1e-38f,   1e-10f, 0.0799999f,
                           0.08f, 0.76f, 1e10f, 3.402e38f, Infinity, NAN,    -Infinity};
@@ -109,7 +109,7 @@ frame::Image random_light(float scale, std::uint64_t seed = 3) {
     return image;
 }
 
-TEST(Exposure, PutsTheMeanAtMiddleGreyWhateverTheUnitOfLight) {
+TEST(Exposure, MapsTheMeanToMiddleGreyForAnyUnit) {
     frame::Image grey(4, 4, 3);
     std::fill(grey.values.begin(), grey.values.end(), 0.18f * 8.0f);
     EXPECT_NEAR(*measured_exposure(grey), -3.0, 1e-6);
@@ -118,7 +118,7 @@ TEST(Exposure, PutsTheMeanAtMiddleGreyWhateverTheUnitOfLight) {
         EXPECT_NEAR(*measured_exposure(random_light(std::exp2(float(stops)))), reference - stops, 1e-5);
 }
 
-TEST(Exposure, LampsAndDarkCornersHardlyMoveIt) {
+TEST(Exposure, IsRobustToLampsAndDarkCorners) {
     const double reference = *measured_exposure(random_light(1.0f));
     frame::Image with_lamp = random_light(1.0f), with_corner = with_lamp, with_holes = with_lamp;
     for (std::size_t i = 0; i < with_lamp.pixel_count() / 25; ++i) {  // 4 %
@@ -131,7 +131,7 @@ TEST(Exposure, LampsAndDarkCornersHardlyMoveIt) {
     EXPECT_NEAR(*measured_exposure(with_holes), reference, 0.1);
 }
 
-TEST(Exposure, AWhiteFloorBeforeADarkBackdropDoesNotBurnOut) {
+TEST(Exposure, AWhiteFloorInFrontOfADarkBackdropIsNotOverexposed) {
     frame::Image image(10, 10, 3);
     for (std::size_t i = 0; i < image.pixel_count(); ++i)
         std::fill_n(image.pixel(i).begin(), 3, i < 45 ? 0.01f : 1.0f);
@@ -141,7 +141,7 @@ TEST(Exposure, AWhiteFloorBeforeADarkBackdropDoesNotBurnOut) {
     EXPECT_GT(*measured_exposure(image), -1.6);
 }
 
-TEST(Exposure, OfWhatIsTransparentOrBlackThereIsNone) {
+TEST(Exposure, IsEmptyForTransparentOrBlackPictures) {
     EXPECT_FALSE(measured_exposure(frame::Image(8, 8, 3)));
     frame::Image hidden(2, 1, 4);
     hidden.values = {9, 9, 9, 0, 0.18f, 0.18f, 0.18f, 1};
@@ -153,7 +153,7 @@ TEST(Exposure, OfWhatIsTransparentOrBlackThereIsNone) {
     EXPECT_EQ(*with_exposure({Kind::Agx, 2.5}, hidden).exposure, 2.5);
 }
 
-TEST(EncodedPicture, SaysHowItWasExposed) {
+TEST(EncodedPicture, RecordsItsExposure) {
     frame::Image image(2, 2, 3);
     std::fill(image.values.begin(), image.values.end(), 0.72f);
     for (const FileFormat format : {FileFormat::Png, FileFormat::Jpeg}) {

@@ -1,4 +1,4 @@
-// Promises that only real processes can keep: other pids, sockets with CURVE, kill -9.
+// Guarantees that need real processes: separate pids, CURVE sockets, kill -9.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -27,7 +27,7 @@ void expect_exact_accounting(const json& result) {
     EXPECT_GE(samples, expected) << result.dump(1);
 }
 
-TEST(RealProcesses, GiveTheBitsOfOneProcess) {
+TEST(RealProcesses, MatchASingleProcessBitwise) {
     RealCluster cluster;
     const ChildProcess a = cluster.start_node("a"), b = cluster.start_node("b");
     const std::string scene = scene_file("room-1.glb");
@@ -44,7 +44,7 @@ TEST(RealProcesses, GiveTheBitsOfOneProcess) {
             << "a living node got less than a tenth";
     }
     EXPECT_EQ(pids, (std::set<int>{a.pid(), b.pid()}));
-    // Every pixel's statistics crossed the wire once at least: counts may be left out, planes may not.
+    // The statistics of every pixel were transferred at least once: counts may be omitted, planes may not.
     constexpr double BytesPerPixel = 4 * (6 + 6 + 6 + 3 + 3 + 1 + 2);
     EXPECT_GE(two["wire_bytes"]["film"].get<double>(), 160 * 90 * BytesPerPixel);
 
@@ -53,7 +53,7 @@ TEST(RealProcesses, GiveTheBitsOfOneProcess) {
     EXPECT_LT(other["wire_bytes"]["blobs"].get<double>(), 3 * two["wire_bytes"]["blobs"].get<double>());
 }
 
-// The null back-end with a fixed cost per sample makes the frame last long enough to pull plugs at leisure.
+// The null back-end with a fixed cost per sample makes the frame last long enough to kill processes.
 const std::vector<std::string> SlowNode{"--backend", "null", "--simulate-cost", "20us"};
 const std::vector<std::string> SlowFrame{"--size", "160x120", "--spp", "16", "--seed", "5"};
 
@@ -63,20 +63,20 @@ std::string expected_hash_of_slow_frame(const RealCluster& cluster) {
     return result["film_hash"];
 }
 
-std::uint64_t units_in_hand(const json& status, const std::string& name) {
+std::uint64_t units_in_flight(const json& status, const std::string& name) {
     for (const json& node : status["nodes"]) {
         if (node["name"] == name) return node["units_in_hand"].get<std::uint64_t>();
     }
     return 0;
 }
 
-TEST(RealProcesses, ANodeKilledInTheMiddleChangesNothing) {
+TEST(RealProcesses, KillingANodeChangesNothing) {
     RealCluster cluster;
     const ChildProcess a = cluster.start_node("a", SlowNode), b = cluster.start_node("b", SlowNode);
     ChildProcess render =
         cluster.start_render("frame", scene_file("still.glb"),
                              SlowFrame + std::vector<std::string>{"--wait-nodes", "2:60", "--json"});
-    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_hand(status, "b") > 0; }))
+    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_flight(status, "b") > 0; }))
         << render.err();
     b.signal(SIGKILL);
     ASSERT_EQ(render.wait(std::chrono::minutes(3)).value_or(-1), 0) << render.err();
@@ -86,7 +86,7 @@ TEST(RealProcesses, ANodeKilledInTheMiddleChangesNothing) {
     EXPECT_GT(result["units"]["lost"].get<int>(), 0);
 }
 
-// A spot light in fog over a floor: rays go through boundaries, and paths are scattered on their way.
+// A spot light in fog over a floor: rays cross medium boundaries, and paths scatter in the medium.
 std::string foggy_scene(const TemporaryFolder& folder) {
     const std::string path = folder / "fog.x3d";
     std::ofstream(path) << R"(<X3D version='3.3'><Scene>
@@ -100,14 +100,14 @@ std::string foggy_scene(const TemporaryFolder& folder) {
     return path;
 }
 
-TEST(RealProcesses, ANodeKilledInTheMiddleOfAFogChangesNothing) {
+TEST(RealProcesses, KillingANodeInAMediumChangesNothing) {
     const std::vector<std::string> frame{"--size", "160x120", "--spp", "128", "--seed", "5"};
     RealCluster cluster;
     const ChildProcess a = cluster.start_node("a"), b = cluster.start_node("b");
     const std::string scene = foggy_scene(cluster.folder());
     ChildProcess render = cluster.start_render(
         "frame", scene, frame + std::vector<std::string>{"--wait-nodes", "2:60", "--json"});
-    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_hand(status, "b") > 0; }))
+    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_flight(status, "b") > 0; }))
         << render.err();
     b.signal(SIGKILL);
     ASSERT_EQ(render.wait(std::chrono::minutes(3)).value_or(-1), 0) << render.err();
@@ -121,12 +121,12 @@ TEST(RealProcesses, ANodeKilledInTheMiddleOfAFogChangesNothing) {
     EXPECT_NE(other["film_hash"], one["film_hash"]) << "there is nothing to be seen";
 }
 
-TEST(RealProcesses, ANodeThatJoinsInTheMiddleHelps) {
+TEST(RealProcesses, LateNodeTakesWork) {
     RealCluster cluster;
     const ChildProcess a = cluster.start_node("a", SlowNode);
     ChildProcess render = cluster.start_render("frame", scene_file("still.glb"),
                                                SlowFrame + std::vector<std::string>{"--json"});
-    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_hand(status, "a") > 0; }))
+    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_flight(status, "a") > 0; }))
         << render.err();
     const ChildProcess b = cluster.start_node("b", SlowNode);
     ASSERT_EQ(render.wait(std::chrono::minutes(3)).value_or(-1), 0) << render.err();
@@ -137,13 +137,13 @@ TEST(RealProcesses, ANodeThatJoinsInTheMiddleHelps) {
     EXPECT_TRUE(pids.contains(b.pid())) << "the late node rendered nothing: " << result.dump(1);
 }
 
-TEST(RealProcesses, ANodeToldToStopHandsItsUnitsBack) {
+TEST(RealProcesses, StoppedNodeReturnsItsUnits) {
     RealCluster cluster;
     ChildProcess a = cluster.start_node("a", SlowNode), b = cluster.start_node("b", SlowNode);
     ChildProcess render =
         cluster.start_render("frame", scene_file("still.glb"),
                              SlowFrame + std::vector<std::string>{"--wait-nodes", "2:60", "--json"});
-    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_hand(status, "b") > 0; }))
+    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_flight(status, "b") > 0; }))
         << render.err();
     b.signal(SIGTERM);
     EXPECT_EQ(b.wait(std::chrono::seconds(30)).value_or(-1), 0) << b.err();
@@ -153,26 +153,26 @@ TEST(RealProcesses, ANodeToldToStopHandsItsUnitsBack) {
     EXPECT_EQ(result["units"]["lost"].get<int>(), 0) << "what it held was handed back, not lost";
 }
 
-TEST(RealProcesses, InterruptingARenderWritesWhatIsThere) {
+TEST(RealProcesses, InterruptedRenderWritesTheMergedSamples) {
     RealCluster cluster;
     const ChildProcess a = cluster.start_node("a", SlowNode);
     ChildProcess render = cluster.start_render("frame", scene_file("still.glb"),
                                                {"--size", "160x120", "--spp", "4096", "--json"});
-    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_hand(status, "a") > 0; }))
+    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_flight(status, "a") > 0; }))
         << render.err();
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
     render.signal(SIGINT);
     EXPECT_EQ(render.wait(std::chrono::seconds(60)).value_or(-1), 130) << render.err();
     EXPECT_TRUE(std::filesystem::exists(cluster.folder() / "frame.exr"));
-    EXPECT_TRUE(cluster.wait_for([&](const json& status) { return units_in_hand(status, "a") == 0; }))
-        << "the node goes on with what nobody wants";
+    EXPECT_TRUE(cluster.wait_for([&](const json& status) { return units_in_flight(status, "a") == 0; }))
+        << "the node continues with work that no client needs";
 }
 
-TEST(RealProcesses, ASecondRenderWaitsItsTurnOrIsToldToComeBack) {
+TEST(RealProcesses, SecondRenderIsQueuedOrRejected) {
     RealCluster cluster;
     const ChildProcess a = cluster.start_node("a", SlowNode);
     ChildProcess first = cluster.start_render("first", scene_file("still.glb"), SlowFrame);
-    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_hand(status, "a") > 0; }))
+    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_flight(status, "a") > 0; }))
         << first.err();
     ChildProcess hasty = cluster.start_render("hasty", scene_file("still.glb"), {"--spp", "1", "--no-wait"});
     EXPECT_EQ(hasty.wait(std::chrono::minutes(1)).value_or(-1), 75) << hasty.err();
@@ -182,14 +182,14 @@ TEST(RealProcesses, ASecondRenderWaitsItsTurnOrIsToldToComeBack) {
     EXPECT_EQ(second.wait(std::chrono::minutes(3)).value_or(-1), 0) << second.err();
 }
 
-// The journal has the scene and the checkpoint the film; client and nodes come back by themselves.
-TEST(RealProcesses, AMasterKilledInTheMiddleOfABatchChangesNothing) {
+// The journal has the scene and the checkpoint the film; client and nodes reconnect automatically.
+TEST(RealProcesses, KillingTheMasterDuringABatchChangesNothing) {
     RealCluster cluster({"--heartbeat", "0.1", "--checkpoint", "0.3"}, RealCluster::Session::Kept);
     const ChildProcess a = cluster.start_node("a", SlowNode);
     ChildProcess render = cluster.start_render("frame", scene_file("still.glb"),
                                                SlowFrame + std::vector<std::string>{"--json"});
     for (int kill = 0; kill < 2; ++kill) {
-        ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_hand(status, "a") > 0; }))
+        ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_flight(status, "a") > 0; }))
             << render.err();
         std::this_thread::sleep_for(std::chrono::milliseconds(500));
         cluster.kill_master();
@@ -219,7 +219,7 @@ TEST(RealProcesses, AJobOutlivesItsClientAndItsMaster) {
         "render", scene_file("still.glb"),       "--name", "night", "--detach",
         "-o",     cluster.folder() / "night.exr"};
     tessera("submit", submit + SlowFrame);
-    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_hand(status, "a") > 0; }));
+    ASSERT_TRUE(cluster.wait_for([&](const json& status) { return units_in_flight(status, "a") > 0; }));
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
     ChildProcess hasty(cluster.folder().path(), "hasty", "tessera",
                        {"fetch", "night", "--master", cluster.endpoint(), "--keys", cluster.keys()});
@@ -246,7 +246,7 @@ TEST(RealProcesses, AJobOutlivesItsClientAndItsMaster) {
     EXPECT_TRUE(json::parse(tessera("none", {"jobs", "--json"})).empty());
 }
 
-TEST(RealProcesses, AnUnknownKeyIsRefusedEverywhere) {
+TEST(RealProcesses, UnknownKeyIsRejectedEverywhere) {
     RealCluster cluster;
     ChildProcess foreign_keys(cluster.folder().path(), "foreign", "tessera",
                               {"keys", cluster.folder() / "foreign"});
@@ -265,7 +265,7 @@ TEST(RealProcesses, AnUnknownKeyIsRefusedEverywhere) {
     EXPECT_TRUE(cluster.status()["nodes"].empty());
 }
 
-TEST(RealProcesses, SayWhenNodesDoNotCome) {
+TEST(RealProcesses, ReportMissingNodes) {
     RealCluster cluster;
     ChildProcess render = cluster.start_render("lonely", scene_file("still.glb"), {"--wait-nodes", "2:1"});
     EXPECT_EQ(render.wait(std::chrono::minutes(1)).value_or(-1), 69) << render.err();

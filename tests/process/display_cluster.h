@@ -22,12 +22,12 @@ struct ShownFrame {
 // An output of 64 x 48 pixels that fills this part of a wall two metres in front of the head.
 display::Output part_of_wall(const std::string& name, double left, double right);
 
-// A program in another environment: variables as NAME=VALUE, or "-u" and NAME of one that it is not to have.
+// A program with environment variables: NAME=VALUE, or "-u" and NAME to unset one.
 ChildProcess start_with(const std::vector<std::string>& variables, const TemporaryFolder& folder,
                         const std::string& label, const std::string& program,
                         const std::vector<std::string>& arguments);
 
-// A master, null nodes, a live scene of one camera on a place that can be moved, and somebody who edits it.
+// A master, null nodes, a live scene with one movable camera, and an editor client.
 class DisplayCluster {
   public:
     explicit DisplayCluster(int nodes, RealCluster::Session kept = RealCluster::Session::None);
@@ -37,19 +37,19 @@ class DisplayCluster {
     RealCluster& cluster() { return cluster_; }
     const TemporaryFolder& folder() const { return cluster_.folder(); }
 
-    // What every tessera-display of this cluster is told.
+    // The options of every tessera-display of this cluster.
     std::vector<std::string> arguments(const std::string& output, std::vector<std::string> more) const;
-    // Headless, with a log that further processes of this output go on with.
+    // Headless, with a log that later processes of this output append to.
     ChildProcess show(const std::string& output, std::vector<std::string> more = {});
     std::vector<ShownFrame> log(const std::string& output) const;
     // As `tessera status` has it: locked, late, absent, joining; "" = no such output.
     std::string state(const std::string& output);
     bool wait_for_state(const std::string& output, const std::string& state);
     bool wait_until_locked(const std::vector<std::string>& outputs);
-    // Until the latest lines of their logs are of one frame.
+    // Waits until the latest lines of their logs have the same frame.
     bool wait_until_the_same_is_shown(const std::vector<std::string>& outputs) const;
-    // The output's picture with all samples of the display, which stands still: shown for a moment by a
-    // process that keeps a PNG of it.
+    // The output's picture with all samples of the display, which is static: shown briefly by a
+    // process that writes it as PNG.
     std::vector<std::uint8_t> finished_png(const display::Output& output, std::uint64_t samples);
 
   private:
@@ -65,8 +65,8 @@ class DisplayCluster {
     int next_label_ = 0;
 };
 
-// While it lives, the head moves all the time and the scene's camera now and then: new frames are always due,
-// of new versions. The editor is not used meanwhile.
+// During its lifetime, the head moves continuously and the camera occasionally, so that new frames of new versions
+// are always due. The editor must not be used meanwhile.
 class MovingScene {
   public:
     explicit MovingScene(DisplayCluster& cluster);
@@ -75,7 +75,7 @@ class MovingScene {
     std::jthread thread_;
 };
 
-// Red, green and blue bytes; empty, and the test fails, when the file is not a whole PNG of that size.
+// Red, green and blue bytes; empty, and the test fails, if the file is not a complete PNG of that size.
 std::vector<std::uint8_t> png_bytes(const std::string& path, std::uint32_t width, std::uint32_t height);
 
 template <class Done>

@@ -47,7 +47,7 @@ struct DisplayProcess : testing::Test {
     RealCluster cluster;
     SteadyClock clock;
     std::shared_ptr<scene::BlobStore> blobs = std::make_shared<scene::BlobStore>();
-    std::unique_ptr<client::Session> ann, shower;
+    std::unique_ptr<client::Session> ann, output_client;
     std::string file = cluster.folder() / "wall.toml";
     std::vector<client::OutputFrame> frames;
     bool pattern = false;
@@ -78,21 +78,21 @@ struct DisplayProcess : testing::Test {
         for (const scene::BlobPtr& blob : imported->blobs) blobs->insert(blob);
         ASSERT_TRUE(ann->submit(import::entries(*imported, import::RootEntry::Update)).accepted);
     }
-    // Answers for the output until `done` says yes.
+    // Acknowledges frames of the output until `done` returns true.
     template <class Done>
     void until(const Done& done) {
         const auto deadline = std::chrono::steady_clock::now() + DisplayPatience;
         while (!done()) {
             ASSERT_LT(std::chrono::steady_clock::now(), deadline)
                 << "it did not happen: " << cluster.master().err();
-            auto event = shower->next_output_event(std::chrono::steady_clock::now() + 10ms, {});
+            auto event = output_client->next_output_event(std::chrono::steady_clock::now() + 10ms, {});
             if (!event) continue;
             if (const auto* opened = std::get_if<session::OutputOpened>(&*event)) {
                 pattern = opened->pattern;
-                shower->output_ready(0);
+                output_client->output_ready(0);
             }
             if (auto* frame = std::get_if<client::OutputFrame>(&*event)) {
-                shower->output_ready(frame->number);
+                output_client->output_ready(frame->number);
                 frames.push_back(std::move(*frame));
             }
         }
@@ -101,8 +101,8 @@ struct DisplayProcess : testing::Test {
     void show() {
         ASSERT_NO_FATAL_FAILURE(load_scene());
         ASSERT_EQ(display({"open", file}).code, 0);
-        shower = member("shower");
-        shower->join_output("left-half");
+        output_client = member("output_client");
+        output_client->join_output("left-half");
         until([&] { return !frames.empty(); });
     }
     // Whether the latest frame is seen by both eyes of this head.
@@ -156,10 +156,10 @@ TEST_F(DisplayProcess, WithoutADisplayNothingIsStarted) {
     EXPECT_EQ(display({"open", cluster.folder() / "none.toml"}).code, 2);
 }
 
-TEST_F(DisplayProcess, IsOpenedAdjustedAndClosed) {
+TEST_F(DisplayProcess, OpenAdjustClose) {
     const Result early = display({"open", file, "--scene", "room"});
     EXPECT_EQ(early.code, 0) << early.err;
-    expect_says(early.out, "display 'wall' is open in front of 'room'");
+    expect_says(early.out, "display 'wall' is open on the live scene 'room'");
     expect_says(early.out, "  tessera-display --master " + cluster.endpoint() + " --keys " + cluster.keys() +
                                " --output left-half\n");
     expect_says(early.err, "nothing is shown yet");

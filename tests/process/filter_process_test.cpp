@@ -1,5 +1,4 @@
-// Filters through real processes: what two nodes over CURVE give is what one process gives, and what a saved
-// film gives.
+// Filters through real processes: two nodes over CURVE, one process and a saved film give the same picture.
 #include <gtest/gtest.h>
 
 #include "master/filter/catalog.h"
@@ -21,14 +20,14 @@ std::vector<std::string> path_class_of(const std::string& filter) {
     return {};
 }
 
-// The cluster is made once for all filters.
+// The cluster is started once for all filters.
 RealCluster& cluster() {
     static RealCluster cluster;
     static const ChildProcess a = cluster.start_node("a"), b = cluster.start_node("b");
     return cluster;
 }
 
-TEST_P(Filters, GiveTheBitsOfOneProcessAndOfTheSavedFilm) {
+TEST_P(Filters, MatchASingleProcessAndTheSavedFilmBitwise) {
     const std::string scene = scene_file("room-1.glb");
     const std::string label = GetParam();
     std::vector<std::string> options{"--size", "96x54", "--spp", "4", "--filter", label, "--save-statistics"};
@@ -59,7 +58,7 @@ std::vector<std::string> names() {
 }
 INSTANTIATE_TEST_SUITE_P(Catalog, Filters, testing::ValuesIn(names()));
 
-TEST(FilterCommand, SaysWhatIsWrong) {
+TEST(FilterCommand, ReportsErrors) {
     const TemporaryFolder folder;
     const auto run = [&](std::vector<std::string> words) {
         ChildProcess process(folder.path(), "filter", "tessera", words);

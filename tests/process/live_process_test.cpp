@@ -1,4 +1,4 @@
-// A live scene across the death of its master.
+// A live scene across a crash of its master.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -18,7 +18,7 @@ namespace {
 using namespace scene;
 using namespace std::chrono_literals;
 
-// A master that keeps its session, started again as often as a test likes, and a node.
+// A master with a session folder, restarted any number of times, and a node.
 struct LiveProcess : testing::Test {
     RealCluster cluster{{"--heartbeat", "0.1", "--checkpoint", "0.3"}, RealCluster::Session::Kept};
     std::optional<ChildProcess> node;
@@ -66,7 +66,7 @@ struct LiveProcess : testing::Test {
     }
 };
 
-TEST_F(LiveProcess, KilledAtRandomMomentsItHasEveryAcknowledgedEdit) {
+TEST_F(LiveProcess, KilledAtRandomTimesKeepsEveryAcknowledgedEdit) {
     std::mt19937 random(7);
     float last = 0.0f;
     std::uint64_t edits = 0;
@@ -93,7 +93,7 @@ TEST_F(LiveProcess, KilledAtRandomMomentsItHasEveryAcknowledgedEdit) {
     EXPECT_EQ(late->history(256).size(), 256u) << "of " << edits;
 }
 
-TEST_F(LiveProcess, TheFinishedFrameHasTheBitsOfOneThatWasNeverInterrupted) {
+TEST_F(LiveProcess, FinishedFrameMatchesAnUninterruptedOneBitwise) {
     view.stop.spp = 256;  // seconds on one thread: it is not finished before it is interrupted
     session->request_view(1, view);
     const Hash256 whole = finished_film();
@@ -104,12 +104,12 @@ TEST_F(LiveProcess, TheFinishedFrameHasTheBitsOfOneThatWasNeverInterrupted) {
         std::this_thread::sleep_for(150ms);
         cluster.kill_master();
         cluster.start_master();
-        (void)session->people();  // it has joined again
+        (void)session->members();  // it has joined again
     }
     EXPECT_EQ(to_hex(finished_film()), to_hex(whole));
 }
 
-TEST_F(LiveProcess, WhatWasMergedBeforeTheDeathIsNotLost) {
+TEST_F(LiveProcess, SamplesMergedBeforeTheCrashAreKept) {
     view.stop.spp = 1u << 20;
     session->request_view(1, view);
     std::uint64_t before = 0, after = 0;
@@ -123,7 +123,7 @@ TEST_F(LiveProcess, WhatWasMergedBeforeTheDeathIsNotLost) {
     cluster.kill_master();
     node->signal(SIGSTOP);  // nothing new is rendered
     cluster.start_master();
-    (void)session->people();
+    (void)session->members();
     while (const auto frame = session->next_frame(std::chrono::steady_clock::now() + 3s, {})) {
         if (frame->scale == 1) after = frame->samples_least;
         if (after >= 256) break;

@@ -1,5 +1,5 @@
-// Outputs as processes: they show frames together, and who stops, dies or comes back does not matter to the
-// others.
+// Outputs as processes: they present frames together, and a stalled, crashed or restarted output does not affect
+// the others.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -41,7 +41,7 @@ struct OutputProcesses : testing::Test {
     bool shows_more(const std::string& name, std::size_t more) const {
         return happens([&, before = lines(name)] { return lines(name) >= before + more; });
     }
-    // Over all that was ever shown: frames only grow, and each is of one version everywhere.
+    // Over all frames shown: numbers only grow, and each frame has one version on all outputs.
     std::size_t check_logs() const {
         std::map<std::pair<std::uint64_t, std::uint64_t>, std::set<std::uint64_t>> versions;
         std::set<std::uint64_t> all;
@@ -49,7 +49,7 @@ struct OutputProcesses : testing::Test {
             std::uint64_t epoch = 0, frame = 0;
             for (const ShownFrame& shown : wall.log(name)) {
                 if (shown.epoch == epoch) {
-                    // A process that was started anew shows what is shown.
+                    // A restarted process shows the current frame.
                     EXPECT_GE(shown.frame, frame) << "output " << name;
                 }
                 epoch = shown.epoch;
@@ -64,7 +64,7 @@ struct OutputProcesses : testing::Test {
     }
 };
 
-TEST_F(OutputProcesses, FramesAreShownTogether) {
+TEST_F(OutputProcesses, FramesArePresentedTogether) {
     {
         const MovingScene moving(wall);
         for (const std::string& name : Names) ASSERT_TRUE(shows_more(name, 60)) << outputs.at(name).err();
@@ -98,7 +98,7 @@ TEST_F(OutputProcesses, FramesAreShownTogether) {
     EXPECT_LT(median, 1.0 / 60.0) << "outputs are further apart than a refresh";
 }
 
-TEST_F(OutputProcesses, AnOutputThatStopsDelaysNobodyAndReturnsByItself) {
+TEST_F(OutputProcesses, StalledOutputDelaysNoOtherAndRecovers) {
     {
         const MovingScene moving(wall);
         ASSERT_TRUE(shows_more("c", 10));
@@ -113,7 +113,7 @@ TEST_F(OutputProcesses, AnOutputThatStopsDelaysNobodyAndReturnsByItself) {
         EXPECT_TRUE(shows_more("c", 10));
         EXPECT_GT(wall.log("c").back().frame, last.frame + 10);
     }
-    // They went on while it was late. How long they waited once depends on how busy the machine was before.
+    // They continued while it was late. The longest wait depends on the load of the machine.
     for (const std::string name : {"a", "b", "d"}) {
         const auto frames = wall.log(name);
         double longest = 0.0;
@@ -125,7 +125,7 @@ TEST_F(OutputProcesses, AnOutputThatStopsDelaysNobodyAndReturnsByItself) {
     EXPECT_GT(check_logs(), 4u);
 }
 
-TEST_F(OutputProcesses, AnOutputThatIsKilledIsAbsentUntilItIsStartedAgain) {
+TEST_F(OutputProcesses, KilledOutputIsAbsentUntilRestarted) {
     outputs.at("b").signal(SIGKILL);
     EXPECT_TRUE(wall.wait_for_state("b", "absent"));
     {
@@ -139,7 +139,7 @@ TEST_F(OutputProcesses, AnOutputThatIsKilledIsAbsentUntilItIsStartedAgain) {
     check_logs();
 }
 
-TEST_F(OutputProcesses, OutputsWaitForAMasterThatDied) {
+TEST_F(OutputProcesses, OutputsWaitForACrashedMaster) {
     std::map<std::string, std::size_t> before;
     for (const std::string& name : Names) before[name] = lines(name);
     wall.cluster().kill_master();
@@ -153,7 +153,7 @@ TEST_F(OutputProcesses, OutputsWaitForAMasterThatDied) {
     EXPECT_TRUE(wall.wait_until_the_same_is_shown(Names));
 }
 
-TEST_F(OutputProcesses, ASceneThatIsClosedIsWaitedForAndNotBegunByOutputs) {
+TEST_F(OutputProcesses, OutputsWaitForAClosedSceneAndDoNotOpenIt) {
     wall.editor().close_scene();
     for (const std::string& name : Names) {
         EXPECT_TRUE(happens([&] {
@@ -167,7 +167,7 @@ TEST_F(OutputProcesses, ASceneThatIsClosedIsWaitedForAndNotBegunByOutputs) {
     EXPECT_TRUE(wall.wait_until_the_same_is_shown(Names));
 }
 
-TEST_F(OutputProcesses, ADisplayThatIsClosedAndOpenedAgainIsShownAgain) {
+TEST_F(OutputProcesses, ReopenedDisplayIsShownAgain) {
     wall.editor().close_display();
     EXPECT_TRUE(happens([&] { return outputs.at("a").err().find("closed") != std::string::npos; }))
         << "it says what it waits for: " << outputs.at("a").err();

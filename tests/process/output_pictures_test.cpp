@@ -1,4 +1,4 @@
-// What headless outputs leave for others to read, and what tessera-display refuses.
+// Files and shared memory of headless outputs, and options that tessera-display rejects.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -52,7 +52,7 @@ std::string shared_name() {
     return "/tessera-test-" + std::to_string(::getpid());
 }
 
-TEST(SharedMemory, WhatWasShownStaysWholeWhileTheNextButOneIsPrepared) {
+TEST(SharedMemory, ShownBufferIsIntactWhileTheNextIsWritten) {
     display::Output output{.name = "a", .width = 5, .height = 3};
     output.stereo = display::Stereo::Separate;
     const auto presenter = client_display::make_shared_memory(shared_name(), output);
@@ -71,7 +71,7 @@ TEST(SharedMemory, WhatWasShownStaysWholeWhileTheNextButOneIsPrepared) {
     };
     for (int frame = 1; frame < 9; ++frame) {
         presenter->prepare(std::vector{picture(frame, 0), picture(frame, 1)});
-        // The one that is shown, and the one before it, which somebody may still be reading.
+        // The shown buffer and the previous one, which another process may still be reading.
         for (int before = std::max(1, frame - 2); before < frame; ++before) {
             EXPECT_EQ(reader.buffer(std::uint64_t(before)), both(before)) << "while " << frame << " is made";
             EXPECT_EQ(reader.header().frames[std::size_t(before) % 3], 100u + unsigned(before));
@@ -86,7 +86,7 @@ struct OutputPictures : testing::Test {
     DisplayCluster wall{1};
     display::Display display{.name = "wall", .spp = 4, .rate = 60.0};
 
-    // What tessera-display says before it ends by itself.
+    // The output of a tessera-display that exits by itself.
     struct Ended {
         int code = 0;
         std::string text;
@@ -98,7 +98,7 @@ struct OutputPictures : testing::Test {
     }
 };
 
-TEST_F(OutputPictures, FilesAreAlwaysWhole) {
+TEST_F(OutputPictures, FilesAreAlwaysComplete) {
     display.outputs = {part_of_wall("mono", -2, 0), part_of_wall("both", 0, 2)};
     display.outputs[1].stereo = display::Stereo::Separate;
     wall.editor().open_display(display);
@@ -143,7 +143,7 @@ TEST_F(OutputPictures, SharedMemoryHasThePictureOfTheFile) {
     EXPECT_FALSE(Reader(shared_name()).is_there()) << "it is left behind";
 }
 
-TEST_F(OutputPictures, ThePatternComesAndGoes) {
+TEST_F(OutputPictures, PatternIsToggled) {
     display.outputs = {part_of_wall("mono", -1, 1)};
     wall.editor().open_display(display);
     const auto scene = wall.finished_png(display.outputs[0], display.spp);
@@ -161,7 +161,7 @@ TEST_F(OutputPictures, ThePatternComesAndGoes) {
     EXPECT_TRUE(process.running());
 }
 
-TEST_F(OutputPictures, WrongOptionsAreRefusedWithTheRemedy) {
+TEST_F(OutputPictures, WrongOptionsAreRejectedWithARemedy) {
     const auto refused = [&](const std::vector<std::string>& arguments, const std::string& text) {
         const Ended end = ended(arguments);
         EXPECT_EQ(end.code, 64) << text;
@@ -169,14 +169,14 @@ TEST_F(OutputPictures, WrongOptionsAreRefusedWithTheRemedy) {
     };
     refused({}, "--output");
     refused({"--output", "a", "--hedless"}, "--headless");
-    refused({"--output", "a", "--png", "shown"}, "go with --headless");
-    refused({"--output", "a", "--shm", "/a"}, "go with --headless");
+    refused({"--output", "a", "--png", "shown"}, "require --headless");
+    refused({"--output", "a", "--shm", "/a"}, "require --headless");
     refused({"--output", "a", "--headless", "--window"}, "exclude each other");
-    refused({"--output", "a", "--headless", "--shm", "/a/b"}, "like /left");
+    refused({"--output", "a", "--headless", "--shm", "/a/b"}, "as /left");
     refused({"--output", "a", "--headless", "--shm", "/a", "--png", "b"}, "exclude each other");
 }
 
-TEST_F(OutputPictures, NoFileIsWrittenElsewhere) {
+TEST_F(OutputPictures, NoFileIsWrittenOutsideTheFolder) {
     for (const std::string name : {"../outside", "in/side", ".hidden"}) {
         display.outputs = {part_of_wall(name, -1, 1)};
         wall.editor().open_display(display);
@@ -188,7 +188,7 @@ TEST_F(OutputPictures, NoFileIsWrittenElsewhere) {
     EXPECT_FALSE(std::filesystem::exists(wall.folder() / "outside.png"));
 }
 
-TEST_F(OutputPictures, WithoutAScreenItSaysHowToGoWithoutOne) {
+TEST_F(OutputPictures, MissingScreenErrorSuggestsHeadless) {
     for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--window"}}) {
         const Ended end = ended(wall.arguments("a", more), {"-u", "DISPLAY", "-u", "WAYLAND_DISPLAY"});
         EXPECT_EQ(end.code, 69) << end.text;
@@ -196,7 +196,7 @@ TEST_F(OutputPictures, WithoutAScreenItSaysHowToGoWithoutOne) {
     }
 }
 
-TEST_F(OutputPictures, AViewersKeyIsEnoughAndANodesIsRefused) {
+TEST_F(OutputPictures, ViewerKeyIsAcceptedAndNodeKeyIsRejected) {
     display.outputs = {part_of_wall("a", -1, 1)};
     wall.editor().open_display(display);
     ChildProcess viewer = wall.show("a", {"--user", "viewer"});
@@ -206,7 +206,7 @@ TEST_F(OutputPictures, AViewersKeyIsEnoughAndANodesIsRefused) {
     EXPECT_NE(node.text.find("role node"), std::string::npos) << node.text;
 }
 
-TEST_F(OutputPictures, ItWaitsForAMasterUntilItIsStopped) {
+TEST_F(OutputPictures, WaitsForAMasterUntilStopped) {
     const std::string elsewhere = free_loopback_endpoint();
     ChildProcess process(wall.folder().path(), "waits", "tessera-display",
                          {"--master", elsewhere, "--output", "a", "--headless"});

@@ -1,4 +1,4 @@
-// Outputs in windows: what is on the screen is what the output shows.
+// Outputs in windows: the screen contents match the output's picture.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -31,7 +31,7 @@ struct OutputWindows : testing::Test {
         return start_with({screen.variable()}, wall.folder(), output.name, "tessera-display",
                           wall.arguments(output.name, std::move(more)));
     }
-    // What the output shows when all samples are there.
+    // The output's picture with all samples.
     std::vector<std::uint8_t> picture(const display::Output& output) {
         const std::vector<std::uint8_t> rgb = wall.finished_png(output, display.spp);
         EXPECT_GT(std::set<std::uint8_t>(rgb.begin(), rgb.end()).size(), 16u) << "a picture of nothing";
@@ -42,7 +42,7 @@ struct OutputWindows : testing::Test {
     }
 };
 
-TEST_F(OutputWindows, ShowTheirPicturesAtTheirPlaces) {
+TEST_F(OutputWindows, ShowTheirPicturesAtTheirPositions) {
     const display::Output left = window("left", 40, 60, 200, 150), right = window("right", 300, 210, 121, 91);
     display.outputs = {left, right};
     wall.editor().open_display(display);
@@ -51,7 +51,7 @@ TEST_F(OutputWindows, ShowTheirPicturesAtTheirPlaces) {
     ChildProcess right_process = open_window(right, {"--window"});
     EXPECT_TRUE(happens([&] { return shows(left, in_left); })) << left_process.err();
     EXPECT_TRUE(happens([&] { return shows(right, in_right); })) << right_process.err();
-    EXPECT_EQ(screen.pixels(40, 59, 200, 1), std::vector<std::uint8_t>(600, 0)) << "nothing beside it";
+    EXPECT_EQ(screen.pixels(40, 59, 200, 1), std::vector<std::uint8_t>(600, 0)) << "nothing next to it";
     left_process.signal(SIGTERM);
     EXPECT_EQ(left_process.wait(30s).value_or(-1), 0);
 }
@@ -65,7 +65,7 @@ TEST_F(OutputWindows, FillTheScreenWithoutOptions) {
     EXPECT_TRUE(happens([&] { return shows(output, expected); })) << process.err();
 }
 
-TEST_F(OutputWindows, ThatWereCoveredShowTheirPictureAgain) {
+TEST_F(OutputWindows, AreRedrawnAfterBeingCovered) {
     const display::Output under = window("under", 40, 60, 200, 150),
                           over = window("over", 100, 100, 300, 300);
     display.outputs = {under, over};

@@ -9,7 +9,7 @@
 
 namespace tessera::test {
 
-// A folder of its own that goes with the test.
+// A temporary folder, removed after the test.
 class TemporaryFolder {
   public:
     TemporaryFolder();
@@ -21,7 +21,7 @@ class TemporaryFolder {
     std::filesystem::path path_;
 };
 
-// A master and nodes as processes of their own: TCP on loopback, CURVE keys made for the test.
+// A master and nodes as separate processes: TCP on loopback, with CURVE keys created for the test.
 class RealCluster {
   public:
     RealCluster() : RealCluster({"--heartbeat", "0.25"}, Session::None) {}
@@ -32,13 +32,13 @@ class RealCluster {
     void start_master();  // again, at the same place
 
     ChildProcess start_node(const std::string& name, std::vector<std::string> more = {});
-    // `tessera render` on this cluster; the picture goes to the folder.
+    // `tessera render` on this cluster; the picture is written to the folder.
     ChildProcess start_render(const std::string& label, const std::string& scene,
                               std::vector<std::string> more);
-    // Runs it to the end and parses --json; the test fails when it fails.
+    // Runs it to the end and parses --json; a failure fails the test.
     nlohmann::json render(const std::string& label, const std::string& scene, std::vector<std::string> more);
     nlohmann::json status();
-    // Asks for the status until `done` says yes; false after the limit.
+    // Polls the status until `done` returns true; false after the limit.
     template <class Done>
     bool wait_for(const Done& done, std::chrono::seconds limit = std::chrono::seconds(60)) {
         const auto deadline = std::chrono::steady_clock::now() + limit;

@@ -36,7 +36,7 @@ Screen::Screen(const TemporaryFolder& folder)
     number_ = server_.out().substr(0, server_.out().find('\n'));
 }
 
-// It takes its lock files along.
+// It removes its lock files.
 Screen::~Screen() {
     server_.signal(SIGTERM);
     (void)server_.wait(10s);

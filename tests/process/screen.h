@@ -8,10 +8,10 @@
 
 namespace tessera::test {
 
-// An X server of 640 x 480 pixels without a screen, and what it shows.
+// A virtual X server of 640 x 480 pixels (Xvfb), and its screen contents.
 class Screen {
   public:
-    // Throws Error{NotFound} where there is no Xvfb; the test fails when it does not come up.
+    // Throws Error{NotFound} without Xvfb; the test fails if it does not start.
     explicit Screen(const TemporaryFolder& folder);
     ~Screen();
     Screen(const Screen&) = delete;

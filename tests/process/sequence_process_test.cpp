@@ -1,4 +1,4 @@
-// Sequences: one import, an edit per frame, the bits of frames that are rendered alone.
+// Sequences: one import, one edit per frame, bit-identical to frames rendered separately.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -32,7 +32,7 @@ std::map<int, std::string> hashes(const std::string& lines) {
     return found;
 }
 
-TEST(SequenceProcess, FramesOfAClusterHaveTheBitsOfFramesAlone) {
+TEST(SequenceProcess, ClusterFramesMatchSingleFramesBitwise) {
     const import::TestFolder files;
     const std::string scene = moving_scene(files);
     RealCluster cluster;
@@ -53,7 +53,7 @@ TEST(SequenceProcess, FramesOfAClusterHaveTheBitsOfFramesAlone) {
     EXPECT_NE(together.at(1), together.at(2));
 }
 
-// `auto` is measured once, of the first frame, so that brightness does not pump; whoever encodes the pictures.
+// `auto` is measured once, of the first frame, so that brightness does not pump; independent of who encodes the pictures.
 TEST(SequenceProcess, HasTheExposureOfItsFirstFrame) {
     const import::TestFolder files;
     const TemporaryFolder folder;
@@ -80,8 +80,8 @@ TEST(SequenceProcess, HasTheExposureOfItsFirstFrame) {
     EXPECT_EQ(exposures("0:1", {"--exposure", "-1.5"}), (std::vector<double>{-1.5, -1.5}));
 }
 
-// Of more tiles than the master takes in one go.
-TEST(BigPictureProcess, ArrivesWhole) {
+// With more tiles than the master processes at once.
+TEST(BigPictureProcess, ArrivesComplete) {
     const import::TestFolder files;
     const TemporaryFolder folder;
     const json done = render_embedded(folder, "big", moving_scene(files),
@@ -89,7 +89,7 @@ TEST(BigPictureProcess, ArrivesWhole) {
     EXPECT_EQ(done["rays"].get<std::uint64_t>(), 1600u * 1200u);  // one a sample
 }
 
-TEST(SequenceProcess, AnInterruptedOneLeavesWholeFramesAndGoesOn) {
+TEST(SequenceProcess, InterruptedSequenceKeepsCompleteFramesAndResumes) {
     const import::TestFolder files;
     const TemporaryFolder folder;
     const std::string pattern = folder / "frame.%d.exr";
@@ -103,7 +103,7 @@ TEST(SequenceProcess, AnInterruptedOneLeavesWholeFramesAndGoesOn) {
     render.signal(SIGINT);
     ASSERT_EQ(render.wait(SequencePatience).value_or(-1), 130) << render.err();
     const auto there = hashes(render.out());
-    EXPECT_NE(render.err().find("interrupted; the frames before it are there"), std::string::npos)
+    EXPECT_NE(render.err().find("interrupted; the earlier frames were written"), std::string::npos)
         << render.err();
     ASSERT_LT(there.size(), 100u);
     for (int frame = 0; frame < 100; ++frame) {
@@ -123,13 +123,13 @@ TEST(SequenceProcess, AnInterruptedOneLeavesWholeFramesAndGoesOn) {
     EXPECT_TRUE(added.contains(next) && added.contains(next + 1)) << rest.out();
 }
 
-TEST(SequenceProcess, ASceneInWhichNothingMovesIsToldSo) {
+TEST(SequenceProcess, SceneWithoutAnimationIsAnError) {
     const TemporaryFolder folder;
     ChildProcess render(
         folder.path(), "still", "tessera",
         {"render", scene_file("still.glb"), "--frames", "0:3", "-o", folder / "still.%d.png"});
     EXPECT_EQ(render.wait(SequencePatience).value_or(-1), 2);
-    EXPECT_NE(render.err().find("no animation that can be played"), std::string::npos) << render.err();
+    EXPECT_NE(render.err().find("the scene has no animation"), std::string::npos) << render.err();
 }
 
 }  // namespace

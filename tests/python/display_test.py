@@ -27,13 +27,13 @@ class Display(unittest.TestCase):
         self.master.wait_for(lambda: len(self.master.heads) > count)
         return self.master.heads[-1]
 
-    def test_a_head_goes_as_it_is(self):
+    def test_head_is_sent_unchanged(self):
         self.session.join("room")
         head = self.moved((0.25, 1.75, -0.5))
         self.assertEqual((list(head.position), list(head.orientation)), ([0.25, 1.75, -0.5], [1, 0, 0, 0]))
         self.assertEqual(list(self.moved([0, 0, 0], (0, 0, 2, 0)).orientation), [0, 0, 1, 0])
 
-    def test_orientations_of_any_length_become_unit(self):
+    def test_orientations_are_normalized(self):
         self.session.join("room")
         random.seed(4)
         for length in (1e-320, 1e-200, 1e-3, 1.0, 1e200, 1e308):
@@ -42,7 +42,7 @@ class Display(unittest.TestCase):
             self.assertAlmostEqual(math.hypot(*turned), 1.0, 14)
             self.assertAlmostEqual(turned[1] * turn[0], turned[0] * turn[1], delta=1e-9 * length)
 
-    def test_what_is_no_head_is_not_sent(self):
+    def test_invalid_heads_are_not_sent(self):
         with self.assertRaisesRegex(tessera.InvalidInput, "join"):
             self.session.move_head((0, 0, 0))
         self.session.join("room")
@@ -54,7 +54,7 @@ class Display(unittest.TestCase):
         self.moved((1, 2, 3))
         self.assertEqual(len(self.master.heads), 1)
 
-    def test_only_what_is_given_is_adjusted(self):
+    def test_only_given_settings_are_adjusted(self):
         self.session.join("room")
         self.session.adjust_display(exposure=-1.5)
         self.session.adjust_display(eye_separation=0.0, zero_parallax=2.0, pattern=False, shown_layers=())
@@ -66,7 +66,7 @@ class Display(unittest.TestCase):
         self.assertEqual([change.shown_layers for change in self.master.adjustments], [0, 0, 9])
         self.assertEqual(self.master.adjustments[0].exposure, -1.5)
 
-    def test_adjustments_that_cannot_be(self):
+    def test_invalid_adjustments(self):
         self.session.join("room")
         for change in (dict(shown_layers=[4]), dict(shown_layers=[-1]), dict(exposure=math.nan)):
             with self.assertRaises(tessera.InvalidInput):
@@ -75,7 +75,7 @@ class Display(unittest.TestCase):
         with self.assertRaisesRegex(tessera.Refused, "not within 0 and 10 m"):
             self.session.adjust_display(eye_separation=11.0)
 
-    def test_a_stream_of_heads_survives_a_master_that_forgets(self):
+    def test_heads_continue_after_a_master_restart(self):
         self.session.join("room")
         stop = threading.Event()
 

@@ -11,7 +11,7 @@ import unittest
 
 import run_block
 import tessera
-import tessera.people
+import tessera.records
 from real_cluster import RealCluster
 
 PROGRAMS = pathlib.Path(sys.argv.pop()).resolve()
@@ -50,19 +50,19 @@ class LiveMaster(unittest.TestCase):
         except tessera.Error:  # of a test that lost it
             pass
 
-    def glowing_wall(self, color=(1.0, 0.0, 0.0)):
+    def emissive_wall(self, color=(1.0, 0.0, 0.0)):
         """A wall in front of the camera that shines: its pixels are its colour, without noise."""
         with self.session.transaction() as edit:
-            self.glow = edit.create("material", name="glow", emission=color, base_color=(0, 0, 0, 1), double_sided=True)
-            self.wall = edit.create("geometry", name="wall", material=self.glow, **WALL)
+            self.emissive = edit.create("material", name="emissive", emission=color, base_color=(0, 0, 0, 1), double_sided=True)
+            self.wall = edit.create("geometry", name="wall", material=self.emissive, **WALL)
         return self.session.open_view(POSE, size=(64, 48), spp=8, picture="planes", film=True)
 
-    def middle(self, frame):
+    def center(self, frame):
         at = frame.height // 2 * frame.width + frame.width // 2
         return tuple(round(plane[at], 3) for plane in frame.planes())
 
-    def test_a_picture_that_is_waited_for(self):
-        self.glowing_wall(color=(0.25, 0.5, 0.75)).close()
+    def test_render(self):
+        self.emissiveing_wall(color=(0.25, 0.5, 0.75)).close()
         phases = []
         rendered = self.session.render(POSE, size=(64, 48), spp=8, picture="planes", film=True, filter="gauss",
                                        on_progress=lambda progress: phases.append(progress.phase))
@@ -78,57 +78,57 @@ class LiveMaster(unittest.TestCase):
         with self.cluster.connect(name="bob") as bob, self.assertRaises(tessera.Refused):
             bob.join("another", exclusive=True, no_wait=True)
 
-    def test_another_filter_for_a_view_by_its_name(self):
-        view = self.glowing_wall()
+    def test_set_filter_of_a_named_view(self):
+        view = self.emissiveing_wall()
         view.wait(samples=8)
         self.assertIn("gauss", self.session.set_filter("gauss", "anna/1"))
-        with self.assertRaisesRegex(tessera.Refused, "no view named 'nobody/9'"):
-            self.session.set_filter("gauss", "nobody/9")
+        with self.assertRaisesRegex(tessera.Refused, "no view named 'unknown/9'"):
+            self.session.set_filter("gauss", "unknown/9")
 
     def test_the_picture_follows_edits_and_undo(self):
-        view = self.glowing_wall()
+        view = self.emissiveing_wall()
         frame = view.wait(samples=8)
-        self.assertEqual(self.middle(frame), (1.0, 0.0, 0.0))
+        self.assertEqual(self.center(frame), (1.0, 0.0, 0.0))
         self.assertTrue(frame.complete)
         film = frame.film()
         self.assertEqual(set(film.counts), {8})
         self.assertAlmostEqual(film.planes("radiance")[0][24 * 64 + 32], 1.0, 5)
         with self.session.transaction() as edit:
-            edit.set("materials/glow", emission=(0, 1, 0))
-        self.assertEqual(self.middle(view.wait(samples=0)), (0.0, 1.0, 0.0))
+            edit.set("materials/emissive", emission=(0, 1, 0))
+        self.assertEqual(self.center(view.wait(samples=0)), (0.0, 1.0, 0.0))
         self.session.undo()
-        self.assertEqual(self.middle(view.wait(samples=8)), (1.0, 0.0, 0.0))
+        self.assertEqual(self.center(view.wait(samples=8)), (1.0, 0.0, 0.0))
         self.session.redo()
-        self.assertEqual(self.middle(view.wait(samples=1)), (0.0, 1.0, 0.0))
+        self.assertEqual(self.center(view.wait(samples=1)), (0.0, 1.0, 0.0))
 
-    def test_no_picture_claims_a_version_that_it_does_not_show(self):
-        view = self.glowing_wall()
+    def test_frames_have_the_version_they_show(self):
+        view = self.emissiveing_wall()
         for step in range(1, 101):
             with self.session.transaction() as edit:
-                edit.set("materials/glow", emission=(step, 0, 0))
-            self.assertEqual(self.middle(view.wait(samples=0))[0], step)
+                edit.set("materials/emissive", emission=(step, 0, 0))
+            self.assertEqual(self.center(view.wait(samples=0))[0], step)
             if step % 10 == 0:
-                self.assertEqual(self.middle(view.wait(samples=8))[0], step)
+                self.assertEqual(self.center(view.wait(samples=8))[0], step)
 
-    def test_a_wait_after_an_edit_that_no_picture_shows_ends(self):
-        view = self.glowing_wall()
+    def test_wait_after_an_invisible_edit_returns(self):
+        view = self.emissiveing_wall()
         view.wait(samples=8)
         with self.session.transaction() as edit:
-            edit.set("materials/glow", name="embers")
-        self.assertEqual(self.middle(view.wait(samples=8, timeout=30)), (1.0, 0.0, 0.0))
+            edit.set("materials/emissive", name="embers")
+        self.assertEqual(self.center(view.wait(samples=8, timeout=30)), (1.0, 0.0, 0.0))
 
-    def test_the_camera_and_what_is_picked(self):
-        view = self.glowing_wall()
+    def test_camera_and_picking(self):
+        view = self.emissiveing_wall()
         hit = view.pick(32, 24)
         self.assertEqual(hit.object, self.wall.id)
         self.assertAlmostEqual(hit.position[2], 0.0, 4)
         self.assertAlmostEqual(hit.normal[2], 1.0, 4)
         view.look(tessera.look_at((0, 0, -3), (0, 0, -9)))  # away from it
-        self.assertEqual(self.middle(view.wait(samples=1)), (0.0, 0.0, 0.0))
+        self.assertEqual(self.center(view.wait(samples=1)), (0.0, 0.0, 0.0))
         self.assertIsNone(view.pick(32, 24))
 
     def test_files_of_every_kind(self):
-        self.glowing_wall().close()
+        self.emissiveing_wall().close()
         with tempfile.TemporaryDirectory() as folder:
             for kind, magic in (("png", b"\x89PNG"), ("jpeg", b"\xff\xd8\xff"), ("exr", b"v/1\x01")):
                 view = self.session.open_view(POSE, size=(64, 48), spp=4, picture=kind)
@@ -138,34 +138,34 @@ class LiveMaster(unittest.TestCase):
                 view.close()
 
     def test_two_editors(self):
-        self.glowing_wall().close()
+        self.emissiveing_wall().close()
         with self.cluster.connect(name="anna") as other:
             theirs = other.join("elsewhere")
             self.assertEqual(theirs.title, "room")
-            self.assertNotEqual(other.name, "anna")  # two of one name are told apart
+            self.assertNotEqual(other.name, "anna")  # duplicate names are made unique
             self.assertEqual(theirs["geometries/wall"], self.scene["geometries/wall"])
             self.assertEqual(len(theirs.bytes_of(theirs.get(tessera.Geometry, "wall").positions)), 48)
-            self.session.lock([self.glow])
+            self.session.lock([self.emissive])
             with self.assertRaisesRegex(tessera.Refused, "anna"):
                 with other.transaction() as edit:
-                    edit.set("materials/glow", roughness=0.5)
-            self.session.unlock([self.glow])
+                    edit.set("materials/emissive", roughness=0.5)
+            self.session.unlock([self.emissive])
             with other.transaction() as edit:
-                edit.set("materials/glow", roughness=0.5)
+                edit.set("materials/emissive", roughness=0.5)
             self.scene.refresh()
-            self.assertEqual(self.scene.get(tessera.Material, "glow").roughness, 0.5)
-            self.assertEqual(self.session.writers(self.glow)["roughness"].name, other.name)
+            self.assertEqual(self.scene.get(tessera.Material, "emissive").roughness, 0.5)
+            self.assertEqual(self.session.writers(self.emissive)["roughness"].name, other.name)
             self.assertEqual(self.session.history(1)[0].name, other.name)
-            other.set_presence("paints", [self.glow])
+            other.set_presence("paints", [self.emissive])
             end = time.monotonic() + 30
-            while not any(p.text == "paints" and p.selection == (self.glow.id,) for p in self.session.people().people):
+            while not any(p.text == "paints" and p.selection == (self.emissive.id,) for p in self.session.people().people):
                 self.assertLess(time.monotonic(), end)
                 time.sleep(0.05)
 
-    def test_what_the_master_refuses_changes_nothing(self):
-        self.glowing_wall().close()
+    def test_rejected_edits_change_nothing(self):
+        self.emissiveing_wall().close()
         before = list(self.scene)
-        for change in (lambda edit: edit.remove("materials/glow"), lambda edit: edit.set("materials/glow", metallic=7.0),
+        for change in (lambda edit: edit.remove("materials/emissive"), lambda edit: edit.set("materials/emissive", metallic=7.0),
                        lambda edit: edit.create("geometry", name="half", indices=[0, 1, 2])):
             with self.assertRaises(tessera.Refused) as caught:
                 with self.session.transaction() as edit:
@@ -175,8 +175,8 @@ class LiveMaster(unittest.TestCase):
         self.scene.refresh()
         self.assertEqual(list(self.scene), before)
 
-    def test_a_viewer_may_look_and_not_touch(self):
-        self.glowing_wall().close()
+    def test_viewers_cannot_edit(self):
+        self.emissiveing_wall().close()
         with self.cluster.connect(user="viewer", name="guest") as guest:
             scene = guest.join()
             self.assertIn("geometries/wall", scene)
@@ -184,9 +184,9 @@ class LiveMaster(unittest.TestCase):
             self.assertEqual(round(view.wait(samples=1).planes()[0][0], 3), 1.0)
             with self.assertRaisesRegex(tessera.Refused, "role"):
                 with guest.transaction() as edit:
-                    edit.set("materials/glow", emission=(0, 1, 0))
+                    edit.set("materials/emissive", emission=(0, 1, 0))
 
-    def test_somebody_elses_view(self):
+    def test_view_of_another_member(self):
         view = self.session.open_view(POSE, size=(64, 48), spp=4, name="main")
         view.wait(samples=4)
         with self.cluster.connect(user="viewer") as guest:
@@ -194,15 +194,15 @@ class LiveMaster(unittest.TestCase):
             self.assertEqual(guest.watch("main").wait(samples=4).width, 64)
 
     def test_a_drag_is_one_undo(self):
-        self.glowing_wall((0.0, 0.0, 0.0)).close()
+        self.emissiveing_wall((0.0, 0.0, 0.0)).close()
         drag = self.session.gesture()
         for step in range(1, 20):
             with self.session.transaction(gesture=drag) as edit:
-                edit.set("materials/glow", emission=(step, 0, 0))
+                edit.set("materials/emissive", emission=(step, 0, 0))
         self.session.undo()
-        self.assertEqual(self.scene.get(tessera.Material, "glow").emission, (0.0, 0.0, 0.0))
+        self.assertEqual(self.scene.get(tessera.Material, "emissive").emission, (0.0, 0.0, 0.0))
 
-    def test_a_large_scene_there_and_back(self):
+    def test_large_scene_round_trip(self):
         with self.session.transaction() as edit:
             for i in range(3000):
                 edit.create("material", name=f"m{i}", roughness=0.5)
@@ -213,24 +213,24 @@ class LiveMaster(unittest.TestCase):
             big = scene.get(tessera.Geometry, "big")
             self.assertEqual(scene.bytes_of(big.positions), bytes(12) * 300_000)
 
-    def test_a_silent_master_is_joined_again_with_what_was_there(self):
-        view = self.glowing_wall()
+    def test_rejoin_after_a_timeout_restores_state(self):
+        view = self.emissiveing_wall()
         view.wait(samples=8)
-        self.session.lock([self.glow])
+        self.session.lock([self.emissive])
         self.cluster.master.send_signal(signal.SIGSTOP)
         time.sleep(2.0)  # both sides take the other for gone
         self.cluster.master.send_signal(signal.SIGCONT)
         with self.session.transaction() as edit:
-            edit.set("materials/glow", emission=(0, 0, 1))
-        self.assertEqual(self.middle(view.wait(samples=8)), (0.0, 0.0, 1.0))
-        self.assertEqual(self.session.people().locks, (tessera.people.Lock(self.glow.id, "anna"),))
+            edit.set("materials/emissive", emission=(0, 0, 1))
+        self.assertEqual(self.center(view.wait(samples=8)), (0.0, 0.0, 1.0))
+        self.assertEqual(self.session.people().locks, (tessera.records.Lock(self.emissive.id, "anna"),))
         self.session.undo()
-        self.assertEqual(self.scene.get(tessera.Material, "glow").emission, (1.0, 0.0, 0.0))
+        self.assertEqual(self.scene.get(tessera.Material, "emissive").emission, (1.0, 0.0, 0.0))
         with self.session.transaction() as edit:
-            self.assertNotIn(edit.create("light").id, (self.glow.id, self.wall.id))
+            self.assertNotIn(edit.create("light").id, (self.emissive.id, self.wall.id))
 
-    def test_a_stopped_viewer_delays_nobody_and_goes_on_with_the_newest(self):
-        view = self.glowing_wall()
+    def test_stalled_viewer_delays_no_other_and_resumes_with_the_newest(self):
+        view = self.emissiveing_wall()
         viewer = subprocess.Popen([sys.executable, "-c", VIEWER, self.cluster.endpoint, self.cluster.keys],
                                   stdout=subprocess.PIPE, text=True)
         try:
@@ -238,9 +238,9 @@ class LiveMaster(unittest.TestCase):
             viewer.send_signal(signal.SIGSTOP)
             for step in range(1, 301):
                 with self.session.transaction() as edit:
-                    edit.set(self.glow, emission=(step, 0, 0))
+                    edit.set(self.emissive, emission=(step, 0, 0))
                 if step % 100 == 0:
-                    self.assertEqual(self.middle(view.wait(samples=8))[0], step)
+                    self.assertEqual(self.center(view.wait(samples=8))[0], step)
             time.sleep(1.5)  # the master takes it for gone
             viewer.send_signal(signal.SIGCONT)
             last = edit.committed.version[1]
@@ -256,17 +256,17 @@ class LiveMaster(unittest.TestCase):
             viewer.wait()
             viewer.stdout.close()
 
-    def test_a_master_that_comes_back_without_the_scene_is_told(self):
-        self.glowing_wall()
+    def test_master_that_lost_the_scene_is_an_error(self):
+        self.emissiveing_wall()
         self.cluster.kill_master_and_start_another()
         with self.assertRaisesRegex(tessera.Unavailable, "lost edits"):
             with self.session.transaction() as edit:
-                edit.set(self.glow, roughness=0.5)
+                edit.set(self.emissive, roughness=0.5)
         self.session = self.cluster.connect(name="anna")
         self.addCleanup(self.session.close)
         self.scene = self.session.join("room")
         self.addCleanup(self.close_scene)
-        self.assertEqual(self.middle(self.glowing_wall().wait(samples=8)), (1.0, 0.0, 0.0))  # the node is back, too
+        self.assertEqual(self.center(self.emissiveing_wall().wait(samples=8)), (1.0, 0.0, 0.0))  # the node is back, too
 
     def test_a_display_is_adjusted_and_its_head_moved(self):
         with self.assertRaisesRegex(tessera.Refused, "no display is open"):

@@ -19,7 +19,7 @@ from tessera.film import CHANNELS, FilmTile, Rule, plane_count
 from tessera.frame import Assembly
 from tessera.mirror import Mirror
 from tessera.parsing import parsed
-from tessera.people import history_of, people_of, status_of
+from tessera.records import history_of, members_of, status_of
 from tessera.proto import control_pb2, scene_pb2, session_pb2, status_pb2
 from tessera.transaction import Transaction
 
@@ -79,12 +79,12 @@ class Fields(unittest.TestCase):
             self.assertEqual([(f.name, 1 << (f.number - 1)) for f in message.DESCRIPTOR.fields], list(kind.bits.items()))
             self.assertEqual(list(kind.codecs), list(kind.bits))
 
-    def test_the_film_channels_lie_where_their_numbers_say(self):
+    def test_film_channels_are_in_enum_order(self):
         self.assertEqual(CHANNELS[0], ("radiance", Rule.MOMENTS, 3))
         self.assertEqual(CHANNELS[6], ("object_id", Rule.NEAREST, 2))
         self.assertEqual(len({name for name, _, _ in CHANNELS}), len(CHANNELS))
 
-    def test_every_field_goes_into_a_message_and_comes_back(self):
+    def test_every_field_round_trips(self):
         for kind in KINDS:
             for name in kind.codecs:
                 with self.subTest(kind=kind.name, field=name):
@@ -104,7 +104,7 @@ class Fields(unittest.TestCase):
                     else:
                         self.assertEqual(value, other(kind, name))
 
-    def test_wrong_values_name_field_and_cause(self):
+    def test_errors_name_field_and_cause(self):
         wrong = [("material", "roughness", "rough", "material.roughness: expected a number"),
                  ("material", "roughness", math.nan, "finite"), ("material", "roughness", 1e300, "too large"),
                  ("material", "roughness", True, "number"), ("material", "base_color", (1, 2), "4 numbers, not 2"),
@@ -122,7 +122,7 @@ class Fields(unittest.TestCase):
                 of = next(k for k in KINDS if k.name == kind)
                 of.write(of.default_message(2, BlobHeap()), field, value, BlobHeap())
 
-    def test_arrays_of_any_origin_have_the_same_bytes(self):
+    def test_all_array_types_have_the_same_bytes(self):
         expected = struct.pack("<4f", 0, 1, 2, 3)
         for value in ([0, 1, 2, 3], [(0, 1), (2, 3)], array("f", range(4)), array("d", range(4)), expected,
                       memoryview(array("f", range(4))), (float(i) for i in range(4))):
@@ -142,7 +142,7 @@ class Bulk(unittest.TestCase):
         for message in self.MESSAGES:
             self.assertEqual(bulk.decode(bulk.encode(message)), message)
 
-    def test_what_is_cut_or_too_long_is_malformed(self):
+    def test_truncated_or_too_long_is_malformed(self):
         for message in self.MESSAGES:
             data = bulk.encode(message)
             has_data = isinstance(message, (bulk.BlobChunk, bulk.PictureChunk))
@@ -152,10 +152,10 @@ class Bulk(unittest.TestCase):
             with self.assertRaises(tessera.Malformed):
                 bulk.decode(data + bytes(8))
 
-    def test_no_bytes_bring_the_decoders_down(self):
+    def test_decoders_survive_arbitrary_bytes(self):
         source = random.Random(1)
-        people = control_pb2.Control(people=session_pb2.People(request=1, content=session_pb2.PeopleInScene(
-            people=[session_pb2.Person(name=b"a")]))).SerializeToString()
+        people = control_pb2.Control(members=session_pb2.Members(request=1, content=session_pb2.MembersInScene(
+            members=[session_pb2.Member(name=b"a")]))).SerializeToString()
         status = status_pb2.StatusReply(status=status_pb2.ClusterStatus(
             nodes=[status_pb2.NodeStatus(phase=1)])).SerializeToString()
         changes = Mirrors.changes([Mirrors.entry(5, CREATE, "light", name=b"a"),
@@ -189,7 +189,7 @@ class Bulk(unittest.TestCase):
     @staticmethod
     def control_message(data):
         message = parsed(control_pb2.Control, data)
-        people_of(message.people)
+        members_of(message.members)
         history_of(message.history)
 
     @staticmethod
@@ -204,7 +204,7 @@ class Bulk(unittest.TestCase):
             mirror.value(number)
             mirror.path(number)
 
-    def test_a_header_alone_costs_no_memory(self):
+    def test_header_alone_allocates_no_memory(self):
         huge = bulk.FrameHeader(1, 1, 1, 1, 1, 1, 65536, 65536, 3, 2, 1 << 30, 0, 0, 65536, 65536, 1 << 20, 0, 1, 1, 1,
                                 bytes(32))
         assembly = Assembly(bulk.decode(bulk.encode(huge)), None, 0.0)
@@ -212,7 +212,7 @@ class Bulk(unittest.TestCase):
         with self.assertRaises(tessera.Malformed):
             Assembly(huge, (640, 360), 0.0)
 
-    def test_a_blob_is_fetched_in_pieces_and_checked(self):
+    def test_blob_is_fetched_in_chunks_and_verified(self):
         data = bytes(range(256)) * 20000
         fetch = Fetch(tessera.Blob(digest(data), len(data)))
         while not fetch.is_done:
@@ -261,19 +261,19 @@ class Mirrors(unittest.TestCase):
         self.mirror.apply(self.changes([self.entry(1, CREATE, "root")] + [
             self.entry(i, CREATE, "light", name=name.encode()) for i, name in names]))
 
-    def test_paths_there_and_back(self):
+    def test_paths_round_trip(self):
         for number, path in ((1, "root"), (2, "lights/lamp@2"), (4, "lights/sun"), (5, "lights/@5"),
                              (6, "lights/a@b/c")):
             self.assertEqual(self.mirror.path(number), path)
             self.assertEqual(self.mirror.find(path), number)
         self.assertEqual(self.mirror.find("light/sun"), 4)
         for path, text in (("lights/lamp", "lights/lamp@2, lights/lamp@3"), ("lights/snu", "did you mean lights/sun"),
-                           ("ligths/sun", "did you mean 'light'"), ("sun", "no path"), ("lights/lamp@4", "has no"),
+                           ("ligths/sun", "did you mean 'light'"), ("sun", "not a path"), ("lights/lamp@4", "has no"),
                            ("materials/sun", "has no")):
             with self.subTest(path=path), self.assertRaisesRegex(tessera.InvalidInput, text):
                 self.mirror.find(path)
 
-    def test_updates_change_their_fields_and_names_move(self):
+    def test_updates_change_fields_and_names(self):
         before = self.mirror.value(4)
         self.mirror.apply(self.changes([self.entry(4, UPDATE, "light", mask=1 | 2, name=b"moon", kind=1),
                                         self.entry(2, REMOVE)], (1, 2), (1, 3)))
@@ -283,7 +283,7 @@ class Mirrors(unittest.TestCase):
         self.assertNotIn(2, self.mirror)
         self.assertEqual(self.mirror.version, (1, 3))
 
-    def test_what_cannot_be_empties_it_so_that_a_snapshot_is_asked_for(self):
+    def test_invalid_changes_clear_the_mirror(self):
         for entry in (self.entry(9, REMOVE), self.entry(2, CREATE, "light"), self.entry(9, UPDATE, "light", mask=1),
                       self.entry(2, UPDATE, "camera", mask=1), self.entry(2, UPDATE, "light", mask=1 << 20),
                       scene_pb2.Entry(id=2, action=UPDATE)):
@@ -295,7 +295,7 @@ class Mirrors(unittest.TestCase):
         with self.assertRaises(tessera.Malformed):
             self.mirror.apply(self.changes([], (1, 7), (1, 8)))
 
-    def test_a_value_of_the_wrong_shape_is_malformed_when_it_is_read(self):
+    def test_wrong_shapes_are_malformed_on_read(self):
         self.mirror.apply(self.changes([scene_pb2.Entry(id=7, action=CREATE, object=scene_pb2.Object(
             light=scene_pb2.Light(kind=9, intensity=[1])))], (1, 2), (1, 3)))
         with self.assertRaises(tessera.Malformed):
@@ -372,7 +372,7 @@ class Transactions(unittest.TestCase):
 
 
 class Cameras(unittest.TestCase):
-    def test_look_at_is_rigid_and_looks_there(self):
+    def test_look_at_is_rigid(self):
         pose = tessera.look_at((1, 2, 8), (1, 2, 3))
         self.assertEqual(pose.world_from_camera, tessera.translation(1, 2, 8))
         pose = tessera.look_at((3, 4, 5), (-1, 0, 2))
@@ -384,7 +384,7 @@ class Cameras(unittest.TestCase):
             with self.assertRaises(tessera.InvalidInput):
                 tessera.look_at(*bad)
 
-    def test_scale_is_taken_out_of_a_camera(self):
+    def test_camera_scale_is_removed(self):
         scaled = multiply(tessera.look_at((3, 4, 5), (-1, 0, 2)).world_from_camera,
                           (2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 0, 0, 0, 1))
         for a, b in zip(rigid(scaled), tessera.look_at((3, 4, 5), (-1, 0, 2)).world_from_camera):
@@ -410,17 +410,17 @@ class Keys(unittest.TestCase):
             (folder / "anna.secret").chmod(0o600)
             self.assertEqual(keys.load(folder, "anna"), keys.ClientKeys(self.KEY, self.KEY, self.KEY))
             self.assertNotIn("secret", repr(keys.load(folder, "anna")))
-            for user, text in (("bert", "no secret key"), ("../anna", "no name")):
+            for user, text in (("bert", "no secret key"), ("../anna", "not the name")):
                 with self.assertRaisesRegex(tessera.InvalidInput, text):
                     keys.load(folder, user)
             export = folder / "anna.key"
             export.write_text("# one\n" + "".join(f'{k} = "{self.KEY}"\n' for k in ("public", "secret", "master")))
             export.chmod(0o600)
-            self.assertEqual(keys.load(export, "whoever").master, self.KEY)
+            self.assertEqual(keys.load(export, "any").master, self.KEY)
             for damaged in ("public = x\n", f'public = "{self.KEY}"\n', 'public = "short"\nsecret=""\nmaster=""\n'):
                 export.write_text(damaged)
                 with self.assertRaises(tessera.InvalidInput):
-                    keys.load(export, "whoever")
+                    keys.load(export, "any")
 
     def test_addresses(self):
         place = endpoint.parse("tcp://localhost:7420")

@@ -4,7 +4,7 @@ import socket
 
 
 def free_port():
-    """The first of two ports in a row that nobody uses right now: a master takes both."""
+    """The first of two consecutive unused ports, as a master needs."""
     while True:
         with socket.socket() as first, socket.socket() as second:
             first.bind(("127.0.0.1", 0))

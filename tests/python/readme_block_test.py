@@ -14,7 +14,7 @@ def main():
     with ScriptedMaster() as master, tempfile.TemporaryDirectory() as folder:
         run_block.run(readme, master.endpoint, "-", folder, ["room.png"])
         assert (pathlib.Path(folder) / "room.png").read_bytes() == PNG
-        assert len(master.objects) == 4, "the example no longer creates three objects beside the root"
+        assert len(master.objects) == 4, "the example no longer creates three objects in addition to the root"
 
 
 main()

@@ -18,7 +18,7 @@ PROGRAMS = pathlib.Path(sys.argv.pop()).resolve()
 
 
 class Relay:
-    """Passes TCP on to a master's two ports, the way there later than the way back."""
+    """Passes TCP on to a master's two ports, with more delay to the master than back."""
 
     def __init__(self, master_port, delay):
         self.port, self.delay = free_port(), delay
@@ -75,7 +75,7 @@ class RealMaster(unittest.TestCase):
                 self.assertGreaterEqual(status.sessions, 1)
                 self.assertGreater(status.uptime_seconds, 0)
 
-    def test_clocks_of_one_machine_agree_within_their_bounds_even_through_a_lame_relay(self):
+    def test_clocks_agree_within_bounds_through_an_asymmetric_relay(self):
         relay = Relay(self.cluster.port, 0.02)
         self.cluster.start("tessera-node", "--master", self.cluster.endpoint, "--name", "near", "--backend", "null")
         self.cluster.start("tessera-node", "--master", f"tcp://127.0.0.1:{relay.port}", "--name", "far", "--backend", "null")
@@ -91,11 +91,11 @@ class RealMaster(unittest.TestCase):
             self.assertLessEqual(abs(node.clock_offset_seconds), node.clock_bound_seconds, node)
         self.assertGreaterEqual(nodes["far"].clock_bound_seconds, 0.01)
 
-    def test_a_node_key_is_no_clients(self):
+    def test_node_key_is_rejected(self):
         with self.assertRaisesRegex(tessera.Refused, "role"):
             self.cluster.connect(user="node")
 
-    def test_no_keys_are_no_way_in(self):
+    def test_keys_are_required(self):
         with self.assertRaises(tessera.Unavailable):
             tessera.connect(self.cluster.endpoint, connect_limit=1.0)
 

@@ -1,4 +1,4 @@
-"""Runs the first ```python block of a document as it stands there, but for the address and the keys.
+"""Runs the first ```python block of a document as it is, except for the address and the keys.
 
 Usage: run_block.py FILE ENDPOINT KEYS|- FOLDER [EXPECTED_OUTPUT_FILE...]   (- = without keys; runs in FOLDER)
 """

@@ -1,4 +1,4 @@
-"""A master as far as a member can see it: ROUTER sockets, one scene, frames on demand. Tests look into it and make it
+"""A fake master: ROUTER sockets, one scene, frames on demand. Tests look into it and make it
 forget, fall silent or lie."""
 
 import struct
@@ -290,9 +290,9 @@ class ScriptedMaster:
     def _on_set_presence(self, member, presence):
         self.presence = presence
 
-    def _on_read_people(self, member, read):
-        self._say(member.control, "people", request=read.request, content=session_pb2.PeopleInScene(
-            title=b"room", people=[session_pb2.Person(session=m.number, name=m.name, user=b"editor", editor=True)
+    def _on_read_members(self, member, read):
+        self._say(member.control, "members", request=read.request, content=session_pb2.MembersInScene(
+            title=b"room", members=[session_pb2.Member(session=m.number, name=m.name, user=b"editor", editor=True)
                                    for m in self.members.values()]))
 
     def _on_read_history(self, member, read):
@@ -354,7 +354,7 @@ class ScriptedMaster:
             return self._say(member.control, "picked", request=pick.request)
         if pick.x == 1:
             return self._say(member.control, "picked", request=pick.request, problem=b"the node is gone")
-        return self._say(member.control, "picked", request=pick.request, seen=view_pb2.Seen(
+        return self._say(member.control, "picked", request=pick.request, result=view_pb2.PickResult(
             hit=True, object=65536, position=[1.0, 2.0, 3.0], normal=[0.0, 1.0, 0.0], distance=4.0))
 
     def send_frame(self, member, number, samples, **changes):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A session against a scripted master: what is said, and what survives forgetting, silence, restarts and lies."""
+"""A session against a scripted master: protocol messages, and recovery from timeouts, restarts and malformed data."""
 
 import logging
 import random
@@ -19,7 +19,7 @@ logging.disable(logging.CRITICAL)
 
 
 class Greeting(unittest.TestCase):
-    def test_nobody_answers(self):
+    def test_no_answer(self):
         start = time.monotonic()
         with self.assertRaisesRegex(tessera.Unavailable, "is it running there"):
             tessera.connect("tcp://127.0.0.1:1", connect_limit=0.3)
@@ -37,7 +37,7 @@ class Greeting(unittest.TestCase):
             with self.assertRaisesRegex(tessera.InvalidInput, "join"):
                 session.people()
 
-    def test_a_closed_session_says_so(self):
+    def test_closed_session_raises(self):
         with ScriptedMaster() as master:
             session = connect(master)
             session.close()
@@ -46,7 +46,7 @@ class Greeting(unittest.TestCase):
             with self.assertRaisesRegex(tessera.InvalidInput, "closed"):
                 session.status()
 
-    def test_heartbeats_go_on_while_the_caller_sleeps_and_echo_the_masters(self):
+    def test_heartbeats_continue_while_the_caller_sleeps(self):
         with ScriptedMaster() as master, connect(master):
             time.sleep(12 * master.interval)
             self.assertGreaterEqual(len(master.heartbeats), 5)
@@ -58,7 +58,7 @@ class Greeting(unittest.TestCase):
 
 
 class Editing(WithMaster):
-    def test_what_was_created_is_read_back(self):
+    def test_created_objects_can_be_read(self):
         red = self.create_red()
         self.assertEqual(self.scene["materials/red"], red)
         self.assertEqual(red.base_color, (1.0, 0.0, 0.0, 1.0))
@@ -67,7 +67,7 @@ class Editing(WithMaster):
         self.assertIn("materials/red", self.scene)
         self.assertEqual(self.session.title, "room")
 
-    def test_a_set_sends_the_fields_that_were_named_and_no_others(self):
+    def test_set_sends_only_given_fields(self):
         red = self.create_red()
         with self.session.transaction() as edit:
             edit.set("materials/red", roughness=0.25)
@@ -78,7 +78,7 @@ class Editing(WithMaster):
         self.assertEqual((now.roughness, now.base_color, now.metallic), (0.25, (0.5, 0.0, 0.0, 1.0), 0.0))
         self.assertEqual(red.roughness, 1.0)  # a value stays as it was read
 
-    def test_a_block_that_raises_sends_nothing(self):
+    def test_raising_block_sends_nothing(self):
         with self.assertRaises(RuntimeError):
             with self.session.transaction() as edit:
                 edit.create("light", name="lamp")
@@ -118,20 +118,20 @@ class Editing(WithMaster):
         self.assertEqual(len(self.scene.all(tessera.Material)), 2000)
         self.assertIn("submit_edit_by_blob", self.master.received)
 
-    def test_a_scene_that_comes_as_a_blob(self):
+    def test_scene_as_blob(self):
         self.create_red()
         self.master.scene_by_blob = True
         with connect(self.master) as other:
             self.assertEqual(other.join("room").get(tessera.Material, "red").base_color, (1.0, 0.0, 0.0, 1.0))
 
-    def test_gestures_undo_and_redo(self):
+    def test_edit_groups_undo_and_redo(self):
         self.create_red()
         drag = self.session.gesture()
         for value in (0.1, 0.2):
             with self.session.transaction(gesture=drag) as edit:
                 edit.set("materials/red", roughness=value)
         self.assertIsNotNone(edit.committed)
-        self.assertEqual([e.gesture for e in self.master.submitted], [0, drag, drag])
+        self.assertEqual([e.edit_group for e in self.master.submitted], [0, drag, drag])
         self.assertEqual(self.session.undo().notes, ("left as it is",))
         self.session.undo(3)
         self.session.redo()
@@ -158,7 +158,7 @@ class Editing(WithMaster):
         self.scene.refresh()
         self.assertEqual(self.scene.get(tessera.Material, "red").roughness, 0.5)
 
-    def test_the_others(self):
+    def test_other_members(self):
         red = self.create_red()
         self.session.lock([red])
         self.session.unlock([red])
@@ -174,7 +174,7 @@ class Editing(WithMaster):
 
 
 class Breaks(WithMaster):
-    def test_a_master_that_forgot_is_joined_again_under_the_same_key(self):
+    def test_rejoins_with_the_same_key(self):
         red = self.create_red()
         self.session.lock([red])
         view = self.session.open_view(self.POSE, size=(8, 4), spp=1 << 40)
@@ -189,7 +189,7 @@ class Breaks(WithMaster):
         with self.session.transaction() as edit:
             self.assertEqual(edit.create("light").id, red.id + 1)  # the old ids go on
 
-    def test_a_master_that_comes_back_with_its_journal(self):
+    def test_master_restarted_with_its_journal(self):
         self.create_red()
         self.master.restart()
         with self.session.transaction() as edit:
@@ -198,14 +198,14 @@ class Breaks(WithMaster):
         self.assertEqual(self.scene.get(tessera.Material, "red").roughness, 0.5)
         self.assertEqual([e.sequence for e in self.master.submitted], [1, 2])
 
-    def test_a_master_that_has_lost_accepted_edits_is_told(self):
+    def test_lost_accepted_edits_are_an_error(self):
         self.create_red()
         self.master.restart(keep_journal=False)
         with self.assertRaisesRegex(tessera.Unavailable, "lost edits"):
             with self.session.transaction() as edit:
                 edit.create("light")
 
-    def test_an_edit_whose_answer_was_lost_is_done_once(self):
+    def test_edit_with_lost_answer_is_applied_once(self):
         self.create_red()
         self.master.ignores_edits = True
         failures = []
@@ -228,14 +228,14 @@ class Breaks(WithMaster):
         self.assertEqual([e.sequence for e in self.master.submitted], [1, 2])
         self.assertEqual(self.scene.get(tessera.Material, "red").roughness, 0.5)
 
-    def test_silence_is_bridged_with_new_sockets(self):
+    def test_timeout_reconnects_with_new_sockets(self):
         self.master.is_mute = True
         time.sleep(6 * self.master.interval)
         self.master.is_mute = False
         self.assertEqual(self.session.status().software, "scripted")
         self.assertGreaterEqual(self.master.received.count("hello"), 2)
 
-    def test_a_goodbye_is_told_when_nobody_comes_back(self):
+    def test_goodbye_reason_is_reported(self):
         with ScriptedMaster() as master, connect(master, lost_limit=0.5) as session:
             session.join("room")
             master.stop(goodbye=True)
@@ -243,7 +243,7 @@ class Breaks(WithMaster):
                 session.people()
             master.start()
 
-    def test_hostile_bytes_on_both_links_end_nothing(self):
+    def test_malformed_bytes_are_ignored(self):
         source = random.Random(5)
         view = self.session.open_view(self.POSE, size=(8, 4), spp=1 << 40)
         view.wait(samples=1)
@@ -270,7 +270,7 @@ class Breaks(WithMaster):
         self.assertEqual(self.scene["materials/red"].name, "red")
         self.assertEqual(view.wait(samples=1).version, self.scene.version)
 
-    def test_a_change_list_that_cannot_be_leads_to_a_snapshot(self):
+    def test_invalid_change_list_requests_a_snapshot(self):
         self.create_red()
         self.scene.refresh()
         self.master.number += 1

@@ -18,7 +18,7 @@ logging.disable(logging.CRITICAL)
 class Views(WithMaster):
     def test_frames_come_one_at_a_time_and_the_newest_is_taken(self):
         view = self.session.open_view(self.POSE, size=(8, 4), spp=64)
-        time.sleep(0.3)  # nobody looks: one frame waits, none follows
+        time.sleep(0.3)  # no client waits: one frame is buffered, none follows
         self.assertEqual(self.master.members[1].frame[1], 1)
         frame = view.wait(samples=16)
         self.assertEqual((frame.samples_least, frame.width, frame.height, frame.data), (16, 8, 4, PNG))
@@ -45,7 +45,7 @@ class Views(WithMaster):
         with self.assertRaises(tessera.InvalidInput):
             film.planes("albedo")
 
-    def test_a_wait_is_for_what_this_session_did(self):
+    def test_wait_includes_edits_of_this_session(self):
         view = self.session.open_view(self.POSE, size=(8, 4), spp=1 << 40)
         before = view.wait(samples=1)
         self.create_red()
@@ -70,10 +70,10 @@ class Views(WithMaster):
         view = self.master.views[1][0].wanted.view
         self.assertEqual(list(view.world_from_camera)[12:15], [1, 2, 3])
         self.assertAlmostEqual(view.frustum[1], 2 * view.frustum[3])
-        with self.assertRaisesRegex(tessera.InvalidInput, "is no camera"):
+        with self.assertRaisesRegex(tessera.InvalidInput, "is not a camera"):
             self.session.open_view("transforms/stand")
 
-    def test_cameras_with_lenses_and_parallel_ones(self):
+    def test_thin_lens_and_orthographic_cameras(self):
         self.session.open_view(tessera.look_at((0, 0, 5), (0, 0, 0), lens_radius=0.02, focus_distance=4.5,
                                                aperture="gaussian"), size=(200, 100))
         view = self.master.views[1][0].wanted.view
@@ -95,15 +95,15 @@ class Views(WithMaster):
             with self.assertRaises(tessera.InvalidInput, msg=str(wrong)):
                 tessera.look_at((0, 0, 5), (0, 0, 0), **wrong)
 
-    def test_cameras_that_move_while_the_shutter_is_open(self):
+    def test_camera_motion_blur(self):
         a, b, c = (tessera.look_at((x, 0, 5), (0, 0, 0)) for x in (0, 1, 2))
         opened = self.session.open_view(a.moving_to(b, c), size=(8, 4))
         view = self.master.views[1][0].wanted.view
         self.assertEqual(tuple(view.world_from_camera), a.world_from_camera)
         self.assertEqual(tuple(view.camera_motion), b.world_from_camera + c.world_from_camera)
-        opened.look(b)  # which stands still
+        opened.look(b)  # without motion
         self.assertEqual(len(self.master.views[1][0].wanted.view.camera_motion), 0)
-        with self.assertRaisesRegex(tessera.InvalidInput, "16 steps: there may be 15"):
+        with self.assertRaisesRegex(tessera.InvalidInput, "16 keys: at most 15"):
             a.moving_to(*[b] * 16)
         with self.assertRaisesRegex(tessera.InvalidInput, "16 finite numbers"):
             tessera.Pose((1.0, 2.0))
@@ -153,7 +153,7 @@ class Views(WithMaster):
         with self.assertRaisesRegex(tessera.InvalidInput, "closed"):
             view.pick(2, 0)
 
-    def test_a_picture_that_is_waited_for(self):
+    def test_render(self):
         heard = []
         rendered = self.session.render(self.POSE, size=(8, 4), spp=16, film=True, budget=2.5, on_progress=heard.append)
         self.assertEqual(rendered.frame.samples_least, 16)
@@ -165,7 +165,7 @@ class Views(WithMaster):
         with self.assertRaisesRegex(tessera.Refused, "needs samples"):
             self.session.render(self.POSE, spp=0)
 
-    def test_a_view_that_is_stopped_ends_with_what_there_is(self):
+    def test_stopped_view_delivers_its_samples(self):
         view = self.session.open_view(self.POSE, size=(8, 4), spp=1 << 40)
         self.assertEqual(view.wait(samples=1).samples_least, 1)
         view.stop()
@@ -186,7 +186,7 @@ class Views(WithMaster):
         with self.assertRaisesRegex(tessera.Refused, "needs samples"):
             self.session.open_view(self.POSE, spp=0)
 
-    def test_a_frame_that_cannot_be_is_passed_over(self):
+    def test_malformed_frame_is_skipped(self):
         self.master.withholds_frames = True
         view = self.session.open_view(self.POSE, size=(8, 4), spp=1 << 40)
         self.assertIsNotNone(view.next_frame(5.0))

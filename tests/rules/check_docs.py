@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the documents: links lead somewhere, the README stays a first page with an index of all, words are the field's.
+"""Checks the documents: links lead somewhere, and the README stays a first page with an index of all.
 
 Usage: check_docs.py ROOT. Prints one line per violation and exits 1 if there is any.
 """
@@ -9,13 +9,6 @@ import re
 import sys
 
 README_LINES, README_WIDTH = 120, 120
-# Words of the project's old dialect, with what to write instead. The generated page of programs follows with --help.
-DIALECT = {
-    "aside": "skip, save, exclude", "bury": "remove", "lent": "allocated", "nobody": "no one, not", "seldom": "rare",
-    "somebody": "another client, someone", "tells": "shows, says", "throws": "projects", "thrown": "projected",
-    "whoever": "everyone who, users who", "in hand": "in flight", "place aside": "equiangular sampling",
-}
-UNCHECKED = {"cli.md", "glossary.md"}
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^```.*?^```", re.M | re.S)
 
@@ -60,21 +53,11 @@ def index(root, pages):
             yield f"README.md: its index lacks {name}"
 
 
-def dialect(root, page):
-    if page.name in UNCHECKED:
-        return
-    for number, line in enumerate(page.read_text().split("\n"), 1):
-        for word, instead in DIALECT.items():
-            if re.search(rf"\b{word}\b", line, re.I):
-                yield f"{page.relative_to(root)}:{number}: '{word}': write {instead}"
-
-
 def check(root):
     pages = sorted([*root.glob("*.md"), *root.glob("docs/*.md")])
     found = [*first_page(root), *index(root, pages)]
     for page in pages:
         found += links(root, page)
-        found += dialect(root, page)
     return found
 
 

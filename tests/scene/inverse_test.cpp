@@ -19,7 +19,7 @@ void index(ReferrerIndex& referrers, const std::vector<ObjectChange>& changes) {
         referrers.replace(change.id, change.before.get(), change.after.get());
 }
 
-TEST(Inverse, TakesRandomEditsBackBitForBit) {
+TEST(Inverse, UndoesRandomEditsBitForBit) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         Scene scene = rooted_scene();
         RandomEdits edits(seed, 100);
@@ -39,7 +39,7 @@ TEST(Inverse, TakesRandomEditsBackBitForBit) {
     }
 }
 
-TEST(Inverse, BringsAnObjectBackThatBecameOneOfAnotherKind) {
+TEST(Inverse, RestoresAnObjectThatChangedItsKind) {
     Scene scene = rooted_scene();
     ASSERT_TRUE(scene.apply_entries({Create{ObjectId{5}, Light{.name = "lamp"}}}));
     const Hash128 before = scene.state_hash();
@@ -68,7 +68,7 @@ TEST(Inverse, HoldsOnlyTheFieldsItNeeds) {
     EXPECT_TRUE(name(update.fields).empty());
 }
 
-// The cheap check and the check of everything agree on what is refused, whatever is tried.
+// The incremental and the full validation reject the same edits.
 TEST(ValidateChanges, AgreesWithTheCheckOfTheWholeScene) {
     int refused = 0;
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
@@ -123,7 +123,7 @@ TEST(ValidateChanges, FindsCyclesOfLargeEditsToo) {
     EXPECT_FALSE(validate_changes(scene, referrers, both).empty()) << "all links at once";
 }
 
-TEST(ReferrerIndex, ForgetsNothingAndKeepsNothing) {
+TEST(ReferrerIndex, HoldsExactlyTheCurrentReferences) {
     Scene scene = rooted_scene();
     ReferrerIndex referrers;
     RandomEdits edits(3, 100);
@@ -132,10 +132,10 @@ TEST(ReferrerIndex, ForgetsNothingAndKeepsNothing) {
         ASSERT_TRUE(changes);
         index(referrers, *changes);
     }
-    ReferrerIndex anew;
-    for (const auto& [id, object] : scene.objects()) anew.replace(id, nullptr, object.get());
+    ReferrerIndex rebuilt;
+    for (const auto& [id, object] : scene.objects()) rebuilt.replace(id, nullptr, object.get());
     for (std::uint64_t id = 1; id < 1000; ++id)
-        ASSERT_EQ(referrers.referrers(ObjectId{id}), anew.referrers(ObjectId{id}));
+        ASSERT_EQ(referrers.referrers(ObjectId{id}), rebuilt.referrers(ObjectId{id}));
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ void expect_same(const ObjectMap& map, const Reference& reference) {
     EXPECT_EQ(place, map.end());
 }
 
-TEST(ObjectMap, IsLikeAMapWhateverIsDoneToItAndToItsCopies) {
+TEST(ObjectMap, BehavesLikeAMapWithIndependentCopies) {
     CounterRandom random(7);
     ObjectMap map;
     Reference reference;
@@ -60,7 +60,7 @@ TEST(ObjectMap, IsLikeAMapWhateverIsDoneToItAndToItsCopies) {
     EXPECT_EQ(map.begin(), map.end());
 }
 
-TEST(ObjectMap, GoesBackwards) {
+TEST(ObjectMap, IteratesBackwards) {
     ObjectMap map;
     for (std::uint64_t id = 1; id <= 1000; ++id) map.set(ObjectId{id}, some_object());
     std::uint64_t id = 1000;

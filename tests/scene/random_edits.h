@@ -10,7 +10,7 @@
 
 namespace tessera::scene {
 
-// Edits as people make them, and some that cannot be: drawn from a seed, for whatever scene there is. New
+// Random edits for any scene, repeatable by seed, and some invalid ones. New
 // objects get ids from `first_id` on.
 class RandomEdits {
   public:
@@ -23,7 +23,7 @@ class RandomEdits {
         return editor.take();
     }
 
-    // What no scene takes: a reference to nothing, a cycle, a wrong kind, a number out of range.
+    // Invalid edits: a reference to nothing, a cycle, a wrong kind, a number out of range.
     std::vector<Entry> impossible(const Scene& scene) {
         const ObjectId target = some(scene, ObjectKind::Transform);
         switch (random_.below(4)) {

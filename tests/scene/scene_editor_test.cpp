@@ -43,7 +43,7 @@ TEST_F(SceneEditorTest, CreateAndRemoveIsNothing) {
     EXPECT_TRUE(editor.take().empty());
 }
 
-TEST_F(SceneEditorTest, RemoveAndCreateOfTheSameKindIsWhatDiffers) {
+TEST_F(SceneEditorTest, RemoveAndCreateOfTheSameKindIsAnUpdate) {
     SceneEditor editor(base);
     editor.remove(Lamp);
     editor.create(Lamp, Light{.name = "lamp", .intensity = glm::vec3(9.0f)});
@@ -55,13 +55,13 @@ TEST_F(SceneEditorTest, RemoveAndCreateOfTheSameKindIsWhatDiffers) {
     EXPECT_EQ(editor.take().size(), 2u) << "another kind: it goes and comes";
 }
 
-TEST_F(SceneEditorTest, WritesThatChangeNothingVanish) {
+TEST_F(SceneEditorTest, WritesThatChangeNothingAreDropped) {
     SceneEditor editor(base);
     editor.update(Lamp, Intensity, intense(1.0f));
     EXPECT_TRUE(editor.take().empty());
 }
 
-TEST_F(SceneEditorTest, RefusesWhatIsNotThereOrOfAnotherKind) {
+TEST_F(SceneEditorTest, RejectsMissingObjectsAndOtherKinds) {
     SceneEditor editor(base);
     EXPECT_THROW(editor.remove(Other), Error);
     EXPECT_THROW(editor.create(Lamp, Light{}), Error);

@@ -15,7 +15,7 @@ Scene with_root() {
     return scene;
 }
 
-TEST(Scene, AppliesAListInFullOrNotAtAll) {
+TEST(Scene, AppliesAllEntriesOfAListOrNone) {
     Scene scene = with_root();
     const Hash128 before = scene.state_hash();
     const ChangeList bad{
@@ -86,7 +86,7 @@ void expect_every_field_counts() {
     EXPECT_NE(object_hash(ObjectId{5}, original), object_hash(ObjectId{6}, original));
 }
 
-TEST(ObjectHash, SeesEveryFieldOfEveryKind) {
+TEST(ObjectHash, DependsOnEveryFieldOfEveryKind) {
     expect_every_field_counts<Root>();
     expect_every_field_counts<Transform>();
     expect_every_field_counts<Geometry>();
@@ -126,7 +126,7 @@ TEST(ObjectHash, OfOlderScenesStaysWhenAFieldIsAdded) {
     EXPECT_NE(hash_of(Late{.edge = 0.0f}), hash_of(Late{.edge = 1.0f}));
 }
 
-TEST(Masks, AreNumbersLessOne) {
+TEST(Masks, UseTheFieldNumberMinusOne) {
     EXPECT_EQ(Fields<Material>(&Material::base_color).bits(), 0b10u);
     EXPECT_EQ(Fields<Geometry>(&Geometry::motion_normals).bits(), field_bit(12));
     EXPECT_EQ((Fields<Root>{&Root::name, &Root::render_origin}.bits()), 0b1001u);

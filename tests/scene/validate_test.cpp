@@ -31,12 +31,12 @@ bool is_refused(T object) {
     return !problems({Create{A, std::move(object)}}).empty();
 }
 
-TEST(Validate, AcceptsWhatIsRight) {
+TEST(Validate, AcceptsValidScenes) {
     EXPECT_TRUE(
         problems({Create{A, Transform{.children = {B}}}, Create{B, Light{}}, Create{C, Material{}}}).empty());
 }
 
-TEST(Validate, WantsFiniteAffineTransforms) {
+TEST(Validate, RequiresFiniteAffineTransforms) {
     Transform transform;
     transform.matrix[3][0] = NaN;
     EXPECT_TRUE(is_refused(transform));
@@ -48,7 +48,7 @@ TEST(Validate, WantsFiniteAffineTransforms) {
     EXPECT_TRUE(is_refused(transform));
 }
 
-TEST(Validate, WantsNumbersInTheirRanges) {
+TEST(Validate, RequiresNumbersInTheirRanges) {
     EXPECT_TRUE(is_refused(Material{.roughness = -0.1f}));
     EXPECT_TRUE(is_refused(Material{.metallic = std::numeric_limits<float>::quiet_NaN()}));
     EXPECT_TRUE(is_refused(Material{.emission = glm::vec3(std::numeric_limits<float>::infinity())}));
@@ -63,7 +63,7 @@ TEST(Validate, WantsNumbersInTheirRanges) {
     EXPECT_TRUE(is_refused(Geometry{.indices = {{}, 12}, .positions = {{}, 36}, .normals = {{}, 24}}));
 }
 
-TEST(Validate, WantsReferencesThatExistAndFit) {
+TEST(Validate, RequiresValidReferences) {
     EXPECT_TRUE(is_refused(Transform{.children = {ObjectId{999}}}));
     EXPECT_FALSE(problems({Create{A, Transform{.children = {B}}}, Create{B, Material{}}}).empty());
     EXPECT_FALSE(problems({Create{A, Geometry{.material = B, .indices = {{}, 12}, .positions = {{}, 36}}},
@@ -73,10 +73,10 @@ TEST(Validate, WantsReferencesThatExistAndFit) {
     ASSERT_TRUE(scene.apply_entries(
         {Create{RootId, Root{}}, Create{A, Transform{.children = {B}}}, Create{B, Light{}}}));
     ASSERT_TRUE(scene.apply_entries({Remove{B}}));
-    EXPECT_FALSE(validate_entries(scene, {Remove{B}}).empty()) << "somebody still refers to it";
+    EXPECT_FALSE(validate_entries(scene, {Remove{B}}).empty()) << "an object still refers to it";
 }
 
-TEST(Validate, WantsMotionOfAFewFiniteSteps) {
+TEST(Validate, RequiresAFewFiniteMotionKeys) {
     Transform moving{.motion = std::vector<glm::dmat4>(MaxMotion, glm::dmat4(1.0))};
     EXPECT_FALSE(is_refused(moving));
     moving.motion[14][3][1] = NaN;
@@ -87,26 +87,26 @@ TEST(Validate, WantsMotionOfAFewFiniteSteps) {
     moving.motion.assign(MaxMotion + 1, glm::dmat4(1.0));
     EXPECT_TRUE(is_refused(moving));
 
-    Geometry bending{.indices = {{}, 12}, .positions = {{}, 36}, .normals = {{}, 36}};
-    bending.motion_positions.assign(MaxMotion, BlobRef{{}, 36});
-    EXPECT_FALSE(is_refused(bending));
-    bending.motion_normals.assign(MaxMotion, BlobRef{{}, 36});
-    EXPECT_FALSE(is_refused(bending));
-    Geometry without = bending;
+    Geometry deformed{.indices = {{}, 12}, .positions = {{}, 36}, .normals = {{}, 36}};
+    deformed.motion_positions.assign(MaxMotion, BlobRef{{}, 36});
+    EXPECT_FALSE(is_refused(deformed));
+    deformed.motion_normals.assign(MaxMotion, BlobRef{{}, 36});
+    EXPECT_FALSE(is_refused(deformed));
+    Geometry without = deformed;
     without.normals = {};
     EXPECT_TRUE(is_refused(without)) << "no normals to begin with";
-    bending.motion_normals.pop_back();
-    EXPECT_TRUE(is_refused(bending)) << "fewer steps of normals than of positions";
-    bending.motion_normals.clear();
-    bending.motion_positions[3].byte_size = 24;
-    EXPECT_TRUE(is_refused(bending)) << "fewer vertices";
-    bending.motion_positions[3].byte_size = 0;
-    EXPECT_TRUE(is_refused(bending));
-    bending.motion_positions.assign(MaxMotion + 1, BlobRef{{}, 36});
-    EXPECT_TRUE(is_refused(bending));
+    deformed.motion_normals.pop_back();
+    EXPECT_TRUE(is_refused(deformed)) << "fewer motion keys of normals than of positions";
+    deformed.motion_normals.clear();
+    deformed.motion_positions[3].byte_size = 24;
+    EXPECT_TRUE(is_refused(deformed)) << "fewer vertices";
+    deformed.motion_positions[3].byte_size = 0;
+    EXPECT_TRUE(is_refused(deformed));
+    deformed.motion_positions.assign(MaxMotion + 1, BlobRef{{}, 36});
+    EXPECT_TRUE(is_refused(deformed));
 }
 
-TEST(Validate, LetsOnlyMediaHaveVolumes) {
+TEST(Validate, AllowsVolumeTexturesOnlyForMedia) {
     const Texture volume{.width = 2, .height = 2, .texels = {{}, 48}, .depth = 3};
     EXPECT_FALSE(is_refused(volume));
     EXPECT_TRUE(is_refused(Texture{.width = 2, .height = 2, .texels = {{}, 16}, .depth = 3}));
@@ -132,7 +132,7 @@ TEST(Validate, LetsOnlyMediaHaveVolumes) {
     EXPECT_FALSE(validate_changes(scene, referrers, *changes).empty());
 }
 
-TEST(Validate, FindsCyclesHoweverDeep) {
+TEST(Validate, FindsCyclesAtAnyDepth) {
     EXPECT_FALSE(problems({Create{A, Transform{.children = {A}}}}).empty());
     EXPECT_FALSE(problems({Create{A, Transform{.children = {B}}}, Create{B, Transform{.children = {C}}},
                            Create{C, Transform{.children = {A}}}})
@@ -148,13 +148,13 @@ TEST(Validate, FindsCyclesHoweverDeep) {
     EXPECT_TRUE(problems(chain).empty()) << "deep alone is no cycle";
 }
 
-TEST(Validate, WantsOneRootAndIdsThatFitAFilmPlane) {
+TEST(Validate, RequiresOneRootAndIdsThatFitAFilmPlane) {
     EXPECT_FALSE(problems({Create{A, Root{}}}).empty());
     EXPECT_FALSE(problems({Create{ObjectId{std::uint64_t{1} << 32}, Light{}}}).empty());
     EXPECT_FALSE(validate(Scene{}).empty()) << "no root at all";
 }
 
-TEST(ValidateBlobs, LooksIntoTheArrays) {
+TEST(ValidateBlobs, ChecksTheContentsOfArrays) {
     BlobStore blobs;
     const std::array<float, 9> good{0, 0, 0, 1, 0, 0, 0, 1, 0};
     std::array<float, 9> broken = good;

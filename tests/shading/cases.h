@@ -2,12 +2,13 @@
 #define TESSERA_TESTS_SHADING_CASES_H
 
 #include "mediator/shading/maths.h"
+#include "mediator/shading/perfect_specular.h"
 #include "mediator/shading/sampling.h"
 #include "mediator/shading/sobol.h"
-#include "mediator/shading/specular.h"
-#include "tests/shading/puts.h"
+#include "tests/shading/outputs.h"
 
-// What the functions of functions/*.inc are called with, on both sides. What needs a scene is in world.h.
+// Arguments for the functions of functions/*.inc, in C++ and in shaders. Those that need a scene:
+// test_scene.h.
 SHADING_BEGIN
 
 struct Inputs {
@@ -39,7 +40,7 @@ struct Inputs {
     uint d;
 };
 
-// Denser than air: what light along a boundary of nearly nothing does is decided by the last bit of its
+// Denser than air: with nearly equal indices the result at grazing angles depends on the last bit of the
 // index.
 inline ThinFilm film_of(IN(Inputs) x) {
     return make_film(0.2f + 0.8f * x.u.x, 0.5f + 0.5f * x.metallic, 1.1f + 1.5f * x.u.y,
@@ -47,27 +48,27 @@ inline ThinFilm film_of(IN(Inputs) x) {
 }
 
 // A material with all lobes, and the boundary of glass; each half of the inputs with its own side.
-inline Look look_of(IN(Inputs) x) {
-    Look look = plain_look(x.color, x.metallic, x.roughness, x.transmission, x.index,
-                           x.c % 2u == 0u ? x.eta : x.index);
-    look.specular = 0.5f + 0.5f * x.metallic;
-    look.specular_color = 0.5f + x.light;
-    look.alpha = vec2(greater_of(look.alpha.x, x.u.x * 0.5f), look.alpha.y);
-    look.lobes = (x.a & ExtraLobes);
-    look.thin = x.d % 3u == 0u ? 1u : 0u;
-    look.coat = x.u.y;
-    look.coat_roughness = x.roughness;
-    look.coat_normal = unit_vector(vec3(0.2f * x.x, 0.1f, 1.0f));
-    look.sheen_color = x.light;
-    look.sheen_roughness = x.roughness;
-    if ((look.lobes & FeatureIridescence) != 0u) look.film = film_of(x);
-    return look;
+inline MaterialSample material_sample_of(IN(Inputs) x) {
+    MaterialSample material_sample = default_material_sample(x.color, x.metallic, x.roughness, x.transmission,
+                                                             x.index, x.c % 2u == 0u ? x.eta : x.index);
+    material_sample.specular = 0.5f + 0.5f * x.metallic;
+    material_sample.specular_color = 0.5f + x.light;
+    material_sample.alpha = vec2(greater_of(material_sample.alpha.x, x.u.x * 0.5f), material_sample.alpha.y);
+    material_sample.lobes = (x.a & ExtraLobes);
+    material_sample.thin = x.d % 3u == 0u ? 1u : 0u;
+    material_sample.coat = x.u.y;
+    material_sample.coat_roughness = x.roughness;
+    material_sample.coat_normal = unit_vector(vec3(0.2f * x.x, 0.1f, 1.0f));
+    material_sample.sheen_color = x.light;
+    material_sample.sheen_roughness = x.roughness;
+    if ((material_sample.lobes & FeatureIridescence) != 0u) material_sample.film = film_of(x);
+    return material_sample;
 }
 inline Mixture mixture_of(IN(Inputs) x) {
-    return make_mixture(look_of(x));
+    return make_mixture(material_sample_of(x));
 }
 inline RoughGlass boundary_of(IN(Inputs) x) {
-    const Interface face = interface_of(look_of(x));
+    const Interface face = interface_of(material_sample_of(x));
     const float eta = greater_of(x.eta, 0.4f);
     return RoughGlass(x.color, is_boundary(eta) ? eta : 1.5f, face.f0, face.f90, vec2(x.alpha, 0.5f),
                       x.d % 2u, x.c % 4u == 0u ? film_of(x) : no_film());
@@ -78,7 +79,7 @@ inline PerfectPart perfect_of(IN(Inputs) x) {
 inline vec2 exponents_of(IN(Inputs) x) {
     return vec2(1024.0f * x.roughness, 16.0f);
 }
-inline ShaderLobes shader_of(IN(Inputs) x) {
+inline SurfaceShaderLobes shader_of(IN(Inputs) x) {
     return make_shader_lobes(x.color, x.light, exponents_of(x), perfect_of(x), x.wo.z);
 }
 inline Bsdf shader_bsdf_of(IN(Inputs) x) {
@@ -86,20 +87,20 @@ inline Bsdf shader_bsdf_of(IN(Inputs) x) {
     fill_shader_bsdf(bsdf, shader_of(x));
     return bsdf;
 }
-// That comes to the side of x.n.
+// A ray direction that arrives on the side of x.n.
 inline vec3 arriving_at(IN(Inputs) x) {
     return dot(x.wi, x.n) < 0.0f ? x.wi : -x.wi;
 }
 inline Bsdf layered_bsdf_of(FloatArray energy, IN(Inputs) x) {
-    Look look = look_of(x);
-    look.lobes |= FeatureCoat | FeatureSheen;
+    MaterialSample material_sample = material_sample_of(x);
+    material_sample.lobes |= FeatureCoat | FeatureSheen;
     Bsdf bsdf;
-    fill_bsdf(bsdf, energy, look, mixture_of(x), x.wo);
+    fill_bsdf(bsdf, energy, material_sample, mixture_of(x), x.wo);
     return bsdf;
 }
 inline Bsdf bsdf_of(FloatArray energy, IN(Inputs) x) {
     Bsdf bsdf;
-    fill_bsdf(bsdf, energy, look_of(x), mixture_of(x), x.wo);
+    fill_bsdf(bsdf, energy, material_sample_of(x), mixture_of(x), x.wo);
     return bsdf;
 }
 

@@ -11,12 +11,11 @@ import os
 import re
 import sys
 
-# Whole paths: tests/transport compares what they find on both sides. What is drawn: tests/vulkan compares what the
-# device finds with what rays find on the host.
-PATHS = ("trace.h", "walk.h")
+# Whole paths are compared by tests/transport; rasterised hits are compared with ray traced ones by tests/vulkan.
+PATHS = ("trace.h", "path_state.h")
 ELSEWHERE = ("transmittance", "raster_hit")
 
-FUNCTION = re.compile(r"^(?:WITH_CONTEXT |SELDOM )?inline (?!constexpr)\w+ (\w+)\(", re.MULTILINE)
+FUNCTION = re.compile(r"^(?:WITH_CONTEXT |COLD_NOINLINE )?inline (?!constexpr)\w+ (\w+)\(", re.MULTILINE)
 
 
 def text_of(path):
@@ -29,11 +28,11 @@ def main():
     functions = []
     for path in sorted(glob.glob(os.path.join(root, "mediator/shading/*.h"))):
         name = os.path.basename(path)
-        traversal = name.startswith(("bvh_", "plain_"))
+        traversal = name.startswith(("bvh_", "bvh2_"))
         if "SHADING_BEGIN" in text_of(path) and not traversal and name not in PATHS:
             functions += FUNCTION.findall(text_of(path))
     lists = glob.glob(os.path.join(root, "tests/shading/functions/*.inc"))
-    own = [os.path.join(root, "tests/shading", name) for name in ("cases.h", "world.h", "world_cases.h", "media_cases.h")]
+    own = [os.path.join(root, "tests/shading", name) for name in ("cases.h", "test_scene.h", "scene_cases.h", "media_cases.h")]
     named = {word for path in lists + own for word in re.findall(r"\w+", text_of(path))}
     named.update(ELSEWHERE)
     missing = [name for name in functions if name not in named]

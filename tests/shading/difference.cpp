@@ -25,7 +25,7 @@ double difference_of(float a, float b, double ulp) {
     if (float_bits(a) == float_bits(b) || (is_nan(a) && is_nan(b))) return 0.0;
     if (is_nan(a) || is_nan(b)) return Infinite;
     const auto flushed = [](float value) { return std::fabs(value) < 0x1p-126f ? 0.0 : double(value); };
-    // One more binade instead of infinity: to the largest float it is one ulp.
+    // Infinity counts as the next binade: one ulp from the largest float.
     const auto finite = [&](float value) {
         return is_finite(value) ? flushed(value) : std::copysign(0x1p128, double(value));
     };
@@ -99,13 +99,13 @@ std::vector<SharedFunction> functions_of(std::uint32_t list) {
 #include "tests/shading/functions/samples.inc"
         },
         {
-#include "tests/shading/functions/shaders.inc"
+#include "tests/shading/functions/surface_shaders.inc"
         },
         {
 #include "tests/shading/functions/views.inc"
         },
         {
-#include "tests/shading/functions/looks.inc"
+#include "tests/shading/functions/materials.inc"
         },
         {
 #include "tests/shading/functions/media.inc"

@@ -13,12 +13,12 @@ namespace tessera::shading {
 struct SharedFunction {
     std::string call;
     double ordinary, edges;  // bounds, ulp
-    bool decides;            // by rounded numbers: one input in 200 may differ by more
+    bool decides;            // branches on rounded numbers: 1 input in 200 may differ by more
 };
 std::vector<SharedFunction> functions_of(std::uint32_t list);
 
 struct Difference {
-    double ulp = 0.0;       // the largest that counts
+    double ulp = 0.0;       // the largest one that counts
     std::size_t input = 0;  // where it is
     std::string values;     // of both there, for messages
 };
@@ -28,7 +28,7 @@ struct Difference {
 // flush them.
 double difference(const Outputs& a, const Outputs& b);
 
-// Of all results but `outside`, the farthest apart.
+// The largest difference of all results, ignoring the `outside` worst.
 Difference largest_difference(std::span<const Outputs> a, std::span<const Outputs> b, std::size_t outside);
 
 }  // namespace tessera::shading

@@ -1,9 +1,9 @@
 #include "tests/shading/evaluation.h"
 
-#include "tests/shading/world_puts.h"
+#include "tests/shading/scene_puts.h"
 
-// CMakeLists.txt compiles this file twice, the second time with other names for this function and for what it
-// calls, so that the linker cannot take one for the other.
+// CMakeLists.txt compiles this file twice, the second time with other names for this function and the
+// functions it calls, so that the linker keeps both.
 #ifndef EVALUATE
 #define EVALUATE evaluate_plain
 #endif
@@ -46,11 +46,12 @@ void branches(const Case& c, [[maybe_unused]] const Inputs& x, std::size_t count
 void samples(const Case& c, [[maybe_unused]] const Inputs& x, std::size_t count, Outputs* y) {
 #include "tests/shading/functions/samples.inc"
 }
-void shaders(const Case& c, const Inputs& x, std::size_t count, Outputs* y) {
-#include "tests/shading/functions/shaders.inc"
+void surface_shaders(const Case& c, const Inputs& x, std::size_t count, Outputs* y) {
+#include "tests/shading/functions/surface_shaders.inc"
 }
-void looks([[maybe_unused]] const Case& c, [[maybe_unused]] const Inputs& x, std::size_t count, Outputs* y) {
-#include "tests/shading/functions/looks.inc"
+void materials([[maybe_unused]] const Case& c, [[maybe_unused]] const Inputs& x, std::size_t count,
+               Outputs* y) {
+#include "tests/shading/functions/materials.inc"
 }
 void media(const Case& c, const Inputs& x, std::size_t count, Outputs* y) {
 #include "tests/shading/functions/media.inc"
@@ -60,14 +61,16 @@ void views([[maybe_unused]] const Case& c, [[maybe_unused]] const Inputs& x, std
 }
 
 using List = void(const Case& c, const Inputs& x, std::size_t count, Outputs* y);
-constexpr List* Lists[FunctionListCount] = {numbers,  lobes,   textures, surfaces, lights, found, steps,
-                                            branches, samples, shaders,  views,    looks,  media};
+constexpr List* Lists[FunctionListCount] = {numbers, lobes,     textures, surfaces, lights,
+                                            found,   steps,     branches, samples,  surface_shaders,
+                                            views,   materials, media};
 
 }  // namespace
 }  // namespace shading
 
-void EVALUATE(std::uint32_t list, const void* world, const void* inputs, std::size_t count, void* outputs) {
-    const auto& place = *static_cast<const shading::World*>(world);
+void EVALUATE(std::uint32_t list, const void* test_scene, const void* inputs, std::size_t count,
+              void* outputs) {
+    const auto& place = *static_cast<const shading::TestScene*>(test_scene);
     const auto* x = static_cast<const shading::Inputs*>(inputs);
     auto* y = static_cast<shading::Outputs*>(outputs);
     for (std::size_t i = 0; i < count; ++i) {

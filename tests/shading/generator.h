@@ -8,8 +8,8 @@
 
 namespace tessera::shading {
 
-// Random numbers and the hard values between them, where `edges` are wanted: half of the draws. Own
-// distributions: those of the standard library differ between libraries.
+// Random numbers; with `edges` half of the draws are edge cases. Own distributions, since those of the
+// standard library differ between implementations.
 class Generator {
   public:
     explicit Generator(bool edges) : edges_(edges) {}
@@ -24,8 +24,8 @@ class Generator {
         return edge() ? one_of({0.0f, 1e-30f, 0x1p-24f, 1e-4f, 0.25f, 0.5f, 0.75f, 0.9999f, BelowOne})
                       : between(0.0f, 1.0f);
     }
-    float share() { return edge() ? one_of({0.0f, 1e-6f, 1.0f}) : between(0.1f, 0.9f); }
-    vec3 color() { return vec3(share(), share(), share()); }
+    float random_fraction() { return edge() ? one_of({0.0f, 1e-6f, 1.0f}) : between(0.1f, 0.9f); }
+    vec3 color() { return vec3(random_fraction(), random_fraction(), random_fraction()); }
     vec3 on_sphere(float z) {
         const float r = std::sqrt(greater_of(0.0f, (1.0f - z) * (1.0f + z)));
         const float angle = edge() ? one_of({0.0f, Pi / 2, Pi}) : between(-Pi, Pi);
@@ -39,7 +39,7 @@ class Generator {
         return on_sphere(
             either_sign(edge() ? one_of({0.0f, 1e-20f, 1e-7f, BelowOne, 1.0f}) : between(0.0f, 1.0f)));
     }
-    // Beside the mirrored direction, where lobes of small roughness have their peak.
+    // Near the mirrored direction, where lobes of low roughness peak.
     vec3 near_mirror(vec3 wo) {
         const float away = one_of({0.0f, 1e-6f, 1e-4f, 1e-2f});
         const vec3 direction(-wo.x + away * between(-1.0f, 1.0f), -wo.y + away * between(-1.0f, 1.0f), wo.z);

@@ -28,14 +28,15 @@ Inputs make_input(Generator& random) {
     x.other = random.any_size(120.0f);
     x.pdf = random.any_size(10.0f);
     x.exponent = random.edge() ? random.one_of({-87.0f, 0.0f, 88.0f}) : random.between(-87.0f, 88.0f);
-    x.metallic = random.share();
-    x.transmission = random.share();
+    x.metallic = random.random_fraction();
+    x.transmission = random.random_fraction();
     x.roughness =
         random.edge() ? random.one_of({0.0f, 0.01f, 0.0101f, 0.1f, 1.0f}) : random.between(0.3f, 1.0f);
     x.alpha = greater_of(x.roughness * x.roughness, MinAlpha);
     x.index = random.edge() ? random.one_of({0.0f, 1.0f, 1.0001f, 100.0f}) : random.between(1.2f, 2.5f);
     x.eta = random.edge() ? random.one_of({0.0f, 1.0f, 1e-3f, 0.66f}) : random.between(1.2f, 2.5f);
-    x.instance = random.bits() % (random.edge() ? 8u : 4u);  // the last 4 are hard (world.cpp)
+    x.instance =
+        random.bits() % (random.edge() ? 8u : 4u);  // the last 4 are edge cases (test_scene_builder.cpp)
     x.a = random.edge() ? 0u : random.bits();
     x.b = random.edge() ? 0xffffffffu : random.bits();
     x.c = random.bits();

@@ -7,8 +7,8 @@
 namespace tessera::shading {
 
 enum class InputSet {
-    Ordinary,  // random, away from where functions are steep: roughness from 0.3, cosines from 0.1
-    Edges      // hard values mixed in any combination: grazing and normal directions, near mirrors, alpha =
+    Ordinary,  // random, where functions are not steep: roughness from 0.3, cosines from 0.1
+    Edges      // edge cases in any combination: grazing and normal directions, near mirrors, alpha =
                // MinAlpha, exact 0 and 1, tiny and huge
 };
 

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 // All functions of one of the lists; LIST as in evaluation.h.
-#include "tests/shading/world_puts.h"
+#include "tests/shading/scene_puts.h"
 
 layout(local_size_x = 64) in;
 
@@ -10,7 +10,7 @@ ARRAY_OF(Inputs, InputArray, 4);
 layout(buffer_reference, scalar) writeonly buffer OutputArray { Outputs items[]; };
 
 layout(push_constant, scalar) uniform Arguments {
-    World world;
+    TestScene test_scene;
     InputArray inputs;
     OutputArray outputs;
     uint count;
@@ -30,7 +30,7 @@ void main() {
     if (i >= count) return;
     const Inputs x = inputs.items[i];
     uint place = 0u;
-    Case c = make_case(world, x);  // left out where it is not used
+    Case c = make_case(test_scene, x);  // left out where it is not used
 #if LIST == 0
 #include "tests/shading/functions/numbers.inc"
 #elif LIST == 1
@@ -50,11 +50,11 @@ void main() {
 #elif LIST == 8
 #include "tests/shading/functions/samples.inc"
 #elif LIST == 9
-#include "tests/shading/functions/shaders.inc"
+#include "tests/shading/functions/surface_shaders.inc"
 #elif LIST == 10
 #include "tests/shading/functions/views.inc"
 #elif LIST == 11
-#include "tests/shading/functions/looks.inc"
+#include "tests/shading/functions/materials.inc"
 #elif LIST == 12
 #include "tests/shading/functions/media.inc"
 #endif

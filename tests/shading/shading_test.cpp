@@ -1,4 +1,4 @@
-// Every shared function gives the same in C++ and in a shader, within the bounds of functions/*.inc.
+// Every shared function returns the same in C++ and in a shader, within the bounds of functions/*.inc.
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -10,16 +10,16 @@
 #include "tests/shading/shading_found.comp.h"
 #include "tests/shading/shading_lights.comp.h"
 #include "tests/shading/shading_lobes.comp.h"
-#include "tests/shading/shading_looks.comp.h"
+#include "tests/shading/shading_materials.comp.h"
 #include "tests/shading/shading_media.comp.h"
 #include "tests/shading/shading_numbers.comp.h"
 #include "tests/shading/shading_samples.comp.h"
-#include "tests/shading/shading_shaders.comp.h"
 #include "tests/shading/shading_steps.comp.h"
+#include "tests/shading/shading_surface_shaders.comp.h"
 #include "tests/shading/shading_surfaces.comp.h"
 #include "tests/shading/shading_textures.comp.h"
 #include "tests/shading/shading_views.comp.h"
-#include "tests/shading/world_maker.h"
+#include "tests/shading/test_scene_builder.h"
 #include "tests/vulkan/vulkan_test.h"
 
 namespace tessera::shading {
@@ -32,7 +32,7 @@ constexpr uint GroupSize = 64;
 static_assert(sizeof(Inputs) == 4 * (3 * 2 + 6 * 3 + 12 + 5));
 static_assert(sizeof(Outputs) == 4 * (64 + 1 + 4));
 
-// Of one list, for inputs one after the other: all results of the first function, then of the next.
+// Evaluates one list: all results of the first function, then of the next.
 class Side {
   public:
     virtual ~Side() = default;
@@ -42,30 +42,30 @@ class Side {
 class Host final : public Side {
   public:
     Host(Evaluate& function, std::uint32_t list) : function_(function), list_(list) {
-        const std::size_t size = make_world(0).bytes.size();
+        const std::size_t size = make_test_scene(0).bytes.size();
         memory_ = std::make_unique<std::byte[]>(size);
-        const PackedWorld packed = make_world(reinterpret_cast<std::uint64_t>(memory_.get()));
+        const PackedTestScene packed = make_test_scene(reinterpret_cast<std::uint64_t>(memory_.get()));
         std::memcpy(memory_.get(), packed.bytes.data(), size);
-        world_ = packed.world;
+        test_scene_ = packed.test_scene;
     }
     void evaluate(std::span<const Inputs> inputs, std::span<Outputs> outputs) override {
-        function_(list_, &world_, inputs.data(), inputs.size(), outputs.data());
+        function_(list_, &test_scene_, inputs.data(), inputs.size(), outputs.data());
     }
 
   private:
     Evaluate& function_;
     std::uint32_t list_;
     std::unique_ptr<std::byte[]> memory_;
-    World world_{};
+    TestScene test_scene_{};
 };
 
 std::span<const std::uint32_t> shader_of(std::uint32_t list) {
     using namespace vulkan::shaders;
     using Words = std::span<const std::uint32_t>();
     constexpr Words* Shaders[FunctionListCount] = {
-        shading_numbers_comp, shading_lobes_comp,   shading_textures_comp, shading_surfaces_comp,
-        shading_lights_comp,  shading_found_comp,   shading_steps_comp,    shading_branches_comp,
-        shading_samples_comp, shading_shaders_comp, shading_views_comp,    shading_looks_comp,
+        shading_numbers_comp, shading_lobes_comp,           shading_textures_comp, shading_surfaces_comp,
+        shading_lights_comp,  shading_found_comp,           shading_steps_comp,    shading_branches_comp,
+        shading_samples_comp, shading_surface_shaders_comp, shading_views_comp,    shading_materials_comp,
         shading_media_comp};
     return Shaders[list]();
 }
@@ -76,18 +76,18 @@ class ShaderSide final : public Side {
         : device_(device),
           kernel_(device,
                   {.name = "shared shading", .code = shader_of(list), .push_bytes = sizeof(Arguments)}),
-          memory_(device, make_world(0).bytes.size()),
+          memory_(device, make_test_scene(0).bytes.size()),
           from_(device, AtOnce * sizeof(Inputs)),
           to_(device, functions * AtOnce * sizeof(Outputs)) {
-        const PackedWorld packed = make_world(memory_.address());
+        const PackedTestScene packed = make_test_scene(memory_.address());
         vulkan::upload(device, memory_, packed.bytes);
-        world_ = packed.world;
+        test_scene_ = packed.test_scene;
     }
     void evaluate(std::span<const Inputs> inputs, std::span<Outputs> outputs) override {
         const auto count = uint(inputs.size());
         vulkan::upload_bytes(device_, from_, std::as_bytes(inputs));
         vulkan::run(device_, {.pipeline = &kernel_,
-                              .arguments = Arguments{world_, from_.address(), to_.address(), count, 0},
+                              .arguments = Arguments{test_scene_, from_.address(), to_.address(), count, 0},
                               .groups = {(count + GroupSize - 1) / GroupSize},
                               .writes = {&to_}});
         vulkan::download_bytes(device_, to_, std::as_writable_bytes(outputs));
@@ -95,7 +95,7 @@ class ShaderSide final : public Side {
 
   private:
     struct Arguments {
-        World world;
+        TestScene test_scene;
         std::uint64_t inputs, outputs;
         std::uint32_t count, padding;
     };
@@ -103,10 +103,10 @@ class ShaderSide final : public Side {
     vulkan::Device& device_;
     vulkan::ComputePipeline kernel_;
     vulkan::Buffer memory_, from_, to_;
-    World world_{};
+    TestScene test_scene_{};
 };
 
-// Prints what it finds, so that a bound can be chosen and watched.
+// Prints the differences, so that bounds can be chosen and monitored.
 void compare(std::uint32_t list, InputSet set, Side& one, Side& other) {
     const std::vector<SharedFunction> functions = functions_of(list);
     const std::vector<Inputs> inputs = make_inputs(set, Count);
@@ -139,13 +139,13 @@ void compare(std::uint32_t list, Side& one, Side& other) {
 
 class SharedShading : public vulkan::VulkanTest, public testing::WithParamInterface<std::uint32_t> {};
 
-TEST_P(SharedShading, IsTheSameInAShader) {
+TEST_P(SharedShading, MatchesAShader) {
     Host host(evaluate_plain, GetParam());
     ShaderSide shader(device(), GetParam(), functions_of(GetParam()).size());
     compare(GetParam(), host, shader);
 }
 
-// Not every device is at hand: this is how far contraction alone takes one.
+// Simulates devices that contract: the differences by contraction alone.
 TEST_P(SharedShading, StaysWithinTheBoundsWhenContracted) {
     Host host(evaluate_plain, GetParam()), contracted(evaluate_contracted, GetParam());
     compare(GetParam(), host, contracted);

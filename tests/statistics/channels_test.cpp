@@ -17,9 +17,9 @@ using view::View;
 
 constexpr frame::ChannelSet All = frame::ChannelSet::all();
 
-// A coloured corner under a lamp, with whatever stands in it; open to a sky.
+// A coloured corner with a sphere of the given material under a lamp, open to the sky.
 struct Corner : Model {
-    explicit Corner(const scene::Material& thing) {
+    explicit Corner(const scene::Material& sphere_material) {
         scene::Material varnished = chalk({0.7f, 0.5f, 0.2f});
         varnished.index_of_refraction = 1.5f;
         varnished.roughness = 0.4f;
@@ -27,7 +27,7 @@ struct Corner : Model {
         floor(wall, 2.0f, 0.0f);
         quad(wall, {{{-2, -2, 0}, {-2, 2, 0}, {-2, 2, 4}, {-2, -2, 4}}});
         quad(material(lamp(6.0f)), {{{0, -1, 3}, {0, 1, 3}, {1, 1, 3}, {1, -1, 3}}});
-        sphere(material(thing), {0.2, 0.0, 0.8}, 0.7);
+        sphere(material(sphere_material), {0.2, 0.0, 0.8}, 0.7);
         sky({0.1f, 0.2f, 0.3f});
     }
     static View eye() {
@@ -42,9 +42,9 @@ double energy(const glm::vec3& color) {
     return double(color.x) + double(color.y) + double(color.z);
 }
 
-TEST(PathClasses, DivideTheSameRadiance) {
+TEST(PathClasses, SumToTheRadiance) {
     Corner corner(glass(1.5f));
-    World& world = corner.build();
+    SceneAdapter& world = corner.build();
     View view = Corner::eye();
     std::vector<glm::vec3> reference;
     for_samples(world, view, 2, [&](const PathSample& s) { reference.push_back(radiance_of(s)); });
@@ -80,7 +80,7 @@ TEST(PathClasses, DivideTheSameRadiance) {
 
 TEST(PathClasses, IrradianceTimesAlbedoIsTheLightOfTheDiffuseLobe) {
     Corner corner(glass(1.5f, {0.9f, 1.0f, 0.8f}));
-    World& world = corner.build();
+    SceneAdapter& world = corner.build();
     View view = Corner::eye();
     view.path_class = PathClass::Diffuse;
     std::size_t lit = 0;
@@ -93,11 +93,11 @@ TEST(PathClasses, IrradianceTimesAlbedoIsTheLightOfTheDiffuseLobe) {
 }
 
 // A diffuse floor under a sky of 1: the irradiance over pi, whatever the colour; 0 where there is no colour.
-TEST(PathClasses, IrradianceKnowsNoColour) {
+TEST(PathClasses, IrradianceIsIndependentOfAlbedo) {
     Model model;
     model.floor(model.material(chalk({0.8f, 0.25f, 0.0f})), 10.0f, 0.0f);
     model.sky(glm::vec3(3.0f));
-    World& world = model.build();
+    SceneAdapter& world = model.build();
     View view = small_view({0.0, 0.0, 1.0}, 0.5);
     view.channels = {Channel::Irradiance};
     for (int c = 0; c < 3; ++c) {
@@ -107,9 +107,9 @@ TEST(PathClasses, IrradianceKnowsNoColour) {
     }
 }
 
-double caustics(const scene::Material& thing) {
-    Corner corner(thing);
-    World& world = corner.build();
+double caustics(const scene::Material& sphere_material) {
+    Corner corner(sphere_material);
+    SceneAdapter& world = corner.build();
     View view = Corner::eye();
     view.path_class = PathClass::Caustics;
     double sum = 0.0;
@@ -117,7 +117,7 @@ double caustics(const scene::Material& thing) {
     return sum;
 }
 
-TEST(PathClasses, OnlyPerfectSpecularsMakeCaustics) {
+TEST(PathClasses, OnlyPerfectSpecularsCauseCaustics) {
     EXPECT_EQ(caustics(chalk({0.9f, 0.9f, 0.9f})), 0.0);
     EXPECT_GT(caustics(glass(1.5f)), 0.0);
     EXPECT_GT(caustics(mirror({0.9f, 0.9f, 0.9f})), 0.0);
@@ -130,7 +130,7 @@ TEST(PathClasses, PerfectSpecularsInFrontAreTransparent) {
     const ObjectId wall = model.material(chalk(glm::vec3(0.5f)));
     model.quad(wall, {{{4, -9, 0.1f}, {4, 9, 0.1f}, {4, 9, 9}, {4, -9, 9}}});
     model.point_light({0.0, 0.0, 3.0}, 10.0f);
-    World& world = model.build();
+    SceneAdapter& world = model.build();
     View view = small_view({0.0, 0.0, 2.0}, 0.2, 8, glm::rotate(glm::dmat4(1.0), -0.8, {0.0, 1.0, 0.0}));
     view.channels = All;
     view.max_bounces = 1;  // the mirror, then the wall
@@ -147,12 +147,12 @@ TEST(PathClasses, PerfectSpecularsInFrontAreTransparent) {
 
 // A white point-lit floor: by definition the feature is what the light is without the floor's colour, or the
 // lamp's intensity.
-TEST(ShadingFeature, OfAKnownScene) {
+TEST(ShadingFeature, MatchesAKnownScene) {
     for (const float albedo : {0.9f, 0.2f}) {
         Model model;
         model.floor(model.material(chalk({albedo, 0.5f * albedo, albedo})), 10.0f, 0.0f);
         model.point_light({0.0, 0.0, 2.0}, 50.0f);
-        World& world = model.build();
+        SceneAdapter& world = model.build();
         View view = small_view({0.0, 0.0, 1.0}, 1e-3, 4);
         view.channels = {Channel::ShadingFeature};
         for_samples(world, view, 1, [&](const PathSample& sample) {
@@ -169,7 +169,7 @@ TEST(ShadingFeature, OfAKnownScene) {
 TEST(ShadingFeature, CountsTheSkyAsALight) {
     Model model;
     model.sky({1.0f, 2.0f, 3.0f});
-    World& world = model.build();
+    SceneAdapter& world = model.build();
     View view = small_view({}, 1.0, 4);
     view.channels = {Channel::ShadingFeature};
     for (const FeatureRule rule : {FeatureRule::Demodulated, FeatureRule::Connections}) {
@@ -181,9 +181,9 @@ TEST(ShadingFeature, CountsTheSkyAsALight) {
 }
 
 // LT27: the sky lights the scene and is seen in mirrors, but not by the camera.
-TEST(TransparentBackground, ShowsNothingWhereTheCameraSeesNothing) {
+TEST(TransparentBackground, AlphaIsZeroWithoutAHit) {
     Corner corner(mirror(glm::vec3(0.9f)));
-    World& world = corner.build();
+    SceneAdapter& world = corner.build();
     View view = Corner::eye(), shown = view;
     view.transparent_background = true;
     std::vector<PathSample> samples;
@@ -204,7 +204,7 @@ TEST(TransparentBackground, ShowsNothingWhereTheCameraSeesNothing) {
 }
 
 // The camera sees a colour where it sees nothing, and its alpha; mirrors show the light that there is.
-TEST(VisibleBackground, IsSeenByCameraRaysAlone) {
+TEST(VisibleBackground, IsVisibleToCameraRaysOnly) {
     for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted}) {
         for (const float alpha : {0.0f, 0.5f, 1.0f}) {
             Corner corner(mirror(glm::vec3(0.9f))), other(mirror(glm::vec3(0.9f)));
@@ -212,7 +212,7 @@ TEST(VisibleBackground, IsSeenByCameraRaysAlone) {
             corner.sky(scene::Background{.color = {0.1f, 0.2f, 0.3f},
                                          .visible = scene::VisibleBackground::Color,
                                          .visible_color = color});
-            World& world = corner.build();
+            SceneAdapter& world = corner.build();
             View view = Corner::eye();
             view.renderer = renderer;
             std::vector<PathSample> samples;
@@ -238,7 +238,7 @@ TEST(VisibleBackground, IsSeenByCameraRaysAlone) {
     }
 }
 
-std::vector<std::vector<float>> planes_of(const World& world, View view, Channel channel) {
+std::vector<std::vector<float>> planes_of(const SceneAdapter& world, View view, Channel channel) {
     std::vector<std::vector<float>> result;
     const PathTracer tracer(world.tables(), world.scene(), view);
     std::uint64_t rays = 0;
@@ -256,9 +256,9 @@ std::vector<std::vector<float>> planes_of(const World& world, View view, Channel
     return result;
 }
 
-TEST(Channels, HaveTheSameBitsAloneAndTogether) {
+TEST(Channels, AreIndependentOfEachOther) {
     Corner corner(glass(1.5f));
-    World& world = corner.build();
+    SceneAdapter& world = corner.build();
     for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted}) {
         for (const PathClass kind : {PathClass::Indirect, PathClass::Diffuse}) {
             View together = Corner::eye();
@@ -278,7 +278,7 @@ TEST(Channels, HaveTheSameBitsAloneAndTogether) {
     }
 }
 
-std::uint64_t rays_of(const World& world, const View& view) {
+std::uint64_t rays_of(const SceneAdapter& world, const View& view) {
     const PathTracer tracer(world.tables(), world.scene(), view);
     std::uint64_t rays = 0;
     for (std::uint32_t i = 0; i < view.width * view.height; ++i)
@@ -286,21 +286,21 @@ std::uint64_t rays_of(const World& world, const View& view) {
     return rays;
 }
 
-TEST(Channels, OnlyTheRangeThroughSpecularsCostsRays) {
-    constexpr auto WithoutRange = All - frame::ChannelSet{Channel::Range};
-    for (const scene::Material& thing : {glass(1.5f), chalk(glm::vec3(0.5f))}) {
-        Corner corner(thing);
-        World& world = corner.build();
+TEST(Channels, OnlyTheHeadlightFeatureThroughSpecularsCostsRays) {
+    constexpr auto WithoutHeadlight = All - frame::ChannelSet{Channel::Headlight};
+    for (const scene::Material& sphere_material : {glass(1.5f), chalk(glm::vec3(0.5f))}) {
+        Corner corner(sphere_material);
+        SceneAdapter& world = corner.build();
         View view = Corner::eye();
         view.channels = {Channel::Radiance};
         const std::uint64_t plain = rays_of(world, view);
-        view.channels = WithoutRange;
+        view.channels = WithoutHeadlight;
         EXPECT_EQ(rays_of(world, view), plain);
         view.channels = All;
-        if (thing.transmission > 0.0f) {
+        if (sphere_material.transmission > 0.0f) {
             EXPECT_GT(rays_of(world, view), plain);
         }
-        if (thing.transmission == 0.0f) {
+        if (sphere_material.transmission == 0.0f) {
             EXPECT_EQ(rays_of(world, view), plain) << "the first hit is reused";
         }
     }

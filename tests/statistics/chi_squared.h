@@ -70,7 +70,7 @@ inline std::vector<double> integrate(const std::function<double(const glm::vec3&
     return cells;
 }
 
-// Whether samples may find no direction: (0, 0, 0), a cell of their own by what is left of 1.
+// Whether samples can fail, returning (0, 0, 0): they are counted in a separate cell with the remaining probability.
 enum class Losses { None, Allowed };
 
 inline void expect_directions(const std::function<glm::vec3(CounterRandom&)>& sample,

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "backends/embree/path_tracer.h"
-#include "backends/embree/world.h"
+#include "backends/embree/scene_adapter.h"
 
 namespace tessera::embree {
 namespace {
@@ -61,7 +61,7 @@ class Stage {
         entries.push_back(Create{RootId, root_});
         EXPECT_TRUE(scene.apply_entries(entries));
         scene.set_version({1, 1});
-        World world(device_.get(), blobs_);
+        SceneAdapter world(device_.get(), blobs_);
         EXPECT_TRUE(world.apply(snapshot(scene)));
         EXPECT_TRUE(world.commit());
         view::View view;
@@ -116,7 +116,7 @@ void expect_value(const Stage::Estimate& estimate, double expected) {
     EXPECT_NEAR(estimate.mean, expected, Threshold * estimate.standard_error + Rounding * expected);
 }
 
-// Irradiance at the point below the middle of a parallel square (four corner form factors).
+// Irradiance at the point below the center of a parallel square (four corner form factors).
 double square_form_factor(double half_edge, double height) {
     const double x = half_edge / height, r = std::sqrt(1.0 + x * x);
     return 4.0 / (2.0 * Pi) * 2.0 * (x / r) * std::atan(x / r);

@@ -1,5 +1,5 @@
-// Light in fog, looked for where much of it arrives: the ways to choose such places agree with each other and
-// with closed forms, down to lights on the ray.
+// Equiangular sampling of lights in fog: the sampling strategies agree with each other and with closed forms,
+// down to lights on the ray.
 #include "mediator/shading/equiangular.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using shading::Span, shading::SpanView;
 constexpr ObjectId FogAlone{};
 constexpr double MostError = 0.003;  // standard error of each mean, as a share of it
 
-Mean seen_with(const World& world, const view::View& view, Strategy strategy, std::uint64_t spp) {
+Mean seen_with(const SceneAdapter& world, const view::View& view, Strategy strategy, std::uint64_t spp) {
     const PathTracer tracer(world.tables(), world.scene(), view, strategy);
     double sum = 0, squares = 0;
     std::uint64_t rays = 0;
@@ -34,7 +34,7 @@ Mean seen_with(const World& world, const view::View& view, Strategy strategy, st
 }
 
 void expect_agreement(Model& model, std::uint64_t spp, view::View view) {
-    const World& world = model.build();
+    const SceneAdapter& world = model.build();
     EXPECT_TRUE(model.problems.empty());
     const Mean both = seen_with(world, view, Strategy::Both, 2 * spp);
     EXPECT_GT(both.value, 0.0);
@@ -54,9 +54,9 @@ view::View of_the_middle(std::uint32_t bounces) {
 }
 
 void add_lamp_fog(Model& model) {
-    model.filled_with({.absorption = vec3(0.1f), .scattering = vec3(0.4f, 0.7f, 0.2f), .anisotropy = 0.4f});
+    model.set_medium({.absorption = vec3(0.1f), .scattering = vec3(0.4f, 0.7f, 0.2f), .anisotropy = 0.4f});
     model.box(FogAlone, {-2, -2, -2}, {2, 2, 2});
-    model.filled_with_nothing();
+    model.clear_medium();
 }
 
 glm::dmat4 at(const glm::dvec3& place) {
@@ -67,8 +67,8 @@ glm::dmat4 from_above(const glm::dvec3& place) {
     return at(place) * glm::rotate(glm::dmat4(1.0), -1.3, {1, 0, 0});
 }
 
-// Light comes from outside: near the light itself free flight alone would take too long.
-TEST(Equiangular, APointLightIsFoundAlikeInAllWays) {
+// Light comes from outside: close to a light, free flight sampling alone converges too slowly.
+TEST(Equiangular, StrategiesAgreeForAPointLight) {
     for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted}) {
         Model model;
         add_lamp_fog(model);
@@ -80,7 +80,7 @@ TEST(Equiangular, APointLightIsFoundAlikeInAllWays) {
     }
 }
 
-TEST(Equiangular, ASpotLightIsFoundAlikeInAllWays) {
+TEST(Equiangular, StrategiesAgreeForASpotLight) {
     Model model;
     add_lamp_fog(model);
     model.light({.kind = scene::LightKind::Spot,
@@ -91,18 +91,18 @@ TEST(Equiangular, ASpotLightIsFoundAlikeInAllWays) {
     expect_agreement(model, 1024, of_the_middle(0));
 }
 
-// In nested bodies, the inner one denser and coloured otherwise.
-TEST(Equiangular, LightInNestedFogIsFoundAlikeInAllWays) {
+// In nested media, the inner one denser and of another colour.
+TEST(Equiangular, StrategiesAgreeInNestedFog) {
     Model model;
     add_lamp_fog(model);
-    model.filled_with({.scattering = vec3(1.5f, 0.2f, 3.0f), .anisotropy = -0.3f, .priority = 1});
+    model.set_medium({.scattering = vec3(1.5f, 0.2f, 3.0f), .anisotropy = -0.3f, .priority = 1});
     model.sphere(FogAlone, {0.2, -0.1, 0}, 0.8);
-    model.filled_with_nothing();
+    model.clear_medium();
     model.light({.kind = scene::LightKind::Point, .intensity = vec3(1.0f)}, at({0.7, 2.9, 0.2}));
     expect_agreement(model, 512, of_the_middle(1));
 }
 
-TEST(Equiangular, LightInTexturedFogIsFoundAlikeInAllWays) {
+TEST(Equiangular, StrategiesAgreeInTexturedFog) {
     for (const scene::TextureFilter filter : {scene::TextureFilter::Linear, scene::TextureFilter::Nearest}) {
         CounterRandom random(9);
         Model model;
@@ -119,17 +119,17 @@ TEST(Equiangular, LightInTexturedFogIsFoundAlikeInAllWays) {
                                                           .filter = filter,
                                                           .depth = 4},
                                                          texels);
-        model.filled_with(
+        model.set_medium(
             {.absorption = vec3(0.1f), .scattering = vec3(1.0f, 0.5f, 0.2f), .scattering_texture = texture});
         model.box(FogAlone, {-2, -2, -2}, {2, 2, 2});
-        model.filled_with_nothing();
+        model.clear_medium();
         model.light({.kind = scene::LightKind::Point, .intensity = vec3(1.0f)}, at({0.7, 2.9, 0.2}));
         expect_agreement(model, 320, of_the_middle(0));
     }
 }
 
-// Lights with a size are found by chance as well.
-TEST(Equiangular, LightsWithASizeAreFoundAlikeInAllWays) {
+// Area lights are also hit by BSDF and phase function samples.
+TEST(Equiangular, StrategiesAgreeForAreaLights) {
     for (const int kind : {0, 1, 2}) {
         Model model;
         add_lamp_fog(model);
@@ -147,15 +147,15 @@ TEST(Equiangular, LightsWithASizeAreFoundAlikeInAllWays) {
     }
 }
 
-// Lights of which each leg chooses others, and some that are not in the tree.
-TEST(Equiangular, ManyLightsAreFoundAlikeInAllWays) {
+// Each segment selects other lights, some of which are not in the light tree.
+TEST(Equiangular, StrategiesAgreeForManyLights) {
     Model model;
     add_lamp_fog(model);
     CounterRandom random(4);
     for (int i = 0; i < 40; ++i) {
         const auto number = [&] { return 1.8 * (2.0 * random.uniform() - 1.0); };
         const glm::dvec3 place(number(), 3.0 + number() / 3.0, number());
-        // Some shine on few of the legs, or on none.
+        // Some illuminate few of the segments, or none.
         const scene::LightKind kind = i % 2 == 0 ? scene::LightKind::Point : scene::LightKind::Spot;
         model.light({.kind = kind, .intensity = vec3(float(i % 4 + 1)), .outer_cone_angle = 0.5f},
                     i % 4 == 1 ? at(place) : from_above(place));
@@ -166,13 +166,13 @@ TEST(Equiangular, ManyLightsAreFoundAlikeInAllWays) {
 }
 
 // Behind glass, with a light inside of it; around that the air is clear.
-TEST(Equiangular, LightInAGlassOfFogIsFoundAlikeInAllWays) {
+TEST(Equiangular, StrategiesAgreeForFogInGlass) {
     Model model;
-    model.filled_with({.scattering = vec3(1.0f)});
+    model.set_medium({.scattering = vec3(1.0f)});
     model.sphere(model.material(glass(1.0f)), {0, 0, 0}, 1.5);
-    model.filled_with({.absorption = vec3(1e-3f), .priority = 1});
+    model.set_medium({.absorption = vec3(1e-3f), .priority = 1});
     model.sphere(FogAlone, {0.1, 0.6, 0.2}, 0.6);
-    model.filled_with_nothing();
+    model.clear_medium();
     model.light({.kind = scene::LightKind::Point, .intensity = vec3(1.0f)}, at({0.1, 0.6, 0.2}));
     expect_agreement(model, 512, of_the_middle(1));
 }
@@ -180,7 +180,7 @@ TEST(Equiangular, LightInAGlassOfFogIsFoundAlikeInAllWays) {
 // ---- one ray past one light ----
 
 // Fog of the optical depth `depth` between z = -2 and 2, seen from z = 5 along -z, and a light of intensity 1
-// at the distance `height` of that ray, at z = `foot`: what is scattered once.
+// at the distance `height` of that ray, at z = `foot`: single scattering.
 double scattered_once(double depth, double height, double foot) {
     constexpr int Steps = 200000;
     const double rate = depth / 4.0;
@@ -206,10 +206,10 @@ struct Pass {
 
 Mean seen_past(const Pass& pass, Strategy strategy, std::uint64_t spp, view::Renderer renderer) {
     Model model;
-    model.filled_with({.scattering = vec3(pass.depth / 4.0f)});
-    // With its front at 0, where places are told apart that are less than a free flight from each other.
+    model.set_medium({.scattering = vec3(pass.depth / 4.0f)});
+    // With its front at 0, where points closer than a mean free path can be resolved in floats.
     model.box(FogAlone, {-1e3f, -1e3f, -4}, {1e3f, 1e3f, 0});
-    model.filled_with_nothing();
+    model.clear_medium();
     model.light({.kind = scene::LightKind::Point, .intensity = vec3(1.0f)},
                 at({pass.height, 0, pass.foot - 2.0}));
     view::View view = small_view({0, 0, 3}, 1e-12, 4);
@@ -218,8 +218,8 @@ Mean seen_past(const Pass& pass, Strategy strategy, std::uint64_t spp, view::Ren
     return seen_with(model.build(), view, strategy, spp);
 }
 
-// Lights down to a millionth of a metre beside the ray, in fog from next to none to next to opaque.
-TEST(EquiangularNumerics, SeeALightBesideTheRayAsTheSumAlongItSays) {
+// Lights down to a millionth of a metre from the ray, in almost clear to almost opaque fog.
+TEST(EquiangularNumerics, MatchesTheIntegralAlongTheRay) {
     for (const Pass& pass :
          {Pass{0.5f, 0.3, 0.0}, Pass{0.5f, 1e-3, 0.5}, Pass{0.5f, 1e-6, 0.0}, Pass{1e-6f, 0.3, 0.0},
           Pass{1e-6f, 1e-6, 0.0}, Pass{5.0f, 0.1, 1.5}, Pass{1e6f, 0.5, 2.5},
@@ -229,7 +229,7 @@ TEST(EquiangularNumerics, SeeALightBesideTheRayAsTheSumAlongItSays) {
         ASSERT_GT(expected, 0.0);
         for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted}) {
             for (const Strategy strategy : {Strategy::Both, Strategy::EquiangularOnly}) {
-                // Next to no place lies in the front of what is next to opaque.
+                // Almost opaque fog has almost no sample points near its front.
                 if (strategy != Strategy::Both && pass.depth > 100.0f) continue;
                 const Mean seen = seen_past(pass, strategy, 4096, renderer);
                 EXPECT_NEAR(seen.value, expected, 4.5 * seen.standard_error + 1e-4 * expected)
@@ -243,7 +243,7 @@ TEST(EquiangularNumerics, SeeALightBesideTheRayAsTheSumAlongItSays) {
     }
 }
 
-TEST(EquiangularNumerics, FreeFlightAloneSeesTheSame) {
+TEST(EquiangularNumerics, FreeFlightSamplingGivesTheSame) {
     const Pass pass{0.5f, 0.3, 0.0};
     const double expected = scattered_once(pass.depth, pass.height, pass.foot);
     const Mean seen = seen_past(pass, Strategy::FlightOnly, 65536, view::Renderer::PathTracing);
@@ -251,8 +251,8 @@ TEST(EquiangularNumerics, FreeFlightAloneSeesTheSame) {
     EXPECT_LE(seen.standard_error, MostError * expected);
 }
 
-// On the ray itself light would be without bound: it is a number, and not negative.
-TEST(EquiangularNumerics, ALightOnTheRayIsANumber) {
+// On the ray itself the radiance diverges: samples stay finite and not negative.
+TEST(EquiangularNumerics, ALightOnTheRayIsFinite) {
     for (const double foot : {0.0, 1.0, 2.0, -2.0, 3.0, 5.0}) {
         for (const Strategy strategy : {Strategy::Both, Strategy::EquiangularOnly, Strategy::FlightOnly}) {
             const Mean seen = seen_past({0.5f, 0.0, foot}, strategy, 64, view::Renderer::PathTracing);

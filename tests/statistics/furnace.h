@@ -5,7 +5,7 @@
 #include <array>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "backends/embree/world.h"
+#include "backends/embree/scene_adapter.h"
 
 namespace tessera::embree {
 
@@ -14,7 +14,7 @@ namespace tessera::embree {
 struct Furnace {
     std::shared_ptr<scene::BlobStore> blobs = std::make_shared<scene::BlobStore>();
     DeviceHandle device = make_device({.threads = 1, .blobs = blobs});
-    World world{device.get(), blobs};
+    SceneAdapter world{device.get(), blobs};
 
     explicit Furnace(float albedo, double scale = 1.0, glm::dvec3 place = glm::dvec3(0.0)) {
         std::array<glm::vec3, 8> corners;

@@ -51,7 +51,7 @@ void expect_value(const Estimate& estimate, double expected) {
 
 class WhiteFurnace : public testing::TestWithParam<float> {};
 
-TEST_P(WhiteFurnace, WithoutLimitGivesTheWholeSeries) {
+TEST_P(WhiteFurnace, UnlimitedBouncesGiveTheWholeSeries) {
     const Furnace furnace(GetParam());
     for (const Strategy strategy : {Strategy::Both, Strategy::BsdfOnly}) {
         expect_value(radiance(furnace, view::UnlimitedBounces, strategy, 32),
@@ -60,7 +60,7 @@ TEST_P(WhiteFurnace, WithoutLimitGivesTheWholeSeries) {
 }
 
 // max_bounces = 0 is direct light, one scattering: N scatterings give (1 - a^(N + 1)) / (1 - a).
-TEST_P(WhiteFurnace, WithALimitGivesItsBeginning) {
+TEST_P(WhiteFurnace, LimitedBouncesGiveAPartialSum) {
     const Furnace furnace(GetParam());
     for (const std::uint32_t scatterings : {1u, 2u, 5u}) {
         const double a = GetParam(), expected = (1.0 - std::pow(a, scatterings + 1.0)) / (1.0 - a);
@@ -70,7 +70,7 @@ TEST_P(WhiteFurnace, WithALimitGivesItsBeginning) {
 
 INSTANTIATE_TEST_SUITE_P(Albedos, WhiteFurnace, testing::Values(0.5f, 0.9f, 0.99f));
 
-TEST(WhiteFurnace, LightsAloneAgreeWithTheRest) {
+TEST(WhiteFurnace, LightSamplingAgreesWithTheOtherStrategies) {
     const Furnace furnace(0.5f);
     expect_value(radiance(furnace, 3, Strategy::LightsOnly, 48), (1.0 - std::pow(0.5, 5.0)) / 0.5);
 }

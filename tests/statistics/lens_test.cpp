@@ -10,7 +10,7 @@ struct Spread {
 };
 
 // Of the light in the picture, by the middles of its pixels on the plane at distance 1.
-Spread spread(const World& world, const view::View& view, std::uint64_t spp) {
+Spread spread(const SceneAdapter& world, const view::View& view, std::uint64_t spp) {
     const PathTracer tracer(world.tables(), world.scene(), view);
     const double edge = view.camera.right - view.camera.left;
     Spread found;
@@ -47,7 +47,7 @@ void expect_spread(view::View view, double depth, double focus, scene::Aperture 
     const double scale = parallel ? 1.0 : depth;
     Model model;
     model.floor(model.material(lamp(1.0f)), float(LampEdge * scale), float(-depth));
-    const World& world = model.build();
+    const SceneAdapter& world = model.build();
     view.camera.lens_radius = Radius;
     view.camera.focus_distance = focus;
     view.camera.aperture = aperture;
@@ -86,7 +86,7 @@ TEST(Lens, ParallelViewsBlurAlike) {
 TEST(Lens, DepthIsAlongTheAxisForEveryCamera) {
     Model model;
     model.floor(model.material(chalk(glm::vec3(0.5f))), 50.0f, -3.0f);
-    const World& world = model.build();
+    const SceneAdapter& world = model.build();
     for (const auto projection : {scene::Projection::Perspective, scene::Projection::Orthographic}) {
         for (const double radius : {0.0, 0.5}) {
             view::View view = small_view({1, 2, 2}, 1.0, 8);

@@ -10,10 +10,10 @@ inline shading::FloatArray energy_table() {
     return {backend::energy_values().data()};
 }
 
-inline shading::Bsdf make_bsdf(const shading::Look& look, const shading::Mixture& mixture,
-                               const glm::vec3& out) {
+inline shading::Bsdf make_bsdf(const shading::MaterialSample& material_sample,
+                               const shading::Mixture& mixture, const glm::vec3& out) {
     shading::Bsdf bsdf;
-    shading::fill_bsdf(bsdf, energy_table(), look, mixture, out);
+    shading::fill_bsdf(bsdf, energy_table(), material_sample, mixture, out);
     return bsdf;
 }
 

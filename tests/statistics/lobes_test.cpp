@@ -1,5 +1,5 @@
 // Every lobe that materials lower to: it draws what its density says, never gives back more than comes in,
-// and is the same the other way round; what is tabulated is what sampling finds.
+// and is reciprocal; tabulated values match sampling.
 #include "tests/statistics/lobes.h"
 
 #include <gtest/gtest.h>
@@ -20,56 +20,57 @@ glm::vec2 pair(CounterRandom& random) {
             static_cast<float>(random.uniform()) * 0.99999994f};
 }
 
-Look rough_glass(float roughness, float eta) {
-    Look look = plain_look(vec3(1.0f), 0.0f, roughness, 1.0f, eta > 1.0f ? eta : 1.0f / eta, eta);
-    look.lobes = FeatureRoughGlass;
-    return look;
+MaterialSample rough_glass(float roughness, float eta) {
+    MaterialSample material_sample =
+        default_material_sample(vec3(1.0f), 0.0f, roughness, 1.0f, eta > 1.0f ? eta : 1.0f / eta, eta);
+    material_sample.lobes = FeatureRoughGlass;
+    return material_sample;
 }
 
 // A white material of each lobe, and one of all.
-Look look_named(const std::string& name, float roughness) {
-    Look look = plain_look(vec3(1.0f), name == "metal" || name == "brushed" ? 1.0f : 0.0f, roughness, 0.0f,
-                           1.5f, 1.5f);
-    if (name == "mixed") look.metallic = 0.5f;
-    if (name == "brushed") look.alpha.x = std::max(look.alpha.x, 0.5f);
+MaterialSample material_sample_named(const std::string& name, float roughness) {
+    MaterialSample material_sample = default_material_sample(
+        vec3(1.0f), name == "metal" || name == "brushed" ? 1.0f : 0.0f, roughness, 0.0f, 1.5f, 1.5f);
+    if (name == "mixed") material_sample.metallic = 0.5f;
+    if (name == "brushed") material_sample.alpha.x = std::max(material_sample.alpha.x, 0.5f);
     if (name == "from air") return rough_glass(roughness, 1.5f);
     if (name == "from inside") return rough_glass(roughness, 1.0f / 1.5f);
     if (name == "thin") {
-        look = rough_glass(roughness, 1.5f);
-        look.thin = 1;
+        material_sample = rough_glass(roughness, 1.5f);
+        material_sample.thin = 1;
     }
     if (name == "coat" || name == "all") {
-        look.lobes |= FeatureCoat;
-        look.coat = 0.8f;
-        look.coat_roughness = roughness;
-        look.alpha = vec2(0.3f);
+        material_sample.lobes |= FeatureCoat;
+        material_sample.coat = 0.8f;
+        material_sample.coat_roughness = roughness;
+        material_sample.alpha = vec2(0.3f);
     }
     if (name == "sheen" || name == "all") {
-        look.lobes |= FeatureSheen;
-        look.sheen_color = vec3(1.0f);
-        look.sheen_roughness = roughness;
-        look.alpha = vec2(0.3f);
+        material_sample.lobes |= FeatureSheen;
+        material_sample.sheen_color = vec3(1.0f);
+        material_sample.sheen_roughness = roughness;
+        material_sample.alpha = vec2(0.3f);
     }
     if (name == "film on metal" || name == "film on dielectric" || name == "film on glass" ||
         name == "film on all") {
-        if (name == "film on metal") look.metallic = 1.0f;
-        if (name == "film on all") look.metallic = 0.4f;
+        if (name == "film on metal") material_sample.metallic = 1.0f;
+        if (name == "film on all") material_sample.metallic = 0.4f;
         if (name == "film on glass" || name == "film on all") {
-            look.transmission = 0.7f;
-            look.lobes |= FeatureRoughGlass;
+            material_sample.transmission = 0.7f;
+            material_sample.lobes |= FeatureRoughGlass;
         }
-        look.lobes |= FeatureIridescence;
-        look.film = make_film(name == "film on all" ? 0.8f : 1.0f, 1.0f, 1.7f, 320.0f);
+        material_sample.lobes |= FeatureIridescence;
+        material_sample.film = make_film(name == "film on all" ? 0.8f : 1.0f, 1.0f, 1.7f, 320.0f);
     }
     if (name == "all") {
-        look.metallic = 0.3f;
-        look.transmission = 0.5f;
-        look.lobes |= FeatureRoughGlass;
-        look.specular = 0.7f;
-        look.specular_color = vec3(0.5f, 1.0f, 2.0f);
-        look.alpha = vec2(0.4f, 0.2f);
+        material_sample.metallic = 0.3f;
+        material_sample.transmission = 0.5f;
+        material_sample.lobes |= FeatureRoughGlass;
+        material_sample.specular = 0.7f;
+        material_sample.specular_color = vec3(0.5f, 1.0f, 2.0f);
+        material_sample.alpha = vec2(0.4f, 0.2f);
     }
-    return look;
+    return material_sample;
 }
 
 const char* const Names[] = {
@@ -81,17 +82,17 @@ glm::vec3 towards(float cosine, float azimuth = 0.7f) {
     return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
 }
 
-Bsdf bsdf_of(const Look& look, const glm::vec3& out) {
-    return test::make_bsdf(look, make_mixture(look), out);
+Bsdf bsdf_of(const MaterialSample& material_sample, const glm::vec3& out) {
+    return test::make_bsdf(material_sample, make_mixture(material_sample), out);
 }
 
 struct Reflected {
     double mean, error;
 };
 
-Reflected reflected(const Look& look, const glm::vec3& out, int samples) {
+Reflected reflected(const MaterialSample& material_sample, const glm::vec3& out, int samples) {
     CounterRandom random(9);
-    const Bsdf bsdf = bsdf_of(look, out);
+    const Bsdf bsdf = bsdf_of(material_sample, out);
     double sum = 0.0, squares = 0.0;
     for (int i = 0; i < samples; ++i) {
         const glm::vec3 in = sample_bsdf(bsdf, out, static_cast<float>(random.uniform()), pair(random));
@@ -106,11 +107,11 @@ Reflected reflected(const Look& look, const glm::vec3& out, int samples) {
 
 class Lobes : public testing::TestWithParam<const char*> {};
 
-TEST_P(Lobes, DrawWhatTheirDensitySays) {
+TEST_P(Lobes, SamplesFollowTheDensity) {
     for (const float roughness : {0.4f, 0.7f, 1.0f}) {
         for (const float cosine : {0.9f, 0.3f}) {
             const glm::vec3 out = towards(cosine);
-            const Bsdf bsdf = bsdf_of(look_named(GetParam(), roughness), out);
+            const Bsdf bsdf = bsdf_of(material_sample_named(GetParam(), roughness), out);
             SCOPED_TRACE(testing::Message() << roughness << " " << cosine);
             test::expect_directions(
                 [&](CounterRandom& random) {
@@ -122,11 +123,11 @@ TEST_P(Lobes, DrawWhatTheirDensitySays) {
     }
 }
 
-TEST_P(Lobes, NeverGiveBackMoreThanComesIn) {
+TEST_P(Lobes, ConserveEnergy) {
     for (const float roughness : {0.0f, 0.02f, 0.1f, 0.3f, 0.6f, 1.0f}) {
         for (const float cosine : {1.0f, 0.7f, 0.3f, 0.1f, 0.02f, 0.001f}) {
-            const Look look = look_named(GetParam(), roughness);
-            const auto [mean, error] = reflected(look, towards(cosine), 20'000);
+            const MaterialSample material_sample = material_sample_named(GetParam(), roughness);
+            const auto [mean, error] = reflected(material_sample, towards(cosine), 20'000);
             std::printf("%-18s roughness %.2f cos %.3f: %.4f +- %.4f\n", GetParam(), double(roughness),
                         double(cosine), mean, error);
             // 504 of these: 4.5 standard errors. The tables' steps: 0.3 %, seen below cosines of 0.1 only.
@@ -138,13 +139,15 @@ TEST_P(Lobes, NeverGiveBackMoreThanComesIn) {
 TEST_P(Lobes, AreReciprocal) {
     CounterRandom random(10);
     for (const float roughness : {0.1f, 0.3f, 0.6f, 1.0f}) {
-        const Look look = look_named(GetParam(), roughness);
+        const MaterialSample material_sample = material_sample_named(GetParam(), roughness);
         for (int i = 0; i < 2000; ++i) {
             const glm::vec3 a = sample_cosine_hemisphere(pair(random)),
                             b = sample_cosine_hemisphere(pair(random));
             if (!(a.z > 1e-2f) || !(b.z > 1e-2f)) continue;
-            const double there = evaluate_bsdf(energy_table(), bsdf_of(look, a), a, b).value.y / b.z;
-            const double again = evaluate_bsdf(energy_table(), bsdf_of(look, b), b, a).value.y / a.z;
+            const double there =
+                evaluate_bsdf(energy_table(), bsdf_of(material_sample, a), a, b).value.y / b.z;
+            const double again =
+                evaluate_bsdf(energy_table(), bsdf_of(material_sample, b), b, a).value.y / a.z;
             EXPECT_NEAR(there, again, 1e-4 * std::max(there, again) + 1e-6) << roughness;
         }
     }
@@ -157,11 +160,12 @@ INSTANTIATE_TEST_SUITE_P(All, Lobes, testing::ValuesIn(Names), [](const auto& na
 });
 
 // White metal and white dielectric give back all: what facets send to each other is not lost.
-TEST(Energy, WhiteStaysWhite) {
+TEST(Energy, WhiteFurnaceOfWhiteMaterials) {
     for (const char* name : {"metal", "dielectric", "mixed"}) {
         for (const float roughness : {0.2f, 0.5f, 0.8f, 1.0f}) {
             for (const float cosine : {1.0f, 0.6f, 0.2f}) {
-                const auto [mean, error] = reflected(look_named(name, roughness), towards(cosine), 200'000);
+                const auto [mean, error] =
+                    reflected(material_sample_named(name, roughness), towards(cosine), 200'000);
                 EXPECT_LE(error, 0.003);
                 EXPECT_NEAR(mean, 1.0, 4.0 * error + 1e-3) << name << " " << roughness << " " << cosine;
             }
@@ -172,17 +176,18 @@ TEST(Energy, WhiteStaysWhite) {
 // Films of any thickness and index over white: in no channel more comes back than came in, and in the mean
 // over these little of it is lost. What is lost is what the base is dimmed too much: it is by the same for
 // all channels, and by a bound.
-TEST(Energy, FilmsOverWhiteLoseLittleAndAddNothing) {
+TEST(Energy, FilmsOverWhiteConserveEnergy) {
     double lost = 0.0, count = 0.0;
     for (const float index : {1.15f, 1.33f, 1.8f, 2.4f}) {
         for (const float thickness : {60.0f, 200.0f, 350.0f, 700.0f, 1500.0f}) {
             for (const float roughness : {0.1f, 0.4f, 0.9f}) {
                 for (const float cosine : {1.0f, 0.5f, 0.1f}) {
-                    Look look = plain_look(vec3(1.0f), 0.0f, roughness, 0.0f, 1.5f, 1.5f);
-                    look.lobes = FeatureIridescence;
-                    look.film = make_film(1.0f, 1.0f, index, thickness);
+                    MaterialSample material_sample =
+                        default_material_sample(vec3(1.0f), 0.0f, roughness, 0.0f, 1.5f, 1.5f);
+                    material_sample.lobes = FeatureIridescence;
+                    material_sample.film = make_film(1.0f, 1.0f, index, thickness);
                     const glm::vec3 out = towards(cosine);
-                    const Bsdf bsdf = bsdf_of(look, out);
+                    const Bsdf bsdf = bsdf_of(material_sample, out);
                     CounterRandom random(12);
                     glm::dvec3 sum(0.0), squares(0.0);
                     constexpr int Samples = 20'000;
@@ -212,17 +217,17 @@ TEST(Energy, FilmsOverWhiteLoseLittleAndAddNothing) {
     EXPECT_LT(lost / count, 0.06);
 }
 
-// Below a coat there is the lesser of what it lets through on either way, and not both.
-TEST(Coat, DimsTheBaseByTheLesserOfBothWays) {
-    Look look = plain_look(vec3(1.0f), 0.0f, 0.6f, 0.0f, 1.5f, 1.5f);
-    look.lobes = FeatureCoat;
-    look.coat_roughness = 0.3f;
+// The base is attenuated by the smaller of the transmittances of both directions, not by their product.
+TEST(Coat, AttenuatesTheBaseByTheSmallerTransmittance) {
+    MaterialSample material_sample = default_material_sample(vec3(1.0f), 0.0f, 0.6f, 0.0f, 1.5f, 1.5f);
+    material_sample.lobes = FeatureCoat;
+    material_sample.coat_roughness = 0.3f;
     for (const float cosine : {0.9f, 0.4f}) {
         const glm::vec3 out = towards(cosine), in = towards(0.7f, 2.9f);
-        const double bare = evaluate_bsdf(energy_table(), bsdf_of(look, out), out, in).diffuse.y;
-        look.coat = 0.75f;
-        const double dimmed = evaluate_bsdf(energy_table(), bsdf_of(look, out), out, in).diffuse.y;
-        look.coat = 0.0f;
+        const double bare = evaluate_bsdf(energy_table(), bsdf_of(material_sample, out), out, in).diffuse.y;
+        material_sample.coat = 0.75f;
+        const double dimmed = evaluate_bsdf(energy_table(), bsdf_of(material_sample, out), out, in).diffuse.y;
+        material_sample.coat = 0.0f;
         const auto passes = [](float cos) {
             const vec2 energy = lobe_energy(energy_table(), cos, 0.3f);
             return 1.0 - 0.75 * (0.04 * double(energy.x) + double(energy.y));
@@ -231,16 +236,16 @@ TEST(Coat, DimsTheBaseByTheLesserOfBothWays) {
     }
 }
 
-// A coat with a normal of its own is the coat of the frame around that normal.
+// A coat with a separate normal is evaluated in the frame of that normal.
 TEST(Coat, HasItsOwnNormal) {
-    Look look = plain_look(vec3(0.0f), 1.0f, 0.5f, 0.0f, 1.5f, 1.5f);
-    look.lobes = FeatureCoat;
-    look.coat = 1.0f;
-    look.coat_roughness = 0.5f;
+    MaterialSample material_sample = default_material_sample(vec3(0.0f), 1.0f, 0.5f, 0.0f, 1.5f, 1.5f);
+    material_sample.lobes = FeatureCoat;
+    material_sample.coat = 1.0f;
+    material_sample.coat_roughness = 0.5f;
     const auto coat = [&](const glm::vec3& normal, const glm::vec3& out, const glm::vec3& in) {
-        look.coat_normal = normal;
+        material_sample.coat_normal = normal;
         BsdfValue value{};
-        add_coat(value, bsdf_of(look, out), out, in);
+        add_coat(value, bsdf_of(material_sample, out), out, in);
         return double(value.value.y);
     };
     const glm::vec3 normal = towards(0.9f, 1.0f), up(0.0f, 0.0f, 1.0f);
@@ -269,10 +274,11 @@ TEST(Sheen, CoversTheSurface) {
 
 // Light that goes through is not lost at the other side: from air into glass as from glass into air, with the
 // factor of solid angles, eta^2, that basic radiance leaves out.
-TEST(RoughGlass, IsTheSameTheOtherWayRound) {
+TEST(RoughGlass, IsReciprocal) {
     CounterRandom random(11);
     for (const float roughness : {0.2f, 0.5f, 1.0f}) {
-        Look into = look_named("from air", roughness), out_of = look_named("from inside", roughness);
+        MaterialSample into = material_sample_named("from air", roughness),
+                       out_of = material_sample_named("from inside", roughness);
         for (int i = 0; i < 2000; ++i) {
             if (i == 1000) into.film = out_of.film = make_film(1.0f, 1.0f, 1.8f, 400.0f);
             const glm::vec3 a = sample_cosine_hemisphere(pair(random)),
@@ -287,11 +293,11 @@ TEST(RoughGlass, IsTheSameTheOtherWayRound) {
     }
 }
 
-// Thin walls turn no light: what goes through is the mirror image of what is reflected.
+// Thin walls do not refract: transmission is the mirror image of reflection.
 TEST(RoughGlass, ThinWallsAreSymmetric) {
-    const Look look = look_named("thin", 0.5f);
+    const MaterialSample material_sample = material_sample_named("thin", 0.5f);
     const glm::vec3 out = towards(0.8f);
-    const Bsdf bsdf = bsdf_of(look, out);
+    const Bsdf bsdf = bsdf_of(material_sample, out);
     for (const float cosine : {0.9f, 0.5f, 0.1f}) {
         const glm::vec3 in = towards(cosine, 3.0f);
         const glm::vec3 h = glm::normalize(in + out);

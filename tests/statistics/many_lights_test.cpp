@@ -1,4 +1,4 @@
-// Many lights: each way to find their light agrees with the closed form.
+// Many lights: every sampling strategy agrees with the closed form.
 #include <gtest/gtest.h>
 
 #include "tests/statistics/panels.h"
@@ -12,7 +12,7 @@ TEST(ManyLights, PanelsAllAround) {
         Model model;
         add_ground(model);
         add_panels(model, panels, sides);
-        const World& world = model.build();
+        const SceneAdapter& world = model.build();
         double expected = reflected(panels);
         if (sides == Sides::Both) {
             expected = 0.0;
@@ -24,7 +24,7 @@ TEST(ManyLights, PanelsAllAround) {
     }
 }
 
-// Panels, bulbs, spots, a sun and a sky at once.
+// Panels, bulbs, spots, a sun and a sky together.
 TEST(ManyLights, OfAllKinds) {
     const std::vector<Panel> panels = dome(8, 3.0, 2);
     Model model;
@@ -43,7 +43,7 @@ TEST(ManyLights, OfAllKinds) {
             model.point_light(place, intensity);
             expected += GroundAlbedo / M_PI * arrives;
         } else {
-            // Straight down: the origin is in the cone or beside it.
+            // Straight down: the origin is inside or outside the cone.
             const float outer = i % 4 == 1 ? 1.5f : 0.2f;
             model.light({.kind = scene::LightKind::Spot,
                          .intensity = glm::vec3(intensity),
@@ -55,7 +55,7 @@ TEST(ManyLights, OfAllKinds) {
     }
     model.light({.kind = scene::LightKind::Directional, .intensity = glm::vec3(1.5f)}, id);
     expected += GroundAlbedo / M_PI * 1.5;
-    const World& world = model.build();
+    const SceneAdapter& world = model.build();
     expect_light(seen_by(world, at_origin(0.05), Strategy::Both, 2048), expected);
     expect_light(seen_by(world, at_origin(0.05), Strategy::LightsOnly, 2048), expected);
 }
@@ -68,15 +68,15 @@ TEST(ManyLights, ATexturedPanel) {
     CounterRandom random(4);
     std::vector<glm::vec3> texels(64);
     for (glm::vec3& texel : texels) texel = glm::vec3(std::pow(random.uniform(), 8.0));
-    scene::Material glow = lamp(10.0f);
-    glow.emission_texture = model.texture(map, texels);
-    const ObjectId screen = model.material(glow);
+    scene::Material emissive = lamp(10.0f);
+    emissive.emission_texture = model.texture(map, texels);
+    const ObjectId screen = model.material(emissive);
     for (const float x : {-2.0f, 0.5f}) {
         model.textured_quad(
             screen, {{{x, -0.7f, 0.4f}, {x + 1.0f, -0.7f, 0.9f}, {x + 1.0f, 0.7f, 1.3f}, {x, 0.7f, 0.6f}}},
             1.7f);
     }
-    const World& world = model.build();
+    const SceneAdapter& world = model.build();
     const Mean reference = seen_by(world, at_origin(0.3), Strategy::BsdfOnly, 4096);
     EXPECT_LE(reference.standard_error, 0.015 * reference.value);
     for (const Strategy strategy : {Strategy::Both, Strategy::LightsOnly}) {
@@ -87,7 +87,7 @@ TEST(ManyLights, ATexturedPanel) {
     }
 }
 
-TEST(ManyLights, WhatIsInHiddenLayersIsDark) {
+TEST(ManyLights, LightsInHiddenLayersAreDark) {
     const std::vector<Panel> panels = dome(10, 3.0, 5);
     const std::vector<Panel> shown(panels.begin(), panels.begin() + 50),
         hidden(panels.begin() + 50, panels.end());
@@ -95,7 +95,7 @@ TEST(ManyLights, WhatIsInHiddenLayersIsDark) {
     add_ground(model);
     add_panels(model, shown, Sides::One);
     add_panels(model, hidden, Sides::One, 2);
-    const World& world = model.build();
+    const SceneAdapter& world = model.build();
     view::View view = at_origin(0.3);
     expect_light(seen_by(world, view, Strategy::Both, 1024), reflected(panels));
     view.layers = 1;

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "backends/embree/path_tracer.h"
-#include "backends/embree/world.h"
+#include "backends/embree/scene_adapter.h"
 #include "tests/statistics/scene_model.h"
 
 namespace tessera::embree {
@@ -16,7 +16,7 @@ class Model : public test::SceneModel {
     using SceneModel::SceneModel;
 
     // Once.
-    World& build() {
+    SceneAdapter& build() {
         EXPECT_TRUE(world_.apply(scene::snapshot(finished())));
         const auto report = world_.commit();
         EXPECT_TRUE(report);
@@ -28,11 +28,11 @@ class Model : public test::SceneModel {
 
   private:
     DeviceHandle device_ = make_device({.threads = 1, .blobs = blobs()});
-    World world_{device_.get(), blobs()};
+    SceneAdapter world_{device_.get(), blobs()};
 };
 
 // Every sample of a view, in order.
-inline void for_samples(const World& world, const view::View& view, std::uint64_t spp,
+inline void for_samples(const SceneAdapter& world, const view::View& view, std::uint64_t spp,
                         const std::function<void(const PathSample&)>& visit) {
     const PathTracer tracer(world.tables(), world.scene(), view);
     std::uint64_t rays = 0;
@@ -46,7 +46,7 @@ inline void for_samples(const World& world, const view::View& view, std::uint64_
 struct Mean {
     double value = 0, standard_error = 0;
 };
-inline Mean mean_of(const World& world, const view::View& view, std::uint64_t spp,
+inline Mean mean_of(const SceneAdapter& world, const view::View& view, std::uint64_t spp,
                     const std::function<double(const PathSample&)>& what) {
     double sum = 0, squares = 0, n = 0;
     for_samples(world, view, spp, [&](const PathSample& sample) {

@@ -1,5 +1,5 @@
-// What moves while the shutter is open, against closed forms, still pictures, and pictures of the same seen
-// from where it stands still.
+// Motion blur against closed forms, against averages of still pictures, and in frames of reference in which the
+// scene is at rest.
 #include <array>
 #include <functional>
 
@@ -10,13 +10,13 @@ namespace {
 
 using Corners = std::array<glm::vec3, 4>;
 
-glm::dmat4 moved(const glm::dvec3& way) {
-    return glm::translate(glm::dmat4(1.0), way);
+glm::dmat4 moved(const glm::dvec3& offset) {
+    return glm::translate(glm::dmat4(1.0), offset);
 }
 glm::dmat4 turned(double angle, const glm::dvec3& axis = {0.0, 0.0, 1.0}) {
     return glm::rotate(glm::dmat4(1.0), angle, axis);
 }
-// A turn in so many steps that the chord of each is as good as its arc.
+// A rotation with enough keys that the chord of each is close to its arc.
 std::vector<glm::dmat4> turning(double angle) {
     std::vector<glm::dmat4> steps;
     for (std::size_t i = 1; i <= scene::MaxMotion; ++i) {
@@ -42,7 +42,7 @@ struct Pixels {
     }
 };
 
-Pixels pixels_of(const World& world, const view::View& view, std::uint64_t spp) {
+Pixels pixels_of(const SceneAdapter& world, const view::View& view, std::uint64_t spp) {
     Pixels pixels{std::vector<double>(view.width * view.height),
                   std::vector<double>(view.width * view.height), double(spp)};
     std::size_t at = 0;
@@ -54,8 +54,8 @@ Pixels pixels_of(const World& world, const view::View& view, std::uint64_t spp) 
     return pixels;
 }
 
-// Of columns of pixels, whose values are shares of time that a lamp of radiance 1 was there.
-void expect_columns(const World& world, const std::function<double(double x)>& share) {
+// Checks columns of pixels against the fraction of the shutter time in which a lamp of radiance 1 covers them.
+void expect_columns(const SceneAdapter& world, const std::function<double(double x)>& fraction) {
     const view::View view = plan();
     constexpr std::uint64_t Spp = 512;
     const Pixels pixels = pixels_of(world, view, Spp);
@@ -64,14 +64,14 @@ void expect_columns(const World& world, const std::function<double(double x)>& s
         double expected = 0.0, found = 0.0;
         constexpr int Places = 256;
         for (int i = 0; i < Places; ++i) {
-            expected += share(-2.0 + 4.0 * (x + (i + 0.5) / Places) / view.width) / Places;
+            expected += fraction(-2.0 + 4.0 * (x + (i + 0.5) / Places) / view.width) / Places;
         }
-        // Rows between -1 and 1: the lamp is as high.
+        // Rows between -1 and 1: the height of the lamp.
         for (std::uint32_t y = view.height / 4; y < view.height / 4 * 3; ++y) {
             found += pixels.mean(y * view.width + x) / (0.5 * view.height);
         }
         const double n = double(Spp) * 0.5 * view.height;
-        // 32 columns are looked at: 4 standard errors, of which the strata leave less.
+        // 32 columns are compared: 4 standard errors, fewer with stratification.
         EXPECT_NEAR(found, expected, 4.0 * std::sqrt(expected * (1.0 - expected) / n) + 1e-4) << x;
         total += found;
         wanted += expected;
@@ -79,8 +79,8 @@ void expect_columns(const World& world, const std::function<double(double x)>& s
     EXPECT_NEAR(total / wanted, 1.0, 0.003);
 }
 
-// Of a lamp of half edge 0.5 that goes from -1 to 1 in this way: the share of time that it is over x.
-double share_of(double x, const std::function<double(double)>& place) {
+// The fraction of time that a lamp of half edge 0.5, moving from -1 to 1 as given by `place`, covers x.
+double time_fraction_over(double x, const std::function<double(double)>& place) {
     constexpr int Times = 2000;
     int over = 0;
     for (int i = 0; i < Times; ++i) over += std::fabs(x - place((i + 0.5) / Times)) <= 0.5 ? 1 : 0;
@@ -88,41 +88,42 @@ double share_of(double x, const std::function<double(double)>& place) {
 }
 
 const Corners Panel{{{-0.5f, -1, 0}, {0.5f, -1, 0}, {0.5f, 1, 0}, {-0.5f, 1, 0}}};
-Corners shifted(Corners corners, const glm::vec3& way) {
-    for (glm::vec3& corner : corners) corner += way;
+Corners shifted(Corners corners, const glm::vec3& offset) {
+    for (glm::vec3& corner : corners) corner += offset;
     return corners;
 }
 
-TEST(Motion, AMovingLampIsABoxOfTime) {
+TEST(Motion, AMovingLampIsSpreadEvenlyOverTime) {
     Model model;
     model.placed_at({-1, 0, 0});
     model.moves({moved({2, 0, 0})});
     model.quad(model.material(lamp(1.0f)), Panel);
     expect_columns(model.build(),
-                   [](double x) { return share_of(x, [](double t) { return 2.0 * t - 1.0; }); });
+                   [](double x) { return time_fraction_over(x, [](double t) { return 2.0 * t - 1.0; }); });
 }
 
-TEST(Motion, StepsAreEvenInTime) {
-    // Half of the time for the first quarter of the way.
+TEST(Motion, KeysAreEvenInTime) {
+    // Half of the time for the first quarter of the distance.
     Model model;
     model.placed_at({-1, 0, 0});
     model.moves({moved({0.5, 0, 0}), moved({2, 0, 0})});
     model.quad(model.material(lamp(1.0f)), Panel);
     expect_columns(model.build(), [](double x) {
-        return share_of(x, [](double t) { return t < 0.5 ? t - 1.0 : 3.0 * t - 2.0; });
+        return time_fraction_over(x, [](double t) { return t < 0.5 ? t - 1.0 : 3.0 * t - 2.0; });
     });
 }
 
-TEST(Motion, VerticesMoveAsTransformsDo) {
+TEST(Motion, VertexMotionMatchesTransformMotion) {
     Model model;
-    model.bending_quad(model.material(lamp(1.0f)), {shifted(Panel, {-1, 0, 0}), shifted(Panel, {-0.5f, 0, 0}),
-                                                    shifted(Panel, {1, 0, 0})});
+    model.deforming_quad(
+        model.material(lamp(1.0f)),
+        {shifted(Panel, {-1, 0, 0}), shifted(Panel, {-0.5f, 0, 0}), shifted(Panel, {1, 0, 0})});
     expect_columns(model.build(), [](double x) {
-        return share_of(x, [](double t) { return t < 0.5 ? t - 1.0 : 3.0 * t - 2.0; });
+        return time_fraction_over(x, [](double t) { return t < 0.5 ? t - 1.0 : 3.0 * t - 2.0; });
     });
 }
 
-TEST(Motion, ATurningBodyIsASectorOfTime) {
+TEST(Motion, ARotatingShapeIsSpreadOverItsSector) {
     Model model;
     model.moves(turning(0.5 * M_PI));
     // Between the angles 0 and 45 degrees, and the radii 1 and 1.5.
@@ -138,7 +139,7 @@ TEST(Motion, ATurningBodyIsASectorOfTime) {
     }
     ASSERT_NEAR(sector.back()[1].x, 1.5f * diagonal, 1e-5f);
     model.triangles(model.material(lamp(1.0f)), sector);
-    const World& world = model.build();
+    const SceneAdapter& world = model.build();
     const view::View view = plan(64);
     constexpr std::uint64_t Spp = 64;
     const Pixels pixels = pixels_of(world, view, Spp);
@@ -150,7 +151,7 @@ TEST(Motion, ATurningBodyIsASectorOfTime) {
             const auto bin = std::size_t((angle / M_PI + 0.0625) * 14.0);
             if (radius < 1.1 || radius > 1.4 || angle < -0.0625 * M_PI || bin >= light.size()) continue;
             light[bin] += pixels.mean(y * view.width + x);
-            // The body begins at the angle a t and ends at 45 degrees + a t: a trapezium over 0, 45, 90, 135.
+            // The shape begins at the angle a t and ends at 45 degrees + a t: a trapezium over 0, 45, 90, 135.
             const double eighths = angle / (0.25 * M_PI);
             expected[bin] += 0.5 * std::clamp(std::min(eighths, 3.0 - eighths), 0.0, 1.0);
             ++count[bin];
@@ -158,34 +159,34 @@ TEST(Motion, ATurningBodyIsASectorOfTime) {
     }
     for (std::size_t bin = 0; bin < light.size(); ++bin) {
         ASSERT_GE(count[bin], 20.0);
-        const double share = expected[bin] / count[bin];
-        // Of 12 bins; and a pixel is taken by its middle: 1 % of the trapezium's slope in the mean of a bin.
-        EXPECT_NEAR(light[bin] / count[bin], share,
-                    4.0 * std::sqrt(share * (1.0 - share) / (count[bin] * Spp)) + 0.005)
+        const double fraction = expected[bin] / count[bin];
+        // Of 12 bins; and a pixel is evaluated at its center: 1 % of the trapezium's slope in the mean of a bin.
+        EXPECT_NEAR(light[bin] / count[bin], fraction,
+                    4.0 * std::sqrt(fraction * (1.0 - fraction) / (count[bin] * Spp)) + 0.005)
             << bin;
     }
 }
 
-// A room of a floor under a lamp with something in between.
-struct Way {
+// A floor under a lamp with an occluder in between.
+struct RoomMotion {
     std::vector<glm::dmat4> floor, lamp, screen;
 };
-struct Look {
+struct RoomShape {
     Corners lamp{{{-0.5f, -0.5f, 2}, {-0.5f, 0.5f, 2}, {0.5f, 0.5f, 2}, {0.5f, -0.5f, 2}}};
     Corners screen{{{-0.4f, -0.4f, 1}, {0.4f, -0.4f, 1}, {0.4f, 0.4f, 1}, {-0.4f, 0.4f, 1}}};
 };
-void put_room(Model& model, const Way& way, const std::vector<Look>& looks) {
+void put_room(Model& model, const RoomMotion& motion, const std::vector<RoomShape>& shapes) {
     std::vector<Corners> lamps, screens;
-    for (const Look& look : looks) {
-        lamps.push_back(look.lamp);
-        screens.push_back(look.screen);
+    for (const RoomShape& shape : shapes) {
+        lamps.push_back(shape.lamp);
+        screens.push_back(shape.screen);
     }
-    model.moves(way.floor);
+    model.moves(motion.floor);
     model.floor(model.material(chalk(glm::vec3(0.8f))), 2.0f, 0.0f);
-    model.moves(way.lamp);
-    model.bending_quad(model.material(test::lamp(4.0f)), lamps);
-    model.moves(way.screen);
-    model.bending_quad(model.material(chalk(glm::vec3(0.5f))), screens);
+    model.moves(motion.lamp);
+    model.deforming_quad(model.material(test::lamp(4.0f)), lamps);
+    model.moves(motion.screen);
+    model.deforming_quad(model.material(chalk(glm::vec3(0.5f))), screens);
 }
 view::View room_view() {
     view::View view = small_view({0.5, -3.0, 2.5}, 0.9, 16, turned(0.95, {1.0, 0.0, 0.0}));
@@ -193,16 +194,16 @@ view::View room_view() {
     return view;
 }
 
-double red_of(const World& world, const view::View& view, std::uint32_t x, std::uint32_t y,
+double red_of(const SceneAdapter& world, const view::View& view, std::uint32_t x, std::uint32_t y,
               std::uint64_t sample) {
     const PathTracer tracer(world.tables(), world.scene(), view);
     std::uint64_t rays = 0;
     return red(tracer.trace(x, y, sample, rays));
 }
 
-// Samples that are others than those of a still scene.
-double others(const World& world, const view::View& view, const World& still, const view::View& still_view,
-              float tolerance) {
+// The fraction of samples that differ from those of a still scene.
+double differing_fraction(const SceneAdapter& world, const view::View& view, const SceneAdapter& still,
+                          const view::View& still_view, float tolerance) {
     std::uint64_t count = 0, all = 0;
     for (std::uint64_t sample = 0; sample < 16; ++sample) {
         for (std::uint32_t y = 0; y < view.height; ++y) {
@@ -216,24 +217,24 @@ double others(const World& world, const view::View& view, const World& still, co
     return double(count) / double(all);
 }
 
-// A room at a place, all of which moves together, the camera too.
+// A room at a place that moves as a whole, with the camera.
 struct Together {
     Model model;
     view::View view = room_view();
 
     Together(const glm::dmat4& place, const std::vector<glm::dmat4>& steps) {
-        model.framed_by(place);
-        put_room(model, {steps, steps, steps}, {Look{}});
+        model.set_frame(place);
+        put_room(model, {steps, steps, steps}, {RoomShape{}});
         view.camera.world_from_camera = place * view.camera.world_from_camera;
         for (const glm::dmat4& step : steps)
             view.camera.motion.push_back(step * view.camera.world_from_camera);
     }
 };
 
-// It is seen as if it stood still: by rays to lights as well. Rounding moves few samples over an edge.
-TEST(Motion, WhatMovesWithTheCameraStandsStill) {
+// The picture is that of the still room, shadows included. Rounding moves few samples over an edge.
+TEST(Motion, TranslationWithTheCameraIsInvisible) {
     Together still(glm::dmat4(1.0), {});
-    const World& calm = still.model.build();
+    const SceneAdapter& calm = still.model.build();
     struct Case {
         glm::dvec3 place;
         std::vector<glm::dmat4> steps;
@@ -244,12 +245,12 @@ TEST(Motion, WhatMovesWithTheCameraStandsStill) {
           Case{{}, {moved({1000, 0, 0})}, 0.01f}, Case{{1024.0, -512.0, 768.0}, {moved({3, 2, 1})}, 0.02f}}) {
         SCOPED_TRACE(glm::length(glm::dvec3(c.steps.back()[3])));
         Together moving(moved(c.place), c.steps);
-        EXPECT_LT(others(moving.model.build(), moving.view, calm, still.view, c.tolerance), 0.01);
+        EXPECT_LT(differing_fraction(moving.model.build(), moving.view, calm, still.view, c.tolerance), 0.01);
     }
 }
 
-// The same where directions turn, and samples with them: in the mean.
-TEST(Motion, WhatTurnsWithTheCameraStandsStill) {
+// The same with rotation, which rotates the samples as well: equal in the mean.
+TEST(Motion, RotationWithTheCameraIsInvisible) {
     Together still(glm::dmat4(1.0), {});
     const Mean calm = mean_of(still.model.build(), still.view, 8192, red);
     EXPECT_LE(calm.standard_error / calm.value, 0.003);
@@ -263,50 +264,50 @@ TEST(Motion, WhatTurnsWithTheCameraStandsStill) {
     }
 }
 
-TEST(Motion, ACameraThatMovesSeesAWorldThatMovesTheOtherWay) {
-    const std::vector<glm::dmat4> camera_steps{moved({0.5, 0, 0}), moved({0.5, 0.25, 0.25})};
+TEST(Motion, CameraMotionEqualsInverseSceneMotion) {
+    const std::vector<glm::dmat4> camera_key_intervals{moved({0.5, 0, 0}), moved({0.5, 0.25, 0.25})};
     std::vector<glm::dmat4> world_steps;
-    for (const glm::dmat4& step : camera_steps) world_steps.push_back(moved(-glm::dvec3(step[3])));
+    for (const glm::dmat4& step : camera_key_intervals) world_steps.push_back(moved(-glm::dvec3(step[3])));
     Model still, moving;
-    put_room(still, {}, {Look{}});
-    put_room(moving, {world_steps, world_steps, world_steps}, {Look{}});
+    put_room(still, {}, {RoomShape{}});
+    put_room(moving, {world_steps, world_steps, world_steps}, {RoomShape{}});
     view::View view = room_view();
-    for (const glm::dmat4& step : camera_steps)
+    for (const glm::dmat4& step : camera_key_intervals)
         view.camera.motion.push_back(step * view.camera.world_from_camera);
-    EXPECT_LT(others(moving.build(), room_view(), still.build(), view, 1e-3f), 0.01);
+    EXPECT_LT(differing_fraction(moving.build(), room_view(), still.build(), view, 1e-3f), 0.01);
     Model again;
-    put_room(again, {}, {Look{}});
-    const World& calm = again.build();
-    EXPECT_GT(others(calm, view, calm, room_view(), 1e-3f), 0.3) << "it does move";
+    put_room(again, {}, {RoomShape{}});
+    const SceneAdapter& calm = again.build();
+    EXPECT_GT(differing_fraction(calm, view, calm, room_view(), 1e-3f), 0.3) << "it does move";
 }
 
-// Everything at once is the mean of still pictures: a lamp that turns and grows, whose density changes, and
-// shadows of what bends.
-TEST(Motion, IsTheMeanOfStillPictures) {
-    Look later;
+// All kinds of motion at once equal the mean of still pictures: a rotating and growing lamp, whose sampling
+// density changes, and shadows of deforming meshes.
+TEST(Motion, EqualsTheMeanOfStillPictures) {
+    RoomShape later;
     later.lamp = shifted({{{-0.25f, -0.5f, 2}, {-0.5f, 0.5f, 2.4f}, {0.75f, 0.75f, 1.7f}, {0.5f, -0.75f, 2}}},
                          {0.5f, 0, 0});
     later.screen = {{{-0.9f, -0.4f, 0.5f}, {0.4f, -0.4f, 1}, {0.1f, 0.7f, 1.2f}, {-0.4f, 0.4f, 1}}};
     const glm::dmat4 screen_end = moved({0.4, 0.2, 0.1}) * turned(0.4), floor_end = moved({0.0, 0.0, 0.25});
-    const auto between = [](const auto& a, const auto& b, double share) { return a + (b - a) * share; };
+    const auto between = [](const auto& a, const auto& b, double fraction) { return a + (b - a) * fraction; };
     view::View view = room_view();
     const glm::dmat4 camera = view.camera.world_from_camera, camera_end = moved({-0.3, 0.1, 0.2}) * camera;
 
     Model model;
-    put_room(model, {{floor_end}, {turned(0.3)}, {screen_end}}, {Look{}, later});
+    put_room(model, {{floor_end}, {turned(0.3)}, {screen_end}}, {RoomShape{}, later});
     view::View moving_view = view;
     moving_view.camera.motion = {camera_end};
-    const World& world = model.build();
+    const SceneAdapter& world = model.build();
     const Pixels moving = pixels_of(world, moving_view, 4096);
 
     constexpr int Times = 64;
     std::vector<double> sum(moving.sum.size()), variance(moving.sum.size());
     for (int i = 0; i < Times; ++i) {
         const double t = (i + 0.5) / Times;
-        Look look;
+        RoomShape shape;
         for (std::size_t corner = 0; corner < 4; ++corner) {
-            look.lamp[corner] += (later.lamp[corner] - look.lamp[corner]) * float(t);
-            look.screen[corner] += (later.screen[corner] - look.screen[corner]) * float(t);
+            shape.lamp[corner] += (later.lamp[corner] - shape.lamp[corner]) * float(t);
+            shape.screen[corner] += (later.screen[corner] - shape.screen[corner]) * float(t);
         }
         Model still;
         const auto at = [&](const glm::dmat4& end) { return between(glm::dmat4(1.0), end, t); };
@@ -318,8 +319,8 @@ TEST(Motion, IsTheMeanOfStillPictures) {
         };
         put(at(floor_end), {{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}},
             still.material(chalk(glm::vec3(0.8f))));
-        put(at(turned(0.3)), look.lamp, still.material(lamp(4.0f)));
-        put(at(screen_end), look.screen, still.material(chalk(glm::vec3(0.5f))));
+        put(at(turned(0.3)), shape.lamp, still.material(lamp(4.0f)));
+        put(at(screen_end), shape.screen, still.material(chalk(glm::vec3(0.5f))));
         view.camera.world_from_camera = between(camera, camera_end, t);
         view.seed = 1000 + std::uint64_t(i);
         const Pixels pixels = pixels_of(still.build(), view, 128);
@@ -341,19 +342,19 @@ TEST(Motion, IsTheMeanOfStillPictures) {
     EXPECT_NEAR(all / still_all, 1.0, 4.0 * std::sqrt(error) / still_all);
 }
 
-TEST(Motion, StepsThatAreAllTheSameAreNoMotion) {
+TEST(Motion, IdenticalKeysAreNoMotion) {
     Model still, same;
-    put_room(still, {}, {Look{}});
-    const std::vector<glm::dmat4> nowhere(3, glm::dmat4(1.0));
-    put_room(same, {nowhere, nowhere, nowhere}, {Look{}});
-    const World& world = same.build();
+    put_room(still, {}, {RoomShape{}});
+    const std::vector<glm::dmat4> no_media(3, glm::dmat4(1.0));
+    put_room(same, {nowhere, nowhere, nowhere}, {RoomShape{}});
+    const SceneAdapter& world = same.build();
     EXPECT_EQ(world.tables().scene.features & shading::FeatureMotion, 0u);
-    EXPECT_EQ(others(world, room_view(), still.build(), room_view(), 0.0f), 0.0);
+    EXPECT_EQ(differing_fraction(world, room_view(), still.build(), room_view(), 0.0f), 0.0);
 }
 
-// A convex body in a sky of radiance 1 that reflects all: a ray that finds it again from its own surface
-// brings less, or more.
-TEST(Motion, RaysLeaveWhatMoves) {
+// A white convex object in a sky of radiance 1: a ray that hits it again from its own surface would change the
+// radiance.
+TEST(Motion, NoSelfIntersectionOnMovingSurfaces) {
     const glm::dmat4 thin = glm::scale(glm::dmat4(1.0), {1.0, 0.01, 1.0}),
                      mirror = glm::scale(glm::dmat4(1.0), {-1, 1, 1});
     const glm::dmat4 sheared{{1, 0.5, 0, 0}, {0, 1, 0.25, 0}, {0.5, 0, 1, 0}, {0, 0, 0, 1}};
@@ -365,11 +366,11 @@ TEST(Motion, RaysLeaveWhatMoves) {
                 const glm::dmat4 place = moved({away, 0.3 * away, 0.0});
                 const glm::dmat4 end = moved({speed, 0.2 * speed, 0.1}) * turned(0.7);
                 model.moves({place * end * glm::inverse(place)});
-                model.framed_by(place * shape);
+                model.set_frame(place * shape);
                 scene::Material white = chalk(glm::vec3(0.5f));
                 model.sphere(model.material(white), {}, 1.0, Normals::Flat, 6);
                 model.sky(glm::vec3(1.0f));
-                const World& world = model.build();
+                const SceneAdapter& world = model.build();
                 view::View view = small_view({away, 0.3 * away, 5.0}, 0.5, 16);
                 view.camera.motion = {moved({speed, 0.2 * speed, 0.1}) * view.camera.world_from_camera};
                 const PathTracer tracer(world.tables(), world.scene(), view, Strategy::BsdfOnly);
@@ -388,9 +389,9 @@ TEST(Motion, RaysLeaveWhatMoves) {
     }
 }
 
-// A light that moves: the mean of where it is. A floor below a point at height 1 sees it at x: 1 / (1 +
+// A moving light: the mean over its positions. A floor below a point at height 1 sees it at x: 1 / (1 +
 // x^2)^1.5.
-TEST(Motion, LightsMove) {
+TEST(Motion, MovingLights) {
     Model model;
     model.floor(model.material(chalk(glm::vec3(1.0f))), 20.0f, 0.0f);
     model.moves({moved({4.0, 0, 0})});

@@ -1,4 +1,4 @@
-// Bodies of glass in each other: each boundary refracts and reflects by the indices on its two sides.
+// Nested glass: each boundary refracts and reflects according to the indices on both sides.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 using glm::vec3;
 
-// What the boundary of two indices reflects of unpolarised light that comes in under an angle.
+// Fresnel reflectance of unpolarised light at a boundary.
 double reflectance(double from, double to, double angle = 0.0) {
     const double cosine = std::cos(angle), sine = from / to * std::sin(angle);
     if (sine >= 1.0) return 1.0;
@@ -23,8 +23,7 @@ double reflectance(double from, double to, double angle = 0.0) {
     return 0.5 * (across * across + parallel * parallel);
 }
 
-// Of light straight through these media one after the other, there and back inside of them as often as it
-// likes.
+// Transmittance at normal incidence through these media in sequence, with all orders of internal reflection.
 double passed(std::initializer_list<double> indices) {
     double sum = 0.0;
     for (auto next = indices.begin() + 1; next != indices.end(); ++next) {
@@ -34,8 +33,8 @@ double passed(std::initializer_list<double> indices) {
     return 1.0 / (1.0 + sum);
 }
 
-// What an eye between two stacks of boundaries sees of a lamp below them, of which these shares pass: light
-// goes back and forth past it.
+// Radiance of a lamp seen from between two stacks of boundaries with these transmittances, including multiple
+// reflections between them.
 double seen_between(double below, double above) {
     return below / (1.0 - (1.0 - below) * (1.0 - above));
 }
@@ -46,20 +45,20 @@ scene::Material black(float radiance) {
 }
 
 // A path finds the lamp, of radiance 1, or not.
-void expect_share(const World& world, const view::View& view, double share) {
+void expect_fraction(const SceneAdapter& world, const view::View& view, double fraction) {
     constexpr std::uint64_t Samples = 400;
     const Mean mean = mean_of(world, view, Samples, red);
     const double error =
-        std::sqrt(std::max(share * (1.0 - share), 1e-9) / double(Samples * view.width * view.height));
+        std::sqrt(std::max(fraction * (1.0 - fraction), 1e-9) / double(Samples * view.width * view.height));
     EXPECT_LE(error, 0.003);
-    EXPECT_NEAR(mean.value, share, 4.5 * error + 1e-6);
+    EXPECT_NEAR(mean.value, fraction, 4.5 * error + 1e-6);
 }
 
 view::View nested_from_above(double height = 10.0) {
     return small_view({0.01, 0.02, height}, 1e-4, 16);
 }
 
-TEST(NestedGlass, LayersPassWhatTheirBoundariesLeave) {
+TEST(NestedGlass, NestedLayersTransmitTheProductOfTheirBoundaries) {
     const std::vector<std::pair<float, float>> pairs{{1.5f, 1.33f}, {1.33f, 1.5f},     {1.5f, 1.0f},
                                                      {1.5f, 1.5f},  {1.5f, 1.500002f}, {1.2f, 4.0f},
                                                      {1.0f, 2.0f}};
@@ -69,59 +68,59 @@ TEST(NestedGlass, LayersPassWhatTheirBoundariesLeave) {
         model.box(model.material(glass(outer)), {-1, -1, 0}, {1, 1, 4});
         model.box(model.material(glass(inner)), {-0.5f, -0.5f, 1}, {0.5f, 0.5f, 3});
         model.floor(model.material(black(1.0f)), 10.0f, -5.0f);
-        const World& world = model.build();
+        const SceneAdapter& world = model.build();
         EXPECT_TRUE(model.problems.empty());
-        expect_share(world, nested_from_above(), passed({1.0, outer, inner, outer, 1.0}));
-        // The eye in the outer body, above the inner one; and in that.
-        expect_share(world, nested_from_above(3.5),
-                     seen_between(passed({outer, inner, outer, 1.0}), passed({outer, 1.0})));
+        expect_fraction(world, nested_from_above(), passed({1.0, outer, inner, outer, 1.0}));
+        // The eye in the outer medium, above the inner one; then in the inner one.
+        expect_fraction(world, nested_from_above(3.5),
+                        seen_between(passed({outer, inner, outer, 1.0}), passed({outer, 1.0})));
         const double half = passed({inner, outer, 1.0});
-        expect_share(world, nested_from_above(2.0), seen_between(half, half));
+        expect_fraction(world, nested_from_above(2.0), seen_between(half, half));
     }
 }
 
-// Where bodies overlap, that of the higher priority goes on, and the other one's boundary is none.
-TEST(NestedGlass, ThePriorityTellsWhoseBoundaryIsOne) {
+// Where media overlap, the one of higher priority continues, and the other one's boundary is ignored.
+TEST(NestedGlass, ThePriorityDecidesWhichBoundaryCounts) {
     for (const std::int32_t lower : {0, 1}) {
         Model model;
-        model.filled_with({.priority = lower});
+        model.set_medium({.priority = lower});
         model.box(model.material(glass(1.4f)), {-1, -1, 0}, {1, 1, 4});
-        model.filled_with({.priority = 1 - lower});
+        model.set_medium({.priority = 1 - lower});
         model.box(model.material(glass(1.9f)), {-0.5f, -0.5f, 2}, {0.5f, 0.5f, 6});
-        model.filled_with_nothing();
+        model.clear_medium();
         model.floor(model.material(black(1.0f)), 10.0f, -5.0f);
-        const World& world = model.build();
-        expect_share(world, nested_from_above(), passed({1.0, 1.4, 1.9, 1.0}));
-        // In the overlap, between the boundary that is one and the lower body's or the upper body's.
+        const SceneAdapter& world = model.build();
+        expect_fraction(world, nested_from_above(), passed({1.0, 1.4, 1.9, 1.0}));
+        // In the overlap, between the boundary that counts and that of the lower or upper medium.
         const double below = lower == 1 ? passed({1.4, 1.0}) : passed({1.9, 1.4, 1.0});
         const double above = lower == 1 ? passed({1.4, 1.9, 1.0}) : passed({1.9, 1.0});
-        expect_share(world, nested_from_above(3.0), seen_between(below, above));
+        expect_fraction(world, nested_from_above(3.0), seen_between(below, above));
     }
 }
 
-// Of equals that which light entered last: light down and light up find one boundary each, in other places.
-TEST(NestedGlass, OfEqualsTheLastGoesBefore) {
+// At equal priority the medium entered last wins: light down and light up find different boundaries.
+TEST(NestedGlass, AtEqualPriorityTheLastEnteredWins) {
     Model model;
     model.box(model.material(glass(1.4f)), {-1, -1, 0}, {1, 1, 4});
     model.box(model.material(glass(1.9f)), {-0.5f, -0.5f, 2}, {0.5f, 0.5f, 6});
     model.floor(model.material(black(1.0f)), 10.0f, -5.0f);
-    expect_share(model.build(), nested_from_above(), passed({1.0, 1.9, 1.4, 1.0}));
+    expect_fraction(model.build(), nested_from_above(), passed({1.0, 1.9, 1.4, 1.0}));
 }
 
-// A fog has no index: glass in it refracts as in what the fog is in.
-TEST(NestedGlass, AFogHasNoIndexOfItsOwn) {
+// Fog has no index: glass in it refracts as in the medium around the fog.
+TEST(NestedGlass, FogHasNoIndexOfRefraction) {
     Model model;
     model.box(model.material(glass(1.5f)), {-2, -2, 0}, {2, 2, 6});
-    model.filled_with({.absorption = vec3(1e-9f)});
+    model.set_medium({.absorption = vec3(1e-9f)});
     model.box(ObjectId{}, {-1, -1, 1}, {1, 1, 5});
-    model.filled_with_nothing();
+    model.clear_medium();
     model.box(model.material(glass(1.2f)), {-0.5f, -0.5f, 2}, {0.5f, 0.5f, 4});
     model.floor(model.material(black(1.0f)), 10.0f, -5.0f);
-    expect_share(model.build(), nested_from_above(), passed({1.0, 1.5, 1.2, 1.5, 1.0}));
+    expect_fraction(model.build(), nested_from_above(), passed({1.0, 1.5, 1.2, 1.5, 1.0}));
 }
 
-// Under an angle, from the outer body on the inner one's top; what is reflected ends at a black lid.
-TEST(NestedGlass, FresnelsEquationsUnderEveryAngle) {
+// At an angle, from the outer medium onto the top of the inner one; reflected light ends at a black lid.
+TEST(NestedGlass, FollowsFresnelAtEveryAngle) {
     struct Question {
         float outer, inner;
         double degrees;
@@ -142,16 +141,16 @@ TEST(NestedGlass, FresnelsEquationsUnderEveryAngle) {
         model.box(model.material(glass(question.inner)), {-400, -400, -9}, {400, 400, 0});
         model.floor(model.material(black(1.0f)), 300.0f, -1.0f);
         model.floor(model.material(black(0.0f)), -300.0f, 2.0f);
-        const World& world = model.build();
+        const SceneAdapter& world = model.build();
         const double angle = question.degrees * M_PI / 180.0;
         const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), angle, glm::dvec3(1, 0, 0));
         const view::View view = small_view({0.01, 0.02, 1.0}, 1e-5, 16, turn);
-        expect_share(world, view, 1.0 - reflectance(question.outer, question.inner, angle));
+        expect_fraction(world, view, 1.0 - reflectance(question.outer, question.inner, angle));
     }
 }
 
-// The same boundary, twice: refracted into the inner body and out of it, light goes on as it came.
-TEST(NestedGlass, AMatchedBodyIsNotThere) {
+// The same boundary, twice: light refracted into and out of the inner medium keeps its direction.
+TEST(NestedGlass, AnIndexMatchedMediumIsInvisible) {
     const auto pictures = [](bool nested) {
         Model model;
         model.sphere(model.material(glass(1.5f)), {0, 0, 0}, 1.0, Normals::Smooth);
@@ -167,19 +166,19 @@ TEST(NestedGlass, AMatchedBodyIsNotThere) {
     };
     const std::vector<double> with = pictures(true), without = pictures(false);
     ASSERT_EQ(with.size(), without.size());
-    // Whitted's trees end after eight vertices, of which the inner body takes some that carry nothing.
+    // Whitted's trees end after eight vertices, of which the inner medium uses some that carry no light.
     for (std::size_t i = 0; i < with.size(); ++i) EXPECT_NEAR(with[i], without[i], 0.02) << i;
 }
 
-// From both sides; index 0 stands for it.
-TEST(NestedGlass, AnIndexWithoutBoundReflectsAll) {
+// From both sides; index 0 means infinite.
+TEST(NestedGlass, AnInfiniteIndexReflectsEverything) {
     for (const auto& [outer, inner] : {std::pair(1.5f, 0.0f), std::pair(0.0f, 1.5f)}) {
         Model model;
         model.box(model.material(glass(outer)), {-1, -1, 0}, {1, 1, 4});
         model.box(model.material(glass(inner)), {-0.5f, -0.5f, 1}, {0.5f, 0.5f, 3});
         model.floor(model.material(black(1.0f)), 0.4f, 2.0f);
         model.floor(model.material(black(0.0f)), -0.4f, 3.9f);
-        expect_share(model.build(), nested_from_above(3.5), 0.0);
+        expect_fraction(model.build(), nested_from_above(3.5), 0.0);
     }
 }
 

@@ -3,7 +3,7 @@
 #include "mediator/base/random.h"
 #include "tests/statistics/model.h"
 
-// Glowing triangles over a diffuse ground, seen at its origin, against Lambert's closed form.
+// Emissive triangles over a diffuse ground, seen at its origin, against Lambert's closed form.
 namespace tessera::embree {
 
 constexpr float GroundAlbedo = 0.6f;
@@ -67,9 +67,9 @@ enum class Sides { One, Both };
 inline void add_panels(Model& model, const std::vector<Panel>& panels, Sides sides,
                        std::uint32_t layers = scene::RootLayers) {
     for (const Panel& panel : panels) {
-        scene::Material glow = lamp(static_cast<float>(panel.radiance));
-        glow.double_sided = sides == Sides::Both;
-        model.triangles(model.material(glow), {panel.corners}, layers);
+        scene::Material emissive = lamp(static_cast<float>(panel.radiance));
+        emissive.double_sided = sides == Sides::Both;
+        model.triangles(model.material(emissive), {panel.corners}, layers);
     }
 }
 
@@ -84,7 +84,7 @@ inline view::View at_origin(double height) {
     return view;
 }
 
-inline Mean seen_by(const World& world, const view::View& view, Strategy strategy, std::uint64_t spp) {
+inline Mean seen_by(const SceneAdapter& world, const view::View& view, Strategy strategy, std::uint64_t spp) {
     const PathTracer tracer(world.tables(), world.scene(), view, strategy);
     double sum = 0, squares = 0;
     std::uint64_t rays = 0;

@@ -1,4 +1,4 @@
-// Rectangles that are sampled by solid angle: the angle itself, what is drawn, and what it is worth.
+// Rectangular lights sampled by solid angle: the angle, the distribution of samples, and the variance.
 #include "mediator/shading/quad_lights.h"
 
 #include <gtest/gtest.h>
@@ -16,9 +16,9 @@ using shading::LightSource;
 using shading::QuadView;
 
 // 2 a x 2 b, shining down onto the plane z = 0, seen from the origin.
-LightSource quad(glm::dvec3 middle, double a, double b) {
+LightSource quad(glm::dvec3 center, double a, double b) {
     return {.kind = shading::LightQuad,
-            .position = glm::vec3(middle),
+            .position = glm::vec3(center),
             .direction = {0.0f, 0.0f, -1.0f},
             .edge_u = {1.0f, 0.0f, 0.0f},
             .edge_v = {0.0f, -1.0f, 0.0f},
@@ -34,7 +34,7 @@ double solid_angle(double x0, double x1, double y0, double y1, double z) {
 
 struct Case {
     const char* name;
-    glm::dvec3 middle;
+    glm::dvec3 center;
     double a, b;
 };
 
@@ -42,17 +42,17 @@ constexpr Case Cases[] = {{"above", {0, 0, 1}, 1, 1},
                           {"close", {0.3, -0.2, 0.05}, 1, 0.7},
                           {"over an edge", {1, 0, 0.5}, 1, 2},
                           {"over a corner", {0.5, 0.5, 0.3}, 0.5, 0.5},
-                          {"beside", {2, 0.4, 0.8}, 1, 1},
-                          {"beside, low", {1.5, 1.2, 0.2}, 1, 1},
+                          {"to the side", {2, 0.4, 0.8}, 1, 1},
+                          {"to the side, low", {1.5, 1.2, 0.2}, 1, 1},
                           {"a strip", {0.1, 0.0, 0.5}, 3, 0.05},
                           {"far enough", {0, 0, 3.5}, 0.8, 0.8},
                           {"touching", {0.2, 0.1, 0.002}, 1, 1}};
 
-TEST(QuadLights, SolidAnglesAreThoseOfDoubles) {
+TEST(QuadLights, SolidAnglesMatchDoublePrecision) {
     for (const double size : {1e-15, 1e-6, 1.0, 1e12}) {
         for (const Case& c : Cases) {
-            const QuadView seen = view_quad(quad(size * c.middle, size * c.a, size * c.b), glm::vec3(0.0f));
-            const glm::dvec3 m = c.middle;
+            const QuadView seen = view_quad(quad(size * c.center, size * c.a, size * c.b), glm::vec3(0.0f));
+            const glm::dvec3 m = c.center;
             const double exact = solid_angle(m.x - c.a, m.x + c.a, m.y - c.b, m.y + c.b, m.z);
             // Four angles of up to pi / 2 with 3 ulp (2^-23) each, after 6 roundings of their arguments,
             // which count at most half; a place of 1 that is off by 2^-24 turns a corner at the height z by
@@ -66,22 +66,22 @@ TEST(QuadLights, SolidAnglesAreThoseOfDoubles) {
     EXPECT_EQ(view_quad(quad({0, 0, 30}, 1, 1), glm::vec3(0.0f)).solid_angle, 0.0f) << "far";
 }
 
-// As many samples in each of 12 x 12 parts as its share of the solid angle, and none beside.
-TEST(QuadLights, AreDrawnEvenlyOverTheSolidAngle) {
+// As many samples in each of 12 x 12 parts as its fraction of the solid angle, and none outside.
+TEST(QuadLights, SamplesAreUniformOverTheSolidAngle) {
     constexpr int Parts = 12, Count = 200'000;
     for (const Case& c : Cases) {
         SCOPED_TRACE(c.name);
-        const LightSource light = quad(c.middle, c.a, c.b);
+        const LightSource light = quad(c.center, c.a, c.b);
         const QuadView seen = view_quad(light, glm::vec3(0.0f));
         ASSERT_GT(seen.solid_angle, 0.0f);
-        const auto across = [&](int i) { return c.middle.x - c.a + 2.0 * c.a * i / Parts; };
-        const auto along = [&](int j) { return c.middle.y - c.b + 2.0 * c.b * j / Parts; };
+        const auto across = [&](int i) { return c.center.x - c.a + 2.0 * c.a * i / Parts; };
+        const auto along = [&](int j) { return c.center.y - c.b + 2.0 * c.b * j / Parts; };
         std::vector<double> observed(Parts * Parts), expected(Parts * Parts);
         double all = 0.0;
         for (int i = 0; i < Parts; ++i) {
             for (int j = 0; j < Parts; ++j) {
                 double& part = expected[std::size_t(i * Parts + j)];
-                part = solid_angle(across(i), across(i + 1), along(j), along(j + 1), c.middle.z);
+                part = solid_angle(across(i), across(i + 1), along(j), along(j + 1), c.center.z);
                 all += part;
             }
         }
@@ -101,10 +101,10 @@ TEST(QuadLights, AreDrawnEvenlyOverTheSolidAngle) {
 }
 
 // Irradiance of the ground below: both estimates have Lambert's mean. By area the nearest part of a close
-// light is seldom found and counts the more.
-TEST(QuadLights, AreWorthItWhereTheyAreNear) {
+// light is rarely sampled, with a large weight.
+TEST(QuadLights, SolidAngleSamplingReducesVarianceNearby) {
     for (const Case& c : Cases) {
-        const LightSource light = quad(c.middle, c.a, c.b);
+        const LightSource light = quad(c.center, c.a, c.b);
         const QuadView seen = view_quad(light, glm::vec3(0.0f));
         QuadView flat = seen;
         flat.solid_angle = 0.0f;
@@ -117,8 +117,8 @@ TEST(QuadLights, AreWorthItWhereTheyAreNear) {
                 const glm::vec2 u(float(random.uniform()) * 0.99999994f,
                                   float(random.uniform()) * 0.99999994f);
                 const glm::vec2 place = sample_quad(view, light.half_size, u);
-                const glm::vec3 way = light.position + place.x * light.edge_u + place.y * light.edge_v;
-                const float distance = glm::length(way), cosine = way.z / distance;
+                const glm::vec3 to_point = light.position + place.x * light.edge_u + place.y * light.edge_v;
+                const float distance = glm::length(to_point), cosine = to_point.z / distance;
                 const double value =
                     double(cosine) / double(quad_pdf(view, inverse_root_area, distance, cosine));
                 sum += value;
@@ -148,18 +148,18 @@ TEST(QuadLights, AreWorthItWhereTheyAreNear) {
     }
 }
 
-// Close above the ground, by all ways to find it: their weights sum to 1.
-TEST(QuadLights, CloseOnesAgreeByAllStrategies) {
+// Close above the ground, by all strategies: their MIS weights sum to 1.
+TEST(QuadLights, StrategiesAgreeForCloseLights) {
     Model model;
     add_ground(model);
-    const glm::dvec3 middle(0.3, 0.1, 0.15);
+    const glm::dvec3 center(0.3, 0.1, 0.15);
     model.light({.kind = scene::LightKind::Quad, .intensity = glm::vec3(1.0f), .size = {1.0f, 0.6f}},
-                glm::translate(glm::dmat4(1.0), middle));
-    const World& world = model.build();
+                glm::translate(glm::dmat4(1.0), center));
+    const SceneAdapter& world = model.build();
     const double radiance = 1.0 / 0.6;
     std::array<glm::vec3, 4> c;
     for (std::size_t i = 0; i < 4; ++i) {
-        c[i] = glm::vec3(middle + glm::dvec3(i == 1 || i == 2 ? 0.5 : -0.5, i < 2 ? 0.3 : -0.3, 0.0));
+        c[i] = glm::vec3(center + glm::dvec3(i == 1 || i == 2 ? 0.5 : -0.5, i < 2 ? 0.3 : -0.3, 0.0));
     }
     const double expected =
         GroundAlbedo / M_PI *

@@ -102,8 +102,8 @@ TEST(Sampling, EnvironmentMap) {
                                            .height = Height,
                                            .format = scene::TexelFormat::RgbFloat,
                                            .texels = scene::reference(*blob)}}}));
-    backend::TexturePyramids pyramids;
-    const auto tables = backend::make_tables(described, {}, backend::MeshCatalog(blobs), *blobs, pyramids);
+    backend::MipmapCache mipmaps;
+    const auto tables = backend::make_tables(described, {}, backend::MeshCatalog(blobs), *blobs, mipmaps);
     const Scene sky = backend::on_host(tables);
     expect_directions([&](CounterRandom& r) { return sample_sky(sky, uniform_pair(r)); },
                       [&](const glm::vec3& w) { return double(sky_at(sky, w).pdf); });
@@ -114,16 +114,17 @@ class SurfaceModel : public testing::TestWithParam<std::tuple<float, float, floa
     float roughness = std::get<0>(GetParam()), metallic = std::get<1>(GetParam()),
           cosine = std::get<2>(GetParam());
     glm::vec3 out{std::sqrt(1.0f - cosine * cosine), 0.0f, cosine};
-    shading::Look look = shading::plain_look(glm::vec3(1.0f), metallic, roughness, 0.0f, 1.5f, 1.5f);
+    shading::MaterialSample material_sample =
+        shading::default_material_sample(glm::vec3(1.0f), metallic, roughness, 0.0f, 1.5f, 1.5f);
     shading::FloatArray table = test::energy_table();
-    Bsdf bsdf = test::make_bsdf(look, {metallic, 1.0f - metallic}, out);
+    Bsdf bsdf = test::make_bsdf(material_sample, {metallic, 1.0f - metallic}, out);
 };
 
 // Lobes that are wide against the cells.
 class WideSurfaceModel : public SurfaceModel {};
 
-TEST_P(WideSurfaceModel, DrawsWhatItsDensitySays) {
-    // Directions below the surface are drawn and give nothing: they are a cell of their own, by what is left
+TEST_P(WideSurfaceModel, SamplesFollowTheDensity) {
+    // Directions below the surface are sampled with zero weight: they are a separate cell, by what is left
     // of 1.
     CounterRandom random(8);
     std::vector<double> observed(Rows * Columns + 1);
@@ -145,7 +146,7 @@ TEST_P(WideSurfaceModel, DrawsWhatItsDensitySays) {
 }
 
 // White furnace: a white surface under light 1 from everywhere never gives back more than 1.
-TEST_P(SurfaceModel, NeverReflectsMoreThanComesIn) {
+TEST_P(SurfaceModel, ConservesEnergy) {
     CounterRandom random(9);
     double sum = 0.0, squares = 0.0;
     for (int i = 0; i < Samples; ++i) {
@@ -169,7 +170,7 @@ TEST_P(SurfaceModel, IsReciprocal) {
     for (int i = 0; i < 1000; ++i) {
         const glm::vec3 in = sample_cosine_hemisphere(uniform_pair(random));
         if (!(in.z > 1e-3f)) continue;
-        const Bsdf back = test::make_bsdf(look, {metallic, 1.0f - metallic}, in);
+        const Bsdf back = test::make_bsdf(material_sample, {metallic, 1.0f - metallic}, in);
         const double there = evaluate_bsdf(table, bsdf, out, in).value.x / in.z;
         const double again = evaluate_bsdf(table, back, in, out).value.x / out.z;
         EXPECT_NEAR(there, again, 1e-4 * std::max(there, again) + 1e-6);

@@ -23,9 +23,9 @@ class SceneModel {
 
     ObjectId material(const scene::Material& material) { return create(material); }
     ObjectId shader(const scene::SurfaceShader& shader) { return create(shader); }
-    // What boxes and spheres are filled with that are put in from now on.
-    void filled_with(const scene::Medium& medium) { medium_ = create(medium); }
-    void filled_with_nothing() { medium_ = ObjectId{}; }
+    // The interior medium of boxes and spheres added from now on.
+    void set_medium(const scene::Medium& medium) { medium_ = create(medium); }
+    void clear_medium() { medium_ = ObjectId{}; }
 
     void sphere(ObjectId material, const glm::dvec3& center, double radius, Normals normals = Normals::Flat,
                 unsigned rings = 24) {
@@ -34,7 +34,7 @@ class SceneModel {
         std::vector<std::uint32_t> indices;
         for (unsigned ring = 0; ring <= rings; ++ring) {
             for (unsigned sector = 0; sector <= sectors; ++sector) {
-                // The seam's points are the same ones, so that the body is closed.
+                // Vertices are shared at the seam, so that the mesh is closed.
                 const double theta = M_PI * ring / rings, phi = 2.0 * M_PI * (sector % sectors) / sectors;
                 const double sine = ring % rings == 0 ? 0.0 : std::sin(theta);
                 positions.emplace_back(sine * std::cos(phi), std::cos(theta), sine * std::sin(phi));
@@ -132,11 +132,11 @@ class SceneModel {
     }
     void light(const scene::Light& source, const glm::dmat4& place) { hang(create(source), place); }
 
-    // How what is put in from now on moves while the shutter is open: its places at even steps after the
+    // The motion of everything added from now on while the shutter is open: transforms at even motion keys after the
     // first, each seen from the first.
     void moves(const std::vector<glm::dmat4>& steps) { steps_ = steps; }
     // As quad, but its corners move.
-    void bending_quad(ObjectId material, const std::vector<std::array<glm::vec3, 4>>& corners) {
+    void deforming_quad(ObjectId material, const std::vector<std::array<glm::vec3, 4>>& corners) {
         const std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 3};
         scene::Geometry geometry{.material = material, .indices = blob(indices)};
         for (const std::array<glm::vec3, 4>& step : corners) {
@@ -150,9 +150,9 @@ class SceneModel {
         hang(create(geometry), glm::dmat4(1.0));
     }
 
-    // Where what is put in from now on has its origin, and how large it is.
+    // Origin and scale of everything added from now on.
     void placed_at(const glm::dvec3& origin) { frame_ = glm::translate(glm::dmat4(1.0), origin); }
-    void framed_by(const glm::dmat4& frame) { frame_ = frame; }
+    void set_frame(const glm::dmat4& frame) { frame_ = frame; }
     void scaled_by(double size) { frame_ = glm::scale(glm::dmat4(1.0), glm::dvec3(size)); }
 
     // Once.

@@ -1,5 +1,5 @@
-// The lobes of CommonSurfaceShader: closed forms of Blinn's facets, what is sampled is what the density says,
-// no energy is made, and light goes both ways alike.
+// The lobes of CommonSurfaceShader: closed forms of Blinn's facets, samples that follow the density, conservation
+// of energy, and reciprocity.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,8 +27,8 @@ glm::vec3 shader_towards(float cosine, float azimuth = 0.7f) {
 
 const PerfectPart NothingPerfect{vec3(0.0f), vec3(0.0f), vec3(1.0f), 1.0f};
 
-ShaderLobes glossy(glm::vec2 exponents, float cosine, const PerfectPart& perfect = NothingPerfect,
-                   float diffuse = 0.0f) {
+SurfaceShaderLobes glossy(glm::vec2 exponents, float cosine, const PerfectPart& perfect = NothingPerfect,
+                          float diffuse = 0.0f) {
     return make_shader_lobes(vec3(diffuse), vec3(1.0f - diffuse), exponents, perfect, cosine);
 }
 
@@ -51,10 +51,10 @@ TEST(BlinnFacets, CoverTheSurfaceFromEverySide) {
                     const glm::vec3 h(float(sine * std::cos(phi)), float(sine * std::sin(phi)),
                                       float(std::sqrt(1.0 - sine2)));
                     // cos dw = 1/2 d(sine^2) d(phi)
-                    const double share =
+                    const double weight =
                         double(blinn_distribution(h, e)) * 0.5 * 2.0 * widest * t / rings * Pi2 / sectors;
-                    projected += share;
-                    seen += share / double(h.z) * double(cavity_share(out, h)) *
+                    projected += weight;
+                    seen += weight / double(h.z) * double(cavity_visibility(out, h)) *
                             std::max(0.0, double(glm::dot(out, h)));
                 }
             }
@@ -79,13 +79,13 @@ TEST(BlinnFacets, KeepTheirShapeAtHighExponents) {
     }
 }
 
-TEST(ShaderLobes, DrawWhatTheirDensitySays) {
+TEST(SurfaceShaderLobes, SamplesFollowTheDensity) {
     const PerfectPart part{vec3(0.3f), vec3(0.2f), vec3(1.5f), 1.0f};
     for (const glm::vec2 e : {glm::vec2(0.0f), glm::vec2(30.0f), glm::vec2(50.0f, 3.0f)}) {
         for (const float cosine : {0.95f, 0.3f}) {
             for (const float diffuse : {0.0f, 0.5f}) {
                 const glm::vec3 out = shader_towards(cosine);
-                const ShaderLobes lobes = glossy(e, cosine, part, diffuse);
+                const SurfaceShaderLobes lobes = glossy(e, cosine, part, diffuse);
                 SCOPED_TRACE(testing::Message() << e.x << " " << e.y << " " << cosine << " " << diffuse);
                 test::expect_directions(
                     [&](CounterRandom& random) {
@@ -102,7 +102,7 @@ TEST(ShaderLobes, DrawWhatTheirDensitySays) {
 }
 
 // With what the perfect lobes take: over exponents x angle x index x blend.
-TEST(ShaderLobes, NeverGiveBackMoreThanComesIn) {
+TEST(SurfaceShaderLobes, ConserveEnergy) {
     double least = 1.0;
     for (const glm::vec2 e : Exponents) {
         for (const float cosine : {1.0f, 0.5f, 0.1f, 1e-3f}) {
@@ -110,8 +110,8 @@ TEST(ShaderLobes, NeverGiveBackMoreThanComesIn) {
                 for (const float blend : {0.0f, 0.5f, 1.0f}) {
                     const PerfectPart part{vec3(0.7f), vec3(1.0f), vec3(eta), blend};
                     const glm::vec3 out = shader_towards(cosine);
-                    const ShaderLobes lobes = glossy(e, cosine, part, 0.3f);
-                    const PerfectShares shares = perfect_shares(part, cosine);
+                    const SurfaceShaderLobes lobes = glossy(e, cosine, part, 0.3f);
+                    const PerfectFractions shares = perfect_fractions(part, cosine);
                     const double perfect = double(shares.reflected.y + shares.refracted.y);
                     CounterRandom random(11);
                     double sum = 0.0, squares = 0.0;
@@ -142,11 +142,11 @@ TEST(ShaderLobes, NeverGiveBackMoreThanComesIn) {
 }
 
 // Without perfect lobes a narrow glossy lobe reflects all.
-TEST(ShaderLobes, ASmoothGlossyLobeLosesNothing) {
+TEST(SurfaceShaderLobes, ASmoothGlossyLobeLosesNoEnergy) {
     CounterRandom random(12);
     for (const float cosine : {1.0f, 0.5f, 0.2f}) {
         const glm::vec3 out = shader_towards(cosine);
-        const ShaderLobes lobes = glossy(vec2(65536.0f), cosine);
+        const SurfaceShaderLobes lobes = glossy(vec2(65536.0f), cosine);
         double sum = 0.0;
         for (int i = 0; i < 20000; ++i) {
             const glm::vec3 in =
@@ -158,7 +158,7 @@ TEST(ShaderLobes, ASmoothGlossyLobeLosesNothing) {
     }
 }
 
-TEST(ShaderLobes, AreReciprocal) {
+TEST(SurfaceShaderLobes, AreReciprocal) {
     CounterRandom random(13);
     const PerfectPart part{vec3(0.4f), vec3(0.3f), vec3(1.4f), 0.8f};
     for (const glm::vec2 e : Exponents) {
@@ -177,22 +177,22 @@ TEST(ShaderLobes, AreReciprocal) {
 }
 
 // fresnelBlend weighs Fresnel's equations; total reflection is total; more than all is scaled to all.
-TEST(PerfectShares, FollowTheFields) {
+TEST(PerfectFractions, FollowTheFields) {
     const float f = fresnel_dielectric(0.5f, 1.5f);
     const PerfectPart full{vec3(0.5f), vec3(0.25f), vec3(1.5f), 1.0f};
-    EXPECT_NEAR(perfect_shares(full, 0.5f).reflected.x, 0.5f * f, 1e-6f);
-    EXPECT_NEAR(perfect_shares(full, 0.5f).refracted.x, 0.25f * (1.0f - f), 1e-6f);
+    EXPECT_NEAR(perfect_fractions(full, 0.5f).reflected.x, 0.5f * f, 1e-6f);
+    EXPECT_NEAR(perfect_fractions(full, 0.5f).refracted.x, 0.25f * (1.0f - f), 1e-6f);
     const PerfectPart none{vec3(0.5f), vec3(0.25f), vec3(1.5f), 0.0f};
-    EXPECT_NEAR(perfect_shares(none, 0.5f).reflected.x, 0.5f, 1e-6f);
-    EXPECT_NEAR(perfect_shares(none, 0.5f).refracted.x, 0.25f, 1e-6f);
+    EXPECT_NEAR(perfect_fractions(none, 0.5f).reflected.x, 0.5f, 1e-6f);
+    EXPECT_NEAR(perfect_fractions(none, 0.5f).refracted.x, 0.25f, 1e-6f);
     const PerfectPart both{vec3(1.0f), vec3(1.0f), vec3(1.5f), 0.0f};
-    EXPECT_NEAR(perfect_shares(both, 0.5f).reflected.x, 0.5f, 1e-6f);
+    EXPECT_NEAR(perfect_fractions(both, 0.5f).reflected.x, 0.5f, 1e-6f);
     // sin(60) > 1 / 1.5
     const PerfectPart inside{vec3(0.9f), vec3(1.0f), vec3(1.0f / 1.5f, 1.0f, 1.0f / 1.1f), 0.5f};
-    EXPECT_EQ(perfect_shares(inside, 0.5f).refracted.x, 0.0f);
-    EXPECT_NEAR(perfect_shares(inside, 0.5f).reflected.x, 0.9f, 1e-6f);
-    EXPECT_GT(perfect_shares(inside, 0.5f).refracted.y, 0.0f);
-    EXPECT_GT(perfect_shares(inside, 0.5f).refracted.z, 0.0f);
+    EXPECT_EQ(perfect_fractions(inside, 0.5f).refracted.x, 0.0f);
+    EXPECT_NEAR(perfect_fractions(inside, 0.5f).reflected.x, 0.9f, 1e-6f);
+    EXPECT_GT(perfect_fractions(inside, 0.5f).refracted.y, 0.0f);
+    EXPECT_GT(perfect_fractions(inside, 0.5f).refracted.z, 0.0f);
 }
 
 }  // namespace

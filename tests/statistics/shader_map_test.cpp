@@ -1,4 +1,4 @@
-// CommonSurfaceShader's textures of factors, the frames that its maps stand on, and its glass from inside.
+// CommonSurfaceShader: factor textures, tangent frames of its maps, and glass seen from inside.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -79,8 +79,8 @@ SurfaceShader mapped(Model& model, scene::NormalSpace space) {
     return shader;
 }
 
-// Without tangents of the mesh they lie along u, and green points against v; of a mirrored wall, whose
-// triangles turn the other way round, as well.
+// Without mesh tangents they are along u, and green points against v; of a mirrored wall, whose
+// triangles have the opposite winding, as well.
 TEST(ShaderFrames, FollowTextureCoordinatesWhereThereAreNoTangents) {
     const double red = 408 * Step - 1, green = 1 - 204 * Step;
     Model plain;
@@ -88,12 +88,12 @@ TEST(ShaderFrames, FollowTextureCoordinatesWhereThereAreNoTangents) {
                         Tangents::None);
     expect_normal(plain, {red, green, 1}, "plain");
     Model mirrored;
-    mirrored.framed_by(glm::scale(glm::dmat4(1.0), {-1.0, 1.0, 1.0}));
+    mirrored.set_frame(glm::scale(glm::dmat4(1.0), {-1.0, 1.0, 1.0}));
     mirrored.textured_quad(mirrored.shader(mapped(mirrored, scene::NormalSpace::Tangent)), MappedWall, 1.0f,
                            Tangents::None);
     expect_normal(mirrored, {-red, green, 1}, "mirrored");
     Model turned;
-    turned.framed_by(glm::scale(glm::dmat4(1.0), {-1.0, -1.0, 1.0}));
+    turned.set_frame(glm::scale(glm::dmat4(1.0), {-1.0, -1.0, 1.0}));
     turned.textured_quad(turned.shader(mapped(turned, scene::NormalSpace::Tangent)), MappedWall, 1.0f,
                          Tangents::None);
     expect_normal(turned, {-red, -green, 1}, "turned by half");
@@ -103,11 +103,11 @@ TEST(ShaderFrames, FollowTextureCoordinatesWhereThereAreNoTangents) {
 TEST(ShaderFrames, ObjectSpaceIsTheObjects) {
     const double x = 408 * Step - 1, y = 204 * Step - 1;
     Model turned;
-    turned.framed_by(glm::rotate(glm::dmat4(1.0), M_PI / 2, {0.0, 0.0, 1.0}));
+    turned.set_frame(glm::rotate(glm::dmat4(1.0), M_PI / 2, {0.0, 0.0, 1.0}));
     turned.textured_quad(turned.shader(mapped(turned, scene::NormalSpace::Object)), MappedWall, 1.0f);
     expect_normal(turned, {-y, x, 1}, "turned");
     Model stretched;
-    stretched.framed_by(glm::scale(glm::dmat4(1.0), {2.0, 1.0, 1.0}));
+    stretched.set_frame(glm::scale(glm::dmat4(1.0), {2.0, 1.0, 1.0}));
     stretched.textured_quad(stretched.shader(mapped(stretched, scene::NormalSpace::Object)), MappedWall,
                             1.0f);
     expect_normal(stretched, {0.5 * x, y, 1}, "stretched");

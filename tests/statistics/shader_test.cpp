@@ -40,7 +40,7 @@ TEST(ShaderFurnace, ClearGlassAndMirrorsAreInvisible) {
             glass.relative_index_of_refraction = index;
             model.sphere(model.shader(glass), {0, 0, 0}, 1.0, normals);
             model.sky(glm::vec3(1.0f));
-            const World& world = model.build();
+            const SceneAdapter& world = model.build();
             EXPECT_TRUE(model.problems.empty());
             for (int c = 0; c < 3; ++c) {
                 const Mean mean =
@@ -52,7 +52,7 @@ TEST(ShaderFurnace, ClearGlassAndMirrorsAreInvisible) {
     }
 }
 
-TEST(ShaderFurnace, NothingReflectsMoreThanComesIn) {
+TEST(ShaderFurnace, ConservesEnergy) {
     for (const float shininess : {0.0f, 0.1f, 4.0f}) {
         for (const float blend : {0.0f, 1.0f}) {
             Model model;
@@ -75,7 +75,7 @@ TEST(ShaderFurnace, NothingReflectsMoreThanComesIn) {
 // ---- fields ----
 
 // A diffuse wall in a white sky: kd; the glossy lobe adds ks where it is narrow.
-TEST(ShaderFields, DiffuseAndGlossyReflectWhatTheySay) {
+TEST(ShaderFields, DiffuseAndGlossyMatchTheirAlbedo) {
     for (const float ks : {0.0f, 0.3f}) {
         Model model;
         model.floor(
@@ -83,7 +83,7 @@ TEST(ShaderFields, DiffuseAndGlossyReflectWhatTheySay) {
                 {.diffuse = {0.5f, 0.25f, 0.125f}, .specular = glm::vec3(ks), .shininess = glm::vec2(64.0f)}),
             10.0f, 0.0f);
         model.sky(glm::vec3(1.0f));
-        const World& world = model.build();
+        const SceneAdapter& world = model.build();
         for (int c = 0; c < 3; ++c) {
             const Mean mean = mean_of(world, small_view({0, 0, 1}, 0.1), 64,
                                       [&](const PathSample& s) { return channel(s, c); });
@@ -93,7 +93,7 @@ TEST(ShaderFields, DiffuseAndGlossyReflectWhatTheySay) {
 }
 
 // kr (1 - b + b F) of the sky, and of the shader's own environment.
-TEST(ShaderFields, MirrorsSeeTheSkyAndTheirOwnEnvironment) {
+TEST(ShaderFields, MirrorsReflectTheSkyAndTheirOwnEnvironment) {
     for (const float blend : {0.0f, 0.25f, 1.0f}) {
         SurfaceShader mirror = black();
         mirror.reflection = {0.8f, 0.4f, 0.2f};
@@ -105,12 +105,12 @@ TEST(ShaderFields, MirrorsSeeTheSkyAndTheirOwnEnvironment) {
             {.width = 1, .height = 1, .format = scene::TexelFormat::RgbFloat}, {0.5f, 0.5f, 0.5f});
         model.floor(model.shader(mirror), 10.0f, 0.0f);
         model.sky(glm::vec3(0.25f));
-        const World& world = model.build();
-        const double f = 0.04, share = 1.0 - double(blend) * (1.0 - f);
+        const SceneAdapter& world = model.build();
+        const double f = 0.04, weight = 1.0 - double(blend) * (1.0 - f);
         view::View view = small_view({0, 0, 1}, 0.01);
         for (int c = 0; c < 3; ++c) {
             const double expected =
-                double(mirror.reflection[c]) * share * (0.25 + 0.5 * double(mirror.environment[c]));
+                double(mirror.reflection[c]) * weight * (0.25 + 0.5 * double(mirror.environment[c]));
             const Mean mean = mean_of(world, view, 64, [&](const PathSample& s) { return channel(s, c); });
             EXPECT_NEAR(mean.value, expected, 4.5 * mean.standard_error + 1e-4) << blend << " " << c;
         }
@@ -222,8 +222,8 @@ TEST(ShaderNormals, ComeFromTheMapInItsFormatSpaceScaleAndBias) {
     }
 }
 
-// The bitangent may have a set of its own, not at right angles to the tangent's.
-TEST(ShaderNormals, BothAxesMayComeFromSets) {
+// The bitangent can have a separate set, not perpendicular to the tangent's.
+TEST(ShaderNormals, BothAxesCanComeFromTexCoordSets) {
     Model model;
     SurfaceShader shader;
     shader.normal_texture = model.texture<std::uint8_t>({.width = 1, .height = 1}, {255, 204, 255, 255});
@@ -234,7 +234,7 @@ TEST(ShaderNormals, BothAxesMayComeFromSets) {
 }
 
 // A ramp of heights tilts the normal by its slope, whatever the scale of the world and of the texture.
-TEST(ShaderNormals, LeanAgainstHeights) {
+TEST(ShaderNormals, FollowHeightMaps) {
     std::vector<float> ramp;
     for (int y = 0; y < 4; ++y) {
         for (int x = 0; x < 8; ++x) ramp.insert(ramp.end(), 3, 0.1f * float(x) + 0.3f * float(y));
@@ -252,7 +252,7 @@ TEST(ShaderNormals, LeanAgainstHeights) {
                                                           .wrap_t = scene::Wrap::Clamp},
                                                          ramp);
             model.textured_quad(model.shader(shader), Wall, repeats);
-            const World& world = model.build();
+            const SceneAdapter& world = model.build();
             view::View view = small_view(glm::dvec3(0.1, 0.1, 1) * size, 0.001, 2);
             glm::dvec3 sum(0.0);
             for_samples(world, view, 1, [&](const PathSample& s) { sum += 0.25 * glm::dvec3(s.normal); });

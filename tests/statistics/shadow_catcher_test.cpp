@@ -34,7 +34,7 @@ view::View picture(view::Renderer renderer) {
     return view;
 }
 
-TEST(ShadowCatcher, IsTheBackgroundWhereNothingIs) {
+TEST(ShadowCatcher, ShowsTheBackgroundWithoutOccluders) {
     for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted}) {
         for (const float mask : {0.0f, 0.5f, 1.0f}) {
             Ground colored(mask), lit(mask, scene::VisibleBackground::Environment);
@@ -49,37 +49,38 @@ TEST(ShadowCatcher, IsTheBackgroundWhereNothingIs) {
     }
 }
 
-// A black panel above the origin takes its share of all directions, within the mask.
-TEST(ShadowCatcher, IsDarkerWhereThingsHideTheSky) {
+// A black panel above the origin occludes its fraction of all directions, within the mask.
+TEST(ShadowCatcher, IsDarkerWhereObjectsOccludeTheSky) {
     Panel panel{{{{-0.4f, -0.3f, 0.5f}, {-0.3f, 0.5f, 0.5f}, {0.5f, -0.2f, 0.5f}}}};
     const double hidden = irradiance_of(panel) / M_PI;
     ASSERT_GT(hidden, 0.1);
     for (const float mask : {0.0f, 0.3f, 1.0f}) {
         Ground ground(mask);
         ground.triangles(ground.material(chalk(glm::vec3(0.0f))), {panel.corners});
-        const World& world = ground.build();
+        const SceneAdapter& world = ground.build();
         view::View view = small_view({0.0, 0.0, 0.3}, 1e-3);
         const Mean light = mean_of(world, view, 256, red);
-        const double plain = double(Shown.x) * double(Shown.w), share = double(mask) * hidden;
-        EXPECT_NEAR(light.value, plain * (1.0 - share), 4.0 * light.standard_error + 1e-6);
+        const double plain = double(Shown.x) * double(Shown.w), fraction = double(mask) * hidden;
+        EXPECT_NEAR(light.value, plain * (1.0 - fraction), 4.0 * light.standard_error + 1e-6);
         const Mean alpha = mean_of(world, view, 256, [](const PathSample& s) { return double(s.alpha); });
-        EXPECT_NEAR(alpha.value, double(Shown.w) * (1.0 - share) + share, 4.0 * alpha.standard_error + 1e-6);
+        EXPECT_NEAR(alpha.value, double(Shown.w) * (1.0 - fraction) + fraction,
+                    4.0 * alpha.standard_error + 1e-6);
         EXPECT_EQ(light.standard_error > 1e-5, mask > 0.0f);
     }
 }
 
-TEST(ShadowCatcher, ShowsTheColourOfWhatHidesTheSky) {
+TEST(ShadowCatcher, ReflectsTheColourOfOccluders) {
     Panel panel{{{{-0.4f, -0.3f, 0.5f}, {-0.3f, 0.5f, 0.5f}, {0.5f, -0.2f, 0.5f}}}, 4.0};
     Ground ground(1.0f);
     ground.triangles(ground.material(lamp(4.0f)), {panel.corners});
-    const World& world = ground.build();
+    const SceneAdapter& world = ground.build();
     const double hidden = irradiance_of(panel) / (M_PI * panel.radiance);
     const Mean light = mean_of(world, small_view({0.0, 0.0, 0.3}, 1e-3), 256, red);
     EXPECT_NEAR(light.value, double(Shown.x) * double(Shown.w) * (1.0 - hidden) + 4.0 * hidden,
                 4.0 * light.standard_error);
 }
 
-TEST(ShadowCatcher, IsNotThereInMirrors) {
+TEST(ShadowCatcher, IsInvisibleInMirrors) {
     for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted}) {
         Ground ground(1.0f);
         ground.floor(ground.material(mirror(glm::vec3(1.0f))), -1.0f, 1.0f);
@@ -91,9 +92,8 @@ TEST(ShadowCatcher, IsNotThereInMirrors) {
     }
 }
 
-// The underside of a thing sees the ground in the background's colour; light of the sky from below does not
-// pass.
-TEST(ShadowCatcher, ShinesOnThingsAsTheBackground) {
+// The underside of an object sees the ground in the background's colour; light of the sky from below is blocked.
+TEST(ShadowCatcher, LightsObjectsLikeTheBackground) {
     for (const float mask : {0.0f, 1.0f}) {
         Model model;
         model.floor(model.material(catcher(mask)), 1000.0f, 0.0f);
@@ -108,9 +108,9 @@ TEST(ShadowCatcher, ShinesOnThingsAsTheBackground) {
     }
 }
 
-// Before a transparent background nothing is left but the shadow: no light, no object, and of alpha what
-// hides the sky.
-TEST(ShadowCatcher, IsTransparentBeforeATransparentBackground) {
+// With a transparent background only the shadow remains: no light, no object, and the occluded fraction of the sky
+// as alpha.
+TEST(ShadowCatcher, IsTransparentWithATransparentBackground) {
     Ground ground(1.0f, scene::VisibleBackground::Environment);
     view::View view = picture(view::Renderer::PathTracing);
     view.transparent_background = true;
@@ -121,7 +121,7 @@ TEST(ShadowCatcher, IsTransparentBeforeATransparentBackground) {
     });
 }
 
-// Half of E3, twice: the share of an even sky's light on a plane that a slab of an optical depth lets
+// Half of E3, twice: the fraction of an even sky's light on a plane that a slab of an optical depth lets
 // through.
 double light_through_slab(double depth) {
     constexpr int Steps = 20000;
@@ -134,16 +134,16 @@ double light_through_slab(double depth) {
 }
 
 // A layer of fog dims the background behind the catcher as it would dim a ground there, and casts its own
-// shadow; what it takes away is covered.
-TEST(ShadowCatcher, IsDimmedByFogBeforeIt) {
+// shadow; what it absorbs counts as coverage.
+TEST(ShadowCatcher, IsAttenuatedByFogInFront) {
     for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted}) {
         for (const float depth : {0.0f, 0.3f, 1.0f}) {
             Model model;
             model.floor(model.material(catcher(1.0f)), 1e4f, 0.0f);
-            model.filled_with({.absorption = glm::vec3(depth)});
+            model.set_medium({.absorption = glm::vec3(depth)});
             model.box(ObjectId{}, {-1e4f, -1e4f, 0.5f}, {1e4f, 1e4f, 1.5f});
             model.sky(background(scene::VisibleBackground::Color));
-            const World& world = model.build();
+            const SceneAdapter& world = model.build();
             view::View view = small_view({0.0, 0.0, 3.0}, 1e-3);
             view.renderer = renderer;
             const double passed = std::exp(-double(depth)) * light_through_slab(double(depth));
@@ -159,11 +159,11 @@ TEST(ShadowCatcher, IsDimmedByFogBeforeIt) {
     }
 }
 
-// Beside the eye alone, where it casts no shadow on what is seen: and fog below the ground is not there.
-TEST(ShadowCatcher, IsDimmedByFogAroundTheEyeAlone) {
+// Fog around the eye only, where it casts no shadow on visible points; fog below the ground is ignored.
+TEST(ShadowCatcher, IsAttenuatedByFogAroundTheEyeOnly) {
     Model model;
     model.floor(model.material(catcher(1.0f)), 1e4f, 0.0f);
-    model.filled_with({.absorption = glm::vec3(0.5f)});
+    model.set_medium({.absorption = glm::vec3(0.5f)});
     model.box(ObjectId{}, {-1e-3f, -1e-3f, 2.0f}, {1e-3f, 1e-3f, 4.0f});
     model.box(ObjectId{}, {-1e3f, -1e3f, -2.0f}, {1e3f, 1e3f, -1.0f});
     model.sky(background(scene::VisibleBackground::Color));
@@ -171,11 +171,11 @@ TEST(ShadowCatcher, IsDimmedByFogAroundTheEyeAlone) {
     EXPECT_NEAR(light.value, std::exp(-0.5) * double(Shown.x) * double(Shown.w), 1e-5);
 }
 
-// Fog that only scatters, in a world that shines alike from everywhere: neither of both is seen.
-TEST(ShadowCatcher, IsInvisibleInAFurnaceOfFog) {
+// Purely scattering fog in uniform radiance: neither the fog nor the catcher is visible.
+TEST(ShadowCatcher, IsInvisibleInAFogFurnace) {
     Model model;
     model.floor(model.material(catcher(1.0f)), 1e3f, 0.0f);
-    model.filled_with({.scattering = glm::vec3(0.7f), .anisotropy = 0.3f});
+    model.set_medium({.scattering = glm::vec3(0.7f), .anisotropy = 0.3f});
     model.box(ObjectId{}, {-1, -1, 0.2f}, {1, 1, 1.2f});
     model.sky(glm::vec3(1.0f));
     const Mean light = mean_of(model.build(), small_view({0.0, 0.0, 3.0}, 0.5), 64, red);
@@ -183,8 +183,8 @@ TEST(ShadowCatcher, IsInvisibleInAFurnaceOfFog) {
     EXPECT_LE(light.standard_error, 0.003);
 }
 
-// Lights that are no geometry hide nothing of the sky, and their shadows are not caught: neither are they.
-TEST(ShadowCatcher, CatchesNoLightsThatAreNoGeometry) {
+// Lights without geometry do not occlude the sky, and neither they nor their shadows appear on the catcher.
+TEST(ShadowCatcher, IgnoresLightsWithoutGeometry) {
     Ground ground(1.0f);
     ground.light({.kind = scene::LightKind::Sphere, .intensity = glm::vec3(3.0f), .radius = 0.5f},
                  glm::translate(glm::dmat4(1.0), {0.0, 0.0, 1.0}));
@@ -192,16 +192,16 @@ TEST(ShadowCatcher, CatchesNoLightsThatAreNoGeometry) {
                 [](const PathSample& sample) { ASSERT_EQ(radiance_of(sample), glm::vec3(Shown) * Shown.w); });
 }
 
-// A plate that hides all of the sky is lit by the ground below it, which shines like the background: what is
-// caught is that light once reflected, and it is indirect.
-TEST(ShadowCatcher, CatchesWhatAPlateReflects) {
+// A plate that occludes the whole sky is lit by the ground below it, which emits like the background: the catcher
+// receives that light reflected once, as indirect light.
+TEST(ShadowCatcher, CatchesReflectedLightOfAPlate) {
     Model model;
     model.floor(model.material(catcher(1.0f)), 1000.0f, 0.0f);
     model.floor(model.material(chalk(glm::vec3(0.5f))), -1000.0f, 0.1f);
     model.sky(background(scene::VisibleBackground::Color));
     view::View view = small_view({0.0, 0.0, 0.05}, 1e-3);
     view.path_class = view::PathClass::Indirect;
-    const World& world = model.build();
+    const SceneAdapter& world = model.build();
     const Mean light = mean_of(world, view, 256, red);
     EXPECT_NEAR(light.value, 0.5 * double(Shown.x), 4.5 * light.standard_error + 1e-3);
     const Mean indirect = mean_of(world, view, 256, [](const PathSample& s) { return double(s.high.x); });

@@ -1,10 +1,9 @@
 // Perfect mirrors and smooth glass against closed forms.
-#include "mediator/shading/specular.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "mediator/shading/perfect_specular.h"
 #include "tests/statistics/lobes.h"
 #include "tests/statistics/model.h"
 
@@ -59,15 +58,15 @@ TEST(Fresnel, TotalReflectionFromTheCriticalAngleOn) {
     EXPECT_NEAR(fresnel_dielectric(0.0f, 1.5f), 1.0f, 1e-6) << "grazing";
 }
 
-// The same share is reflected along the same way from the other side.
-TEST(Fresnel, IsReciprocalAndLosesNothing) {
+// Reflectance is the same along the reverse path.
+TEST(Fresnel, IsReciprocalAndConservesEnergy) {
     for (const float n : {1.01f, 1.33f, 1.5f, 2.4f}) {
         for (double angle = 0.0; angle < 1.57; angle += 0.01) {
             const glm::vec3 out = at_angle(angle);
             const Specular specular = clear_glass(n, out);
             EXPECT_NEAR(specular.reflection.x + specular.refraction.x, 1.0f, 1e-6f);
             EXPECT_NEAR(glm::length(specular.refracted), 1.0f, 1e-6f);
-            // The way back takes a root of a small difference: near grazing its rounding counts the more.
+            // The reverse direction takes a root of a small difference: near grazing its rounding counts the more.
             const float rounding = 4e-6f / out.z;
             EXPECT_NEAR(fresnel_dielectric(-specular.refracted.z, 1.0f / n), specular.reflection.x, rounding)
                 << n << " " << angle;
@@ -88,7 +87,7 @@ TEST(Refraction, FollowsSnellsLaw) {
 }
 
 // Through a slab of thickness t light comes down at (h - t) tan(i) + (2 k + 1) t tan(r) after k double
-// reflections inside, which carry (1 - F)^2 F^(2 k): the mean follows. The floor's colour tells the place.
+// reflections inside, which carry (1 - F)^2 F^(2 k): the mean follows. The floor's colour encodes the position.
 TEST(Refraction, ASlabShiftsThePictureBehindIt) {
     for (const double n : {1.0, 1.33, 1.5, 2.4}) {
         Model model;
@@ -97,7 +96,7 @@ TEST(Refraction, ASlabShiftsThePictureBehindIt) {
         model.floor(slab, -50.0f, 0.5f);  // its back, seen from inside
         const ObjectId ruler = model.material({.base_color = {1, 1, 1, 1}, .unlit = true});
         model.floor(ruler, 10.0f, 0.0f, {{0, 1, 0, 1}, {1, 1, 0, 1}, {1, 1, 0, 1}, {0, 1, 0, 1}});
-        World& world = model.build();
+        SceneAdapter& world = model.build();
         constexpr double Angle = 0.7;
         const view::View view =
             small_view({0.0, 0.0, 3.0}, 1e-4, 8, glm::rotate(glm::dmat4(1.0), -Angle, {0.0, 1.0, 0.0}));
@@ -115,7 +114,7 @@ TEST(Refraction, ASlabShiftsThePictureBehindIt) {
     }
 }
 
-// Before a sky of 1 a body of clear glass cannot be seen.
+// In front of a sky of 1, clear glass is invisible.
 class GlassFurnace : public testing::TestWithParam<std::tuple<float, Normals>> {};
 
 TEST_P(GlassFurnace, AGlassSphereVanishes) {
@@ -123,7 +122,7 @@ TEST_P(GlassFurnace, AGlassSphereVanishes) {
     Model model;
     model.sphere(model.material(glass(index)), {0.0, 0.0, -3.0}, 1.0, normals);
     model.sky(glm::vec3(1.0f));
-    World& world = model.build();
+    SceneAdapter& world = model.build();
     std::uint64_t hits = 0, trapped = 0;
     const Mean mean = mean_of(world, small_view({}, 0.8, 32), 16, [&](const PathSample& sample) {
         hits += sample.object != 0 ? 1 : 0;
@@ -155,7 +154,7 @@ TEST(Mirror, ShowsASkyInItsOwnColour) {
     const glm::vec3 color(0.9f, 0.5f, 0.1f);
     model.floor(model.material(mirror(color)), 10.0f, 0.0f);
     model.sky(glm::vec3(2.0f));
-    World& world = model.build();
+    SceneAdapter& world = model.build();
     for (const double angle : {0.0, 1.0, 1.5}) {
         const double distance = 1.0;
         const glm::dvec3 eye(-distance * std::sin(angle), 0.0, distance * std::cos(angle));
@@ -172,13 +171,13 @@ TEST(Mirror, ShowsASkyInItsOwnColour) {
     }
 }
 
-// Materials between two kinds: light is the shares' sum, whatever lobe a path chooses.
+// Blends of two materials: the radiance is the weighted sum, whatever lobe a path samples.
 double seen_light(const scene::Material& material, double& error) {
     Model model;
     model.floor(model.material(material), 10.0f, 0.0f);
     model.sky({1.0f, 0.0f, 0.0f});
     model.quad(model.material(lamp(5.0f)), {{{4, -2, 0.3f}, {4, 2, 0.3f}, {4, 2, 3}, {4, -2, 3}}});
-    World& world = model.build();
+    SceneAdapter& world = model.build();
     const view::View view =
         small_view({-1.0, 0.0, 0.6}, 0.2, 8, glm::rotate(glm::dmat4(1.0), -1.3, {0.0, 1.0, 0.0}));
     const Mean mean = mean_of(world, view, 512, red);
@@ -186,7 +185,7 @@ double seen_light(const scene::Material& material, double& error) {
     return mean.value;
 }
 
-TEST(Mixtures, AreTheSumOfTheirParts) {
+TEST(Mixtures, AreTheWeightedSumOfTheirParts) {
     const glm::vec4 color(0.8f, 0.6f, 0.3f, 1.0f);
     const auto metal_glass = [&](float metallic, float transmission) {
         return scene::Material{.base_color = color,
@@ -207,11 +206,11 @@ TEST(Mixtures, AreTheSumOfTheirParts) {
     EXPECT_NEAR(half_clear, 0.5 * (opaque + clear), 4.0 * error);
     EXPECT_NEAR(half_metal, 0.5 * (opaque + metal), 4.0 * error);
     EXPECT_NEAR(all, 0.5 * metal + 0.25 * (opaque + clear), 4.0 * error);
-    EXPECT_GT(std::fabs(clear - opaque), 8.0 * error) << "the kinds differ enough to tell";
+    EXPECT_GT(std::fabs(clear - opaque), 8.0 * error) << "the materials differ significantly";
 }
 
 // A floor before a white mirror sees the sky in all directions, half of it mirrored: light that comes from a
-// scattering by way of a mirror counts in full.
+// scattering via a mirror counts in full.
 TEST(Mirror, PassesOnAllLightToADiffuseFloor) {
     Model model;
     model.floor(model.material(chalk(glm::vec3(0.6f))), 100.0f, 0.0f);
@@ -223,12 +222,12 @@ TEST(Mirror, PassesOnAllLightToADiffuseFloor) {
     EXPECT_NEAR(mean.value, 0.6, 4.0 * mean.standard_error);
 }
 
-// A path that cannot get out of a body of lossless mirrors ends nevertheless, and finds no light there.
-TEST(Mirror, AClosedBodyOfMirrorsEnds) {
+// A path that cannot leave a closed lossless mirror terminates nevertheless, without light.
+TEST(Mirror, PathsInAClosedMirrorTerminate) {
     Model model;
     model.sphere(model.material(mirror(glm::vec3(1.0f))), {}, 1.0);
     model.sky(glm::vec3(1.0f));
-    World& world = model.build();
+    SceneAdapter& world = model.build();
     for_samples(world, small_view({}, 1.0, 4), 1,
                 [&](const PathSample& sample) { EXPECT_EQ(radiance_of(sample), glm::vec3(0.0f)); });
 }

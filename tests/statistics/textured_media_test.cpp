@@ -1,5 +1,5 @@
-// Textured media: extinction along rays against sums in double precision, furnaces, and the ends of what textures
-// may hold.
+// Textured media: extinction along rays against sums in double precision, furnaces, and extreme texel
+// values.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,12 +30,12 @@ struct Lattice {
     // At a point of the box, [0, 1] along each axis.
     double filtered(const glm::dvec3& p) const {
         const glm::dvec3 place(p.x * width - 0.5, (1.0 - p.y) * height - 0.5, p.z * depth - 0.5);
-        const glm::dvec3 first = glm::floor(place), share = place - first;
+        const glm::dvec3 first = glm::floor(place), fraction = place - first;
         double sum = 0.0;
         for (int i = 0; i < 8; ++i) {
-            const double weight = ((i & 1) != 0 ? share.x : 1 - share.x) *
-                                  ((i & 2) != 0 ? share.y : 1 - share.y) *
-                                  ((i & 4) != 0 ? share.z : 1 - share.z);
+            const double weight = ((i & 1) != 0 ? fraction.x : 1 - fraction.x) *
+                                  ((i & 2) != 0 ? fraction.y : 1 - fraction.y) *
+                                  ((i & 4) != 0 ? fraction.z : 1 - fraction.z);
             sum += weight * at(std::int64_t(first.x) + (i & 1), std::int64_t(first.y) + ((i >> 1) & 1),
                                std::int64_t(first.z) + (i >> 2));
         }
@@ -67,7 +67,7 @@ scene::TextureSlot add_texture(Model& model, const Lattice& lattice, scene::Text
                          texels);
 }
 
-// A box of size 2 x 4 x 6 whose middle is the origin, turned.
+// A box of size 2 x 4 x 6 centered at the origin, turned.
 const glm::dmat4 Turned = glm::rotate(glm::dmat4(1.0), 0.7, glm::normalize(glm::dvec3(1, 2, 3)));
 constexpr vec3 Half{1, 2, 3};
 
@@ -85,18 +85,18 @@ double depth_along(const Lattice& lattice, bool filters, const glm::dvec3& from,
     return sum / Steps * glm::length(to - from);
 }
 
-TEST(TexturedMedia, AbsorbAsTheSumAlongTheRay) {
+TEST(TexturedMedia, AbsorptionMatchesTheSumAlongTheRay) {
     const Lattice lattice = random_lattice(3);
     for (const bool filters : {true, false}) {
         Model model;
-        model.framed_by(Turned);
-        model.filled_with(
+        model.set_frame(Turned);
+        model.set_medium(
             {.absorption = vec3(0.5f),
              .absorption_texture = add_texture(
                  model, lattice, filters ? scene::TextureFilter::Linear : scene::TextureFilter::Nearest)});
         model.box(MediumAlone, -Half, Half);
         model.sky(vec3(1.0f));
-        const World& world = model.build();
+        const SceneAdapter& world = model.build();
         EXPECT_TRUE(model.problems.empty());
         for (const glm::dvec3 eye : {glm::dvec3(0, 0, 10), glm::dvec3(0.5, -0.8, 10),
                                      glm::dvec3(-1.1, 0.3, 10), glm::dvec3(0.2, 0.1, 0.3)}) {
@@ -108,39 +108,39 @@ TEST(TexturedMedia, AbsorbAsTheSumAlongTheRay) {
     }
 }
 
-TEST(TexturedMedia, EmitAlongTheWay) {
+TEST(TexturedMedia, EmissionMatchesTheSumAlongTheRay) {
     const Lattice lattice = random_lattice(4);
     Model model;
-    model.filled_with({.emission = vec3(2.0f),
-                       .emission_texture = add_texture(model, lattice, scene::TextureFilter::Linear),
-                       .absorption = vec3(0.4f)});
+    model.set_medium({.emission = vec3(2.0f),
+                      .emission_texture = add_texture(model, lattice, scene::TextureFilter::Linear),
+                      .absorption = vec3(0.4f)});
     model.box(MediumAlone, -Half, Half);
     const Mean seen = mean_of(model.build(), small_view({0.2, 0.4, 10}, 1e-6), 64, red);
     constexpr int Steps = 20000;
     double expected = 0.0;
     for (int i = 0; i < Steps; ++i) {
-        const double way = 6.0 * (i + 0.5) / Steps;
-        const glm::dvec3 p = 0.5 * (glm::dvec3(0.2, 0.4, 3.0 - way) / glm::dvec3(Half) + 1.0);
-        expected += 2.0 * lattice.filtered(p) * std::exp(-0.4 * way) * 6.0 / Steps;
+        const double distance = 6.0 * (i + 0.5) / Steps;
+        const glm::dvec3 p = 0.5 * (glm::dvec3(0.2, 0.4, 3.0 - distance) / glm::dvec3(Half) + 1.0);
+        expected += 2.0 * lattice.filtered(p) * std::exp(-0.4 * distance) * 6.0 / Steps;
     }
     EXPECT_NEAR(seen.value, expected, 4.5 * seen.standard_error + 1e-4 * expected);
     EXPECT_LE(seen.standard_error, 0.003 * expected);
 }
 
 // Scattering without absorption, in a lattice from empty to dense: whatever is sampled, nothing is lost.
-TEST(TexturedMedia, WhatOnlyScattersIsInvisible) {
+TEST(TexturedMedia, APurelyScatteringMediumIsInvisible) {
     Lattice lattice = random_lattice(5);
     for (std::size_t i = 0; i < lattice.values.size(); i += 3) lattice.values[i] = 0.0f;
     for (const bool filters : {true, false}) {
         Model model;
-        model.filled_with(
+        model.set_medium(
             {.scattering = vec3(4.0f),
              .scattering_texture = add_texture(
                  model, lattice, filters ? scene::TextureFilter::Linear : scene::TextureFilter::Nearest),
              .anisotropy = 0.3f});
         model.box(MediumAlone, -Half, Half);
         model.sky(vec3(1.0f));
-        const World& world = model.build();
+        const SceneAdapter& world = model.build();
         for (int c = 0; c < 3; ++c) {
             const Mean mean = mean_of(world, small_view({0, 0, 10}, 0.5), 64,
                                       [&](const PathSample& s) { return double(radiance_of(s)[c]); });
@@ -150,17 +150,17 @@ TEST(TexturedMedia, WhatOnlyScattersIsInvisible) {
     }
 }
 
-// One scattering: path tracing against Whitted, which chooses places in another way.
-TEST(TexturedMedia, ScatterOnceInBothRenderers) {
+// One scattering: path tracing against Whitted, which samples distances differently.
+TEST(TexturedMedia, SingleScatteringAgreesInBothRenderers) {
     const Lattice lattice = random_lattice(6);
     Model model;
-    model.filled_with({.absorption = vec3(0.1f),
-                       .scattering = vec3(1.0f),
-                       .scattering_texture = add_texture(model, lattice, scene::TextureFilter::Linear)});
+    model.set_medium({.absorption = vec3(0.1f),
+                      .scattering = vec3(1.0f),
+                      .scattering_texture = add_texture(model, lattice, scene::TextureFilter::Linear)});
     model.box(MediumAlone, -Half, Half);
     model.light({.kind = scene::LightKind::Directional, .intensity = vec3(1.0f)},
                 glm::rotate(glm::dmat4(1.0), 1.0, glm::dvec3(1, 0, 0)));
-    const World& world = model.build();
+    const SceneAdapter& world = model.build();
     view::View view = small_view({0, 0, 10}, 0.3);
     view.max_bounces = 0;
     const Mean traced = mean_of(world, view, 512, red);
@@ -172,19 +172,19 @@ TEST(TexturedMedia, ScatterOnceInBothRenderers) {
 }
 
 // NaN and negative texels are no extinction; infinite ones let nothing through.
-TEST(TexturedMedia, TakeWhatIsNoNumberForNothing) {
+TEST(TexturedMedia, NonFiniteTexelsAreHandled) {
     constexpr float Nan = std::numeric_limits<float>::quiet_NaN(),
                     Inf = std::numeric_limits<float>::infinity();
     for (const float value : {Nan, -1.0f, -Inf, Inf}) {
         Model model;
         const Lattice lattice{1, 1, 3, {value, value, value}};
-        model.filled_with({.absorption = vec3(1.0f),
-                           .absorption_texture = add_texture(model, lattice, scene::TextureFilter::Linear),
-                           .scattering = vec3(1.0f),
-                           .scattering_texture = add_texture(model, lattice, scene::TextureFilter::Linear)});
+        model.set_medium({.absorption = vec3(1.0f),
+                          .absorption_texture = add_texture(model, lattice, scene::TextureFilter::Linear),
+                          .scattering = vec3(1.0f),
+                          .scattering_texture = add_texture(model, lattice, scene::TextureFilter::Linear)});
         model.box(MediumAlone, vec3(-1), vec3(1));
         model.sky(vec3(1.0f));
-        const World& world = model.build();
+        const SceneAdapter& world = model.build();
         for_samples(world, small_view({0, 0, 5}, 0.2, 4), 16, [&](const PathSample& sample) {
             const vec3 seen = radiance_of(sample);
             EXPECT_TRUE(std::isfinite(seen.x) && std::isfinite(seen.y) && std::isfinite(seen.z)) << value;

@@ -1,5 +1,5 @@
-// Colours of thin films against Airy's sum over all wavelengths, against what a surface without a film is,
-// and against themselves from the other side.
+// Colours of thin films against Airy's sum over all wavelengths, against surfaces without a film, and for
+// reciprocity.
 #include "mediator/shading/thin_film.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <complex>
 #include <numbers>
 
-#include "mediator/shading/specular.h"
+#include "mediator/shading/perfect_specular.h"
 #include "tests/statistics/lobes.h"
 #include "tests/statistics/model.h"
 
@@ -17,10 +17,10 @@ namespace tessera::embree {
 namespace {
 
 using shading::film_light;
-using shading::film_reflectance;
-using shading::film_reflectances;
 using shading::FilmLight;
 using shading::make_film;
+using shading::thin_film_reflectance;
+using shading::thin_film_reflectances;
 using shading::ThinFilm;
 
 // CIE 1931, 2 degrees: 380 to 770 nm by 10.
@@ -52,9 +52,9 @@ glm::dvec3 color_of(const Spectrum& spectrum) {
     return rec709 * (sum / white) / (rec709 * glm::dvec3(1.0));
 }
 
-// How far the Gaussians are from the curves that they stand for, in each channel.
-glm::dvec3 error_of_gaussians(const FilmLight& light, double way) {
-    const auto phase = [&](double wavelength) { return 2.0 * std::numbers::pi * way / wavelength; };
+// The error of the Gaussian fits to the colour matching curves, per colour channel.
+glm::dvec3 error_of_gaussians(const FilmLight& light, double path_length) {
+    const auto phase = [&](double wavelength) { return 2.0 * std::numbers::pi * path_length / wavelength; };
     const glm::dvec3 curve = color_of([&](double wavelength) { return std::cos(phase(wavelength)); });
     return glm::abs(curve - glm::dvec3(light.once));
 }
@@ -62,16 +62,16 @@ glm::dvec3 error_of_gaussians(const FilmLight& light, double way) {
 TEST(ThinFilm, SensitivitiesAreThoseOfTheColourMatchingCurves) {
     glm::dvec3 worst(0.0), squares(0.0);
     int count = 0;
-    for (double way = 0.0; way <= 6000.0; way += 10.0) {
-        const ThinFilm film = make_film(1.0f, 1.0f, 1.5f, float(way / 3.0));
+    for (double path_length = 0.0; path_length <= 6000.0; path_length += 10.0) {
+        const ThinFilm film = make_film(1.0f, 1.0f, 1.5f, float(path_length / 3.0));
         const FilmLight light = film_light(film, 1.0f);
-        const glm::dvec3 error = error_of_gaussians(light, way);
+        const glm::dvec3 error = error_of_gaussians(light, path_length);
         worst = glm::max(worst, error);
         squares += error * error;
         ++count;
         // Twice is once of a film of twice the thickness.
-        const FilmLight doubled = film_light(make_film(1.0f, 1.0f, 1.5f, float(way / 1.5)), 1.0f);
-        for (int i = 0; i < 3; ++i) EXPECT_NEAR(light.twice[i], doubled.once[i], 2e-5f) << way;
+        const FilmLight doubled = film_light(make_film(1.0f, 1.0f, 1.5f, float(path_length / 1.5)), 1.0f);
+        for (int i = 0; i < 3; ++i) EXPECT_NEAR(light.twice[i], doubled.once[i], 2e-5f) << path_length;
     }
     const glm::dvec3 root_mean_square = glm::sqrt(squares / double(count));
     std::printf("worst %.4f %.4f %.4f, rms %.4f %.4f %.4f\n", worst.x, worst.y, worst.z, root_mean_square.x,
@@ -83,8 +83,8 @@ TEST(ThinFilm, SensitivitiesAreThoseOfTheColourMatchingCurves) {
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(white[i], 1.0f, 1e-6f);
 }
 
-// Aslant the way down and up is shorter, by the cosine inside: n d cos = d sqrt(n^2 - sin^2).
-TEST(ThinFilm, IsThinnerAslant) {
+// At an angle the optical path is shorter, by the cosine inside: n d cos = d sqrt(n^2 - sin^2).
+TEST(ThinFilm, OpticalPathIsShorterAtAnAngle) {
     for (const double cosine : {0.9, 0.5, 0.1}) {
         const double inside = std::sqrt(1.0 - (1.0 - cosine * cosine) / (1.5 * 1.5));
         const FilmLight aslant = film_light(make_film(1.0f, 1.0f, 1.5f, 400.0f), float(cosine));
@@ -94,13 +94,14 @@ TEST(ThinFilm, IsThinnerAslant) {
 }
 
 // Half of a surface under a film is half of one and half of the other, whatever it is made of.
-TEST(ThinFilm, CoversItsShare) {
+TEST(ThinFilm, IsBlendedByItsFactor) {
     const auto fresnel = [](float strength, float metallic) {
-        shading::Look look =
-            shading::plain_look(glm::vec3(0.8f, 0.5f, 0.2f), metallic, 0.5f, 0.0f, 1.5f, 1.5f);
-        look.lobes = shading::FeatureIridescence;
-        look.film = make_film(strength, 1.0f, 1.8f, 330.0f);
-        const shading::Bsdf bsdf = test::make_bsdf(look, make_mixture(look), {0.6f, 0.0f, 0.8f});
+        shading::MaterialSample material_sample =
+            shading::default_material_sample(glm::vec3(0.8f, 0.5f, 0.2f), metallic, 0.5f, 0.0f, 1.5f, 1.5f);
+        material_sample.lobes = shading::FeatureIridescence;
+        material_sample.film = make_film(strength, 1.0f, 1.8f, 330.0f);
+        const shading::Bsdf bsdf =
+            test::make_bsdf(material_sample, make_mixture(material_sample), {0.6f, 0.0f, 0.8f});
         return specular_fresnel(bsdf, 0.7f);
     };
     for (const float metallic : {0.0f, 0.4f, 1.0f}) {
@@ -114,7 +115,7 @@ TEST(ThinFilm, CoversItsShare) {
 
 // Light straight down, where Fresnel's and Schlick's reflectances are exact: the sum over all orders, by
 // complex amplitudes, for every wavelength.
-TEST(ThinFilm, ReflectsWhatAirysSumOverTheSpectrumSays) {
+TEST(ThinFilm, MatchesAirysSumOverTheSpectrum) {
     double largest_error = 0.0;
     for (const double n : {1.1, 1.33, 1.5, 1.8, 2.4}) {
         for (const double base : {1.0, 1.2, 1.5, 2.0, 4.0, 12.0}) {
@@ -128,9 +129,9 @@ TEST(ThinFilm, ReflectsWhatAirysSumOverTheSpectrumSays) {
                 });
                 const double root = (base - 1.0) / (base + 1.0);
                 const FilmLight light = film_light(film, 1.0f);
-                const glm::vec3 found = film_reflectances(light, glm::vec3(float(root * root)));
+                const glm::vec3 found = thin_film_reflectances(light, glm::vec3(float(root * root)));
                 // First order: what its cosine is off by. Then the second's, which may be off by as much at
-                // twice the way; and all later ones, whose cosines are at most 1 (Rec. 709 adds to that).
+                // twice the path length; and all later ones, whose cosines are at most 1 (Rec. 709 adds to that).
                 const double both = std::fabs(r12 * r23), passes = 1.0 - r12 * r12;
                 const double order =
                     2.0 * std::fabs(passes * passes * r23 * r23 / (1.0 - both * both) - passes) * both;
@@ -149,24 +150,24 @@ TEST(ThinFilm, ReflectsWhatAirysSumOverTheSpectrumSays) {
 
 // A quarter of a wave of the root of the base's index reflects nothing of that wave's length: so little of
 // the colour around it that less than a tenth of what the bare base reflects is left.
-TEST(ThinFilm, AQuarterWaveTakesTheReflectionAway) {
+TEST(ThinFilm, AQuarterWaveCoatingIsAntireflective) {
     const double base = 1.9, n = std::sqrt(base), wavelength = 550.0;
     const ThinFilm film = make_film(1.0f, 1.0f, float(n), float(wavelength / (4.0 * n)));
     const double root = (base - 1.0) / (base + 1.0);
-    const glm::vec3 left = film_reflectances(film_light(film, 1.0f), glm::vec3(float(root * root)));
+    const glm::vec3 left = thin_film_reflectances(film_light(film, 1.0f), glm::vec3(float(root * root)));
     EXPECT_LT(left.y, 0.1 * root * root);
     // Half a wave leaves what the base is.
     const ThinFilm half = make_film(1.0f, 1.0f, float(n), float(wavelength / (2.0 * n)));
-    const glm::vec3 all = film_reflectances(film_light(half, 1.0f), glm::vec3(float(root * root)));
+    const glm::vec3 all = thin_film_reflectances(film_light(half, 1.0f), glm::vec3(float(root * root)));
     EXPECT_GT(all.y, 0.8 * root * root);
 }
 
-TEST(ThinFilm, OfAirOrWithoutThicknessIsNone) {
+TEST(ThinFilm, AirOrZeroThicknessIsNoFilm) {
     for (const ThinFilm& film : {make_film(1.0f, 1.0f, 2.0f, 0.0f), make_film(1.0f, 1.0f, 1.0f, 400.0f)}) {
         for (const float f0 : {0.0f, 0.02f, 0.04f, 0.3f, 0.9f, 1.0f}) {
             for (int i = 0; i <= 100; ++i) {
                 const float cosine = float(i) / 100.0f;
-                const float found = film_reflectances(film_light(film, cosine), glm::vec3(f0)).y;
+                const float found = thin_film_reflectances(film_light(film, cosine), glm::vec3(f0)).y;
                 const float plain = f0 + (1.0f - f0) * shading::schlick_weight(cosine);
                 EXPECT_NEAR(found, plain, 1e-6f) << f0 << " " << cosine;
             }
@@ -176,15 +177,16 @@ TEST(ThinFilm, OfAirOrWithoutThicknessIsNone) {
 
 // Nor does it change any lobe, of facets at first and late or of the base: up to the steps that its means are
 // taken with.
-TEST(ThinFilm, WithoutThicknessChangesNoLobe) {
+TEST(ThinFilm, ZeroThicknessChangesNoLobe) {
     for (const float metallic : {0.0f, 1.0f}) {
-        shading::Look look = shading::plain_look(glm::vec3(0.3f), metallic, 0.9f, 0.0f, 1.5f, 1.5f);
-        look.specular = 0.5f;
+        shading::MaterialSample material_sample =
+            shading::default_material_sample(glm::vec3(0.3f), metallic, 0.9f, 0.0f, 1.5f, 1.5f);
+        material_sample.specular = 0.5f;
         const glm::vec3 out(0.6f, 0.0f, 0.8f);
-        const shading::Bsdf plain = test::make_bsdf(look, make_mixture(look), out);
-        look.lobes = shading::FeatureIridescence;
-        look.film = make_film(1.0f, look.specular, 1.8f, 0.0f);
-        const shading::Bsdf filmed = test::make_bsdf(look, make_mixture(look), out);
+        const shading::Bsdf plain = test::make_bsdf(material_sample, make_mixture(material_sample), out);
+        material_sample.lobes = shading::FeatureIridescence;
+        material_sample.film = make_film(1.0f, material_sample.specular, 1.8f, 0.0f);
+        const shading::Bsdf filmed = test::make_bsdf(material_sample, make_mixture(material_sample), out);
         for (const float x : {-0.9f, -0.6f, 0.0f, 0.8f}) {
             const glm::vec3 in(x, 0.0f, std::sqrt(1.0f - x * x));
             const auto bare = evaluate_bsdf(test::energy_table(), plain, out, in);
@@ -194,33 +196,33 @@ TEST(ThinFilm, WithoutThicknessChangesNoLobe) {
     }
 }
 
-// KHR_materials_specular takes its share of what a film on a dielectric reflects.
-TEST(ThinFilm, OnADielectricIsWeighedAsItsSpecular) {
+// KHR_materials_specular scales what a film on a dielectric reflects.
+TEST(ThinFilm, OnADielectricIsWeightedByItsSpecular) {
     const FilmLight light = film_light(make_film(1.0f, 0.5f, 1.8f, 300.0f), 0.8f);
-    const glm::vec3 half = filmed_dielectric(make_film(1.0f, 0.5f, 1.8f, 300.0f), light, glm::vec3(0.02f));
-    const glm::vec3 all = filmed_dielectric(make_film(1.0f, 1.0f, 1.8f, 300.0f), light, glm::vec3(0.04f));
+    const glm::vec3 half = thin_film_dielectric(make_film(1.0f, 0.5f, 1.8f, 300.0f), light, glm::vec3(0.02f));
+    const glm::vec3 all = thin_film_dielectric(make_film(1.0f, 1.0f, 1.8f, 300.0f), light, glm::vec3(0.04f));
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(half[i], 0.5f * all[i], 1e-6f);
-    EXPECT_EQ(filmed_dielectric(make_film(1.0f, 0.0f, 1.8f, 300.0f), light, glm::vec3(0.0f)),
+    EXPECT_EQ(thin_film_dielectric(make_film(1.0f, 0.0f, 1.8f, 300.0f), light, glm::vec3(0.0f)),
               glm::vec3(0.0f));
 }
 
 // White metal loses nothing under any film, nor does anything at grazing angles.
-TEST(ThinFilm, TakesNothingFromWhite) {
+TEST(ThinFilm, PreservesWhite) {
     for (const float n : {1.0f, 1.3f, 2.0f, 100.0f}) {
         for (const float thickness : {0.0f, 1.0f, 300.0f, 1e5f, 1e30f}) {
             const ThinFilm film = make_film(1.0f, 1.0f, n, thickness);
             for (int i = 0; i <= 50; ++i) {
                 const FilmLight light = film_light(film, float(i) / 50.0f);
-                EXPECT_NEAR(film_reflectances(light, glm::vec3(1.0f)).x, 1.0f, 1e-5f)
+                EXPECT_NEAR(thin_film_reflectances(light, glm::vec3(1.0f)).x, 1.0f, 1e-5f)
                     << n << " " << thickness;
             }
-            EXPECT_EQ(film_reflectances(film_light(film, 0.0f), glm::vec3(0.04f)).x, 1.0f);
+            EXPECT_EQ(thin_film_reflectances(film_light(film, 0.0f), glm::vec3(0.04f)).x, 1.0f);
         }
     }
 }
 
 // The bound by which the base below is dimmed, and the means by which facets light each other.
-TEST(ThinFilm, MeansAndBoundAreThoseOfItsReflectance) {
+TEST(ThinFilm, MeansAndBoundMatchTheReflectance) {
     double most_over = 0.0, most_off = 0.0;
     for (const float n : {1.2f, 1.33f, 1.5f, 1.8f, 2.4f}) {
         for (const float f0 : {0.02f, 0.04f, 0.1f}) {
@@ -233,12 +235,12 @@ TEST(ThinFilm, MeansAndBoundAreThoseOfItsReflectance) {
                 for (int i = 0; i < Steps; ++i) {
                     const float cosine = (float(i) + 0.5f) / Steps;
                     const FilmLight light = film_light(film, cosine);
-                    const glm::vec3 here = shading::filmed_dielectric(film, light, glm::vec3(0.8f * f0));
-                    const double share = 2.0 * double(cosine) / Steps;
-                    dielectric += share * glm::dvec3(here);
-                    metal += share * glm::dvec3(film_reflectances(light, glm::vec3(0.7f)));
+                    const glm::vec3 here = shading::thin_film_dielectric(film, light, glm::vec3(0.8f * f0));
+                    const double weight = 2.0 * double(cosine) / Steps;
+                    dielectric += weight * glm::dvec3(here);
+                    metal += weight * glm::dvec3(thin_film_reflectances(light, glm::vec3(0.7f)));
                     const float bound = mean.f0 + (mean.f90 - mean.f0) * shading::schlick_weight(cosine);
-                    over += share * std::max(0.0, double(shading::largest(here) - bound));
+                    over += weight * std::max(0.0, double(shading::largest(here) - bound));
                 }
                 most_over = std::max(most_over, over);
                 for (int i = 0; i < 3; ++i) {
@@ -253,7 +255,7 @@ TEST(ThinFilm, MeansAndBoundAreThoseOfItsReflectance) {
     EXPECT_LT(most_off, 0.01);
 }
 
-// Along one way, from the air and from inside.
+// Along one path, from the air and from inside.
 TEST(ThinFilm, OnGlassIsTheSameFromBothSides) {
     for (const float n : {1.33f, 1.5f, 2.0f}) {
         shading::RoughGlass into = test::clear_boundary(n), out_of = test::clear_boundary(1.0f / n);
@@ -262,10 +264,10 @@ TEST(ThinFilm, OnGlassIsTheSameFromBothSides) {
             const float cosine = float(i) / 100.0f;
             const float sine2 = (1.0f - cosine) * (1.0f + cosine);
             const float inside = std::sqrt(shading::refracted_cosine2(cosine, sine2, n));
-            const glm::vec3 there = bent_fresnel(into, cosine), again = bent_fresnel(out_of, inside);
+            const glm::vec3 there = adjusted_fresnel(into, cosine), again = adjusted_fresnel(out_of, inside);
             for (int c = 0; c < 3; ++c) EXPECT_NEAR(there[c], again[c], 2e-5f / cosine) << n << " " << cosine;
         }
-        EXPECT_EQ(bent_fresnel(out_of, 0.1f), glm::vec3(1.0f)) << "total reflection is total";
+        EXPECT_EQ(adjusted_fresnel(out_of, 0.1f), glm::vec3(1.0f)) << "total reflection is total";
     }
 }
 
@@ -282,7 +284,7 @@ scene::Material filmed(float metallic, float thickness) {
 }
 
 glm::dvec3 seen(Model& model) {
-    const World& world = model.build();
+    const SceneAdapter& world = model.build();
     glm::dvec3 sum(0.0);
     double n = 0.0;
     for_samples(world, small_view({0.0, 0.0, 1.0}, 0.01), 4, [&](const PathSample& sample) {
@@ -293,13 +295,14 @@ glm::dvec3 seen(Model& model) {
 }
 
 // A mirror straight below under a white sky.
-TEST(ThinFilm, IsSeenInAMirror) {
+TEST(ThinFilm, IsVisibleInAMirror) {
     Model model;
     model.floor(model.material(filmed(1.0f, 420.0f)), 10.0f, 0.0f);
     model.sky(glm::vec3(1.0f));
     const glm::dvec3 found = seen(model);
     const glm::vec3 base(0.9f, 0.6f, 0.3f);
-    const glm::vec3 film = film_reflectances(film_light(make_film(1.0f, 1.0f, 1.6f, 420.0f), 1.0f), base);
+    const glm::vec3 film =
+        thin_film_reflectances(film_light(make_film(1.0f, 1.0f, 1.6f, 420.0f), 1.0f), base);
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[i], 0.25f * base[i] + 0.75f * film[i], 1e-3) << i;
     EXPECT_TRUE(model.problems.empty());
 }
@@ -319,7 +322,7 @@ TEST(ThinFilm, FollowsItsTextures) {
     const glm::vec3 base(0.9f, 0.6f, 0.3f);
     const float strength = 0.75f * 128.0f / 255.0f;
     const ThinFilm film = make_film(strength, 1.0f, 1.6f, 200.0f + 300.0f * 0.2f);
-    const glm::vec3 all = film_reflectances(film_light(film, 1.0f), base);
+    const glm::vec3 all = thin_film_reflectances(film_light(film, 1.0f), base);
     for (int i = 0; i < 3; ++i) {
         EXPECT_NEAR(found[i], base[i] + strength * (all[i] - base[i]), 1e-3) << i;
     }

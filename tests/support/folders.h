@@ -2,8 +2,7 @@
 
 #include <filesystem>
 
-// Where the tree and its programs lie. Nothing else knows, so that no other object depends on it and a compiler cache
-// serves every checkout.
+// The folders of the source tree and its programs. Kept in one object, so that a compiler cache works for every checkout.
 namespace tessera::test {
 
 std::filesystem::path source_folder();

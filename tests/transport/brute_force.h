@@ -2,9 +2,9 @@
 #define TESSERA_TESTS_TRANSPORT_BRUTE_FORCE_H
 
 #include "mediator/shading/materials.h"
-#include "mediator/shading/points.h"
+#include "mediator/shading/triangle_points.h"
 
-// Rays that ask every triangle, the same in C++ and on a device: what is left to differ is the transport.
+// Rays tested against every triangle, the same in C++ and on a device, so that only the transport can differ.
 SHADING_BEGIN
 
 struct Context {
@@ -14,13 +14,13 @@ struct Context {
 };
 
 #ifdef __cplusplus
-inline void tell_camera(IN(Context), IN(Ray)) {}
-inline void tell_miss(IN(Context)) {}
-inline void tell_emission(IN(Context), vec3, vec3) {}
-inline void tell_light(IN(Context), vec3, vec3) {}
-inline void tell_specular(IN(Context), bool, vec3) {}
+inline void log_camera(IN(Context), IN(Ray)) {}
+inline void log_miss(IN(Context)) {}
+inline void log_emission(IN(Context), vec3, vec3) {}
+inline void log_light(IN(Context), vec3, vec3) {}
+inline void log_specular(IN(Context), bool, vec3) {}
 struct Surface;
-inline void tell_hit(IN(Context), IN(Surface), vec3) {}
+inline void log_hit(IN(Context), IN(Surface), vec3) {}
 #endif
 
 inline bool has_specular_trees(IN(Context) context) {
@@ -31,7 +31,7 @@ inline vec3 placed(IN(Instance) instance, vec3 p) {
     return instance.linear * p + instance.translation;
 }
 
-// Möller and Trumbore 1997; `hit` is overwritten by what is nearer.
+// Möller and Trumbore 1997; `hit` is overwritten by closer hits.
 inline bool meets(IN(Instance) instance, IN(Triangle) t, vec3 origin, vec3 direction, float near,
                   INOUT(Hit) hit) {
     const vec3 p = placed(instance, t.p);

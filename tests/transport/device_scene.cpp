@@ -28,14 +28,14 @@ DeviceScene::DeviceScene(Device& device, backend::SceneTables tables) {
     put(record_.textures, tables.textures);
     put(record_.materials, tables.materials);
     put(record_.extras, tables.extras);
-    put(record_.shaders, tables.shaders);
+    put(record_.surface_shaders, tables.surface_shaders);
     put(record_.meshes, tables.meshes);
-    put(record_.bodies, tables.bodies);
+    put(record_.media, tables.media);
     put(record_.instances, tables.instances);
     put(record_.lights, tables.lights);
     put(record_.emitters, tables.emitters);
     put(record_.light_nodes, tables.light_nodes);
-    put(record_.sums, tables.sums);
+    put(record_.cdfs, tables.cdfs);
     const auto srgb = backend::srgb_values();
     put(record_.srgb, std::vector<float>(srgb.begin(), srgb.end()));
     const auto energy = backend::energy_values();

@@ -27,7 +27,7 @@ layout(push_constant, scalar) uniform Arguments {
     Results results;
 };
 
-// What the scene needs, as the back-end's kernels have it.
+// The scene's features, as in the back-end's kernels.
 layout(constant_id = 0) const uint Features = 0xffffffffu;
 
 // Sample i of a picture is the i-th of its pixels, row by row, then the next sample of each.

@@ -1,9 +1,9 @@
-// Whole samples, with rays that ask every triangle: on the device as in C++.
+// Whole samples, with brute-force rays: the same on the device as in C++.
 #include <cmath>
 #include <cstdio>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "mediator/backend/tables/bodies.h"
+#include "mediator/backend/tables/media.h"
 #include "mediator/backend/tables/view_record.h"
 #include "mediator/base/random.h"
 #include "mediator/shading/sample_values.h"
@@ -54,7 +54,7 @@ void lights_and_textures(SceneModel& model) {
                 pointing_down({0, 0, 0}));
 }
 
-// Balls among spheres, quads and 300 bulbs of light, under two suns.
+// Balls among sphere and quad lights and 300 point lights, under two directional lights.
 void lights_with_sizes(SceneModel& model) {
     model.quad(model.material(test::chalk(glm::vec3(0.7f))), Ground);
     model.sphere(model.material({.roughness = 0.2f}), {-1.2, 1.0, 0.0}, 1.0, Normals::Flat, 8);
@@ -73,7 +73,7 @@ void lights_with_sizes(SceneModel& model) {
     }
 }
 
-// A ball and a mirror on what catches their shadows, before a background that is not the sky.
+// A ball and a mirror on a shadow catcher, with a background that is not the environment.
 void caught_shadows(SceneModel& model) {
     scene::Material ground = test::chalk(glm::vec3(0.7f));
     ground.base_color.w = 0.7f;
@@ -86,7 +86,7 @@ void caught_shadows(SceneModel& model) {
                .visible_color = {0.9f, 0.8f, 0.7f, 0.5f}});
 }
 
-// Glass, a mirror and a surface with mapped normals under a sky with a map.
+// Glass, a mirror and a normal-mapped surface under an environment map.
 void speculars_and_sky(SceneModel& model) {
     scene::Material waves{.base_color = {0.5f, 0.6f, 0.7f, 1.0f}, .metallic = 0.3f, .roughness = 0.3f};
     const scene::Texture normals{.width = 2, .height = 1};
@@ -101,7 +101,7 @@ void speculars_and_sky(SceneModel& model) {
     model.sky({.color = glm::vec3(0.05f), .environment = map.texture, .strength = 0.8f, .rotation = 1.0f});
 }
 
-// Cut-out and translucent quads, one of them a lamp, and colours at the vertices.
+// Masked and blended quads, one of them emissive, and vertex colours.
 void alpha_and_colors(SceneModel& model) {
     const ObjectId painted = model.material(test::chalk(glm::vec3(1.0f)));
     model.quad(painted, Ground, {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}, {1, 1, 1, 1}});
@@ -115,31 +115,32 @@ void alpha_and_colors(SceneModel& model) {
     model.sky(glm::vec3(0.5f, 0.7f, 1.0f));
 }
 
-// Fog, with and without a floor in its boundary; smoke in slices; a body of glass; what glows.
+// Fog, with and without a floor in its boundary; smoke as a volume texture; absorbing glass; an emissive
+// medium.
 void media(SceneModel& model) {
-    model.filled_with(
+    model.set_medium(
         {.absorption = glm::vec3(0.02f), .scattering = glm::vec3(0.1f, 0.15f, 0.2f), .anisotropy = 0.5f});
     model.box({}, {-3, 0, -3}, {3, 3, 6});
     CounterRandom random(8);
     std::vector<std::uint32_t> texels;
     for (int i = 0; i < 4 * 3 * 5; ++i) texels.push_back(static_cast<std::uint32_t>(random.below(1u << 24)));
     const scene::TextureSlot smoke = model.texture({.width = 4, .height = 3, .depth = 5}, texels);
-    model.filled_with({.absorption = glm::vec3(0.5f),
-                       .absorption_texture = smoke,
-                       .scattering = glm::vec3(2.0f),
-                       .scattering_texture = smoke,
-                       .priority = 1});
+    model.set_medium({.absorption = glm::vec3(0.5f),
+                      .absorption_texture = smoke,
+                      .scattering = glm::vec3(2.0f),
+                      .scattering_texture = smoke,
+                      .priority = 1});
     model.box({}, {-1.5f, 0.2f, -1}, {0, 1.5f, 0.5f});
-    model.filled_with({.emission = {1.0f, 0.5f, 0.2f},
-                       .emission_texture = smoke,
-                       .absorption = glm::vec3(0.7f),
-                       .priority = 1});
+    model.set_medium({.emission = {1.0f, 0.5f, 0.2f},
+                      .emission_texture = smoke,
+                      .absorption = glm::vec3(0.7f),
+                      .priority = 1});
     model.box({}, {-0.5f, 1.7f, -0.5f}, {0.5f, 2.2f, 0.5f});
-    model.filled_with_nothing();
-    scene::Material body = test::glass(1.4f);
-    body.attenuation_color = {0.4f, 0.8f, 0.9f};
-    body.attenuation_distance = 0.5f;
-    model.box(model.material(body), {0.3f, 0.1f, -0.5f}, {1.4f, 1.2f, 0.4f});
+    model.clear_medium();
+    scene::Material glass = test::glass(1.4f);
+    glass.attenuation_color = {0.4f, 0.8f, 0.9f};
+    glass.attenuation_distance = 0.5f;
+    model.box(model.material(glass), {0.3f, 0.1f, -0.5f}, {1.4f, 1.2f, 0.4f});
     model.quad(model.material(test::chalk(glm::vec3(0.6f))), Ground);
     model.light({.kind = scene::LightKind::Sphere, .intensity = glm::vec3(20.0f), .radius = 0.2f},
                 glm::translate(glm::dmat4(1.0), glm::dvec3(1.5, 2.0, 1.0)));
@@ -199,16 +200,16 @@ std::vector<float> on_host(const backend::SceneTables& tables, const shading::Vi
     return results;
 }
 
-TEST_P(TransportOnDevice, FindsWhatTheHostFinds) {
+TEST_P(TransportOnDevice, MatchesTheHost) {
     SceneModel model;
     GetParam().build(model);
     backend::ShadowScene shadow;
     ASSERT_TRUE(shadow.apply(scene::snapshot(model.finished())));
     backend::MeshCatalog meshes(model.blobs());
     ASSERT_TRUE(meshes.update(shadow.scene(), shadow.take_delta()).problems.empty());
-    backend::TexturePyramids pyramids;
+    backend::MipmapCache mipmaps;
     const auto tables =
-        backend::make_tables(shadow.scene(), shadow.lowered(), meshes, *model.blobs(), pyramids);
+        backend::make_tables(shadow.scene(), shadow.flat_scene(), meshes, *model.blobs(), mipmaps);
     const glm::dmat4 down = glm::rotate(glm::dmat4(1.0), -0.3, {1.0, 0.0, 0.0});
     view::View view = test::small_view({0.0, 2.5, 5.0}, 0.9, Size, down);
     view.max_bounces = 8;
@@ -217,7 +218,7 @@ TEST_P(TransportOnDevice, FindsWhatTheHostFinds) {
     view.path_class = GetParam().path_class;
     view.pixel_filter = {GetParam().filter, 1.5f};
     shading::View record = backend::make_view(view, tables.render_origin);
-    record.inside = backend::bodies_around(tables, record);
+    record.containing_media = backend::media_around(tables, record);
 
     const std::vector<float> host = on_host(tables, record), device = on_device(tables, record);
     ASSERT_EQ(host.size(), device.size());

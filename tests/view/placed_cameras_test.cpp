@@ -48,7 +48,7 @@ Scene two_cameras() {
                     {A, C});
 }
 
-TEST(PlacedCameras, AreListedDepthFirstWhereTheyStandFirst) {
+TEST(PlacedCameras, AreListedDepthFirstAtTheirFirstInstance) {
     Scene scene = two_cameras();
     ASSERT_TRUE(scene.apply_entries({children_of(C, {Front, B, Side})}));
     const auto cameras = placed_cameras(scene);
@@ -59,20 +59,20 @@ TEST(PlacedCameras, AreListedDepthFirstWhereTheyStandFirst) {
     EXPECT_EQ(cameras[1].world_from_camera, moved(3));
 }
 
-TEST(PlacedCameras, OnesThatLookNowhereAreRefused) {
+TEST(PlacedCameras, CamerasWithSingularTransformsAreRejected) {
     Scene scene = two_cameras();
     ASSERT_TRUE(scene.apply_entries({matrix_of(B, glm::scale(glm::dmat4(1.0), {1, 1, 0}))}));
     EXPECT_TRUE(choose_camera(scene, ""));
     ASSERT_FALSE(choose_camera(scene, "side"));
-    EXPECT_NE(std::string(choose_camera(scene, "side").error().what()).find("'side' looks nowhere"),
+    EXPECT_NE(std::string(choose_camera(scene, "side").error().what()).find("'side' has no valid direction"),
               std::string::npos);
     glm::dmat4 far = glm::scale(glm::dmat4(1.0), glm::dvec3(1e200));
     ASSERT_TRUE(scene.apply_entries({matrix_of(A, far), matrix_of(B, moved(1e10))}));
     EXPECT_FALSE(choose_camera(scene, "side"));
 }
 
-// A recursion would end the process.
-TEST(PlacedCameras, StandBelowChainsHoweverDeep) {
+// A recursion would overflow the stack.
+TEST(PlacedCameras, WorkBelowDeepChains) {
     constexpr std::uint64_t Depth = 200'000, First = 1000;
     std::vector<Entry> chain{Create{Front, Camera{.name = "deep"}}};
     for (std::uint64_t i = 0; i < Depth; ++i)
@@ -84,8 +84,8 @@ TEST(PlacedCameras, StandBelowChainsHoweverDeep) {
     EXPECT_EQ(camera->world_from_camera, moved(Depth));
 }
 
-// 2^64 placements: one by one they would never end.
-TEST(PlacedCameras, StandInAGraphThatDoublesAtEveryLevel) {
+// 2^64 instances, far too many to visit one by one.
+TEST(PlacedCameras, WorkInAGraphWithExponentialSharing) {
     constexpr std::uint64_t Levels = 64, First = 1000;
     std::vector<Entry> levels{Create{Front, Camera{.name = "many"}}};
     for (std::uint64_t i = 0; i < Levels; ++i) {
@@ -121,7 +121,7 @@ TEST_F(Followed, MovesWithTheTransformsAboveIt) {
     EXPECT_FALSE(follow({matrix_of(A, moved(5))})) << "where it is";
 }
 
-TEST_F(Followed, GoesWithTheGraph) {
+TEST_F(Followed, FollowsChangesOfTheGraph) {
     EXPECT_TRUE(follow({children_of(A, {Front}), children_of(C, {B})}));
     EXPECT_TRUE(follow({matrix_of(C, moved(8))}));
     EXPECT_FALSE(follow({matrix_of(A, moved(8))})) << "it was taken from there";
@@ -134,7 +134,7 @@ TEST_F(Followed, GoesWithTheGraph) {
         follow({children_of(A, {Front}), children_of(B, {}), children_of(ObjectId{30}, {}), Remove{Side}}));
 }
 
-TEST_F(Followed, NamesDecide) {
+TEST_F(Followed, FollowsChangesOfNames) {
     const auto renamed = [](ObjectId id, const std::string& name) {
         return Update{id, Fields<Camera>(&Camera::name).bits(), Camera{.name = name}};
     };
@@ -144,14 +144,14 @@ TEST_F(Followed, NamesDecide) {
     EXPECT_EQ(*camera.world_from_camera(), moved(1));
 }
 
-TEST_F(Followed, AnObjectOfAnotherKindMayTakeThePlace) {
+TEST_F(Followed, HandlesAnObjectOfAnotherKindWithTheSameId) {
     EXPECT_TRUE(follow({Remove{B}, Create{B, Attachment{}}}));
     EXPECT_FALSE(camera.world_from_camera());
     EXPECT_TRUE(follow({Remove{B}, Create{B, Camera{.name = "side"}}}));
     EXPECT_EQ(*camera.world_from_camera(), moved(1));
 }
 
-TEST_F(Followed, LooksNowhereForAWhile) {
+TEST_F(Followed, RecoversFromASingularTransform) {
     EXPECT_TRUE(follow({matrix_of(A, glm::scale(glm::dmat4(1.0), glm::dvec3(0)))}));
     EXPECT_FALSE(camera.world_from_camera());
     EXPECT_FALSE(follow({matrix_of(A, glm::scale(glm::dmat4(1.0), glm::dvec3(0, 1, 0)))}));

@@ -1,4 +1,4 @@
-// The Vulkan back-end: merging, devices that fail, memory, trees that are kept.
+// The Vulkan back-end: merging, failing devices, memory, cached BVHs.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -46,8 +46,8 @@ std::unique_ptr<Backend> with_scene(std::unique_ptr<Backend> backend, const Rend
     return backend;
 }
 
-// The squares of its light are beyond the floats: merging is left to the host.
-TEST(VulkanMerging, IsTheSameWhereTheHostHasToDoIt) {
+// The squares of its radiance overflow floats: merging is left to the host.
+TEST(VulkanMerging, HostFallbackGivesTheSameBits) {
     Rendering rendering;
     const auto backend = with_scene(find_backend("vulkan").make({.blobs = rendering.blobs}), rendering);
     const auto dazzling = rendering.builder.edit({test::SceneBuilder::update<scene::Background>(
@@ -59,17 +59,17 @@ TEST(VulkanMerging, IsTheSameWhereTheHostHasToDoIt) {
     EXPECT_TRUE(frame::identical_bits(whole, single.take().at(0)));
 }
 
-// Loses the device at the n-th submission that is counted over all devices.
-// Uploads are submissions too: the host does not look into the device's memory.
+// Loses the device at the n-th submission, counted over all devices. Uploads are submissions too, since device
+// memory is not mapped.
 DeviceSettings lost_at(std::shared_ptr<std::atomic<int>> calls, int call) {
-    return {.memory = {.mapping = MemorySettings::Mapping::Apart}, .fault = [=](FaultPoint point) {
+    return {.memory = {.mapping = MemorySettings::Mapping::Separate}, .fault = [=](FaultPoint point) {
                 return point == FaultPoint::Submit && ++*calls == call ? VK_ERROR_DEVICE_LOST : VK_SUCCESS;
             }};
 }
 
 class VulkanBackendLost : public testing::TestWithParam<view::Renderer> {};
 
-TEST_P(VulkanBackendLost, IsOpenedAgainAndTheUnitIsTheSame) {
+TEST_P(VulkanBackendLost, IsReopenedAndRendersTheSameUnit) {
     Rendering rendering;
     rendering.view.renderer = GetParam();
     const auto calls = std::make_shared<std::atomic<int>>(0);
@@ -94,8 +94,8 @@ INSTANTIATE_TEST_SUITE_P(Renderers, VulkanBackendLost,
                              return std::string(view::renderer_name(renderer.param));
                          });
 
-TEST(VulkanBackendFaults, ADeviceThatIsLostAgainAndAgainIsAnErrorUntilItComesBack) {
-    for (const auto mapping : {MemorySettings::Mapping::AsOffered, MemorySettings::Mapping::Apart}) {
+TEST(VulkanBackendFaults, ARepeatedlyLostDeviceIsAnErrorUntilItRecovers) {
+    for (const auto mapping : {MemorySettings::Mapping::Default, MemorySettings::Mapping::Separate}) {
         Rendering rendering;
         const auto healthy = std::make_shared<std::atomic<bool>>(true);
         const auto backend = with_scene(
@@ -109,7 +109,7 @@ TEST(VulkanBackendFaults, ADeviceThatIsLostAgainAndAgainIsAnErrorUntilItComesBac
         EXPECT_THROW(rendering.film(*backend, {0, 1}), Error);
         EXPECT_THROW(rendering.film(*backend, {0, 1}), Error) << "nothing is on a device by now";
         const auto moved = rendering.builder.move(test::BlockAt, test::moved(0.2, 0.1, -1.5));
-        const bool uploads_fail = mapping == MemorySettings::Mapping::Apart;
+        const bool uploads_fail = mapping == MemorySettings::Mapping::Separate;
         if (uploads_fail) {
             EXPECT_THROW(test::commit(*backend, {moved}), Error);
             EXPECT_EQ(backend->version(), version);
@@ -122,7 +122,7 @@ TEST(VulkanBackendFaults, ADeviceThatIsLostAgainAndAgainIsAnErrorUntilItComesBac
     }
 }
 
-TEST(VulkanBackendMemory, ASceneThatDoesNotFitIsRefusedAndTheLastOneStays) {
+TEST(VulkanBackendMemory, ASceneThatDoesNotFitIsRejectedAndTheLastVersionIsKept) {
     Rendering rendering;
     const auto backend = with_scene(
         make_backend({.blobs = rendering.blobs}, {.memory = {.limit = std::uint64_t{192} << 20}}), rendering);
@@ -144,7 +144,7 @@ TEST(VulkanBackendMemory, ASceneThatDoesNotFitIsRefusedAndTheLastOneStays) {
         const auto done = scope->commit();
         ASSERT_FALSE(done);
         EXPECT_EQ(done.error().code(), ErrorCode::OutOfMemory);
-        EXPECT_NE(std::string(done.error().what()).find("stays"), std::string::npos) << done.error().what();
+        EXPECT_NE(std::string(done.error().what()).find("is kept"), std::string::npos) << done.error().what();
     }
     EXPECT_EQ(backend->version(), version);
     EXPECT_EQ(rendering.film(*backend, {0, 0}).planes, before.planes);
@@ -201,7 +201,7 @@ class VulkanBackendTrees : public testing::Test {
     Rendering rendering;
 };
 
-TEST_F(VulkanBackendTrees, AreReadBackByTheNextStart) {
+TEST_F(VulkanBackendTrees, AreLoadedFromTheCache) {
     const scene::ChangeList waved = wave_of(0.1f);
     const auto without = start("");
     EXPECT_EQ(report_of(*without, waved).rebuilt, 1u);
@@ -221,7 +221,7 @@ TEST_F(VulkanBackendTrees, AreReadBackByTheNextStart) {
     expect_start(0, 0);
 }
 
-TEST_F(VulkanBackendTrees, PositionsOfAnAnimationAreNotKept) {
+TEST_F(VulkanBackendTrees, AnimatedMeshesAreNotCached) {
     const scene::ChangeList low = wave_of(0.0f), higher = wave_of(0.001f), high = wave_of(50.0f);
     const auto backend = start(folder);
     EXPECT_EQ(report_of(*backend, low).rebuilt, 1u);

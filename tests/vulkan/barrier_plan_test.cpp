@@ -24,7 +24,7 @@ bool is_write(const Access& access) {
     return access.kind == Kind::Write;
 }
 
-// Whether some barrier after step i and not after step j orders the two accesses, the plain definition.
+// By definition: whether some barrier between steps i and j orders the two accesses.
 bool is_ordered(const Barriers& barriers, std::size_t i, const Access& first, std::size_t j,
                 const Access& second) {
     for (std::size_t k = i + 1; k <= j; ++k) {
@@ -66,7 +66,7 @@ std::size_t count(const Barriers& barriers) {
                                                   [](const auto& barrier) { return barrier.has_value(); }));
 }
 
-// The fewest places for barriers of everything that are sufficient, by trying all.
+// The minimum number of sufficient full barriers, by brute force.
 std::size_t fewest(const Steps& steps) {
     constexpr StageMask All = (1u << StageCount) - 1u;
     std::size_t best = steps.size();
@@ -93,7 +93,7 @@ Steps random_steps(std::mt19937& random, std::size_t length, std::span<const Sta
     return steps;
 }
 
-TEST(BarrierPlan, OrdersAWriteBeforeWhatReadsIt) {
+TEST(BarrierPlan, OrdersAWriteBeforeItsReaders) {
     const Barriers barriers = plan({{{1, Transfer, Kind::Write}}, {{1, Compute, Kind::Read}}});
     EXPECT_FALSE(barriers[0]);
     ASSERT_TRUE(barriers[1]);
@@ -102,7 +102,7 @@ TEST(BarrierPlan, OrdersAWriteBeforeWhatReadsIt) {
     EXPECT_EQ(barriers[1]->destinations, StageMask(Compute));
 }
 
-TEST(BarrierPlan, LetsReadersRunTogetherAndFlushesNothingAfterThem) {
+TEST(BarrierPlan, ReadersRunConcurrentlyWithoutFlushes) {
     const Barriers barriers = plan({{{1, Compute, Kind::Read}},
                                     {{1, Compute, Kind::Read}},
                                     {{1, Compute, Kind::Write}},
@@ -113,16 +113,16 @@ TEST(BarrierPlan, LetsReadersRunTogetherAndFlushesNothingAfterThem) {
     EXPECT_FALSE(barriers[3]) << "another resource";
 }
 
-TEST(BarrierPlan, OneBarrierHoldsForAllBefore) {
+TEST(BarrierPlan, OneBarrierCoversAllPreviousWrites) {
     const Barriers barriers = plan({{{1, Compute, Kind::Write}},
                                     {{2, Compute, Kind::Write}},
                                     {{1, Compute, Kind::Read}, {3, Compute, Kind::Write}},
                                     {{2, Compute, Kind::Read}}});
     EXPECT_TRUE(barriers[2]);
-    EXPECT_FALSE(barriers[3]) << "the barrier before stands for it too";
+    EXPECT_FALSE(barriers[3]) << "covered by the previous barrier";
 }
 
-TEST(BarrierPlan, WhatTheHostReadsHoldsNothingBack) {
+TEST(BarrierPlan, HostReadsNeedNoBarrier) {
     const Barriers barriers = plan({{{1, Compute, Kind::Write}},
                                     {{1, Host, Kind::Read}},
                                     {{1, Compute, Kind::Write}},
@@ -133,16 +133,16 @@ TEST(BarrierPlan, WhatTheHostReadsHoldsNothingBack) {
     EXPECT_TRUE(barriers[3]);
 }
 
-TEST(BarrierPlan, KnowsNothingAfterForgetting) {
+TEST(BarrierPlan, ResetForgetsAllAccesses) {
     BarrierPlan plan;
     plan.before(std::vector<Access>{{1, Compute, Kind::Write}});
     EXPECT_EQ(plan.size(), 1u);
-    plan.forget();
+    plan.reset();
     EXPECT_EQ(plan.size(), 0u);
     EXPECT_FALSE(plan.before(std::vector<Access>{{1, Compute, Kind::Read}}));
 }
 
-TEST(BarrierPlan, RandomStepsGetSufficientBarriersOfWhichNoneCanGo) {
+TEST(BarrierPlan, RandomStepsGetSufficientAndMinimalBarriers) {
     std::mt19937 random(11);
     constexpr std::array Stages{Compute, Transfer, Indirect, Drawing, Attachment};
     for (int turn = 0; turn < 2000; ++turn) {
@@ -158,7 +158,7 @@ TEST(BarrierPlan, RandomStepsGetSufficientBarriersOfWhichNoneCanGo) {
     }
 }
 
-TEST(BarrierPlan, AmongDispatchesNoPlanHasFewer) {
+TEST(BarrierPlan, DispatchesGetTheFewestBarriers) {
     std::mt19937 random(13);
     constexpr std::array Stages{Compute};
     for (int turn = 0; turn < 60; ++turn) {

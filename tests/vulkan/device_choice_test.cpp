@@ -26,7 +26,7 @@ std::string failure_text(std::span<const DeviceInfo> devices, std::string_view w
     return "";
 }
 
-TEST(DeviceChoice, TakesTheBestThatIsNotRefused) {
+TEST(DeviceChoice, PicksTheBestUsableDevice) {
     std::vector<DeviceInfo> devices = some_devices();
     EXPECT_EQ(choose_device(devices, "").index, 3u);
     for (const std::uint32_t expected : {4u, 2u, 0u}) {
@@ -37,7 +37,7 @@ TEST(DeviceChoice, TakesTheBestThatIsNotRefused) {
     }
 }
 
-TEST(DeviceChoice, TakesAnIndexOrAPartOfAName) {
+TEST(DeviceChoice, AcceptsAnIndexOrPartOfAName) {
     const std::vector<DeviceInfo> devices = some_devices();
     EXPECT_EQ(choose_device(devices, "0").index, 0u);
     EXPECT_EQ(choose_device(devices, "4").index, 4u);
@@ -46,7 +46,7 @@ TEST(DeviceChoice, TakesAnIndexOrAPartOfAName) {
     EXPECT_EQ(choose_device(devices, "card").index, 3u);
 }
 
-TEST(DeviceChoice, TellsWhatThereIsAndWhatWasRefused) {
+TEST(DeviceChoice, ErrorsListDevicesAndReasons) {
     const std::vector<DeviceInfo> devices = some_devices();
     for (const char* wanted : {"9", "old card", "1", "nothing"}) {
         const std::string text = failure_text(devices, wanted, ErrorCode::InvalidInput);
@@ -59,15 +59,15 @@ TEST(DeviceChoice, TellsWhatThereIsAndWhatWasRefused) {
     EXPECT_NE(failure_text({}, "", ErrorCode::Unavailable).find("install"), std::string::npos);
 }
 
-TEST(Results, AreNamedInTheError) {
+TEST(Results, ErrorsNameTheResult) {
     EXPECT_NO_THROW(check(VK_SUCCESS, "do it"));
     EXPECT_THROW(check(VK_ERROR_DEVICE_LOST, "submit"), DeviceLost);
     try {
-        check(VK_ERROR_OUT_OF_DEVICE_MEMORY, "make a buffer");
+        check(VK_ERROR_OUT_OF_DEVICE_MEMORY, "create a buffer");
         FAIL();
     } catch (const Error& error) {
         EXPECT_EQ(int(error.code()), int(ErrorCode::OutOfMemory));
-        EXPECT_TRUE(std::string(error.what()).starts_with("cannot make a buffer: VK_ERROR_OUT_OF_DEVICE"));
+        EXPECT_TRUE(std::string(error.what()).starts_with("cannot create a buffer: VK_ERROR_OUT_OF_DEVICE"));
     }
     EXPECT_EQ(result_name(static_cast<VkResult>(-77)), "VkResult -77");
 }

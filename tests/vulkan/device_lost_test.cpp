@@ -17,7 +17,7 @@ FaultHook lose_at(FaultPoint where, int call) {
 
 using DeviceLostTest = VulkanTest;
 
-TEST_F(DeviceLostTest, AFailedSubmissionIsTypedAndTheNextDeviceWorks) {
+TEST_F(DeviceLostTest, AFailedSubmissionThrowsDeviceLostAndANewDeviceWorks) {
     reopen({.fault = lose_at(FaultPoint::Submit, 3)});
     {
         const Buffer numbers(device(), 1024);
@@ -34,7 +34,7 @@ TEST_F(DeviceLostTest, AFailedSubmissionIsTypedAndTheNextDeviceWorks) {
     EXPECT_EQ(download<std::uint32_t>(device(), numbers), Words(256, 5));
 }
 
-TEST_F(DeviceLostTest, AFailedWaitIsTypedAndBuffersMayGo) {
+TEST_F(DeviceLostTest, AFailedWaitThrowsDeviceLostAndBuffersCanBeDestroyed) {
     reopen({.fault = lose_at(FaultPoint::Wait, 2)});
     Buffer numbers(device(), 1024);
     const Submission first = device().queue().submit(Fill{&numbers, 0, 1024, 5});
@@ -45,8 +45,8 @@ TEST_F(DeviceLostTest, AFailedWaitIsTypedAndBuffersMayGo) {
     numbers = Buffer();
 }
 
-// Not every failure is the end: what the plan of barriers assumed is given up, the device goes on.
-TEST_F(DeviceLostTest, AnotherFailureOfASubmissionLosesNothing) {
+// Other failures are recoverable: the barrier plan is reset, and the device stays usable.
+TEST_F(DeviceLostTest, OtherSubmissionErrorsDoNotLoseTheDevice) {
     reopen({.fault = [left = std::make_shared<std::atomic<int>>(2)](FaultPoint point) {
         return point == FaultPoint::Submit && --*left == 0 ? VK_ERROR_OUT_OF_HOST_MEMORY : VK_SUCCESS;
     }});

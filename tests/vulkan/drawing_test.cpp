@@ -57,7 +57,7 @@ class DrawingTest : public VulkanTest {
 };
 
 // Random quads at few depths, so that many are as near as others: the last of the nearest is seen.
-TEST_F(DrawingTest, TheLastOfTheNearestIsSeenHoweverDrawsAreCalled) {
+TEST_F(DrawingTest, TheLastOfEquallyNearTrianglesWins) {
     const GraphicsPipeline pipeline = quads();
     std::mt19937 random(3);
     constexpr std::uint32_t Count = 40;
@@ -73,7 +73,7 @@ TEST_F(DrawingTest, TheLastOfTheNearestIsSeenHoweverDrawsAreCalled) {
                 const std::size_t at = py * Edge + px;
                 if (depth < nearest[at]) continue;
                 nearest[at] = depth;
-                // The diagonal's pixel centres lie on both triangles' edge: not told which of them it is.
+                // Pixel centres on the diagonal are on the edge of both triangles: either one may win.
                 expected[at] = {i, (px - x) + (py - y) + 1 == size ? 2u : (px - x) + (py - y) >= size};
             }
         }
@@ -100,7 +100,7 @@ TEST_F(DrawingTest, TheLastOfTheNearestIsSeenHoweverDrawsAreCalled) {
     }
 }
 
-TEST_F(DrawingTest, OnlyTheAreaIsTouchedAndDepthCanBeKept) {
+TEST_F(DrawingTest, DrawsTouchOnlyTheAreaAndCanKeepDepth) {
     const GraphicsPipeline pipeline = quads();
     const Buffer near = make_buffer(device(), std::vector<Quad>{pixels(0, 0, 32, 0.75f)});
     const Buffer far = make_buffer(device(), std::vector<Quad>{pixels(0, 0, 64, 0.5f)});
@@ -142,7 +142,7 @@ TEST_F(DrawingTest, OnlyTheAreaIsTouchedAndDepthCanBeKept) {
     EXPECT_EQ(kept[20 * Edge + 50], 0.5f);
 }
 
-// What a kernel writes is drawn, what is drawn a kernel reads, over and over the same memory.
+// Kernels write what is drawn and read what was drawn, repeatedly in the same memory.
 TEST_F(DrawingTest, DrawsAndKernelsKeepTheirOrder) {
     struct Add {
         std::uint64_t a, b, to;
@@ -174,11 +174,11 @@ TEST_F(DrawingTest, DrawsAndKernelsKeepTheirOrder) {
                                  .count = 1,
                                  .reads = {&data}});
         steps.push_back(CopyImage{&ids, Whole, &picture, 0});
-        steps.push_back(Pass{.pipeline = &adder,
-                             .arguments = Add{sum.address(), picture.address(), sum.address(), Words, 0},
-                             .groups = {Words / 64},
-                             .reads = {&picture},
-                             .writes = {&sum}});
+        steps.push_back(Dispatch{.pipeline = &adder,
+                                 .arguments = Add{sum.address(), picture.address(), sum.address(), Words, 0},
+                                 .groups = {Words / 64},
+                                 .reads = {&picture},
+                                 .writes = {&sum}});
     }
     device().queue().submit(steps);
     const std::vector<std::uint32_t> found = download<std::uint32_t>(device(), sum);
@@ -187,7 +187,7 @@ TEST_F(DrawingTest, DrawsAndKernelsKeepTheirOrder) {
     }
 }
 
-TEST_F(DrawingTest, RefusesDrawsThatAreNone) {
+TEST_F(DrawingTest, RejectsInvalidDraws) {
     const GraphicsPipeline pipeline = quads();
     const Image ids(device(), Image::Kind::Ids, Edge, Edge), depth(device(), Image::Kind::Depth, Edge, Edge);
     const Buffer one = draws(1, 1), data = make_buffer(device(), std::vector<Quad>(1));

@@ -32,7 +32,7 @@ std::vector<std::uint32_t> counting(std::uint32_t count) {
     return numbers;
 }
 
-TEST_F(Kernel, SquaresWithTheConstantOfItsPipeline) {
+TEST_F(Kernel, UsesItsSpecialisationConstants) {
     const Buffer numbers = make_buffer(device(), counting(1000));
     const ComputePipeline kernel = square(7);
     run(device(), {.pipeline = &kernel,
@@ -45,7 +45,7 @@ TEST_F(Kernel, SquaresWithTheConstantOfItsPipeline) {
 }
 
 // Storage descriptors of the software device end at 128 MiB; addresses do not.
-TEST_F(Kernel, ReachesBeyondTheStorageRange) {
+TEST_F(Kernel, AddressesBeyondTheStorageBufferRange) {
     constexpr std::uint32_t Words = 280u << 18;  // 280 MiB
     constexpr std::uint32_t Tail = 4096;
     const Buffer numbers(device(), std::uint64_t(Words) * 4);
@@ -62,7 +62,7 @@ TEST_F(Kernel, ReachesBeyondTheStorageRange) {
     for (std::uint32_t i = 0; i < Tail; ++i) ASSERT_EQ(out[i], i * i) << i;
 }
 
-TEST_F(Kernel, RefusesArgumentsOfAnotherSize) {
+TEST_F(Kernel, RejectsArgumentsOfTheWrongSize) {
     const ComputePipeline kernel = square();
     EXPECT_THROW(run(device(), {.pipeline = &kernel, .arguments = std::uint64_t(0)}), Error);
     EXPECT_THROW(run(device(), {.arguments = Square{}}), Error);

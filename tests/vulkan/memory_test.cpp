@@ -29,40 +29,40 @@ class MemoryTest : public VulkanTest {
     }
 };
 
-TEST_F(MemoryTest, RandomBuffersKeepTheirContentsAndAllReturns) {
-    struct Held {
+TEST_F(MemoryTest, RandomBuffersKeepTheirContentsAndAreFreed) {
+    struct LiveBuffer {
         Buffer buffer;
         std::uint32_t mark;
     };
     std::mt19937 random(9);
-    std::vector<Held> held;
+    std::vector<LiveBuffer> buffers;
     constexpr std::array Kinds{MemoryKind::Device, MemoryKind::Upload, MemoryKind::Readback};
     for (std::uint32_t turn = 0; turn < 600; ++turn) {
-        if (held.empty() || random() % 5 < 3) {
+        if (buffers.empty() || random() % 5 < 3) {
             const std::uint64_t words = random() % (random() % 16 == 0 ? 4 * MiB : 20000);
-            Held one{Buffer(device(), words * 4, Kinds[random() % Kinds.size()]), turn};
+            LiveBuffer one{Buffer(device(), words * 4, Kinds[random() % Kinds.size()]), turn};
             EXPECT_EQ(one.buffer.address() % 16, 0u);
             device().queue().submit(Fill{&one.buffer, 0, words * 4, turn});
-            held.push_back(std::move(one));
+            buffers.push_back(std::move(one));
         } else {
-            std::swap(held[random() % held.size()], held.back());
-            const Held& last = held.back();
+            std::swap(buffers[random() % buffers.size()], buffers.back());
+            const LiveBuffer& last = buffers.back();
             EXPECT_EQ(download<std::uint32_t>(device(), last.buffer),
                       Words(last.buffer.size() / 4, last.mark));
-            held.pop_back();
+            buffers.pop_back();
         }
     }
-    for (const Held& one : held) {
+    for (const LiveBuffer& one : buffers) {
         ASSERT_EQ(download<std::uint32_t>(device(), one.buffer), Words(one.buffer.size() / 4, one.mark));
     }
     EXPECT_GT(used(), 0u);
-    held.clear();
+    buffers.clear();
     device().queue().latest().wait();
     device().queue().collect();
     EXPECT_EQ(used(), 0u);
 }
 
-TEST_F(MemoryTest, WhatDoesNotFitIsRefusedWithTheSizes) {
+TEST_F(MemoryTest, OutOfMemoryErrorsStateTheSizes) {
     reopen({.memory = {.limit = 64 * MiB}});
     const Buffer first(device(), 40 * MiB);
     try {
@@ -79,8 +79,8 @@ TEST_F(MemoryTest, WhatDoesNotFitIsRefusedWithTheSizes) {
     EXPECT_THROW(Buffer(device(), 1ull << 62), Error);
 }
 
-// A scene that replaces another one of its size must not need room for both, once the first is gone.
-TEST_F(MemoryTest, RoomOfDroppedBuffersIsWaitedForBeforeRefusing) {
+// A scene that replaces another one of its size must not need memory for both once the first is dropped.
+TEST_F(MemoryTest, AllocationWaitsForMemoryOfDroppedBuffers) {
     reopen({.memory = {.limit = 64 * MiB}});
     for (int turn = 0; turn < 10; ++turn) {
         std::vector<Buffer> scene;
@@ -91,7 +91,7 @@ TEST_F(MemoryTest, RoomOfDroppedBuffersIsWaitedForBeforeRefusing) {
     const Buffer all(device(), 60 * MiB);
 }
 
-TEST_F(MemoryTest, EqualBuffersThatComeAndGoTakeNoMore) {
+TEST_F(MemoryTest, ReallocatingEqualBuffersReservesNoMoreMemory) {
     std::vector<Buffer> buffers;
     for (int i = 0; i < 50; ++i) buffers.emplace_back(device(), 2 * MiB);
     const std::uint64_t before = reserved();
@@ -103,14 +103,14 @@ TEST_F(MemoryTest, EqualBuffersThatComeAndGoTakeNoMore) {
     }
     EXPECT_EQ(reserved(), before);
     buffers.clear();
-    EXPECT_LT(reserved(), before) << "empty blocks do not go back to the driver";
+    EXPECT_LT(reserved(), before) << "empty blocks are not returned to the driver";
 }
 
-TEST_F(MemoryTest, UploadsAreStagedWhereTheHostSeesNothing) {
-    reopen({.memory = {.mapping = MemorySettings::Mapping::Apart}});
+TEST_F(MemoryTest, UploadsToUnmappedMemoryAreStaged) {
+    reopen({.memory = {.mapping = MemorySettings::Mapping::Separate}});
     Words words(7 * MiB);  // several turns of the staging memory
     std::iota(words.begin(), words.end(), 3u);
-    // A queue that is behind: staging memory must not be filled again before it was copied.
+    // A busy queue: staging memory must not be overwritten before it was copied.
     struct Spin {
         std::uint64_t numbers;
         std::uint32_t turns, unused;
@@ -118,13 +118,13 @@ TEST_F(MemoryTest, UploadsAreStagedWhereTheHostSeesNothing) {
     const Buffer turned(device(), 64 * 4);
     const ComputePipeline spin(device(), {.name = "spin", .code = shaders::spin_comp(), .push_bytes = 16});
     device().queue().submit(
-        Pass{.pipeline = &spin, .arguments = Spin{turned.address(), 300000, 0}, .writes = {&turned}});
+        Dispatch{.pipeline = &spin, .arguments = Spin{turned.address(), 300000, 0}, .writes = {&turned}});
     const Buffer buffer = make_buffer(device(), words);
     EXPECT_TRUE(buffer.mapped().empty());
     EXPECT_EQ(device().uploaded_bytes(), words.size() * 4);
     EXPECT_EQ(download<std::uint32_t>(device(), buffer), words);
 
-    // A kernel after the upload sees it though it names nothing.
+    // A kernel after the upload sees the data without naming the buffer.
     struct Square {
         std::uint64_t numbers;
         std::uint32_t count, first;
@@ -147,7 +147,7 @@ TEST_F(MemoryTest, UploadsAreStagedWhereTheHostSeesNothing) {
     EXPECT_THROW(upload_bytes(device(), buffer, odd, buffer.size() - 2), Error);
 }
 
-TEST_F(MemoryTest, ABufferOfNothingHasAnAddress) {
+TEST_F(MemoryTest, AnEmptyBufferHasAnAddress) {
     const Buffer buffer = make_buffer(device(), Words());
     EXPECT_EQ(buffer.size(), 0u);
     EXPECT_NE(buffer.address(), 0u);

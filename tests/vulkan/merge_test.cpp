@@ -1,5 +1,4 @@
-// Samples merged on a device and by the merge of the whole system: the same bits, or the device says that it
-// cannot.
+// Samples merged on a device and on the host: identical bits, or the device flags that the host has to merge.
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -17,27 +16,27 @@ namespace {
 
 constexpr frame::ChannelSet AllChannels = frame::ChannelSet::all();
 
-// What the channels' values may be.
+// Plausible values of the AOV channels.
 using Draw = float (*)(CounterRandom&);
 
 float any_sign(CounterRandom& random, float size) {
     return random.below(2) == 0 ? size : -size;
 }
-float everyday(CounterRandom& random) {
+float typical(CounterRandom& random) {
     return any_sign(random, random.uniform());
 }
 // Any two of them differ by more than the square root of the smallest normal number, or are equal.
 float huge_range(CounterRandom& random) {
     return any_sign(random, std::ldexp(1.0f + random.uniform(), static_cast<int>(random.below(60)) - 30));
 }
-float seldom_lit(CounterRandom& random) {
+float rarely_lit(CounterRandom& random) {
     return random.below(10) == 0 ? std::ldexp(1.0f, static_cast<int>(random.below(20))) : 0.0f;
 }
 float any_bits(CounterRandom& random) {
     return std::bit_cast<float>(static_cast<std::uint32_t>(random.below(std::uint64_t{1} << 32)));
 }
-// Around everything that may go wrong.
-float hard(CounterRandom& random) {
+// Values around all limits: denormals, overflow, signed zero.
+float extreme(CounterRandom& random) {
     using limits = std::numeric_limits<float>;
     constexpr std::array Values{0.0f,
                                 -0.0f,
@@ -83,7 +82,7 @@ class Merging : public VulkanTest {
         return values;
     }
 
-    // What becomes of the samples: on the device first, if it can, and on the host.
+    // The merged samples: by the device, if possible, and by the host.
     struct Both {
         std::optional<backend::RenderResult> device;
         backend::RenderResult host;
@@ -96,7 +95,7 @@ class Merging : public VulkanTest {
         const Buffer table = make_buffer(device(), columns), from = make_buffer(device(), values);
         const Buffer to = make_buffer(device(), std::vector<std::uint32_t>(planes * pixels + 1));
         const auto count = static_cast<std::uint32_t>(columns.size());
-        run(device(), {.pipeline = &kernels_->merging().get(),
+        run(device(), {.pipeline = &kernels_->merge_kernel().get(),
                        .arguments = MergeJob{.columns = table.address(),
                                              .values = from.address(),
                                              .planes = to.address(),
@@ -131,8 +130,8 @@ class Merging : public VulkanTest {
     std::unique_ptr<Kernels> kernels_;
 };
 
-TEST_F(Merging, OnTheDeviceGivesTheBitsOfTheHost) {
-    for (const Draw draw : {everyday, huge_range, seldom_lit}) {
+TEST_F(Merging, TheDeviceMatchesTheHostBitForBit) {
+    for (const Draw draw : {typical, huge_range, rarely_lit}) {
         for (std::uint32_t level = 1; level <= MaxMergedLevel; ++level) {
             const Both both = merge(samples(draw, 37, level, level), 37, level);
             ASSERT_TRUE(both.device.has_value()) << "level " << level;
@@ -141,16 +140,16 @@ TEST_F(Merging, OnTheDeviceGivesTheBitsOfTheHost) {
     }
 }
 
-TEST_F(Merging, LeavesToTheHostWhatRoundsInAnotherWay) {
+TEST_F(Merging, LeavesDenormalAndNonFiniteValuesToTheHost) {
     int done = 0, left = 0;
     for (std::uint64_t seed = 0; seed < 600; ++seed) {
         const auto level = static_cast<std::uint32_t>(1 + seed % 3);
-        // One value of one channel's is hard: the others would hide it.
-        std::vector<float> values = samples(everyday, 1, level, seed);
+        // Only one value is difficult: more would hide it.
+        std::vector<float> values = samples(typical, 1, level, seed);
         CounterRandom random(seed + 1000);
         const std::uint64_t k = random.below(value_count(AllChannels));
         for (std::uint64_t s = 0; s < std::uint64_t{1} << level; ++s) {
-            values[(k << level) + s] = seed % 2 == 0 ? hard(random) : any_bits(random);
+            values[(k << level) + s] = seed % 2 == 0 ? extreme(random) : any_bits(random);
         }
         const Both both = merge(values, 1, level);
         ++(both.device ? done : left);
@@ -160,8 +159,8 @@ TEST_F(Merging, LeavesToTheHostWhatRoundsInAnotherWay) {
     EXPECT_GT(left, 100);
 }
 
-// Whatever this device does with them: another one takes numbers below the normal ones for 0.
-TEST_F(Merging, TellsAllThatLeavesTheNormalNumbers) {
+// On any device: some flush denormals to 0.
+TEST_F(Merging, FlagsResultsOutsideTheNormalRange) {
     using limits = std::numeric_limits<float>;
     struct Case {
         float first, second;
@@ -173,7 +172,7 @@ TEST_F(Merging, TellsAllThatLeavesTheNormalNumbers) {
           Case{limits::min(), -1.5f * limits::min(), true}, Case{1e20f, -1e20f, true},
           Case{limits::max(), limits::max(), true}, Case{limits::infinity(), 1.0f, true},
           Case{limits::quiet_NaN(), 1.0f, true}}) {
-        std::vector<float> values = samples(everyday, 1, 1, 7);
+        std::vector<float> values = samples(typical, 1, 1, 7);
         values[0] = example.first;
         values[1] = example.second;
         EXPECT_EQ(!merge(values, 1, 1).device.has_value(), example.is_left)

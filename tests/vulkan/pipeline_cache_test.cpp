@@ -41,7 +41,7 @@ class PipelineCacheTest : public VulkanTest {
     const fs::path folder_ = fs::temp_directory_path() / ("tessera-pipelines-" + std::to_string(::getpid()));
 };
 
-TEST_F(PipelineCacheTest, KeepsOneFileForEachKernelAndUsesItAgain) {
+TEST_F(PipelineCacheTest, KeepsAndReusesOneFilePerKernel) {
     reopen({.cache_folder = folder_});
     EXPECT_EQ(squared(1), 10u);
     EXPECT_EQ(squared(2), 11u);
@@ -57,7 +57,7 @@ TEST_F(PipelineCacheTest, KeepsOneFileForEachKernelAndUsesItAgain) {
     EXPECT_TRUE(device().pipelines().take_notes().empty());
 }
 
-TEST_F(PipelineCacheTest, ADamagedFileIsToldAndReplaced) {
+TEST_F(PipelineCacheTest, ADamagedFileIsReportedAndReplaced) {
     reopen({.cache_folder = folder_});
     squared(1);
     const fs::path path = *files().begin();

@@ -34,15 +34,15 @@ class QueueTest : public VulkanTest {
     ComputePipeline spinner() {
         return {device(), {.name = "spin", .code = shaders::spin_comp(), .push_bytes = sizeof(Spin)}};
     }
-    static Pass add(const ComputePipeline& kernel, const Buffer& a, const Buffer& b, const Buffer& to,
-                    std::uint32_t summand) {
+    static Dispatch add(const ComputePipeline& kernel, const Buffer& a, const Buffer& b, const Buffer& to,
+                        std::uint32_t summand) {
         return {.pipeline = &kernel,
                 .arguments = Add{a.address(), b.address(), to.address(), Count, summand},
                 .groups = {Count / 64},
                 .reads = {&a, &b},
                 .writes = {&to}};
     }
-    static Pass spin(const ComputePipeline& kernel, const Buffer& numbers, std::uint32_t turns) {
+    static Dispatch spin(const ComputePipeline& kernel, const Buffer& numbers, std::uint32_t turns) {
         return {.pipeline = &kernel,
                 .arguments = Spin{numbers.address(), turns, 0},
                 .groups = {static_cast<std::uint32_t>(numbers.size() / 4 / 64)},
@@ -50,8 +50,8 @@ class QueueTest : public VulkanTest {
     }
 };
 
-// Random chains over a few buffers, in random cuts into submissions, against the same on the host.
-TEST_F(QueueTest, ChainsOfDependentStepsGiveTheNumbersOfTheHost) {
+// Random chains over a few buffers, split randomly into submissions, against the host.
+TEST_F(QueueTest, DependentStepsMatchTheHost) {
     const ComputePipeline kernel = adder();
     std::mt19937 random(5);
     constexpr std::size_t Buffers = 4;
@@ -109,23 +109,24 @@ TEST_F(QueueTest, BindsTexelsAndStorage) {
     for (std::size_t i = 0; i < expected.size(); ++i) expected[i] = texels[i] + storage[i / 4];
     const Buffer first = make_buffer(device(), texels), second = make_buffer(device(), storage);
     const Buffer to(device(), expected.size() * 4);
-    const Pass pass{.pipeline = &kernel,
-                    .arguments = Bound{to.address(), Count, 0},
-                    .groups = {Count / 64},
-                    .bound = {&first, &second},
-                    .writes = {&to}};
-    run(device(), pass);
+    const Dispatch dispatch{.pipeline = &kernel,
+                            .arguments = Bound{to.address(), Count, 0},
+                            .groups = {Count / 64},
+                            .bound = {&first, &second},
+                            .writes = {&to}};
+    run(device(), dispatch);
     EXPECT_EQ(download<std::uint32_t>(device(), to), expected);
-    const std::array<Step, 3> again{Fill{&to, 0, to.size(), 0}, pass, pass};  // needs room for more sets
+    const std::array<Step, 3> again{Fill{&to, 0, to.size(), 0}, dispatch,
+                                    dispatch};  // needs more descriptor sets
     device().queue().submit(again).wait();
     EXPECT_EQ(download<std::uint32_t>(device(), to), expected);
 
-    Pass lacking = pass;
+    Dispatch lacking = dispatch;
     lacking.bound.pop_back();
     EXPECT_THROW(run(device(), lacking), Error);
 }
 
-TEST_F(QueueTest, AbandonedStepsRunToTheirEndOnMemoryThatStaysUntilThen) {
+TEST_F(QueueTest, AbandonedStepsFinishAndKeepTheirMemoryAlive) {
     const ComputePipeline kernel = spinner();
     const std::uint64_t before = device().memory().use()[0].used;
     for (int i = 0; i < 20; ++i) {
@@ -134,7 +135,7 @@ TEST_F(QueueTest, AbandonedStepsRunToTheirEndOnMemoryThatStaysUntilThen) {
     }
     const Buffer numbers = make_buffer(device(), Words(64, 1));
     Submission last = device().queue().submit(spin(kernel, numbers, 100000));
-    if (!is_instrumented()) {  // which waits after each submission by itself
+    if (!is_instrumented()) {  // which waits after each submission
         EXPECT_FALSE(last.wait_for(std::chrono::nanoseconds(0)));
         EXPECT_FALSE(last.done());
     }
@@ -144,7 +145,7 @@ TEST_F(QueueTest, AbandonedStepsRunToTheirEndOnMemoryThatStaysUntilThen) {
     EXPECT_LE(device().memory().use()[0].used - before, 4096u) << "dropped buffers still hold memory";
 }
 
-TEST_F(QueueTest, TellsHowLongStepsTook) {
+TEST_F(QueueTest, ReportsTimesOfSteps) {
     const ComputePipeline kernel = spinner();
     const Buffer numbers = make_buffer(device(), Words(64, 1));
     const std::array<Step, 3> steps{spin(kernel, numbers, 1), spin(kernel, numbers, 100000),
@@ -152,7 +153,7 @@ TEST_F(QueueTest, TellsHowLongStepsTook) {
     EXPECT_TRUE(device().queue().submit(steps).seconds().empty());
     ASSERT_GT(device().info().timestamp_period, 0.0f);
     EXPECT_EQ(device().queue().submit(steps, Timing::Total).seconds().size(), 1u);
-    std::array<double, 3> least{1, 1, 1};  // of several: another process may hold any of them up
+    std::array<double, 3> least{1, 1, 1};  // minimum of several: other processes may delay any of them
     for (int turn = 0; turn < 8; ++turn) {
         const std::vector<double> each = device().queue().submit(steps, Timing::Steps).seconds();
         ASSERT_EQ(each.size(), 3u);
@@ -162,7 +163,7 @@ TEST_F(QueueTest, TellsHowLongStepsTook) {
     EXPECT_GT(least[1], least[2]);
 }
 
-TEST_F(QueueTest, ReadsOnePartBackWhileTheNextRuns) {
+TEST_F(QueueTest, DownloadsOverlapWithTheNextDispatch) {
     const ComputePipeline kernel = adder();
     const Buffer ones = make_buffer(device(), Words(Count, 1));
     std::array<Buffer, 2> sums{Buffer(device(), Count * 4), Buffer(device(), Count * 4)};
@@ -180,7 +181,7 @@ TEST_F(QueueTest, ReadsOnePartBackWhileTheNextRuns) {
     }
 }
 
-TEST_F(QueueTest, ServesSeveralThreadsAtATime) {
+TEST_F(QueueTest, AcceptsSubmissionsFromSeveralThreads) {
     const ComputePipeline kernel = adder();
     constexpr std::uint32_t Threads = 4, Turns = 40;
     std::array<Words, Threads> results;
@@ -205,7 +206,7 @@ TEST_F(QueueTest, ServesSeveralThreadsAtATime) {
     }
 }
 
-TEST_F(QueueTest, RefusesStepsThatAreNoneAndRunsNothingOfThem) {
+TEST_F(QueueTest, RejectsInvalidStepsAndRunsNone) {
     const Buffer numbers = make_buffer(device(), Words(64, 1));
     const Buffer none;
     const std::array<Step, 2> beyond{Fill{&numbers, 0, 256, 9}, Fill{&numbers, 128, 132, 9}};

@@ -13,7 +13,7 @@ struct Piece {
     std::uint64_t offset, size;
 };
 
-TEST(RangeAllocator, RandomPiecesNeverOverlapAndAllReturn) {
+TEST(RangeAllocator, RandomRangesNeverOverlapAndAreAllReleased) {
     constexpr std::uint64_t Size = 1 << 20;
     std::mt19937 random(7);
     RangeAllocator ranges(Size);
@@ -51,8 +51,8 @@ TEST(RangeAllocator, RandomPiecesNeverOverlapAndAllReturn) {
     EXPECT_EQ(ranges.allocate(Size, 1), std::optional<std::uint64_t>(0)) << "the holes did not become one";
 }
 
-// What is replaced by its like, as the vertices of a moving mesh are, must not eat the memory up.
-TEST(RangeAllocator, EqualSizesFillTheHolesOfEachOther) {
+// Repeated replacement by equal sizes, as for vertices of a moving mesh, must not fragment memory.
+TEST(RangeAllocator, EqualSizesReuseHoles) {
     RangeAllocator ranges(100 * 1000);
     std::vector<std::uint64_t> offsets;
     for (int i = 0; i < 100; ++i) offsets.push_back(ranges.allocate(1000, 1).value());
@@ -67,7 +67,7 @@ TEST(RangeAllocator, EqualSizesFillTheHolesOfEachOther) {
     }
 }
 
-TEST(RangeAllocator, TakesTheSmallestHoleThatFits) {
+TEST(RangeAllocator, UsesTheSmallestHoleThatFits) {
     RangeAllocator ranges(1000);
     const auto large = ranges.allocate(300, 1), wall = ranges.allocate(10, 1), small = ranges.allocate(50, 1);
     ASSERT_TRUE(large && wall && small && ranges.allocate(640, 1));

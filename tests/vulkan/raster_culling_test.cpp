@@ -28,13 +28,15 @@ class RasterCulling : public RasterTest {
         light({0, 0, 0}, 30.0f);
         build();
     }
-    static RasterSettings culled() { return {.culling = RasterSettings::Culling::On, .hidden_from = 1}; }
+    static RasterSettings culled() {
+        return {.culling = RasterSettings::Culling::On, .occlusion_min_instances = 1};
+    }
     static RasterSettings everything() { return {.culling = RasterSettings::Culling::Off}; }
 
     ObjectId wall_;
 };
 
-TEST_F(RasterCulling, LeavesOutWhatIsOutsideAndThenWhatIsHidden) {
+TEST_F(RasterCulling, CullsOutsideAndOccludedInstances) {
     const view::View view = view_from({}, 64, 64);
     EXPECT_EQ(drawn(view, view.window, everything(), 0), Balls + 1);
     const std::uint32_t inside = drawn(view, view.window, culled(), 0);  // nothing seen before hides anything
@@ -42,11 +44,12 @@ TEST_F(RasterCulling, LeavesOutWhatIsOutsideAndThenWhatIsHidden) {
     EXPECT_LT(inside, Balls / 2);
     EXPECT_LT(unhidden, inside / 3);
     EXPECT_GT(unhidden, 1u);
-    EXPECT_LT(drawn(view, {0, 0, 16, 16}, culled(), 0), inside / 2) << "what is outside of the tile";
+    EXPECT_LT(drawn(view, {0, 0, 16, 16}, culled(), 0), inside / 2)
+        << "instances outside the tile are culled";
 }
 
 // From place to place, with what was seen at the one before in mind.
-TEST_F(RasterCulling, ThePictureDoesNotDependOnIt) {
+TEST_F(RasterCulling, DoesNotChangeThePicture) {
     std::mt19937 random(8);
     for (int turn = 0; turn < 10; ++turn) {
         view::View view = view_from({}, 80, 60);
@@ -56,12 +59,13 @@ TEST_F(RasterCulling, ThePictureDoesNotDependOnIt) {
         if (turn % 3 != 0) tile = {std::int32_t(random() % 40), std::int32_t(random() % 30), 33, 21};
         const frame::FilmTile expected = film(view, tile, {0, 2}, everything());
         EXPECT_TRUE(frame::identical_bits(expected, film(view, tile, {0, 2}, culled()))) << turn;
-        EXPECT_TRUE(frame::identical_bits(expected, film(view, tile, {0, 2}, {.hidden_from = 100000})))
+        EXPECT_TRUE(
+            frame::identical_bits(expected, film(view, tile, {0, 2}, {.occlusion_min_instances = 100000})))
             << turn;
     }
 }
 
-TEST_F(RasterCulling, ThePictureDoesNotDependOnHowDrawsAreCalled) {
+TEST_F(RasterCulling, DrawBatchingDoesNotChangeThePicture) {
     const view::View view = view_from({}, 64, 48);
     const frame::FilmTile expected = film(view, {0, 1}, everything());
     for (const std::uint32_t per_call : {1u, 7u}) {
@@ -71,8 +75,8 @@ TEST_F(RasterCulling, ThePictureDoesNotDependOnHowDrawsAreCalled) {
     }
 }
 
-// Boxes around the eye, through its plane, thinner than a pixel, and as far as places go.
-TEST_F(RasterTest, BoxesInOddPlacesAreNotLeftOut) {
+// Boxes around the eye, across its plane, thinner than a pixel, and at large distances.
+TEST_F(RasterTest, BoxesAroundOrBehindTheEyeAreNotCulled) {
     place(sphere(500.0, 6), moved(0, 0, 0));
     place(square(1000.0), glm::rotate(moved(0, -1, 0), 1.5707963, glm::dvec3(1, 0, 0)));
     place(sphere(0.001, 4), moved(0.01, 0, -0.5));
@@ -84,7 +88,8 @@ TEST_F(RasterTest, BoxesInOddPlacesAreNotLeftOut) {
         view::View view = view_from({}, 64, 48);
         view.camera.world_from_camera = glm::rotate(glm::dmat4(1.0), turn, glm::dvec3(0.2, 1, 0.1));
         const frame::FilmTile expected = film(view, {0, 2}, {.culling = RasterSettings::Culling::Off});
-        EXPECT_TRUE(frame::identical_bits(expected, film(view, {0, 2}, {.hidden_from = 1}))) << turn;
+        EXPECT_TRUE(frame::identical_bits(expected, film(view, {0, 2}, {.occlusion_min_instances = 1})))
+            << turn;
     }
 }
 

@@ -27,12 +27,12 @@ void RasterTest::SetUp() {
     kernels_ = std::make_unique<Kernels>(device());
     raster_kernels_ = std::make_unique<RasterKernels>(device());
     targets_ = std::make_unique<RasterTargets>(device());
-    world_ = std::make_unique<World>(blobs_, std::filesystem::path{});
-    world_->move_to(&device());
+    adapter_ = std::make_unique<SceneAdapter>(blobs_, std::filesystem::path{});
+    adapter_->move_to(&device());
 }
 
 void RasterTest::TearDown() {
-    world_.reset();
+    adapter_.reset();
     targets_.reset();
     raster_kernels_.reset();
     kernels_.reset();
@@ -99,9 +99,9 @@ void RasterTest::build(const glm::dvec3& render_origin) {
     root_.render_origin = render_origin;
     std::vector<scene::Entry> entries{scene::Create{scene::RootId, root_}};
     entries.insert(entries.end(), entries_.begin(), entries_.end());
-    const auto applied = world_->apply(builder_.edit(std::move(entries)));
+    const auto applied = adapter_->apply(builder_.edit(std::move(entries)));
     ASSERT_TRUE(applied) << applied.error().what();
-    const auto done = world_->commit();
+    const auto done = adapter_->commit();
     ASSERT_TRUE(done) << done.error().what();
 }
 
@@ -122,16 +122,16 @@ frame::FilmTile RasterTest::film(const view::View& view, const Rect& tile, frame
                                  const RasterSettings& settings) {
     const RasterTools tools{*raster_kernels_, *targets_, settings};
     const bool rasters = view.renderer == view::Renderer::Raster;
-    const shading::View record = backend::make_view(view, world_->tables().render_origin);
+    const shading::View record = backend::make_view(view, adapter_->tables().render_origin);
     const TileRenderer renderer{device(),
                                 *kernels_,
-                                pace_,
-                                world_->scene(),
-                                backend::features_for(world_->tables(), record),
+                                dispatch_budget_,
+                                adapter_->scene(),
+                                backend::features_for(adapter_->tables(), record),
                                 rasters ? &tools : nullptr};
     const view::WorkUnit unit{.view = view.id,
                               .revision = view.revision,
-                              .version = world_->version(),
+                              .version = adapter_->version(),
                               .tile = tile,
                               .block = block};
     backend::RenderResult result = renderer.run(record, unit, view.channels, {});
@@ -141,9 +141,9 @@ frame::FilmTile RasterTest::film(const view::View& view, const Rect& tile, frame
 
 std::uint32_t RasterTest::drawn(const view::View& view, const Rect& tile, const RasterSettings& settings,
                                 std::uint32_t before) {
-    const shading::View record = backend::make_view(view, world_->tables().render_origin);
+    const shading::View record = backend::make_view(view, adapter_->tables().render_origin);
     const Buffer view_buffer = make_buffer(device(), std::vector<shading::View>{record});
-    const GpuScene& scene = world_->scene();
+    const GpuScene& scene = adapter_->scene();
     const RasterKernels::Set kernels = raster_kernels_->find(scene.features());
     RasterTarget target(device(), view.width, view.height, scene.instance_count());
     const RasterPass pass{device(), kernels, scene, target, settings, record, view_buffer.address()};
@@ -159,7 +159,7 @@ std::uint32_t RasterTest::drawn(const view::View& view, const Rect& tile, const 
 }
 
 std::vector<RasterTest::Seen> RasterTest::seen_by_rays(const view::View& view, std::uint64_t index) const {
-    const backend::SceneTables& tables = world_->tables();
+    const backend::SceneTables& tables = adapter_->tables();
     const shading::Scene scene = backend::on_host(tables);
     const shading::View record = backend::make_view(view, tables.render_origin);
     std::vector<Seen> result;
@@ -206,14 +206,14 @@ std::vector<RasterTest::Seen> RasterTest::seen_in(const frame::FilmTile& film,
     return result;
 }
 
-std::size_t RasterTest::differing(const view::View& view, std::uint64_t index, double share) {
+std::size_t RasterTest::differing(const view::View& view, std::uint64_t index, double tolerance) {
     const std::vector<Seen> expected = seen_by_rays(view, index);
     const std::vector<Seen> found = seen_in(film(view, {index, 0}), view.channels);
     std::size_t count = 0;
     for (std::size_t i = 0; i < expected.size(); ++i) {
         const Seen &a = expected[i], &b = found[i];
         const bool same_depth =
-            a.depth == b.depth || std::fabs(double(a.depth) - double(b.depth)) <= share * double(a.depth);
+            a.depth == b.depth || std::fabs(double(a.depth) - double(b.depth)) <= tolerance * double(a.depth);
         count += a.object == b.object && same_depth ? 0 : 1;
     }
     return count;

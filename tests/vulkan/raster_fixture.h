@@ -3,19 +3,19 @@
 #include <memory>
 #include <vector>
 
+#include "backends/vulkan/dispatch_budget.h"
 #include "backends/vulkan/kernels.h"
-#include "backends/vulkan/pace.h"
 #include "backends/vulkan/raster/raster_run.h"
+#include "backends/vulkan/scene_adapter.h"
 #include "backends/vulkan/tile_renderer.h"
-#include "backends/vulkan/world.h"
 #include "mediator/shading/raster.h"
 #include "tests/backend/scene_builder.h"
 #include "tests/vulkan/vulkan_test.h"
 
 namespace tessera::vulkan {
 
-// A scene on a device under the validation layer, drawn and traced by the parts of the back-end; and on the
-// host, where every triangle is tried.
+// A scene on a device under the validation layer, rasterised and traced by the back-end, and traced on the host by
+// brute force.
 class RasterTest : public VulkanTest {
   protected:
     RasterTest();
@@ -38,24 +38,24 @@ class RasterTest : public VulkanTest {
                          const RasterSettings& settings = {}) {
         return film(view, view.window, block, settings);
     }
-    // Instances that the last step of drawing one sample of the tile shows, after drawing so many before.
+    // Instances drawn by the last step for one sample of the tile, after drawing `before` samples.
     std::uint32_t drawn(const view::View& view, const Rect& tile, const RasterSettings& settings,
                         std::uint32_t before);
 
-    // What the shared place of a sample sees in each pixel of the picture.
+    // The hit at the common subpixel position of a sample in each pixel of the picture.
     struct Seen {
         std::uint32_t object = 0;  // id
         float depth = shading::infinity();
     };
     std::vector<Seen> seen_by_rays(const view::View& view, std::uint64_t index) const;
     std::vector<Seen> seen_in(const frame::FilmTile& film, frame::ChannelSet channels) const;
-    // Pixels of which rays see something else, or at a depth that differs by more than the share.
-    std::size_t differing(const view::View& view, std::uint64_t index, double share = 1e-4);
+    // The number of pixels whose ray hits differ, or whose depth differs by more than the tolerance.
+    std::size_t differing(const view::View& view, std::uint64_t index, double tolerance = 1e-4);
 
     static view::View view_from(const glm::dvec3& eye, std::uint32_t width, std::uint32_t height);
 
     std::shared_ptr<scene::BlobStore> blobs_;
-    std::unique_ptr<World> world_;
+    std::unique_ptr<SceneAdapter> adapter_;
 
   private:
     ObjectId next() { return ObjectId{++last_id_}; }
@@ -67,7 +67,7 @@ class RasterTest : public VulkanTest {
     std::unique_ptr<Kernels> kernels_;
     std::unique_ptr<RasterKernels> raster_kernels_;
     std::unique_ptr<RasterTargets> targets_;
-    Pace pace_;
+    DispatchBudget dispatch_budget_;
 };
 
 }  // namespace tessera::vulkan

@@ -1,5 +1,5 @@
-// What is drawn against what rays see, at every triangle of the scene and under the validation layer; and the
-// light of Raster against that of Whitted.
+// Rasterised hits against ray hits, on every triangle of the scene and under the validation layer; and the radiance
+// of the raster renderer against that of Whitted.
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -14,7 +14,7 @@ namespace {
 
 using test::moved;
 
-// Balls before a wall that fills the picture, at any size and place.
+// Spheres in front of a wall that fills the picture, at any size and position.
 struct Place {
     double scale;
     glm::dvec3 center;
@@ -23,7 +23,7 @@ struct Place {
 class RasterAnywhere : public RasterTest, public testing::WithParamInterface<Place> {};
 
 // Pixels that an edge cuts may show either side: the rasteriser rounds corners to parts of a pixel.
-TEST_P(RasterAnywhere, SeesWhatRaysSee) {
+TEST_P(RasterAnywhere, MatchesRays) {
     const auto& [scale, center] = GetParam();
     const auto at = [&](double x, double y, double z) {
         const glm::dvec3 place = center + scale * glm::dvec3(x, y, z);
@@ -46,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(Places, RasterAnywhere,
                                          Place{1e11, {}}, Place{1.0, {1e6, -3e6, 2e6}},
                                          Place{1.0, {200.3, 100.7, -250.1}}));
 
-TEST_F(RasterTest, SeesWhatRaysSeeThroughAnOffAxisFrustum) {
+TEST_F(RasterTest, MatchesRaysInAnOffAxisFrustum) {
     place(square(20.0), moved(0, 0, -6));
     for (int i = 0; i < 5; ++i) place(sphere(0.5, 8), moved(i - 2.0, 0.5 * i, -3));
     build();
@@ -60,8 +60,8 @@ TEST_F(RasterTest, SeesWhatRaysSeeThroughAnOffAxisFrustum) {
     EXPECT_LE(differing(view, 2), 12u);
 }
 
-// A floor that reaches behind the eye, walls through it, a body around it, both windings.
-TEST_F(RasterTest, SeesTrianglesThatCrossTheEyesPlane) {
+// A floor that extends behind the eye, walls through the eye, a sphere around it, both windings.
+TEST_F(RasterTest, DrawsTrianglesThatCrossTheEyePlane) {
     const ObjectId floor = mesh({{-1000, -1, 1000}, {1000, -1, 1000}, {0, -1, -1000}}, {0, 1, 2});
     const ObjectId roof = mesh({{-1000, 1, 1000}, {1000, 1, 1000}, {0, 1, -1000}}, {0, 2, 1});
     place(floor, moved(0, 0, 0));
@@ -75,7 +75,7 @@ TEST_F(RasterTest, SeesTrianglesThatCrossTheEyesPlane) {
     for (std::uint64_t index = 0; index < 4; ++index) EXPECT_LE(differing(view, index, 1e-3), 12u) << index;
 }
 
-TEST_F(RasterTest, DegenerateTrianglesAreNotSeen) {
+TEST_F(RasterTest, SkipsDegenerateTriangles) {
     place(square(5.0), moved(0, 0, -4));
     const ObjectId none =
         mesh({{-1, 0, 0}, {1, 0, 0}, {0, 0, 0}, {1, 1, 0}}, {0, 1, 2, 1, 1, 3, 3, 3, 3, 0, 0, 0});
@@ -85,8 +85,8 @@ TEST_F(RasterTest, DegenerateTrianglesAreNotSeen) {
     EXPECT_EQ(differing(view_from({}, 40, 30), 0), 0u);
 }
 
-// Leaves with holes, and panes of which a part of the rays passes: asked as a ray asks.
-TEST_F(RasterTest, SurfacesWithAlphaLetTheSameRaysPass) {
+// Leaves with holes, and partly transparent panes: the alpha tests of rays.
+TEST_F(RasterTest, AlphaTestsMatchRays) {
     scene::Material pane;
     pane.alpha_mode = scene::AlphaMode::Blend;
     pane.base_color.a = 0.5f;
@@ -103,7 +103,7 @@ TEST_F(RasterTest, SurfacesWithAlphaLetTheSameRaysPass) {
     for (std::uint64_t index = 0; index < 4; ++index) EXPECT_LE(differing(view, index), 12u) << index;
 }
 
-TEST_F(RasterTest, OfEqualsTheLowestInstanceAndTriangleIsSeenAsByRays) {
+TEST_F(RasterTest, CoincidentTrianglesResolveToTheLowestIndexAsForRays) {
     const ObjectId twice = mesh({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}}, {0, 1, 2, 0, 1, 2});
     const ObjectId wall = square(1.0), same = square(1.0);
     place(twice, moved(0, 0, -3));
@@ -131,7 +131,7 @@ TEST_F(RasterTest, AnEmptySceneIsEmpty) {
 }
 
 // Also across the border of a cell, which is at pixel 2048.
-TEST_F(RasterTest, ATileHasTheBitsOfTheWholePicture) {
+TEST_F(RasterTest, TilesMatchTheWholePictureBitForBit) {
     place(square(9.0), moved(0, 0, -6));
     for (int i = 0; i < 9; ++i) place(sphere(0.3, 6), moved(0.5 * i - 2.0, 0.1 * i, -3));
     light({0, 3, 0}, 50.0f);
@@ -181,9 +181,9 @@ class RasterLight : public RasterTest {
     }
 };
 
-// Batches of samples of the whole picture: all pixels of a sample share a place, so they are no independent
-// estimates, but the samples' means are.
-TEST_F(RasterLight, IsThatOfWhitted) {
+// Batches of samples of the whole picture: all pixels of a sample share a subpixel position, so they are not
+// independent estimates, but the means of samples are.
+TEST_F(RasterLight, MatchesWhitted) {
     view::View raster = view_from({}, 48, 32);
     raster.channels.insert(frame::Channel::Albedo);
     raster.channels.insert(frame::Channel::Normal);
@@ -220,9 +220,9 @@ TEST_F(RasterLight, IsThatOfWhitted) {
     }
 }
 
-// In the middle of surfaces, where nothing changes within a pixel, sample by sample: the seeds are the
-// pixel's own, so all that differs is the place in the pixel.
-TEST_F(RasterLight, OfAPixelIsThatOfWhittedSampleBySample) {
+// Inside surfaces, where nothing changes within a pixel, sample by sample: the seeds are the
+// pixel's own, so only the subpixel position differs.
+TEST_F(RasterLight, MatchesWhittedSampleBySample) {
     view::View raster = view_from({}, 48, 32);
     raster.pixel_filter = {view::PixelFilterKind::Box, 1e-4f};  // as good as the pixel's centre, for both
     view::View whitted = raster;
@@ -239,9 +239,9 @@ TEST_F(RasterLight, OfAPixelIsThatOfWhittedSampleBySample) {
     EXPECT_GE(double(agree), 0.98 * double(count));
 }
 
-TEST_F(RasterLight, ChangesToPathsAndBackWithTheViewAlone) {
+TEST_F(RasterLight, SwitchesRenderersWithTheView) {
     view::View view = view_from({}, 48, 32);
-    const Version version = world_->version();
+    const Version version = adapter_->version();
     const frame::FilmTile drawn = film(view, {0, 2});
     view.renderer = view::Renderer::PathTracing;
     view.revision = 2;
@@ -250,10 +250,10 @@ TEST_F(RasterLight, ChangesToPathsAndBackWithTheViewAlone) {
     view.renderer = view::Renderer::Raster;
     view.revision = 3;
     EXPECT_TRUE(frame::identical_bits(drawn, film(view, {0, 2})));
-    EXPECT_EQ(world_->version(), version);
+    EXPECT_EQ(adapter_->version(), version);
 }
 
-TEST_F(RasterLight, BlocksAreThoseOfTheirSamples) {
+TEST_F(RasterLight, BlocksMatchTheirSamples) {
     const view::View view = view_from({}, 48, 32);
     const frame::FilmTile eight = film(view, {8, 3});
     frame::FilmTile left = film(view, {8, 2});

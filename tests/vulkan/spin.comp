@@ -2,7 +2,7 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_scalar_block_layout : require
 
-// Turns numbers over for a while, so that a dispatch lasts.
+// Busy loop: keeps the device occupied for a number of iterations.
 layout(local_size_x = 64) in;
 
 layout(buffer_reference, scalar) buffer Numbers { uint at[]; };
@@ -13,7 +13,7 @@ layout(push_constant, scalar) uniform Arguments {
 
 void main() {
     uint value = numbers.at[gl_GlobalInvocationID.x];
-    for (uint i = 0; i < turns; ++i) {  // xorshift: no compiler folds turns into one
+    for (uint i = 0; i < turns; ++i) {  // xorshift: compilers cannot fold the iterations
         value ^= value << 13;
         value ^= value >> 17;
         value ^= value << 5;

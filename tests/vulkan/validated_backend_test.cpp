@@ -1,4 +1,4 @@
-// All that the back-end does with a device, under the validation layers: they have nothing to say.
+// Everything that the back-end does with a device, under the validation layers, without messages.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -64,29 +64,30 @@ class ValidatedBackend : public testing::Test {
     std::vector<Message> messages_;
 };
 
-TEST_F(ValidatedBackend, RendersEveryWayAndIsEditedAtEveryLevel) {
-    std::vector mappings{MemorySettings::Mapping::AsOffered};
-    // How memory is mapped is a matter of copies; kernels, which instruments make slow to translate, are the
-    // same.
-    if (wanted_validation() != Validation::Instrumented) mappings.push_back(MemorySettings::Mapping::Apart);
+TEST_F(ValidatedBackend, AllRenderersAndAllKindsOfEditsAreValid) {
+    std::vector mappings{MemorySettings::Mapping::Default};
+    // Mapping only affects copies; kernels, which are slow to compile with instrumentation, are the same.
+    if (wanted_validation() != Validation::Instrumented)
+        mappings.push_back(MemorySettings::Mapping::Separate);
     for (const auto mapping : mappings) {
         builder = {};
         changes = builder.edit(test::contract_scene(*blobs));
         open({.memory = {.mapping = mapping}});
         EXPECT_GT(rays_of(), 0u);
-        EXPECT_GT(rays_of(view::Renderer::Whitted), 0u);  // by the same kernel, since the range is wanted
+        EXPECT_GT(rays_of(view::Renderer::Whitted),
+                  0u);  // by the same kernel, since the headlight feature is requested
         test::commit(*backend, {builder.move(test::BlockAt, test::moved(0.2, 0.1, -1.5))});  // retransformed
         EXPECT_GT(rays_of(), 0u);
         test::commit(*backend,
                      {builder.edit({test::SceneBuilder::update<scene::Geometry>(
                          test::Block, &scene::Geometry::hint, {.hint = scene::MotionHint::Animated})})});
-        scene::Geometry bent = test::square(*blobs, 0.3f, test::Glow);
-        bent.positions = test::array_blob<float>(
+        scene::Geometry deformed = test::square(*blobs, 0.3f, test::Emissive);
+        deformed.positions = test::array_blob<float>(
             *blobs, {-0.3f, -0.3f, 0, 0.3f, -0.3f, 0.1f, 0.3f, 0.3f, 0, -0.3f, 0.3f, 0});
         {
             const auto scope = backend->begin_edit();
             ASSERT_TRUE(scope->apply(builder.edit({test::SceneBuilder::update<scene::Geometry>(
-                test::Block, &scene::Geometry::positions, bent)})));
+                test::Block, &scene::Geometry::positions, deformed)})));
             EXPECT_EQ(scope->commit().value().refitted, 1u);
         }
         EXPECT_GT(rays_of(), 0u);

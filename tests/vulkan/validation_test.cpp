@@ -10,34 +10,34 @@ namespace {
 
 class ValidationTest : public VulkanTest {
   protected:
-    // Whether the layer told of something with that in its name; takes all its messages.
-    bool told_of(const std::string& id) {
+    // Whether the layer reported a message with this text in its id; takes all messages.
+    bool reported(const std::string& id) {
         const std::vector<Message> messages = take_messages();
         for (const Message& message : messages) seen_ += message.id + "; ";
         return std::any_of(messages.begin(), messages.end(), [&](const Message& message) {
             return message.id.find(id) != std::string::npos || message.text.find(id) != std::string::npos;
         });
     }
-    std::string seen_ = "told: ";
+    std::string seen_ = "reported: ";
 };
 
-TEST_F(ValidationTest, SeesAWrongCall) {
+TEST_F(ValidationTest, ReportsAnInvalidCall) {
     const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = 0, .usage = 1};
     VkBuffer buffer = VK_NULL_HANDLE;
     vkCreateBuffer(device().get(), &info, nullptr, &buffer);
     vkDestroyBuffer(device().get(), buffer, nullptr);
-    EXPECT_TRUE(told_of("VUID-VkBufferCreateInfo-size")) << seen_;
+    EXPECT_TRUE(reported("VUID-VkBufferCreateInfo-size")) << seen_;
 }
 
-TEST_F(ValidationTest, SeesWhatIsLeftWhenTheDeviceIsClosed) {
+TEST_F(ValidationTest, ReportsObjectsLeakedAtDeviceDestruction) {
     const VkFenceCreateInfo info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
     VkFence fence = VK_NULL_HANDLE;
     vkCreateFence(device().get(), &info, nullptr, &fence);
     close();
-    EXPECT_TRUE(told_of("vkDestroyDevice")) << seen_;
+    EXPECT_TRUE(reported("vkDestroyDevice")) << seen_;
 }
 
-TEST_F(ValidationTest, SeesCopiesWithoutABarrier) {
+TEST_F(ValidationTest, ReportsCopiesWithoutABarrier) {
     const Buffer a(device(), 1024), b(device(), 1024), c(device(), 1024);
     const VkCommandPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
     VkCommandPool pool = VK_NULL_HANDLE;
@@ -54,10 +54,10 @@ TEST_F(ValidationTest, SeesCopiesWithoutABarrier) {
     vkCmdCopyBuffer(commands, b.get(), c.get(), 1, &region);
     vkEndCommandBuffer(commands);
     vkDestroyCommandPool(device().get(), pool, nullptr);
-    EXPECT_TRUE(told_of("SYNC-HAZARD-READ-AFTER-WRITE")) << seen_;
+    EXPECT_TRUE(reported("SYNC-HAZARD-READ-AFTER-WRITE")) << seen_;
 }
 
-TEST_F(ValidationTest, SeesAKernelThatLeavesItsBufferWhenInstrumented) {
+TEST_F(ValidationTest, InstrumentationReportsOutOfBoundsAccess) {
     reopen({}, Validation::Instrumented);
     struct Square {
         std::uint64_t numbers;
@@ -71,7 +71,7 @@ TEST_F(ValidationTest, SeesAKernelThatLeavesItsBufferWhenInstrumented) {
                    .arguments = Square{numbers.address(), 64, 1 << 20},
                    .groups = {1},
                    .writes = {&numbers}});
-    EXPECT_TRUE(told_of("out of bounds")) << seen_;
+    EXPECT_TRUE(reported("out of bounds")) << seen_;
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ Validation wanted_validation() {
 }
 
 std::uint64_t slack_for(Validation validation) {
-    return validation == Validation::Instrumented ? 256 : 0;  // padding of no struct is longer
+    return validation == Validation::Instrumented ? 256 : 0;  // more than the padding of any struct
 }
 
 void VulkanTest::SetUp() {

@@ -8,7 +8,7 @@
 #include "mediator/scene/fields.h"
 #include "mediator/wire/journal_records.h"
 
-// Values of described structures: any, by chance. tests/wire only.
+// Random values of described structures. tests/wire only.
 namespace tessera::wire::test {
 
 namespace detail = codec::detail;
@@ -17,7 +17,7 @@ using codec::from_bytes, codec::to_bytes;
 template <class T>
 void fill(T& value, CounterRandom& random);
 
-// Templates of many types: kept small, for they are compiled for all of them.
+// Templates instantiated for many types: kept small.
 template <Described T>
 [[gnu::noinline]] void fill_rows(T& value, CounterRandom& random) {
     for_each_row<T>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {

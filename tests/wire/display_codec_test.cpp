@@ -46,14 +46,14 @@ display::Display some_display() {
     return display;
 }
 
-TEST(DisplayCodec, ADisplayComesBackAsItWent) {
+TEST(DisplayCodec, RoundTrips) {
     const display::Display display = some_display();
     const auto decoded = decode_display(encode(display));
     ASSERT_TRUE(decoded) << decoded.error().what();
     EXPECT_TRUE(*decoded == display);
 }
 
-TEST(DisplayCodec, WhateverBytesComeItNeitherCrashesNorThrows) {
+TEST(DisplayCodec, ArbitraryBytesNeitherCrashNorThrow) {
     const std::vector<std::byte> good = encode(some_display());
     std::mt19937 random(5);
     std::size_t refused = 0;

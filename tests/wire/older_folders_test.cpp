@@ -1,4 +1,4 @@
-// What masters of before wrote into their session folders is read.
+// Session folders written by older masters can be read.
 #include <gtest/gtest.h>
 
 #include "mediator/wire/journal_codec.h"
@@ -7,7 +7,7 @@
 namespace tessera::wire::test {
 namespace {
 
-// Once a view was saved with its samples, before there were requests of views.
+// Older folders store a view with its samples instead of a view request.
 TEST(OlderFolders, AViewWithoutARequestIsRead) {
     CheckpointState state;
     state.scene.to = {1, 1};

@@ -35,7 +35,7 @@ constexpr Field::Type proto_type(bool full_width) {
     }
 }
 
-// What a field holds one of.
+// One value of a field.
 template <class T>
 struct ElementOf {
     using Type = T;
@@ -97,7 +97,7 @@ void expect_same_message(const google::protobuf::Descriptor& proto) {
     }
 }
 
-// In a message and all below it.
+// In a message and all its sub-messages.
 inline int unknown_fields(const ProtoMessage& message) {
     const auto* reflection = message.GetReflection();
     int count = reflection->GetUnknownFields(message).field_count();
@@ -112,8 +112,8 @@ inline int unknown_fields(const ProtoMessage& message) {
     return count;
 }
 
-// Any value, written by encode(), is read by libprotobuf without a byte left over, and what libprotobuf writes of it is
-// the same value to decode().
+// Random values written by encode() are read completely by libprotobuf, and libprotobuf's encoding of them is decoded to
+// the same value.
 template <class T, class Proto, class Encode, class Decode>
 void expect_same_bytes(int runs, const Encode& encode, const Decode& decode) {
     CounterRandom random(7);

@@ -1,5 +1,5 @@
-// The descriptions of structures say what the files of proto/ say, field by field, and the codec's bytes are those of
-// libprotobuf. So neither can change without the other.
+// The C++ descriptions agree with the files of proto/ field by field, and the codec's bytes with libprotobuf, so neither
+// can change without the other.
 #include "tests/wire/proto_contract.h"
 
 #include "mediator/wire/display_codec.h"
@@ -11,7 +11,7 @@
 namespace tessera::wire::test {
 namespace {
 
-// A function that the codecs overload, as an object.
+// A function object for the overloaded codec functions.
 constexpr auto encoded = [](const auto& value) { return encode(value); };
 
 TEST(ProtoContract, ControlMessages) {
@@ -35,14 +35,14 @@ TEST(ProtoContract, Displays) {
                                                       [](auto bytes) { return decode_display(bytes); });
 }
 
-// What a checkpoint says has to agree with itself, so any value will not do.
+// A checkpoint has to be consistent, so random values cannot be used.
 TEST(ProtoContract, Checkpoints) {
     expect_same_message<CheckpointState>(*proto::Checkpoint::descriptor());
-    expect_same_message<KeptJob>(*proto::KeptJob::descriptor());
+    expect_same_message<StoredJob>(*proto::StoredJob::descriptor());
 }
 
-// The numbers of oneofs that are free are free for ever.
-TEST(ProtoContract, NumbersOfMessagesThatAreGoneAreReserved) {
+// Retired numbers of oneofs are never reused.
+TEST(ProtoContract, NumbersOfRemovedMessagesAreReserved) {
     const auto& proto = *proto::Control::descriptor();
     int last = 0;
     for (int i = 0; i < proto.field_count(); ++i) last = std::max(last, proto.field(i)->number());
@@ -52,7 +52,7 @@ TEST(ProtoContract, NumbersOfMessagesThatAreGoneAreReserved) {
     }
 }
 
-// A structure before and after a row came to it.
+// A structure before and after a row was added.
 struct Early {
     float size = 2.0f;
     static constexpr auto describe(auto row) { return std::tuple(row(1, "size", &Early::size)); }
@@ -66,7 +66,7 @@ struct Late {
     }
 };
 
-TEST(LaterRows, HaveTheirInitialValueWhereTheyAreAbsent) {
+TEST(LaterRows, HaveTheirDefaultValueWhenAbsent) {
     const auto read = from_bytes<Late>(to_bytes(Early{.size = 0.0f}));
     ASSERT_TRUE(read);
     EXPECT_EQ(read->size, 0.0f);

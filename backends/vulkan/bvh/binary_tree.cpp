@@ -12,42 +12,43 @@ namespace tessera::vulkan {
 
 namespace {
 
-constexpr std::uint32_t MaxDepth = 64;  // then Embree splits in halves, whatever the areas
+constexpr std::uint32_t MaxDepth = 64;  // beyond it Embree splits in halves, ignoring areas
 
-float cost_of(const BinaryNode& node, std::uint32_t ways, const TraversalCosts& costs) {
-    if (node.count > 1) return as_inner(node).cost[std::min(ways, InnerNode::Ways) - 1];
+float cost_of(const BinaryNode& node, std::uint32_t max_children, const TraversalCosts& costs) {
+    if (node.count > 1) return as_inner(node).cost[std::min(max_children, InnerNode::MaxChildren) - 1];
     return static_cast<float>(node.box.area()) * costs.triangle;
 }
 
 struct Division {
     float cost = std::numeric_limits<float>::infinity();
-    std::uint8_t left_share = 0;
+    std::uint8_t left_children = 0;
 };
 
-// The best way to make at most `ways` children of both sides.
-Division divide(const InnerNode& node, std::uint32_t ways, const TraversalCosts& costs) {
+// The cheapest split of at most `max_children` children between both sides.
+Division divide(const InnerNode& node, std::uint32_t max_children, const TraversalCosts& costs) {
     Division best;
-    for (std::uint32_t share = 1; share < ways; ++share) {
-        const float cost = cost_of(*node.left, share, costs) + cost_of(*node.right, ways - share, costs);
-        if (cost < best.cost) best = {cost, static_cast<std::uint8_t>(share)};
+    for (std::uint32_t left_count = 1; left_count < max_children; ++left_count) {
+        const float cost =
+            cost_of(*node.left, left_count, costs) + cost_of(*node.right, max_children - left_count, costs);
+        if (cost < best.cost) best = {cost, static_cast<std::uint8_t>(left_count)};
     }
     return best;
 }
 
 void decide(InnerNode& node, const TraversalCosts& costs) {
     const auto area = static_cast<float>(node.box.area());
-    const Division wide = divide(node, InnerNode::Ways + 1, costs);
-    node.wide_left_share = wide.left_share;
+    const Division wide = divide(node, InnerNode::MaxChildren + 1, costs);
+    node.wide_left_children = wide.left_children;
     const float as_wide = wide.cost + area * costs.node;
     const float as_leaf = area * costs.triangle * static_cast<float>(node.count);
-    // Not "<=" the other way round: with costs that are no numbers it has to become a wide node.
+    // Written so that NaN costs give a wide node.
     node.leaf = node.count <= costs.leaf_triangles && as_leaf <= as_wide;
     node.cost[0] = node.leaf ? as_leaf : as_wide;
-    for (std::uint32_t ways = 2; ways <= InnerNode::Ways; ++ways) {
-        const Division division = divide(node, ways, costs);
-        const bool better = division.cost < node.cost[ways - 2];
-        node.cost[ways - 1] = better ? division.cost : node.cost[ways - 2];
-        node.left_share[ways - 1] = better ? division.left_share : 0;
+    for (std::uint32_t max_children = 2; max_children <= InnerNode::MaxChildren; ++max_children) {
+        const Division division = divide(node, max_children, costs);
+        const bool better = division.cost < node.cost[max_children - 2];
+        node.cost[max_children - 1] = better ? division.cost : node.cost[max_children - 2];
+        node.left_children[max_children - 1] = better ? division.left_children : 0;
     }
 }
 
@@ -64,7 +65,7 @@ void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* pr
     return leaf;
 }
 
-// Called when both children are complete, so that decisions are made on all threads.
+// Called when both children are complete, on all threads.
 void set_children(void* parent, void** children, unsigned, void* costs) {
     auto& node = *static_cast<InnerNode*>(parent);
     node.left = static_cast<const BinaryNode*>(children[0]);
@@ -82,7 +83,7 @@ void ignore_bounds(void*, const RTCBounds**, unsigned, void*) {}
 BinaryTreeBuilder::BinaryTreeBuilder() : device_(rtcNewDevice(nullptr)) {
     if (!device_) {
         throw Error(ErrorCode::Unavailable,
-                    "Embree, which builds acceleration structures, cannot start: error " +
+                    "cannot initialise Embree, which builds acceleration structures: error " +
                         std::to_string(rtcGetDeviceError(nullptr)) + "; use another machine");
     }
 }

@@ -6,7 +6,7 @@
 
 namespace tessera::vulkan {
 
-// Axis-aligned, closed. Empty when default-made.
+// Axis-aligned and closed. Empty by default.
 struct Box {
     glm::vec3 low{std::numeric_limits<float>::infinity()};
     glm::vec3 high{-std::numeric_limits<float>::infinity()};
@@ -20,7 +20,7 @@ struct Box {
         low = glm::min(low, box.low);
         high = glm::max(high, box.high);
     }
-    // Half of the surface; 0 when empty.
+    // Half the surface area; 0 if empty.
     double area() const {
         if (empty()) return 0.0;
         const glm::dvec3 d = glm::dvec3(high) - glm::dvec3(low);

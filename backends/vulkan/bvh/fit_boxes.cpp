@@ -13,8 +13,7 @@ namespace {
 using shading::BvhNode;
 using shading::BvhWidth;
 
-constexpr std::uint32_t ParallelLevels =
-    3;  // 8^3 tasks are enough for any machine and each is worth its start
+constexpr std::uint32_t ParallelLevels = 3;  // 8^3 tasks are enough for any machine, and each is large enough
 
 class Fit {
   public:

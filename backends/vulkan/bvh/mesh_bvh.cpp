@@ -19,21 +19,21 @@ bool is_in_range(const glm::vec3& p) {
 }
 
 bool has_area(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-    // In double: tiny triangles are small, not degenerate.
+    // In double: tiny triangles are not degenerate.
     const glm::dvec3 normal = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
     return glm::dot(normal, normal) > 0.0;
 }
 
 std::span<const glm::vec3> positions_at(const MeshData& mesh, std::size_t step) {
-    return step == 0 ? mesh.positions : mesh.steps[step - 1];
+    return step == 0 ? mesh.positions : mesh.later_positions[step - 1];
 }
 
-// Empty for a triangle that is left out.
+// Empty for an invalid triangle.
 Box box_of(const MeshData& mesh, std::uint32_t triangle) {
     const glm::uvec3& corners = mesh.triangles[triangle];
     Box box;
     bool can_be_hit = false;
-    for (std::size_t step = 0; step <= mesh.steps.size(); ++step) {
+    for (std::size_t step = 0; step <= mesh.later_positions.size(); ++step) {
         const auto positions = positions_at(mesh, step);
         const glm::vec3 &a = positions[corners.x], &b = positions[corners.y], &c = positions[corners.z];
         if (!is_in_range(a) || !is_in_range(b) || !is_in_range(c)) return {};
@@ -90,8 +90,8 @@ void write_triangles(std::span<const std::uint32_t> primitives, const MeshData& 
     tbb::parallel_for(std::size_t{0}, primitives.size(), [&](std::size_t place) {
         const std::uint32_t triangle = primitives[place];
         const bool can_be_hit =
-            !box_of(mesh, triangle).empty();  // after a refit: else zero, which is never hit
-        const std::size_t count = mesh.steps.size() + 1;
+            !box_of(mesh, triangle).empty();  // after a refit: otherwise zero, which is never hit
+        const std::size_t count = mesh.later_positions.size() + 1;
         for (std::size_t step = 0; step < count; ++step) {
             shading::BvhTriangle written{.triangle = triangle};
             if (can_be_hit) {

@@ -15,7 +15,7 @@ struct Rows {
     glm::vec4 x, y, z;  // object from world
 };
 
-std::optional<Rows> inverse_of(const shading::Place& placed) {
+std::optional<Rows> inverse_of(const shading::Affine3x4& placed) {
     const glm::dmat3 inverse = glm::inverse(glm::dmat3(placed.linear));
     const glm::dvec3 translation = -(inverse * glm::dvec3(placed.translation));
     Rows rows;
@@ -27,10 +27,10 @@ std::optional<Rows> inverse_of(const shading::Place& placed) {
     return rows;
 }
 
-// How many roundings of sizes in the world the way back through an inverse made of floats may add: 9 of the
-// cofactors' sums of sizes and 6 of the determinant's, which have to be seen against the determinant
-// (motion_error in shading/motion.h); 8 of the interpolation.
-double roundings_of(const shading::Place& placed) {
+// Bound on the rounding error of the transform to object space by an inverse in floats, in roundings of world
+// coordinates: 9 of the cofactors and 6 of the determinant, relative to the determinant (motion_error in
+// shading/motion.h), and 8 of the interpolation.
+double roundings_of(const shading::Affine3x4& placed) {
     const glm::dmat3 m(placed.linear);
     const glm::dmat3 sizes(glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2]));
     const auto across = [](const glm::dvec3& v, const glm::dvec3& w) {
@@ -53,9 +53,9 @@ float outward(double value, double direction) {
 
 }  // namespace
 
-// Around the mesh as rays see it: their way to the object's space is rounded, 6 roundings of what is summed
-// up there, and as many of the transform that it inverts.
-Box box_at(const Box& mesh, const shading::Place& placed, double roundings) {
+// Conservative bounds for rays: their transform to object space has 6 roundings of the summed terms, and as many
+// of the inverted transform.
+Box box_at(const Box& mesh, const shading::Affine3x4& placed, double roundings) {
     glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low), size(0.0);
     const glm::dmat3 linear(placed.linear);
     const glm::dmat3 sizes(glm::abs(linear[0]), glm::abs(linear[1]), glm::abs(linear[2]));
@@ -80,16 +80,16 @@ Box box_at(const Box& mesh, const shading::Place& placed, double roundings) {
 
 Box world_box(const PlacedMesh& placed) {
     if (placed.box.empty()) return {};
-    const shading::Place still{placed.linear, placed.translation};
-    if (placed.places.empty()) return inverse_of(still) ? box_at(placed.box, still, 12.0) : Box();
+    const shading::Affine3x4 still{placed.linear, placed.translation};
+    if (placed.transform_keys.empty()) return inverse_of(still) ? box_at(placed.box, still, 12.0) : Box();
     Box all;
     bool can_be_hit = false;
     double roundings = 12.0;
-    for (const shading::Place& place : placed.places) {
+    for (const shading::Affine3x4& place : placed.transform_keys) {
         can_be_hit = can_be_hit || inverse_of(place);
         roundings = std::max(roundings, 12.0 + roundings_of(place));
     }
-    for (const shading::Place& place : placed.places) {
+    for (const shading::Affine3x4& place : placed.transform_keys) {
         const Box box = box_at(placed.box, place, roundings);
         if (box.empty()) return {};
         all.add(box);
@@ -97,7 +97,7 @@ Box world_box(const PlacedMesh& placed) {
     return can_be_hit ? all : Box();
 }
 
-std::array<glm::vec4, shading::BvhPlaceItems> rows_of(const shading::Place& place) {
+std::array<glm::vec4, shading::BvhTransformItems> rows_of(const shading::Affine3x4& place) {
     const auto row = [&](int i) {
         return glm::vec4(place.linear[0][i], place.linear[1][i], place.linear[2][i], place.translation[i]);
     };
@@ -105,7 +105,7 @@ std::array<glm::vec4, shading::BvhPlaceItems> rows_of(const shading::Place& plac
 }
 
 shading::BvhInstance record_of(const PlacedMesh& placed, std::uint32_t number, std::uint32_t places) {
-    const bool moves = !placed.places.empty();
+    const bool moves = !placed.transform_keys.empty();
     const Rows rows = moves ? Rows() : inverse_of({placed.linear, placed.translation}).value();
     return {.object_x = rows.x,
             .object_y = rows.y,
@@ -114,11 +114,11 @@ shading::BvhInstance record_of(const PlacedMesh& placed, std::uint32_t number, s
             .triangles = placed.triangles,
             .instance = number,
             .flags = (placed.alpha_tested ? shading::BvhAlphaTested : 0u) |
-                     (moves || placed.mesh_steps > 0 ? shading::BvhMoves : 0u),
+                     (moves || placed.mesh_key_intervals > 0 ? shading::BvhMoves : 0u),
             .layers = placed.layers,
-            .places = places,
-            .steps = moves ? static_cast<std::uint32_t>(placed.places.size()) - 1 : 0u,
-            .mesh_steps = placed.mesh_steps};
+            .transform_keys = places,
+            .key_intervals = moves ? static_cast<std::uint32_t>(placed.transform_keys.size()) - 1 : 0u,
+            .mesh_key_intervals = placed.mesh_key_intervals};
 }
 
 }  // namespace tessera::vulkan

@@ -28,15 +28,15 @@ struct Range {
     double low = std::numeric_limits<double>::infinity(), high = -low;
 };
 
-// The frame of one axis that holds the range.
+// The frame of one axis that covers the range.
 struct Axis {
     float origin;
     int exponent;  // biased
     double step;
 
     explicit Axis(const Range& range) {
-        // Smallest power of two whose 255 steps, less both margins, span the range; more where the origin's
-        // own rounding needs it.
+        // Smallest power of two whose 255 steps, less both margins, span the range; larger if rounding of the
+        // origin requires it.
         exponent =
             std::clamp(std::ilogb(std::max((range.high - range.low) / MaxStep, 0x1p-126)) + 127, 1, 254);
         for (;; ++exponent) {

@@ -13,7 +13,7 @@ TraversalCosts instance_costs() {
     return {.triangle = InstanceCost, .leaf_triangles = 1};
 }
 
-// Boxes of all instances; empty ones are left out.
+// Boxes of all instances except empty ones.
 std::vector<Box> world_boxes(std::span<const PlacedMesh> instances) {
     std::vector<Box> boxes;
     boxes.reserve(instances.size());
@@ -36,7 +36,7 @@ void fit(TopBvh& top, std::span<const Box> boxes, std::span<const PlacedMesh> in
             const auto place_item = static_cast<std::uint32_t>(top.row.size() / 16 + places.size());
             const BvhInstance record = record_of(instances[number], number, place_item);
             std::memcpy(target, &record, sizeof record);
-            for (const shading::Place& at : instances[number].places) {
+            for (const shading::Affine3x4& at : instances[number].transform_keys) {
                 const auto rows = rows_of(at);
                 places.insert(places.end(), rows.begin(), rows.end());
             }

@@ -2,13 +2,13 @@
 
 #include <utility>
 
-#include "backends/vulkan/bvh/stored_tree.h"
+#include "backends/vulkan/bvh/tree_serialization.h"
 
 namespace tessera::vulkan {
 
 namespace {
 
-// One more with every change of the stored form or of how trees are made of the same settings.
+// Incremented with every change of the file format or of how trees are built from the same settings.
 constexpr std::uint32_t Format = 1;
 
 Hash256 key_of(const MeshHashes& hashes, const TraversalCosts& costs) {
@@ -34,20 +34,20 @@ TreeCache::TreeCache(std::filesystem::path folder, std::uint64_t byte_limit)
 
 std::optional<WideTree> TreeCache::load(const MeshData& mesh, const MeshHashes& hashes,
                                         const TraversalCosts& costs) {
-    if (mesh.triangles.size() < FewestTriangles) return std::nullopt;
+    if (mesh.triangles.size() < MinTriangles) return std::nullopt;
     const auto bytes = files_.load(key_of(hashes, costs));
     if (!bytes) return std::nullopt;
-    std::optional<WideTree> tree = restored(*bytes, mesh, costs);
+    std::optional<WideTree> tree = deserialize_tree(*bytes, mesh, costs);
     if (!tree) {
         const std::scoped_lock lock(mutex_);
-        notes_ = {"the cache folder has a tree that is not its mesh's; it is built anew"};
+        notes_ = {"the cache folder has a BVH that does not match its mesh; it is rebuilt"};
     }
     return tree;
 }
 
 void TreeCache::save(const WideTree& tree, const MeshHashes& hashes, const TraversalCosts& costs) {
-    if (tree.primitives.size() < FewestTriangles) return;
-    files_.save(key_of(hashes, costs), stored(tree));
+    if (tree.primitives.size() < MinTriangles) return;
+    files_.save(key_of(hashes, costs), serialize_tree(tree));
 }
 
 std::vector<std::string> TreeCache::take_notes() {

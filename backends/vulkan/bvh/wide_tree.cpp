@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "backends/vulkan/bvh/wide_rows.h"
+#include "backends/vulkan/bvh/wide_tree_writer.h"
 
 namespace tessera::vulkan {
 
@@ -23,16 +23,16 @@ struct Children {
     void add(const BinaryNode& node, bool leaf) { items[count++] = {&node, leaf}; }
 };
 
-// Follows the decisions of the dynamic programme: `node` as at most `ways` children.
-void spread(const BinaryNode& node, std::uint32_t ways, Children& out) {
+// Follows the decisions of the dynamic programme: `node` as at most `max_children` children.
+void spread(const BinaryNode& node, std::uint32_t max_children, Children& out) {
     if (node.count == 1) return out.add(node, true);
     const InnerNode& inner = as_inner(node);
-    ways = std::min(ways, InnerNode::Ways);
-    while (ways > 1 && inner.left_share[ways - 1] == 0) --ways;
-    if (ways == 1) return out.add(node, inner.leaf);
-    const std::uint32_t left = inner.left_share[ways - 1];
+    max_children = std::min(max_children, InnerNode::MaxChildren);
+    while (max_children > 1 && inner.left_children[max_children - 1] == 0) --max_children;
+    if (max_children == 1) return out.add(node, inner.leaf);
+    const std::uint32_t left = inner.left_children[max_children - 1];
     spread(*inner.left, left, out);
-    spread(*inner.right, ways - left, out);
+    spread(*inner.right, max_children - left, out);
 }
 
 Children cheapest_children(const BinaryNode& node) {
@@ -42,12 +42,12 @@ Children cheapest_children(const BinaryNode& node) {
         return out;
     }
     const InnerNode& inner = as_inner(node);
-    spread(*inner.left, inner.wide_left_share, out);
-    spread(*inner.right, BvhWidth - inner.wide_left_share, out);
+    spread(*inner.left, inner.wide_left_children, out);
+    spread(*inner.right, BvhWidth - inner.wide_left_children, out);
     return out;
 }
 
-// All primitives below.
+// All primitives of the subtree.
 void gather(const BinaryNode& node, std::vector<std::uint32_t>& out) {
     if (node.count == 1) return out.push_back(node.primitive);
     gather(*as_inner(node).left, out);
@@ -62,7 +62,7 @@ class Collapse {
         if (root == nullptr) {
             rows_.open_node(0, 1, 0);
         } else if (!place(*root, 0, 1)) {
-            rows_ = WideRows(level_);
+            rows_ = WideTreeWriter(level_);
             std::vector<std::uint32_t> all;
             gather(*root, all);
             divide_evenly(all, 0, 1);
@@ -112,7 +112,7 @@ class Collapse {
 
     Level level_;
     std::uint32_t max_depth_;
-    WideRows rows_;
+    WideTreeWriter rows_;
     std::vector<std::uint32_t> gathered_;
 };
 

@@ -21,7 +21,7 @@ Barrier BarrierPlan::needed(std::span<const Access> accesses) const {
         const auto found = resources_.find(access.resource);
         if (found == resources_.end()) continue;
         const History& history = found->second;
-        if (history.writer != 0 && (history.seen & access.stage) == 0) {
+        if (history.writer != 0 && (history.visible_to & access.stage) == 0) {
             barrier.sources |= history.writer;
             barrier.destinations |= access.stage;
         }
@@ -34,18 +34,17 @@ Barrier BarrierPlan::needed(std::span<const Access> accesses) const {
             barrier.destinations |= access.stage;
         }
     }
-    // A barrier that has to be there anyway shows all that these stages wrote, so that it stands for later
-    // reads too.
+    // A required barrier makes all writes of these stages visible, so that later reads need no other one.
     for (const auto& [resource, history] : resources_) {
-        const bool is_shown = (history.seen & barrier.destinations) == barrier.destinations;
+        const bool is_shown = (history.visible_to & barrier.destinations) == barrier.destinations;
         if (!is_shown) barrier.writers |= history.writer & barrier.sources;
     }
     return barrier;
 }
 
-void BarrierPlan::pass(const Barrier& barrier) {
+void BarrierPlan::apply(const Barrier& barrier) {
     for (auto& [resource, history] : resources_) {
-        if ((history.writer & barrier.writers) != 0) history.seen |= barrier.destinations;
+        if ((history.writer & barrier.writers) != 0) history.visible_to |= barrier.destinations;
         for (const Stage reader : Stages) {
             if ((history.readers & barrier.sources & reader) != 0) {
                 history.after[index(reader)] |= barrier.destinations;
@@ -54,7 +53,7 @@ void BarrierPlan::pass(const Barrier& barrier) {
     }
 }
 
-void BarrierPlan::note(std::span<const Access> accesses) {
+void BarrierPlan::record(std::span<const Access> accesses) {
     for (const Access& access : accesses) {
         if (access.kind != Access::Kind::Read || access.stage == Host) continue;
         History& history = resources_[access.resource];
@@ -68,8 +67,8 @@ void BarrierPlan::note(std::span<const Access> accesses) {
 
 std::optional<Barrier> BarrierPlan::before(std::span<const Access> accesses) {
     const Barrier barrier = needed(accesses);
-    if (barrier.sources != 0) pass(barrier);
-    note(accesses);
+    if (barrier.sources != 0) apply(barrier);
+    record(accesses);
     return barrier.sources != 0 ? std::optional(barrier) : std::nullopt;
 }
 

@@ -11,19 +11,20 @@
 
 namespace tessera::vulkan {
 
-// Bytes of one texel; throws Error{Internal} for a format that no kernel reads.
+// Bytes of one texel; throws Error{Internal} for an unsupported format.
 std::uint32_t texel_bytes(VkFormat format);
 
-// Throws Error{Internal} unless the pass binds one buffer for each binding of its pipeline, each within the
+// Throws Error{Internal} unless the dispatch binds one buffer for each binding of its pipeline, each within the
 // device's limits.
-void check_bindings(const Pass& pass, const DeviceInfo& info);
+void check_bindings(const Dispatch& dispatch, const DeviceInfo& info);
 
 struct BindingCount {
     std::uint32_t sets = 0, storage = 0, texels = 0;
 };
 BindingCount count_bindings(std::span<const Step> steps);
 
-// A set of the pool, which has room, with what the pass binds; null when that is nothing.
-VkDescriptorSet make_set(VkDevice device, VkDescriptorPool pool, const Pass& pass);
+// A descriptor set with the bound buffers of the dispatch, from a pool with sufficient capacity; null without
+// bindings.
+VkDescriptorSet make_set(VkDevice device, VkDescriptorPool pool, const Dispatch& dispatch);
 
 }  // namespace tessera::vulkan

@@ -29,10 +29,10 @@ struct Buffer::Parts {
 Buffer::Buffer(Device& device, std::uint64_t bytes, MemoryKind kind)
     : device_(&device), parts_(std::make_shared<Parts>()), bytes_(bytes) {
     if (bytes > device.info().buffer_bytes) {
-        throw Error(ErrorCode::OutOfMemory, "cannot make a buffer of " + std::to_string(bytes) +
-                                                " bytes: the device allows " +
+        throw Error(ErrorCode::OutOfMemory, "cannot create a buffer of " + std::to_string(bytes) +
+                                                " bytes: the device's limit is " +
                                                 std::to_string(device.info().buffer_bytes) +
-                                                " in one buffer; use a smaller mesh or texture");
+                                                " per buffer; use a smaller mesh or texture");
     }
     const VkBufferCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
@@ -43,13 +43,13 @@ Buffer::Buffer(Device& device, std::uint64_t bytes, MemoryKind kind)
                  VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT,
         .sharingMode = VK_SHARING_MODE_EXCLUSIVE};
     VkBuffer object = VK_NULL_HANDLE;
-    check(vkCreateBuffer(device.get(), &info, nullptr, &object), "make a buffer");
+    check(vkCreateBuffer(device.get(), &info, nullptr, &object), "create a buffer");
     parts_->object = {device.get(), object};
     VkMemoryRequirements needs{};
     vkGetBufferMemoryRequirements(device.get(), object, &needs);
     parts_->memory = device.allocate(needs, kind);
     check(vkBindBufferMemory(device.get(), object, parts_->memory.get(), parts_->memory.offset()),
-          "give a buffer its memory");
+          "bind memory to a buffer");
     const VkBufferDeviceAddressInfo place{.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO,
                                           .buffer = object};
     address_ = vkGetBufferDeviceAddress(device.get(), &place);
@@ -86,7 +86,7 @@ VkBufferView Buffer::texels(VkFormat format) const {
                                           .format = format,
                                           .range = VK_WHOLE_SIZE};
         VkBufferView object = VK_NULL_HANDLE;
-        check(vkCreateBufferView(device_->get(), &info, nullptr, &object), "view a buffer as texels");
+        check(vkCreateBufferView(device_->get(), &info, nullptr, &object), "create a texel view of a buffer");
         view = {device_->get(), object};
     }
     return view.get();

@@ -13,13 +13,12 @@ namespace tessera::vulkan {
 
 class Device;
 
-// Device memory that kernels reach by address (buffer references) and that steps copy and fill. Its end never
-// waits: what was submitted before may go on using it, the memory comes back afterwards. The device outlives
-// it.
+// Device memory that kernels access by address (buffer references) and that steps copy and fill. Destruction
+// never waits: steps submitted before may still use it; the memory is freed after them. The device outlives it.
 class Buffer final {
   public:
-    Buffer() = default;  // of no bytes, at no address
-    // Contents undefined. Zero bytes are allowed and have an address. Throws Error{OutOfMemory} with the
+    Buffer() = default;  // empty, without address
+    // Contents are undefined. Zero bytes are allowed and have an address. Throws Error{OutOfMemory} with the
     // sizes.
     Buffer(Device& device, std::uint64_t bytes, MemoryKind kind = MemoryKind::Device);
     Buffer(Buffer&& other) noexcept;
@@ -29,10 +28,9 @@ class Buffer final {
     std::uint64_t size() const { return bytes_; }
     VkDeviceAddress address() const { return address_; }
     VkBuffer get() const;
-    VkBufferView texels(VkFormat format) const;  // all of it, as whole texels; made at the first call
-    // The bytes as the host sees them, for as long as the buffer lives; empty where it cannot see them.
-    // Whoever writes or reads here makes sure that no step in flight does; upload() and download() do it for
-    // you.
+    VkBufferView texels(VkFormat format) const;  // of the whole buffer; created by the first call
+    // The mapped bytes, valid for the lifetime of the buffer; empty if it is not host-visible. The caller must
+    // ensure that no step in flight accesses them; upload() and download() do.
     std::span<std::byte> mapped() const;
 
   private:

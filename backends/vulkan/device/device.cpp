@@ -9,8 +9,8 @@ namespace tessera::vulkan {
 
 namespace {
 
-// One family for everything: a family with graphics first, so that rasterised and traced pictures need no
-// transfer between queues.
+// One queue family for everything, preferably with graphics, so that rasterised and traced pictures need no
+// ownership transfer between queues.
 std::uint32_t choose_family(VkPhysicalDevice device) {
     std::uint32_t count = 0;
     vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
@@ -70,7 +70,7 @@ Allocation Device::allocate(const VkMemoryRequirements& needs, MemoryKind kind) 
     } catch (const Error& error) {
         if (error.code() != ErrorCode::OutOfMemory) throw;
     }
-    queue_.latest().wait();  // what dropped buffers held comes back now
+    queue_.latest().wait();  // memory of dropped buffers is released now
     queue_.collect();
     return memory_.allocate(needs, kind);
 }

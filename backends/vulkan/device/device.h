@@ -17,20 +17,20 @@ namespace tessera::vulkan {
 
 struct DeviceSettings {
     MemorySettings memory;
-    std::filesystem::path cache_folder;  // of compiled kernels; empty: none
+    std::filesystem::path cache_folder;  // cache of compiled kernels; empty: no cache
     FaultHook fault;                     // for tests
     Validation validation = Validation::None;
     MessageListener listener;  // of the validation layer's messages
-    // Bytes behind each buffer that nobody uses. GPU-assisted validation takes structs of scalar layout for
-    // padded ones (as std430), so that the last of a buffer seems to lie beyond its end.
+    // Unused bytes after each buffer. GPU-assisted validation assumes std430 padding for structs of scalar
+    // layout, so that the last one of a buffer seems to end out of bounds.
     std::uint64_t buffer_slack = 0;
 };
 
-// One opened device with its memory and its queue. Outlives all buffers and pipelines made on it.
+// An opened device with its memory and its queue. Outlives all buffers and pipelines created on it.
 // Thread-safe.
 class Device final {
   public:
-    // The device is one of list_devices(instance) and was not refused. Throws Error.
+    // The device is one of list_devices(instance) and usable (`refused` is empty). Throws Error.
     Device(const Instance& instance, const DeviceInfo& info, const DeviceSettings& settings = {});
     ~Device();
     Device(const Device&) = delete;
@@ -43,7 +43,7 @@ class Device final {
 
     std::uint64_t buffer_slack() const { return buffer_slack_; }
     const Memory& memory() const { return memory_; }
-    std::uint64_t uploaded_bytes() const { return uploaded_; }      // so far
+    std::uint64_t uploaded_bytes() const { return uploaded_; }      // in total
     void count_upload(std::uint64_t bytes) { uploaded_ += bytes; }  // for upload()
 
     // For Buffer: waits for the memory of dropped buffers before it throws Error{OutOfMemory} with the sizes.
@@ -55,7 +55,7 @@ class Device final {
         ~Opened();
     };
 
-    // In the order in which they need each other.
+    // In order of dependency.
     DeviceInfo info_;
     std::uint64_t buffer_slack_;
     std::uint32_t family_;

@@ -48,7 +48,7 @@ bool has_queue(VkPhysicalDevice device, VkQueueFlags wanted) {
     });
 }
 
-// Targets of the colour formats that are drawn to are there on every device with graphics.
+// Every device with graphics supports the colour formats that are drawn to.
 bool can_draw(VkPhysicalDevice device) {
     VkFormatProperties depth{};
     vkGetPhysicalDeviceFormatProperties(device, VK_FORMAT_D32_SFLOAT, &depth);
@@ -89,7 +89,7 @@ void read_memory(DeviceInfo& info) {
     }
 }
 
-// The parts that only a device of Vulkan 1.3 can be asked for.
+// Queries that need Vulkan 1.3.
 void read_core_1_3(DeviceInfo& info) {
     VkPhysicalDeviceVulkan13Properties v13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES};
     VkPhysicalDeviceVulkan12Properties v12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES,
@@ -105,8 +105,8 @@ void read_core_1_3(DeviceInfo& info) {
     info.max_subgroup_size = v13.maxSubgroupSize;
     info.buffer_bytes = v13.maxBufferSize;
     info.allocation_bytes = v11.maxMemoryAllocationSize;
-    info.keeps_denormals = v12.shaderDenormPreserveFloat32 != VK_FALSE;
-    info.rounds_to_even = v12.shaderRoundingModeRTEFloat32 != VK_FALSE;
+    info.supports_denormals = v12.shaderDenormPreserveFloat32 != VK_FALSE;
+    info.supports_round_to_even = v12.shaderRoundingModeRTEFloat32 != VK_FALSE;
     const std::set<std::string> extensions = extensions_of(info.handle);
     info.ray_query = extensions.contains(VK_KHR_RAY_QUERY_EXTENSION_NAME) &&
                      extensions.contains(VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME);
@@ -131,7 +131,7 @@ DeviceInfo describe(VkPhysicalDevice handle, std::uint32_t index) {
     read_memory(info);
     if (properties.apiVersion < VK_API_VERSION_1_3) {
         info.refused.push_back("Vulkan " + version_text(properties.apiVersion) +
-                               " where 1.3 is needed: update the driver");
+                               ", but 1.3 is required: update the driver");
         return info;
     }
     read_core_1_3(info);
@@ -156,7 +156,7 @@ bool is_meant(const DeviceInfo& device, std::string_view wanted) {
 }
 
 std::string listing(std::span<const DeviceInfo> devices) {
-    if (devices.empty()) return "there is none: install mesa-vulkan-drivers or the GPU maker's driver";
+    if (devices.empty()) return "none found: install mesa-vulkan-drivers or the GPU maker's driver";
     std::string text;
     for (const DeviceInfo& device : devices) {
         text += (text.empty() ? "" : "; ") + std::to_string(device.index) + " = " + device.name + " (" +
@@ -200,8 +200,8 @@ const DeviceInfo& choose_device(std::span<const DeviceInfo> devices, std::string
     if (wanted.empty()) {
         throw Error(ErrorCode::Unavailable, "no Vulkan device can be used: " + listing(devices));
     }
-    throw Error(ErrorCode::InvalidInput, "no usable Vulkan device is meant by '" + std::string(wanted) +
-                                             "'; give an index or a part of a name: " + listing(devices));
+    throw Error(ErrorCode::InvalidInput, "no usable Vulkan device matches '" + std::string(wanted) +
+                                             "'; give an index or part of a name: " + listing(devices));
 }
 
 }  // namespace tessera::vulkan

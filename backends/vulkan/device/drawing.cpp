@@ -16,7 +16,7 @@ constexpr VkShaderStageFlags DrawingStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHA
 
 void check_area(const Image* image, Image::Kind kind, const Rect& area, const std::string& step) {
     require(image != nullptr && image->get() != VK_NULL_HANDLE, step + " without an image");
-    require(image->kind() == kind, step + " with an image of the other kind");
+    require(image->kind() == kind, step + " with an image of the wrong kind");
     const bool fits = area.x >= 0 && area.y >= 0 && area.width >= 0 && area.height >= 0 &&
                       std::int64_t{area.x} + area.width <= image->width() &&
                       std::int64_t{area.y} + area.height <= image->height();
@@ -43,18 +43,19 @@ VkRenderingAttachmentInfo attachment(const Image& image, VkAttachmentLoadOp befo
 
 void check_draws(const DrawList& list, const DeviceInfo& info) {
     require(list.pipeline != nullptr && list.pipeline->get() != VK_NULL_HANDLE,
-            "a list of draws without a pipeline");
+            "a draw list without a pipeline");
     const std::string name = "draws of " + list.pipeline->name();
     require(list.arguments.size() == list.pipeline->push_bytes(),
-            name + " take " + std::to_string(list.pipeline->push_bytes()) + " bytes of arguments and got " +
+            name + " take " + std::to_string(list.pipeline->push_bytes()) + " bytes of arguments but got " +
                 std::to_string(list.arguments.size()));
     check_area(list.ids, Image::Kind::Ids, list.area, name);
     check_area(list.depth, Image::Kind::Depth, list.area, name);
-    require(list.viewport > 0 && list.viewport <= info.image_edge, name + " with a viewport that is none");
-    require(list.per_call > 0 && list.per_call <= info.draws_per_call,
-            name + " with more draws a call than the device's " + std::to_string(info.draws_per_call));
-    check_part(list.draws, 0, std::uint64_t{list.count} * sizeof(VkDrawIndirectCommand), name);
-    for (const Buffer* buffer : list.reads) check_part(buffer, 0, 0, name);
+    require(list.viewport > 0 && list.viewport <= info.image_edge, name + " with an invalid viewport");
+    require(
+        list.per_call > 0 && list.per_call <= info.draws_per_call,
+        name + " with more draws per call than the device's limit of " + std::to_string(info.draws_per_call));
+    check_range(list.draws, 0, std::uint64_t{list.count} * sizeof(VkDrawIndirectCommand), name);
+    for (const Buffer* buffer : list.reads) check_range(buffer, 0, 0, name);
 }
 
 void check_copy(const CopyImage& copy) {
@@ -62,11 +63,11 @@ void check_copy(const CopyImage& copy) {
     check_area(copy.from, copy.from->kind(), copy.area, "a copy");
     const auto width = static_cast<std::uint64_t>(copy.area.width);
     const auto height = static_cast<std::uint64_t>(copy.area.height);
-    require(copy.row_pixels == 0 || copy.row_pixels >= width, "a copy of rows into shorter ones");
+    require(copy.row_pixels == 0 || copy.row_pixels >= width, "a copy of rows into shorter rows");
     const std::uint64_t row = copy.row_pixels == 0 ? width : copy.row_pixels;
     const std::uint64_t pixels = height == 0 ? 0 : (height - 1) * row + width;
-    check_part(copy.to, copy.to_offset, pixels * copy.from->pixel_bytes(), "a copy");
-    require(copy.to_offset % copy.from->pixel_bytes() == 0, "a copy to an offset off a pixel");
+    check_range(copy.to, copy.to_offset, pixels * copy.from->pixel_bytes(), "a copy");
+    require(copy.to_offset % copy.from->pixel_bytes() == 0, "a copy to an offset off the pixel grid");
 }
 
 void record_draws(VkCommandBuffer commands, const DrawList& list) {
@@ -113,8 +114,8 @@ void record_copy(VkCommandBuffer commands, const CopyImage& copy) {
     vkCmdCopyImageToBuffer(commands, copy.from->get(), VK_IMAGE_LAYOUT_GENERAL, copy.to->get(), 1, &region);
 }
 
-// Behind everything, since nobody knows yet what the memory was before.
-void record_preparation(VkCommandBuffer commands, const Image& image) {
+// After everything, since the previous use of the memory is unknown.
+void record_image_initialization(VkCommandBuffer commands, const Image& image) {
     const VkImageMemoryBarrier2 barrier{
         .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
         .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,

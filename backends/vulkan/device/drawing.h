@@ -7,13 +7,13 @@
 
 namespace tessera::vulkan {
 
-// The recorder's part for images. Both checks throw Error{Internal} for a step that is none: an area beyond
-// an image, more draws a call than the device makes.
+// The part of the recorder for images and draws. Both checks throw Error{Internal} for an invalid step: an area
+// beyond an image, more draws per call than the device supports.
 void check_draws(const DrawList& list, const DeviceInfo& info);
 void check_copy(const CopyImage& copy);
 
 void record_draws(VkCommandBuffer commands, const DrawList& list);
 void record_copy(VkCommandBuffer commands, const CopyImage& copy);
-void record_preparation(VkCommandBuffer commands, const Image& image);
+void record_image_initialization(VkCommandBuffer commands, const Image& image);
 
 }  // namespace tessera::vulkan

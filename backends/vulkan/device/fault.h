@@ -6,8 +6,8 @@
 
 namespace tessera::vulkan {
 
-// Where a test can make a device fail: called before each call of this kind; what it returns instead of
-// VK_SUCCESS counts as the call's result. Thread-safe.
+// Fault injection for tests: called before each call of this kind; a result other than VK_SUCCESS replaces the
+// result of the call. Thread-safe.
 enum class FaultPoint { Submit, Wait };
 using FaultHook = std::function<VkResult(FaultPoint)>;
 

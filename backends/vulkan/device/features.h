@@ -7,7 +7,7 @@
 
 namespace tessera::vulkan {
 
-// The features of core Vulkan 1.3 as one chain, to be asked for or to be filled by the driver.
+// The features of core Vulkan 1.3 as one pNext chain, to be requested or to be filled by the driver.
 class FeatureChain final {
   public:
     FeatureChain();
@@ -22,14 +22,14 @@ class FeatureChain final {
     VkPhysicalDeviceVulkan13Features v13{};
 };
 
-// What this device lacks of what the shaders and this layer need, one phrase each; empty for a device that
-// can be used. The device is of Vulkan 1.3.
+// The required features that this device lacks, one phrase each; empty for a usable device. The device must
+// support Vulkan 1.3.
 std::vector<std::string> missing_features(VkPhysicalDevice device);
 
-// Whether one call can make many indirect draws, each of instances of its own.
+// Whether one call can issue several indirect draws, each with its own first instance.
 bool offers_draw_lists(VkPhysicalDevice device);
 
-// Switches on exactly what is needed, and draw lists where they are offered.
+// Enables exactly the required features, and draw lists if supported.
 void require_features(FeatureChain& chain, VkPhysicalDevice device);
 
 }  // namespace tessera::vulkan

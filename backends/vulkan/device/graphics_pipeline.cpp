@@ -19,7 +19,7 @@ struct GraphicsPipeline::Parts {
 
 namespace {
 
-// What all pipelines have alike: triangles without attributes, of two numbers a pixel, nearest first.
+// State that all pipelines share: triangles without vertex attributes, two integers per pixel, depth test.
 struct FixedState {
     VkPipelineVertexInputStateCreateInfo no_attributes{
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
@@ -63,7 +63,7 @@ struct FixedState {
     FixedState(const FixedState&) = delete;  // members point to each other
     FixedState& operator=(const FixedState&) = delete;
 
-    // Good as long as this and the stages are.
+    // Valid as long as this object and the stages.
     VkGraphicsPipelineCreateInfo info(std::span<const VkPipelineShaderStageCreateInfo> stages,
                                       VkPipelineLayout layout) const {
         return {.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
@@ -97,7 +97,7 @@ GraphicsPipeline::GraphicsPipeline(Device& device, const GraphicsSettings& setti
                                                  .pPushConstantRanges = &range};
     VkPipelineLayout layout = VK_NULL_HANDLE;
     check(vkCreatePipelineLayout(device.get(), &layout_info, nullptr, &layout),
-          "lay out the arguments of " + name_);
+          "create the pipeline layout of " + name_);
     parts_->layout = {device.get(), layout};
 
     const ShaderStage vertex(device.get(), name_, VK_SHADER_STAGE_VERTEX_BIT, settings.vertex,

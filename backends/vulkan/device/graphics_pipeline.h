@@ -12,24 +12,23 @@
 
 namespace tessera::vulkan {
 
-// How triangles are drawn: three vertices each, made by the vertex shader from the vertex's and the
-// instance's index alone; both sides count. Fragments give ids. Depth grows towards the eye; what is as near
-// as what is there already takes its place, so that the last of equals stays.
+// Draws triangles whose vertices the vertex shader computes from the vertex and instance index alone, without
+// back-face culling. Fragments write ids. Depth increases towards the eye; at equal depth the last draw wins.
 struct GraphicsSettings {
     std::string name;                                 // for messages
     std::span<const std::uint32_t> vertex, fragment;  // SPIR-V, entry points "main"
     std::vector<Constant> constants;                  // of both
-    // Of the push-constant block that a draw gives. The shaders see one more word behind it: how many draws
-    // of the list are not of this call, to be added to the instance's index.
+    // Size of the push-constant block of a draw. The shaders get one more word after it: the number of draws of
+    // the list before this call, to be added to the instance index.
     std::uint32_t push_bytes = 0;
 };
 
-// A pipeline that is ready to draw. Its end never waits, like a buffer's. The device, which draws (see
-// DeviceInfo), outlives it.
+// A graphics pipeline. Destruction never waits, as for buffers. The device, which must support graphics
+// (DeviceInfo::draws), outlives it.
 class GraphicsPipeline final {
   public:
     GraphicsPipeline() = default;  // cannot draw
-    // Throws Error: the driver refuses the code, or the block exceeds the device's limit.
+    // Throws Error if the driver rejects the code, or if the block exceeds the device's limit.
     GraphicsPipeline(Device& device, const GraphicsSettings& settings);
     GraphicsPipeline(GraphicsPipeline&& other) noexcept = default;
     GraphicsPipeline& operator=(GraphicsPipeline&& other) noexcept;

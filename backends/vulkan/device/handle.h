@@ -7,7 +7,7 @@
 namespace tessera::vulkan {
 
 // One Vulkan object of a device, destroyed with its owner: Handle<VkBuffer, vkDestroyBuffer>. Empty when
-// default-made or moved from. The device outlives it.
+// default-constructed or moved from. The device outlives it.
 template <class T, auto Destroy>
 class Handle final {
   public:

@@ -23,8 +23,8 @@ VkFormat Image::format(Kind kind) {
 Image::Image(Device& device, Kind kind, std::uint32_t width, std::uint32_t height)
     : device_(&device), parts_(std::make_shared<Parts>()), kind_(kind), width_(width), height_(height) {
     if (std::min(width, height) == 0 || std::max(width, height) > device.info().image_edge) {
-        throw Error(ErrorCode::Internal, "cannot make an image of " + std::to_string(width) + " x " +
-                                             std::to_string(height) + " pixels where the device allows " +
+        throw Error(ErrorCode::Internal, "cannot create an image of " + std::to_string(width) + " x " +
+                                             std::to_string(height) + " pixels: the device's limit is " +
                                              std::to_string(device.info().image_edge) + "; report this");
     }
     const VkImageUsageFlags target =
@@ -41,10 +41,10 @@ Image::Image(Device& device, Kind kind, std::uint32_t width, std::uint32_t heigh
                                  .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
                                  .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED};
     VkImage object = VK_NULL_HANDLE;
-    check(vkCreateImage(device.get(), &info, nullptr, &object), "make an image");
+    check(vkCreateImage(device.get(), &info, nullptr, &object), "create an image");
     parts_->object = {device.get(), object};
 
-    // Whole granules of its own: buffers may be its neighbours in a block.
+    // Rounded up to whole granules: buffers may be neighbours in the same block.
     VkMemoryRequirements needs{};
     vkGetImageMemoryRequirements(device.get(), object, &needs);
     const std::uint64_t granule = std::max<std::uint64_t>(1, device.info().image_granularity);
@@ -52,7 +52,7 @@ Image::Image(Device& device, Kind kind, std::uint32_t width, std::uint32_t heigh
     needs.size = (needs.size + granule - 1) / granule * granule;
     parts_->memory = device.allocate(needs, MemoryKind::Device);
     check(vkBindImageMemory(device.get(), object, parts_->memory.get(), parts_->memory.offset()),
-          "give an image its memory");
+          "bind memory to an image");
 
     const VkImageViewCreateInfo view_info{
         .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
@@ -61,9 +61,9 @@ Image::Image(Device& device, Kind kind, std::uint32_t width, std::uint32_t heigh
         .format = format(kind),
         .subresourceRange = {.aspectMask = aspect(), .levelCount = 1, .layerCount = 1}};
     VkImageView view = VK_NULL_HANDLE;
-    check(vkCreateImageView(device.get(), &view_info, nullptr, &view), "view an image");
+    check(vkCreateImageView(device.get(), &view_info, nullptr, &view), "create an image view");
     parts_->view = {device.get(), view};
-    device.queue().submit(Step(Prepare{this}));
+    device.queue().submit(Step(InitializeImage{this}));
 }
 
 Image::Image(Image&& other) noexcept

@@ -9,19 +9,18 @@ namespace tessera::vulkan {
 
 class Device;
 
-// A picture on the device that draws go to and that copies read. Its end never waits, like a buffer's; the
-// device outlives it. It stays in one layout for good, so that barriers of memory are all that orders its
-// uses.
+// An image on the device that draws write and copies read. Destruction never waits, as for buffers; the device
+// outlives it. It stays in one layout, so that memory barriers are sufficient.
 class Image final {
   public:
     enum class Kind {
-        Ids,   // two 32-bit numbers a pixel
-        Depth  // one 32-bit float a pixel
+        Ids,   // two 32-bit integers per pixel
+        Depth  // one 32-bit float per pixel
     };
 
-    Image() = default;  // of no pixels
-    // Contents undefined. Throws Error{OutOfMemory} with the sizes, Error{Internal} for edges that are 0 or
-    // beyond the device's, and DeviceLost.
+    Image() = default;  // empty
+    // Contents are undefined. Throws Error{OutOfMemory} with the sizes, Error{Internal} for a size of 0 or beyond
+    // the device's limit, and DeviceLost.
     Image(Device& device, Kind kind, std::uint32_t width, std::uint32_t height);
     Image(Image&& other) noexcept;
     Image& operator=(Image&& other) noexcept;

@@ -36,7 +36,7 @@ Instance::Instance(Validation validation, MessageListener listener)
     VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
                               .pApplicationInfo = &application};
     if (validation == Validation::None) {
-        check(vkCreateInstance(&info, nullptr, &instance_), "open Vulkan");
+        check(vkCreateInstance(&info, nullptr, &instance_), "create a Vulkan instance");
         return;
     }
 
@@ -79,12 +79,12 @@ Instance::Instance(Validation validation, MessageListener listener)
     info.ppEnabledLayerNames = &ValidationLayer;
     info.enabledExtensionCount = static_cast<std::uint32_t>(ValidationExtensions.size());
     info.ppEnabledExtensionNames = ValidationExtensions.data();
-    check(vkCreateInstance(&info, nullptr, &instance_), "open Vulkan with validation");
+    check(vkCreateInstance(&info, nullptr, &instance_), "create a Vulkan instance with validation");
     const auto create =
         find_function<PFN_vkCreateDebugUtilsMessengerEXT>(instance_, "vkCreateDebugUtilsMessengerEXT");
     const VkResult created = create(instance_, &messenger, nullptr, &messenger_);
     if (created != VK_SUCCESS) vkDestroyInstance(instance_, nullptr);
-    check(created, "listen to the validation layer");
+    check(created, "create a debug messenger");
 }
 
 Instance::~Instance() {

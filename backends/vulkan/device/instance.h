@@ -9,7 +9,7 @@
 
 namespace tessera::vulkan {
 
-// What the validation layer watches; anything but None needs the package vulkan-validationlayers.
+// What the validation layer checks; anything but None needs the package vulkan-validationlayers.
 enum class Validation {
     None,
     Calls,        // core checks and synchronization validation
@@ -25,18 +25,19 @@ struct Message {
 
 using MessageListener = std::function<void(const Message&)>;
 
-// The way into Vulkan 1.3: no window system, no extensions but what collects messages. Outlives everything
-// made from it. Throws Error{Unavailable}: no driver, or no validation layer where one is asked for.
+// A Vulkan 1.3 instance without window system; its only extensions are those for validation messages. Outlives
+// everything created from it. Throws Error{Unavailable} without a driver, or without a requested validation
+// layer.
 class Instance final {
   public:
-    // With a listener, messages go there, from any thread, instead of being kept.
+    // Messages go to the listener, from any thread, or are stored if there is none.
     explicit Instance(Validation validation = Validation::None, MessageListener listener = {});
     ~Instance();
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;
 
     VkInstance get() const { return instance_; }
-    // What the layers had to say since the last call; always empty without validation. Thread-safe.
+    // Messages since the last call; always empty without validation. Thread-safe.
     std::vector<Message> take_messages();
 
   private:

@@ -24,9 +24,9 @@ namespace {
 constexpr std::uint64_t BlockBytes = 64u << 20;
 
 std::string shortage(std::uint64_t asked, const HeapUse& heap, std::uint64_t available) {
-    return "not enough device memory: " + std::to_string(asked) + " bytes asked for, " +
+    return "out of device memory: " + std::to_string(asked) + " bytes requested, " +
            std::to_string(heap.used) + " used, " + std::to_string(available + (heap.reserved - heap.used)) +
-           " available (not all in one piece); use a smaller scene or a device with more memory";
+           " available (possibly fragmented); use a smaller scene or a device with more memory";
 }
 
 }  // namespace
@@ -69,27 +69,27 @@ Memory::Memory(VkDevice device, const DeviceInfo& info, const MemorySettings& se
 
 Memory::~Memory() = default;
 
-// The first type that has what is wanted, most wanted first; the driver lists faster types first.
+// The first type with the desired properties, the most desired first; drivers list faster types first.
 std::uint32_t Memory::choose_type(std::uint32_t allowed, MemoryKind kind) const {
     constexpr VkMemoryPropertyFlags Local = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
     constexpr VkMemoryPropertyFlags Mapped =
         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     constexpr VkMemoryPropertyFlags Cached = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
-    constexpr std::array<std::array<VkMemoryPropertyFlags, 3>, 3> Wishes{{
+    constexpr std::array<std::array<VkMemoryPropertyFlags, 3>, 3> PreferredFlags{{
         {Local | Mapped | Cached, Local, 0},
         {Mapped | Local | Cached, Mapped, Mapped},
         {Mapped | Local | Cached, Mapped | Cached, Mapped},
     }};
-    for (const VkMemoryPropertyFlags wish : Wishes[static_cast<std::size_t>(kind)]) {
+    for (const VkMemoryPropertyFlags wanted : PreferredFlags[static_cast<std::size_t>(kind)]) {
         for (std::uint32_t i = 0; i < properties_.memoryTypeCount; ++i) {
-            const bool fits = (properties_.memoryTypes[i].propertyFlags & wish) == wish;
+            const bool fits = (properties_.memoryTypes[i].propertyFlags & wanted) == wanted;
             if (fits && (allowed >> i & 1u) != 0) return i;
         }
     }
-    throw Error(ErrorCode::Internal, "no memory type of the device fits a buffer; report this");
+    throw Error(ErrorCode::Internal, "no memory type of the device suits a buffer; report this");
 }
 
-// What other programs hold counts only where the driver tells of it.
+// Memory of other programs is known only where the driver reports it.
 std::uint64_t Memory::available(std::uint32_t heap) const {
     const std::uint64_t reserved = heaps_[heap].reserved;
     std::uint64_t total = properties_.memoryHeaps[heap].size;
@@ -113,7 +113,7 @@ MemoryBlock& Memory::add_block(std::uint32_t type, const VkMemoryRequirements& n
         throw Error(ErrorCode::OutOfMemory,
                     shortage(needs.size, heaps_[heap], std::min(left, info_.allocation_bytes)));
     }
-    // What would fill most of a block gets one of its own, so that it leaves no rest that little fits into.
+    // Large allocations get their own block, so that no small unusable rest is left.
     const bool is_large = needs.size > BlockBytes / 2;
     const std::uint64_t size = is_large ? needs.size : std::max(needs.size, std::min(BlockBytes, left));
     const VkMemoryAllocateFlagsInfo flags{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO,
@@ -134,7 +134,7 @@ MemoryBlock& Memory::add_block(std::uint32_t type, const VkMemoryRequirements& n
     const bool is_visible =
         (properties_.memoryTypes[type].propertyFlags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0;
     const bool stays_apart =
-        settings_.mapping == MemorySettings::Mapping::Apart && kind == MemoryKind::Device;
+        settings_.mapping == MemorySettings::Mapping::Separate && kind == MemoryKind::Device;
     if (is_visible && !stays_apart) {
         void* mapped = nullptr;
         check(vkMapMemory(device_, object, 0, VK_WHOLE_SIZE, 0, &mapped), "map device memory");
@@ -146,11 +146,11 @@ MemoryBlock& Memory::add_block(std::uint32_t type, const VkMemoryRequirements& n
 
 Allocation Memory::allocate(const VkMemoryRequirements& needs, MemoryKind kind) {
     const std::uint32_t type = choose_type(needs.memoryTypeBits, kind);
-    const bool apart = settings_.mapping == MemorySettings::Mapping::Apart;
+    const bool apart = settings_.mapping == MemorySettings::Mapping::Separate;
     const std::scoped_lock lock(mutex_);
     Allocation result;
     const auto take = [&](MemoryBlock& block) {
-        // With memory kept apart one type serves two kinds, of which one is not mapped.
+        // With Mapping::Separate one type serves two kinds, one of which is not mapped.
         if (apart && (block.mapped == nullptr) != (kind == MemoryKind::Device)) return false;
         const auto offset = block.ranges.allocate(needs.size, needs.alignment);
         if (!offset) return false;
@@ -172,7 +172,7 @@ void Memory::release(MemoryBlock& block, std::uint64_t offset, std::uint64_t siz
     block.ranges.release(offset, size);
     heaps_[properties_.memoryTypes[block.type].heapIndex].used -= size;
     if (!block.ranges.empty()) return;
-    // One empty block stays, so that what comes and goes at the edge of a block costs no calls of the driver.
+    // One empty block is kept, so that repeated allocation at the edge of a block does not call the driver.
     const Blocks& blocks = blocks_[block.type];
     const auto empty =
         std::count_if(blocks.begin(), blocks.end(), [](const auto& other) { return other->ranges.empty(); });

@@ -14,31 +14,30 @@
 namespace tessera::vulkan {
 
 enum class MemoryKind {
-    Device,   // where kernels are fastest; mapped only where the device's memory is the host's (unified)
-    Upload,   // mapped, written by the host in order
+    Device,   // fastest for kernels; mapped only on unified memory
+    Upload,   // mapped, written sequentially by the host
     Readback  // mapped, read by the host
 };
 
 struct MemorySettings {
-    // Bytes that may be taken from each heap of the device; 0 = all that the driver lends. It can only lower.
+    // Maximum bytes to allocate from each heap; 0 = the driver's limit. Can only lower that limit.
     std::uint64_t limit = 0;
-    // Apart: the host does not look into memory of kind Device even where it could, so that a unified device
-    // works like a card of its own.
-    enum class Mapping { AsOffered, Apart } mapping = Mapping::AsOffered;
+    // Separate: memory of kind Device is never mapped, so that a unified device behaves like a discrete one.
+    enum class Mapping { Default, Separate } mapping = Mapping::Default;
 };
 
 // One heap of the device.
 struct HeapUse {
     bool device_local = false;
-    std::uint64_t used = 0;       // bytes that allocations hold
-    std::uint64_t reserved = 0;   // bytes taken from the driver
-    std::uint64_t available = 0;  // bytes that could be taken besides
+    std::uint64_t used = 0;       // bytes in allocations
+    std::uint64_t reserved = 0;   // bytes allocated from the driver
+    std::uint64_t available = 0;  // bytes that could be allocated in addition
 };
 
 class Memory;
 struct MemoryBlock;
 
-// A piece of device memory, given back with its owner.
+// A range of device memory, released by the destructor.
 class Allocation final {
   public:
     Allocation() = default;
@@ -48,7 +47,7 @@ class Allocation final {
 
     VkDeviceMemory get() const;
     std::uint64_t offset() const { return offset_; }
-    std::byte* mapped() const;  // null: the host cannot see it
+    std::byte* mapped() const;  // null: not host-visible
 
   private:
     friend class Memory;
@@ -57,9 +56,8 @@ class Allocation final {
     std::uint64_t offset_ = 0, size_ = 0;
 };
 
-// All memory of a device for buffers, parts of large blocks that are mapped for good where the host can see
-// them. Blocks without allocations go back to the driver, but for one of each kind. Thread-safe; outlives its
-// allocations.
+// Suballocates device memory from large blocks, which are persistently mapped if host-visible. Empty blocks are
+// returned to the driver, except for one of each kind. Thread-safe; outlives its allocations.
 class Memory final {
   public:
     Memory(VkDevice device, const DeviceInfo& info, const MemorySettings& settings);
@@ -67,7 +65,7 @@ class Memory final {
     Memory(const Memory&) = delete;
     Memory& operator=(const Memory&) = delete;
 
-    // Throws Error{OutOfMemory} with the bytes asked for, used and available.
+    // Throws Error{OutOfMemory} with the bytes requested, used and available.
     Allocation allocate(const VkMemoryRequirements& needs, MemoryKind kind);
 
     std::vector<HeapUse> use() const;
@@ -91,7 +89,7 @@ class Memory final {
 
     mutable std::mutex mutex_;    // protects all below
     std::vector<Blocks> blocks_;  // per memory type
-    std::vector<HeapUse> heaps_;  // `available` is asked for when needed
+    std::vector<HeapUse> heaps_;  // `available` is queried when needed
 };
 
 }  // namespace tessera::vulkan

@@ -27,7 +27,7 @@ SetLayout make_set_layout(VkDevice device, const std::vector<Binding>& bindings)
                                                .bindingCount = static_cast<std::uint32_t>(list.size()),
                                                .pBindings = list.data()};
     VkDescriptorSetLayout object = VK_NULL_HANDLE;
-    check(vkCreateDescriptorSetLayout(device, &info, nullptr, &object), "lay out the bindings of a kernel");
+    check(vkCreateDescriptorSetLayout(device, &info, nullptr, &object), "create a descriptor set layout");
     return {device, object};
 }
 
@@ -56,7 +56,7 @@ ComputePipeline::ComputePipeline(Device& device, const PipelineSettings& setting
                                                  .pPushConstantRanges = &range};
     VkPipelineLayout layout = VK_NULL_HANDLE;
     check(vkCreatePipelineLayout(device.get(), &layout_info, nullptr, &layout),
-          "lay out the arguments of kernel " + name_);
+          "create the pipeline layout of kernel " + name_);
     parts_->layout = {device.get(), layout};
 
     const ShaderStage stage(device.get(), name_, VK_SHADER_STAGE_COMPUTE_BIT, settings.code,

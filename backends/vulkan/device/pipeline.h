@@ -18,8 +18,8 @@ struct Constant {
     std::uint32_t bits = 0;
 };
 
-// Set 0 of the shader: what a pass binds, in the order of this list. Addresses need no binding, and reach any
-// buffer; but some devices read texels much faster (lavapipe: three times), and storage somewhat.
+// Descriptor set 0 of the shader: the buffers that a dispatch binds, in this order. Buffers accessed by address
+// need no binding; but some devices read texels much faster (lavapipe: three times), and storage buffers a bit.
 struct Binding {
     std::uint32_t index = 0;  // layout(set = 0, binding = index)
     enum class Kind {
@@ -32,16 +32,16 @@ struct Binding {
 struct PipelineSettings {
     std::string name;                     // for messages
     std::span<const std::uint32_t> code;  // SPIR-V, as tessera_shaders() embeds it; entry point "main"
-    std::vector<Constant> constants;      // those not named keep the shader's defaults
+    std::vector<Constant> constants;      // others keep the shader's defaults
     std::uint32_t push_bytes = 0;         // of the push-constant block
     std::vector<Binding> bindings;
 };
 
-// A kernel that is ready to run. Its end never waits, like a buffer's. The device outlives it.
+// A compute pipeline. Destruction never waits, as for buffers. The device outlives it.
 class ComputePipeline final {
   public:
     ComputePipeline() = default;  // cannot run
-    // Throws Error: the driver refuses the code, or push_bytes exceeds the device's limit.
+    // Throws Error if the driver rejects the code, or if push_bytes exceeds the device's limit.
     ComputePipeline(Device& device, const PipelineSettings& settings);
     ComputePipeline(ComputePipeline&& other) noexcept = default;
     ComputePipeline& operator=(ComputePipeline&& other) noexcept;

@@ -8,7 +8,7 @@ namespace tessera::vulkan {
 
 namespace {
 
-// A compiled kernel takes some hundred KiB: room for all variants of some drivers.
+// A compiled kernel takes a few hundred KiB: enough for all variants for several drivers.
 constexpr std::uint64_t ByteLimit = 64u << 20;
 
 template <class T>
@@ -50,7 +50,7 @@ Handle<VkPipeline, vkDestroyPipeline> PipelineCache::make(const Hash256& key, co
                                                .initialDataSize = kept ? kept->size() : 0,
                                                .pInitialData = kept ? kept->data() : nullptr};
     VkPipelineCache object = VK_NULL_HANDLE;
-    check(vkCreatePipelineCache(device_, &cache_info, nullptr, &object), "open a cache of kernels");
+    check(vkCreatePipelineCache(device_, &cache_info, nullptr, &object), "create a pipeline cache");
     const Handle<VkPipelineCache, vkDestroyPipelineCache> cache(device_, object);
     VkPipeline pipeline = VK_NULL_HANDLE;
     check(create(object, &pipeline), "compile kernel " + name);

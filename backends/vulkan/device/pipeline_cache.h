@@ -14,14 +14,14 @@
 
 namespace tessera::vulkan {
 
-// Compiled kernels on disk, one file each, named by the hash of device, driver and all that the kernel is
-// made from. What is damaged or of another driver is compiled anew. Thread-safe.
+// A disk cache of compiled kernels, one file each, named by the hash of device, driver and all inputs of the
+// compilation. Files that are damaged or of another driver are ignored and recompiled. Thread-safe.
 class PipelineCache final {
   public:
-    // An empty folder: nothing is kept.
+    // An empty folder disables the cache.
     PipelineCache(VkDevice device, const DeviceInfo& info, const std::filesystem::path& folder);
 
-    // What the driver gives for `info`, which was made from `settings`.
+    // Compiles `info`, which was built from `settings`, or loads it from the cache.
     Handle<VkPipeline, vkDestroyPipeline> make(const VkComputePipelineCreateInfo& info,
                                                const PipelineSettings& settings);
     Handle<VkPipeline, vkDestroyPipeline> make(const VkGraphicsPipelineCreateInfo& info,
@@ -31,7 +31,7 @@ class PipelineCache final {
 
   private:
     void update_with_driver(Blake2b& hash) const;
-    // `create` calls the driver with the cache that it is given.
+    // `create` calls the driver with the given cache.
     template <class Create>
     Handle<VkPipeline, vkDestroyPipeline> make(const Hash256& key, const std::string& name,
                                                const Create& create);

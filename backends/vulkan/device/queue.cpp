@@ -13,8 +13,7 @@ namespace tessera::vulkan {
 
 namespace {
 
-// A plan that knows more buffers than this starts anew behind a barrier of everything, so that it does not
-// grow with all buffers that ever were.
+// A plan with more buffers than this is reset behind a full barrier, so that it does not grow without bound.
 constexpr std::size_t MaxPlanned = 4096;
 
 }  // namespace
@@ -51,7 +50,7 @@ Queue::Queue(VkDevice device, const DeviceInfo& info, std::uint32_t family, Faul
                                          .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
     const VkSemaphoreCreateInfo semaphore{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &type};
     VkSemaphore object = VK_NULL_HANDLE;
-    check(vkCreateSemaphore(device, &semaphore, nullptr, &object), "make a timeline");
+    check(vkCreateSemaphore(device, &semaphore, nullptr, &object), "create a timeline semaphore");
     timeline_ = {device, object};
 }
 
@@ -80,23 +79,23 @@ std::shared_ptr<SubmissionSlot> Queue::free_slot() {
 void Queue::record(SubmissionSlot& slot, std::span<const Step> steps, Timing timing) {
     slot.reset();
     if (timestamp_bits_ > 0 && !steps.empty() && timing != Timing::None) {
-        slot.make_room(timing == Timing::Total ? 2 : static_cast<std::uint32_t>(steps.size() + 1));
+        slot.reserve_timestamps(timing == Timing::Total ? 2 : static_cast<std::uint32_t>(steps.size() + 1));
     }
     const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                          .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     check(vkBeginCommandBuffer(slot.commands, &begin), "record commands");
     const BindingCount count = count_bindings(steps);
-    slot.make_room_for_sets(count.sets, count.storage, count.texels);
+    slot.reserve_descriptor_sets(count.sets, count.storage, count.texels);
     Recorder recorder(device_, slot, plan_);
-    if (!is_plan_valid_ || plan_.size() > MaxPlanned) recorder.publish();
-    is_plan_valid_ = false;  // until what was planned is on its way
+    if (!is_plan_valid_ || plan_.size() > MaxPlanned) recorder.full_barrier();
+    is_plan_valid_ = false;  // until the planned commands are submitted
     if (slot.stamps > 0) recorder.timestamp();
     for (std::size_t i = 0; i < steps.size(); ++i) {
         recorder.record(steps[i]);
         const bool is_stamped = slot.stamps > 2 || i + 1 == steps.size();
         if (slot.stamps > 0 && is_stamped) recorder.timestamp();
     }
-    recorder.show_host();
+    recorder.make_visible_to_host();
     check(vkEndCommandBuffer(slot.commands), "record commands");
 }
 
@@ -154,11 +153,11 @@ void Queue::retire(std::shared_ptr<void> object) noexcept {
 std::uint64_t Queue::completed() const {
     std::uint64_t value = 0;
     check_call(is_lost_ ? VK_ERROR_DEVICE_LOST : vkGetSemaphoreCounterValue(device_, timeline_.get(), &value),
-               "ask how far the device is");
+               "query the progress of the device");
     return value;
 }
 
-// What a lost device does has no end that could be told: its objects may go at once.
+// A lost device never signals completion: its objects may be destroyed at once.
 std::uint64_t Queue::completed_or_lost() const noexcept {
     std::uint64_t value = 0;
     const VkResult result = vkGetSemaphoreCounterValue(device_, timeline_.get(), &value);
@@ -191,7 +190,7 @@ std::vector<double> Queue::seconds_of(const SubmissionSlot& slot) const {
 
 void Queue::collect() noexcept {
     const std::uint64_t done = completed_or_lost();
-    std::vector<Retired> ended;  // destroyed after the lock is gone: their memory has a lock of its own
+    std::vector<Retired> ended;  // destroyed after the lock is released: their memory has its own lock
     const std::scoped_lock lock(mutex_);
     const auto first = std::partition(retired_.begin(), retired_.end(),
                                       [done](const Retired& item) { return item.ticket > done; });

@@ -18,26 +18,26 @@
 
 namespace tessera::vulkan {
 
-// Runs steps on the device, in the order of submission as far as their reads and writes demand. Thread-safe.
-// Once a call reported VK_ERROR_DEVICE_LOST, all later ones throw DeviceLost.
+// Runs steps on the device, ordered by submission as far as their reads and writes require. Thread-safe. After a
+// call reported VK_ERROR_DEVICE_LOST, all later ones throw DeviceLost.
 class Queue final {
   public:
     Queue(VkDevice device, const DeviceInfo& info, std::uint32_t family, FaultHook fault);
-    ~Queue();  // waits for everything
+    ~Queue();  // waits for all submissions
     Queue(const Queue&) = delete;
     Queue& operator=(const Queue&) = delete;
 
-    // Returns at once. The steps see everything that the host wrote before. Throws DeviceLost, or
-    // Error{Internal} for a step that is none (see check_step); then none of them runs.
+    // Does not block. The steps see all previous writes of the host. Throws DeviceLost, or Error{Internal} for an
+    // invalid step (see check_step); then none of them runs.
     Submission submit(std::span<const Step> steps, Timing timing = Timing::None);
     Submission submit(const Step& step, Timing timing = Timing::None) {
         return submit(std::span(&step, 1), timing);
     }
-    Submission latest() const;  // done when all that was submitted so far is; without times
+    Submission latest() const;  // done when everything submitted so far is done; without times
 
-    // Keeps `object` until everything submitted so far is done.
+    // Keeps `object` alive until everything submitted so far is done.
     void retire(std::shared_ptr<void> object) noexcept;
-    void collect() noexcept;  // drops what was retired and is no longer in use
+    void collect() noexcept;  // destroys retired objects that are no longer in use
 
   private:
     friend class Submission;
@@ -65,7 +65,7 @@ class Queue final {
     Handle<VkSemaphore, vkDestroySemaphore> timeline_;
     mutable std::atomic<bool> is_lost_ = false;
 
-    mutable std::mutex mutex_;  // protects all below
+    mutable std::mutex mutex_;  // protects everything below
     std::uint64_t submitted_ = 0;
     bool is_plan_valid_ = false;
     BarrierPlan plan_;

@@ -8,15 +8,15 @@
 
 namespace tessera::vulkan {
 
-// Hands out parts of [0, size): the smallest hole that fits, so that what returns is taken again by an equal
-// one; neighbouring holes become one. Logarithmic, but for alignments that few holes meet.
+// A best-fit allocator of ranges of [0, size), so that freed ranges are reused by equal sizes; adjacent holes are
+// merged. Logarithmic time, except for alignments that few holes satisfy.
 class RangeAllocator final {
   public:
     explicit RangeAllocator(std::uint64_t size);
 
-    // The offset, a multiple of `alignment` (a power of two); nothing when no hole fits. `size` above zero.
+    // The offset, a multiple of `alignment` (a power of two); nothing if no hole fits. `size` above zero.
     std::optional<std::uint64_t> allocate(std::uint64_t size, std::uint64_t alignment);
-    // What allocate() gave, with the same size, once.
+    // Releases a range from allocate(), with the same size, once.
     void release(std::uint64_t offset, std::uint64_t size);
 
     std::uint64_t size() const { return size_; }

@@ -22,17 +22,19 @@ struct Overloaded : Functions... {
 template <class... Functions>
 Overloaded(Functions...) -> Overloaded<Functions...>;
 
-void check_pass(const Pass& pass, const DeviceInfo& info) {
-    require(pass.pipeline != nullptr && pass.pipeline->get() != VK_NULL_HANDLE, "a pass without a pipeline");
-    const std::string name = "kernel " + pass.pipeline->name();
-    require(pass.arguments.size() == pass.pipeline->push_bytes(),
-            name + " takes " + std::to_string(pass.pipeline->push_bytes()) + " bytes of arguments and got " +
-                std::to_string(pass.arguments.size()));
-    require(std::max({pass.groups.x, pass.groups.y, pass.groups.z}) <= info.max_groups,
-            name + " has more groups along an axis than the device's " + std::to_string(info.max_groups));
-    check_bindings(pass, info);
-    for (const auto* list : {&pass.reads, &pass.writes}) {
-        for (const Buffer* buffer : *list) check_part(buffer, 0, 0, name);
+void check_dispatch(const Dispatch& dispatch, const DeviceInfo& info) {
+    require(dispatch.pipeline != nullptr && dispatch.pipeline->get() != VK_NULL_HANDLE,
+            "a dispatch without a pipeline");
+    const std::string name = "kernel " + dispatch.pipeline->name();
+    require(dispatch.arguments.size() == dispatch.pipeline->push_bytes(),
+            name + " takes " + std::to_string(dispatch.pipeline->push_bytes()) +
+                " bytes of arguments but got " + std::to_string(dispatch.arguments.size()));
+    require(std::max({dispatch.groups.x, dispatch.groups.y, dispatch.groups.z}) <= info.max_groups,
+            name + " has more groups along an axis than the device's limit of " +
+                std::to_string(info.max_groups));
+    check_bindings(dispatch, info);
+    for (const auto* list : {&dispatch.reads, &dispatch.writes}) {
+        for (const Buffer* buffer : *list) check_range(buffer, 0, 0, name);
     }
 }
 
@@ -71,17 +73,17 @@ void memory_barrier(VkCommandBuffer commands, const VkMemoryBarrier2& barrier) {
     vkCmdPipelineBarrier2(commands, &dependency);
 }
 
-// The handle names the bytes: one that comes again after its buffer's end can only cost a barrier, never miss
-// one.
+// The handle identifies the bytes. A handle that is reused after its buffer's end can only cost a barrier,
+// never miss one.
 template <class Memory>  // a buffer or an image
 Access access_to(const Memory* memory, Stage stage, Access::Kind kind) {
     return {reinterpret_cast<std::uint64_t>(memory->get()), stage, kind};
 }
 
-// Buffers that a step writes and that the host sees.
-std::vector<const Buffer*> shown_by(const Step& step) {
+// Host-visible buffers that a step writes.
+std::vector<const Buffer*> host_visible_writes(const Step& step) {
     std::vector<const Buffer*> written =
-        std::visit(Overloaded{[](const Pass& pass) { return pass.writes; },
+        std::visit(Overloaded{[](const Dispatch& dispatch) { return dispatch.writes; },
                               [](const Copy& copy) { return std::vector<const Buffer*>{copy.to}; },
                               [](const Fill& fill) { return std::vector<const Buffer*>{fill.buffer}; },
                               [](const CopyImage& copy) { return std::vector<const Buffer*>{copy.to}; },
@@ -94,23 +96,24 @@ std::vector<const Buffer*> shown_by(const Step& step) {
 }  // namespace
 
 void check_step(const Step& step, const DeviceInfo& info) {
-    std::visit(Overloaded{[&](const Pass& pass) { check_pass(pass, info); },
+    std::visit(Overloaded{[&](const Dispatch& dispatch) { check_dispatch(dispatch, info); },
                           [](const Copy& copy) {
-                              check_part(copy.from, copy.from_offset, copy.bytes, "a copy");
-                              check_part(copy.to, copy.to_offset, copy.bytes, "a copy");
+                              check_range(copy.from, copy.from_offset, copy.bytes, "a copy");
+                              check_range(copy.to, copy.to_offset, copy.bytes, "a copy");
                           },
                           [](const Fill& fill) {
-                              check_part(fill.buffer, fill.offset, fill.bytes, "a fill");
+                              check_range(fill.buffer, fill.offset, fill.bytes, "a fill");
                               require(fill.offset % 4 == 0 && fill.bytes % 4 == 0,
-                                      "a fill that is not of whole words");
+                                      "a fill that is not a multiple of 4 bytes");
                           },
                           [&](const DrawList& list) { check_draws(list, info); },
                           [](const CopyImage& copy) { check_copy(copy); },
-                          [](const Prepare& prepare) {
-                              require(prepare.image != nullptr && prepare.image->get() != VK_NULL_HANDLE,
-                                      "a preparation without an image");
+                          [](const InitializeImage& initialize) {
+                              require(
+                                  initialize.image != nullptr && initialize.image->get() != VK_NULL_HANDLE,
+                                  "an image initialization without an image");
                           },
-                          [](const Publish&) {}},
+                          [](const FullBarrier&) {}},
                step);
 }
 
@@ -120,28 +123,29 @@ std::vector<Access> accesses_of(const Step& step) {
     const auto add = [&](const auto* memory, Stage stage, Access::Kind kind) {
         accesses.push_back(access_to(memory, stage, kind));
     };
-    std::visit(Overloaded{[&](const Pass& pass) {
-                              for (const Buffer* buffer : pass.reads) add(buffer, Compute, Read);
-                              for (const Buffer* buffer : pass.writes) add(buffer, Compute, Write);
-                          },
-                          [&](const Copy& copy) {
-                              add(copy.from, Transfer, Read);
-                              add(copy.to, Transfer, Write);
-                          },
-                          [&](const Fill& fill) { add(fill.buffer, Transfer, Write); },
-                          [&](const DrawList& list) {
-                              for (const Buffer* buffer : list.reads) add(buffer, Drawing, Read);
-                              add(list.draws, Indirect, Read);
-                              add(list.ids, Attachment, Write);
-                              add(list.depth, Attachment, Write);
-                          },
-                          [&](const CopyImage& copy) {
-                              add(copy.from, Transfer, Read);
-                              add(copy.to, Transfer, Write);
-                          },
-                          [&](const Prepare& prepare) { add(prepare.image, Attachment, Write); },
-                          [](const Publish&) {}},
-               step);
+    std::visit(
+        Overloaded{[&](const Dispatch& dispatch) {
+                       for (const Buffer* buffer : dispatch.reads) add(buffer, Compute, Read);
+                       for (const Buffer* buffer : dispatch.writes) add(buffer, Compute, Write);
+                   },
+                   [&](const Copy& copy) {
+                       add(copy.from, Transfer, Read);
+                       add(copy.to, Transfer, Write);
+                   },
+                   [&](const Fill& fill) { add(fill.buffer, Transfer, Write); },
+                   [&](const DrawList& list) {
+                       for (const Buffer* buffer : list.reads) add(buffer, Drawing, Read);
+                       add(list.draws, Indirect, Read);
+                       add(list.ids, Attachment, Write);
+                       add(list.depth, Attachment, Write);
+                   },
+                   [&](const CopyImage& copy) {
+                       add(copy.from, Transfer, Read);
+                       add(copy.to, Transfer, Write);
+                   },
+                   [&](const InitializeImage& initialize) { add(initialize.image, Attachment, Write); },
+                   [](const FullBarrier&) {}},
+        step);
     return accesses;
 }
 
@@ -155,7 +159,7 @@ void Recorder::barrier(const Barrier& barrier) {
                                .dstAccessMask = only_order ? 0 : destinations.reads | destinations.writes});
 }
 
-void Recorder::publish() {
+void Recorder::full_barrier() {
     memory_barrier(commands_,
                    {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
                     .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
@@ -163,26 +167,26 @@ void Recorder::publish() {
                     .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_HOST_BIT,
                     .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT |
                                      VK_ACCESS_2_HOST_READ_BIT});
-    plan_.forget();
+    plan_.reset();
 }
 
-void Recorder::dispatch(const Pass& pass) {
-    vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pass.pipeline->get());
-    const VkDescriptorSet set = make_set(device_, slot_.sets.get(), pass);
+void Recorder::record_dispatch(const Dispatch& dispatch) {
+    vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, dispatch.pipeline->get());
+    const VkDescriptorSet set = make_set(device_, slot_.sets.get(), dispatch);
     if (set != VK_NULL_HANDLE) {
-        vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pass.pipeline->layout(), 0, 1,
+        vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, dispatch.pipeline->layout(), 0, 1,
                                 &set, 0, nullptr);
     }
-    if (pass.arguments.size() > 0) {
-        vkCmdPushConstants(commands_, pass.pipeline->layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0,
-                           pass.arguments.size(), pass.arguments.data());
+    if (dispatch.arguments.size() > 0) {
+        vkCmdPushConstants(commands_, dispatch.pipeline->layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                           dispatch.arguments.size(), dispatch.arguments.data());
     }
-    vkCmdDispatch(commands_, pass.groups.x, pass.groups.y, pass.groups.z);
+    vkCmdDispatch(commands_, dispatch.groups.x, dispatch.groups.y, dispatch.groups.z);
 }
 
 void Recorder::record(const Step& step) {
     if (const auto needed = plan_.before(accesses_of(step))) barrier(*needed);
-    std::visit(Overloaded{[&](const Pass& pass) { dispatch(pass); },
+    std::visit(Overloaded{[&](const Dispatch& dispatch) { record_dispatch(dispatch); },
                           [&](const Copy& copy) {
                               if (copy.bytes == 0) return;
                               const VkBufferCopy region{copy.from_offset, copy.to_offset, copy.bytes};
@@ -195,11 +199,13 @@ void Recorder::record(const Step& step) {
                           },
                           [&](const DrawList& list) { record_draws(commands_, list); },
                           [&](const CopyImage& copy) { record_copy(commands_, copy); },
-                          [&](const Prepare& prepare) { record_preparation(commands_, *prepare.image); },
-                          [&](const Publish&) { publish(); }},
+                          [&](const InitializeImage& initialize) {
+                              record_image_initialization(commands_, *initialize.image);
+                          },
+                          [&](const FullBarrier&) { full_barrier(); }},
                step);
-    for (const Buffer* buffer : shown_by(step)) {
-        for_host_.push_back(access_to(buffer, Host, Access::Kind::Read));
+    for (const Buffer* buffer : host_visible_writes(step)) {
+        host_writes_.push_back(access_to(buffer, Host, Access::Kind::Read));
     }
 }
 
@@ -207,8 +213,8 @@ void Recorder::timestamp() {
     vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, slot_.queries.get(), stamp_++);
 }
 
-void Recorder::show_host() {
-    if (const auto needed = plan_.before(for_host_)) barrier(*needed);
+void Recorder::make_visible_to_host() {
+    if (const auto needed = plan_.before(host_writes_)) barrier(*needed);
 }
 
 }  // namespace tessera::vulkan

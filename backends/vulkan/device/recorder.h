@@ -12,36 +12,35 @@
 
 namespace tessera::vulkan {
 
-// Throws Error{Internal} for a step that is none: a pass without a pipeline, arguments of another size, more
-// groups than the device allows, a part beyond a buffer's end.
+// Throws Error{Internal} for an invalid step: a dispatch without a pipeline, arguments of the wrong size, more
+// groups than the device allows, a range beyond the end of a buffer.
 void check_step(const Step& step, const DeviceInfo& info);
 
 std::vector<Access> accesses_of(const Step& step);
 
-// Writes steps that were checked into a command buffer, with the barriers that `plan` derives.
+// Records checked steps into a command buffer, with the barriers derived by `plan`.
 class Recorder final {
   public:
-    // The slot is ready to record into and has room for the steps.
+    // The slot is ready for recording and has sufficient capacity for the steps.
     Recorder(VkDevice device, SubmissionSlot& slot, BarrierPlan& plan)
         : device_(device), slot_(slot), commands_(slot.commands), plan_(plan) {}
 
     void record(const Step& step);
-    void publish();    // a barrier of everything
-    void timestamp();  // the next of the slot's, once all before is done
-    // Before the end: what the recorded steps wrote into memory that the host sees, it can read after
-    // waiting.
-    void show_host();
+    void full_barrier();  // inserts a full memory barrier
+    void timestamp();     // writes the next timestamp, after everything before is done
+    // Before the end: makes writes to host-visible memory available to the host after waiting.
+    void make_visible_to_host();
 
   private:
     void barrier(const Barrier& barrier);
-    void dispatch(const Pass& pass);
+    void record_dispatch(const Dispatch& dispatch);
 
     VkDevice device_;
     SubmissionSlot& slot_;
     VkCommandBuffer commands_;
     BarrierPlan& plan_;
     std::uint32_t stamp_ = 0;
-    std::vector<Access> for_host_;
+    std::vector<Access> host_writes_;
 };
 
 }  // namespace tessera::vulkan

@@ -15,7 +15,7 @@ struct Meaning {
 };
 
 constexpr const char* MissingPart =
-    "the driver lacks something that was asked for: see 'tessera doctor' for what it supports";
+    "the driver lacks a requested feature: see 'tessera doctor' for what it supports";
 constexpr std::array Meanings{
     Meaning{VK_NOT_READY, "VK_NOT_READY", ErrorCode::Unavailable, "try again"},
     Meaning{VK_TIMEOUT, "VK_TIMEOUT", ErrorCode::Unavailable, "try again"},
@@ -27,7 +27,7 @@ constexpr std::array Meanings{
     Meaning{VK_ERROR_INITIALIZATION_FAILED, "VK_ERROR_INITIALIZATION_FAILED", ErrorCode::Unavailable,
             "check the driver's installation with vulkaninfo"},
     Meaning{VK_ERROR_DEVICE_LOST, "VK_ERROR_DEVICE_LOST", ErrorCode::Unavailable,
-            "the device has to be opened again"},
+            "the device has to be reopened"},
     Meaning{VK_ERROR_MEMORY_MAP_FAILED, "VK_ERROR_MEMORY_MAP_FAILED", ErrorCode::OutOfMemory,
             "free address space or memory on this machine"},
     Meaning{VK_ERROR_LAYER_NOT_PRESENT, "VK_ERROR_LAYER_NOT_PRESENT", ErrorCode::Unavailable,
@@ -42,9 +42,8 @@ constexpr std::array Meanings{
             "the driver allows no more objects of this kind: close other programs on the device"},
     Meaning{VK_ERROR_OUT_OF_POOL_MEMORY, "VK_ERROR_OUT_OF_POOL_MEMORY", ErrorCode::OutOfMemory,
             "report this"},
-    Meaning{VK_ERROR_FRAGMENTATION, "VK_ERROR_FRAGMENTATION", ErrorCode::OutOfMemory,
-            "start the program again"},
-    Meaning{VK_ERROR_UNKNOWN, "VK_ERROR_UNKNOWN", ErrorCode::Internal, "look into the driver's log"},
+    Meaning{VK_ERROR_FRAGMENTATION, "VK_ERROR_FRAGMENTATION", ErrorCode::OutOfMemory, "restart the program"},
+    Meaning{VK_ERROR_UNKNOWN, "VK_ERROR_UNKNOWN", ErrorCode::Internal, "check the driver's log"},
 };
 
 const Meaning* find_meaning(VkResult result) {
@@ -66,7 +65,7 @@ void check(VkResult result, std::string_view operation) {
     if (result == VK_SUCCESS) return;
     const Meaning* meaning = find_meaning(result);
     const std::string message = "cannot " + std::string(operation) + ": " + result_name(result) + "; " +
-                                (meaning != nullptr ? meaning->remedy : "look into the driver's log");
+                                (meaning != nullptr ? meaning->remedy : "check the driver's log");
     if (result == VK_ERROR_DEVICE_LOST) throw DeviceLost(message);
     throw Error(meaning != nullptr ? meaning->code : ErrorCode::Internal, message);
 }

@@ -9,17 +9,17 @@
 
 namespace tessera::vulkan {
 
-// The device is gone and everything on it: destroy all that belongs to its Device and make a new one.
+// The device and everything on it is lost: destroy all objects of its Device and open a new one.
 class DeviceLost final : public Error {
   public:
     explicit DeviceLost(const std::string& message) : Error(ErrorCode::Unavailable, message) {}
 };
 
-// "VK_ERROR_DEVICE_LOST"; "VkResult -1000" for what this header does not know.
+// "VK_ERROR_DEVICE_LOST"; "VkResult -1000" for unknown values.
 std::string result_name(VkResult result);
 
-// Throws unless VK_SUCCESS: DeviceLost, or Error of the fitting code. `operation` is a phrase that goes on
-// from "cannot": check(vkCreateFence(...), "make a fence") gives "cannot make a fence: VK_ERROR_...;
+// Throws unless VK_SUCCESS: DeviceLost, or Error of the matching code. `operation` is a phrase that follows
+// "cannot": check(vkCreateFence(...), "create a fence") gives "cannot create a fence: VK_ERROR_...;
 // <remedy>".
 void check(VkResult result, std::string_view operation);
 

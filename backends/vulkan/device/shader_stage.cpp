@@ -13,7 +13,8 @@ ShaderStage::ShaderStage(VkDevice device, const std::string& name, VkShaderStage
                                         .codeSize = code.size_bytes(),
                                         .pCode = code.data()};
     VkShaderModule object = VK_NULL_HANDLE;
-    check(vkCreateShaderModule(device, &info, nullptr, &object), "read the code of kernel " + name);
+    check(vkCreateShaderModule(device, &info, nullptr, &object),
+          "create the shader module of kernel " + name);
     module_ = {device, object};
     for (const Constant& constant : constants) {
         const auto offset =
@@ -34,8 +35,8 @@ VkPipelineShaderStageCreateInfo ShaderStage::info() const {
 
 void check_push_bytes(const std::string& name, std::uint32_t bytes, std::uint32_t allowed) {
     if (bytes <= allowed) return;
-    throw Error(ErrorCode::Internal, "kernel " + name + " asks for " + std::to_string(bytes) +
-                                         " bytes of push constants where the device allows " +
+    throw Error(ErrorCode::Internal, "kernel " + name + " needs " + std::to_string(bytes) +
+                                         " bytes of push constants, but the device's limit is " +
                                          std::to_string(allowed) + "; report this");
 }
 

@@ -11,8 +11,8 @@
 
 namespace tessera::vulkan {
 
-// One stage of a pipeline that is being made: its code and the values of its constants, which it refers to.
-// Throws Error: the driver refuses the code.
+// One shader stage of a pipeline under construction: its code and its specialisation constants, which must
+// outlive it. Throws Error if the driver rejects the code.
 class ShaderStage final {
   public:
     ShaderStage(VkDevice device, const std::string& name, VkShaderStageFlagBits stage,
@@ -29,7 +29,7 @@ class ShaderStage final {
     VkSpecializationInfo specialization_{};
 };
 
-// Throws Error{Internal} where a block of push constants is larger than the device allows.
+// Throws Error{Internal} if the push constants are larger than the device allows.
 void check_push_bytes(const std::string& name, std::uint32_t bytes, std::uint32_t allowed);
 
 }  // namespace tessera::vulkan

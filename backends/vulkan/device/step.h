@@ -18,10 +18,10 @@ class GraphicsPipeline;
 class Image;
 
 // The push-constant block of one dispatch: any plain struct of at most 128 bytes, laid out as the shader's
-// (scalar layout). Addresses of buffers go in here.
+// (scalar layout). Contains addresses of buffers.
 class Arguments final {
   public:
-    static constexpr std::size_t Capacity = 128;  // what every device allows
+    static constexpr std::size_t Capacity = 128;  // guaranteed on every device
 
     Arguments() = default;
     template <class T>
@@ -42,10 +42,10 @@ struct Groups {
     std::uint32_t x = 1, y = 1, z = 1;
 };
 
-// One dispatch, and what it touches. The order between steps comes from `reads` and `writes` alone: name
-// every buffer that the kernel reads or writes and that any step writes. Buffers that only upload() fills
-// need not be named. A buffer that is read and written stands in `writes`.
-struct Pass {
+// One dispatch and its accesses. Barriers are derived from `reads` and `writes` alone: list every buffer that the
+// kernel accesses and that any step writes. Buffers filled only by upload() need not be listed. Buffers that are
+// read and written belong in `writes`.
+struct Dispatch {
     const ComputePipeline* pipeline = nullptr;
     Arguments arguments;
     Groups groups;
@@ -59,47 +59,47 @@ struct Copy {
     std::uint64_t from_offset = 0, to_offset = 0, bytes = 0;
 };
 
-// Sets every 32-bit word of a part; offset and bytes are multiples of 4.
+// Sets every 32-bit word of a range; offset and bytes are multiples of 4.
 struct Fill {
     const Buffer* buffer = nullptr;
     std::uint64_t offset = 0, bytes = 0;
     std::uint32_t word = 0;
 };
 
-// All before is done and seen before anything after starts, named or not.
-struct Publish {};
+// A full memory barrier, also for buffers that steps do not list.
+struct FullBarrier {};
 
-// A list of draws to a part of images, which begins with no ids there: 0xffffffff and 0. The order between
-// steps comes from the images, the list and `reads`, as for a pass.
+// Draws to an area of images, whose ids are cleared to 0xffffffff and 0 first. Barriers are derived from the
+// images, the list and `reads`, as for a dispatch.
 struct DrawList {
     const GraphicsPipeline* pipeline = nullptr;
     Arguments arguments;
     const Image* ids = nullptr;
     const Image* depth = nullptr;
-    enum class Depth { Clear, Keep } depth_before = Depth::Clear;  // cleared: infinitely far, 0
-    Rect area;                   // of the images; nothing outside of it is touched
-    std::uint32_t viewport = 0;  // edge of a square whose corner is the images'; may be larger than they
-    // `count` of VkDrawIndirectCommand from the buffer's start. One call makes up to `per_call` of them, at
-    // most DeviceInfo::draws_per_call; where that is 1, no draw has another first instance than 0.
+    enum class Depth { Clear, Keep } depth_before = Depth::Clear;  // clears to 0, infinitely far
+    Rect area;                   // of the images; nothing outside of it is modified
+    std::uint32_t viewport = 0;  // edge of a square at the images' corner; may be larger than the images
+    // `count` VkDrawIndirectCommand from the start of the buffer. One call issues up to `per_call` of them, at
+    // most DeviceInfo::draws_per_call; if that is 1, the first instance of all draws must be 0.
     const Buffer* draws = nullptr;
     std::uint32_t count = 0, per_call = 1;
     std::vector<const Buffer*> reads;
 };
 
-// A part of an image to a buffer, row after row; the offset is a multiple of a pixel's bytes.
+// Copies an area of an image to a buffer, row by row; the offset is a multiple of the pixel size.
 struct CopyImage {
     const Image* from = nullptr;
     Rect area;
     const Buffer* to = nullptr;
     std::uint64_t to_offset = 0;
-    std::uint32_t row_pixels = 0;  // from row to row in the buffer; 0: without gaps
+    std::uint32_t row_pixels = 0;  // row pitch in the buffer; 0: tightly packed
 };
 
-// The image's contents are gone; only now it can be used. Images do this themselves when they are made.
-struct Prepare {
+// Transitions a new image to its layout, discarding its contents. Images do this in their constructor.
+struct InitializeImage {
     const Image* image = nullptr;
 };
 
-using Step = std::variant<Pass, Copy, Fill, Publish, DrawList, CopyImage, Prepare>;
+using Step = std::variant<Dispatch, Copy, Fill, FullBarrier, DrawList, CopyImage, InitializeImage>;
 
 }  // namespace tessera::vulkan

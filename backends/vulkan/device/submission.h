@@ -12,18 +12,18 @@ struct SubmissionSlot;
 
 enum class Timing { None, Total, Steps };
 
-// Steps on their way. Dropping it abandons them: they run to their end unobserved. The queue outlives it.
+// Submitted steps. Destroying it abandons them: they still run to completion. The queue outlives it.
 class Submission final {
   public:
-    Submission() = default;  // of nothing: done
+    Submission() = default;  // empty: done
 
     // All throw DeviceLost.
     bool done() const;
     void wait() const;
     bool wait_for(std::chrono::nanoseconds time) const;  // false: not done yet
 
-    // Waits, then: what the device took, one number for Timing::Total, one per step for Timing::Steps (steps
-    // that overlap share the time of both); empty for Timing::None and on a device without timestamps.
+    // Waits, then returns device times: one for Timing::Total, one per step for Timing::Steps (steps that overlap
+    // have their common time); empty for Timing::None and on a device without timestamps.
     std::vector<double> seconds() const;
 
   private:

@@ -12,13 +12,13 @@ SubmissionSlot::SubmissionSlot(VkDevice device, std::uint32_t family) : device_(
     const VkCommandPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                             .queueFamilyIndex = family};
     VkCommandPool pool = VK_NULL_HANDLE;
-    check(vkCreateCommandPool(device, &pool_info, nullptr, &pool), "make a command pool");
+    check(vkCreateCommandPool(device, &pool_info, nullptr, &pool), "create a command pool");
     pool_ = {device, pool};
     const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                            .commandPool = pool,
                                            .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                            .commandBufferCount = 1};
-    check(vkAllocateCommandBuffers(device, &info, &commands), "make a command buffer");
+    check(vkAllocateCommandBuffers(device, &info, &commands), "allocate a command buffer");
 }
 
 void SubmissionSlot::reset() {
@@ -26,24 +26,25 @@ void SubmissionSlot::reset() {
     stamps = 0;
 }
 
-void SubmissionSlot::make_room(std::uint32_t count) {
+void SubmissionSlot::reserve_timestamps(std::uint32_t count) {
     if (count > stamp_capacity_) {
         stamp_capacity_ = std::bit_ceil(count);
         const VkQueryPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
                                          .queryType = VK_QUERY_TYPE_TIMESTAMP,
                                          .queryCount = stamp_capacity_};
         VkQueryPool object = VK_NULL_HANDLE;
-        check(vkCreateQueryPool(device_, &info, nullptr, &object), "make a pool of timestamps");
+        check(vkCreateQueryPool(device_, &info, nullptr, &object), "create a query pool");
         queries = {device_, object};
     }
     vkResetQueryPool(device_, queries.get(), 0, count);
     stamps = count;
 }
 
-void SubmissionSlot::make_room_for_sets(std::uint32_t count, std::uint32_t storage, std::uint32_t texels) {
+void SubmissionSlot::reserve_descriptor_sets(std::uint32_t count, std::uint32_t storage,
+                                             std::uint32_t texels) {
     if (count == 0) return;
     if (count <= set_capacity_ && storage <= storage_capacity_ && texels <= texel_capacity_) {
-        check(vkResetDescriptorPool(device_, sets.get(), 0), "reset a pool of bindings");
+        check(vkResetDescriptorPool(device_, sets.get(), 0), "reset a descriptor pool");
         return;
     }
     set_capacity_ = std::max(set_capacity_, std::bit_ceil(count));
@@ -57,7 +58,7 @@ void SubmissionSlot::make_room_for_sets(std::uint32_t count, std::uint32_t stora
                                           .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
                                           .pPoolSizes = sizes.data()};
     VkDescriptorPool object = VK_NULL_HANDLE;
-    check(vkCreateDescriptorPool(device_, &info, nullptr, &object), "make a pool of bindings");
+    check(vkCreateDescriptorPool(device_, &info, nullptr, &object), "create a descriptor pool");
     sets = {device_, object};
 }
 

@@ -9,21 +9,21 @@
 
 namespace tessera::vulkan {
 
-// The commands and timestamps of one submission; a later one uses them again.
+// Command buffer, timestamps and descriptor sets of one submission; reused by later ones.
 struct SubmissionSlot {
     SubmissionSlot(VkDevice device, std::uint32_t family);
 
-    void reset();                          // ready to record into
-    void make_room(std::uint32_t stamps);  // for that many timestamps, all unset
-    // For that many sets with so many descriptors of a kind altogether; those made before are gone.
-    void make_room_for_sets(std::uint32_t sets, std::uint32_t storage, std::uint32_t texels);
-    std::vector<std::uint64_t> read() const;  // ticks of the stamps, once the device is done
+    void reset();                                   // prepares for recording
+    void reserve_timestamps(std::uint32_t stamps);  // resets this many timestamps
+    // Capacity for this many sets with this many descriptors in total; frees previous sets.
+    void reserve_descriptor_sets(std::uint32_t sets, std::uint32_t storage, std::uint32_t texels);
+    std::vector<std::uint64_t> read() const;  // timestamps in ticks, once the device is done
 
     VkCommandBuffer commands = VK_NULL_HANDLE;
     Handle<VkQueryPool, vkDestroyQueryPool> queries;
     Handle<VkDescriptorPool, vkDestroyDescriptorPool> sets;
     std::uint32_t stamps = 0;  // written by this submission
-    std::uint64_t ticket = 0;  // the timeline's value at its end
+    std::uint64_t ticket = 0;  // timeline semaphore value at completion
 
   private:
     VkDevice device_;

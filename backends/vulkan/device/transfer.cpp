@@ -9,14 +9,15 @@ namespace tessera::vulkan {
 
 namespace {
 
-// Each half is filled while the other one is copied. Large enough that a submission costs little beside its
+// Each half is filled while the other one is copied. Large enough that a submission costs little next to its
 // copy (1 ms at 8 GB/s), small enough to stay in a processor's last cache.
 constexpr std::uint64_t HalfBytes = 8u << 20;
 
 void check_range(const Buffer& buffer, std::uint64_t offset, std::uint64_t bytes) {
     if (offset <= buffer.size() && bytes <= buffer.size() - offset) return;
-    throw Error(ErrorCode::Internal, "a transfer of " + std::to_string(bytes) + " bytes beyond the end of " +
-                                         std::to_string(buffer.size()) + "; report this");
+    throw Error(ErrorCode::Internal, "a transfer of " + std::to_string(bytes) +
+                                         " bytes exceeds a buffer of " + std::to_string(buffer.size()) +
+                                         "; report this");
 }
 
 }  // namespace
@@ -38,8 +39,8 @@ void upload_bytes(Device& device, const Buffer& buffer, std::span<const std::byt
         const std::uint64_t part = std::min<std::uint64_t>(bytes.size() - at, half);
         in_use[turn].wait();
         std::memcpy(staging.mapped().data() + turn * half, bytes.data() + at, part);
-        const std::array<Step, 3> steps{Publish{}, Copy{&staging, &buffer, turn * half, offset + at, part},
-                                        Publish{}};
+        const std::array<Step, 3> steps{
+            FullBarrier{}, Copy{&staging, &buffer, turn * half, offset + at, part}, FullBarrier{}};
         in_use[turn] = device.queue().submit(steps);
     }
     for (const Submission& last : in_use) last.wait();
@@ -56,7 +57,7 @@ void fill_new_bytes(Device& device, const Buffer& buffer, std::span<const std::b
     }
     const Buffer staging(device, bytes.size(), MemoryKind::Upload);
     std::memcpy(staging.mapped().data(), bytes.data(), bytes.size());
-    const std::array<Step, 2> steps{Copy{&staging, &buffer, 0, 0, bytes.size()}, Publish{}};
+    const std::array<Step, 2> steps{Copy{&staging, &buffer, 0, 0, bytes.size()}, FullBarrier{}};
     device.queue().submit(steps);
 }
 

@@ -11,31 +11,30 @@
 
 namespace tessera::vulkan {
 
-// These two are ordered against everything submitted before and after, and done when they return; where the
-// host does not see the buffer they go through staging memory. They throw DeviceLost, or Error{Internal} for
-// a part beyond the buffer's end.
+// Both are ordered against everything submitted before and after, and are done when they return; they use
+// staging memory if the buffer is not host-visible. They throw DeviceLost, or Error{Internal} for a range beyond
+// the end of the buffer.
 void upload_bytes(Device& device, const Buffer& buffer, std::span<const std::byte> bytes,
                   std::uint64_t offset = 0);
 void download_bytes(Device& device, const Buffer& buffer, std::span<std::byte> bytes,
                     std::uint64_t offset = 0);
 
-// For a buffer that no step knows yet, so that nothing has to be waited for: where the host does not see it,
-// and for no more than a few MiB, the bytes are still on their way when this returns. What is submitted
-// afterwards sees them.
+// For a buffer that no step has used yet, so that no wait is needed: up to a few MiB, the copy to a buffer that is
+// not host-visible is still in flight when this returns. Later submissions see the bytes.
 void fill_new_bytes(Device& device, const Buffer& buffer, std::span<const std::byte> bytes);
 
-// A part of a buffer on its way to the host, behind all that was submitted before; others may go on
-// submitting. What it shows stays as long as it lives and the part is not written again.
+// An asynchronous download of a range of a buffer, after everything submitted before. Other submissions may
+// follow. The bytes are valid for the lifetime of this object, unless the range is written again.
 class Download final {
   public:
-    Download() = default;  // of nothing
+    Download() = default;  // empty
     Download(Device& device, const Buffer& from, std::uint64_t offset, std::uint64_t bytes);
 
     bool done() const { return submission_.done(); }
     std::span<const std::byte> wait() const;  // throws DeviceLost
 
   private:
-    Buffer staging_;  // only where the host does not see the buffer
+    Buffer staging_;  // only if the buffer is not host-visible
     Submission submission_;
     std::span<const std::byte> bytes_;
 };
@@ -60,9 +59,9 @@ requires std::is_trivially_copyable_v<T> std::vector<T> download(Device& device,
     return values;
 }
 
-// Submits a pass and waits: for tests and for what runs once.
-inline void run(Device& device, const Pass& pass) {
-    device.queue().submit(Step(pass)).wait();
+// Submits a dispatch and waits for it.
+inline void run(Device& device, const Dispatch& dispatch) {
+    device.queue().submit(Step(dispatch)).wait();
 }
 
 }  // namespace tessera::vulkan

@@ -23,8 +23,8 @@ std::vector<CellPart> cells_of(const shading::View& view, const Rect& tile) {
     return parts;
 }
 
-// Pixel p of the picture, seen at its place in this sample, has to come out at the centre of pixel p - x of
-// the cell: the inverse of camera_ray().
+// Maps pixel p of the picture, at its subpixel position in this sample, to the centre of pixel p - x of the
+// cell: the inverse of camera_ray().
 shading::RasterCell make_cell(const shading::View& view, const CellPart& part, std::uint64_t index) {
     const std::uint32_t edge = cell_edge(view);
     const glm::vec2 offset = shading::filter_offset(view, shading::raster_place(view, index));

@@ -5,18 +5,18 @@
 
 #include "mediator/shading/raster.h"
 
-// The push constants of shaders/raster*, and what they read: addresses first.
+// The push constants of shaders/raster*, and the records they read; addresses come first.
 namespace tessera::vulkan {
 
-// Which instances a list of draws shows.
+// Which instances a draw list includes.
 enum class CullStage : std::uint32_t {
-    Seen,      // inside of the area, and unhidden the last time
-    Unhidden,  // inside, and not behind all that the pyramid tells of; this is noted for the next time
-    Inside,
-    All
+    LastVisible,  // in the frustum of the area, and visible the last time
+    Unoccluded,   // in the frustum, and not occluded by the depth pyramid; recorded for the next time
+    InFrustum,
+    None  // no culling
 };
 
-// Edge of the squares that a pixel of the pyramid's next level stands for.
+// Edge of the squares of pixels that are one pixel in the next level of the depth pyramid.
 inline constexpr std::uint32_t PyramidStep = 4;
 
 struct DrawJob {
@@ -27,29 +27,29 @@ struct DrawJob {
 
 struct CullJob {
     std::uint64_t view = 0, bounds = 0, draws = 0;
-    std::uint64_t seen = 0;    // a number for each instance: 0, or 1 for what was unhidden the last time
-    std::uint64_t depths = 0;  // of the area, and behind it the pyramid's levels
+    std::uint64_t seen = 0;    // per instance: 1 if it was visible the last time, else 0
+    std::uint64_t depths = 0;  // of the area, followed by the levels of the depth pyramid
     shading::RasterCell cell{};
     std::uint32_t x = 0, y = 0, width = 0, height = 0;  // the area, in the cell
     std::uint32_t count = 0;                            // of instances
     std::uint32_t per_call = 1;
-    CullStage stage = CullStage::All;
+    CullStage stage = CullStage::None;
     std::uint32_t unused = 0;
 };
 
-// Places are counted in floats.
+// Offsets are in floats.
 struct PyramidJob {
     std::uint64_t depths = 0;
     std::uint32_t from = 0, to = 0;
     std::uint32_t width = 0, height = 0;  // of the level below
 };
 
-// What an instance can be seen in, relative to the render origin as all places.
+// The bounds of an instance, relative to the render origin like all positions.
 struct RasterBound {
     glm::vec3 low{0.0f};
-    std::uint32_t vertices = 0;  // to draw; 0: it is left out, by rays too
+    std::uint32_t vertices = 0;  // to draw; 0: excluded, from ray tracing too
     glm::vec3 high{0.0f};
-    std::uint32_t layers = shading::AllLayers;  // only views that see one of them are shown it
+    std::uint32_t layers = shading::AllLayers;  // visible to views that include one of them
 };
 
 static_assert(sizeof(shading::RasterCell) == 32 && offsetof(shading::RasterCell, shift) == 8);

@@ -9,12 +9,12 @@
 
 namespace tessera::vulkan {
 
-// What rasterising runs on a device, made when first asked for. Thread-safe.
+// The pipelines of the rasteriser on a device, compiled on first use. Thread-safe.
 class RasterKernels final {
   public:
     explicit RasterKernels(Device& device);
 
-    // The device draws (DeviceInfo::draws).
+    // Requires a device with graphics (DeviceInfo::draws).
     struct Set {
         const GraphicsPipeline& draw;
         const ComputePipeline& cull;

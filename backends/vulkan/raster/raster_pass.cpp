@@ -31,16 +31,16 @@ class PartSteps {
     void add() {
         const std::uint32_t count = pass_.target.instances;
         if (pass_.settings.culling == RasterSettings::Culling::Off) {
-            choose(CullStage::All);
+            cull(CullStage::None);
             draw(DrawList::Depth::Clear);
-        } else if (count < pass_.settings.hidden_from) {
-            choose(CullStage::Inside);
+        } else if (count < pass_.settings.occlusion_min_instances) {
+            cull(CullStage::InFrustum);
             draw(DrawList::Depth::Clear);
         } else {
-            choose(CullStage::Seen);
+            cull(CullStage::LastVisible);
             draw(DrawList::Depth::Clear);
-            make_pyramid();
-            choose(CullStage::Unhidden);
+            build_depth_pyramid();
+            cull(CullStage::Unoccluded);
             draw(DrawList::Depth::Keep);
         }
     }
@@ -49,30 +49,30 @@ class PartSteps {
     std::uint32_t width() const { return static_cast<std::uint32_t>(part_.area.width); }
     std::uint32_t height() const { return static_cast<std::uint32_t>(part_.area.height); }
 
-    void choose(CullStage stage) {
+    void cull(CullStage stage) {
         RasterTarget& target = pass_.target;
-        Pass pass{.pipeline = &pass_.kernels.cull,
-                  .arguments = CullJob{.view = pass_.view_address,
-                                       .bounds = pass_.scene.bounds().address(),
-                                       .draws = target.draws.address(),
-                                       .seen = target.seen.address(),
-                                       .depths = target.depths.address(),
-                                       .cell = cell_,
-                                       .x = static_cast<std::uint32_t>(part_.area.x),
-                                       .y = static_cast<std::uint32_t>(part_.area.y),
-                                       .width = width(),
-                                       .height = height(),
-                                       .count = target.instances,
-                                       .per_call = per_call_,
-                                       .stage = stage},
-                  .groups = {groups_for(target.instances, pass_.kernels.group_size)},
-                  .writes = {&target.draws}};
-        if (stage == CullStage::Seen) pass.reads = {&target.seen};
-        if (stage == CullStage::Unhidden) {
-            pass.reads = {&target.depths};
-            pass.writes = {&target.draws, &target.seen};
+        Dispatch dispatch{.pipeline = &pass_.kernels.cull,
+                          .arguments = CullJob{.view = pass_.view_address,
+                                               .bounds = pass_.scene.bounds().address(),
+                                               .draws = target.draws.address(),
+                                               .seen = target.seen.address(),
+                                               .depths = target.depths.address(),
+                                               .cell = cell_,
+                                               .x = static_cast<std::uint32_t>(part_.area.x),
+                                               .y = static_cast<std::uint32_t>(part_.area.y),
+                                               .width = width(),
+                                               .height = height(),
+                                               .count = target.instances,
+                                               .per_call = per_call_,
+                                               .stage = stage},
+                          .groups = {groups_for(target.instances, pass_.kernels.group_size)},
+                          .writes = {&target.draws}};
+        if (stage == CullStage::LastVisible) dispatch.reads = {&target.seen};
+        if (stage == CullStage::Unoccluded) {
+            dispatch.reads = {&target.depths};
+            dispatch.writes = {&target.draws, &target.seen};
         }
-        if (target.instances > 0) steps_.push_back(std::move(pass));
+        if (target.instances > 0) steps_.push_back(std::move(dispatch));
     }
 
     void draw(DrawList::Depth depth) {
@@ -92,8 +92,8 @@ class PartSteps {
                                   .per_call = per_call_});
     }
 
-    // Levels behind each other, the area itself first, down to one pixel.
-    void make_pyramid() {
+    // Levels are stored one after another: first the area itself, down to one pixel.
+    void build_depth_pyramid() {
         RasterTarget& target = pass_.target;
         std::vector<PyramidJob> levels;
         std::uint32_t from = 0, end = width() * height();
@@ -110,10 +110,10 @@ class PartSteps {
         for (PyramidJob& level : levels) {
             level.depths = target.depths.address();
             const std::uint32_t items = level_below(level.width) * level_below(level.height);
-            steps_.push_back(Pass{.pipeline = &pass_.kernels.pyramid,
-                                  .arguments = level,
-                                  .groups = {groups_for(items, pass_.kernels.group_size)},
-                                  .writes = {&target.depths}});
+            steps_.push_back(Dispatch{.pipeline = &pass_.kernels.pyramid,
+                                      .arguments = level,
+                                      .groups = {groups_for(items, pass_.kernels.group_size)},
+                                      .writes = {&target.depths}});
         }
     }
 

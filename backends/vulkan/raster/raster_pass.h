@@ -11,15 +11,15 @@
 namespace tessera::vulkan {
 
 struct RasterSettings {
-    // Whether instances that show nothing are left out; the picture is the same. Hidden ones are looked for
-    // from `hidden_from` instances on: it costs drawing what was seen the last time twice.
+    // Whether invisible instances are culled; the picture is the same. Occlusion culling is used from
+    // `occlusion_min_instances` instances on: it costs drawing the previously visible instances twice.
     enum class Culling { Off, On } culling = Culling::On;
-    std::uint32_t hidden_from = 64;
-    std::uint32_t draws_per_call = 0xffffffffu;  // at most; fewer where the device makes fewer
+    std::uint32_t occlusion_min_instances = 64;
+    std::uint32_t draws_per_call = 0xffffffffu;  // at most; fewer where the device supports fewer
 };
 
-// Draws what each pixel of a tile sees. The view's record is on the device at `view_address`. All that is
-// referred to outlives the steps.
+// Rasterises the visible triangle of each pixel of a tile. The view's record is on the device at `view_address`.
+// All referenced objects outlive the steps.
 struct RasterPass {
     Device& device;
     const RasterKernels::Set& kernels;

@@ -7,7 +7,7 @@
 
 namespace tessera::vulkan {
 
-// What rasterising has on a device, for all units, and how it is to be done.
+// Resources of the rasteriser on a device, shared by all units, and its settings.
 struct RasterTools {
     RasterKernels& kernels;
     RasterTargets& targets;
@@ -17,9 +17,9 @@ struct RasterTools {
 // The drawing of one unit's samples.
 class RasterRun final {
   public:
-    static constexpr std::uint32_t MostSamples = 64;  // in one submission
+    static constexpr std::uint32_t MaxSamples = 64;  // in one submission
 
-    // The view's record is on the device at `view_address`, as long as this and what it submitted. Throws
+    // The view's record is on the device at `view_address`, for the lifetime of this object and its submissions. Throws
     // Error{OutOfMemory} and DeviceLost.
     RasterRun(Device& device, const RasterTools& tools, const GpuScene& scene, const shading::View& view,
               std::uint64_t view_address, const Rect& tile);
@@ -37,7 +37,7 @@ class RasterRun final {
     shading::View view_;
     RasterPass pass_;
     Rect tile_;
-    std::array<Buffer, 2> seen_;  // some are shaded while the next ones are drawn
+    std::array<Buffer, 2> seen_;  // double-buffered: one is shaded while the next is drawn
     std::size_t current_ = 0;
 };
 

@@ -9,26 +9,26 @@
 
 namespace tessera::vulkan {
 
-// What one unit at a time draws into.
+// Render targets of one unit at a time.
 struct RasterTarget {
-    // Images of what a picture of this size can touch of a cell.
+    // Images that cover the part of a cell that a picture of this size can touch.
     RasterTarget(Device& device, std::uint32_t width, std::uint32_t height, std::uint32_t instances);
 
     std::uint32_t instances;
     Image ids, depth;
     Buffer draws;   // VkDrawIndirectCommand, the last instance first
-    Buffer seen;    // a number each instance: unhidden the last time, wherever that was
-    Buffer depths;  // of an area, with its pyramid; grows
+    Buffer seen;    // per instance: 1 if it was visible the last time, in any tile
+    Buffer depths;  // of an area, with its depth pyramid; grows
 };
 
-// Targets that wait for the next unit. What they know of the last time saves work; the picture does not
-// depend on it. Thread-safe.
+// Free targets for the next units. Visibility of the previous frame saves work; the picture does not depend on
+// it. Thread-safe.
 class RasterTargets final {
   public:
     explicit RasterTargets(Device& device) : device_(device) {}
 
     class Lease;
-    // One that is free, or a new one. Throws Error{OutOfMemory} and DeviceLost.
+    // A free target, or a new one. Throws Error{OutOfMemory} and DeviceLost.
     Lease take(std::uint32_t width, std::uint32_t height, std::uint32_t instances);
 
   private:
@@ -37,7 +37,7 @@ class RasterTargets final {
     std::vector<std::unique_ptr<RasterTarget>> free_;
 };
 
-// A target until it goes back. What still draws into it is ordered before whoever has it next.
+// A target until it is returned. Pending draws into it are ordered before those of its next user.
 class RasterTargets::Lease final {
   public:
     Lease(RasterTargets& owner, std::unique_ptr<RasterTarget> target)

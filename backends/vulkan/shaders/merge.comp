@@ -1,8 +1,8 @@
 #version 460
-// Whole-tile samples as their block, the same bits as frame::merge on the host makes of them: one invocation
-// is one pixel of one column of values. What the host's general form is for (a sample that is not finite) and
-// what a device may round in another way than the host (numbers below the normal ones, which many take for 0)
-// is not done here but told: the host then merges the samples itself.
+// Merges samples of a whole tile into a block, bit for bit as frame::merge on the host. One invocation is one
+// pixel of one column of values. Cases that need the general form on the host (non-finite samples) or that a
+// device may round differently (denormals, which many flush to 0) are only flagged: the host then merges the
+// samples itself.
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_scalar_block_layout : require
 
@@ -49,13 +49,13 @@ bool is_nan(uint bits) {
 bool is_subnormal(uint bits) {
     return (bits & ExponentBits) == 0u && (bits & 0x7fffffffu) != 0u;
 }
-// Of a result that is not exactly 0: whether it is below the normal numbers, or beyond the largest.
+// For a result that is not exactly 0: whether it is denormal or overflows.
 bool left_range(float x) {
     const uint exponent = floatBitsToUint(x) & ExponentBits;
     return exponent == 0u || exponent == ExponentBits;
 }
 
-// Sets `leaves` where the sum is for the host.
+// Sets `leaves` if the host has to compute the sum.
 float added(float a, float b, inout bool leaves) {
     precise const float sum = a + b;
     leaves = leaves || (a != -b && left_range(sum));
@@ -89,9 +89,9 @@ void merge_moments(Column column, uint pixel, inout bool leaves) {
                                 (left_range(difference) || left_range(square) || left_range(spread)));
             m2 = added(added(m2s[level], m2, leaves), spread, leaves);
             const float both = added(earlier, mean, leaves);
-            precise const float middle = both * 0.5;
-            leaves = leaves || (both != 0.0 && left_range(middle));
-            mean = middle;
+            precise const float midpoint = both * 0.5;
+            leaves = leaves || (both != 0.0 && left_range(midpoint));
+            mean = midpoint;
             level += 1u;
             half_count *= 2.0;
         }
@@ -119,7 +119,7 @@ void merge_sum(Column column, uint pixel, inout bool leaves) {
     put(column.plane, pixel, floatBitsToUint(sum));
 }
 
-// The first of the smallest (or largest) keys, with what belongs to it.
+// The first record with the smallest (or largest) key.
 void keep_one(Column column, uint pixel, inout bool leaves) {
     uint best = 0u;
     if (column.rule != First) {

@@ -1,9 +1,9 @@
 #version 460
-// What a pixel sees: instance and triangle. A surface with alpha is asked as a ray would ask it.
+// Instance and triangle that are visible in a pixel. Alpha tests are those of rays.
 #extension GL_GOOGLE_include_directive : require
 #include "backends/vulkan/shaders/raster_draw.glsl"
 
-// What the scene needs: the rest is left out when the pipeline is made.
+// Features of the scene: other code is removed when the pipeline is compiled.
 layout(constant_id = 1) const uint Features = 0xffffffffu;
 
 layout(location = 0) flat in uvec2 ids;

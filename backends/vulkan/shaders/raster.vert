@@ -1,6 +1,6 @@
 #version 460
-// A corner of a triangle of an instance, each draw one instance. The last comes first: of what is equally far
-// the last draw stays, and rays have the lowest instance and triangle.
+// A vertex of a triangle of an instance; each draw is one instance. Draws are in reverse order: at equal depth
+// the last draw wins, and rays find the lowest instance and triangle.
 #extension GL_GOOGLE_include_directive : require
 #include "backends/vulkan/shaders/raster_draw.glsl"
 

@@ -1,13 +1,13 @@
 #version 460
-// Which instances are drawn: one invocation is one instance. Whoever is left out has nothing to show: boxes
-// are widened by what is rounded on either side, so that the picture does not depend on it.
+// Culls instances: one invocation per instance. Culling is conservative: boxes are widened by the rounding
+// errors, so that the picture does not depend on it.
 #extension GL_GOOGLE_include_directive : require
 #include "mediator/shading/raster.h"
 
 layout(local_size_x_id = 0) in;
 
-// As in raster_jobs.h.
-const uint DrawSeen = 0u, DrawUnhidden = 1u, DrawInside = 2u, DrawAll = 3u;
+// As CullStage in raster_jobs.h.
+const uint CullLastVisible = 0u, CullUnoccluded = 1u, CullInFrustum = 2u, CullNone = 3u;
 const uint PyramidStep = 4u;
 
 struct Bound {
@@ -43,24 +43,24 @@ job;
 
 // A box in the clip space of the cell.
 struct Footprint {
-    vec2 low, high;  // of x / w and y / w with their errors; where it lies before the eye
+    vec2 low, high;  // of x / w and y / w with their errors; valid if the box is in front of the eye
     float nearest;   // w, less its error
-    bool is_before;  // the eye, all of it
+    bool is_in_front;  // all of it is in front of the eye
     bool is_outside;
 };
 
 Footprint footprint_of(IN(View) view, IN(Bound) bound, vec2 area_low, vec2 area_high) {
-    // Corners and vertices differ by roundings of the sums that they are: at most 12 on either side, each of
+    // Corners and vertices are sums with rounding errors: at most 12 roundings on either side, each of
     // 2^-24 of the sum of the parts' sizes, three parts in a dot product.
     const float size = max(extent_of(bound.low), extent_of(bound.high)) + extent_of(view.eye);
     const float error = 64.0f * 5.9604645e-8f * size;
     const vec2 errors =
-        error * ((1.0f + abs(view.middle)) * abs(job.cell.scale) + abs(job.cell.shift));
+        error * ((1.0f + abs(view.image_center)) * abs(job.cell.scale) + abs(job.cell.shift));
     Footprint footprint;
     footprint.low = vec2(infinity());
     footprint.high = vec2(-infinity());
     footprint.nearest = infinity();
-    footprint.is_before = true;
+    footprint.is_in_front = true;
     uint left = 0u, right = 0u, above = 0u, below = 0u, behind = 0u;
     for (uint i = 0u; i < 8u; ++i) {
         const vec3 corner = vec3((i & 1u) != 0u ? bound.high.x : bound.low.x,
@@ -81,7 +81,7 @@ Footprint footprint_of(IN(View) view, IN(Bound) bound, vec2 area_low, vec2 area_
             footprint.low = min(footprint.low, at - margin);
             footprint.high = max(footprint.high, at + margin);
         } else {
-            footprint.is_before = false;
+            footprint.is_in_front = false;
         }
     }
     footprint.is_outside = max(max(left, right), max(max(above, below), behind)) == 8u;
@@ -89,7 +89,7 @@ Footprint footprint_of(IN(View) view, IN(Bound) bound, vec2 area_low, vec2 area_
 }
 
 // Whether everything drawn so far is nearer in all pixels that the footprint may touch.
-bool is_hidden(IN(Footprint) footprint) {
+bool is_occluded(IN(Footprint) footprint) {
     const float half_edge = 0.5f * float(job.cell.edge);
     const vec2 low = (footprint.low + 1.0f) * half_edge - vec2(job.x, job.y) - 1.0f;
     const vec2 high = (footprint.high + 1.0f) * half_edge - vec2(job.x, job.y) + 1.0f;
@@ -104,9 +104,9 @@ bool is_hidden(IN(Footprint) footprint) {
         from /= PyramidStep;
         to /= PyramidStep;
     }
-    // Depth is near / w. The rasteriser has it from a plane, at pixels that a corner rounded to a 256th of a
-    // pixel may let in from outside of the triangle: where that is half a pixel wide or wider, it is off by
-    // less than a 64th.
+    // Depth is near / w. The rasteriser interpolates it on the plane of the triangle, also for pixels just
+    // outside it, since corners are snapped to a 256th of a pixel: for triangles at least half a pixel wide the
+    // error is below a 64th.
     const float depth = RasterNear / footprint.nearest * 1.015625f;
     for (uint y = from.y; y <= to.y; ++y) {
         for (uint x = from.x; x <= to.x; ++x) {
@@ -118,15 +118,15 @@ bool is_hidden(IN(Footprint) footprint) {
 
 bool is_drawn(IN(Bound) bound, uint index) {
     if (bound.vertices == 0u || (bound.layers & job.view.items[0].layers) == 0u) return false;
-    if (job.stage == DrawAll) return true;
-    if (job.stage == DrawSeen && job.seen.items[index] == 0u) return false;
-    // A pixel around the area: corners are rounded to parts of it.
+    if (job.stage == CullNone) return true;
+    if (job.stage == CullLastVisible && job.seen.items[index] == 0u) return false;
+    // A margin of one pixel: corners are snapped to subpixels.
     const vec2 pixel = vec2(2.0f / float(job.cell.edge));
     const vec2 low = vec2(job.x, job.y) * pixel - 1.0f - pixel;
     const vec2 high = vec2(job.x + job.width, job.y + job.height) * pixel - 1.0f + pixel;
     const Footprint footprint = footprint_of(job.view.items[0], bound, low, high);
     if (footprint.is_outside) return false;
-    return job.stage != DrawUnhidden || !footprint.is_before || !is_hidden(footprint);
+    return job.stage != CullUnoccluded || !footprint.is_in_front || !is_occluded(footprint);
 }
 
 void main() {
@@ -134,7 +134,7 @@ void main() {
     if (index >= job.count) return;
     const Bound bound = job.bounds.items[index];
     const bool drawn = is_drawn(bound, index);
-    if (job.stage == DrawUnhidden) job.seen.items[index] = drawn ? 1u : 0u;
+    if (job.stage == CullUnoccluded) job.seen.items[index] = drawn ? 1u : 0u;
     const uint place = job.count - 1u - index;
     job.draws.items[place] = Draw(bound.vertices, drawn ? 1u : 0u, 0u, place % job.per_call);
 }

@@ -1,4 +1,4 @@
-// What both stages of drawing are given, as struct DrawJob in raster_jobs.h.
+// Push constants of both shader stages, as struct DrawJob in raster_jobs.h.
 #include "mediator/shading/materials.h"
 #include "mediator/shading/raster.h"
 
@@ -9,6 +9,6 @@ layout(push_constant, scalar) uniform Arguments {
     ViewArray view;
     uint64_t index;  // of the sample
     RasterCell cell;
-    uint before;  // draws of the list that are not of this call
+    uint before;  // draws of the list before this call
 }
 job;

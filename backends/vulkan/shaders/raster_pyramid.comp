@@ -1,5 +1,5 @@
 #version 460
-// A level of the pyramid of depths: of each square of the level below, what is farthest.
+// One level of the depth pyramid: the farthest depth of each square of the level below.
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_scalar_block_layout : require
 

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Bare traversal: many rays, one each invocation. With TEXELS pool and rays are read as texels and hits are storage, else all by
-// address; with PLAIN the trees are the baseline's.
+// Traversal without shading: one ray per invocation. With TEXELS, pool and rays are texel buffers and hits are a
+// storage buffer; otherwise all are accessed by address. With BVH2 the pool has binary BVHs, the baseline.
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint Question = 0u;
@@ -17,15 +17,15 @@ struct Context {
     uint unused;
 };
 
-#ifdef PLAIN
-#include "mediator/shading/plain_trace.h"
+#ifdef BVH2
+#include "mediator/shading/bvh2_trace.h"
 #else
 #include "mediator/shading/bvh_trace.h"
 #endif
 
-#include "mediator/shading/asked_ray.h"
+#include "mediator/shading/ray_query.h"
 
-ARRAY_OF(AskedRay, AskedRays, 16);
+ARRAY_OF(RayQuery, AskedRays, 16);
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Hits {
     Hit items[];
 };
@@ -48,10 +48,10 @@ layout(set = 0, binding = 2, scalar) writeonly buffer BoundHits {
     Hit bound_hits[];
 };
 
-AskedRay asked_ray(uint at) {
+RayQuery asked_ray(uint at) {
     const vec4 start = uintBitsToFloat(texelFetch(ray_texels, int(2u * at)));
-    const vec4 way = uintBitsToFloat(texelFetch(ray_texels, int(2u * at + 1u)));
-    return AskedRay(start.xyz, start.w, way.xyz, way.w);
+    const vec4 direction = uintBitsToFloat(texelFetch(ray_texels, int(2u * at + 1u)));
+    return RayQuery(start.xyz, start.w, direction.xyz, direction.w);
 }
 #endif
 
@@ -60,16 +60,16 @@ void main() {
     if (at >= count) return;
     Context context;
     context.unused = 0u;
-#if defined(PLAIN)
-    const AskedRay ray = rays.items[at];
+#if defined(BVH2)
+    const RayQuery ray = rays.items[at];
     hits.items[at] =
-        plain_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, AllLayers, 0.0f, context, 0u);
+        bvh2_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, AllLayers, 0.0f, context, 0u);
 #elif defined(TEXELS)
-    const AskedRay ray = asked_ray(at);
+    const RayQuery ray = asked_ray(at);
     bound_hits[at] =
         bvh_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, AllLayers, 0.0f, context, 0u);
 #else
-    const AskedRay ray = rays.items[at];
+    const RayQuery ray = rays.items[at];
     hits.items[at] =
         bvh_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, AllLayers, 0.0f, context, 0u);
 #endif

@@ -1,10 +1,10 @@
 #version 460
-// The path tracer: one invocation is one sample of one pixel. (With several samples each, that begin as soon as
-// the one before ends, lavapipe gained what the longer text cost: 0.25 against 0.25 Msamples/s.) With
+// The path tracer: one invocation is one sample of one pixel. (Several samples per
+// invocation, each started when the previous one ends, gained nothing on lavapipe: 0.25 against 0.25 Msamples/s.) With
 // POOL_AS_TEXELS the acceleration structure is bound as texels instead of being reached by its address; with
-// PLAIN it is the baseline's. SPECULAR_TREES leaves in what follows all branches of perfect speculars, which
-// most views do not need. A variant, no constant for the driver to fold: lavapipe takes 2 s for a scene with
-// glass then instead of 5.7. RASTERISED starts from what a rasteriser has seen.
+// BVH2 it is the binary BVH, the baseline. SPECULAR_TREES includes code that follows all branches of perfect
+// specular reflection and refraction, which most views do not need. It is a variant instead of a specialisation
+// constant: lavapipe compiles a scene with glass in 2 s instead of 5.7. RASTERISED starts from rasterised first hits.
 #extension GL_GOOGLE_include_directive : require
 #include "mediator/shading/materials.h"
 #include "mediator/shading/rays.h"
@@ -16,7 +16,7 @@ layout(set = 0, binding = 0) uniform usamplerBuffer pool_texels;
 
 layout(local_size_x_id = 0) in;
 
-// What the scene needs: the rest is left out when the pipeline is made.
+// Features of the scene: other code is removed when the pipeline is compiled.
 layout(constant_id = 1) const uint Features = 0xffffffffu;
 
 struct Context {
@@ -25,24 +25,24 @@ struct Context {
     float time;
     uint64_t pool;  // address; used where the pool is not bound
     uint top;
-    Skip skip;  // of the ray that is asked for
+    Skip skip;  // of the current ray
 };
 
-#ifdef PLAIN
-#include "mediator/shading/plain_trace.h"
-#define find_hit plain_trace
+#ifdef BVH2
+#include "mediator/shading/bvh2_trace.h"
+#define find_hit bvh2_trace
 #else
 #include "mediator/shading/bvh_trace.h"
 #define find_hit bvh_trace
 #endif
 
 bool stops_ray(IN(Context) context, IN(Hit) candidate, uint seed) {
-    if ((Features & FeatureOpenMedia) != 0u && skips(context.skip, candidate.instance, candidate.distance)) return false;
+    if ((Features & FeatureIndexMatchedMedia) != 0u && skips(context.skip, candidate.instance, candidate.distance)) return false;
     return stops_at(context.scene, candidate.instance, candidate.triangle, candidate.barycentric, seed);
 }
 
 uint scene_question() {
-    return ((Features & (FeatureAlpha | FeatureOpenMedia)) != 0u ? BvhAlpha : 0u) | ((Features & FeatureMotion) != 0u ? BvhMotion : 0u);
+    return ((Features & (FeatureAlpha | FeatureIndexMatchedMedia)) != 0u ? BvhAlpha : 0u) | ((Features & FeatureMotion) != 0u ? BvhMotion : 0u);
 }
 
 uint seen_layers(IN(Context) context) {
@@ -71,13 +71,13 @@ bool has_specular_trees(IN(Context) context) {
 #endif
 }
 
-// Nobody listens.
-#define tell_camera(context, ray)
-#define tell_hit(context, surface, throughput)
-#define tell_miss(context)
-#define tell_emission(context, emission, direction)
-#define tell_light(context, direction, gathered)
-#define tell_specular(context, reflects, direction)
+// No path log.
+#define log_camera(context, ray)
+#define log_hit(context, surface, throughput)
+#define log_miss(context)
+#define log_emission(context, emission, direction)
+#define log_light(context, direction, gathered)
+#define log_specular(context, reflects, direction)
 
 #include "mediator/shading/trace.h"
 #ifdef RASTERISED
@@ -88,7 +88,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Va
     float items[];
 };
 
-// Straight to memory: drivers make long chains of branches of arrays that are filled at any place.
+// Written directly to memory: drivers compile arrays with dynamic indices to long chains of branches.
 struct Sink {
     Values values;
     uint next, stride;

@@ -1,4 +1,4 @@
-"""Tessera from Python: join a live scene, edit it in transactions, look at it.
+"""Tessera from Python: join a live scene, edit it in transactions, render views of it.
 
     with tessera.connect("tcp://127.0.0.1:7420", keys="~/.tessera") as session:
         scene = session.join("room")
@@ -23,7 +23,7 @@ from .frame import Frame
 from .link import LinkSettings as _LinkSettings
 from .objects import (Attachment, Background, Camera, Geometry, Light, Material, Medium, Root, SurfaceShader, Texture,
                       TextureSlot, Transform)
-from .people import Committed, Hit, People, Person, Progress, Status, Summary, Writer
+from .records import Committed, Hit, People, Person, Progress, Status, Summary, Writer
 from .scene import Scene
 from .session import Session
 from .transaction import Transaction
@@ -41,10 +41,10 @@ __all__ = [
 def connect(where: str = "tcp://127.0.0.1:7420", *, keys: str | os.PathLike[str] | None = None, user: str = "editor",
             name: str = "python", key: int | None = None, connect_limit: float = 10.0,
             lost_limit: float = 30.0) -> Session:
-    """A session with the master at `where`. `keys`: the folder of `tessera keys`, of which `user`'s pair is taken, or an
-    exported file; None = not encrypted, on this machine only. `name` is for people. `key`: the same number as an earlier
-    session of this user takes up what that one had; None = somebody new. Raises Unavailable when nobody answers within
-    `connect_limit` seconds; later calls do when the master is silent for `lost_limit`."""
+    """Connects to the master at `where`. `keys`: the folder of `tessera keys`, from which the key pair of `user` is used, or an
+    exported key file; None = not encrypted, loopback addresses only. `name`: shown to other members. `key`: the number of an
+    earlier session of this user, to resume it; None = a new session. Raises Unavailable if the master does not answer within
+    `connect_limit` seconds; later calls raise it after `lost_limit` seconds without a message."""
     place = _endpoint.parse(where)
     _endpoint.require_keys(place, keys is not None)
     pair = None if keys is None else _keys.load(keys, user)

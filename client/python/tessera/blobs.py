@@ -1,4 +1,4 @@
-"""Blobs: immutable bytes named by their BLAKE2b-256. Given when the master asks, fetched in chunks of 1 MiB."""
+"""Blobs: immutable bytes named by their BLAKE2b-256. Served to the master on request, fetched in chunks of 1 MiB."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from . import bulk
 from .errors import Malformed
 from .values import Blob
 
-IN_FLIGHT = 8  # chunks asked for and not yet here
+IN_FLIGHT = 8  # chunks requested and not yet received
 RETRY_SECONDS = 3.0
 
 
@@ -19,13 +19,13 @@ def digest(data: bytes) -> bytes:
 
 
 class BlobSource(Protocol):
-    """Takes bytes that an edit refers to."""
+    """Stores bytes that an edit refers to."""
 
     def add(self, data: bytes) -> Blob: ...
 
 
 class BlobHeap:
-    """Bytes by hash, of one edit on its way."""
+    """Bytes by hash, of an edit being submitted."""
 
     def __init__(self) -> None:
         self.blobs: dict[bytes, bytes] = {}
@@ -39,7 +39,7 @@ class BlobHeap:
 
 
 def answer(request: bulk.BlobRequest, data: bytes | None) -> bulk.BulkMessage:
-    """The giving side: the range that was asked for, or that there is none."""
+    """The reply to a request: the requested range, or that the blob is absent."""
     if data is None or request.offset > len(data):
         return bulk.BlobAbsent(request.hash)
     piece = data[request.offset:request.offset + bulk.MAX_CHUNK]
@@ -48,11 +48,11 @@ def answer(request: bulk.BlobRequest, data: bytes | None) -> bulk.BulkMessage:
 
 @dataclass
 class Fetch:
-    """One blob that is on its way here. Pure: told what came and when, says what to ask for."""
+    """The download of one blob. No I/O: gets the received chunks and times, returns the requests to send."""
 
     blob: Blob
     data: bytearray = field(default_factory=bytearray)
-    requested: int = 0  # end of what was asked for
+    requested: int = 0  # end of the requested ranges
     last_activity: float = 0.0
     absent: bool = False
 
@@ -61,7 +61,7 @@ class Fetch:
         return len(self.data) == self.blob.byte_size
 
     def due(self, now: float) -> list[bulk.BlobRequest]:
-        """What to send now: the next ranges, and after a silence everything that got no answer."""
+        """The requests to send now: the next ranges and, after a timeout, all unanswered ones."""
         if self.absent or self.is_done:
             return []
         if self.requested > len(self.data) and now - self.last_activity > RETRY_SECONDS:
@@ -78,7 +78,7 @@ class Fetch:
         if chunk.total != self.blob.byte_size:
             raise Malformed("a blob of another size than announced")
         self.last_activity = now
-        if chunk.offset != len(self.data):  # early ones are asked for again, late ones are known
+        if chunk.offset != len(self.data):  # early ones are requested again, late ones are duplicates
             self.requested = min(self.requested, len(self.data)) if chunk.offset > len(self.data) else self.requested
             return
         self.data += chunk.data

@@ -1,4 +1,4 @@
-"""The bulk link: a fixed little-endian header, then raw data. Decoding takes anything and raises Malformed."""
+"""The bulk link: a fixed little-endian header, then raw data. Decoding accepts arbitrary bytes and raises Malformed."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ _FILM_HEAD = struct.Struct("<iiiiQIIQB")
 
 
 def encode(message: BulkMessage) -> bytes:
-    """What a client, or a master in a test, has to say."""
+    """Encodes a message of a client, or of a master in a test."""
     match message:
         case BulkHello(token):
             return _HEAD.pack(MAGIC, _HELLO) + _TOKEN.pack(token)
@@ -121,65 +121,65 @@ def encode(message: BulkMessage) -> bytes:
 
 
 def decode(data: bytes) -> BulkMessage:
-    """One message. Sizes are checked before anything is kept."""
+    """One message. Sizes are checked before anything is stored."""
     if len(data) < _HEAD.size:
         raise Malformed("not a bulk message")
     magic, kind = _HEAD.unpack_from(data)
     if magic != MAGIC:
         raise Malformed("not a bulk message")
-    body = memoryview(data)[_HEAD.size:]
+    payload = memoryview(data)[_HEAD.size:]
     if kind == _HELLO:
-        return BulkHello(*_whole(_TOKEN, body))
+        return BulkHello(*_whole(_TOKEN, payload))
     if kind == _REQUEST:
-        return BlobRequest(*_whole(_BLOB_REQUEST, body))
+        return BlobRequest(*_whole(_BLOB_REQUEST, payload))
     if kind == _CHUNK:
-        name, total, offset = _front(_BLOB_CHUNK, body)
-        return BlobChunk(name, total, offset, _piece(body[_BLOB_CHUNK.size:], total, offset))
+        name, total, offset = _front(_BLOB_CHUNK, payload)
+        return BlobChunk(name, total, offset, _piece(payload[_BLOB_CHUNK.size:], total, offset))
     if kind == _ABSENT:
-        return BlobAbsent(*_whole(_HASH, body))
+        return BlobAbsent(*_whole(_HASH, payload))
     if kind == _TILE:
-        frame, index, count = _front(_TILE_HEAD, body)
+        frame, index, count = _front(_TILE_HEAD, payload)
         if index >= count:
-            raise Malformed("a tile is not one of its frame")
-        return FrameTile(frame, index, count, _film(body[_TILE_HEAD.size:]))
+            raise Malformed("a tile's index is not below the tile count")
+        return FrameTile(frame, index, count, _film(payload[_TILE_HEAD.size:]))
     if kind == _PICTURE:
-        frame, total, offset = _front(_PICTURE_CHUNK, body)
-        return PictureChunk(frame, total, offset, _piece(body[_PICTURE_CHUNK.size:], total, offset))
+        frame, total, offset = _front(_PICTURE_CHUNK, payload)
+        return PictureChunk(frame, total, offset, _piece(payload[_PICTURE_CHUNK.size:], total, offset))
     if kind == _FRAME:
-        header = FrameHeader(*_whole(_FRAME_HEADER, body))
+        header = FrameHeader(*_whole(_FRAME_HEADER, payload))
         if header.scale == 0 or header.encoding >= len(ENCODINGS):
             raise Malformed("a frame's scale or encoding is unknown")
         if header.width > _MAX_EDGE or header.height > _MAX_EDGE or header.components > 4:
             raise Malformed("a frame's size is absurd")
         return header
-    raise Malformed("a bulk message that no master sends to a client")
+    raise Malformed("a bulk message that masters do not send to clients")
 
 
 ENCODINGS = ("none", "planes", "png", "jpeg", "exr")  # by their number on the wire
 
 
-def _front(layout: struct.Struct, body: memoryview) -> tuple[Any, ...]:
-    if len(body) < layout.size:
+def _front(layout: struct.Struct, payload: memoryview) -> tuple[Any, ...]:
+    if len(payload) < layout.size:
         raise Malformed("it ends too early")
-    return layout.unpack_from(body)
+    return layout.unpack_from(payload)
 
 
-def _whole(layout: struct.Struct, body: memoryview) -> tuple[Any, ...]:
-    if len(body) != layout.size:
-        raise Malformed("it is shorter or longer than its kind")
-    return layout.unpack(body)
+def _whole(layout: struct.Struct, payload: memoryview) -> tuple[Any, ...]:
+    if len(payload) != layout.size:
+        raise Malformed("its length does not match its kind")
+    return layout.unpack(payload)
 
 
 def _piece(data: memoryview, total: int, offset: int) -> bytes:
     if len(data) > MAX_CHUNK or offset > total or len(data) > total - offset:
-        raise Malformed("a chunk reaches beyond its whole")
+        raise Malformed("a chunk extends beyond the total size")
     return bytes(data)
 
 
-def _film(body: memoryview) -> FilmTile:
-    if len(body) < _FILM_HEAD.size:
+def _film(payload: memoryview) -> FilmTile:
+    if len(payload) < _FILM_HEAD.size:
         raise Malformed("it ends too early")
-    x, y, width, height, _, level, channels, _, uniform = _FILM_HEAD.unpack_from(body)
+    x, y, width, height, _, level, channels, _, uniform = _FILM_HEAD.unpack_from(payload)
     if not (0 < width <= _MAX_EDGE and 0 < height <= _MAX_EDGE and 0 <= x <= _MAX_EDGE and 0 <= y <= _MAX_EDGE and
             width * height <= _MAX_PIXELS):
         raise Malformed("the tile's size is absurd")
@@ -188,7 +188,7 @@ def _film(body: memoryview) -> FilmTile:
     if level >= 32:
         raise Malformed("a block of samples is too large")
     pixels = width * height
-    rest = body[_FILM_HEAD.size:]
+    rest = payload[_FILM_HEAD.size:]
     count_bytes = 4 if uniform == 1 else 4 * pixels
     if len(rest) != count_bytes + 4 * pixels * plane_count(channels):
         raise Malformed("the planes have another size than the header says")

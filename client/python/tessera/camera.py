@@ -1,4 +1,4 @@
-"""From where a view looks."""
+"""Camera poses of views."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from .values import Matrix, Vec3
 
 _CHOICES = {row.name: row.choices for kind in KIND_ROWS if kind.type is Camera for row in kind.fields}
 PROJECTIONS, APERTURES = _CHOICES["projection"], _CHOICES["aperture"]  # in the order of the wire
-MAX_MOTION = 15  # steps after the first
+MAX_MOTION = 15  # motion keys after the first
 
 
 @dataclass(frozen=True)
 class Pose:
     """A camera in the world: it looks along -z, y is up. Angles in radians, lengths in metres. The fields are those of the
     scene's Camera: without a lens radius it is a pinhole; an orthographic one sees as much as its height says, whatever
-    its field of view. Raises InvalidInput where no picture can be made of them."""
+    its field of view. Raises InvalidInput for invalid values."""
 
     world_from_camera: Matrix
     vertical_fov: float = 0.7
     projection: str = "perspective"  # or "orthographic"
     orthographic_height: float = 2.0
     lens_radius: float = 0.0  # 0 = a pinhole
-    focus_distance: float = 1.0  # of the plane that is sharp, along the axis
+    focus_distance: float = 1.0  # of the focal plane, along the axis
     aperture: str = "uniform"  # or "gaussian"
-    motion: tuple[Matrix, ...] = ()  # world_from_camera at even steps of time, the last when the shutter closes
+    motion: tuple[Matrix, ...] = ()  # world_from_camera at uniform motion keys, the last when the shutter closes
 
     def __post_init__(self) -> None:
         if not 0.0 < self.vertical_fov < math.pi:
@@ -41,14 +41,14 @@ class Pose:
         if not 0.0 <= self.lens_radius < math.inf:
             raise InvalidInput("the lens radius is negative: 0 is a pinhole")
         if len(self.motion) > MAX_MOTION:
-            raise InvalidInput(f"the motion has {len(self.motion)} steps: there may be {MAX_MOTION} after the first")
+            raise InvalidInput(f"the motion has {len(self.motion)} keys: at most {MAX_MOTION} after the first are allowed")
         for matrix in (self.world_from_camera, *self.motion):
             if len(matrix) != 16 or not all(math.isfinite(v) for v in matrix):
                 raise InvalidInput("a matrix of the camera is not 16 finite numbers")
 
     def moving_to(self, *poses: Pose) -> Pose:
-        """The same camera, on its way to the places and directions of these, at even steps of time while the shutter is
-        open: in straight lines between them. What else they are does not count."""
+        """The same camera moving through these poses, at uniform motion keys while the shutter is open, with linear
+        interpolation. Only their positions and directions are used."""
         return replace(self, motion=tuple(pose.world_from_camera for pose in poses))
 
     def frustum(self, width: int, height: int) -> tuple[float, float, float, float]:
@@ -63,7 +63,7 @@ class Pose:
 def look_at(eye: Sequence[float], target: Sequence[float], up: Sequence[float] = (0.0, 1.0, 0.0),
             vertical_fov: float = 0.7, *, projection: str = "perspective", orthographic_height: float = 2.0,
             lens_radius: float = 0.0, focus_distance: float = 1.0, aperture: str = "uniform") -> Pose:
-    """From `eye` towards `target`. Raises InvalidInput where that is no direction, and as Pose."""
+    """From `eye` towards `target`. Raises InvalidInput if the direction is zero, and as Pose does."""
     at = _vector(eye)
     back = _normalized(_difference(at, _vector(target)), "eye and target are the same point")
     right = _normalized(_cross(_vector(up), back), "the view goes along 'up': give another one")
@@ -72,7 +72,7 @@ def look_at(eye: Sequence[float], target: Sequence[float], up: Sequence[float] =
 
 
 def rigid(matrix: Matrix) -> Matrix:
-    """The same place and direction without scale or shear. Raises InvalidInput where the directions coincide."""
+    """The same position and direction without scale or shear. Raises InvalidInput if axes coincide."""
     back = _normalized((matrix[8], matrix[9], matrix[10]), "the camera's transform is flat")
     up = (matrix[4], matrix[5], matrix[6])
     right = _normalized(_cross(up, back), "the camera's transform is flat")

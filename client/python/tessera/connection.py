@@ -1,4 +1,4 @@
-"""What one member and the master owe each other: questions and their answers, also across a break of the connection."""
+"""Requests to the master and their replies, preserved when the connection is interrupted."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from .endpoint import Endpoint
 from .errors import Error, InvalidInput, Malformed, Refused, Unavailable
 from .keys import ClientKeys
 from .link import Link, LinkSettings
-from .people import text
 from .proto import control_pb2
+from .records import text
 from .values import Blob
 
 Message = Any
@@ -24,13 +24,13 @@ _MAX_BLOB = 4 << 30
 _ANSWERS = {
     "adjust_display": "request_done", "close_scene": "request_done", "lock_objects": "request_done", "request_view": "request_done",
     "set_view_filter": "request_done",
-    "read_scene": "scene_content", "read_people": "people", "read_history": "history", "read_writers": "writers",
+    "read_scene": "scene_content", "read_members": "members", "read_history": "history", "read_writers": "writers",
     "pick": "picked", "read_trace": "trace",
 }
 
 
 class Watcher(Protocol):
-    """A view: takes frames. Called under `changed`."""
+    """A view: receives frames. Called while `changed` is held."""
 
     def reopened(self) -> Message: ...
 
@@ -49,18 +49,18 @@ class Watcher(Protocol):
 
 @dataclass
 class _Call:
-    """Something the master was asked and has not answered."""
+    """A request that the master has not answered yet."""
 
     expects: str
-    build: Callable[[], Message]  # again after every welcome
-    blobs: BlobHeap | None = None  # given while it lasts
+    build: Callable[[], Message]  # called again after every welcome
+    blobs: BlobHeap | None = None  # served to the master during the call
     reply: Message = None
     error: Error | None = None
 
 
 class Connection:
-    """Listens to the link, on the link's thread; asked by the session, on any other. After a break it joins again with the
-    same key, says again what has no answer yet, opens the views again and, as somebody new, takes its locks again."""
+    """Receives messages on the link's thread; used by the session from any other thread. After an interruption it joins again
+    with the same key, resends unanswered requests, reopens the views and, in a new session, acquires its locks again."""
 
     def __init__(self, where: Endpoint, keys: ClientKeys | None, settings: LinkSettings, key: int) -> None:
         self.changed = threading.Condition()  # protects everything below
@@ -100,7 +100,7 @@ class Connection:
         self.ask("join", "scene_joined", lambda: self._join_request(no_wait), timeout)
 
     def leave_scene(self) -> None:
-        """It is closed."""
+        """Called after the scene was closed."""
         with self.changed:
             self.joined, self.views, self.locks = None, {}, set()
 
@@ -111,13 +111,13 @@ class Connection:
                 raise InvalidInput("no scene is joined: call session.join(title) first")
 
     def post(self, message: Message) -> None:
-        """What has no answer. Lost when nobody is there, and while the scene is joined again."""
+        """Sends a message that has no answer. It is dropped while the connection is down or the scene is joined again."""
         with self.changed:
             if not self._rejoining:
                 self.link.send(message)
 
     def request(self, message: Message, timeout: float = 60.0) -> Message:
-        """Asks for what has a number; raises Refused when the master says no."""
+        """Sends a numbered request and returns the reply; raises Refused if the master rejects it."""
         self.require_joined()
         with self.changed:
             self._last_request += 1
@@ -130,7 +130,7 @@ class Connection:
             if not reply.accepted:
                 raise Refused(text(reply.text))
             if expects != "request_done":
-                raise Malformed("the master says done without an answer")
+                raise Malformed("the master confirmed a request without its answer")
         return reply
 
     def ask(self, key: object, expects: str, build: Callable[[], Message], timeout: float | None,
@@ -150,15 +150,15 @@ class Connection:
         if call.error is not None:
             raise call.error
         if call.reply is None:
-            raise Unavailable("the master is there but does not answer")
+            raise Unavailable("the master is connected but does not answer")
         return call.reply
 
     def fetch(self, blob: Blob) -> bytes:
-        """The bytes of a blob that the master has. Raises Unavailable when it has not."""
+        """Fetches a blob from the master. Raises Unavailable if it does not have it."""
         if blob.byte_size == 0:
             return b""
         if blob.byte_size > _MAX_BLOB:
-            raise Refused(f"a blob of {blob.byte_size} bytes is more than this package takes")
+            raise Refused(f"a blob of {blob.byte_size} bytes exceeds the limit of this package")
         with self.changed:
             fetch = self._fetches.setdefault(blob.hash, Fetch(blob))
             self._fetch_more(time.monotonic())
@@ -171,7 +171,7 @@ class Connection:
         return bytes(fetch.data)
 
     def wait_until(self, is_there: Callable[[], bool], deadline: float | None) -> None:
-        """Under `changed`. Returns at the deadline, too. Raises what the link failed with."""
+        """Call with `changed` held. Also returns at the deadline. Raises the error of a failed link."""
         while not is_there():
             self._check()
             rest = None if deadline is None else deadline - time.monotonic()
@@ -197,12 +197,12 @@ class Connection:
         with self.changed:
             self._is_new = self._is_new or number != self.number
             self.number = number
-            self.link.forget_waiting()
+            self.link.clear_queue()
             if self.joined is not None:
                 self._rejoining = True
                 self.link.send(self._join_request(False))
             else:
-                self._say_again()
+                self._resend()
             self.changed.notify_all()
 
     def control(self, message: Message) -> None:
@@ -277,11 +277,11 @@ class Connection:
 
     def _scene_joined(self, joined: Message) -> None:
         if joined.queue_place:
-            _LOG.info("the cluster is busy: place %d in the queue", joined.queue_place)
+            _LOG.info("the cluster is busy: waiting, queue position %d", joined.queue_place)
             return
         if joined.last_sequence < self.answered:
-            self.failed(Unavailable("the master has lost edits that it had accepted (was it started anew without its session "
-                                    "folder?): connect anew and look what is there"))
+            self.failed(Unavailable("the master has lost edits that it had accepted (was it restarted without its session "
+                                    "folder?): reconnect and check the scene"))
             return
         self.joined = joined
         self.joins += 1
@@ -292,10 +292,10 @@ class Connection:
                 self.link.send(lock_request(sorted(self.locks), release=False))
             for view in self.views.values():
                 self.link.send(view.reopened())
-            self._say_again()
+            self._resend()
         self._is_new = False
 
-    def _say_again(self) -> None:
+    def _resend(self) -> None:
         for call in self._calls.values():
             if call.reply is None and call.error is None:
                 self.link.send(call.build())
@@ -308,7 +308,7 @@ class Connection:
             _LOG.warning("the master refuses: %s", text(content.text))
 
     def _refused(self, reason: str) -> None:
-        """Refusals have no number: the oldest question is meant."""
+        """Refusals have no request number: they are matched to the oldest unanswered request."""
         error = Refused("the master refuses: " + reason)
         if self._rejoining:
             self.failed(error)

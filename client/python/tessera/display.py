@@ -1,4 +1,4 @@
-"""What a session says about the display in front of its scene."""
+"""Messages about the display of a scene."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ _MAX_LAYERS = 4
 
 
 def move_head(position: Sequence[float], orientation: Sequence[float]) -> Message:
-    """Raises InvalidInput for what is no place and direction."""
+    """Raises InvalidInput for an invalid position or orientation."""
     message = control_pb2.Control()
     head = message.move_head.head
     head.position.extend(_numbers(position, 3, "position"))
     turn = _numbers(orientation, 4, "orientation")
     largest = max(abs(value) for value in turn)
     if largest == 0.0:
-        raise InvalidInput("orientation: a quaternion of zeros turns nowhere")
+        raise InvalidInput("orientation: the quaternion must not be zero")
     turn = [value / largest for value in turn]  # so that no square over- or underflows
     length = math.hypot(*turn)
     head.orientation.extend(value / length for value in turn)
@@ -29,7 +29,7 @@ def move_head(position: Sequence[float], orientation: Sequence[float]) -> Messag
 
 def adjustment(eye_separation: float | None, zero_parallax: float | None, exposure: float | None, pattern: bool | None,
                shown_layers: Iterable[int] | None) -> Message:
-    """Raises InvalidInput for layers that no display can have, and numbers that are none."""
+    """Raises InvalidInput for impossible layers and invalid numbers."""
     message = control_pb2.Control()
     change = message.adjust_display.adjustment
     change.SetInParent()

@@ -1,4 +1,4 @@
-"""Where a master is: tcp://host:port, bulk data on the next port."""
+"""The address of a master: tcp://host:port, bulk data on the next port."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def parse(text: str) -> Endpoint:
     """Raises InvalidInput."""
     found = re.fullmatch(r"tcp://(.+):(\d{1,5})", text)
     if found is None or not 1 <= int(found[2]) <= 65534:
-        raise InvalidInput(f"'{text}' is no address: expected tcp://host:port with a port between 1 and 65534 "
+        raise InvalidInput(f"'{text}' is not an address: expected tcp://host:port with a port between 1 and 65534 "
                            "(bulk data use the next one)")
     host, port = found[1], int(found[2])
     if host == "localhost":
@@ -34,7 +34,7 @@ def parse(text: str) -> Endpoint:
 
 
 def require_keys(endpoint: Endpoint, has_keys: bool) -> None:
-    """Raises Refused for what other machines could read."""
+    """Raises Refused for unencrypted network addresses."""
     if not endpoint.is_loopback and not has_keys:
         raise Refused(f"'{endpoint.control}' is on the network, and without keys nothing is encrypted: give keys= "
                       "(made by 'tessera keys'), or use an address of this machine")

@@ -1,4 +1,4 @@
-"""What can go wrong, as exceptions. Every text names what, why and what helps."""
+"""Exceptions. Every text names the object, the cause and a remedy."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Sequence
 
 
 class Error(Exception):
-    """Whatever this package raises on purpose."""
+    """Base class of all errors of this package."""
 
 
 class InvalidInput(Error, ValueError):
@@ -14,11 +14,11 @@ class InvalidInput(Error, ValueError):
 
 
 class Unavailable(Error):
-    """The master does not answer, or is gone."""
+    """The master does not answer."""
 
 
 class Refused(Error):
-    """The master says no; nothing has changed. `problems` has one text for each reason."""
+    """The master rejected the request; nothing has changed. `problems` has one text for each reason."""
 
     def __init__(self, problems: str | Sequence[str]) -> None:
         self.problems: tuple[str, ...] = (problems,) if isinstance(problems, str) else tuple(problems)

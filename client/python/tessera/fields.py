@@ -1,4 +1,4 @@
-"""How the fields of each kind look in messages, and which bit of a mask each one is."""
+"""The encoding of the fields of each kind in messages, and their bits in field masks."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def _write_matrices(message: Message, field: str, value: Any, _: BlobSource) -> 
 def _read_matrices(message: Message, field: str) -> tuple[tuple[float, ...], ...]:
     values = tuple(getattr(message, field))
     if len(values) % 16 != 0:
-        raise Malformed(f"'{field}' has {len(values)} numbers, which are no matrices of 16")
+        raise Malformed(f"'{field}' has {len(values)} numbers, which is not a multiple of 16 (matrices)")
     return tuple(values[i:i + 16] for i in range(0, len(values), 16))
 
 
@@ -141,7 +141,7 @@ def _choice(*names: str) -> Codec:
     def read(message: Message, field: str) -> str:
         number: int = getattr(message, field)
         if number >= len(names):
-            raise Malformed(f"'{field}' has a value that nobody knows")
+            raise Malformed(f"'{field}' has an unknown value")
         return names[number]
 
     return Codec(write, read)
@@ -174,16 +174,16 @@ def _blob(code: str) -> Codec:
 
 def _blobs(code: str) -> Codec:
     def write(message: Message, field: str, value: Any, blobs: BlobSource) -> None:
-        made = [v if isinstance(v, Blob) else blobs.add(raw_array(v, code)) for v in _sequence(value)]
+        encoded = [v if isinstance(v, Blob) else blobs.add(raw_array(v, code)) for v in _sequence(value)]
         message.ClearField(field)
-        for blob in made:
+        for blob in encoded:
             getattr(message, field).add(hash=blob.hash, byte_size=blob.byte_size)
 
     return Codec(write, lambda message, field: tuple(map(blob_from, getattr(message, field))))
 
 
 def raw_array(value: Any, code: str) -> bytes:
-    """Little-endian bytes of an array: of bytes as they are, of what has a buffer (array, numpy), of nested lists.
+    """Little-endian bytes of an array: of bytes unchanged, from objects with a buffer (array, numpy), from nested lists.
     `code` is "f" (float32), "I" (uint32) or "B" (bytes)."""
     if value is None:
         return b""
@@ -310,5 +310,5 @@ def kind_in(holder: Message) -> tuple[Kind, Message]:
     """The kind of an Object message, and what it holds. Raises Malformed."""
     word = holder.WhichOneof("kind")
     if word is None:
-        raise Malformed("an entry lacks its object")
+        raise Malformed("an entry without an object")
     return kind_named(word), getattr(holder, word)

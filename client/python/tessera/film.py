@@ -1,4 +1,4 @@
-"""Statistics of a picture as they are merged: counts and float32 planes. See mediator/frame/channels.h."""
+"""The film of a picture: counts and float32 planes. See mediator/frame/channels.h."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .errors import InvalidInput, Malformed
 
 
 class Rule(Enum):
-    """How values of a pixel become one, and so what its planes are."""
+    """The merge rule of a channel, which determines its planes."""
 
     MOMENTS = "moments"  # means, then sums of squared deviations
     SUM = "sum"
@@ -91,7 +91,7 @@ class Film:
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Names of the channels that are there."""
+        """The names of its channels."""
         return tuple(name for i, (name, _, _) in enumerate(CHANNELS) if self._channels >> i & 1)
 
     @property
@@ -113,7 +113,7 @@ class Film:
         raise InvalidInput(f"this film has no channel '{channel}': it has {', '.join(self.channels)}")
 
     def paste(self, tile: FilmTile) -> None:
-        """Copies a tile to its place. Raises Malformed for one that does not fit."""
+        """Copies a tile to its position. Raises Malformed if it does not fit."""
         if tile.channels != self._channels or tile.x + tile.width > self.width or tile.y + tile.height > self.height:
             raise Malformed("a tile does not fit its picture")
         row, pixels = 4 * tile.width, 4 * tile.width * tile.height

@@ -1,4 +1,4 @@
-"""Frames of a view, and how they are put together from what comes over the bulk link."""
+"""Frames of a view, and their assembly from bulk messages."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ _SUFFIXES = {"png": (".png",), "jpeg": (".jpg", ".jpeg"), "exr": (".exr",)}
 
 @dataclass(frozen=True)
 class Frame:
-    """One picture of a view, as far as it has come."""
+    """One picture of a view."""
 
     number: int  # counts from 1
-    version: Version  # of the scene that is seen
+    version: Version  # of the scene
     revision: int  # of the view: grows with every change of its camera
     scale: int  # 8, 4, 2: a coarse picture of this part of the view's size
     width: int
     height: int
     samples_least: int  # of a pixel
     samples_most: int
-    spp: int  # samples that there will be
+    spp: int  # target samples per pixel
     complete: bool
     film_hash: bytes  # when complete
     encoding: str  # "png", "jpeg", "exr", "planes", "none"
@@ -46,7 +46,7 @@ class Frame:
 
     def numpy(self) -> Any:
         """The same as an array of height x width x components; needs numpy."""
-        import numpy  # not a dependency: only where it is there
+        import numpy  # an optional dependency
 
         planes = [numpy.frombuffer(plane, dtype=numpy.float32) for plane in self.planes()]
         return numpy.stack(planes, axis=-1).reshape(self.height, self.width, self.components)
@@ -61,7 +61,7 @@ class Frame:
         return film
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the file that the master made. Its name has to end as its kind does."""
+        """Writes the encoded picture to a file; the extension must match the encoding."""
         if self.encoding not in _SUFFIXES:
             raise InvalidInput(f"this frame is {self.encoding}, not a file: open the view with picture=\"png\"")
         if Path(path).suffix.lower() not in _SUFFIXES[self.encoding]:
@@ -72,7 +72,7 @@ class Frame:
 
 @dataclass
 class Assembly:
-    """A frame that is coming. Grows with what came, never ahead of it."""
+    """A frame being received. Memory grows with the received data only."""
 
     header: bulk.FrameHeader
     largest: tuple[int, int] | None  # the view's size, where it is known
@@ -100,7 +100,7 @@ class Assembly:
         """Raises Malformed for what does not fit."""
         if isinstance(part, bulk.PictureChunk):
             if part.total != self.header.picture_bytes or part.offset != len(self.picture):
-                raise Malformed("a piece of a picture that does not fit")
+                raise Malformed("a part of a picture that does not match its frame")
             self.picture += part.data
         else:
             film = part.film

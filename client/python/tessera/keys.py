@@ -1,4 +1,4 @@
-"""CURVE keys as the programs keep them: a folder of `tessera keys DIR`, or one exported file."""
+"""CURVE keys as stored by the programs: a folder of `tessera keys DIR`, or one exported file."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ _NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
 
 @dataclass(frozen=True)
 class ClientKeys:
-    """A pair of one's own and the master's public key; Z85 text."""
+    """A client's key pair and the master's public key; Z85 text."""
 
     public: str
     secret: str
     master: str
 
-    def __repr__(self) -> str:  # a secret has no place in a traceback
+    def __repr__(self) -> str:  # keeps the secret out of tracebacks
         return f"ClientKeys(public={self.public!r})"
 
 
 def load(path: str | os.PathLike[str], user: str) -> ClientKeys:
-    """USER's pair of a folder, or the pair of an exported file, whatever the user. Raises InvalidInput for what
-    is missing or damaged, Refused for a secret that others may read."""
+    """The key pair of `user` in a folder, or the pair of an exported file. Raises InvalidInput for missing or damaged
+    files, Refused for a secret key that other users may read."""
     place = Path(path).expanduser()
     if place.is_file():
         _require_private(place)
         return _exported(place, _text(place))
     if not _NAME.fullmatch(user):
-        raise InvalidInput(f"'{user}' is no name of a key: see 'tessera keys DIR list'")
+        raise InvalidInput(f"'{user}' is not the name of a key: see 'tessera keys DIR list'")
     secret = place / f"{user}.secret"
     _require_private(secret)
     return ClientKeys(_key(place / f"{user}.public"), _key(secret), _key(place / "master.public"))
@@ -63,7 +63,7 @@ def _text(path: Path) -> str:
 
 def _checked(path: Path, text: str) -> str:
     if not _Z85.fullmatch(text):
-        raise InvalidInput(f"'{path}' holds no key: make new ones with 'tessera keys DIR'")
+        raise InvalidInput(f"'{path}' contains no key: create new ones with 'tessera keys DIR'")
     return text
 
 

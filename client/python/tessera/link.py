@@ -1,12 +1,12 @@
 """The two sockets of a session and the thread that owns them: hello, heartbeats, reconnecting.
 
     greeting   hello sent            welcome -> joined, silence -> away, refusal -> over
-    joined     everything goes       silence, goodbye -> away, unknown -> greeting
+    joined     all messages sent     silence, goodbye -> away, unknown -> greeting
     away       until the back-off ends, then new sockets -> greeting
     over       failed for good, or closed
 
-Over also after `connect_limit` without a first welcome, later after `lost_limit` without a sign of life. What is sent
-while nobody is there is dropped: the session says it again after the next welcome.
+Also over after `connect_limit` without a first welcome, later after `lost_limit` without any message. Messages sent
+while not connected are dropped: the session sends them again after the next welcome.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ CONTROL_LIMIT = 64 * 1024
 BULK_LIMIT = 1024 * 1024 + 4096
 _QUEUE_BUDGET = 64 * 1024 * 1024
 _CURVE_OVERHEAD = 33
-_MAX_WAITING = 64  # bulk messages; the master asks again for what is dropped beyond
-_BURST = 256  # so that heartbeats never wait for a flood
+_MAX_WAITING = 64  # bulk messages; the master requests dropped ones again
+_BURST = 256  # so that a flood of messages does not delay heartbeats
 _MIN_BACKOFF, _MAX_BACKOFF = 0.1, 5.0
 _PROTOCOL, _CLIENT = 2, 0
 
@@ -41,7 +41,7 @@ Message = Any
 
 
 class Listener(Protocol):
-    """Whom the link tells what happened; called on the link's thread, never while it holds a lock."""
+    """Callbacks of the link; called on the link's thread, never while it holds a lock."""
 
     def welcomed(self, number: int, epoch: int) -> None: ...
 
@@ -63,7 +63,7 @@ class LinkSettings:
 
 
 class Link:
-    """Sends from any thread; everything else happens on its own."""
+    """Sends from any thread; everything else runs on the link's thread."""
 
     def __init__(self, endpoint: Endpoint, keys: ClientKeys | None, settings: LinkSettings, listener: Listener) -> None:
         self._endpoint, self._keys, self._settings, self._listener = endpoint, keys, settings, listener
@@ -71,17 +71,17 @@ class Link:
         self._wake, self._alarm = socket.socketpair()
         self._wake.setblocking(False)
         self._alarm.setblocking(False)
-        self._lock = threading.Lock()  # protects the two that follow
+        self._lock = threading.Lock()  # protects the next two members
         self._to_send: list[tuple[int, bytes]] = []
         self._closing = False
-        # Of the thread alone:
+        # Used by the thread only:
         self._sockets: list[zmq.Socket[bytes]] = []
         self._outbox: tuple[deque[bytes], deque[bytes]] = (deque(), deque())
         self._state = "greeting"
         self._number = self._token = 0
         self._interval, self._missed = 1.0, 3
         self._last_heard = self._last_sent = self._last_greeting = time.monotonic()
-        self._silent_since = self._last_heard  # never set back by new sockets
+        self._silent_since = self._last_heard  # not reset by new sockets
         self._return_at, self._backoff = 0.0, _MIN_BACKOFF
         self._master_sent_at = self._master_heard_at = 0
         self._goodbye = ""
@@ -99,16 +99,16 @@ class Link:
         """Any thread."""
         self._queue(1, bulk.encode(message))
 
-    def forget_waiting(self) -> None:
-        """What waits to be sent: a new welcome comes first, and whoever is there says again what still counts."""
+    def clear_queue(self) -> None:
+        """Drops queued messages: after a new welcome, the session resends those that are still needed."""
         with self._lock:
             self._to_send.clear()
 
     def close(self) -> None:
-        """Says goodbye and waits for the thread; what it has queued is flushed for at most a second. Idempotent."""
+        """Says goodbye and waits for the thread; flushes queued messages for at most a second. Idempotent."""
         with self._lock:
             self._closing = True
-        self._raise()
+        self._wake_thread()
         if self._thread is not threading.current_thread():
             self._thread.join()
 
@@ -117,12 +117,12 @@ class Link:
             if self._closing:
                 return
             self._to_send.append((link, data))
-        self._raise()
+        self._wake_thread()
 
-    def _raise(self) -> None:
+    def _wake_thread(self) -> None:
         try:
             self._alarm.send(b"!")
-        except OSError:  # full means: raised already; closed means: the thread is gone
+        except OSError:  # full: the thread will wake up anyway; closed: the thread has ended
             pass
 
     def _run(self) -> None:
@@ -138,8 +138,8 @@ class Link:
                 self._flush()
         except Error as error:
             self._listener.failed(error)
-        except Exception as error:  # a thread must not end in silence
-            self._listener.failed(Error(f"the session's thread broke: {error!r}"))
+        except Exception as error:  # report every failure of the thread
+            self._listener.failed(Error(f"the session's thread failed: {error!r}"))
         finally:
             with self._lock:
                 self._closing = True
@@ -189,7 +189,7 @@ class Link:
                 self._listener.bulk_message(bulk.decode(data))
                 return
             self._control(parsed(control_pb2.Control, data), now)
-        except Malformed:  # as good as lost; whoever waits for it has a deadline
+        except Malformed:  # counts as lost; waiting calls have deadlines
             self.malformed += 1
 
     def _control(self, message: Message, now: float) -> None:
@@ -258,7 +258,7 @@ class Link:
                 raise Unavailable(f"no master answers at {self._endpoint.control}: is it running there, and is this "
                                   "key in its allow-list?")
             raise Unavailable(f"the master left: {self._goodbye}" if self._goodbye else
-                              "the master has fallen silent: is it still running?")
+                              "the master does not respond any more: is it still running?")
         if self._state == "away":
             if now >= self._return_at:
                 self._open()

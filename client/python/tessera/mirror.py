@@ -1,4 +1,4 @@
-"""A copy of the master's scene: follows change lists. Pure, no sockets."""
+"""A copy of the master's scene, updated by change lists. No I/O."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ class Mirror:
     def __init__(self) -> None:
         self.version: Version = (0, 0)
         self._objects: dict[int, tuple[Kind, Message]] = {}
-        self._values: dict[int, Object] = {}  # made when asked for
+        self._values: dict[int, Object] = {}  # created on demand
         self._ids: dict[tuple[str, bytes], set[int]] = {}  # by kind and name
 
     def apply(self, changes: Message) -> None:
-        """A snapshot or what leads on from `version`. Raises Malformed, and then is empty: ask for a snapshot."""
+        """Applies a snapshot, or changes based on `version`. On Malformed the mirror is empty: request a snapshot."""
         try:
-            known = getattr(changes, "from")  # a word of the language
+            known = getattr(changes, "from")  # a Python keyword
             if known.number == 0:
                 self._clear()
             elif (known.epoch, known.number) != self.version:
-                raise Malformed("changes to another version than this one")
+                raise Malformed("changes based on another version than this one")
             for entry in changes.entries:
                 self._apply(entry)
             self.version = (changes.to.epoch, changes.to.number)
@@ -52,7 +52,7 @@ class Mirror:
         known = self._objects.get(entry.id)
         if entry.action == scene_pb2.Entry.REMOVE:
             if known is None:
-                raise Malformed("an object is removed that is not there")
+                raise Malformed("an unknown object is removed")
             self._forget(entry.id, *known)
             return
         kind, message = kind_in(entry.object)
@@ -62,7 +62,7 @@ class Mirror:
             self._remember(entry.id, kind, message)
             return
         if entry.action != scene_pb2.Entry.UPDATE or known is None or known[0] is not kind:
-            raise Malformed("an update of what is not there, or of another kind")
+            raise Malformed("an update of an unknown object, or of another kind")
         if entry.mask & ~sum(kind.bits.values()):
             raise Malformed("an update has unknown fields")
         self._forget(entry.id, *known)
@@ -100,7 +100,7 @@ class Mirror:
             raise InvalidInput(f"the scene has no object {object_id}") from None
 
     def value(self, object_id: int) -> Object:
-        """Raises InvalidInput for an unknown id, Malformed for what the master should not have let in."""
+        """Raises InvalidInput for an unknown id, Malformed for values that the master should have rejected."""
         known = self._values.get(object_id)
         if known is None:
             kind, message = self.entry(object_id)
@@ -114,7 +114,7 @@ class Mirror:
             return ROOT_ID
         word, slash, name = path.partition("/")
         if not slash:
-            raise InvalidInput(f"'{path}' is no path: expected kind/name, as in materials/red, or 'root'")
+            raise InvalidInput(f"'{path}' is not a path: expected kind/name, as in materials/red, or 'root'")
         kind = kind_named(word)
         same = self._ids.get((kind.name, name.encode("utf-8", "surrogateescape")), set())
         if len(same) == 1:
@@ -135,7 +135,7 @@ class Mirror:
         return bytes(self.entry(object_id)[1].name).decode("utf-8", "surrogateescape")
 
     def path(self, object_id: int) -> str:
-        """The shortest path that means this object alone."""
+        """The shortest unambiguous path of the object."""
         if object_id == ROOT_ID:
             return "root"
         kind, message = self.entry(object_id)
@@ -147,18 +147,18 @@ class Mirror:
         return (object_id for object_id in self.ids() if self._objects[object_id][0] is kind)
 
     def world_matrix(self, object_id: int) -> Matrix:
-        """Of the parents of an object's first place in the graph: world from parent. Raises InvalidInput."""
+        """World from parent, for the first occurrence of an object in the graph. Raises InvalidInput."""
         return world_at(self._transforms_above(object_id), 0.0)
 
     def world_motion(self, object_id: int) -> list[Matrix]:
-        """world_matrix at even steps of time after its own, the last when the shutter closes; empty: it stands still. Where
-        several transforms above move, as many steps as there may be. Raises InvalidInput."""
+        """world_matrix at uniform motion keys after the first, the last when the shutter closes; empty: no motion. If
+        several transforms above move, the maximum number of keys. Raises InvalidInput."""
         above = self._transforms_above(object_id)
         steps = _steps_of([t for t in above if any(step != t.matrix for step in t.motion)])
         return [world_at(above, i / steps) for i in range(1, steps + 1)]
 
     def _transforms_above(self, object_id: int) -> list[Transform]:
-        """Of its first place in the graph, itself included, from the root down. Raises InvalidInput."""
+        """The transforms of its first occurrence in the graph, itself included, from the root down. Raises InvalidInput."""
         parents: dict[int, int] = {}
         for parent in self.ids():
             if self._objects[parent][0].type in (Root, Transform):
@@ -179,7 +179,7 @@ class Mirror:
 
 
 def world_at(transforms: Sequence[Transform], time: float) -> Matrix:
-    """The product of transforms from the root down, `time` being a share of what the shutter is open."""
+    """The product of transforms from the root down, at `time`, a fraction of the shutter time."""
     matrix = IDENTITY
     for transform in transforms:
         matrix = multiply(matrix, _matrix_at(transform, time))
@@ -187,19 +187,19 @@ def world_at(transforms: Sequence[Transform], time: float) -> Matrix:
 
 
 def _matrix_at(transform: Transform, time: float) -> Matrix:
-    """Straight lines from step to step, both ends exactly."""
+    """Linear interpolation between motion keys, exact at both ends."""
     keys = (transform.matrix, *transform.motion)
     step = min(int(time * len(transform.motion)), max(len(transform.motion) - 1, 0))
-    share = time * len(transform.motion) - step
-    if share == 0.0:
+    fraction = time * len(transform.motion) - step
+    if fraction == 0.0:
         return keys[step]
-    if share == 1.0:
+    if fraction == 1.0:
         return keys[step + 1]
-    return tuple(a + (b - a) * share for a, b in zip(keys[step], keys[step + 1]))
+    return tuple(a + (b - a) * fraction for a, b in zip(keys[step], keys[step + 1]))
 
 
 def _steps_of(moving: Sequence[Transform]) -> int:
-    """As the importer and the nodes have it (mediator/scene/motion.h)."""
+    """As in the importer and the nodes (mediator/scene/motion.h)."""
     counts = [len(transform.motion) for transform in moving]
     if len(counts) < 2:
         return sum(counts)

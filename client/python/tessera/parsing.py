@@ -1,4 +1,4 @@
-"""Bytes to messages, whatever the bytes."""
+"""Parses messages from untrusted bytes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 from .errors import Malformed
 
-# The parser stops there and warns instead of failing; the length tells us.
+# The parser stops there and warns instead of failing; the length reveals it.
 warnings.filterwarnings("ignore", "Unexpected end-group tag", RuntimeWarning)
 
 

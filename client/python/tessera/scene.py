@@ -1,4 +1,4 @@
-"""The live scene as a member sees it."""
+"""The live scene, as mirrored by a member."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ T = TypeVar("T", bound=Object)
 
 
 class Scene:
-    """A mirror of the master's scene. Looking into it shows at least what this session has committed; `refresh` brings
-    what others did. Objects are values: they stay as they were read."""
+    """A mirror of the master's scene. Reads include at least all commits of this session; `refresh` fetches the edits of
+    others. Objects are immutable values."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
@@ -29,7 +29,7 @@ class Scene:
 
     @property
     def version(self) -> Version:
-        """Epoch and number of what is seen here."""
+        """Epoch and number of the mirrored version."""
         with self._session.reading() as mirror:
             return mirror.version
 
@@ -41,7 +41,7 @@ class Scene:
         return value
 
     def refresh(self) -> Version:
-        """Asks the master for what has changed."""
+        """Fetches changes from the master."""
         return self._session.refresh().version
 
     def __getitem__(self, which: str | int) -> Object:
@@ -63,7 +63,7 @@ class Scene:
         return [value for value in values if isinstance(value, kind)]
 
     def path(self, of: Object | int) -> str:
-        """The shortest path that means this object alone."""
+        """The shortest unambiguous path of the object."""
         with self._session.reading() as mirror:
             return mirror.path(object_id(of))
 
@@ -83,5 +83,5 @@ class Scene:
             return iter([mirror.value(number) for number in mirror.ids()])
 
     def bytes_of(self, blob: Blob) -> bytes:
-        """What a blob of the scene holds: floats(scene.bytes_of(geometry.positions))."""
+        """The contents of a blob of the scene: floats(scene.bytes_of(geometry.positions))."""
         return self._session.fetch(blob)

@@ -17,9 +17,9 @@ from .link import CONTROL_LIMIT
 from .mirror import Mirror, Version
 from .objects import Camera
 from .parsing import parsed
-from .people import (Committed, HistoryEntry, People, Progress, Status, Writer, history_of, people_of, status_of,
-                     text)
 from .proto import control_pb2, scene_pb2
+from .records import (Committed, HistoryEntry, People, Progress, Status, Writer, history_of, members_of, status_of,
+                      text)
 from .scene import Scene
 from .transaction import Transaction
 from .values import Blob, Object
@@ -28,23 +28,23 @@ from .view import ALL_LAYERS, LAST_FRAME_ONLY, VIEW_TRANSFORMS, CameraLike, Rend
 Message = Any
 _LOG = logging.getLogger("tessera")
 _UNDO_LATEST, _REDO_LATEST = (1 << 64) - 1, (1 << 64) - 2
-_PUBLISH_PATIENCE = 30.0  # seconds
+_PUBLISH_TIMEOUT = 30.0  # seconds
 
 
 class Session:
-    """Made by `connect`. A thread of its own keeps the connection: the caller may sleep, compute or stop in a debugger. Calls
-    block until the master has answered, and may come from several threads; a transaction belongs to one. A short break
-    of the connection, and a master that comes back with its journal, are bridged: see Connection. Everything raises
-    Unavailable when nobody answers, Refused when the master says no, InvalidInput for what cannot be meant."""
+    """Created by `connect`. A background thread maintains the connection: the caller may sleep, compute or stop in a debugger.
+    Calls block until the master has answered and are thread-safe; a transaction belongs to one thread. Short interruptions,
+    and a master restarted with its journal, are recovered: see Connection. All methods raise Unavailable if the master does
+    not answer, Refused if it rejects a request, and InvalidInput for invalid arguments."""
 
     def __init__(self, connection: Connection) -> None:
         self.connection = connection
-        self._editing = threading.RLock()  # one edit or read of the scene at a time; protects what follows
+        self._editing = threading.RLock()  # one edit or read of the scene at a time; protects the members below
         self._mirror = Mirror()
-        self._committed: Version = (0, 0)  # holds everything this session did
+        self._committed: Version = (0, 0)  # contains all edits of this session
         self._last_sequence = self._next_id = 0
         self._joins_seen = 0
-        self._last_view = self._last_gesture = 0
+        self._last_view = self._last_edit_group = 0
 
     def __enter__(self) -> Session:
         return self
@@ -53,61 +53,61 @@ class Session:
         self.close()
 
     def close(self) -> None:
-        """Says goodbye; the scene stays with the master. Idempotent."""
+        """Disconnects; the scene stays on the master. Idempotent."""
         self.connection.close()
 
     # ---- the scene ----
 
     def join(self, title: str = "", *, exclusive: bool = False, no_wait: bool = False,
              timeout: float | None = None) -> Scene:
-        """Joins the live scene, or opens one called `title` when there is none. An exclusive scene is this session's alone
-        and goes with it. While another scene is open that cannot be joined this waits; with `no_wait` it raises
-        Refused."""
+        """Joins the live scene, or opens one called `title` if there is none. An exclusive scene belongs to this session only
+        and is closed with it. Waits while another scene is open that cannot be joined; with `no_wait` raises Refused
+        instead."""
         self.connection.join(title, exclusive, no_wait, timeout)
         return Scene(self)
 
     @property
     def title(self) -> str:
-        """Of the scene: one that was there keeps its own."""
+        """The title of the scene; an existing scene keeps its title."""
         joined = self.connection.joined
         return text(joined.title) if joined is not None else ""
 
     @property
     def name(self) -> str:
-        """What others call this member; the master may have made it unique."""
+        """The name of this member as others see it; the master may have made it unique."""
         joined = self.connection.joined
         return text(joined.name) if joined is not None else self.connection.name
 
     def transaction(self, *, gesture: int = 0) -> AbstractContextManager[Transaction]:
-        """with session.transaction() as edit: ... - committed at the end of the block as a whole. Transactions in a row with
-        the same gesture (see `gesture`) are one for undo. Raises Refused with the master's problems."""
-        return self._transaction(gesture)
+        """with session.transaction() as edit: ... - committed atomically at the end of the block. Consecutive transactions with
+        the same edit group (see `gesture`) are undone together. Raises Refused with the master's reasons."""
+        return self._transaction(edit_group=gesture)
 
     @contextmanager
-    def _transaction(self, gesture: int) -> Iterator[Transaction]:
+    def _transaction(self, edit_group: int) -> Iterator[Transaction]:
         self.connection.require_joined()
         edit = Transaction(self)
         yield edit
         with self._editing:
             entries = edit.entries()
             if entries:
-                edit.committed = self._commit(entries, edit.blobs, gesture=gesture)
+                edit.committed = self._commit(entries, edit.blobs, edit_group=edit_group)
 
     def gesture(self) -> int:
-        """A new number for a drag: its transactions are undone together."""
+        """A new edit group, e.g. for one mouse drag: its transactions are undone together."""
         with self._editing:
-            self._last_gesture += 1
-            return self._last_gesture
+            self._last_edit_group += 1
+            return self._last_edit_group
 
     def undo(self, transaction: int | None = None) -> Committed:
-        """Takes back a transaction, or this member's latest. What others have changed since stays, and is told in notes."""
+        """Undoes a transaction, by default this member's latest. Fields changed by others since are kept and listed in notes."""
         return self._commit([], BlobHeap(), undo=_UNDO_LATEST if transaction is None else transaction)
 
     def redo(self) -> Committed:
-        """Takes back this member's latest undo."""
+        """Reverts this member's latest undo."""
         return self._commit([], BlobHeap(), undo=_REDO_LATEST)
 
-    def _commit(self, entries: Sequence[Message], blobs: BlobHeap, *, gesture: int = 0, undo: int = 0) -> Committed:
+    def _commit(self, entries: Sequence[Message], blobs: BlobHeap, *, edit_group: int = 0, undo: int = 0) -> Committed:
         self.connection.require_joined()
         with self._editing:
             self._follow_joins()
@@ -115,7 +115,7 @@ class Session:
             sequence, submitted_at, base = self._last_sequence, time.monotonic_ns(), self._mirror.version
 
             def build() -> Message:
-                edit = scene_pb2.Edit(session=self.connection.number, sequence=sequence, gesture=gesture, undo=undo,
+                edit = scene_pb2.Edit(session=self.connection.number, sequence=sequence, edit_group=edit_group, undo=undo,
                                       submitted_at=submitted_at, entries=entries)
                 edit.base.epoch, edit.base.number = base
                 return _edit_request(edit, blobs)
@@ -129,7 +129,7 @@ class Session:
             return Committed(result.transaction, self._committed, tuple(text(note) for note in result.notes))
 
     def _follow_joins(self) -> None:
-        """Takes over what the latest SceneJoined says: ids, sequence, and where the scene is after a restart."""
+        """Applies the latest SceneJoined: ids, sequence number, and the scene version after a restart."""
         with self.connection.changed:
             joined, joins = self.connection.joined, self.connection.joins
         if joined is None or joins == self._joins_seen:
@@ -143,7 +143,7 @@ class Session:
             self._committed = version
 
     def new_id(self) -> int:
-        """For an object that is created."""
+        """An unused id for a new object."""
         self.connection.require_joined()
         with self._editing:
             self._follow_joins()
@@ -151,18 +151,18 @@ class Session:
                 self.refresh()
             joined = self.connection.joined
             while self._next_id in self._mirror:
-                self._next_id += 1  # of an earlier life of the same editor
+                self._next_id += 1  # used by an earlier session of the same editor
             if joined is None or self._next_id >= joined.first_id + joined.id_count:
-                raise Unavailable("this session has used up its ids: connect anew")
+                raise Unavailable("all object ids allocated to this session are used: reconnect")
             self._next_id += 1
             return self._next_id - 1
 
     def mirror(self) -> Mirror:
-        """At least as new as what this session committed. Others may refresh it: read under `reading`."""
+        """The mirror, with at least all commits of this session. Other threads may refresh it: use it within `reading`."""
         self.connection.require_joined()
         with self._editing:
             self._follow_joins()
-            deadline = time.monotonic() + _PUBLISH_PATIENCE
+            deadline = time.monotonic() + _PUBLISH_TIMEOUT
             while self._mirror.version[0] != self._committed[0] or not self.shows_all(self._mirror.version):
                 self.refresh()
                 if self.shows_all(self._mirror.version):
@@ -178,17 +178,17 @@ class Session:
             yield self.mirror()
 
     def shows_all(self, version: Version) -> bool:
-        """True when this version holds everything that this session committed."""
+        """Whether this version contains all commits of this session."""
         return version[0] != self._committed[0] or version[1] >= self._committed[1]
 
     def refresh(self) -> Mirror:
-        """Asks for what has changed since the last time."""
+        """Fetches the changes since the last refresh."""
         self.connection.require_joined()
         with self._editing:
             try:
                 self._read_changes()
             except Malformed as error:
-                _LOG.warning("the mirror asks for a snapshot: %s", error)
+                _LOG.warning("the mirror is out of sync, requesting a snapshot: %s", error)
                 self._read_changes()
             return self._mirror
 
@@ -202,27 +202,27 @@ class Session:
         self._mirror.apply(changes)
 
     def fetch(self, blob: Blob) -> bytes:
-        """The bytes of a blob that the master has. Raises Unavailable when it has not."""
+        """Fetches a blob from the master. Raises Unavailable if it does not have it."""
         return self.connection.fetch(blob)
 
-    # ---- the others ----
+    # ---- other members ----
 
     def lock(self, objects: Iterable[Object | int]) -> None:
-        """Keeps others from changing these objects, until `unlock` or the end of this session."""
+        """Locks these objects against edits by others, until `unlock` or the end of this session."""
         ids = [object_id(o) for o in objects]
         self.connection.request(lock_request(ids, release=False))
         with self.connection.changed:
             self.connection.locks |= set(ids)
 
     def unlock(self, objects: Iterable[Object | int]) -> None:
-        """Of this session's own locks."""
+        """Releases locks of this session."""
         ids = [object_id(o) for o in objects]
         self.connection.request(lock_request(ids, release=True))
         with self.connection.changed:
             self.connection.locks -= set(ids)
 
     def set_presence(self, what: str, selection: Iterable[Object | int] = (), seconds: float = 30.0) -> None:
-        """What this member does, for the others; forgotten after so many seconds."""
+        """Sets the status text and selection that others see; expires after `seconds`."""
         self.connection.require_joined()
         message = control_pb2.Control()
         message.set_presence.text = what.encode("utf-8", "surrogateescape")
@@ -231,19 +231,19 @@ class Session:
         self.connection.post(message)
 
     def people(self) -> People:
-        """Who is there, what they hold, and the views that can be watched."""
+        """The members of the scene, their locks, and the views that can be watched."""
         request = control_pb2.Control()
-        request.read_people.SetInParent()
-        return people_of(self.connection.request(request))
+        request.read_members.SetInParent()
+        return members_of(self.connection.request(request))
 
     def history(self, count: int = 20) -> list[HistoryEntry]:
-        """The latest transactions, youngest first."""
+        """The latest transactions, newest first."""
         request = control_pb2.Control()
         request.read_history.count = count
         return history_of(self.connection.request(request))
 
     def writers(self, of: Object | int) -> dict[str, Writer]:
-        """Who wrote which field of an object last; fields without a writer are as they came."""
+        """The last writer of each field of an object; fields never edited are omitted."""
         request = control_pb2.Control()
         request.read_writers.object = object_id(of)
         with self.reading() as mirror:
@@ -252,13 +252,13 @@ class Session:
                 for w in self.connection.request(request).fields if w.field < len(names)}
 
     def status(self) -> Status:
-        """Of the cluster. Needs no scene."""
+        """The status of the cluster. Works without a scene."""
         request = control_pb2.Control()
         request.status_request.SetInParent()
         return status_of(self.connection.ask("status", "status_reply", lambda: request, 60.0))
 
     def close_scene(self) -> None:
-        """The scene and its views go, for all members."""
+        """Closes the scene and its views for all members."""
         request = control_pb2.Control()
         request.close_scene.SetInParent()
         self.connection.request(request)
@@ -267,18 +267,18 @@ class Session:
     # ---- the display ----
 
     def move_head(self, position: Sequence[float], orientation: Sequence[float] = (1.0, 0.0, 0.0, 0.0)) -> None:
-        """Where the tracked head is, in display space: metres; (w, x, y, z), of any length but zero, the identity looks along
-        -z. The latest wins, so call this as often as the tracker measures: it does not wait and is lost while nobody is
-        there. Where an eye would not see a screen the last place stays."""
+        """Sets the tracked head in display space: position in metres; orientation (w, x, y, z), not zero, the identity looks
+        along -z. The latest value is used; call this at the rate of the tracker: it does not wait, and is dropped while
+        disconnected. If an eye cannot see a screen, that screen keeps the last valid position."""
         self.connection.require_joined()
         self.connection.post(display.move_head(position, orientation))
 
     def adjust_display(self, *, eye_separation: float | None = None, zero_parallax: float | None = None,
                        exposure: float | None = None, pattern: bool | None = None,
                        shown_layers: Iterable[int] | None = None) -> None:
-        """Changes what is given, on all outputs at once: metres between the eyes; metres from the head where nothing has
-        parallax (0 = on the screens); stops; the test pattern instead of the scene; the layers that are shown, counted from
-        0 as the display's file names them. Raises Refused while no display is open."""
+        """Changes the given settings on all outputs at once: eye separation in metres; distance of zero parallax from the head in
+        metres (0 = on the screens); exposure in stops; test pattern instead of the scene; visible compositing layers,
+        counted from 0 in the order of the display file. Raises Refused while no display is open."""
         self.connection.request(display.adjustment(eye_separation, zero_parallax, exposure, pattern, shown_layers))
 
     # ---- views ----
@@ -288,9 +288,9 @@ class Session:
                   seed: int = 0, channels: Sequence[str] = ("radiance",), layers: int = ALL_LAYERS,
                   budget: float | None = None, exposure: float | None = None, view_transform: str = "neutral") -> View:
         """A view from a camera of the scene (the object or its path) or a Pose (`look_at`). `picture`: "png", "jpeg", "exr",
-        "planes" (filtered float32) or "none"; `film`: the statistics of `channels`, too. `layers`: a mask, bit i is
-        layer i; objects in none of them are not there. `budget`: seconds after which the picture is there, filter
-        included, with the samples that fit. `exposure` of "png" and "jpeg" in EV, None: measured once, of the first
+        "planes" (filtered float32) or "none"; `film`: also deliver the statistics of `channels`. `layers`: a mask, bit i is
+        object layer i; other objects are invisible. `budget`: time in seconds for samples, filter and encoding
+        together. `exposure` of "png" and "jpeg" in EV, None: measured once, on the first
         picture; `view_transform`: "neutral", "agx", "reinhard" or "linear"."""
         view = plain_view(size, channels=channels, renderer=renderer, bounces=bounces, seed=seed, filter=filter,
                           layers=layers)
@@ -302,8 +302,8 @@ class Session:
                channels: Sequence[str] = ("radiance",), layers: int = ALL_LAYERS, budget: float | None = None,
                exposure: float | None = None, view_transform: str = "neutral", min_nodes: int = 1, wait: float = 60.0,
                on_progress: Callable[[Progress], None] | None = None) -> Rendered:
-        """One picture, as `open_view` describes it: the last frame and what became of it. Begins when `min_nodes` are ready,
-        and gives up after `wait` seconds without nodes (the outcome is "no_nodes"). `on_progress` hears where it is."""
+        """Renders one picture (arguments as in `open_view`) and returns its last frame and summary. Starts when `min_nodes` are
+        ready, and gives up after `wait` seconds without nodes (outcome "no_nodes"). Calls `on_progress` with the progress."""
         view = plain_view(size, channels=channels, renderer=renderer, bounces=bounces, seed=seed, filter=filter,
                           layers=layers)
         self.aim(view, at)
@@ -318,7 +318,7 @@ class Session:
 
     def watch(self, name: str, *, picture: str = "png", film: bool = False, exposure: float | None = None,
               view_transform: str = "neutral") -> View:
-        """The view of somebody else that has this name (see `people`), whatever its camera."""
+        """Watches the view with this name of another member (see `people`), with its camera."""
         view = plain_view((1, 1), channels=("radiance",), renderer="path", bounces=8, seed=0, filter="",
                           layers=ALL_LAYERS)
         self.aim(view, camera.look_at((0, 0, 1), (0, 0, 0)))
@@ -327,8 +327,8 @@ class Session:
         return self._open(request)
 
     def set_filter(self, filter: str, view: str = "") -> str:
-        """Another filter for the view of that name, whoever opened it; without a name for the one there is. Returns what it
-        means for the picture."""
+        """Changes the filter of the view with this name, of any member; without a name, of the only view. Returns a description
+        of the effect."""
         request = control_pb2.Control()
         request.set_view_filter.view, request.set_view_filter.filter = view.encode(), filter.encode()
         return text(self.connection.request(request).text)
@@ -336,7 +336,7 @@ class Session:
     def _request(self, view: Message, spp: int, picture: str, film: bool, name: str, budget: float | None,
                  exposure: float | None, view_transform: str) -> Message:
         if picture not in bulk.ENCODINGS:
-            raise InvalidInput(f"there is no picture '{picture}': choose of {', '.join(bulk.ENCODINGS)}")
+            raise InvalidInput(f"unknown picture encoding '{picture}': choose of {', '.join(bulk.ENCODINGS)}")
         if view_transform not in VIEW_TRANSFORMS:
             raise InvalidInput(f"there is no view transform '{view_transform}': choose of {', '.join(VIEW_TRANSFORMS)}")
         request = control_pb2.Control().request_view
@@ -369,7 +369,7 @@ class Session:
             with self.reading() as mirror:
                 found = mirror.value(mirror.find(at) if isinstance(at, str) else at.id)
                 if not isinstance(found, Camera):
-                    raise InvalidInput(f"{mirror.path(found.id)} is no camera")
+                    raise InvalidInput(f"{mirror.path(found.id)} is not a camera")
                 at = camera.Pose(camera.rigid(mirror.world_matrix(found.id)), found.vertical_fov, found.projection,
                                  found.orthographic_height, found.lens_radius, found.focus_distance, found.aperture,
                                  tuple(camera.rigid(step) for step in mirror.world_motion(found.id)))
@@ -393,7 +393,7 @@ class Session:
 
 
 def _edit_request(edit: Message, blobs: BlobHeap) -> Message:
-    """As a message, or as a blob where it is too long for one."""
+    """The edit as a message, or as a blob if it is too long for one."""
     request = control_pb2.Control()
     request.submit_edit.edit.CopyFrom(edit)
     if request.ByteSize() <= CONTROL_LIMIT:

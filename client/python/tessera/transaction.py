@@ -1,4 +1,4 @@
-"""Edits that become one transaction: all of it, or nothing."""
+"""Edits that are committed as one atomic transaction."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from .blobs import BlobHeap
 from .errors import InvalidInput
 from .fields import KIND_OF_TYPE, KINDS, Kind, kind_named, object_id
 from .mirror import Mirror
-from .people import Committed
 from .proto import scene_pb2
+from .records import Committed
 from .values import Object, ROOT_ID
 
 Message = Any
@@ -17,29 +17,29 @@ _CREATE, _UPDATE, _REMOVE = scene_pb2.Entry.CREATE, scene_pb2.Entry.UPDATE, scen
 
 
 class Editor(Protocol):
-    """What a transaction needs of its session."""
+    """The interface that a transaction needs from its session."""
 
     def mirror(self) -> Mirror:
-        """The scene as it is now."""
+        """The current scene."""
         ...
 
     def new_id(self) -> int: ...
 
 
 class Transaction:
-    """Collects changes. Nothing reaches the master before the end of the `with` block, and nothing at all when the block
-    raises. Wrong names and values raise InvalidInput at once."""
+    """Collects changes and sends them at the end of the `with` block; if the block raises, nothing is sent. Wrong names and
+    values raise InvalidInput immediately."""
 
     def __init__(self, editor: Editor) -> None:
         self._editor = editor
         self._entries: dict[int, Message] = {}
         self._attach: dict[int, int] = {}  # created object -> parent
-        self._loose: set[int] = set()  # created without a word about the parent
+        self._loose: set[int] = set()  # created without an explicit parent
         self.blobs = BlobHeap()
-        self.committed: Committed | None = None  # once the master has taken it
+        self.committed: Committed | None = None  # set once the master has accepted it
 
     def set(self, target: Object | int | str, /, **values: Any) -> None:
-        """Changes fields of an object, which is given as such, by id or by path."""
+        """Changes fields of an object, given as a value, by id or by path."""
         number, kind, message = self._open(target)
         entry = self._entries[number]
         for field, value in values.items():
@@ -48,11 +48,11 @@ class Transaction:
                 entry.mask |= bit
 
     def create(self, kind: str | type[Object], /, *, parent: Object | int | str | None = "", **values: Any) -> Object:
-        """A new object; what is not given has its default. What can be seen is attached to `parent`: the root, unless
-        something else in this transaction refers to it; None = nowhere."""
+        """Creates an object; omitted fields have defaults. Objects of the scene graph are attached to `parent`, by default to the
+        root unless another object of this transaction refers to them; None = not attached."""
         of = KIND_OF_TYPE[kind] if isinstance(kind, type) else kind_named(kind)
         if of is KINDS[0]:
-            raise InvalidInput("a scene has one root, which is there already")
+            raise InvalidInput("a scene has exactly one root")
         if parent not in ("", None) and not of.is_placed:
             raise InvalidInput(f"a {of.name} has no place in the graph: refer to it in a field instead")
         number = self._editor.new_id()
@@ -69,7 +69,7 @@ class Transaction:
         return of.read(number, message)
 
     def remove(self, target: Object | int | str, /) -> None:
-        """Takes an object away. What still refers to it keeps the master from accepting that."""
+        """Removes an object. The master rejects this if other objects still refer to it."""
         number = self._number(target)
         if number == ROOT_ID:
             raise InvalidInput("the root cannot be removed")
@@ -85,7 +85,7 @@ class Transaction:
         self._entry(number, _REMOVE)
 
     def attach(self, child: Object | int | str, parent: Object | int | str = ROOT_ID, /) -> None:
-        """Adds to the children of the root or of a transform, as they are now."""
+        """Adds to the current children of the root or of a transform."""
         number, children = self._number(child), self._children(parent)
         if number not in children:
             children.append(number)
@@ -93,12 +93,12 @@ class Transaction:
         self._loose.discard(number)
 
     def detach(self, child: Object | int | str, parent: Object | int | str = ROOT_ID, /) -> None:
-        """Takes from the children of the root or of a transform, as they are now."""
+        """Removes from the current children of the root or of a transform."""
         number = self._number(child)
         self.set(parent, children=[other for other in self._children(parent) if other != number])
 
     def entries(self) -> list[Message]:
-        """What the edit holds. Objects without a place are attached now, to the latest children."""
+        """The entries of the edit. Objects without an explicit parent are attached here, to the latest children."""
         referred = {child for entry in self._entries.values()
                     for parent in (entry.object.root, entry.object.transform) for child in parent.children}
         for number in sorted(self._loose - referred):
@@ -122,12 +122,12 @@ class Transaction:
         return self._editor.mirror().find(target) if isinstance(target, str) else object_id(target)
 
     def _open(self, target: Object | int | str) -> tuple[int, Kind, Message]:
-        """The object's entry, made when it is not there yet, and the message in it."""
+        """The object's entry, created if necessary, and the message in it."""
         number = self._number(target)
         entry = self._entries.get(number)
         if entry is None:
             known = KIND_OF_TYPE.get(type(target)) if isinstance(target, Object) else None
-            # Who has the object need not wait until the latest edit can be read: a drag is sent as fast as it comes.
+            # A known object needs no round trip: a drag is sent without waiting for the previous edit.
             kind = known or self._editor.mirror().entry(number)[0]
             entry = self._entry(number, _UPDATE)
             getattr(entry.object, kind.name).SetInParent()

@@ -1,4 +1,4 @@
-"""What the values of scene objects are made of, and how `objects.py` lists fields."""
+"""The base types of scene objects, and of the field tables in `objects.py`."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ ROOT_ID = 1
 
 @dataclass(frozen=True)
 class Blob:
-    """Immutable bytes by name; what they are is told by `Scene.bytes_of`."""
+    """A reference to immutable bytes; `Scene.bytes_of` returns them."""
 
     hash: bytes = b""  # BLAKE2b-256
-    byte_size: int = 0  # 0 = nothing there
+    byte_size: int = 0  # 0 = empty
 
 
 @dataclass(frozen=True)
 class Object:
-    """What all kinds have. A value: it stays as it was read; ask the scene again for newer ones."""
+    """The common base of all kinds. An immutable value: read the scene again for a newer one."""
 
     id: int
     name: str = ""
 
 
 class FieldRow(NamedTuple):
-    """A field in the order of its message. Bit number - 1 of a mask stands for it."""
+    """A field, in the order of its message; bit (number - 1) of a field mask."""
 
     name: str
     number: int
-    codec: str  # a word of `fields.py`
+    codec: str  # a name in `fields.py`
     choices: tuple[str, ...] = ()
 
 

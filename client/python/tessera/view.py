@@ -1,4 +1,4 @@
-"""A picture of the scene that goes on getting better."""
+"""Progressively refined views of the scene."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from .errors import InvalidInput, Malformed, Refused, Unavailable
 from .film import channel_bits
 from .frame import Assembly, Frame
 from .objects import Camera
-from .people import Hit, Progress, Summary, progress_of, summary_of, text
 from .proto import control_pb2, work_pb2
+from .records import Hit, Progress, Summary, progress_of, summary_of, text
 
 if TYPE_CHECKING:
     from .session import Session
@@ -23,20 +23,20 @@ ALL_LAYERS = 0xFFFFFFFF
 RENDERERS = ("path", "whitted", "raster", "coverage")
 VIEW_TRANSFORMS = ("neutral", "agx", "reinhard", "linear")
 LAST_FRAME_ONLY = 1  # of the frames of a view, by its number on the wire
-STALL_SECONDS = 5.0  # without a further piece of a frame: the rest was lost
+STALL_SECONDS = 5.0  # without further parts of a frame: the rest was lost
 
 
 @dataclass(frozen=True)
 class Rendered:
-    """A view that its stop rule has ended: its last frame and what became of it."""
+    """The result of a finished view: its last frame and summary."""
 
     frame: Frame
     summary: Summary
 
 
 class View:
-    """One view of this session. At most one frame is on its way and one waits here: whoever looks away costs nobody
-    anything. A wait takes the frame that is here and lets the master send the next."""
+    """One view of this session. At most one frame is in flight and one is buffered, so a slow client does not block
+    others. Waiting takes the buffered frame and lets the master send the next one."""
 
     def __init__(self, session: Session, request: Message) -> None:
         self._session, self._connection = session, session.connection
@@ -44,8 +44,8 @@ class View:
         self._request = request
         self._assembly: Assembly | None = None
         self._waiting: Frame | None = None
-        self._seen_revision = 0  # of the latest frame that came
-        self._revision = 1  # that a wait asks for: grows by one with every change that the master takes
+        self._seen_revision = 0  # of the latest frame received
+        self._revision = 1  # expected by waits: incremented with every change that the master accepts
         self._progress: Progress | None = None
         self._end: tuple[int, Summary] | None = None  # with the number of the last frame
         self.is_open = True
@@ -55,14 +55,14 @@ class View:
         return self._request.wanted.view.width, self._request.wanted.view.height
 
     def look(self, at: CameraLike) -> None:
-        """From somewhere else. Pictures of the old place are not waited for any more."""
+        """Changes the camera. Later waits ignore frames from the old one."""
         view = work_pb2.View()
         view.CopyFrom(self._request.wanted.view)
         self._session.aim(view, at)
         self._replace(view, self._request.wanted.stop.spp)
 
     def change(self, *, size: tuple[int, int] | None = None, spp: int | None = None) -> None:
-        """Another size or quality."""
+        """Changes the size or quality."""
         view = work_pb2.View()
         view.CopyFrom(self._request.wanted.view)
         if size is not None:
@@ -85,15 +85,15 @@ class View:
             self._request.wanted.stop.spp = spp
         try:
             self.open()
-        except Refused:  # the master goes on with what it had
+        except Refused:  # the master keeps the old settings
             with self._connection.changed:
                 self._revision, self._request.wanted.stop.spp = revision, samples
                 self._request.wanted.view.CopyFrom(before)
             raise
 
     def wait(self, samples: int = 1, timeout: float = 60.0) -> Frame:
-        """The newest frame that shows everything this session has done, from this camera, with at least so many samples in
-        every pixel, or all there will be; 0 takes coarse pictures, too. Raises Unavailable at the timeout."""
+        """Waits for a frame with all edits of this session and the current camera, with at least `samples` samples per pixel
+        (or complete); 0 also accepts coarse pictures. Raises Unavailable at the timeout."""
         deadline = time.monotonic() + timeout
         while True:
             frame = self.next_frame(max(0.0, deadline - time.monotonic()))
@@ -105,7 +105,7 @@ class View:
                 return frame
 
     def next_frame(self, timeout: float) -> Frame | None:
-        """The newest frame, each one once; None when none has come in time."""
+        """The newest frame, each returned once; None if there is none within the timeout."""
         self._require_open()
         deadline = time.monotonic() + timeout
         with self._connection.changed:
@@ -116,22 +116,22 @@ class View:
         return frame
 
     def pick(self, x: int, y: int) -> Hit | None:
-        """What is seen in the middle of a pixel; None for the background."""
+        """The object visible at the center of a pixel; None for the background."""
         self._require_open()
         if not (0 <= x < self.size[0] and 0 <= y < self.size[1]):
-            raise InvalidInput(f"pixel {x},{y} lies outside of the view's {self.size[0]}x{self.size[1]}")
+            raise InvalidInput(f"pixel {x},{y} is outside of the view's {self.size[0]}x{self.size[1]}")
         request = control_pb2.Control()
         request.pick.number, request.pick.x, request.pick.y = self.number, x, y
         picked = self._connection.request(request)
         if picked.problem:
             raise Refused(text(picked.problem))
-        seen = picked.seen
+        seen = picked.result
         if not seen.hit:
             return None
         return Hit(seen.object, tuple(seen.position), tuple(seen.normal), seen.distance)
 
     def stop(self) -> None:
-        """No more samples: its end comes with what there is."""
+        """Stops rendering; the last frame has the samples merged so far."""
         self._require_open()
         message = control_pb2.Control()
         message.end_view.number, message.end_view.deliver = self.number, True
@@ -139,7 +139,7 @@ class View:
 
     def wait_for_end(self, on_progress: Callable[[Progress], None] | None = None,
                      timeout: float | None = None) -> Rendered:
-        """The last frame, once the stop rule has ended the view. Raises Unavailable at the timeout."""
+        """Waits for the end of the view and returns its last frame. Raises Unavailable at the timeout."""
         deadline = None if timeout is None else time.monotonic() + timeout
         while True:
             self._require_open()
@@ -148,7 +148,7 @@ class View:
                 progress, self._progress = self._progress, None
                 frame, end = self._waiting, self._end
                 if frame is not None and frame.complete and end is None:
-                    frame = None  # it may be the last: what became of the view is still on its way
+                    frame = None  # it may be the last: the summary has not arrived yet
                 elif frame is not None:
                     self._waiting = None
             if progress is not None and on_progress is not None:
@@ -166,7 +166,7 @@ class View:
                 (frame is not None and (not frame.complete or self._end is not None)))
 
     def close(self) -> None:
-        """The master forgets it. Idempotent."""
+        """Closes the view on the master. Idempotent."""
         if self.is_open:
             self.is_open = False
             self._session.forget_view(self)
@@ -176,18 +176,18 @@ class View:
             raise InvalidInput("this view is closed: open another one")
 
     def open(self) -> None:
-        """Says to the master what this view is now, and waits for its word."""
+        """Sends the view's current settings to the master and waits for its confirmation."""
         request = control_pb2.Control()
         request.request_view.CopyFrom(self._request)
         self._connection.request(request)
 
-    # What follows is called by the session, under its lock, on the link's thread.
+    # The methods below are called by the session, with its lock held, on the link's thread.
 
     def reopened(self) -> Message:
-        """The request for a master that may have lost what was on its way."""
+        """The request to resend to a master that may have lost messages."""
         self._assembly = None
         self._end = None
-        self._seen_revision, self._revision = 0, 1  # a master that was started anew counts anew
+        self._seen_revision, self._revision = 0, 1  # a restarted master restarts its numbers
         request = control_pb2.Control()
         request.request_view.CopyFrom(self._request)
         request.request_view.request = 0
@@ -200,7 +200,7 @@ class View:
         self._end = (done.frame, summary_of(done.summary))
 
     def began(self, header: bulk.FrameHeader, now: float) -> None:
-        """Raises Malformed; then the frame is passed over."""
+        """Raises Malformed; the frame is then skipped."""
         self._assembly = None
         try:
             self._assembly = Assembly(header, None if self._request.share else self.size, now)
@@ -213,7 +213,7 @@ class View:
         return self._assembly is not None and self._assembly.header.frame == part.frame
 
     def add(self, part: bulk.PictureChunk | bulk.FrameTile, now: float) -> None:
-        """Raises Malformed; then the frame is passed over."""
+        """Raises Malformed; the frame is then skipped."""
         assert self._assembly is not None
         try:
             self._assembly.add(part, now)
@@ -256,7 +256,7 @@ def plain_view(size: tuple[int, int], *, channels: Sequence[str], renderer: str,
                filter: str, layers: int) -> Message:
     """A View message without a camera."""
     if not 0 <= layers <= ALL_LAYERS:
-        raise InvalidInput("the layers are no mask of 32 bits: bit i is layer i")
+        raise InvalidInput("the layers are not a mask of 32 bits: bit i is object layer i")
     if renderer not in RENDERERS:
         raise InvalidInput(f"there is no renderer '{renderer}': choose of {', '.join(RENDERERS)}")
     view = work_pb2.View(revision=1, seed=seed, max_bounces=bounces, filter_radius=0.5,

@@ -27,7 +27,7 @@ Expected<std::uint32_t> parse_output_layers(const std::string& text) {
     for (const std::string& word : split_list(text)) {
         if (word.size() != 1 || word[0] < '0' || word[0] >= char('0' + display::MaxLayers))
             return failure(ErrorCode::InvalidInput,
-                           "--layers: '" + word + "' is no layer: give numbers from 0 to 3, as 0,2");
+                           "--layers: '" + word + "' is not a layer: give numbers from 0 to 3, as 0,2");
         layers |= 1u << (word[0] - '0');
     }
     if (layers == 0) return failure(ErrorCode::InvalidInput, "--layers: give numbers from 0 to 3, as 0,2");
@@ -43,13 +43,13 @@ int run(const AdjustOptions& options) {
     if (!options.pattern.empty()) change.pattern = options.pattern == "on";
     if (options.layers) {
         const auto layers = parse_output_layers(*options.layers);
-        if (!layers) return complain(AdjustName, cli::ExitUsage, layers.error().what());
+        if (!layers) return report_error(AdjustName, cli::ExitUsage, layers.error().what());
         change.shown_layers = *layers;
     }
     if (!change.eye_separation && !change.zero_parallax && !change.exposure && !change.pattern &&
         !change.shown_layers)
-        return complain(AdjustName, cli::ExitUsage,
-                        "nothing to adjust: give one of its options, as --exposure 1");
+        return report_error(AdjustName, cli::ExitUsage,
+                            "nothing to adjust: give one of its options, as --exposure 1");
     const SteadyClock clock;
     const DisplayMember member = join_display(options.address, "tessera display adjust", clock);
     member.session->adjust_display(change);
@@ -61,17 +61,16 @@ int run(const AdjustOptions& options) {
 
 Command adjust_display_command(cli::CommandLine& display) {
     const auto options = std::make_shared<AdjustOptions>();
-    cli::CommandLine& line = display.command(
-        "adjust", "Change the open display, on all outputs at once: what is given, and nothing else.");
+    cli::CommandLine& line =
+        display.command("adjust", "Change settings of the open display, on all outputs at once.");
     add_cluster_options(line, options->address);
     line.required("--master");
     line.option("--eye-separation", "metres between the eyes", options->eye_separation);
-    line.option("--zero-parallax", "metres from the head where nothing has parallax; 0 = on the screens",
+    line.option("--zero-parallax", "distance of zero parallax from the head, in metres; 0 = on the screens",
                 options->zero_parallax);
-    line.option("--exposure", "EV: each step doubles the light", options->exposure);
+    line.option("--exposure", "exposure in EV: +1 doubles the brightness", options->exposure);
     line.choice("--pattern", "show the test pattern instead of the scene", options->pattern, {"on", "off"});
-    line.option("--layers",
-                "the layers that are shown, as 0,2: numbers, counted from 0 as the display's file names them",
+    line.option("--layers", "layers to show, as 0,2: indices in the order of the display file, from 0",
                 options->layers);
     line.examples(
         {"tessera display adjust --eye-separation 0.06 --zero-parallax 2.5 --master "
@@ -81,7 +80,7 @@ Command adjust_display_command(cli::CommandLine& display) {
                 try {
                     return run(*options);
                 } catch (const Error& error) {
-                    return complain(AdjustName, exit_code(error.code()), error.what());
+                    return report_error(AdjustName, exit_code(error.code()), error.what());
                 }
             }};
 }

@@ -35,8 +35,8 @@ void write_plan(const Drawing& drawing, const std::string& path) {
 int run(const CheckOptions& options) {
     for (const std::string& path : options.plans) {
         if (!path.ends_with(".svg") && !path.ends_with(".png"))
-            return complain(CheckName, cli::ExitUsage,
-                            "'" + path + "' is no .svg or .png: plans are drawn as these");
+            return report_error(CheckName, cli::ExitUsage,
+                                "'" + path + "' is not .svg or .png: plans can only be drawn as these");
     }
     scene::BlobStore blobs;
     const display_file::DisplayFile file = display_file::read_display(options.file, blobs);
@@ -52,7 +52,7 @@ int run(const CheckOptions& options) {
 Command check_display_command(cli::CommandLine& display) {
     const auto options = std::make_shared<CheckOptions>();
     cli::CommandLine& line =
-        display.command("check", "Read a display file, say what is wrong with it, and what it needs.");
+        display.command("check", "Check a display file, and print its outputs and bandwidth.");
     line.positional("FILE", "the display, as TOML: docs/displays.md", options->file);
     line.option("-o,--output", "draw a plan of it: .svg or .png (repeatable)", options->plans);
     line.examples({"tessera display check wall.toml", "tessera display check wall.toml -o plan.png"});
@@ -60,7 +60,7 @@ Command check_display_command(cli::CommandLine& display) {
                 try {
                     return run(*options);
                 } catch (const Error& error) {
-                    return complain(CheckName, exit_code(error.code()), error.what());
+                    return report_error(CheckName, exit_code(error.code()), error.what());
                 }
             }};
 }

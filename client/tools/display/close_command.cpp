@@ -25,7 +25,7 @@ int run(const client::Address& address) {
 Command close_display_command(cli::CommandLine& display) {
     const auto address = std::make_shared<client::Address>();
     cli::CommandLine& line = display.command(
-        "close", "Take the display from before the live scene. Its output processes wait for the next one.");
+        "close", "Close the display of the live scene. Its output processes wait for the next one.");
     add_cluster_options(line, *address);
     line.required("--master");
     line.examples({"tessera display close --master tcp://render-1:7420 --keys ~/.tessera"});
@@ -33,7 +33,7 @@ Command close_display_command(cli::CommandLine& display) {
                 try {
                     return run(*address);
                 } catch (const Error& error) {
-                    return complain(CloseName, exit_code(error.code()), error.what());
+                    return report_error(CloseName, exit_code(error.code()), error.what());
                 }
             }};
 }

@@ -4,8 +4,7 @@
 
 namespace tessera::tools {
 
-// tessera display: what stands in front of people, described in a file; each act on it a sub-command of its
-// own.
+// tessera display: displays described by files, with a sub-command for each operation.
 Command display_command(cli::CommandLine& program);
 
 }  // namespace tessera::tools

@@ -58,7 +58,7 @@ std::uint64_t rendered_pixels(const display::Output& output) {
     return std::uint64_t{output.view_width} * output.view_height * display::eyes(output.stereo).size();
 }
 
-// Half floats where the output process works on light, else what it shows.
+// Half floats if the output process needs linear light, otherwise device bytes.
 std::uint64_t frame_bytes(const display::Output& output) {
     return rendered_pixels(output) * (display::takes_linear_light(output) ? 6 : 3);
 }

@@ -6,7 +6,7 @@
 
 namespace tessera::tools {
 
-// For people: a line for each output with its sizes, eyes and bytes a frame, and what all need together.
+// A table for users: a line per output with its sizes, eyes and bytes per frame, and the totals.
 std::string as_table(const display::Display& display);
 
 }  // namespace tessera::tools

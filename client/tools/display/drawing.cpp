@@ -40,7 +40,7 @@ std::string as_svg(const Drawing& drawing) {
                    "<text x=\"%.1f\" y=\"%.1f\" font-size=\"%.1f\" font-family=\"monospace\" "
                    "text-anchor=\"middle\" stroke=\"#ffffff\" stroke-width=\"3\" stroke-opacity=\"0.7\" "
                    "paint-order=\"stroke\" fill=\"",
-                   words.middle.x, words.middle.y + 0.35 * size, size) +
+                   words.center.x, words.center.y + 0.35 * size, size) +
                color_text(words.color) + "\">" + escaped(words.text) + "</text>\n";
     }
     return svg + "</svg>\n";
@@ -60,11 +60,11 @@ Canvas as_canvas(const Drawing& drawing) {
         const double width = text_width(words.scale, words.text), height = display::GlyphHeight * words.scale;
         const dvec2 half(0.5 * width + 2.0, 0.5 * height + 1.0);
         const std::array<dvec2, 4> room{
-            words.middle - half, dvec2(words.middle.x + half.x, words.middle.y - half.y), words.middle + half,
-            dvec2(words.middle.x - half.x, words.middle.y + half.y)};
+            words.center - half, dvec2(words.center.x + half.x, words.center.y - half.y), words.center + half,
+            dvec2(words.center.x - half.x, words.center.y + half.y)};
         fill_polygon(canvas, room, {255, 255, 255}, 0.7);
-        draw_text(canvas, std::int64_t(words.middle.x - 0.5 * width),
-                  std::int64_t(words.middle.y - 0.5 * height), words.scale, words.text, words.color);
+        draw_text(canvas, std::int64_t(words.center.x - 0.5 * width),
+                  std::int64_t(words.center.y - 0.5 * height), words.scale, words.text, words.color);
     }
     return canvas;
 }

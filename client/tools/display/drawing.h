@@ -13,10 +13,10 @@ struct Path {
     std::vector<glm::dvec2> points;
     Rgb color{20, 20, 20};
     double width = 1.0;             // of the line; 0 = none
-    double line = 1.0, area = 0.0;  // how much it covers; with an area it is closed
+    double line = 1.0, area = 0.0;  // opacities; with an area the path is closed
 };
 struct Words {
-    glm::dvec2 middle{0.0};
+    glm::dvec2 center{0.0};
     std::string text;
     Rgb color{20, 20, 20};
     std::uint32_t scale = 1;  // of the pixel font

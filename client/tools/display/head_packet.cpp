@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t WithoutTurn = 3, WithTurn = 7;
 
-// Takes the first word off the text; "" when there is none left.
+// Removes and returns the first word of the text; "" when there is none.
 std::string_view next_word(std::string_view& text) {
     const std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
     text.remove_prefix(begin);
@@ -21,24 +21,24 @@ std::string_view next_word(std::string_view& text) {
 }
 
 Expected<double> parse_number(std::string_view word) {
-    if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);  // some trackers write it
+    if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);  // written by some trackers
     double value = 0.0;
     const char* const end = word.data() + word.size();
     const auto [stop, error] = std::from_chars(word.data(), end, value);
     if (error != std::errc() || stop != end)
-        return failure(ErrorCode::InvalidInput, "a word is no number: write x y z or x y z qw qx qy qz");
+        return failure(ErrorCode::InvalidInput, "a word is not a number: write x y z or x y z qw qx qy qz");
     if (!std::isfinite(value))
         return failure(ErrorCode::InvalidInput,
                        "a number is not finite: send nothing while the head is lost");
     return value;
 }
 
-// Scaled by the largest part first, so that no square over- or underflows.
+// Scaled by the largest component first, so that squares neither overflow nor underflow.
 Expected<glm::dquat> unit(std::array<double, 4> turn) {
     double largest = 0.0;
     for (const double part : turn) largest = std::max(largest, std::abs(part));
     if (largest == 0.0)
-        return failure(ErrorCode::InvalidInput, "a quaternion of zeros turns nowhere: leave it out");
+        return failure(ErrorCode::InvalidInput, "the quaternion is zero: leave it out, or send a rotation");
     for (double& part : turn) part /= largest;
     return glm::normalize(glm::dquat(turn[0], turn[1], turn[2], turn[3]));
 }

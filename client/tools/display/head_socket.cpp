@@ -30,7 +30,7 @@ struct Sender {
         char host[NI_MAXHOST], service[NI_MAXSERV];
         if (::getnameinfo(get(), size, host, sizeof host, service, sizeof service,
                           NI_NUMERICHOST | NI_NUMERICSERV) != 0)
-            return "somebody";
+            return "an unknown sender";
         return std::string(host) + " port " + service;
     }
 };
@@ -44,7 +44,7 @@ HeadSocket::HeadSocket(const std::string& address, std::uint16_t port) {
     addrinfo* list = nullptr;
     if (::getaddrinfo(address.c_str(), std::to_string(port).c_str(), &wanted, &list) != 0)
         throw Error(ErrorCode::InvalidInput,
-                    "'" + address + "' is no numeric address: give one of this machine, as 127.0.0.1");
+                    "'" + address + "' is not a numeric address: give one of this machine, as 127.0.0.1");
     const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> found(list, &::freeaddrinfo);
     socket_ = ::socket(found->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     if (socket_ < 0 || ::bind(socket_, found->ai_addr, found->ai_addrlen) != 0) {
@@ -75,7 +75,8 @@ void HeadSocket::wait(Duration limit) const {
 
 HeadSocket::Packets HeadSocket::drain() {
     Packets packets;
-    std::array<char, MaxHeadPacket + 1> room{};  // what is longer is cut there, and still too long
+    std::array<char, MaxHeadPacket + 1>
+        room{};  // longer packets are truncated, and still detected as too long
     for (int i = 0; i < MostPackets; ++i) {
         Sender sender;
         const ssize_t size = ::recvfrom(socket_, room.data(), room.size(), 0, sender.get(), &sender.size);

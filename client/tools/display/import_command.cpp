@@ -23,7 +23,7 @@ int run(const std::string& archive, const std::string& output) {
         picture::write_atomically((path.parent_path() / file.name).string(),
                                   {reinterpret_cast<const char*>(file.content.data()), file.content.size()});
     picture::write_atomically(output, imported.text);
-    std::cout << "wrote " << output << " and " << imported.files.size() << " files beside it\n";
+    std::cout << "wrote " << output << " and " << imported.files.size() << " files in its folder\n";
     for (const std::string& notice : imported.notices) std::cout << "note: " << notice << "\n";
     return 0;
 }
@@ -37,17 +37,18 @@ Command import_command(cli::CommandLine& display) {
     const auto options = std::make_shared<Options>();
     cli::CommandLine& line = display.command(
         "import",
-        "Make a display file, and the files of calibration that it names, of an archive in VESA's "
-        "MPCDI format: profiles 2d, 3d, a3, and sl without the distortion of lenses.");
+        "Convert an archive in VESA's MPCDI format to a display file and its calibration files: "
+        "profiles 2d, 3d, a3, and sl without lens distortion.");
     line.positional("FILE", "the archive", options->archive);
-    line.option("-o,--output", "display file to write; its files go beside it", options->output);
+    line.option("-o,--output", "display file to write; its calibration files go to the same folder",
+                options->output);
     line.required("--output");
     line.examples({"tessera display import wall.mpcdi -o wall.toml"});
     return {ImportName, [options](std::string_view) {
                 try {
                     return run(options->archive, options->output);
                 } catch (const Error& error) {
-                    return complain(ImportName, exit_code(error.code()), error.what());
+                    return report_error(ImportName, exit_code(error.code()), error.what());
                 }
             }};
 }

@@ -7,13 +7,13 @@
 
 namespace tessera::tools {
 
-// A member of the live scene that has a display in front of it.
+// A member of the live scene with an open display.
 struct DisplayMember {
     std::string display;  // its name
     std::unique_ptr<client::Session> session;
 };
 
-// `name`: of the member, for others. Throws Error{Refused} when no display is open, and starts no scene then.
+// `name`: of the member, as others see it. Throws Error{Refused} when no display is open, without starting a scene.
 DisplayMember join_display(const client::Address& address, const std::string& name, const Clock& clock);
 
 }  // namespace tessera::tools

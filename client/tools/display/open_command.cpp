@@ -24,7 +24,7 @@ struct OpenOptions {
     bool no_wait = false;
 };
 
-// As one word of a shell.
+// Quoted as one word of a shell.
 std::string shell_quoted(const std::string& word) {
     const auto is_plain = [](unsigned char c) {
         return std::isalnum(c) != 0 ||
@@ -36,7 +36,7 @@ std::string shell_quoted(const std::string& word) {
     return text + "'";
 }
 
-// How its outputs are started, for this cluster.
+// The commands that start its outputs on this cluster.
 std::string start_lines(const display::Display& display, const client::Address& address) {
     std::string text;
     for (const display::Output& output : display.outputs) {
@@ -48,7 +48,7 @@ std::string start_lines(const display::Display& display, const client::Address& 
 }
 
 int run(const OpenOptions& options) {
-    Interrupts interrupts;  // before anything that starts threads
+    Interrupts interrupts;  // before starting any thread
     const SteadyClock clock;
     const auto blobs = std::make_shared<scene::BlobStore>();
     const display_file::DisplayFile file = display_file::read_display(options.file, *blobs);
@@ -66,13 +66,14 @@ int run(const OpenOptions& options) {
                       interrupts.token());
     if (std::holds_alternative<client::Stopped>(joined)) return ExitInterrupted;
     if (const auto* busy = std::get_if<client::Busy>(&joined))
-        return complain(OpenName, cli::ExitTryLater, busy->reason);
+        return report_error(OpenName, cli::ExitTryLater, busy->reason);
     session->open_display(display);
-    std::cout << "display '" << display.name << "' is open in front of '"
-              << std::get<client::Joined>(joined).title << "'. Its outputs, each where its screen is:\n"
+    std::cout << "display '" << display.name << "' is open on the live scene '"
+              << std::get<client::Joined>(joined).title
+              << "'. Start its outputs, each on the machine of its screen:\n"
               << start_lines(display, options.address) << std::flush;
     if (const auto camera = view::choose_camera(session->scene(), display.camera); !camera)
-        std::cerr << "tessera display open: nothing is shown yet: " << camera.error().what() << "\n";
+        std::cerr << "tessera display open: warning: nothing is shown yet: " << camera.error().what() << "\n";
     return 0;
 }
 
@@ -82,19 +83,20 @@ Command open_display_command(cli::CommandLine& display) {
     const auto options = std::make_shared<OpenOptions>();
     cli::CommandLine& line = display.command(
         "open",
-        "Put a display in front of the live scene, instead of the one there was, and say how to start its "
-        "outputs. It stays until it is closed, or the scene is.");
+        "Open a display on the live scene, replacing the previous one, and print the commands that start its "
+        "outputs. It stays open until it or the scene is closed.");
     line.positional("FILE", "the display, as TOML: docs/displays.md", options->file);
     add_cluster_options(line, options->address);
     line.required("--master");
     line.option("--scene", "title of the live scene, if this starts it", options->title);
-    line.flag("--no-wait", "exit with 75 when a batch has the cluster, instead of waiting", options->no_wait);
+    line.flag("--no-wait", "exit with 75 if a batch job has the cluster, instead of waiting",
+              options->no_wait);
     line.examples({"tessera display open wall.toml --master tcp://render-1:7420 --keys ~/.tessera"});
     return {OpenName, [options](std::string_view) {
                 try {
                     return run(*options);
                 } catch (const Error& error) {
-                    return complain(OpenName, exit_code(error.code()), error.what());
+                    return report_error(OpenName, exit_code(error.code()), error.what());
                 }
             }};
 }

@@ -20,7 +20,7 @@ struct PatternOptions {
     bool raw = false;
 };
 
-// What the device would show, a file for each of its pictures.
+// Writes the device's pictures, one file each.
 std::size_t write_pattern(tbb::task_arena& arena, const display::Output& output,
                           const display::Display& display, const scene::BlobStore& blobs,
                           const std::filesystem::path& folder) {
@@ -43,7 +43,7 @@ int run(const PatternOptions& options) {
     std::error_code error;
     std::filesystem::create_directories(options.folder, error);
     if (error)
-        throw Error(ErrorCode::Io, "cannot make the folder '" + options.folder + "': " + error.message());
+        throw Error(ErrorCode::Io, "cannot create the folder '" + options.folder + "': " + error.message());
     tbb::task_arena arena;
     std::size_t count = 0;
     for (const display::Output& output : display.outputs) {
@@ -61,17 +61,17 @@ Command pattern_command(cli::CommandLine& display) {
     cli::CommandLine& line = display.command(
         "pattern",
         "Write the test pattern of every output as its device would show it: NAME.png, or NAME-left.png and "
-        "NAME-right.png where the eyes have pictures of their own.");
+        "NAME-right.png where the eyes have separate pictures.");
     line.positional("FILE", "the display, as TOML: docs/displays.md", options->file);
-    line.option("-o,--output", "folder for the pictures; made when it is not there", options->folder);
+    line.option("-o,--output", "folder for the pictures; created if missing", options->folder);
     line.required("--output");
-    line.flag("--raw", "without warp, soft edges and colour: the device's own pixels", options->raw);
+    line.flag("--raw", "without warp, soft edges and colour correction", options->raw);
     line.examples({"tessera display pattern wall.toml -o pattern"});
     return {PatternName, [options](std::string_view) {
                 try {
                     return run(*options);
                 } catch (const Error& error) {
-                    return complain(PatternName, exit_code(error.code()), error.what());
+                    return report_error(PatternName, exit_code(error.code()), error.what());
                 }
             }};
 }

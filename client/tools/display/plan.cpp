@@ -34,7 +34,7 @@ Rgb color_of(std::size_t index) {
     return Colors[index % Colors.size()];
 }
 
-// A room in the drawing with a direction of sight: page directions of the display's axes.
+// A panel of the drawing with its viewing direction: display axes of the page's right and up.
 struct Panel {
     std::string title;
     dvec2 corner, size;
@@ -45,32 +45,32 @@ dvec2 flat(const Panel& panel, const dvec3& point) {
     return {glm::dot(point, panel.right), -glm::dot(point, panel.up)};
 }
 
-// The outline of what an output shows, from the top left clockwise; corners are every quarter of it.
+// The outline of an output's picture, clockwise from the top left, and its corners.
 struct Outline {
     std::vector<dvec3> points;
     std::array<dvec3, 4> corners;
-    dvec3 middle;
+    dvec3 center;
 };
 
 Outline outline_of(const display::PointAt& at) {
     constexpr std::uint32_t Steps = 48;
     Outline outline;
-    const std::array<dvec2, 4> places{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+    const std::array<dvec2, 4> corners_uv{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
     for (std::size_t side = 0; side < 4; ++side) {
-        outline.corners[side] = at(places[side].x, places[side].y);
-        const dvec2 way = places[(side + 1) % 4] - places[side];
+        outline.corners[side] = at(corners_uv[side].x, corners_uv[side].y);
+        const dvec2 offset = corners_uv[(side + 1) % 4] - corners_uv[side];
         for (std::uint32_t i = 0; i < Steps; ++i) {
-            const dvec2 place = places[side] + way * (double(i) / Steps);
-            outline.points.push_back(at(place.x, place.y));
+            const dvec2 uv = corners_uv[side] + offset * (double(i) / Steps);
+            outline.points.push_back(at(uv.x, uv.y));
         }
     }
     std::erase_if(outline.points, [](const dvec3& p) { return !std::isfinite(p.x + p.y + p.z); });
-    outline.middle = dvec3(0.0);
-    for (const dvec3& point : outline.points) outline.middle += point / double(outline.points.size());
+    outline.center = dvec3(0.0);
+    for (const dvec3& point : outline.points) outline.center += point / double(outline.points.size());
     return outline;
 }
 
-Outline outline_of(const display::PointGrid& grid) {
+Outline outline_of(const display::WarpMap& grid) {
     return outline_of([&](double u, double v) {
         return grid.at(std::uint32_t(std::lround(u * (grid.columns - 1))),
                        std::uint32_t(std::lround(v * (grid.rows - 1))));
@@ -78,10 +78,10 @@ Outline outline_of(const display::PointGrid& grid) {
 }
 
 struct Contents {
-    std::vector<Outline> screens;  // that projectors throw onto
+    std::vector<Outline> screens;  // of projectors
     std::vector<Outline> outputs;
     std::vector<std::string> names;
-    std::vector<std::pair<std::size_t, dvec3>> projectors;  // output, place
+    std::vector<std::pair<std::size_t, dvec3>> projectors;  // output, position
     dvec3 head, nose;
     std::array<dvec3, 2> eyes;
 };
@@ -109,16 +109,16 @@ Contents contents_of(const display_file::DisplayFile& file) {
     return contents;
 }
 
-std::vector<dvec2> circle(const dvec2& middle, double radius) {
+std::vector<dvec2> circle(const dvec2& center, double radius) {
     std::vector<dvec2> points;
     for (int i = 0; i < 32; ++i) {
         const double angle = i * std::numbers::pi / 16.0;
-        points.push_back(middle + radius * dvec2(std::cos(angle), std::sin(angle)));
+        points.push_back(center + radius * dvec2(std::cos(angle), std::sin(angle)));
     }
     return points;
 }
 
-// Draws into one panel at a scale of pixels a metre.
+// Draws into one panel at a scale in pixels per metre.
 class Sketch {
   public:
     Sketch(Drawing& drawing, const Panel& panel, const Contents& contents)
@@ -145,12 +145,12 @@ class Sketch {
         frame();
         for (const Outline& screen : contents_.screens) area(screen, Grey, 0.12);
         for (std::size_t i = 0; i < contents_.outputs.size(); ++i) sight(i);
-        for (const auto& [output, place] : contents_.projectors) throw_of(output, place);
+        for (const auto& [output, position] : contents_.projectors) draw_frustum(output, position);
         for (std::size_t i = 0; i < contents_.outputs.size(); ++i)
             area(contents_.outputs[i], color_of(i), 0.18);
         head();
         for (std::size_t i = 0; i < contents_.outputs.size(); ++i)
-            label(on_page(contents_.outputs[i].middle), contents_.names[i], color_of(i));
+            label(on_page(contents_.outputs[i].center), contents_.names[i], color_of(i));
     }
 
   private:
@@ -168,12 +168,12 @@ class Sketch {
         drawing_.paths.push_back({.points = {from, to}, .color = color, .width = width, .line = cover});
     }
 
-    // Title, origin and a bar of a length that people know.
+    // Title, origin and a scale bar.
     void frame() {
         const dvec2 c = panel_.corner, s = panel_.size;
         drawing_.paths.push_back(
             {.points = {c, {c.x + s.x, c.y}, c + s, {c.x, c.y + s.y}, c}, .color = Faint});
-        drawing_.words.push_back({.middle = c + dvec2(0.5 * s.x, 18.0), .text = panel_.title, .scale = 2});
+        drawing_.words.push_back({.center = c + dvec2(0.5 * s.x, 18.0), .text = panel_.title, .scale = 2});
         const dvec2 origin = on_page(dvec3(0.0));
         line(origin - dvec2(6, 0), origin + dvec2(6, 0), Grey, 1.0, 1.0);
         line(origin - dvec2(0, 6), origin + dvec2(0, 6), Grey, 1.0, 1.0);
@@ -182,7 +182,7 @@ class Sketch {
         line(begin, end, Ink, 2.0, 1.0);
         char text[40];
         std::snprintf(text, sizeof text, metres >= 1.0 ? "%.0f m" : "%.3g m", metres);
-        drawing_.words.push_back({.middle = 0.5 * (begin + end) - dvec2(0.0, 10.0), .text = text});
+        drawing_.words.push_back({.center = 0.5 * (begin + end) - dvec2(0.0, 10.0), .text = text});
     }
 
     void sight(std::size_t output) {
@@ -191,8 +191,8 @@ class Sketch {
             line(eye, on_page(corner), color_of(output), 1.0, 0.25);
     }
 
-    void throw_of(std::size_t output, const dvec3& place) {
-        const dvec2 lens = on_page(place);
+    void draw_frustum(std::size_t output, const dvec3& position) {
+        const dvec2 lens = on_page(position);
         for (const dvec3& corner : contents_.outputs[output].corners)
             line(lens, on_page(corner), color_of(output), 1.0, 0.6);
         const dvec2 half(7.0, 5.0);
@@ -205,33 +205,33 @@ class Sketch {
     }
 
     void head() {
-        const dvec2 middle = on_page(contents_.head);
+        const dvec2 center = on_page(contents_.head);
         const double radius = std::clamp(0.1 * scale_, 6.0, 0.5 * Margin);
         drawing_.paths.push_back(
-            {.points = circle(middle, radius), .color = Ink, .width = 1.5, .area = 0.12});
-        const dvec2 nose = on_page(contents_.head + contents_.nose) - middle;
+            {.points = circle(center, radius), .color = Ink, .width = 1.5, .area = 0.12});
+        const dvec2 nose = on_page(contents_.head + contents_.nose) - center;
         const double seen = glm::length(nose);
         if (seen > 1e-6 * scale_)
-            line(middle, middle + nose * (1.8 * radius / seen * std::min(1.0, seen / scale_)), Ink, 1.5, 1.0);
+            line(center, center + nose * (1.8 * radius / seen * std::min(1.0, seen / scale_)), Ink, 1.5, 1.0);
         for (const dvec3& eye : contents_.eyes) {
-            const dvec2 way = on_page(eye) - middle;
-            const double length = glm::length(way);
-            // Told apart also where a few centimetres are less than a pixel.
-            const dvec2 at = length > 1e-9 ? middle + way * (std::max(length, 3.0) / length) : middle;
+            const dvec2 offset = on_page(eye) - center;
+            const double length = glm::length(offset);
+            // Drawn apart even if a few centimetres are less than a pixel.
+            const dvec2 at = length > 1e-9 ? center + offset * (std::max(length, 3.0) / length) : center;
             drawing_.paths.push_back({.points = circle(at, 2.0), .color = Ink, .width = 0.0, .area = 1.0});
         }
     }
 
-    // Unless it would lie on one that is there.
-    void label(const dvec2& middle, const std::string& name, const Rgb& color) {
+    // Skipped if it would overlap an existing label.
+    void label(const dvec2& center, const std::string& name, const Rgb& color) {
         const std::uint32_t scale = contents_.outputs.size() > 12 ? 1 : 2;
         const dvec2 half(0.5 * text_width(scale, name) + 2.0, 4.0 * scale + 2.0);
         for (const auto& [other, extent] : labels_) {
-            const dvec2 apart = glm::abs(other - middle) - (extent + half);
+            const dvec2 apart = glm::abs(other - center) - (extent + half);
             if (apart.x < 0.0 && apart.y < 0.0) return;
         }
-        labels_.emplace_back(middle, half);
-        drawing_.words.push_back({.middle = middle, .text = name, .color = color, .scale = scale});
+        labels_.emplace_back(center, half);
+        drawing_.words.push_back({.center = center, .text = name, .color = color, .scale = scale});
     }
 
     Drawing& drawing_;
@@ -239,7 +239,7 @@ class Sketch {
     const Contents& contents_;
     dvec2 least_{std::numeric_limits<double>::infinity()}, most_{-std::numeric_limits<double>::infinity()};
     double scale_ = 1.0;
-    std::vector<std::pair<dvec2, dvec2>> labels_;  // middle, half the size
+    std::vector<std::pair<dvec2, dvec2>> labels_;  // centre, half the size
 };
 
 }  // namespace

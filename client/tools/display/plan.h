@@ -5,8 +5,8 @@
 
 namespace tessera::tools {
 
-// A plan of a display, for people who check what they measured: seen from above, from the front, and from
-// behind the head; with screens, outputs and their names, projectors, the head and what it sees.
+// A plan of a display, for checking measurements: from above, from the front, and from behind the head; with screens,
+// outputs and their names, projectors, the head and its view.
 Drawing plan(const display_file::DisplayFile& file);
 
 }  // namespace tessera::tools

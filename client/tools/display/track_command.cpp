@@ -17,8 +17,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr const char* TrackName = "display track";
-constexpr Duration Interval = std::chrono::nanoseconds(1s) / 240;  // between two heads, at least
-constexpr Duration LookAgain = 100ms;                              // for the end, and for the master's
+constexpr Duration Interval = std::chrono::nanoseconds(1s) / 240;  // minimum between two head updates
+constexpr Duration PollInterval = 100ms;  // polling interval for a stop and for the master's notices
 
 struct TrackOptions {
     client::Address address;
@@ -26,19 +26,19 @@ struct TrackOptions {
     std::uint32_t port = 0;
 };
 
-// Passes the newest head on, again and again.
+// Forwards the newest head pose continuously.
 class Tracking {
   public:
     explicit Tracking(const TrackOptions& options)
         : socket_(options.bind, static_cast<std::uint16_t>(options.port)),
           member_(join_display(options.address, "tessera display track", clock_)) {
-        std::cout << "display '" << member_.display << "' follows the heads that come to UDP " << options.bind
+        std::cout << "display '" << member_.display << "' follows heads received on UDP " << options.bind
                   << " port " << socket_.port() << std::endl;
     }
 
     void run() {
         while (!interrupts_.token().stop_requested()) {
-            socket_.wait(LookAgain);
+            socket_.wait(PollInterval);
             const TimePoint began = clock_.now();
             const HeadSocket::Packets packets = socket_.drain();
             if (packets.newest) member_.session->move_head(*packets.newest);
@@ -46,7 +46,7 @@ class Tracking {
             count(packets, began);
             if (packets.good + packets.bad > 0) std::this_thread::sleep_until(began + Interval);
         }
-        std::cout << good_ << " packets, " << sent_ << " heads passed on, " << bad_ << " bad packets"
+        std::cout << good_ << " packets, " << sent_ << " heads forwarded, " << bad_ << " bad packets"
                   << std::endl;
     }
 
@@ -56,26 +56,26 @@ class Tracking {
         bad_ += packets.bad;
         sent_ += packets.newest ? 1 : 0;
         if (packets.bad > 0) problem_ = packets.problem;
-        if (bad_ == told_ || now < tell_at_) return;
-        std::cerr << "tessera display track: " << bad_ - told_ << " bad packets, the latest " << problem_
+        if (bad_ == reported_ || now < report_at_) return;
+        std::cerr << "tessera display track: " << bad_ - reported_ << " bad packets, the latest " << problem_
                   << std::endl;
-        told_ = bad_;
-        tell_at_ = now + 1s;
+        reported_ = bad_;
+        report_at_ = now + 1s;
     }
 
-    Interrupts interrupts_;  // before anything that starts threads
+    Interrupts interrupts_;  // before starting any thread
     SteadyClock clock_;
     HeadSocket socket_;
     DisplayMember member_;
-    std::uint64_t good_ = 0, bad_ = 0, sent_ = 0, told_ = 0;
+    std::uint64_t good_ = 0, bad_ = 0, sent_ = 0, reported_ = 0;
     std::string problem_;
-    TimePoint tell_at_{};
+    TimePoint report_at_{};
 };
 
 int run(const TrackOptions& options) {
     if (options.port > 65535)
-        return complain(TrackName, cli::ExitUsage,
-                        "--udp: a port is within 1 and 65535, or 0 for a free one");
+        return report_error(TrackName, cli::ExitUsage,
+                            "--udp: a port is within 1 and 65535, or 0 for any free one");
     Tracking(options).run();
     return 0;
 }
@@ -84,15 +84,17 @@ int run(const TrackOptions& options) {
 
 Command track_command(cli::CommandLine& display) {
     const auto options = std::make_shared<TrackOptions>();
-    cli::CommandLine& line = display.command(
-        "track",
-        "Let the open display follow a tracked head: UDP packets of one line of text each, x y z or x y z qw "
-        "qx qy qz, in metres of the display's space; the word head may stand before them. The latest wins, "
-        "240 are passed on a second at most. UDP is not authenticated: whoever reaches the port can move the "
-        "head (and do nothing else), so bind it to a network of the tracker's own.");
-    line.option("--udp", "port that the packets come to; 0 = a free one, which is told", options->port);
+    cli::CommandLine& line = display.command("track",
+                                             "Let the open display follow a tracked head. Receives UDP "
+                                             "packets of one line of text, x y z or x y z qw "
+                                             "qx qy qz, in metres in display space, optionally after the "
+                                             "word head. Forwards the latest, at most 240 "
+                                             "per second. UDP is not authenticated: any host that can reach "
+                                             "the port can move the head (and nothing "
+                                             "else), so bind it to a separate network of the tracker.");
+    line.option("--udp", "port to receive packets on; 0 = any free port, which is printed", options->port);
     line.required("--udp");
-    line.option("--bind", "numeric address of this machine that it listens on", options->bind);
+    line.option("--bind", "numeric address of this machine to listen on", options->bind);
     add_cluster_options(line, options->address);
     line.required("--master");
     line.examples({"tessera display track --udp 7500 --master tcp://127.0.0.1:7420",
@@ -102,7 +104,7 @@ Command track_command(cli::CommandLine& display) {
                 try {
                     return run(*options);
                 } catch (const Error& error) {
-                    return complain(TrackName, exit_code(error.code()), error.what());
+                    return report_error(TrackName, exit_code(error.code()), error.what());
                 }
             }};
 }

@@ -14,13 +14,13 @@ using frame::Channel;
 
 constexpr float Log2E = 1.44269504f;
 
-// Background shading is moved to the other side of 0 so far that weights are 0 (exp2_negative).
+// Background shading is shifted below 0 so far that weights across the boundary are 0 (exp2_negative).
 constexpr float Apart = 128.0f;
 
 // Planes of a row of the window, one after the other. Colours follow, times the count.
 enum Window : std::uint32_t { Texture = 0, Normal = 3, Shading = 6, Count = 7, Color = 8 };
 
-// Widths are those of the largest window, so that the planes of a pixel have fixed distances.
+// Sized for the largest window, so that the planes of a pixel are at fixed offsets.
 constexpr std::size_t Pitch = Tiles::Width + 2 * FeatureMaxRadius + PackSize;
 
 constexpr std::size_t row_stride(std::uint32_t components) {
@@ -79,8 +79,8 @@ void copy_features(const Inputs& inputs, const Planes& shading, const Planes& cl
 template <std::uint32_t Components>
 using Sums = std::array<Pack, Components + 1>;
 
-// The sums of the eight pixels at (x, y), taken by lines, so that rounding grows with 17 + 17 terms and not
-// 289.
+// The sums of the eight pixels at (x, y), accumulated row by row, so that rounding grows with 17 + 17 terms
+// and not with 289.
 template <std::uint32_t Components>
 Sums<Components> gather(const float* window, std::uint32_t radius, std::uint32_t x, std::uint32_t y) {
     constexpr std::size_t Stride = row_stride(Components);

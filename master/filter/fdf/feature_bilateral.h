@@ -16,10 +16,10 @@ struct FeatureSettings {
 
 inline constexpr std::uint32_t FeatureMaxRadius = 16;
 
-// Below it a colour of albedo is not divided out: the light of such surfaces is not reflected light.
+// Albedo components below it are not divided out: light from such surfaces is not diffusely reflected.
 inline constexpr float DemodulationFloor = 0.01f;
 
-// The weighted mean of the samples of a window whose features are alike (Lardinoije E-L8, E-L9), no spatial
+// The weighted mean of the samples of a window with similar features (Lardinoije E-L8, E-L9), no spatial
 // weight:
 //
 //     out(p) = sum n_q w(p,q) c(q) / sum n_q w(p,q)
@@ -27,18 +27,18 @@ inline constexpr float DemodulationFloor = 0.01f;
 //     d_t, d_n = max over components |f(p) - f(q)| / f_max
 //     d_s = |s(p) - s(q)| min(n_p, n_q) / s_max
 //
-// n_q makes it the mean over samples, as if those of all alike pixels were pooled; with equal counts it is
+// n_q makes it the mean over samples, as if those of all similar pixels were pooled; with equal counts it is
 // the thesis' mean over pixels. min(n_p, n_q) is symmetric, and the noise of the pixel with fewer samples
-// does not look like an edge; what that pixel adds to a better known one is small by n_q. Holes have no
+// does not look like an edge; its contribution to a better known pixel is small, due to n_q. Holes have no
 // weight and become 0.
 //
-// Distances are kept in powers of two in a copy of the tile and its surroundings, eight pixels in registers
-// over all (2 radius + 1)^2 taps at about 37 operations.
+// Distances are kept in units of log2 in a copy of the tile and its margin; eight pixels stay in registers
+// over all (2 radius + 1)^2 taps, at about 37 operations per tap.
 class FeatureBilateral {
   public:
     // `shading` (in units of its own mean, 1 component) and `classes` as for NlMeans; Albedo and Normal are
-    // left out where the inputs lack them. `out` has Inputs::color_components(); `self_weight` gets the
-    // weight of the pixel in its own result, 1 component. False: stopped.
+    // ignored if the inputs lack them. `out` has Inputs::color_components(); `self_weight` gets the weight of
+    // the pixel in its own result, 1 component. False: stopped.
     bool run(const Inputs& inputs, const Planes& shading, const Planes& classes,
              const FeatureSettings& settings, Planes& out, Planes& self_weight, RunContext& context);
 

@@ -16,7 +16,7 @@ std::uint32_t up_to_packs(std::uint32_t n) {
     return (n + PackSize - 1) / PackSize * PackSize;
 }
 
-// Where things are in a thread's scratch. Reads may go one pack beyond a row.
+// Layout of a thread's scratch memory. Reads may go one pack beyond a row.
 struct Layout {
     Layout(const Tile& tile, const NlmSettings& settings)
         : halo(settings.radius + settings.patch),
@@ -57,8 +57,8 @@ void run_tile(const Tile& tile, const Layout& layout, const NlmSettings& setting
     const float* variances = values + layout.window_size();
     const float* classes = variances + layout.window_size();
     float* pairs = scratch + 3 * layout.window_size();
-    float* row_sums = pairs + layout.pair_columns + PackSize;
-    float* sums = row_sums + std::size_t{layout.sum_columns} * layout.pair_rows;
+    float* row_cdf = pairs + layout.pair_columns + PackSize;
+    float* sums = row_cdf + std::size_t{layout.sum_columns} * layout.pair_rows;
     float* weights = sums + std::size_t{layout.sum_columns} * tile.height;
     const float k2 = settings.k * settings.k;
     const std::size_t columns = layout.columns;
@@ -85,7 +85,7 @@ void run_tile(const Tile& tile, const Layout& layout, const NlmSettings& setting
                           pair_distance<Form>(load(a), load(a + offset), load(kind), load(kind + offset),
                                               load(variance), load(variance + offset), k2));
                 }
-                float* to = row_sums + std::size_t{y} * layout.sum_columns;
+                float* to = row_cdf + std::size_t{y} * layout.sum_columns;
                 for (std::uint32_t x = 0; x < layout.sum_columns; x += PackSize) {
                     Pack sum = load(pairs + x);
                     for (std::uint32_t i = 1; i < Side; ++i) sum += load(pairs + x + i);
@@ -94,7 +94,7 @@ void run_tile(const Tile& tile, const Layout& layout, const NlmSettings& setting
             }
             for (std::uint32_t y = 0; y < tile.height; ++y) {
                 const std::size_t row = centre + y * columns;
-                const float* from = row_sums + std::size_t{y} * layout.sum_columns;
+                const float* from = row_cdf + std::size_t{y} * layout.sum_columns;
                 float* sum = sums + std::size_t{y} * layout.sum_columns;
                 float* weight = weights + std::size_t{y} * layout.sum_columns;
                 for (std::uint32_t x = 0; x < layout.sum_columns; x += PackSize) {

@@ -4,7 +4,7 @@
 
 namespace tessera::filter {
 
-// What may share light: pixels of different classes never mix. Values of Masks::classes.
+// Pixels of different classes are never averaged.
 enum class PixelClass : std::uint8_t { Hole, Surface, Background };
 
 enum class NlmForm : std::uint8_t { Thesis, Standard };
@@ -27,11 +27,11 @@ inline constexpr float NlmEpsilon = 1e-10f;
 //     Standard  w = exp(-max(0, mean of ((v_a - v_b)^2 - V_a - min(V_a, V_b)) / (eps + k^2 (V_a + V_b))))
 //
 // with o over a patch of (2 patch + 1)^2. Only pixels q of the class of p have weight. A pair a, b of
-// different classes, or out of the picture, tells nothing: it counts as the expectation for equal pixels,
-// which is 1 / sqrt(3) (Thesis) and 0 (Standard).
+// different classes, or out of the picture, carries no information: it counts as the expectation for equal
+// pixels, which is 1 / sqrt(3) (Thesis) and 0 (Standard).
 //
-// Per offset the pairs are computed once and summed by box sums: 121 offsets at about 50 operations instead
-// of 121 * 25 pairs.
+// For each offset the pairs are computed once and summed by box sums: 121 offsets at about 50 operations
+// instead of 121 * 25 pairs.
 class NlMeans {
   public:
     // values in [0, 1e9], variances in [0, 1e18], classes as numbers of PixelClass; one component each.

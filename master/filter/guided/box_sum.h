@@ -5,12 +5,12 @@
 namespace tessera::filter {
 
 // Sums over squares of `n` x `n` values, computed by doubling: sums of 1, 2, 4, ... values give every n in
-// log2 n steps, each a vectorised loop. No running sums, so that a bright value is in no sum but its own
-// ones.
+// log2 n steps, each a vectorised loop. No running sums, so that rounding of a bright value affects only the
+// sums that contain it.
 //
 // `values`: rows of `pitch` numbers, (height + n - 1) of them with (width + n - 1) numbers each; they are
-// used up. `sums`: height rows of `width` numbers without gaps; sum (x, y) covers values (x, y) ... (x + n -
-// 1, y + n - 1). `between`: room for (height + n - 1) rows of `width`.
+// overwritten. `sums`: height rows of `width` numbers without gaps; sum (x, y) covers values (x, y) ... (x +
+// n - 1, y + n - 1). `between`: scratch for (height + n - 1) rows of `width`.
 inline void box_sum(float* values, std::size_t pitch, std::size_t width, std::size_t height, std::size_t n,
                     float* between, float* sums) {
     const std::size_t rows = height + n - 1, columns = width + n - 1;

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t ModelSize = GuideCount + 1;  // slopes, then the value where all guides are 0
 constexpr std::size_t Pairs = GuideCount * (GuideCount + 1) / 2;
 
-// Where the sums of a fit are: of known, of each guide, of each pair of guides, then per component of the
+// Indices of the sums of a fit: of known, of each guide, of each pair of guides, then per component of the
 // colour itself and its products with the guides.
 constexpr std::size_t sum_of_guide(std::size_t g) {
     return 1 + g;
@@ -63,15 +63,15 @@ template <std::uint32_t Components>
 bool LocalModels::run(const Frame& frame, RunContext& context) {
     const auto columns =
         static_cast<std::uint32_t>((frame.width + std::int64_t{Width} - 1) / std::int64_t{Width});
-    // body(left, top, bottom, space) for the tiles of rows [from, to).
-    const auto for_tiles = [&](std::int64_t from, std::int64_t to, const auto& body) {
+    // function(left, top, bottom, space) for the tiles of rows [from, to).
+    const auto for_tiles = [&](std::int64_t from, std::int64_t to, const auto& function) {
         const auto rows =
             static_cast<std::uint32_t>((to - from + std::int64_t{Height} - 1) / std::int64_t{Height});
         return for_rows(context, rows * columns, [&](std::uint32_t tile) {
             const std::int64_t left = std::int64_t{tile % columns} * std::int64_t{Width},
                                top = from + std::int64_t{tile / columns} * std::int64_t{Height};
             Space& space = spaces_[static_cast<std::size_t>(tbb::this_task_arena::current_thread_index())];
-            body(left, top, std::min(top + std::int64_t{Height}, to), space);
+            function(left, top, std::min(top + std::int64_t{Height}, to), space);
         });
     };
     std::int64_t fitted = 0;
@@ -86,7 +86,7 @@ bool LocalModels::run(const Frame& frame, RunContext& context) {
     return true;
 }
 
-// A tile with its surroundings, as it lies in Space::source.
+// A tile with its margin, as stored in Space::source.
 struct LocalModels::Tile {
     std::int64_t left, top, bottom;
     std::int64_t first_x, last_x, first_y, last_y;  // in the frame, with the surroundings
@@ -111,8 +111,8 @@ struct LocalModels::Tile {
     }
 };
 
-// What values are differences from: a value of the tile, so that little is lost to cancellation; of colours the
-// least, which no bright pixel can have moved.
+// Origins that values are relative to, to reduce cancellation: a value of the tile; of colours the minimum,
+// which bright pixels do not affect.
 template <std::uint32_t Components>
 struct LocalModels::Origins {
     std::array<float, GuideCount> guide;

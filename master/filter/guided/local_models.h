@@ -28,9 +28,9 @@ class LocalModels {
     static constexpr std::size_t Width = 64, Height = 32;  // of a tile
     static constexpr std::int64_t Strip = 4 * Height;
 
-    struct Frame;  // what a run works on
+    struct Frame;  // the inputs of a run
     struct Space {
-        std::vector<float> values, between, sums;  // a tile with its surroundings; sums over rows; all sums
+        std::vector<float> values, between, sums;  // a tile with its margin; sums over rows; all sums
         std::vector<float> source;  // known, guides and colours of a tile with its surroundings
     };
 
@@ -55,7 +55,7 @@ class LocalModels {
     float* model_row(const Frame& frame, std::uint32_t number, std::int64_t y);
 
     std::vector<Space> spaces_;  // one per thread of the arena
-    std::vector<float> models_;  // rows in turn: as many as a strip can see
+    std::vector<float> models_;  // ring buffer of rows: as many as a strip reads
 };
 
 }  // namespace tessera::filter

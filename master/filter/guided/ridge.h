@@ -6,8 +6,8 @@
 
 namespace tessera::filter {
 
-// Symmetric positive definite systems (A + ridge I) a = b of order N for Lanes pixels side by side, by
-// Cholesky's factors L D L^T. Pivots below the ridge can only come from rounding and are raised to it.
+// Symmetric positive definite systems (A + ridge I) a = b of order N for Lanes adjacent pixels, by Cholesky's
+// factors L D L^T. Pivots below the ridge can only come from rounding and are raised to it.
 template <std::size_t N, std::size_t Lanes>
 class Ridge {
   public:

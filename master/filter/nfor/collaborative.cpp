@@ -8,10 +8,10 @@ namespace {
 
 constexpr float Log2E = 1.44269504f;
 
-// A pixel between centres may be like none of them: all its weights are tiny, and what they predict means
-// nothing. So it has a fit of its own through itself alone, with this weight. Measured at 96 x 54 with stride
-// 2 over 3 scenes and 4 to 4096 samples, relMSE over unfiltered, mean and worst: 1: 0.385, 0.96; 0.3:
-// 0.361, 1.00; 0.1: 0.357, 1.11; 0: 0.4, 1.13 (unfaded 106).
+// A pixel between centres may be similar to none of them: all its weights are tiny, and their predictions are
+// meaningless. So a trivial fit through the pixel itself is added with this weight. Measured at
+// 96 x 54 with stride 2 over 3 scenes and 4 to 4096 samples, relMSE over unfiltered, mean and worst: 1:
+// 0.385, 0.96; 0.3: 0.361, 1.00; 0.1: 0.357, 1.11; 0: 0.4, 1.13 (without the convergence blend 106).
 constexpr float Trivial = 0.3f;
 
 // Planes of a thread's window.
@@ -40,21 +40,22 @@ struct Collaborative::Layout {
           plane(columns * rows),
           packs((Tiles::Width / stride + PackSize - 1) / PackSize) {}
 
-    std::size_t place(std::size_t row, std::size_t column) const {
+    std::size_t index_of(std::size_t row, std::size_t column) const {
         return row * columns + column % stride * part + column / stride;
     }
 
-    // body(place, pixel) for every pixel of the picture that the window of the tile has.
-    template <class Body>
-    void for_each_pixel(const Tile& tile, std::uint32_t width, std::uint32_t height, const Body& body) const {
+    // function(index, pixel) for every pixel of the picture that the window of the tile has.
+    template <class Function>
+    void for_each_pixel(const Tile& tile, std::uint32_t width, std::uint32_t height,
+                        const Function& function) const {
         const std::int64_t x0 = std::int64_t{tile.x} - margin, y0 = std::int64_t{tile.y} - margin;
         const std::int64_t first_row = std::max<std::int64_t>(0, -y0), first = std::max<std::int64_t>(0, -x0);
         const auto last_row = std::min<std::int64_t>(static_cast<std::int64_t>(rows), height - y0);
         const auto last = std::min<std::int64_t>(Tiles::Width + 2 * margin, width - x0);
         for (std::int64_t row = first_row; row < last_row; ++row) {
             for (std::int64_t column = first; column < last; ++column) {
-                body(place(static_cast<std::size_t>(row), static_cast<std::size_t>(column)),
-                     static_cast<std::size_t>((y0 + row) * width + x0 + column));
+                function(index_of(static_cast<std::size_t>(row), static_cast<std::size_t>(column)),
+                         static_cast<std::size_t>((y0 + row) * width + x0 + column));
             }
         }
     }
@@ -68,12 +69,12 @@ struct Collaborative::Layout {
 
 void Collaborative::prepare_taps(const Layout& layout) {
     taps_.clear();
-    const std::ptrdiff_t centre = static_cast<std::ptrdiff_t>(layout.place(layout.margin, layout.margin));
+    const std::ptrdiff_t centre = static_cast<std::ptrdiff_t>(layout.index_of(layout.margin, layout.margin));
     for (std::int32_t dy = -layout.radius; dy <= layout.radius; ++dy) {
         for (std::int32_t dx = -layout.radius; dx <= layout.radius; ++dx) {
             const auto at =
-                layout.place(static_cast<std::size_t>(static_cast<std::int32_t>(layout.margin) + dy),
-                             static_cast<std::size_t>(static_cast<std::int32_t>(layout.margin) + dx));
+                layout.index_of(static_cast<std::size_t>(static_cast<std::int32_t>(layout.margin) + dy),
+                                static_cast<std::size_t>(static_cast<std::int32_t>(layout.margin) + dx));
             taps_.push_back(
                 {static_cast<float>(dx), static_cast<float>(dy), static_cast<std::ptrdiff_t>(at) - centre});
         }
@@ -140,10 +141,10 @@ void Collaborative::run_tile(const Tile& tile, const Layout& layout, const Half&
             }
         }
         layout.for_each_pixel(tile, sums_[k].width(), sums_[k].height(),
-                              [&, plane = sums_[k].pixel_count()](std::size_t place, std::size_t pixel) {
+                              [&, plane = sums_[k].pixel_count()](std::size_t index, std::size_t pixel) {
                                   float* to = sums_[k].values().data() + pixel;
                                   for (std::size_t c = 0; c <= Colors; ++c) {
-                                      to[c * plane] += sums[c * layout.plane + place];
+                                      to[c * plane] += sums[c * layout.plane + index];
                                   }
                               });
     }
@@ -155,7 +156,7 @@ void Collaborative::gather(const Tile& tile, const Layout& layout, const Half& h
     const auto copy = [&](std::size_t plane, const auto& value) {
         float* to = slot.window.data() + plane * layout.plane;
         layout.for_each_pixel(tile, half.counts.width(), half.counts.height(),
-                              [&](std::size_t place, std::size_t pixel) { to[place] = value(pixel); });
+                              [&](std::size_t index, std::size_t pixel) { to[index] = value(pixel); });
     };
     for (std::uint32_t f = 0; f < FeatureCount; ++f) {
         copy(Feature + f, [from = features.plane(f)](std::size_t i) { return from[i]; });
@@ -192,17 +193,17 @@ void Collaborative::predict(const Tile& tile, const Layout& layout, std::size_t 
                             std::size_t pack, Slot& slot) const {
     const std::size_t taps = taps_.size();
     const std::size_t centre =
-        layout.place(row * layout.stride + layout.margin, layout.margin) + pack * PackSize;
+        layout.index_of(row * layout.stride + layout.margin, layout.margin) + pack * PackSize;
     const float* at = slot.window.data() + centre;
     const Window window{taps_, at + Feature * layout.plane, at + Color * layout.plane,
                         at + Noise * layout.plane, layout.plane};
     const float* nearness = slot.weights.data() + (row * layout.packs + pack) * taps * PackSize;
-    float* alike = slot.bandwidth.data();
-    float* fitting = alike + taps * PackSize;
+    float* similar_weights = slot.bandwidth.data();
+    float* fitting = similar_weights + taps * PackSize;
     for (std::size_t t = 0; t < taps; ++t) {
         Pack w = load(nearness + t * PackSize);
         if (k == 0) w = (w * w) * (w * w);  // to the power of 1 / 0.5^2
-        store(alike + t * PackSize, w);
+        store(similar_weights + t * PackSize, w);
         store(fitting + t * PackSize, w * load(at + Samples * layout.plane + taps_[t].offset));
     }
     Fit fit;
@@ -214,9 +215,9 @@ void Collaborative::predict(const Tile& tile, const Layout& layout, std::size_t 
     const Pack valid = inside * fit.known(), centre_known = load(at + Known * layout.plane);
     for (std::size_t t = 0; t < taps; ++t) {
         const Tap& tap = taps_[t];
-        // A centre without samples has nothing to say about pixels that have some.
+        // A centre without samples does not predict pixels that have samples.
         const Pack known = load(at + Known * layout.plane + tap.offset);
-        const Pack w = load(alike + t * PackSize) * valid * max(centre_known, 1.0f - known);
+        const Pack w = load(similar_weights + t * PackSize) * valid * max(centre_known, 1.0f - known);
         const std::array<Pack, Colors> predicted = fit.at(window, tap);
         float* to = slot.window.data() + Sum * layout.plane + centre + tap.offset;
         store(to, load(to) + w);

@@ -9,8 +9,8 @@ inline constexpr std::array<float, 2> Bandwidths{0.5f, 1.0f};
 
 // One half of the samples, whose light is regressed with weights from the other half.
 struct Half {
-    std::array<std::span<const float>, Colors> colors;  // holes filled; alpha, or anything, last
-    const Planes& color;                                // r, g, b: what patches of this half are compared by
+    std::array<std::span<const float>, Colors> colors;  // holes filled; alpha, or any value, last
+    const Planes& color;                                // r, g, b: compared by the patches of this half
     const Planes& variance;                             // of the means of this half
     const Planes& counts;                               // samples in it
 };
@@ -23,7 +23,8 @@ struct CollaborativeSettings {
 // First-order fits around every stride-th pixel in both directions; each predicts its whole window, and a
 // pixel gets the mean of the predictions for it with the fits' weights (collaborative filtering, Bitterli et
 // al. 2016 section 5). Weights are NL-means weights exp(-max(0, D) / k^2) of the other half times this half's
-// samples at q. Tiles that are two apart share no pixel, so four passes over them add up in a fixed order.
+// samples at q. Every second tile in both directions shares no pixel with the others, so four passes over the
+// tiles sum in a fixed order.
 class Collaborative {
   public:
     // `out[k]` for Bandwidths[k] gets Colors components. False: stopped.

@@ -10,7 +10,7 @@ namespace tessera::filter::nfor {
 //
 //     out(p) = sum w(p, q) v(q) / sum w(p, q)
 //
-// A pixel whose window knows nothing keeps its value.
+// A pixel without known pixels in its window keeps its value.
 class JointNlMeans {
   public:
     // `values` has 1 to 3 components; `out` gets its shape and may not be the same. False: stopped.

@@ -7,7 +7,7 @@
 
 namespace tessera::filter::nfor {
 
-// By what patches are compared: values with variances, 1 or 3 components. known: 0 where nothing is known.
+// Guide that patches are compared by: values with variances, 1 or 3 components. known: 0 for unknown pixels.
 struct Guide {
     const Planes& values;
     const Planes& variances;
@@ -24,8 +24,8 @@ inline constexpr std::uint32_t MaxRadius = 10, MaxPatch = 3;
 //     D(p, q) = mean over the patch and the components of
 //               ((a - b)^2 - (V_a + min(V_a, V_b))) / (V_a + V_b),    cut at 1e6
 //
-// to be used as exp(-max(0, D) / k^2). A pair of which one pixel is unknown or out of the picture tells
-// nothing; it counts 0, as equal pixels do on average.
+// to be used as exp(-max(0, D) / k^2). A pair with an unknown pixel, or one out of the picture, carries no
+// information and counts 0, the expectation for equal pixels.
 class PatchDistance {
   public:
     // Allocates for guides of so many components.

@@ -6,7 +6,7 @@
 
 namespace tessera::filter::nfor {
 
-// One T for each thread of an arena, made before the threads start (see Scratch).
+// One T for each thread of an arena, created before the threads start (see Scratch).
 template <class T>
 class PerThread {
   public:
@@ -16,7 +16,7 @@ class PerThread {
         slots_.resize(static_cast<std::size_t>(context.arena.max_concurrency()));
         for (T& slot : slots_) prepare(slot);
     }
-    // Of the thread that asks, which runs in the arena of `reserve`.
+    // The slot of the calling thread, which must run in the arena given to reserve().
     T& local() { return slots_[static_cast<std::size_t>(tbb::this_task_arena::current_thread_index())]; }
 
   private:

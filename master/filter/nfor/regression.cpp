@@ -125,7 +125,7 @@ void Fit::solve(const Window& window, const float* weights) {
             r * (max(lower[i][i], all(0.0f)) + Floor) + Rounding * (sums.product[i][i] * per_weight);
         Pack d = lower[i][i] + least;
         for (std::size_t k = 0; k < i; ++k) d -= lower[i][k] * lower[i][k] * pivot[k];
-        pivot[i] = max(d, least);  // rounding may have eaten more
+        pivot[i] = max(d, least);  // rounding may have made it smaller
         const Pack inverse = 1.0f / pivot[i];
         for (std::size_t j = i + 1; j < Variables; ++j) {
             Pack v = lower[j][i];

@@ -15,10 +15,10 @@ inline constexpr std::size_t Variables = 2 + FeatureCount, Colors = 4;
 // One pixel of a window, seen from eight neighbouring centres.
 struct Tap {
     float dx, dy;           // from centre to pixel
-    std::ptrdiff_t offset;  // from a centre's place in a plane to the pixel's
+    std::ptrdiff_t offset;  // from the centre to the pixel in a plane
 };
 
-// Where the numbers of eight centres lie; plane i starts at `base + i * plane`.
+// The planes read for eight centres; plane i starts at `base + i * plane`.
 struct Window {
     std::span<const Tap> taps;
     const float* features;  // FeatureCount planes, at the centres
@@ -36,13 +36,13 @@ struct Window {
 //
 //     (C + diag(r (C_ii + f) + r_0 M_ii)) b = cov(v, c)      r = r_0 + (Variables / N) S / (T - S)
 //
-// N = (sum w)^2 / sum w^2 the effective number of pixels, T the weighted variance of the colours, S what
-// noise explains of it. This is Hoerl and Kennard's ridge (number of coefficients times noise over N times
-// the squared coefficients) for standardised variables, whose squared coefficients add up to the signal T -
-// S: a window that noise explains gets the zero-order mean. C_ii is the difference of the second moment M_ii
+// N = (sum w)^2 / sum w^2 the effective number of pixels, T the weighted variance of the colours, S the part
+// explained by noise. This is Hoerl and Kennard's ridge (number of coefficients times noise over N times the
+// squared coefficients) for standardised variables, whose squared coefficients add up to the signal T - S: a
+// window fully explained by noise gets the zero-order mean. C_ii is the difference of the second moment M_ii
 // around p and a square, so its rounding is relative to M_ii: r_0 = 1e-5 is ten times the rounding of sums of
-// some hundred floats, and the matrix stays positive definite. f = 1e-6: a feature that varies by less than
-// 0.001 says little in noise. With features all equal, C and b are 0.
+// some hundred floats, and the matrix stays positive definite. f = 1e-6: features that vary by less than
+// 0.001 carry little information in noise. With features all equal, C and b are 0.
 class Fit {
   public:
     // weights: eight per tap. Centres without weight get known() = 0 and otherwise finite numbers.

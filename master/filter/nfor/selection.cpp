@@ -8,7 +8,7 @@ namespace {
 
 constexpr PatchSettings Patches{.radius = 5, .patch = 3};
 constexpr float Largest = 1e30f;
-// Of the picture's own square, as in relMSE.
+// Relative to the squared picture, as in relMSE.
 constexpr float RelativeFloor = 0.01f;
 
 }  // namespace

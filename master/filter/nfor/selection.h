@@ -4,18 +4,18 @@
 
 namespace tessera::filter::nfor {
 
-// Which of two reconstructions has less error, from the samples that neither was made of: a half A filtered
+// Selects the reconstruction with less error, using samples that neither was made from: a half A filtered
 // with bandwidth k has the error (A_k - b)^2 - Var b against the other half's mean b, and the same with the
 // halves exchanged. The variances cancel in the difference of two k. That difference, relative to the
 // picture, is filtered by NL-means; its sign is the selection, and the selection is filtered again (Bitterli
 // et al. 2016, section 5).
 class Selection {
   public:
-    // filtered[h][k]. `guide` and `variance`: what NL-means goes by. False: stopped.
+    // filtered[h][k]: half h, bandwidth k. False: stopped.
     bool run(const Inputs& inputs, const std::array<Half, 2>& halves,
              const std::array<std::array<Planes, 2>, 2>& filtered, RunContext& context);
 
-    // How much of Bandwidths[0] goes into the result, in [0, 1].
+    // Weight of Bandwidths[0] in the result, in [0, 1].
     const Planes& first() const { return first_; }
 
   private:

@@ -15,7 +15,7 @@ struct Span {
     std::int64_t first, last;
 };
 
-// Positions whose partner at this offset is inside, too.
+// Positions whose partner at this offset is also inside.
 Span with_partner(std::int64_t size, std::int64_t offset) {
     return {std::max<std::int64_t>(0, -offset), std::min(size, size - offset)};
 }
@@ -88,7 +88,7 @@ bool ColorNlMeans::run(const Planes& match, const Planes& color, const Planes& k
     });
 }
 
-// Adds to rows [first, last) of `out` the pixels that lie (dx, dy) away.
+// Adds the pixels at offset (dx, dy) to rows [first, last) of `out`.
 void ColorNlMeans::run_offset(const Planes& match, const Planes& color, const Planes& known,
                               const ColorNlMeansSettings& settings, std::int64_t dx, std::int64_t dy,
                               std::int64_t first, std::int64_t last, Workspace& space, Planes& out) {
@@ -107,7 +107,7 @@ void ColorNlMeans::run_offset(const Planes& match, const Planes& color, const Pl
     std::fill(space.columns.begin(), space.columns.end(), 0.0f);
 
     const auto pair_row = [&](std::int64_t y) { return space.pairs.data() + (y % rows) * width; };
-    std::int64_t computed = std::max(down.first, first - patch);  // rows of pairs below this one are there
+    std::int64_t computed = std::max(down.first, first - patch);  // rows of pairs below this one are computed
     for (std::int64_t y = first; y < last; ++y) {
         const std::int64_t top = std::max(down.first, y - patch), end = std::min(down.last, y + patch + 1);
         for (; computed < end; ++computed) {
@@ -138,7 +138,7 @@ void ColorNlMeans::run_offset(const Planes& match, const Planes& color, const Pl
         for (std::uint32_t c = 0; c < color.components(); ++c) {
             const float* there = color.row(c, static_cast<std::uint32_t>(y + dy)) + across.first + dx;
             float* __restrict to = out.row(c, here) + across.first;
-            // Differences, so that what is constant stays so to the last bit.
+            // Differences, so that constants are preserved exactly.
             const float* own = color.row(c, here) + across.first;
             for (std::int64_t x = 0; x < count; ++x) to[x] += weights[x] * (there[x] - own[x]);
         }

@@ -18,11 +18,11 @@ struct ColorNlMeansSettings {
 //     w(p, q) = exp(-max(0, mean over the patch of d(p + o, q + o)))
 //     d(a, b) = (|c_a - c_b|^2 - V_a - min(V_a, V_b)) / (epsilon + k^2 (V_a + V_b))
 //
-// |.|^2 and V are sums over r, g, b, so that a bright sample counts in no channel more than in the others.
-// Pairs out of the picture do not count. Not symmetric: a pixel that is an outlier takes from its neighbours,
-// and they do not take from it.
+// |.|^2 and V are sums over r, g, b, so that no channel is weighted more for a bright sample. Pairs out of
+// the picture do not count. Not symmetric: an outlier averages over its neighbours, but does not contribute
+// to them.
 //
-// Per offset every pair is computed once and patches are box sums: rows of pairs stay in the cache.
+// For each offset every pair is computed once, and patches are box sums; rows of pairs stay in the cache.
 class ColorNlMeans {
   public:
     // `match` is compared: r, g, b and the sum of their variances, within 1e18 and [0, 1e37]. `color` is
@@ -38,7 +38,7 @@ class ColorNlMeans {
         std::vector<float> pairs;           // 2 patch + 1 rows, used in turn
         std::vector<float> columns;         // sums of these, `patch` zeros on both sides
         std::vector<float> weights;         // of a row
-        std::vector<float> inverse_counts;  // of pairs beside each other within a patch
+        std::vector<float> inverse_counts;  // of horizontal pairs within a patch
     };
     void run_offset(const Planes& match, const Planes& color, const Planes& known,
                     const ColorNlMeansSettings& settings, std::int64_t dx, std::int64_t dy,

@@ -9,23 +9,23 @@ namespace tessera::filter {
 
 namespace {
 
-constexpr std::int64_t Reach = 3;  // taps on each side of the middle
+constexpr std::int64_t HalfTaps = 3;  // taps on each side of the centre
 
-std::array<float, 2 * Reach> gauss_weights() {
+std::array<float, 2 * HalfTaps> gauss_weights() {
     constexpr double Sigma = 0.55 * 1.7320508075688772;
-    std::array<double, 2 * Reach> exact;
+    std::array<double, 2 * HalfTaps> exact;
     double sum = 0.0;
     for (std::size_t i = 0; i < exact.size(); ++i) {
         const double t = (static_cast<double>(i) - 2.5) / Sigma;
         exact[i] = std::exp(-0.5 * t * t);
         sum += exact[i];
     }
-    std::array<float, 2 * Reach> weights;
+    std::array<float, 2 * HalfTaps> weights;
     for (std::size_t i = 0; i < exact.size(); ++i) weights[i] = static_cast<float>(exact[i] / sum);
     return weights;
 }
 
-void halve_with(const std::array<float, 2 * Reach>& weights, const Planes& in, Planes& out,
+void halve_with(const std::array<float, 2 * HalfTaps>& weights, const Planes& in, Planes& out,
                 RunContext& context) {
     const std::int64_t width = in.width(), height = in.height();
     const std::uint32_t half_width = (in.width() + 1) / 2, half_height = (in.height() + 1) / 2;
@@ -34,14 +34,14 @@ void halve_with(const std::array<float, 2 * Reach>& weights, const Planes& in, P
     }
     for_rows(context, half_height, [&](std::uint32_t y) {
         for (std::uint32_t c = 0; c < in.components(); ++c) {
-            std::array<const float*, 2 * Reach> rows;
-            for (std::int64_t i = 0; i < 2 * Reach; ++i) {
+            std::array<const float*, 2 * HalfTaps> rows;
+            for (std::int64_t i = 0; i < 2 * HalfTaps; ++i) {
                 const std::int64_t row = std::clamp<std::int64_t>(2 * std::int64_t{y} + i - 2, 0, height - 1);
                 rows[static_cast<std::size_t>(i)] = in.row(c, static_cast<std::uint32_t>(row));
             }
-            // Down the columns first, for a stretch and what it reaches beyond.
+            // Down the columns first, for a stretch of the row and its margins.
             constexpr std::int64_t Stretch = 128;
-            std::array<float, 2 * Stretch + 2 * (Reach - 1)> columns;
+            std::array<float, 2 * Stretch + 2 * (HalfTaps - 1)> columns;
             for (std::int64_t first = 0; first < half_width; first += Stretch) {
                 const std::int64_t count = std::min(Stretch, half_width - first), left = 2 * first - 2,
                                    from = std::max<std::int64_t>(left, 0),
@@ -76,7 +76,7 @@ void halve(const Planes& in, Planes& out, RunContext& context) {
 }
 
 void halve_variance(const Planes& in, Planes& out, RunContext& context) {
-    std::array<float, 2 * Reach> weights = gauss_weights();
+    std::array<float, 2 * HalfTaps> weights = gauss_weights();
     for (float& weight : weights) weight *= weight;
     halve_with(weights, in, out, context);
 }
@@ -84,7 +84,7 @@ void halve_variance(const Planes& in, Planes& out, RunContext& context) {
 void add_difference(const Planes& from, const Planes& halved, Planes& to, RunContext& context) {
     const std::int64_t half_width = from.width(), half_height = from.height();
     for_rows(context, to.height(), [&](std::uint32_t y) {
-        // An even row lies a quarter above the middle of its pair, an odd one a quarter below.
+        // An even row is a quarter above the centre of its pair, an odd one a quarter below.
         const std::int64_t near = y / 2, far = std::clamp<std::int64_t>(y % 2 == 0 ? near - 1 : near + 1, 0,
                                                                         half_height - 1);
         for (std::uint32_t c = 0; c < to.components(); ++c) {
@@ -97,9 +97,9 @@ void add_difference(const Planes& from, const Planes& halved, Planes& to, RunCon
             };
             float* row = to.row(c, y);
             for (std::int64_t x = 0; x < std::int64_t{to.width()}; ++x) {
-                const std::int64_t beside =
+                const std::int64_t neighbour =
                     std::clamp<std::int64_t>(x % 2 == 0 ? x / 2 - 1 : x / 2 + 1, 0, half_width - 1);
-                row[x] += 0.75f * difference(x / 2) + 0.25f * difference(beside);
+                row[x] += 0.75f * difference(x / 2) + 0.25f * difference(neighbour);
             }
         }
     });

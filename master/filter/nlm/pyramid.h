@@ -4,9 +4,8 @@
 
 namespace tessera::filter {
 
-// Half the size, rounded up: a pixel is the mean of 6 x 6 with the weights of a Gauss of sigma
-// 0.55 sqrt(4 - 1) (Lardinoije 2.1), around the middle of its four; pixels beyond the border are those at it.
-// `out` gets its shape.
+// Half the size, rounded up: a pixel is the mean of 6 x 6 with the weights of a Gauss of sigma 0.55 sqrt(4 -
+// 1) (Lardinoije 2.1), around the centre of its four; the border is repeated. `out` gets its shape.
 void halve(const Planes& in, Planes& out, RunContext& context);
 
 // The same for variances of means of independent pixels: the weights are squared.

@@ -23,8 +23,8 @@ struct Steps {
     float correction;  // of the product of r in flat regions
 };
 
-// In one dimension: the sum of squares of the iterations' joint kernel over the product of the sums of their
-// own. The plane has its square.
+// In one dimension: the sum of squares of the iterations' joint kernel over the product of their individual
+// sums. In two dimensions it is squared.
 Steps steps_of(float sigma) {
     Steps steps{};
     std::array<double, MaxJointTaps> joint{1.0};

@@ -8,7 +8,7 @@ namespace tessera::filter::pixel {
 
 namespace {
 
-// Pixels at a time; what is known of them stays in the first-level cache.
+// Pixels per chunk: their data stays in the first-level cache.
 constexpr std::uint32_t Chunk = 256;
 
 struct Pixels {

@@ -18,10 +18,10 @@ struct BlendMaps {
     Planes* blend = nullptr;              // s
 };
 
-// L_lv + s L_u' + (1 - s) L_f (Schwenk 3.1), s per pixel from the perceived variances. `filtered` has, as its
-// variance, that of one sample, and r; both are what they were at the filter's pass, and the number of
-// samples is today's. s = 1 gives the bits of the unfiltered picture; s = 0 where n < 2. Alpha is blended
-// with the same s. False: stopped.
+// L_lv + s L_u' + (1 - s) L_f (Schwenk 3.1), s per pixel from the perceived variances. The variance in
+// `filtered` is that of one sample; it and r are those of the last filter pass, and the number of samples is
+// the current one. s = 1 gives the bits of the unfiltered picture; s = 0 where n < 2. Alpha is blended with
+// the same s. False: stopped.
 bool compose(const Inputs& inputs, const Light& light, const Field& filtered, const Blend& blend,
              Planes& picture, const BlendMaps& maps, RunContext& context);
 

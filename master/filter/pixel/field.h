@@ -4,8 +4,8 @@
 
 namespace tessera::filter::pixel {
 
-// What is filtered. Components 0-2 the high-variance light, 3 its variance, 4 alpha where there is one; and
-// how much of the variance of a pixel is left (r = sum of squared normalised weights, Schwenk 3.5).
+// The filtered quantities: components 0-2 the high-variance light, 3 its variance, 4 alpha if present; and
+// the remaining fraction of each pixel's variance (r = sum of squared normalised weights, Schwenk 3.5).
 struct Field {
     PaddedPlanes values;
     PaddedPlanes reduction;
@@ -17,7 +17,7 @@ struct Field {
     }
 };
 
-// Kernel widths: standard deviations in pixels, 1 component, 0 beside the picture.
+// Kernel widths: standard deviations in pixels, 1 component, 0 outside the picture.
 using Widths = PaddedPlanes;
 
 enum class Method { Separable, Brute, ATrous };

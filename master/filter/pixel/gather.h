@@ -11,10 +11,11 @@ namespace tessera::filter::pixel {
 
 inline constexpr std::int64_t BlockWidth = PackSize;  // pixels of a row that are filtered at once
 
-// A pixel whose neighbours weigh less in all has found nothing; only holes can, others weigh 1 themselves.
+// Below this sum of weights a pixel has no similar neighbours. Only holes can: others have weight 1
+// themselves.
 inline constexpr float LeastWeight = 1e-6f;
 
-// Rows of the pictures at the eight pixels; a neighbour is so many floats away in all of them.
+// Rows of the planes at the eight pixels; the offset to a neighbour is the same in all of them.
 template <std::size_t Features, std::size_t Layers>
 struct Neighbourhood {
     std::array<const float*, Features> sources;
@@ -90,7 +91,7 @@ inline std::array<Pack, Features> target_of(const Guide& guide, std::uint32_t y,
     return target;
 }
 
-// Where nothing was found the values stay as they are.
+// Keeps the values of pixels without similar neighbours.
 template <std::size_t Features, std::size_t Layers>
 inline void keep_or_store(const Sums<Layers>& sums, const Neighbourhood<Features, Layers>& near,
                           const Result<Layers>& result, std::uint32_t y, std::int64_t x, Field& to) {
@@ -101,17 +102,17 @@ inline void keep_or_store(const Sums<Layers>& sums, const Neighbourhood<Features
     store(to.reduction.row(0, y) + x, keep ? load(near.reduction) : result.reduction);
 }
 
-// Calls body(features, layers) with the numbers of components as compile-time constants.
-template <class Body>
-bool with_shapes(const Guide& guide, const Field& field, const Body& body) {
+// Calls function(features, layers) with the numbers of components as compile-time constants.
+template <class Function>
+bool with_shapes(const Guide& guide, const Field& field, const Function& function) {
     const auto with = [&](auto features) {
         switch (field.values.components()) {
             case 2:
-                return body(features, std::integral_constant<std::size_t, 2>());
+                return function(features, std::integral_constant<std::size_t, 2>());
             case 4:
-                return body(features, std::integral_constant<std::size_t, 4>());
+                return function(features, std::integral_constant<std::size_t, 4>());
             default:
-                return body(features, std::integral_constant<std::size_t, 5>());
+                return function(features, std::integral_constant<std::size_t, 5>());
         }
     };
     return guide.components() == 4 ? with(std::integral_constant<std::size_t, 4>())

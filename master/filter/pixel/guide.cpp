@@ -9,7 +9,7 @@ namespace {
 
 using frame::Channel;
 
-// Depths in units of their tolerance: hits, misses, and what is unlike both. Squares and their sums are
+// Depths in units of their tolerance: the largest of hits, and that of misses. Squares and their sums are
 // finite.
 constexpr float MostHit = 1e15f, Miss = 1e17f;
 constexpr float MostColor = 1e15f;
@@ -31,8 +31,7 @@ void isolate_border(float* row, std::uint32_t width) {
     std::fill(row + width, row + width + Pad, Guide::Nowhere);
 }
 
-// For each of `count` places the nearest for which has(i), ties to the lower one; `count` where there is
-// none.
+// For each of `count` indices the nearest i with has(i), ties to the lower one; `count` if there is none.
 template <class Has, class Set>
 void nearest(std::size_t count, const Has& has, const Set& set) {
     std::size_t before = count, behind = 0;
@@ -100,7 +99,7 @@ void Guide::prepare(const Inputs& inputs, const Holes& holes, const Tolerance& t
                 repeat_border(features_.row(first + c, y), inputs.width);
             }
         };
-        vector(Channel::Range, 0, scale_of(tolerance.color));
+        vector(Channel::Headlight, 0, scale_of(tolerance.color));
         if (normals) vector(Channel::Normal, Depth + 1, scale_of(tolerance.normal));
         const float scale = scale_of(tolerance.depth);
         fill(Depth, y, component(Channel::Depth, 0), [scale](float depth) {

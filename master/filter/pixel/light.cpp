@@ -10,12 +10,12 @@ using frame::Channel;
 
 constexpr float Most = 1e30f;
 
-float tame(float value) {
+float tone_compress(float value) {
     return std::min(std::max(value, -Most), Most);
 }
 
-// value(i) for the pixels of row y, in holes that of their origin. The second loop is rare, and the first one
-// vectorises without it.
+// value(i) for the pixels of row y; holes take that of their origin. The second loop is rarely needed;
+// separate, so that the first one vectorises.
 template <class Value>
 void fill_row(const Inputs& inputs, const Holes& holes, std::uint32_t y, float* to, const Value& value) {
     const std::size_t first = std::size_t{y} * inputs.width;
@@ -65,10 +65,10 @@ void Light::fill(const Inputs& inputs, const Holes& holes, Field& field, RunCont
         for (std::uint32_t c = 0; c < 3; ++c) {
             const float* from = high().row(c, y);
             float* to = field.values.row(c, y);
-            for (std::uint32_t x = 0; x < inputs.width; ++x) to[x] = tame(from[x]);
+            for (std::uint32_t x = 0; x < inputs.width; ++x) to[x] = tone_compress(from[x]);
         }
         fill_row(inputs, holes, y, field.values.row(Field::Variance, y), [&](std::size_t i) {
-            const float single = tame(luminance(r[i], g[i], b[i]));
+            const float single = tone_compress(luminance(r[i], g[i], b[i]));
             const float known = luminance_variance(vr[i], vg[i], vb[i]);
             return std::min(n[i] < 2.0f ? single * single : known, Most);
         });

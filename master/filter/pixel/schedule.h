@@ -5,7 +5,7 @@
 #include <span>
 
 // When the pixel filter runs while samples arrive (Schwenk 3.3.3): a wide filter changes little from one
-// sample to the next, so it runs at 4, 8, 16, 32, ... samples and pictures between are only blended anew.
+// sample to the next, so it runs at 4, 8, 16, 32, ... samples and pictures in between are only re-blended.
 namespace tessera::filter::pixel {
 
 inline constexpr std::uint64_t FirstPass = 4;
@@ -17,7 +17,7 @@ inline bool filter_due(std::uint64_t samples, std::uint64_t last) {
 }
 
 // The median of the counts of about 4096 pixels on a regular grid over the raster (all of a small picture):
-// what "frame n" is when pixels differ. 0 for no pixels.
+// the equivalent of the thesis' "frame n" when counts differ between pixels. 0 for no pixels.
 std::uint64_t median_count(std::span<const float> counts);
 
 }  // namespace tessera::filter::pixel

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float HalfLog2E = 0.5f * 1.44269504f;
 
-// Floats to the next pixel in the direction of the sweep, and to those beside it.
+// Offsets in floats to the next pixel in the direction of the sweep, and to its two neighbours across.
 struct Across {
     std::ptrdiff_t stride, before, after;
 };
@@ -23,9 +23,9 @@ struct Steps {
     std::int64_t first, last;
 };
 
-// Replaces the two-sided filter by the mixture of two one-sided ones as far as the edge model is believed
-// (Schwenk 3.19, 3.20). r is an upper bound: squares of mixtures are convex in belief, and the two sides
-// share but the pixel itself, which is unlike at least one of them.
+// Replaces the two-sided filter by the mixture of two one-sided ones in proportion to the belief in the edge
+// model (Schwenk 3.19, 3.20). r is an upper bound: squares of mixtures are convex in belief, and the two
+// sides have only the pixel itself in common, which differs from at least one of them.
 template <std::size_t Features, std::size_t Layers>
 void recover_edges(const Neighbourhood<Features, Layers>& from, const std::array<Pack, Features>& target,
                    Pack spread, Steps steps, const Across& line, Result<Layers>& result) {
@@ -35,7 +35,7 @@ void recover_edges(const Neighbourhood<Features, Layers>& from, const std::array
     Sums<Layers> low, high;
     gather(from, model.low, spread, 0.0f, steps.first, -1, 1, line.stride, low);
     gather(from, model.high, spread, 0.0f, 1, steps.last, 1, line.stride, high);
-    // Without the pixel itself both sides must have found something that looks like them.
+    // Both sides must have similar neighbours, not counting the pixel itself.
     const Pack found = min(low.weight, high.weight);
     const Pack belief = found > 0.05f ? model.belief : Pack{};
     gather(from, model.low, spread, 0.0f, 0, 0, 1, line.stride, low);
@@ -50,7 +50,7 @@ void recover_edges(const Neighbourhood<Features, Layers>& from, const std::array
     result.reduction += belief * (edge - result.reduction);
 }
 
-// As far as the kernels of eight pixels reach, of the steps that stay within the picture.
+// The extent of the kernels of eight pixels, clipped to the picture.
 Steps steps_of(Pack sigma, const Sweep& plan, std::int64_t before, std::int64_t behind) {
     const auto radius = static_cast<std::int64_t>(3.0f * largest(sigma));
     return {-std::min(radius, before) / plan.spacing * plan.spacing,
@@ -93,8 +93,8 @@ bool sweep_rows(const Guide& guide, const Widths& widths, const Sweep& plan, con
     });
 }
 
-// Columns are read from copies of small strips, whose rows lie next to each other: a column of the picture
-// itself has each plane and row on a page of its own, more pages than a core translates at once.
+// Columns are read from copies of small strips with contiguous rows: in the picture itself each row of each
+// plane is on a different page, more pages than the TLB holds.
 constexpr std::int64_t StripWidth = 32, StripHeight = 128, StripBorder = BlockWidth;
 constexpr std::int64_t StripPitch = StripWidth + 2 * StripBorder;
 

@@ -11,7 +11,7 @@ enum class Edges { Keep, Recover };  // Recover: antialiased pixels between two 
 struct Sweep {
     Direction direction = Direction::Rows;
     float width_factor = 1.0f;  // of the pixel's width: sigma of this sweep
-    std::int64_t spacing = 1;   // every so many pixels
+    std::int64_t spacing = 1;   // in pixels
     Sources sources = Sources::All;
     Edges edges = Edges::Keep;
 };
@@ -20,15 +20,15 @@ struct Sweep {
 using Strips = std::vector<std::vector<float>>;
 
 // Filters `from` into `to`, cut at 3 sigma of the widest of eight neighbouring pixels. r of the result is the
-// sum of squared weights times r of what they weigh. Fields of 2, 4 or 5 components. A pixel that finds
-// nothing keeps its values. False: stopped.
+// sum of squared weights times r of the inputs. Fields of 2, 4 or 5 components. Pixels without similar
+// neighbours keep their values. False: stopped.
 bool sweep(const Guide& guide, const Widths& widths, const Sweep& plan, const Field& from, Field& to,
            Strips& strips, RunContext& context);
 
-// The iterated separable filter (Schwenk 3.6.1): rows and columns in turns, `iterations` times with kernels
-// that shrink (3.14). Every iteration starts with the dimension that the one before has ended with, which
-// removes its streaks. The result is in `field`; its r is that of the first iteration times reduction_ratio:
-// later iterations see data that are no longer independent.
+// The iterated separable filter (Schwenk 3.6.1): rows and columns in turn, `iterations` times with shrinking
+// kernels (3.14). Every iteration starts with the direction that the previous one ended with, which removes
+// its streaks. The result is in `field`; its r is that of the first iteration times reduction_ratio: later
+// iterations filter data that are no longer independent.
 bool filter_separable(const Guide& guide, const Widths& widths, int iterations, Edges edges, Field& field,
                       Field& scratch, Strips& strips, RunContext& context);
 

@@ -13,7 +13,7 @@ inline double iteration_sigma(double sigma, int k, int iterations) {
     return sigma * std::sqrt(3.0) * std::exp2(iterations - k) / std::sqrt(std::exp2(2 * iterations) - 1.0);
 }
 
-// Width that brings the perceived variance u of a mean of n samples down to the target t, near the guide line
+// Width that brings the perceived variance u of a mean of n samples down to the target t, near the guideline
 // base / sqrt(n) (Schwenk 3.15 to 3.17): a box of extent e has (2 e + 1)^2 pixels, sigma = 1.5 e, and the
 // result lies between guide / c and guide c.
 inline float adaptive_sigma(float u, float t, float n, float base, float c) {

@@ -6,9 +6,9 @@ namespace tessera::filter::svgf {
 
 namespace {
 
-constexpr float SameLight = 1e-3f;  // relative differences that are no change, whatever the noise
+constexpr float SameLight = 1e-3f;  // relative differences that never count as a change
 
-// The share of its age that history keeps where the light may have changed (Dundr 6.1): the new 3x3 mean
+// The fraction of its age that history keeps where the light may have changed (Dundr 6.1): the new 3x3 mean
 // against the old one, in deviations of their difference.
 bool test_light(const Planes& history, const State& state, float z0, Planes& trust, RunContext& context) {
     const std::uint32_t width = history.width(), height = history.height();
@@ -74,9 +74,9 @@ bool accumulate(const Planes& history, const Accumulation& how, State& state, Pl
         for (std::size_t x = 0; x < width; ++x) {
             const float old = old_age[x] * how.age_scale * (tested ? trusted[x] : 1.0f);
             const float n = age[x];
-            const float share = new_share(n, old, keep);
+            const float weight = new_weight(n, old, keep);
             const float filled = old > 0.0f ? 0.0f : 1.0f;
-            const float r = n > 0.0f ? (old > 0.0f ? share : 1.0f) : filled;
+            const float r = n > 0.0f ? (old > 0.0f ? weight : 1.0f) : filled;
             const float q = 1.0f - r;
             age[x] = n > 0.0f ? std::min(n + old, n / r) : old;
             red[x] = r * red[x] + q * old_red[x];

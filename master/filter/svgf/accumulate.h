@@ -5,9 +5,9 @@
 
 namespace tessera::filter::svgf {
 
-// What is known of one signal, per pixel.
+// The accumulated state of one signal, per pixel.
 struct State {
-    PaddedPlanes color;  // r, g, b; component 3 is room for the variance that the wavelet carries
+    PaddedPlanes color;  // r, g, b; component 3 holds the variance for the wavelet transform
     Planes moments;      // mean luminance, E[L^2] - E[L]^2 of one sample (E-D6), age in samples
 };
 inline constexpr std::uint32_t MeanLuminance = 0, SampleVariance = 1, Age = 2, MomentCount = 3;
@@ -16,22 +16,21 @@ inline constexpr std::uint32_t MeanLuminance = 0, SampleVariance = 1, Age = 2, M
 inline constexpr std::uint32_t HistoryMoments = 3, HistoryCount = HistoryMoments + MomentCount;
 
 struct Accumulation {
-    float r0 = 0.1f;         // least share of a new sample (E-D3)
-    float age_scale = 1.0f;  // what a changed light leaves of the history's age
-    float z0 = 0.0f;         // deviations that light may differ before history is doubted; 0: not tested
+    float r0 = 0.1f;         // minimum weight of a new sample (E-D3)
+    float age_scale = 1.0f;  // factor of the history's age after a change of light
+    float z0 = 0.0f;         // deviations that light may differ before history is distrusted; 0: not tested
 };
 
-// The share of n new samples beside a history of `age` samples: E-D3 for samples that come one by one,
-// r0 -> 1 - (1 - r0)^n. `keep` is ln(1 - r0).
-inline float new_share(float n, float age, float keep) {
+// The weight of n new samples against a history of `age` samples: E-D3 applied sample by sample, r0 -> 1 - (1
+// - r0)^n. `keep` is ln(1 - r0).
+inline float new_weight(float n, float age, float keep) {
     const float least = 1.0f - exp_negative(keep * n);
     const float mean = n / std::max(n + age, 1e-6f);
     return std::max(least, mean);
 }
 
-// Blends the film in `state` with the history, moments by the same shares (E-D2, E-D5; the variance by its
-// own exact rule, which is the same without cancellation). Pixels without samples keep their history. False:
-// stopped.
+// Blends the film in `state` with the history, moments with the same weights (E-D2, E-D5; the variance by an
+// equivalent rule without cancellation). Pixels without samples keep their history. False: stopped.
 bool accumulate(const Planes& history, const Accumulation& how, State& state, Planes& trust,
                 RunContext& context);
 

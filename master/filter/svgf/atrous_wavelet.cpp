@@ -9,10 +9,10 @@ namespace {
 constexpr std::uint32_t Margin = PaddedPlanes::Margin;
 constexpr float Centre = 4.0f / 16.0f, Side = 2.0f / 16.0f, Corner = 1.0f / 16.0f;
 
-// Four of the eight taps; the other four are the same pairs seen from their far end.
+// Four of the eight taps; the other four are the same pairs in the opposite direction.
 enum Direction : std::size_t { Right, Down, DownRight, DownLeft, DirectionCount };
 
-// What the weights need of one row, computed once for the two rows of pairs that it takes part in.
+// Terms of one row for the weights, computed once for the two rows of pairs that use it.
 struct RowTerms {
     std::array<float*, DirectionCount> depth_scale;
     float *luminance, *luminance_scale;
@@ -118,8 +118,8 @@ std::uint32_t level_of(std::uint32_t pass, std::uint32_t count, LevelOrder order
 
 namespace {
 
-// The weighted mean of the nine taps of row y. Weights beside the picture are 0, and so is what they
-// multiply.
+// The weighted mean of the nine taps of row y. Weights outside the picture are 0, and so are the values
+// there.
 void gather(const PaddedPlanes& from, PaddedPlanes& to, std::uint32_t y, std::size_t step,
             const std::array<float*, DirectionCount>& above,
             const std::array<float*, DirectionCount>& below) {
@@ -131,8 +131,7 @@ void gather(const PaddedPlanes& from, PaddedPlanes& to, std::uint32_t y, std::si
     const float *w_down_right = below[DownRight], *w_up_left = above[DownRight] - step;
     const float *w_down_left = below[DownLeft], *w_up_right = above[DownLeft] + step;
     const auto s = static_cast<std::ptrdiff_t>(step);
-    // Everything the loop reads is in a local: pointers that it would load anew keep it from being
-    // vectorised.
+    // All pointers are in locals: reloading them would prevent vectorisation.
     const float *m0 = from.row(0, y), *m1 = from.row(1, y), *m2 = from.row(2, y), *m3 = from.row(3, y);
     const float *a0 = from.row(0, up), *a1 = from.row(1, up), *a2 = from.row(2, up), *a3 = from.row(3, up);
     const float *b0 = from.row(0, down), *b1 = from.row(1, down), *b2 = from.row(2, down),
@@ -166,7 +165,7 @@ bool AtrousWavelet::run(const Guides& guides, const EdgeStops& stops, std::uint3
     const std::size_t per_thread = Scratch::Rows * pitch;
     scratch_.resize(per_thread * static_cast<std::size_t>(context.arena.max_concurrency()));
 
-    // Rows a step apart depend on each other's weights: a task goes down a band of every step-th row.
+    // Rows one step apart share weights: a task processes a band of every step-th row.
     constexpr std::uint32_t BandRows = 48;
     const std::uint32_t phases = std::min(step, height);
     const std::uint32_t rows_per_phase = (height + step - 1) / step;

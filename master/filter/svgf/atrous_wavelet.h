@@ -17,8 +17,7 @@ inline constexpr std::uint32_t MaxLevels = 7;  // the margin of PaddedPlanes is 
 std::uint32_t level_of(std::uint32_t pass, std::uint32_t count, LevelOrder order);
 
 // One level of the edge-stopping stationary wavelet transform (E-D8, E-D12): 3x3 taps (1 2 1)x(1 2 1)/16,
-// 2^level pixels apart. Components 0-2 are a colour, 3 its variance, which goes on by squared weights
-// (E-D13).
+// 2^level pixels apart. Components 0-2 are a colour, 3 its variance, propagated with squared weights (E-D13).
 class AtrousWavelet {
   public:
     // `from` and `to` are 4 components of the guides' size, and not the same. False: stopped.

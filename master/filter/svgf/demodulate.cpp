@@ -9,7 +9,7 @@ namespace {
 using frame::Channel;
 
 constexpr float LeastAlbedo =
-    1e-4f;  // below it the light says nothing about the irradiance, and does not show
+    1e-4f;  // below it the light carries no information on the irradiance, and is not visible
 constexpr float MostVariance = 1e36f;  // so that sums over a window stay finite
 
 // Standard deviation of the luminance if all components vary together, as light does: an upper bound.
@@ -53,7 +53,7 @@ bool demodulate(const Inputs& inputs, State& state, RunContext& context) {
             const float n = counts[x];
             const float plain = luma(er[x], eg[x], eb[x]);
             l[x] = luma(red[x], green[x], blue[x]);
-            // A surface that fills 1 / n of a pixel at least.
+            // The surface covers at least 1 / n of the pixel.
             const float scale = std::min(l[x] / std::max(plain, Tiny), std::max(n, 1.0f));
             const float deviation = scale * luma_deviation(vr[x], vg[x], vb[x]);
             v[x] = std::min(deviation * deviation * std::max(n - 1.0f, 0.0f), MostVariance);

@@ -6,11 +6,11 @@
 
 #include "master/filter/kernels.h"
 
-// Which neighbours may share their light (Dundr 2.4). All weights are symmetric, so that one serves both ends
-// of a pair; where a printed weight looks at its centre alone, the stricter of both ends counts.
+// Edge-stopping weights between neighbours (Dundr 2.4). All weights are symmetric, so that one serves both
+// ends of a pair; where a published weight only depends on its centre, the stricter of both ends is used.
 namespace tessera::filter::svgf {
 
-// What divides a difference of luminance (E-D11).
+// Divisor of a luminance difference (E-D11).
 enum class Deviation : std::uint8_t {
     Mean,      // age: standard deviation of the mean, sqrt(var / age)
     Variance,  // dundr: var of one sample, as printed
@@ -21,13 +21,13 @@ struct EdgeStops {
     float sigma_n = 64.0f;  // exponent of the normals' cosine
     float sigma_d = 1.0f;   // slopes of inverse depth that a tap may be off
     float eps_d = 0.005f;   // of the inverse depth itself
-    float steep = 0.2f;     // relative change of depth per pixel above which depth does not count
+    float steep = 0.2f;     // relative change of depth per pixel above which depth is ignored
     float sigma_l = 4.0f;
     float eps_l = 0.01f;  // of the luminance itself
     Deviation deviation = Deviation::Mean;
 };
 
-// Stands in for 0 in divisors: below it differences count as infinite.
+// Replaces 0 in divisors: below it differences count as infinite.
 inline constexpr float Tiny = 1e-20f;
 
 // E-D4
@@ -46,7 +46,7 @@ inline float depth_scale(float inverse_depth, float change, const EdgeStops& sto
     return 1.0f / (stops.sigma_d * std::fabs(change) + stops.eps_d * inverse_depth + Tiny);
 }
 
-// 1 / divisor of E-D11. `spread` is what the level carries, a variance or its root.
+// 1 / divisor of E-D11. `spread` is the variance of the level, or its square root.
 inline float luminance_scale(float luminance, float spread, const EdgeStops& stops) {
     return 1.0f / (stops.sigma_l * spread + stops.eps_l * std::fabs(luminance) + Tiny);
 }

@@ -46,20 +46,20 @@ bool FilmLayers::read(const Inputs& inputs, bool holes, std::span<Signal> signal
     albedo_ = &inputs.mean(Channel::Albedo);
     alpha_ = inputs.has(Channel::Alpha) ? &inputs.mean(Channel::Alpha) : nullptr;
     {
-        Stage stage(report, "demodulate", 4.0 * (3 + 3 + 3 + 3 + 1 + 6));
+        PassTimer timer(report, "demodulate", 4.0 * (3 + 3 + 3 + 3 + 1 + 6));
         if (!demodulate(inputs, signals[0].now(), context)) return false;
         if (!find_rest(inputs, own_rest_, rest_, context)) return false;
         if (signals.size() > 1 && !take_rest(inputs, *rest_, signals[1].now(), context)) return false;
     }
     {
-        Stage stage(report, "guides", 4.0 * (5 + 5));
+        PassTimer timer(report, "guides", 4.0 * (5 + 5));
         if (!prepare_guides(inputs, guides, context)) return false;
     }
     if (holes) {
-        Stage stage(report, "holes", 4.0 * 2 * 20);
+        PassTimer timer(report, "holes", 4.0 * 2 * 20);
         if (!fill_holes(inputs, signals, guides, context)) return false;
     }
-    Stage stage(report, "slopes", 4.0 * 3);
+    PassTimer timer(report, "slopes", 4.0 * 3);
     return prepare_slopes(guides, context);
 }
 
@@ -82,14 +82,14 @@ bool FilmLayers::fill_holes(const Inputs& inputs, std::span<Signal> signals, Gui
     for (Signal& signal : signals) {
         State& state = signal.now();
         for (std::uint32_t c = 0; c < 3; ++c) filled_.push_back({state.color.row(c, 0), state.color.pitch()});
-        add(state.moments, Age);  // but not the age: nothing has been seen there
+        add(state.moments, Age);  // but not the age: there are no samples
     }
     return hole_fill_.run(inputs.counts, guides.ids, filled_, context);
 }
 
 bool FilmLayers::compose(const Inputs& inputs, std::span<const Signal> signals, Planes& picture,
                          Report& report, RunContext& context) const {
-    Stage stage(report, "compose", 4.0 * 12);
+    PassTimer timer(report, "compose", 4.0 * 12);
     const PaddedPlanes& light = signals[0].filtered();
     return for_rows(context, inputs.height, [&](std::uint32_t y) {
         const std::size_t width = inputs.width;

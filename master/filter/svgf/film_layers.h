@@ -13,8 +13,8 @@ struct Coverage {
 };
 Coverage coverage_of(const Inputs& inputs);
 
-// The film taken apart into signals and what is multiplied or added to them, and put together again. The
-// first signal is the irradiance, the second one, if there is one, the rest.
+// Splits the film into signals and the layers that are multiplied with or added to them, and composes them
+// again. The first signal is the irradiance, the optional second one the rest.
 class FilmLayers {
   public:
     // Fills the signals and the guides of the film, holes included. False: stopped, as below.

@@ -4,7 +4,7 @@ namespace tessera::filter::svgf {
 
 namespace {
 
-// Beside an edge one of both differences crosses it; the other one belongs to the surface.
+// Next to an edge one of the two differences crosses it; the other one belongs to the surface.
 float smaller(float a, float b) {
     return std::fabs(a) < std::fabs(b) ? a : b;
 }

@@ -12,7 +12,7 @@ struct Offset {
 // Children from the centre outwards.
 constexpr std::array<Offset, 9> Children{
     {{1, 1}, {1, 0}, {0, 1}, {2, 1}, {1, 2}, {0, 0}, {2, 0}, {0, 2}, {2, 2}}};
-constexpr float LeastWeight = 1e-3f;  // of a bilinear tap that is worth looking at
+constexpr float LeastWeight = 1e-3f;  // below it a bilinear tap is ignored
 
 // The mean of the children of one texel. Fine: weight(x, y), id(x, y), value(plane, x, y).
 template <class Fine>

@@ -7,7 +7,7 @@
 
 namespace tessera::filter::svgf {
 
-// One plane that is to be filled, wherever it lies.
+// A plane to fill.
 struct PlaneView {
     float* values;
     std::size_t pitch;
@@ -16,10 +16,10 @@ struct PlaneView {
 
 // Fills pixels without a sample from a pyramid of factor 3 (Dundr 2.7.1): a coarse texel is the mean of the
 // valid children that show the same object as the one next to its centre, weighted by samples; a hole takes
-// the finest level that knows something around it, with linear interpolation among texels of one object.
+// the finest level with valid texels around it, with linear interpolation among texels of one object.
 class HoleFill {
   public:
-    // Sets ids of holes and every view's values there. Unchanged where nothing is known at all. False:
+    // Sets ids of holes and every view's values there. Unchanged if there are no samples at all. False:
     // stopped.
     bool run(const Planes& counts, std::vector<std::uint32_t>& ids, std::span<const PlaneView> planes,
              RunContext& context);
@@ -36,12 +36,12 @@ class HoleFill {
     static bool reduce_to(Level& level, const Fine& fine, std::size_t size, RunContext& context);
     bool build_pyramid(const Planes& counts, const std::vector<std::uint32_t>& ids,
                        std::span<const PlaneView> planes, RunContext& context);
-    // One hole; false: the level knows nothing around it. `scale`: of its texels per pixel.
+    // One hole; false: the level has no valid texels around it. `scale`: texels per pixel.
     static bool fill_from(const Level& level, float scale, std::uint32_t x, std::uint32_t y,
                           std::uint32_t& id, std::span<const PlaneView> planes);
 
-    std::vector<Level> levels_;  // finest first; kept for their memory
-    std::size_t used_ = 0;       // of them, up to the first that knows something everywhere
+    std::vector<Level> levels_;  // finest first; kept to reuse their memory
+    std::size_t used_ = 0;       // levels in use, up to the first without holes
 };
 
 }  // namespace tessera::filter::svgf

@@ -5,8 +5,8 @@
 
 namespace tessera::filter::svgf {
 
-// Planes whose rows have zeroed pixels in front and behind, so that loops may read up to Margin pixels beside
-// a row without asking. Only [0, width) of a row is ever written.
+// Planes with zero padding before and after each row, so that loops may read up to Margin pixels out of
+// bounds. Only [0, width) of a row is ever written.
 class PaddedPlanes {
   public:
     static constexpr std::uint32_t Margin = 64;

@@ -12,7 +12,7 @@ namespace {
 constexpr float Unseen = -1e6f;
 constexpr float LeastWeight = 0.01f;  // of the four taps together
 
-// The change of the normal per pixel, of both sides the smaller one.
+// The change of the normal per pixel, the smaller one of both sides.
 float normal_change(const Planes& normal, std::uint32_t x, std::uint32_t y) {
     const auto change = [&](std::int64_t dx, std::int64_t dy) {
         const std::int64_t ax = x + dx, ay = y + dy;
@@ -39,7 +39,8 @@ bool find_motion(const Guides& now, const Guides& before, Motion& motion, RunCon
     motion.identity = a == b;
     const bool is_parallel =
         a.projection == scene::Projection::Orthographic || b.projection == scene::Projection::Orthographic;
-    // Rigid: the inverse is exact enough in double, and what is left is small, however far the origin is.
+    // Rigid transforms: the inverse is precise enough in double, and the relative motion is small even far
+    // from the origin.
     const glm::dmat4 relative = glm::affineInverse(b.world_from_camera) * a.world_from_camera;
     const glm::mat3 turn(relative);
     const glm::vec3 shift(relative[3]);
@@ -59,7 +60,7 @@ bool find_motion(const Guides& now, const Guides& before, Motion& motion, RunCon
             }
             return;
         }
-        if (is_parallel) {  // no point is where the formulas below look for it: the history starts anew
+        if (is_parallel) {  // the formulas below do not hold: the history restarts
             std::fill_n(to_x, width, Unseen);
             std::fill_n(to_y, width, Unseen);
             std::copy_n(inverse, width, to_inverse);
@@ -69,7 +70,7 @@ bool find_motion(const Guides& now, const Guides& before, Motion& motion, RunCon
         const auto px0 = static_cast<float>(a.left + (a.right - a.left) * 0.5 / width);
         const auto step = static_cast<float>((a.right - a.left) / width);
         for (std::uint32_t x = 0; x < width; ++x) {
-            // The point divided by its depth, so that infinite depth is nothing special.
+            // The point divided by its depth, so that infinite depth needs no special case.
             const float px = px0 + step * static_cast<float>(static_cast<std::int32_t>(x));
             const float qx = turn[0].x * px + turn[1].x * py - turn[2].x + shift.x * inverse[x];
             const float qy = turn[0].y * px + turn[1].y * py - turn[2].y + shift.y * inverse[x];
@@ -85,8 +86,8 @@ bool find_motion(const Guides& now, const Guides& before, Motion& motion, RunCon
 
 namespace {
 
-// The tests of one pixel against pixels of the previous picture, by raw pointers: this is the one loop of the
-// filter that cannot be vectorised.
+// The tests of one pixel against pixels of the previous picture. Raw pointers, since this is the only loop of
+// the filter that cannot be vectorised.
 class SurfaceTest {
   public:
     SurfaceTest(const Guides& now, const Guides& before, const SurfaceTests& tests)
@@ -118,7 +119,7 @@ class SurfaceTest {
         }
         const float least = tests_.normal_slopes * 0.01f;
         if (square <= least * least) return true;
-        // Rarely asked for, so not before.
+        // Computed on demand, since it is rarely needed.
         if (turn_ < 0.0f) turn_ = least + tests_.normal_slopes * normal_change(now_.normal, x_, y_);
         return square <= turn_ * turn_;
     }
@@ -157,7 +158,7 @@ class Lookup {
                    y0 = static_cast<std::int32_t>(py + 2.0f) - 2;
         const float fx = px - static_cast<float>(x0), fy = py - static_cast<float>(y0);
         std::array<float, 4> weights{(1.0f - fx) * (1.0f - fy), fx * (1.0f - fy), (1.0f - fx) * fy, fx * fy};
-        float same = 0.0f, sum = 0.0f;  // of the taps on this surface; of those that know something
+        float same = 0.0f, sum = 0.0f;  // of the taps on this surface; of those with history
         for (std::int32_t t = 0; t < 4; ++t) {
             float& weight = weights[static_cast<std::size_t>(t)];
             const bool on_surface = weight > 0.0f && passes(x0 + t % 2, y0 + t / 2);
@@ -166,7 +167,7 @@ class Lookup {
             sum += weight;
         }
         if (!(sum >= LeastWeight)) return same >= LeastWeight ? Found::SurfaceAlone : Found::Nothing;
-        // A tap without weight may lie outside: it looks at the pixel of another one.
+        // A tap without weight may be outside: it reads the pixel of another tap.
         std::array<std::int32_t, 4> tx, ty;
         std::size_t some = 0;
         while (weights[some] == 0.0f) ++some;
@@ -233,7 +234,7 @@ bool reproject(const Guides& now, const Guides& before, const Motion& motion, co
             if (!lookup.may_reach(to_x[x], to_y[x])) continue;
             lookup.set_pixel(x, y, expected[x]);
             const Lookup::Found found = lookup.interpolate(to_x[x], to_y[x], x, y, to);
-            // Neighbours stand in for a surface that was missed, not for one that is known to be unknown.
+            // Neighbours replace history that the taps missed, not history that is known to be absent.
             if (found == Lookup::Found::Nothing && !motion.identity)
                 lookup.average_around(to_x[x], to_y[x], x, y, to);
         }

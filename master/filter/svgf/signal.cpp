@@ -43,17 +43,17 @@ bool Signal::blend_history(const Guides& now, const Guides& before, const Motion
         views[HistoryMoments + m] = {before_.moments.row(m, 0), before_.moments.width()};
     }
     {
-        Stage stage(report, "reproject", 4.0 * (3 + 2 * 5 + 2 + 2 * HistoryCount));
+        PassTimer timer(report, "reproject", 4.0 * (3 + 2 * 5 + 2 + 2 * HistoryCount));
         if (!reproject(now, before, motion, settings.tests, views, history_, context)) return false;
     }
-    Stage stage(report, "accumulate", 4.0 * (3 * HistoryCount + 2 * MomentCount));
+    PassTimer timer(report, "accumulate", 4.0 * (3 * HistoryCount + 2 * MomentCount));
     return accumulate(history_, settings.accumulation, now_, trust_, context);
 }
 
 bool Signal::filter(const Guides& guides, const Settings& settings, bool feedback, Report& report,
                     RunContext& context) {
     {
-        Stage stage(report, "variance", 4.0 * 5);
+        PassTimer timer(report, "variance", 4.0 * 5);
         if (!variance_.run(guides, settings.stops, settings.young, now_, context)) return false;
     }
     filtered_ = &now_.color;
@@ -61,12 +61,12 @@ bool Signal::filter(const Guides& guides, const Settings& settings, bool feedbac
         const std::uint32_t level = level_of(pass, settings.levels, settings.order);
         PaddedPlanes& to = levels_[pass % 2];
         {
-            Stage stage(report, LevelNames[level], AtrousWavelet::BytesPerPixel);
+            PassTimer timer(report, LevelNames[level], AtrousWavelet::BytesPerPixel);
             if (!wavelet_.run(guides, settings.stops, level, *filtered_, to, context)) return false;
         }
         filtered_ = &to;
         if (pass == 0 && level == 0 && feedback) {
-            Stage stage(report, "feedback", 4.0 * 7);
+            PassTimer timer(report, "feedback", 4.0 * 7);
             if (!feed_back(to, settings.feedback, context)) return false;
         }
     }

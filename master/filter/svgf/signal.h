@@ -13,26 +13,26 @@ struct Settings {
     SurfaceTests tests;
     std::uint32_t levels = 6;
     LevelOrder order = LevelOrder::FirstThenCoarse;
-    float young = 4.0f;     // samples below which the variance is taken from around the pixel
-    float feedback = 8.0f;  // samples up to which the first level goes into the history; 0: never
+    float young = 4.0f;     // below this count the variance is estimated from the neighbourhood
+    float feedback = 8.0f;  // up to this count the first level is fed back into the history; 0: never
 };
 
-// One kind of light through the whole filter: what is known now, what was known of the film before, and the
-// wavelet's pictures.
+// One signal (kind of light) in the whole filter: its current state, its state for the previous film, and the
+// wavelet levels.
 class Signal {
   public:
-    // Where the film goes: colour, mean luminance, variance of one sample, age = samples.
+    // State that the film is written to: colour, mean luminance, variance of one sample, age = samples.
     State& now() { return now_; }
     void fit(std::uint32_t width, std::uint32_t height);
-    // A new film begins: what is known becomes history.
+    // A new film starts: the current state becomes history.
     void restart();
     void forget();
     bool has_history() const { return has_before_; }
 
-    // Brings the history to this picture's places and blends it in. False: stopped, as in the next ones.
+    // Reprojects the history to this picture and blends it in. False: stopped, as in the next ones.
     bool blend_history(const Guides& now, const Guides& before, const Motion& motion,
                        const Settings& settings, Report& report, RunContext& context);
-    // Variance and all levels; afterwards filtered() is the picture. Feedback is for histories alone.
+    // Variance and all levels; afterwards filtered() is the picture. Feedback is only used with a history.
     bool filter(const Guides& guides, const Settings& settings, bool feedback, Report& report,
                 RunContext& context);
     const PaddedPlanes& filtered() const { return *filtered_; }

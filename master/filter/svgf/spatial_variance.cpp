@@ -24,7 +24,8 @@ Surfaces surfaces_of(const Guides& guides, std::uint32_t y, std::int64_t x) {
             guides.ids.data() + static_cast<std::int64_t>(y) * guides.inverse_depth.width() + x};
 }
 
-// Weights of `there` as seen from `here`, both from the pixel of `slope` on, without the light.
+// Weights of `there` relative to `here`, both starting at the pixel of `slope`; geometry only, without
+// luminance.
 void surface_weights(const Surfaces& here, const Surfaces& there, const float* slope, float distance,
                      float kernel, const EdgeStops& stops, std::size_t count, float* __restrict weights) {
     const EdgeStops s = stops;
@@ -37,7 +38,7 @@ void surface_weights(const Surfaces& here, const Surfaces& there, const float* s
     }
 }
 
-// `to` += weights * what they weigh.
+// `to` += weights * values.
 void add_weighted(const float* weights, const float* w, const float* first, const float* second,
                   std::size_t count, float* __restrict to_w, float* __restrict to_first,
                   float* __restrict to_second) {

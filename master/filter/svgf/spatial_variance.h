@@ -5,10 +5,10 @@
 
 namespace tessera::filter::svgf {
 
-// The variance that the wavelet starts with, into component 3 of the state's colour: of the mean or of one
-// sample (EdgeStops::deviation); from the samples of the pixel, or where there are fewer than `young` from
-// those around it (E-D16: moments under a Gaussian of 7x7 on the same surface, done as a row and a column);
-// then blurred by (1 2 1)x(1 2 1)/16 (E-D7).
+// The initial variance of the wavelet transform, written to component 3 of the state's colour: of the mean or
+// of one sample (EdgeStops::deviation); from the samples of the pixel, or from its neighbourhood if it has
+// fewer than `young` (E-D16: moments under a Gaussian of 7x7 on the same surface, computed as a row and a
+// column pass); then blurred by (1 2 1)x(1 2 1)/16 (E-D7).
 class SpatialVariance {
   public:
     // False: stopped.
@@ -22,7 +22,7 @@ class SpatialVariance {
                     std::uint32_t y);
 
     Planes raw_;   // 1: before the blur
-    Planes sums_;  // what the wide estimate needs of each pixel, and its sums along the row
+    Planes sums_;  // inputs of the spatial estimate per pixel, and its sums along the row
     std::vector<std::uint8_t> young_rows_;
 };
 

@@ -9,11 +9,11 @@ namespace {
 constexpr std::size_t Chunk = 128, Wide = Chunk + 2;
 using Lane = std::array<float, Wide>;  // entry k is pixel start + k - 1
 
-// What the 3x3 pixels around every pixel of a piece of a row hold, first down the columns, then along the
-// row.
+// Statistics of the 3x3 neighbourhood of every pixel of a piece of a row: first down the columns, then along
+// the row.
 struct Around {
     std::array<Lane, 4> least, most;
-    Lane nearest, move_x, move_y;  // the surface next to the camera, and how it moved
+    Lane nearest, move_x, move_y;  // the surface nearest to the camera, and its motion
 };
 
 void reduce(const Lane& from_least, const Lane& from_most, Lane& least, Lane& most) {
@@ -23,7 +23,7 @@ void reduce(const Lane& from_least, const Lane& from_most, Lane& least, Lane& mo
     }
 }
 
-// Takes over the nearer surface's motion.
+// Keeps the motion of the nearer surface.
 void take_nearer(const float* nearest, const float* x, const float* y, std::size_t count,
                  float* __restrict to, float* __restrict to_x, float* __restrict to_y) {
     for (std::size_t k = 0; k < count; ++k) {
@@ -47,10 +47,10 @@ struct Piece {
     std::size_t count;
 };
 
-// The picture before, where the pixels of a piece come from, and their share of the new one.
+// The previous picture, reprojected to the pixels of a piece, and the weight of the new one.
 struct Old {
     std::array<std::array<float, Chunk>, 4> color;
-    std::array<float, Chunk> share;
+    std::array<float, Chunk> new_fraction;
 };
 
 // Edges are repeated.
@@ -90,7 +90,7 @@ Around columns_around(const Frame& frame, const Piece& piece) {
     return column;
 }
 
-void look_around(const Frame& frame, const Piece& piece, Around& around) {
+void gather_neighbourhood(const Frame& frame, const Piece& piece, Around& around) {
     const Around column = columns_around(frame, piece);
     around.nearest = column.nearest;
     around.move_x = column.move_x;
@@ -104,7 +104,7 @@ void look_around(const Frame& frame, const Piece& piece, Around& around) {
     }
 }
 
-// Within the colours around; `fresh`: the least share of the new picture, as `ratio`.
+// Clamped to the neighbourhood's colours; `fresh`: minimum weight of the new picture, like `ratio`.
 void fetch_before(const Frame& frame, const Piece& piece, const Around& around, const float* fresh,
                   float ratio, Old& old) {
     const std::uint32_t width = frame.width, height = frame.height, components = frame.components;
@@ -114,7 +114,7 @@ void fetch_before(const Frame& frame, const Piece& piece, const Around& around, 
         const float py = static_cast<float>(piece.y) + around.move_y[k + 1];
         const bool seen = px >= 0.0f && py >= 0.0f && px <= static_cast<float>(width - 1) &&
                           py <= static_cast<float>(height - 1);
-        old.share[k] = seen ? std::min(1.0f, std::max(ratio, fresh[k])) : 1.0f;
+        old.new_fraction[k] = seen ? std::min(1.0f, std::max(ratio, fresh[k])) : 1.0f;
         if (!seen) {
             for (std::uint32_t c = 0; c < components; ++c) old.color[c][k] = 0.0f;
             continue;
@@ -148,8 +148,8 @@ void blend(const Frame& frame, const Piece& piece, const Old& old, Planes& out) 
         const float bright = std::max(std::max(r[k], g[k]), std::max(b[k], 0.0f));
         const float old_bright =
             std::max(std::max(old.color[0][k], old.color[1][k]), std::max(old.color[2][k], 0.0f));
-        const float new_weight = old.share[k] / (1.0f + bright);
-        const float old_weight = (1.0f - old.share[k]) / (1.0f + old_bright);
+        const float new_weight = old.new_fraction[k] / (1.0f + bright);
+        const float old_weight = (1.0f - old.new_fraction[k]) / (1.0f + old_bright);
         part[k] = old_weight / (new_weight + old_weight);
     }
     for (std::uint32_t c = 0; c < frame.components; ++c) {
@@ -172,7 +172,7 @@ bool antialias(const Planes& picture, const Planes& before, const Guides& now, c
             const Piece piece{y, start, std::min<std::size_t>(Chunk, frame.width - start)};
             Around around;
             Old old;
-            look_around(frame, piece, around);
+            gather_neighbourhood(frame, piece, around);
             fetch_before(frame, piece, around, newness.row(0, y) + start, ratio, old);
             blend(frame, piece, old, out);
         }

@@ -4,12 +4,12 @@
 
 namespace tessera::filter::svgf {
 
-// Temporal antialiasing of a finished picture (E-D14, with its sign put right): r c + (1 - r) clamp(p), where
-// p is what the picture before showed of the nearest surface of the 3x3 pixels around, clamped to the range
-// of those 3x3 pixels, and r the larger one of `ratio` and the pixel's `newness` (share of samples that the
-// picture before did not have). Blended in the range compression x / (1 + max(r, g, b)), whose inverse is
-// exact because every colour carries its divisor along; linear radiance in and out; a fourth component goes
-// along. The result lies within the range of the 3x3 pixels. False: stopped.
+// Temporal antialiasing of a finished picture (E-D14, with its sign corrected): r c + (1 - r) clamp(p), where
+// p is the previous picture at the nearest surface of the 3x3 neighbourhood, clamped to the range of those
+// 3x3 pixels, and r the larger of `ratio` and the pixel's `newness` (fraction of its samples that the
+// previous picture did not have). Blended in the range compression x / (1 + max(r, g, b)), whose inverse is
+// exact because every colour keeps its divisor; linear radiance in and out; a fourth component is blended
+// with the same weights. The result lies within the range of the 3x3 pixels. False: stopped.
 bool antialias(const Planes& picture, const Planes& before, const Guides& now, const Motion& motion,
                const Planes& newness, float ratio, Planes& out, RunContext& context);
 

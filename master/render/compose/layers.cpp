@@ -19,8 +19,8 @@ using filter::PackSize;
 
 constexpr std::size_t Components = 4;  // r, g, b, alpha
 constexpr std::size_t Planes = 5;      // and depth
-// Pixels are taken a run at a time, plane after plane: the planes of a picture often lie whole pages apart,
-// and lines of more of them than a set of the cache holds would throw each other out.
+// Pixels are processed in runs, plane after plane: the planes of a picture are often whole pages apart, so that their
+// cache lines would evict each other from one cache set.
 constexpr std::size_t RunLength = 512, RunsPerTask = 16;
 constexpr float Infinity = std::numeric_limits<float>::infinity();
 constexpr float Largest = std::numeric_limits<float>::max();
@@ -46,14 +46,14 @@ void swap_where(IntPack which, Pack& a, Pack& b) {
     b = which ? old : b;
 }
 
-// Whoever is strictly nearer goes in front, so that what is equally near stays in its order.
+// Stable: only a strictly nearer layer moves in front.
 void exchange(Sheet& front, Sheet& back) {
     const IntPack swaps = back.depth < front.depth;
     swap_where(swaps, front.depth, back.depth);
     for (std::size_t c = 0; c < Components; ++c) swap_where(swaps, front.color[c], back.color[c]);
 }
 
-// Adds `below` where something of it is to be seen.
+// Adds `below` where it is visible.
 void lay_under(Sheet& sum, Pack& seen_through, const Sheet& below) {
     const IntPack shows = seen_through > all(0.0f);
     for (std::size_t c = 0; c < Components; ++c) {

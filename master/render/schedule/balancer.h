@@ -8,12 +8,12 @@
 
 namespace tessera::master {
 
-// How fast each node is, measured, and how large its next unit should be. Pure.
+// Measures the speed of each node and chooses the size of its next unit. Pure.
 class Balancer {
   public:
     struct Settings {
         double unit_seconds = 0.1;    // what one unit should take one worker
-        double first_samples = 4096;  // a unit for a node nobody has measured
+        double first_samples = 4096;  // a unit for a node without a measurement
         double smoothing = 0.3;       // weight of the newest measurement
     };
     Balancer() = default;
@@ -26,7 +26,7 @@ class Balancer {
     double rate(NodeId node) const;  // pixel samples per second of one worker; 0 = not measured
 
     // Pixel samples for the node's next unit. Shrinks when little is left (`remaining` over `workers` in the
-    // whole cluster), so that all finish together: never more than half of an equal share.
+    // whole cluster), so that all finish together: never more than half of an equal part.
     std::uint64_t unit_samples(NodeId node, std::uint64_t remaining, std::uint32_t workers) const;
 
   private:

@@ -6,7 +6,7 @@ using frame::SampleBlock;
 
 void BlockSet::insert(const SampleBlock& block) {
     if (covers(block)) return;
-    // Whatever lies inside the new block starts inside it, since blocks are nested or disjoint.
+    // Blocks inside the new block start inside it, since blocks are nested or disjoint.
     auto inside = blocks_.lower_bound(SampleBlock{block.first, 0});
     while (inside != blocks_.end() && inside->first < block.end()) {
         sample_count_ -= inside->count();

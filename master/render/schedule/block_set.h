@@ -7,8 +7,8 @@
 
 namespace tessera::master {
 
-// Which samples of one tile are there, without the film: disjoint aligned blocks, siblings joined. The
-// scheduler's side of the ledger.
+// Which samples of one tile have been merged: disjoint aligned blocks, siblings joined. The scheduler's record; the
+// film itself is in the film store.
 class BlockSet {
   public:
     void insert(const frame::SampleBlock& block);

@@ -53,14 +53,14 @@ Plan::Plan(const PlanSettings& settings)
                      [&](std::uint32_t a, std::uint32_t b) { return distance(a) < distance(b); });
 }
 
-std::uint64_t Plan::share(const SampleBlock& round, std::uint32_t ways) const {
+std::uint64_t Plan::samples_per_unit(const SampleBlock& round, std::uint32_t splits) const {
     const bool split = settings_.policy == session::Policy::Cooperative ||
                        (settings_.policy == session::Policy::Mixed && round.count() > 4);
     if (!split) return round.count();
-    return std::max<std::uint64_t>(1, round.count() / std::bit_ceil(std::max(ways, 2u)));
+    return std::max<std::uint64_t>(1, round.count() / std::bit_ceil(std::max(splits, 2u)));
 }
 
-std::optional<Plan::Chunk> Plan::next(std::uint64_t max_count, std::uint32_t ways) {
+std::optional<Plan::Chunk> Plan::next(std::uint64_t max_count, std::uint32_t splits) {
     if (!returned_.empty()) {
         Chunk chunk = returned_.front();
         returned_.pop_front();
@@ -73,7 +73,8 @@ std::optional<Plan::Chunk> Plan::next(std::uint64_t max_count, std::uint32_t way
     }
     if (round_ == rounds_.size() || is_held()) return std::nullopt;
     const SampleBlock& round = rounds_[round_];
-    const std::uint64_t limit = std::min(std::max<std::uint64_t>(max_count, 1), share(round, ways));
+    const std::uint64_t limit =
+        std::min(std::max<std::uint64_t>(max_count, 1), samples_per_unit(round, splits));
     const std::uint64_t left = round.count() - offset_;
     SampleBlock block{round.first + offset_, 0};
     while (block.parent().first == block.first && block.parent().count() <= std::min(limit, left)) {

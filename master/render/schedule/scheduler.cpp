@@ -33,18 +33,18 @@ std::vector<Assignment> Scheduler::assign(std::span<const NodeCapacity> nodes, c
     std::uint32_t workers = 0;
     for (const NodeCapacity& node : nodes) workers += node.workers;
     std::vector<NodeCapacity> capacities(nodes.begin(), nodes.end());
-    // One unit a turn, so that nobody's prefetch empties the plan while another starves.
+    // One unit per turn, so that one node's prefetch does not empty the plan while another starves.
     for (bool dealt = true; dealt;) {
         dealt = false;
         for (NodeCapacity& node : capacities) {
-            if (node.free_places == 0) continue;
+            if (node.free_slots == 0) continue;
             cut_round_for_deadline(nodes, balancer, now);
-            const auto ways = static_cast<std::uint32_t>(nodes.size());
-            auto assignment = deal(node, balancer, workers, ways, now);
-            if (!assignment && node.in_hand == 0) assignment = duplicate(node.node, balancer, now);
+            const auto splits = static_cast<std::uint32_t>(nodes.size());
+            auto assignment = deal(node, balancer, workers, splits, now);
+            if (!assignment && node.in_flight == 0) assignment = duplicate(node.node, balancer, now);
             if (!assignment) continue;
-            --node.free_places;
-            ++node.in_hand;
+            --node.free_slots;
+            ++node.in_flight;
             assignments.push_back(std::move(*assignment));
             dealt = true;
         }
@@ -53,14 +53,14 @@ std::vector<Assignment> Scheduler::assign(std::span<const NodeCapacity> nodes, c
 }
 
 std::optional<Assignment> Scheduler::deal(const NodeCapacity& node, const Balancer& balancer,
-                                          std::uint32_t workers, std::uint32_t ways, TimePoint now) {
+                                          std::uint32_t workers, std::uint32_t splits, TimePoint now) {
     const std::uint64_t samples = balancer.unit_samples(node.node, plan_.remaining_samples(), workers);
     const std::size_t pixels =
         std::max<std::size_t>(1, plan_.tiles().empty() ? 1 : plan_.tiles()[0].pixel_count());
-    auto chunk = plan_.next(std::max<std::uint64_t>(1, samples / pixels), ways);
-    // Film that was thought lost may have come after all.
+    auto chunk = plan_.next(std::max<std::uint64_t>(1, samples / pixels), splits);
+    // Film that was considered lost may have arrived after all.
     while (chunk && ledger_[chunk->tile].covers(chunk->block)) {
-        chunk = plan_.next(std::max<std::uint64_t>(1, samples / pixels), ways);
+        chunk = plan_.next(std::max<std::uint64_t>(1, samples / pixels), splits);
     }
     if (!chunk) return std::nullopt;
     const view::WorkUnit unit = make_unit(*chunk);
@@ -75,7 +75,7 @@ std::optional<Assignment> Scheduler::duplicate(NodeId node, const Balancer& bala
         const auto samples = static_cast<double>(entry.unit.block.count() * entry.unit.tile.pixel_count());
         return rate > 0.0 ? samples / rate : 0.0;
     };
-    // When each holder will be done with everything it holds; overdue work counts as never.
+    // When each holder will have finished all its units; overdue work counts as never.
     std::map<NodeId, double> until_done;
     for (const auto& [id, entry] : outstanding_) {
         for (const auto& [holder, since] : entry.holders) {
@@ -89,7 +89,7 @@ std::optional<Assignment> Scheduler::duplicate(NodeId node, const Balancer& bala
     for (auto entry = outstanding_.begin(); entry != outstanding_.end(); ++entry) {
         if (entry->second.holders.size() != 1 || entry->second.holders.contains(node)) continue;
         const double done = until_done[entry->second.holders.begin()->first];
-        // Of the slowest holder take the unit that it was given last: the least likely to be under way.
+        // Take the unit that the slowest holder was given last: the least likely to have been started.
         if (done > expected_seconds(node, entry->second) && done >= latest) {
             best = entry;
             latest = done;

@@ -22,9 +22,9 @@ struct Cancellation {
     UnitId unit;
 };
 
-// Deals the units of one frame: (state, event, now) -> actions, without sockets or threads. Every chunk of
-// the plan is dealt, merged or given back; the ledger per tile says which. The last units are dealt twice
-// when somebody idles (end-game duplication): the first result wins, the other holder is told to stop.
+// Deals the units of one frame: (state, event, now) -> actions, without sockets or threads. Every chunk of the plan
+// is dealt, merged or given back, as recorded per tile. The last units are dealt twice when a node is idle (end-game
+// duplication): the first result wins, the other holder's unit is cancelled.
 class Scheduler {
   public:
     // `first_unit` and later ids are this scheduler's alone.
@@ -34,21 +34,21 @@ class Scheduler {
     std::vector<Assignment> assign(std::span<const NodeCapacity> nodes, const Balancer& balancer,
                                    TimePoint now);
 
-    // Film of `block` of `tile` is merged; `unit` may be unknown (late, or of another holder). What other
-    // holders need not finish any more is cancelled.
+    // Film of `block` of `tile` is merged; `unit` may be unknown (late, or of another holder). Cancels units of other
+    // holders that are no longer needed.
     std::vector<Cancellation> merged(UnitId unit, std::uint32_t tile, const frame::SampleBlock& block);
 
-    // The holder will send no (more) film of the unit: what is missing goes back to the plan. False: unknown.
+    // The holder will send no (more) film of the unit: missing samples go back to the plan. False: unknown.
     enum class Loss { Released, Lost };
     bool released(UnitId unit, NodeId node, Loss loss);
     void node_gone(NodeId node);
     std::vector<UnitId> held_by(NodeId node) const;
     std::optional<view::WorkUnit> find(UnitId unit) const;
 
-    // The view has a new revision: what is under way is given back, to be dealt again under it.
+    // The view has a new revision: units in flight are given back, to be dealt again under it.
     std::vector<Cancellation> revise(std::uint64_t revision);
 
-    // The scene is at another version that gives the same samples: units dealt from now on name it.
+    // The scene has another version with the same samples: used for units dealt from now on.
     void follow(Version version) { version_ = version; }
 
     std::vector<Cancellation> cancel_everything();  // and deal no more
@@ -71,13 +71,13 @@ class Scheduler {
     struct Outstanding {
         view::WorkUnit unit;
         std::uint32_t tile = 0;
-        std::map<NodeId, TimePoint> holders;  // since when
+        std::map<NodeId, TimePoint> holders;  // and when it was dealt
     };
     using Units = std::map<UnitId, Outstanding>;
 
     view::WorkUnit make_unit(const Plan::Chunk& chunk);
     std::optional<Assignment> deal(const NodeCapacity& node, const Balancer& balancer, std::uint32_t workers,
-                                   std::uint32_t ways, TimePoint now);
+                                   std::uint32_t splits, TimePoint now);
     std::optional<Assignment> duplicate(NodeId node, const Balancer& balancer, TimePoint now);
     void cut_round_for_deadline(std::span<const NodeCapacity> nodes, const Balancer& balancer, TimePoint now);
     void drop(Units::iterator unit, NodeId node, Loss loss);

@@ -12,9 +12,9 @@ namespace {
 
 using std::numbers::pi;
 
-// Luminance of what is seen at the middle of each texel, as far as it can weigh: what is no number weighs
-// nothing, and what takes light away as much as what gives it.
-std::vector<double> seen(const SceneTables& tables) {
+// The luminance at the center of each texel, as a sampling weight: the magnitude of negative values, 0 for values that
+// are not finite.
+std::vector<double> texel_luminances(const SceneTables& tables) {
     const shading::Scene scene = on_host(tables);
     const shading::Environment& sky = scene.environment;
     const std::uint32_t width = sky.map.width, height = sky.map.height;
@@ -32,19 +32,19 @@ std::vector<double> seen(const SceneTables& tables) {
     return texels;
 }
 
-// Weighs each texel half by itself and half by its neighbourhood, so that whatever bilinear filtering shows
-// can be sampled. Returns the mean luminance over the sphere.
-double add_map_sums(SceneTables& tables) {
+// The weight of a texel is the mean of its own luminance and that of its neighbourhood, so that all bilinearly
+// filtered values can be sampled. Returns the mean luminance over the sphere.
+double add_map_cdfs(SceneTables& tables) {
     shading::Environment& sky = tables.scene.environment;
     const std::int64_t width = sky.map.width, height = sky.map.height;
-    const std::vector<double> texels = seen(tables);
+    const std::vector<double> texels = texel_luminances(tables);
     const auto texel = [&](std::int64_t x, std::int64_t y) {
         return texels[static_cast<std::size_t>(std::clamp<std::int64_t>(y, 0, height - 1) * width +
                                                (x + width) % width)];
     };
     std::vector<double> row_weights(static_cast<std::size_t>(height));
     double sphere = 0.0;
-    sky.column_sums = static_cast<std::uint32_t>(tables.sums.size());
+    sky.column_cdf = static_cast<std::uint32_t>(tables.cdfs.size());
     for (std::int64_t y = 0; y < height; ++y) {
         const double sine = std::sin(pi * (double(y) + 0.5) / double(height));
         std::vector<double> weights(static_cast<std::size_t>(width));
@@ -57,21 +57,21 @@ double add_map_sums(SceneTables& tables) {
             row_weights[static_cast<std::size_t>(y)] += weights[static_cast<std::size_t>(x)] * sine;
             sphere += texel(x, y) * sine;
         }
-        add_sums(tables, weights);
+        add_cdf(tables, weights);
     }
-    sky.row_sums = add_sums(tables, row_weights);
+    sky.row_cdf = add_cdf(tables, row_weights);
     return sphere * pi / (2.0 * double(width) * double(height));
 }
 
 }  // namespace
 
-std::uint32_t add_sums(SceneTables& tables, const std::vector<double>& weights) {
-    const auto first = static_cast<std::uint32_t>(tables.sums.size());
+std::uint32_t add_cdf(SceneTables& tables, const std::vector<double>& weights) {
+    const auto first = static_cast<std::uint32_t>(tables.cdfs.size());
     double total = 0.0, sum = 0.0;
     for (const double weight : weights) total += weight;
     for (std::size_t i = 0; i < weights.size(); ++i) {
         sum += weights[i];
-        tables.sums.push_back(total > 0.0 ? static_cast<float>(sum / total)
+        tables.cdfs.push_back(total > 0.0 ? static_cast<float>(sum / total)
                                           : static_cast<float>(i + 1) / static_cast<float>(weights.size()));
     }
     return first;
@@ -94,7 +94,7 @@ double add_environment(SceneTables& tables, const scene::Scene& scene, const Ind
         sky.map.wrap_s = shading::WrapRepeat;
         sky.map.wrap_t = shading::WrapClamp;
         tables.environment_texels = tables.texels[map->second];
-        mean = add_map_sums(tables);
+        mean = add_map_cdfs(tables);
         tables.scene.features |= shading::FeatureEnvironmentMap;
     }
     sky.emits = mean > 0.0 ? 1u : 0u;

@@ -29,20 +29,20 @@ struct LightBounds {
     }
 };
 
-// Emitters in short.
+// Aggregate of the emitters of a node.
 struct Group {
     LightBounds bounds;
     glm::dvec3 axis{0.0};
-    double spread = 0.0, reach = 0.0, power = 0.0;
-    bool two_sided = false, shaped = false;
+    double spread = 0.0, emission_angle = 0.0, power = 0.0;
+    bool two_sided = false, is_area = false;
 };
 
-// Turned about `axis`, of unit length and across v.
-glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& axis, double angle) {
+// v rotated about `axis`, a unit vector perpendicular to v.
+glm::dvec3 rotated(const glm::dvec3& v, const glm::dvec3& axis, double angle) {
     return v * std::cos(angle) + glm::cross(axis, v) * std::sin(angle);
 }
 
-// The smallest cone around both.
+// The smallest cone that contains both.
 void join_cones(Group& a, const Group& b) {
     glm::dvec3 other = b.axis;
     double cosine = glm::dot(a.axis, other);
@@ -71,21 +71,21 @@ void join_cones(Group& a, const Group& b) {
         a.spread = pi;
         return;
     }
-    a.axis = glm::normalize(turned(a.axis, across / length, spread - a.spread));
+    a.axis = glm::normalize(rotated(a.axis, across / length, spread - a.spread));
     a.spread = spread;
 }
 
 Group joined(Group a, const Group& b) {
     join_cones(a, b);
     a.bounds.add(b.bounds.low, b.bounds.high);
-    a.reach = std::max(a.reach, b.reach);
+    a.emission_angle = std::max(a.emission_angle, b.emission_angle);
     a.power += b.power;
     a.two_sided = a.two_sided || b.two_sided;
-    a.shaped = a.shaped || b.shaped;
+    a.is_area = a.is_area || b.is_area;
     return a;
 }
 
-// Leaves that fall into one part of the axis along which a group is cut.
+// Leaves in one bin of the split axis.
 struct Bin {
     LightBounds bounds;
     double power = 0.0;
@@ -98,8 +98,8 @@ struct Bin {
         facing += other.facing;
         count += other.count;
     }
-    // Power x size^2 x range of directions (Conty Estevez and Kulla 2018, eq. 2). The range is that of their
-    // measure at its ends, 1 for one direction and 4 for all, and between them follows the axes' mean length.
+    // Power x size^2 x a measure of the directions (Conty Estevez and Kulla 2018, eq. 2). The measure equals theirs at
+    // both ends, 1 for one direction and 4 for all; in between it is linear in the length of the mean axis.
     double cost() const {
         if (!(power > 0.0)) return 0.0;
         return bounds.extent2() * (4.0 * power - 3.0 * glm::length(facing));
@@ -124,26 +124,27 @@ class Builder {
   private:
     static constexpr std::uint32_t Bins = 16;
 
-    // Node `at` for the leaves [begin, end) of the order.
+    // Fills node `at` with the leaves order_[begin, end).
     Group fill(std::uint32_t at, std::uint32_t begin, std::uint32_t end, std::uint32_t depth) {
         if (end - begin == 1) {
             const LightLeaf& leaf = leaves_[order_[begin]];
             emitters_[leaf.emitter].node = at;
-            const Group group{{leaf.low, leaf.high}, leaf.axis,  leaf.spread, leaf.reach, leaf.power,
-                              leaf.two_sided,        leaf.shaped};
+            const Group group{{leaf.low, leaf.high}, leaf.axis,  leaf.spread,
+                              leaf.emission_angle,   leaf.power, leaf.two_sided,
+                              leaf.is_area};
             write(at, group, leaf.emitter | shading::LightLeaf);
             return group;
         }
-        // Cut in two, and each part once more.
+        // Two binary splits give up to four children.
         std::array<std::uint32_t, shading::MaxLightChildren + 1> ends{begin};
         std::uint32_t count = 0;
-        const std::uint32_t middle = cut(begin, end, depth);
+        const std::uint32_t split = cut(begin, end, depth);
         const auto add = [&](std::uint32_t from, std::uint32_t to) {
             if (to - from > 1) ends[++count] = cut(from, to, depth + 1);
             ends[++count] = to;
         };
-        add(begin, middle);
-        add(middle, end);
+        add(begin, split);
+        add(split, end);
         const auto first = static_cast<std::uint32_t>(nodes_.size());
         nodes_.resize(nodes_.size() + count);
         Group group;
@@ -158,68 +159,71 @@ class Builder {
         return group;
     }
 
-    // Whether the leaves are triangles of one light and in one plane, as a lamp of two mostly is.
+    // Whether the leaves are coplanar triangles of one light, like a rectangular lamp of two triangles.
     bool is_flat_lamp(std::uint32_t begin, std::uint32_t end, const Group& group) const {
         const LightLeaf& first = leaves_[order_[begin]];
         const double thickness = 1e-4 * std::sqrt(group.bounds.extent2());
         return std::all_of(order_.begin() + begin, order_.begin() + end, [&](std::uint32_t i) {
             const LightLeaf& leaf = leaves_[i];
-            const double off = glm::dot(first.axis, place_of(i) - place_of(order_[begin]));
+            const double off = glm::dot(first.axis, centroid_of(i) - centroid_of(order_[begin]));
             return emitters_[leaf.emitter].light == emitters_[first.emitter].light && leaf.spread == 0.0 &&
-                   !leaf.shaped && leaf.two_sided == first.two_sided &&
+                   !leaf.is_area && leaf.two_sided == first.two_sided &&
                    glm::dot(leaf.axis, first.axis) > 1.0 - 1e-6 && std::fabs(off) <= thickness;
         });
     }
 
     void write(std::uint32_t at, const Group& group, std::uint32_t link) {
         shading::LightNode& node = nodes_[at];
-        const glm::dvec3 middle = 0.5 * (group.bounds.low + group.bounds.high);
-        node.middle = glm::vec3(middle);
-        // Rounded outwards, so that the ball holds all.
+        const glm::dvec3 center = 0.5 * (group.bounds.low + group.bounds.high);
+        node.center = glm::vec3(center);
+        // Rounded up, so that the bounding sphere is conservative.
         const double radius =
-            0.5 * std::sqrt(group.bounds.extent2()) + glm::length(middle - glm::dvec3(node.middle));
+            0.5 * std::sqrt(group.bounds.extent2()) + glm::length(center - glm::dvec3(node.center));
         node.radius = radius > 0.0 ? std::nextafter(static_cast<float>(radius), INFINITY) : 0.0f;
         node.axis = glm::vec3(group.axis);
         node.cos_spread = group.spread < pi ? static_cast<float>(std::cos(group.spread)) : -1.0f;
-        node.cos_reach = static_cast<float>(std::cos(group.reach));
-        // A share that no float holds would be 0.
-        node.power = std::max(static_cast<float>(group.power / total_), LeastPower);
+        node.cos_emission_angle = static_cast<float>(std::cos(group.emission_angle));
+        // Clamped, so that a tiny fraction does not underflow to 0.
+        node.power = std::max(static_cast<float>(group.power / total_), MinPower);
         node.link = link | (group.two_sided ? shading::LightTwoSided : 0u) |
-                    (group.shaped ? shading::LightShaped : 0u);
+                    (group.is_area ? shading::LightContainsArea : 0u);
     }
 
-    glm::dvec3 place_of(std::uint32_t leaf) const { return 0.5 * (leaves_[leaf].low + leaves_[leaf].high); }
+    glm::dvec3 centroid_of(std::uint32_t leaf) const {
+        return 0.5 * (leaves_[leaf].low + leaves_[leaf].high);
+    }
 
-    // Orders the leaves so that those of the first child come first, and returns where the second's begin.
-    // Where cuts by cost lead too deep, in halves.
+    // Partitions the leaves of a node and returns where the second child begins. Falls back to median splits where
+    // splits by cost get too deep.
     std::uint32_t cut(std::uint32_t begin, std::uint32_t end, std::uint32_t depth) {
         LightBounds places;
-        for (std::uint32_t i = begin; i < end; ++i) places.add(place_of(order_[i]), place_of(order_[i]));
+        for (std::uint32_t i = begin; i < end; ++i)
+            places.add(centroid_of(order_[i]), centroid_of(order_[i]));
         const glm::dvec3 size = places.high - places.low;
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
         const std::uint32_t half = begin + (end - begin) / 2;
         const double scale = Bins / size[axis];
-        if (!std::isfinite(scale)) return half;  // all in one place
+        if (!std::isfinite(scale)) return half;  // all at the same position
         if (depth < MaxDepthByCost) {
             const auto bin_of = [&](std::uint32_t leaf) {
-                const double place = (place_of(leaf)[axis] - places.low[axis]) * scale;
+                const double place = (centroid_of(leaf)[axis] - places.low[axis]) * scale;
                 return std::min(static_cast<std::uint32_t>(place), Bins - 1);
             };
             const std::uint32_t last = best_bin(begin, end, bin_of);
             const auto from = order_.begin() + begin;
-            const auto middle = std::stable_partition(
+            const auto split = std::stable_partition(
                 from, order_.begin() + end, [&](std::uint32_t leaf) { return bin_of(leaf) <= last; });
-            return begin + static_cast<std::uint32_t>(middle - from);
+            return begin + static_cast<std::uint32_t>(split - from);
         }
         const auto before = [&](std::uint32_t a, std::uint32_t b) {
-            const double pa = place_of(a)[axis], pb = place_of(b)[axis];
+            const double pa = centroid_of(a)[axis], pb = centroid_of(b)[axis];
             return pa != pb ? pa < pb : a < b;
         };
         std::nth_element(order_.begin() + begin, order_.begin() + half, order_.begin() + end, before);
         return half;
     }
 
-    // The last bin of the first child. The first bin and the last are not empty.
+    // The last bin of the first child. The first and the last bin are not empty.
     template <class BinOf>
     std::uint32_t best_bin(std::uint32_t begin, std::uint32_t end, const BinOf& bin_of) const {
         std::array<Bin, Bins> bins;
@@ -228,30 +232,30 @@ class Builder {
             const double facing = leaf.spread < pi && !leaf.two_sided ? leaf.power : 0.0;
             bins[bin_of(order_[i])].add({{leaf.low, leaf.high}, leaf.power, facing * leaf.axis, 1});
         }
-        std::array<double, Bins> after{};  // cost of all bins from here on
+        std::array<double, Bins> after{};  // cost of all bins from this one on
         Bin sum;
         for (std::uint32_t i = Bins; i-- > 1;) {
             sum.add(bins[i]);
             after[i] = sum.cost();
         }
         sum = Bin();
-        double least = Infinity;
+        double best_cost = Infinity;
         std::uint32_t best = 0;
         for (std::uint32_t i = 0; i + 1 < Bins; ++i) {
             sum.add(bins[i]);
-            if (bins[i].count == 0) continue;  // the same cut as the one before
+            if (bins[i].count == 0) continue;  // the same split as the previous one
             const double cost = sum.cost() + after[i + 1];
-            if (cost < least) {
-                least = cost;
+            if (cost < best_cost) {
+                best_cost = cost;
                 best = i;
             }
         }
         return best;
     }
 
-    // In cuts: by cost to this depth, then in halves, at most 32 more.
+    // Splits by cost down to this depth, then at most 32 levels of median splits.
     static constexpr std::uint32_t MaxDepthByCost = 48;
-    static constexpr float LeastPower = 1e-24f;
+    static constexpr float MinPower = 1e-24f;
 
     std::span<const LightLeaf> leaves_;
     std::span<shading::Emitter> emitters_;

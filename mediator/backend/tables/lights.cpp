@@ -14,7 +14,7 @@ namespace {
 using shading::luminance;
 using std::numbers::pi;
 
-// Lights that are infinitely far, and their power.
+// Infinite lights (directional, environment) and their power.
 struct DistantLights {
     std::vector<shading::LightSource> lights;
     std::vector<double> powers;
@@ -25,8 +25,8 @@ struct DistantLights {
     }
 };
 
-// What is brighter than floats go is a point.
-bool is_bright(const glm::vec3& radiance) {
+// Where the radiance of an area light overflows, it becomes a point light.
+bool is_finite(const glm::vec3& radiance) {
     return std::isfinite(radiance.x) && std::isfinite(radiance.y) && std::isfinite(radiance.z);
 }
 
@@ -36,74 +36,75 @@ void make_spot(shading::LightSource& light, LightLeaf& leaf, const scene::Light&
     light.cos_outer = std::cos(source.outer_cone_angle);
     leaf.axis = glm::dvec3(light.direction);
     leaf.spread = 0.0;
-    leaf.reach = source.outer_cone_angle;
-    leaf.power *= std::max(0.5 * (1.0 - light.cos_outer), 1e-6);  // a cone too narrow for floats
+    leaf.emission_angle = source.outer_cone_angle;
+    leaf.power *= std::max(0.5 * (1.0 - light.cos_outer), 1e-6);  // avoids 0 for very narrow cones
 }
 
 void make_sphere(shading::LightSource& light, LightLeaf& leaf, const scene::Light& source) {
     const double radius = source.radius;
     const glm::vec3 radiance(glm::dvec3(source.intensity) / (pi * radius * radius));
-    if (!is_bright(radiance)) return;
+    if (!is_finite(radiance)) return;
     light.kind = shading::LightSphere;
     light.intensity = radiance;
     light.radius = source.radius;
     leaf.low -= radius;
     leaf.high += radius;
-    leaf.shaped = true;
+    leaf.is_area = true;
 }
 
-// 1 / the root of its area; 0: it has none, and does not shine.
+// Returns 1 / sqrt(area); 0: the area is 0 and the light emits nothing.
 float make_quad(shading::LightSource& light, LightLeaf& leaf, const scene::Light& source,
                 const glm::dvec3& up) {
     const glm::dvec2 half = 0.5 * glm::dvec2(source.size);
     const double area = 4.0 * half.x * half.y;
     const glm::vec3 radiance(glm::dvec3(source.intensity) / area);
     const auto inverse = static_cast<float>(1.0 / std::sqrt(area));
-    if (!is_bright(radiance) || !std::isfinite(inverse)) return 0.0f;
+    if (!is_finite(radiance) || !std::isfinite(inverse)) return 0.0f;
     light.kind = shading::LightQuad;
     light.intensity = radiance;
     light.half_size = glm::vec2(half);
     const glm::dvec3 front = light.direction;
     glm::dvec3 across = glm::cross(front, up);
-    if (!(glm::length(across) > 0.0)) across = shading::frame_around(light.direction)[0];  // flattened
+    if (!(glm::length(across) > 0.0))
+        across = shading::frame_around(light.direction)[0];  // degenerate transform
     across = glm::normalize(across);
     light.edge_u = glm::vec3(across);
     light.edge_v = glm::vec3(glm::normalize(glm::cross(front, across)));
-    const glm::dvec3 reach = half.x * glm::abs(across) + half.y * glm::abs(glm::dvec3(light.edge_v));
-    leaf.low -= reach;
-    leaf.high += reach;
+    const glm::dvec3 half_extent = half.x * glm::abs(across) + half.y * glm::abs(glm::dvec3(light.edge_v));
+    leaf.low -= half_extent;
+    leaf.high += half_extent;
     leaf.axis = front;
     leaf.spread = 0.0;
     leaf.power *= 0.25;
-    leaf.shaped = true;
+    leaf.is_area = true;
     return inverse;
 }
 
-// A leaf that holds all of a light's way.
-void spread_over_motion(LightLeaf& leaf, const SceneTables& tables, const shading::LightSource& light) {
+// Extends a leaf to all positions of a moving light.
+void extend_over_motion(LightLeaf& leaf, const SceneTables& tables, const shading::LightSource& light) {
     if (light.motion < 0) return;
     const shading::Motion& motion = tables.motions[static_cast<std::size_t>(light.motion)];
     const LightLeaf first = leaf;
-    for (const shading::Place& place :
-         std::span(tables.places).subspan(motion.first_place, motion.steps + 1)) {
-        const glm::dvec3 way = glm::dvec3(place.translation) - glm::dvec3(light.position);
-        // What reaches out of a place may do so in any direction, once it turns.
+    for (const shading::Affine3x4& place :
+         std::span(tables.transform_keys).subspan(motion.first_key, motion.key_intervals + 1)) {
+        const glm::dvec3 offset = glm::dvec3(place.translation) - glm::dvec3(light.position);
+        // If it rotates, its extent may be in any direction.
         const glm::dvec3 size(glm::length(first.high - first.low) * 0.5);
-        const bool turns = place.linear != tables.places[motion.first_place].linear;
-        const glm::dvec3 middle = 0.5 * (first.low + first.high);
-        leaf.low = glm::min(leaf.low, (turns ? middle - size : first.low) + way);
-        leaf.high = glm::max(leaf.high, (turns ? middle + size : first.high) + way);
-        if (turns) leaf.spread = pi;
+        const bool rotates = place.linear != tables.transform_keys[motion.first_key].linear;
+        const glm::dvec3 center = 0.5 * (first.low + first.high);
+        leaf.low = glm::min(leaf.low, (rotates ? center - size : first.low) + offset);
+        leaf.high = glm::max(leaf.high, (rotates ? center + size : first.high) + offset);
+        if (rotates) leaf.spread = pi;
     }
 }
 
-// A light that is somewhere becomes an emitter.
+// A light with a position becomes an emitter.
 void add_local_light(SceneTables& tables, EmitterList& list, const scene::Light& source,
                      shading::LightSource light, const glm::dvec3& up) {
     LightLeaf leaf{.low = glm::dvec3(light.position),
                    .high = glm::dvec3(light.position),
                    .spread = pi,
-                   .reach = 0.5 * pi,
+                   .emission_angle = 0.5 * pi,
                    .power = 4.0 * pi * luminance(light.intensity),
                    .emitter = static_cast<std::uint32_t>(list.emitters.size())};
     light.kind = shading::LightPoint;
@@ -114,8 +115,8 @@ void add_local_light(SceneTables& tables, EmitterList& list, const scene::Light&
         inverse_root_area = make_quad(light, leaf, source, up);
         if (inverse_root_area == 0.0f) return;
     }
-    spread_over_motion(leaf, tables, light);
-    if (leaf.shaped) tables.scene.features |= shading::FeatureShapedLights;
+    extend_over_motion(leaf, tables, light);
+    if (leaf.is_area) tables.scene.features |= shading::FeatureAreaLights;
     light.first_emitter = leaf.emitter;
     list.emitters.push_back(
         {static_cast<std::uint32_t>(tables.lights.size()), 0, shading::NoLightNode, inverse_root_area});
@@ -123,35 +124,35 @@ void add_local_light(SceneTables& tables, EmitterList& list, const scene::Light&
     list.leaves.push_back(leaf);
 }
 
-// A sun has the radiance that makes its irradiance, E / (pi sin^2). Directions are known to about 1e-7: what
-// spans less than 1e-5 is a point.
-void make_sun(SceneTables& tables, shading::LightSource& light, double angle) {
+// The radiance of a sun disk follows from its irradiance: E / (pi sin^2). Directions are accurate to about 1e-7, so
+// angles below 1e-5 count as 0.
+void make_sun_disk(SceneTables& tables, shading::LightSource& light, double angle) {
     const double sine = std::sin(angle);
     const glm::vec3 radiance(glm::dvec3(light.intensity) / (pi * sine * sine));
-    if (!(angle >= 1e-5) || !is_bright(radiance)) return;
+    if (!(angle >= 1e-5) || !is_finite(radiance)) return;
     light.intensity = radiance;
-    light.cap = static_cast<float>(2.0 * std::sin(0.5 * angle) * std::sin(0.5 * angle));
-    tables.scene.features |= shading::FeatureSuns;
+    light.one_minus_cos_half_angle = static_cast<float>(2.0 * std::sin(0.5 * angle) * std::sin(0.5 * angle));
+    tables.scene.features |= shading::FeatureSunDisks;
 }
 
-void add_placed_lights(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered, double radius,
-                       EmitterList& list, DistantLights& distant) {
-    for (const PlacedLight& placed : lowered.lights) {
+void add_placed_lights(SceneTables& tables, const scene::Scene& scene, const FlatScene& flat_scene,
+                       double radius, EmitterList& list, DistantLights& distant) {
+    for (const PlacedLight& placed : flat_scene.lights) {
         const auto& source = *scene.find_as<scene::Light>(placed.light);
         const glm::dmat3 turn(placed.world_from_light);
-        const glm::dvec3 shines = -turn[2];
-        const double length = glm::length(shines);
-        if (!(length > 0.0)) continue;  // flattened: it has no direction
+        const glm::dvec3 direction = -turn[2];
+        const double length = glm::length(direction);
+        if (!(length > 0.0)) continue;  // degenerate transform: no direction
         const double brightness = luminance(source.intensity);
         if (!(brightness > 0.0) || !std::isfinite(brightness)) continue;
         shading::LightSource light{.intensity = source.intensity, .layers = placed.layers, .motion = -1};
         light.position = glm::vec3(glm::dvec3(placed.world_from_light[3]) - tables.render_origin);
-        light.direction = glm::vec3(shines / length);
+        light.direction = glm::vec3(direction / length);
         light.motion = add_motion(tables, placed.world_from_light, placed.motion);
-        tables.scene.features |= shading::FeaturePlacedLights;
+        tables.scene.features |= shading::FeaturePunctualLights;
         if (source.kind == scene::LightKind::Directional) {
             light.kind = shading::LightDirectional;
-            make_sun(tables, light, source.angle);
+            make_sun_disk(tables, light, source.angle);
             distant.add(light, pi * radius * radius * brightness);
         } else {
             add_local_light(tables, list, source, light, turn[1]);
@@ -176,20 +177,20 @@ void assign_probabilities(SceneTables& tables, const EmitterList& list, const Di
     double total = tree_power, sum = 0.0;
     for (const double power : distant.powers) total += power;
     const bool has_tree = !list.leaves.empty();
-    constexpr double UniformShare = 0.1;
+    constexpr double UniformFraction = 0.1;
     const double uniform = 1.0 / (static_cast<double>(distant.lights.size()) + (has_tree ? 1.0 : 0.0));
-    tables.scene.light_sums = static_cast<std::uint32_t>(tables.sums.size());
+    tables.scene.light_cdf = static_cast<std::uint32_t>(tables.cdfs.size());
     const auto assign = [&](double power) {
         const double by_power = total > 0.0 && std::isfinite(total) ? power / total : uniform;
-        const double probability = (1.0 - UniformShare) * by_power + UniformShare * uniform;
+        const double probability = (1.0 - UniformFraction) * by_power + UniformFraction * uniform;
         sum += probability;
-        tables.sums.push_back(static_cast<float>(sum));
+        tables.cdfs.push_back(static_cast<float>(sum));
         return static_cast<float>(probability);
     };
     if (has_tree) {
         tables.scene.tree_probability = assign(tree_power);
     } else {
-        tables.sums.push_back(0.0f);
+        tables.cdfs.push_back(0.0f);
     }
     for (std::size_t i = 0; i < distant.lights.size(); ++i) {
         tables.lights.push_back(distant.lights[i]);
@@ -199,14 +200,14 @@ void assign_probabilities(SceneTables& tables, const EmitterList& list, const Di
 
 }  // namespace
 
-void add_lights(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
+void add_lights(SceneTables& tables, const scene::Scene& scene, const FlatScene& flat_scene,
                 const MeshCatalog& meshes, double sky_luminance) {
     EmitterList list;
     DistantLights distant;
     add_mesh_lights(tables, list);
-    tables.bounds = bounds_of(tables, lowered, meshes);
+    tables.bounds = bounds_of(tables, flat_scene, meshes);
     const double radius = radius_of(tables.bounds);
-    add_placed_lights(tables, scene, lowered, radius, list, distant);
+    add_placed_lights(tables, scene, flat_scene, radius, list, distant);
     add_tree(tables, list);
     if (sky_luminance > 0.0) {
         distant.add({.kind = shading::LightEnvironment, .layers = shading::AllLayers, .motion = -1},

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t DefaultMaterial = 0, PlaceholderMaterial = 1;
 
-// A record holds the scene's own numbers.
+// The enumerators of the scene are used in the records unchanged.
 static_assert(shading::AlphaOpaque == std::uint32_t(scene::AlphaMode::Opaque) &&
               shading::AlphaMask == std::uint32_t(scene::AlphaMode::Mask) &&
               shading::AlphaBlend == std::uint32_t(scene::AlphaMode::Blend));
@@ -42,7 +42,7 @@ shading::MaterialExtras make_extras(const scene::Material& m, const Indices& tex
         .anisotropy_texture = make_use(m.anisotropy_texture, textures)};
 }
 
-// Whether a material says what only extras can hold.
+// Whether a material has values that need MaterialExtras.
 bool has_extras(const scene::Material& m) {
     return m.specular != 1.0f || m.specular_color != glm::vec3(1.0f) || m.specular_texture.texture ||
            m.specular_color_texture.texture || m.clearcoat > 0.0f || m.sheen_color != glm::vec3(0.0f) ||
@@ -67,11 +67,11 @@ void add_mesh(SceneTables& tables, const Mesh& mesh) {
                    flag(mesh.colors, shading::MeshColors) | flag(mesh.tex_coords, shading::MeshTexCoords) |
                    flag(mesh.tex_coords_1, shading::MeshTexCoords1),
          .triangle_count = static_cast<std::uint32_t>(triangles.size())});
-    add_mesh_steps(tables, mesh, tables.meshes.back());
+    add_mesh_keys(tables, mesh, tables.meshes.back());
 }
 
-// Only the direction of a normal counts, so its matrix may be scaled into the range of floats; by a power of
-// two, which costs no bits.
+// Only the direction of a normal counts, so its matrix is scaled into the range of floats, by a power of two to
+// stay exact.
 glm::mat3 scaled(const glm::dmat3& m) {
     double largest = 0.0;
     for (int column = 0; column < 3; ++column) {
@@ -89,13 +89,13 @@ std::uint32_t features_of(const shading::Material& material, const shading::Mate
     bool mapped = used(material.normal_texture) && has_tangents;
     bool textured = used(material.base_color_texture) || used(material.metallic_roughness_texture) ||
                     used(material.emission_texture);
-    // A texture may take roughness away.
+    // A texture may lower the roughness.
     const bool smooth = used(material.metallic_roughness_texture) ||
                         shading::is_smooth(material.roughness * material.roughness);
     const bool rough = !shading::is_smooth(material.roughness * material.roughness);
     const bool glass = material.transmission > 0.0f;
     bool specular = (material.metallic > 0.0f || glass) && smooth;
-    // Between equal indices even rough glass is clear.
+    // With equal indices of refraction even rough glass is a delta transmission.
     specular |= glass && (material.index_of_refraction == 0.0f ||
                           !shading::is_boundary(material.index_of_refraction) ||
                           !shading::is_boundary(1.0f / material.index_of_refraction));
@@ -147,7 +147,7 @@ shading::Material make_material(const scene::Material& material, const Indices& 
             .unlit = material.unlit ? 1u : 0u,
             .thin = material.thickness > 0.0f ? 0u : 1u,
             .extras = -1,
-            .shader = -1};
+            .surface_shader = -1};
 }
 
 Indices add_materials(SceneTables& tables, const scene::Scene& scene, const Indices& textures) {
@@ -171,21 +171,22 @@ Indices add_materials(SceneTables& tables, const scene::Scene& scene, const Indi
     return indices;
 }
 
-void place(shading::Instance& instance, const glm::dmat4& world_from_object, const glm::dvec3& origin) {
+void set_transform(shading::Instance& instance, const glm::dmat4& world_from_object,
+                   const glm::dvec3& origin) {
     // Relative to the origin in double, then rounded once.
     const glm::dmat3 linear(world_from_object);
     instance.linear = glm::mat3(linear);
     instance.translation = glm::vec3(glm::dvec3(world_from_object[3]) - origin);
-    // Cofactors instead of the inverse: right for flattened instances too, and no division.
+    // Cofactors instead of the inverse transpose: correct for singular transforms too, and without a division.
     const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                                glm::cross(linear[0], linear[1]));
     instance.normals = scaled(glm::determinant(linear) < 0.0 ? -cofactors : cofactors);
 }
 
-void add_instances(SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes,
+void add_instances(SceneTables& tables, const FlatScene& flat_scene, const MeshCatalog& meshes,
                    const Indices& materials) {
     ObjectId last;
-    for (const Instance& source : lowered.instances) {  // those of a geometry stand together
+    for (const Instance& source : flat_scene.instances) {  // sorted by geometry
         const Mesh& mesh = *meshes.find(source.geometry);
         if (tables.meshes.empty() || source.geometry != last) add_mesh(tables, mesh);
         last = source.geometry;
@@ -196,18 +197,18 @@ void add_instances(SceneTables& tables, const Lowered& lowered, const MeshCatalo
             .object = static_cast<std::uint32_t>(source.geometry.value),
             .light = -1,
             .layers = source.layers,
-            .body = -1};
+            .medium = -1};
         if (mesh.placeholder) instance.material = PlaceholderMaterial;
-        place(instance, source.world_from_object, tables.render_origin);
+        set_transform(instance, source.world_from_object, tables.render_origin);
         instance.motion = add_motion(tables, source.world_from_object, source.motion);
-        const shading::Material& look = tables.materials[instance.material];
-        instance.alpha_tested = look.alpha_mode != shading::AlphaOpaque ? 1u : 0u;
+        const shading::Material& record = tables.materials[instance.material];
+        instance.alpha_tested = record.alpha_mode != shading::AlphaOpaque ? 1u : 0u;
         tables.scene.features |=
-            look.shader >= 0
-                ? features_of(look, tables.shaders[static_cast<std::size_t>(look.shader)])
+            record.surface_shader >= 0
+                ? features_of(record, tables.surface_shaders[static_cast<std::size_t>(record.surface_shader)])
                 : features_of(
-                      look,
-                      look.extras >= 0 ? &tables.extras[static_cast<std::size_t>(look.extras)] : nullptr,
+                      record,
+                      record.extras >= 0 ? &tables.extras[static_cast<std::size_t>(record.extras)] : nullptr,
                       tables.meshes.back());
         tables.instances.push_back(instance);
     }

@@ -1,4 +1,4 @@
-// The triangles of glowing meshes, as emitters.
+// The triangles of emissive meshes, as emitters.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 #include "mediator/backend/tables/parts.h"
 #include "mediator/shading/materials.h"
-#include "mediator/shading/points.h"
 #include "mediator/shading/sampling.h"
+#include "mediator/shading/triangle_points.h"
 
 namespace tessera::backend {
 
@@ -17,31 +17,33 @@ namespace {
 using shading::luminance;
 using std::numbers::pi;
 
-// An instance and its mesh as they are at the steps of their motion.
-struct Shape {
-    std::vector<shading::Place> places;
+// The motion keys of an instance and of its mesh.
+struct ShapeKeys {
+    std::vector<shading::Affine3x4> transforms;
     std::vector<shading::Mesh> meshes;
-    bool turns = false;  // its triangles: they have other directions or areas from time to time
+    bool deforms = false;  // whether normals or areas of its triangles change over time
 
-    Shape(const SceneTables& tables, const shading::Instance& instance, const shading::Mesh& mesh)
-        : places(places_of(tables, instance)), meshes{mesh} {
-        meshes.front().arrays &= ~shading::MeshBends;
-        for (std::uint32_t step = 1; (mesh.arrays & shading::MeshBends) != 0 && step <= mesh.steps; ++step) {
+    ShapeKeys(const SceneTables& tables, const shading::Instance& instance, const shading::Mesh& mesh)
+        : transforms(transform_keys_of(tables, instance)), meshes{mesh} {
+        meshes.front().arrays &= ~shading::MeshDeforms;
+        for (std::uint32_t step = 1; (mesh.arrays & shading::MeshDeforms) != 0 && step <= mesh.key_intervals;
+             ++step) {
             meshes.push_back(meshes.front());
-            meshes.back().positions = tables.mesh_steps[mesh.first_step + step].positions;
+            meshes.back().positions = tables.mesh_keys[mesh.first_key + step].positions;
         }
-        turns = meshes.size() > 1;
-        for (const shading::Place& place : places) turns = turns || place.linear != places.front().linear;
+        deforms = meshes.size() > 1;
+        for (const shading::Affine3x4& place : transforms)
+            deforms = deforms || place.linear != transforms.front().linear;
     }
 };
 
-// Of a triangle at all times: between steps it stays within the hull.
-struct Reach {
+// Bounds of a triangle over the shutter: between keys it stays in their convex hull.
+struct TriangleExtent {
     glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-low};
-    double area = 0.0;  // at the steps, in the mean
+    double area = 0.0;  // mean over the motion keys
 
-    Reach(const Shape& shape, const glm::uvec3& corners) {
-        for (const shading::Place& place : shape.places) {
+    TriangleExtent(const ShapeKeys& shape, const glm::uvec3& corners) {
+        for (const shading::Affine3x4& place : shape.transforms) {
             for (const shading::Mesh& mesh : shape.meshes) {
                 const shading::Triangle t = shading::triangle_of(mesh, corners);
                 const auto to_world = [&](const glm::vec3& p) {
@@ -55,41 +57,42 @@ struct Reach {
                 area += 0.5 * glm::length(glm::cross(world[1] - world[0], world[2] - world[0]));
             }
         }
-        area /= static_cast<double>(shape.places.size() * shape.meshes.size());
+        area /= static_cast<double>(shape.transforms.size() * shape.meshes.size());
     }
 };
 
-// Luminance that is 0 where it is none.
+// Luminance; 0 if it is not a positive number.
 double brightness(const glm::vec3& emission) {
     const double value = luminance(emission);
     return value > 0.0 && std::isfinite(value) ? value : 0.0;
 }
 
-// The most that a material can shine with.
-double brightest(const shading::Scene& scene, const shading::Material& material) {
+// The maximum emitted luminance of a material.
+double max_brightness(const shading::Scene& scene, const shading::Material& material) {
     if (!shading::is_used(scene, material.emission_texture)) return brightness(material.emission);
     const shading::Texture& map = scene.textures.items[material.emission_texture.texture];
-    double most = 0.0;
+    double max_luminance = 0.0;
     for (std::uint32_t i = 0; i < map.width * map.height; ++i) {
-        most = std::max(most, brightness(material.emission * glm::vec3(shading::texel_at(scene, map, i))));
+        max_luminance = std::max(max_luminance,
+                                 brightness(material.emission * glm::vec3(shading::texel_at(scene, map, i))));
     }
-    return most;
+    return max_luminance;
 }
 
-// A mesh that glows, and how.
-struct Glow {
+// An emissive mesh with its material.
+struct EmissiveMesh {
     const shading::Scene& scene;
     const shading::Material& material;
     const shading::Mesh& mesh;
-    double most;  // luminance
+    double max_luminance;  // luminance
 
-    // Of a triangle in the mean, seen at places of a grid about as fine as its texels, which may miss what is
-    // smaller: it is never less than a hundredth of the most, so that it is tried from time to time.
+    // Mean luminance of a triangle, sampled on a grid about as fine as its texels. Small details may be missed, so it
+    // is at least a hundredth of the maximum: no triangle that may emit has probability 0.
     double mean(const glm::uvec3& corners) const {
-        if (!shading::is_used(scene, material.emission_texture)) return most;
+        if (!shading::is_used(scene, material.emission_texture)) return max_luminance;
         const unsigned n = steps(corners);
         double sum = 0.0;
-        // The triangle in n^2 like it; those that stand on their heads lie between the others.
+        // The triangle is subdivided into n^2 similar ones; in each row, every second one is inverted.
         for (unsigned row = 0; row < n; ++row) {
             for (unsigned i = 0; i < 2 * (n - row) - 1; ++i) {
                 const float shift = i % 2 == 0 ? 1.0f / 3.0f : 2.0f / 3.0f;
@@ -99,11 +102,11 @@ struct Glow {
                 sum += brightness(shading::emission_at(scene, material, mesh, corners, b));
             }
         }
-        return std::max(sum / (double(n) * n), 0.01 * most);
+        return std::max(sum / (double(n) * n), 0.01 * max_luminance);
     }
 
   private:
-    static constexpr double MostSteps = 16.0;
+    static constexpr double MaxSteps = 16.0;
 
     unsigned steps(const glm::uvec3& corners) const {
         const shading::TextureUse& use = material.emission_texture;
@@ -115,35 +118,35 @@ struct Glow {
         };
         const glm::dvec2 a = texel({0, 0}), b = texel({1, 0}), c = texel({0, 1});
         const double longest = std::max({glm::length(b - a), glm::length(c - a), glm::length(c - b)});
-        return static_cast<unsigned>(std::clamp(longest, 2.0, MostSteps));
+        return static_cast<unsigned>(std::clamp(longest, 2.0, MaxSteps));
     }
 };
 
-// One of an instance's triangles; its leaf where it shines.
-void add_triangle(EmitterList& list, const Glow& glow, const Shape& shape, const shading::Instance& instance,
-                  std::uint32_t light, std::uint32_t triangle) {
-    const glm::uvec3 corners = glow.mesh.triangles.items[triangle];
-    const Reach reach(shape, corners);
-    const double area = reach.area;
+// Adds one triangle of an instance as an emitter, and a leaf if it emits.
+void add_triangle(EmitterList& list, const EmissiveMesh& emissive, const ShapeKeys& shape,
+                  const shading::Instance& instance, std::uint32_t light, std::uint32_t triangle) {
+    const glm::uvec3 corners = emissive.mesh.triangles.items[triangle];
+    const TriangleExtent extent(shape, corners);
+    const double area = extent.area;
     const auto inverse = static_cast<float>(1.0 / std::sqrt(area));
     const auto index = static_cast<std::uint32_t>(list.emitters.size());
-    list.emitters.push_back({light, triangle, shading::NoLightNode, shape.turns ? 0.0f : inverse});
+    list.emitters.push_back({light, triangle, shading::NoLightNode, shape.deforms ? 0.0f : inverse});
     if (!(inverse > 0.0f) || !std::isfinite(inverse)) return;  // it cannot be hit
-    const double sides = glow.material.double_sided != 0 ? 2.0 : 1.0;
-    const double power = area * glow.mean(corners) * pi * sides;
+    const double sides = emissive.material.double_sided != 0 ? 2.0 : 1.0;
+    const double power = area * emissive.mean(corners) * pi * sides;
     if (!(power > 0.0) || !std::isfinite(power)) return;
-    // The side that the shading takes for the front, whichever way a mirrored instance turns the corners.
-    const shading::Triangle face = shading::triangle_of(glow.mesh, corners);
+    // The front side as in shading, independent of the winding in mirrored instances.
+    const shading::Triangle face = shading::triangle_of(emissive.mesh, corners);
     const glm::dvec3 front = shading::face_normal(instance, face, glm::vec3(0.0f));
-    const bool has_front = front != glm::dvec3(0.0) && !shape.turns;
-    list.leaves.push_back({.low = reach.low,
-                           .high = reach.high,
+    const bool has_front = front != glm::dvec3(0.0) && !shape.deforms;
+    list.leaves.push_back({.low = extent.low,
+                           .high = extent.high,
                            .axis = front,
                            .spread = has_front ? 0.0 : pi,
-                           .reach = 0.5 * pi,
+                           .emission_angle = 0.5 * pi,
                            .power = power,
                            .emitter = index,
-                           .two_sided = has_front && glow.material.double_sided != 0});
+                           .two_sided = has_front && emissive.material.double_sided != 0});
 }
 
 }  // namespace
@@ -155,14 +158,14 @@ void add_mesh_lights(SceneTables& tables, EmitterList& list) {
         const shading::Material& material = tables.materials[instance.material];
         if (!shading::emits(material) || material.unlit != 0 || instance.light == shading::ShadowCatcher)
             continue;
-        const Shape shape(tables, instance, tables.meshes[instance.mesh]);
-        const Glow glow{scene, material, shape.meshes.front(), brightest(scene, material)};
+        const ShapeKeys shape(tables, instance, tables.meshes[instance.mesh]);
+        const EmissiveMesh emissive{scene, material, shape.meshes.front(), max_brightness(scene, material)};
         const std::size_t emitters = list.emitters.size(), leaves = list.leaves.size();
         const auto index = static_cast<std::uint32_t>(tables.lights.size());
-        for (std::uint32_t t = 0; t < glow.mesh.triangle_count; ++t) {
-            add_triangle(list, glow, shape, instance, index, t);
+        for (std::uint32_t t = 0; t < emissive.mesh.triangle_count; ++t) {
+            add_triangle(list, emissive, shape, instance, index, t);
         }
-        if (list.leaves.size() == leaves) {  // nothing of it shines, or can be hit
+        if (list.leaves.size() == leaves) {  // no triangle emits and can be hit
             list.emitters.resize(emitters);
             continue;
         }

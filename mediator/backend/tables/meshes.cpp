@@ -54,7 +54,7 @@ void measure(Mesh& mesh) {
     mesh.high = Mesh().high;
     mesh.degenerate_triangles = 0;
     for (const glm::uvec3& t : elements<glm::uvec3>(mesh.triangles)) {
-        // In double: tiny triangles are small, not degenerate.
+        // In double, so that tiny triangles are not taken for degenerate.
         const glm::dvec3 a = positions[t.x], b = positions[t.y], c = positions[t.z];
         const glm::dvec3 n = glm::cross(b - a, c - a);
         mesh.degenerate_triangles += glm::dot(n, n) > 0.0 ? 0 : 1;
@@ -78,7 +78,7 @@ bool fits(const Mesh& mesh, const Geometry& geometry) {
 
 }  // namespace
 
-std::uint32_t MeshCatalog::Result::count(MeshStep step) const {
+std::uint32_t MeshCatalog::Result::count(MeshUpdate step) const {
     return static_cast<std::uint32_t>(std::count_if(
         changes.begin(), changes.end(), [&](const Change& change) { return change.step == step; }));
 }
@@ -98,21 +98,21 @@ MeshCatalog::Result MeshCatalog::update(const scene::Scene& scene, const SceneDe
         const auto place = meshes_.find(change.id);
         const scene::Fields<Geometry> shape{&Geometry::hint, &Geometry::indices, &Geometry::positions,
                                             &Geometry::motion_positions};
-        MeshStep step = MeshStep::Rebuild;
+        MeshUpdate step = MeshUpdate::Rebuild;
         if (place != meshes_.end() && !place->second.placeholder &&
             scene::validate_blobs(change.id, *scene.find(change.id), *blobs_).empty()) {
             if (!change.fields.intersects(shape)) {
-                step = MeshStep::ShadingData;
+                step = MeshUpdate::ShadingData;
             } else if (fits(place->second, *geometry)) {
-                step = MeshStep::Refit;
+                step = MeshUpdate::Refit;
             }
         }
-        if (step == MeshStep::Rebuild) {
+        if (step == MeshUpdate::Rebuild) {
             meshes_[change.id] = build(change.id, *geometry, result.problems);
         } else {
             place->second.source = *geometry;
             resolve_blobs(place->second, *blobs_);
-            if (step == MeshStep::Refit) measure(place->second);
+            if (step == MeshUpdate::Refit) measure(place->second);
         }
         result.changes.push_back({change.id, step});
     }

@@ -15,50 +15,48 @@
 
 namespace tessera::backend {
 
-// The arrays of one geometry, where they lie in their blobs; null = not there. A geometry whose blobs cannot
-// be drawn has a placeholder's: a box of 1 m at the object's place.
+// The arrays of one geometry, as blobs; null = absent. A geometry with invalid blobs gets those of a placeholder: a
+// box of 1 m at the object's origin.
 struct Mesh {
     scene::Geometry source;
     scene::BlobPtr positions, normals, tangents, colors, tex_coords, tex_coords_1, triangles;
     std::vector<scene::BlobPtr> motion_positions, motion_normals;  // as scene::Geometry
-    glm::vec3 low{std::numeric_limits<float>::infinity()};         // bounds of what can be hit, at any time;
-    glm::vec3 high{-std::numeric_limits<float>::infinity()};       // low > high: nothing
+    glm::vec3 low{std::numeric_limits<float>::infinity()};    // bounds of its triangles over the shutter;
+    glm::vec3 high{-std::numeric_limits<float>::infinity()};  // low > high: empty
     std::uint64_t degenerate_triangles = 0;
-    bool refits =
-        false;  // its structure is built for updates in place; none is that moves within the shutter
+    bool refits = false;  // its BVH is built for refitting; never with motion keys
     bool placeholder = false;
 };
 
-// The elements of an array; none where there is no blob.
+// The elements of an array; empty without a blob.
 template <class T>
 std::span<const T> elements(const scene::BlobPtr& blob) {
     return blob ? blob->as<T>() : std::span<const T>{};
 }
 
-// What an edit asks of a mesh's acceleration structure.
-enum class MeshStep {
-    ShadingData,  // nothing: the triangles are where they were
-    Refit,        // same triangles, vertices at other places
-    Rebuild,      // it is new, or has other triangles
+// How an edit affects a mesh's acceleration structure.
+enum class MeshUpdate {
+    ShadingData,  // not at all: positions and triangles are unchanged
+    Refit,        // same triangles, other vertex positions
+    Rebuild,      // a new mesh, or other triangles
 };
 
-// All meshes by geometry id, in step with the scene. What an edit does to each is decided here, for all
-// back-ends alike.
+// All meshes by geometry id, updated with the scene. Decides for all back-ends how an edit affects each of them.
 class MeshCatalog {
   public:
     explicit MeshCatalog(std::shared_ptr<const scene::BlobStore> blobs) : blobs_(std::move(blobs)) {}
 
     struct Change {
         ObjectId id;
-        MeshStep step;
+        MeshUpdate step;
     };
     struct Result {
-        bool everything = false;        // no mesh of before counts
-        std::vector<ObjectId> removed;  // may name some that were never there
+        bool everything = false;        // all previous meshes are gone
+        std::vector<ObjectId> removed;  // may contain unknown ids
         std::vector<Change> changes;
         std::vector<std::string> problems;  // of placeholders
 
-        std::uint32_t count(MeshStep step) const;
+        std::uint32_t count(MeshUpdate step) const;
     };
     Result update(const scene::Scene& scene, const SceneDelta& delta);
 

@@ -6,21 +6,21 @@ namespace tessera::backend {
 
 int add_motion(SceneTables& tables, const glm::dmat4& beginning, std::span<const glm::dmat4> steps) {
     if (steps.empty()) return -1;
-    shading::Motion motion{.first_place = static_cast<std::uint32_t>(tables.places.size()),
-                           .steps = static_cast<std::uint32_t>(steps.size()),
-                           .sizes = 0.0f,
-                           .reach = glm::vec3(0.0f)};
+    shading::Motion motion{.first_key = static_cast<std::uint32_t>(tables.transform_keys.size()),
+                           .key_intervals = static_cast<std::uint32_t>(steps.size()),
+                           .max_abs_linear = 0.0f,
+                           .max_abs_translation = glm::vec3(0.0f)};
     const auto add = [&](const glm::dmat4& world) {
         // Relative to the origin in double, then rounded once.
-        const shading::Place place{.linear = glm::mat3(glm::dmat3(world)),
-                                   .translation = glm::vec3(glm::dvec3(world[3]) - tables.render_origin)};
+        const shading::Affine3x4 place{.linear = glm::mat3(glm::dmat3(world)),
+                                       .translation = glm::vec3(glm::dvec3(world[3]) - tables.render_origin)};
         for (int column = 0; column < 3; ++column) {
             for (int row = 0; row < 3; ++row) {
-                motion.sizes = std::max(motion.sizes, std::abs(place.linear[column][row]));
+                motion.max_abs_linear = std::max(motion.max_abs_linear, std::abs(place.linear[column][row]));
             }
         }
-        motion.reach = glm::max(motion.reach, glm::abs(place.translation));
-        tables.places.push_back(place);
+        motion.max_abs_translation = glm::max(motion.max_abs_translation, glm::abs(place.translation));
+        tables.transform_keys.push_back(place);
     };
     add(beginning);
     for (const glm::dmat4& step : steps) add(step);
@@ -29,24 +29,25 @@ int add_motion(SceneTables& tables, const glm::dmat4& beginning, std::span<const
     return static_cast<int>(tables.motions.size()) - 1;
 }
 
-std::vector<shading::Place> places_of(const SceneTables& tables, const shading::Instance& instance) {
+std::vector<shading::Affine3x4> transform_keys_of(const SceneTables& tables,
+                                                  const shading::Instance& instance) {
     if (instance.motion < 0) return {{instance.linear, instance.translation}};
     const shading::Motion& motion = tables.motions[static_cast<std::size_t>(instance.motion)];
-    const auto first = tables.places.begin() + motion.first_place;
-    return {first, first + motion.steps + 1};
+    const auto first = tables.transform_keys.begin() + motion.first_key;
+    return {first, first + motion.key_intervals + 1};
 }
 
-void add_mesh_steps(SceneTables& tables, const Mesh& source, shading::Mesh& mesh) {
+void add_mesh_keys(SceneTables& tables, const Mesh& source, shading::Mesh& mesh) {
     if (source.placeholder || source.motion_positions.empty()) return;
-    mesh.arrays |= shading::MeshBends;
-    mesh.first_step = static_cast<std::uint32_t>(tables.mesh_steps.size());
-    mesh.steps = static_cast<std::uint32_t>(source.motion_positions.size());
-    const glm::vec3 reach = glm::max(glm::abs(source.low), glm::abs(source.high));
-    mesh.reach = std::max({reach.x, reach.y, reach.z});
+    mesh.arrays |= shading::MeshDeforms;
+    mesh.first_key = static_cast<std::uint32_t>(tables.mesh_keys.size());
+    mesh.key_intervals = static_cast<std::uint32_t>(source.motion_positions.size());
+    const glm::vec3 max_abs = glm::max(glm::abs(source.low), glm::abs(source.high));
+    mesh.max_abs_position = std::max({max_abs.x, max_abs.y, max_abs.z});
     const auto add = [&](const scene::BlobPtr& positions, const scene::BlobPtr& normals) {
-        tables.mesh_steps.push_back(
+        tables.mesh_keys.push_back(
             {{elements<glm::vec3>(positions).data()}, {elements<glm::vec3>(normals).data()}});
-        tables.step_arrays.push_back({positions, normals});
+        tables.key_arrays.push_back({positions, normals});
     };
     add(source.positions, source.normals);
     for (std::size_t i = 0; i < source.motion_positions.size(); ++i) {

@@ -6,75 +6,77 @@
 #include "mediator/backend/tables/light_tree.h"
 #include "mediator/backend/tables/tables.h"
 
-// Steps of make_tables, in this order. Each reads what the former have put into the tables.
+// Stages of make_tables, in this order. Each uses the tables filled by the previous ones.
 namespace tessera::backend {
 
-using Indices = std::map<ObjectId, std::uint32_t>;  // of objects in their table
+using Indices = std::map<ObjectId, std::uint32_t>;  // index of each object in its table
 
-// Those alone that something placed, or the background, refers to: no others are in anybody's memory.
-Indices add_textures(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
-                     const MeshCatalog& meshes, const scene::BlobStore& blobs, TexturePyramids& pyramids);
+// Only textures that a placed geometry or the background uses; others are not loaded.
+Indices add_textures(SceneTables& tables, const scene::Scene& scene, const FlatScene& flat_scene,
+                     const MeshCatalog& meshes, const scene::BlobStore& blobs, MipmapCache& mipmaps);
 shading::TextureUse make_use(const scene::TextureSlot& slot, const Indices& textures);
-// Glass that is a body, with an index of refraction of its own.
+// Glass with a volume (not thin-walled), which refracts.
 bool is_solid_glass(const shading::Material& material);
 shading::Material make_material(const scene::Material& material, const Indices& textures);
 
-// Appends what only CommonSurfaceShader has, and returns the rest.
+// Appends the parameters specific to CommonSurfaceShader, and returns the common material.
 shading::Material add_shader(SceneTables& tables, const scene::SurfaceShader& shader,
                              const Indices& textures);
-std::uint32_t features_of(const shading::Material& material, const shading::Shader& shader);
+std::uint32_t features_of(const shading::Material& material, const shading::SurfaceShaderParams& shader);
 
 Indices add_materials(SceneTables& tables, const scene::Scene& scene, const Indices& textures);
-void add_instances(SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes,
+void add_instances(SceneTables& tables, const FlatScene& flat_scene, const MeshCatalog& meshes,
                    const Indices& materials);
 
-// Gives an instance its place, relative to the render origin.
-void place(shading::Instance& instance, const glm::dmat4& world_from_object, const glm::dvec3& origin);
+// Sets the transform of an instance, relative to the render origin.
+void set_transform(shading::Instance& instance, const glm::dmat4& world_from_object,
+                   const glm::dvec3& origin);
 
-// Of an instance, at any time.
+// Bounds of an instance over the shutter.
 Bounds bounds_of(const SceneTables& tables, const shading::Instance& instance, const Mesh& mesh);
-// Of all that can be hit, at any time; how far that reaches, for the power of what shines on all of it.
-Bounds bounds_of(const SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes);
+// Bounds of all instances over the shutter; their radius, for the power of infinite lights.
+Bounds bounds_of(const SceneTables& tables, const FlatScene& flat_scene, const MeshCatalog& meshes);
 double radius_of(const Bounds& bounds);
 
-// Adds the way of what goes through these places, relative to the render origin; -1 where it stands still.
+// Appends motion keys, relative to the render origin; returns the index of the motion, -1 without keys.
 int add_motion(SceneTables& tables, const glm::dmat4& beginning, std::span<const glm::dmat4> steps);
 
-// Where an instance is at the beginning and at each step after it.
-std::vector<shading::Place> places_of(const SceneTables& tables, const shading::Instance& instance);
+// The transform of an instance at each motion key.
+std::vector<shading::Affine3x4> transform_keys_of(const SceneTables& tables,
+                                                  const shading::Instance& instance);
 
-// Makes a mesh one that bends.
-void add_mesh_steps(SceneTables& tables, const Mesh& source, shading::Mesh& mesh);
+// Appends the motion keys of a deforming mesh.
+void add_mesh_keys(SceneTables& tables, const Mesh& source, shading::Mesh& mesh);
 
-// Instances of a material that catches shadows: they stop rays where their mask says so, and do not shine.
-void mark_shadow_catchers(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
+// Marks instances with a shadow catcher material: they block only rays with the matching mask, and do not emit.
+void mark_shadow_catchers(SceneTables& tables, const scene::Scene& scene, const FlatScene& flat_scene,
                           const MeshCatalog& meshes);
 
-// Whether bodies of glass may lie in each other: their bounds overlap.
-bool glass_nests(const SceneTables& tables, const Lowered& lowered, const MeshCatalog& meshes);
+// Whether solid glass objects may be nested: their bounds overlap.
+bool has_nested_glass(const SceneTables& tables, const FlatScene& flat_scene, const MeshCatalog& meshes);
 
-// What instances are filled with, if anything placed is filled with what can be seen.
-void add_bodies(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
-                const MeshCatalog& meshes, const Indices& textures);
+// The media of instances, unless none of them is visible.
+void add_media(SceneTables& tables, const scene::Scene& scene, const FlatScene& flat_scene,
+               const MeshCatalog& meshes, const Indices& textures);
 
-// Radiance over the sphere in the mean, as luminance; 0: there is no sky.
+// Returns the mean luminance over the sphere; 0 without a background.
 double add_environment(SceneTables& tables, const scene::Scene& scene, const Indices& textures);
 
-// Emitters in the order of their lights, and leaves of those that shine.
+// Emitters in the order of their lights, and leaves of those with power.
 struct EmitterList {
     std::vector<shading::Emitter> emitters;
     std::vector<LightLeaf> leaves;
 };
 
-// Instances that emit get their light's index.
+// Sets the light index of emissive instances.
 void add_mesh_lights(SceneTables& tables, EmitterList& list);
 
 // All lights, those of meshes included.
-void add_lights(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
+void add_lights(SceneTables& tables, const scene::Scene& scene, const FlatScene& flat_scene,
                 const MeshCatalog& meshes, double sky_luminance);
 
-// Appends cumulative sums of the weights to the tables' sums, normalised to end at 1 (evenly spread where all
-// weights are 0), and returns the index of the first.
-std::uint32_t add_sums(SceneTables& tables, const std::vector<double>& weights);
+// Appends the CDF of the weights to the tables, normalised to end at 1 (uniform if all weights are 0), and returns
+// the index of its first entry.
+std::uint32_t add_cdf(SceneTables& tables, const std::vector<double>& weights);
 
 }  // namespace tessera::backend

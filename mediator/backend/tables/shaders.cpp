@@ -13,17 +13,17 @@ static_assert(shading::NormalTangent == std::uint32_t(scene::NormalSpace::Tangen
 
 // Emission, the diffuse lobe, opacity and the normal map.
 scene::Material common_part(const scene::SurfaceShader& shader) {
-    const bool sheer = shader.alpha < 1.0f || shader.alpha_texture.texture;
+    const bool transparent = shader.alpha < 1.0f || shader.alpha_texture.texture;
     return {.base_color = glm::vec4(shader.diffuse, shader.alpha),
             .base_color_texture = shader.diffuse_texture,
             .normal_texture = shader.normal_texture,
             .emission = shader.emission,
             .emission_texture = shader.emission_texture,
-            .alpha_mode = sheer ? scene::AlphaMode::Blend : scene::AlphaMode::Opaque,
+            .alpha_mode = transparent ? scene::AlphaMode::Blend : scene::AlphaMode::Opaque,
             .double_sided = true};
 }
 
-shading::Shader own_part(const scene::SurfaceShader& shader, const Indices& textures) {
+shading::SurfaceShaderParams own_part(const scene::SurfaceShader& shader, const Indices& textures) {
     return {.specular = shader.specular,
             .fresnel_blend = shader.fresnel_blend,
             .shininess = shader.shininess,
@@ -47,7 +47,7 @@ shading::Shader own_part(const scene::SurfaceShader& shader, const Indices& text
             .environment_texture = make_use(shader.environment_texture, textures)};
 }
 
-// The same texels, read as signed bytes. Without smaller levels: those are means of unsigned ones.
+// The same texels, read as signed bytes. Without mip levels, which are means of unsigned values.
 int signed_texture(SceneTables& tables, int texture) {
     const auto place = static_cast<std::size_t>(texture);
     if (texture < 0 || tables.textures[place].format != shading::TexelRgba8) return texture;
@@ -68,16 +68,16 @@ shading::Material add_shader(SceneTables& tables, const scene::SurfaceShader& sh
     shading::Material material = make_material(common_part(shader), textures);
     if (shader.normal_format == scene::NormalFormat::Snorm)
         material.normal_texture.texture = signed_texture(tables, material.normal_texture.texture);
-    material.shader = static_cast<int>(tables.shaders.size());
-    tables.shaders.push_back(own_part(shader, textures));
+    material.surface_shader = static_cast<int>(tables.surface_shaders.size());
+    tables.surface_shaders.push_back(own_part(shader, textures));
     return material;
 }
 
-std::uint32_t features_of(const shading::Material& material, const shading::Shader& shader) {
+std::uint32_t features_of(const shading::Material& material, const shading::SurfaceShaderParams& shader) {
     const auto is_used = [](const shading::TextureUse& use) { return use.texture >= 0; };
     const std::array uses{material.base_color_texture, material.emission_texture, material.normal_texture,
                           shader.alpha_texture,        shader.height_texture,     shader.environment_texture};
-    std::uint32_t features = shading::FeatureShader;
+    std::uint32_t features = shading::FeatureSurfaceShader;
     if (std::ranges::any_of(uses, is_used) || std::ranges::any_of(shader.textures, is_used))
         features |= shading::FeatureTextures;
     if (material.alpha_mode != shading::AlphaOpaque) features |= shading::FeatureAlpha;

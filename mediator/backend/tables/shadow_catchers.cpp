@@ -2,10 +2,10 @@
 
 namespace tessera::backend {
 
-void mark_shadow_catchers(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
+void mark_shadow_catchers(SceneTables& tables, const scene::Scene& scene, const FlatScene& flat_scene,
                           const MeshCatalog& meshes) {
     for (std::size_t i = 0; i < tables.instances.size(); ++i) {
-        const Mesh& mesh = *meshes.find(lowered.instances[i].geometry);
+        const Mesh& mesh = *meshes.find(flat_scene.instances[i].geometry);
         const auto* source = scene.find_as<scene::Material>(mesh.source.material);
         if (source == nullptr || !source->shadow_catcher || mesh.placeholder) continue;
         shading::Instance& instance = tables.instances[i];

@@ -24,14 +24,14 @@ void set_address(Array& array, const scene::BlobPtr& blob, const BlobAddress& ad
     if (blob) array.items = reinterpret_cast<decltype(array.items)>(address_of(blob));
 }
 
-// Masks come in long runs.
-std::vector<std::uint32_t> masks_of(const Lowered& lowered) {
+// The layer masks in use; equal masks mostly come in runs.
+std::vector<std::uint32_t> masks_of(const FlatScene& flat_scene) {
     std::vector<std::uint32_t> masks;
     const auto add = [&](std::uint32_t mask) {
         if (masks.empty() || masks.back() != mask) masks.push_back(mask);
     };
-    for (const Instance& instance : lowered.instances) add(instance.layers);
-    for (const PlacedLight& light : lowered.lights) add(light.layers);
+    for (const Instance& instance : flat_scene.instances) add(instance.layers);
+    for (const PlacedLight& light : flat_scene.lights) add(light.layers);
     std::ranges::sort(masks);
     masks.erase(std::ranges::unique(masks).begin(), masks.end());
     return masks;
@@ -60,9 +60,9 @@ void set_addresses(SceneTables& tables, const BlobAddress& address_of) {
         set_address(mesh.tex_coords, blobs.tex_coords, address_of);
         set_address(mesh.tex_coords_1, blobs.tex_coords_1, address_of);
     }
-    for (std::size_t i = 0; i < tables.mesh_steps.size(); ++i) {
-        set_address(tables.mesh_steps[i].positions, tables.step_arrays[i].positions, address_of);
-        set_address(tables.mesh_steps[i].normals, tables.step_arrays[i].normals, address_of);
+    for (std::size_t i = 0; i < tables.mesh_keys.size(); ++i) {
+        set_address(tables.mesh_keys[i].positions, tables.key_arrays[i].positions, address_of);
+        set_address(tables.mesh_keys[i].normals, tables.key_arrays[i].normals, address_of);
     }
     set_address(tables.scene.environment.map.texels, tables.environment_texels, address_of);
 }
@@ -72,17 +72,17 @@ shading::Scene on_host(const SceneTables& tables) {
     scene.textures.items = tables.textures.data();
     scene.materials.items = tables.materials.data();
     scene.extras.items = tables.extras.data();
-    scene.shaders.items = tables.shaders.data();
+    scene.surface_shaders.items = tables.surface_shaders.data();
     scene.meshes.items = tables.meshes.data();
-    scene.mesh_steps.items = tables.mesh_steps.data();
-    scene.places.items = tables.places.data();
+    scene.mesh_keys.items = tables.mesh_keys.data();
+    scene.transform_keys.items = tables.transform_keys.data();
     scene.motions.items = tables.motions.data();
-    scene.bodies.items = tables.bodies.data();
+    scene.media.items = tables.media.data();
     scene.instances.items = tables.instances.data();
     scene.lights.items = tables.lights.data();
     scene.emitters.items = tables.emitters.data();
     scene.light_nodes.items = tables.light_nodes.data();
-    scene.sums.items = tables.sums.data();
+    scene.cdfs.items = tables.cdfs.data();
     scene.srgb.items = srgb_values().data();
     scene.energy.items = energy_values().data();
     return scene;
@@ -92,23 +92,23 @@ std::uint32_t features_for(const SceneTables& tables, const shading::View& view)
     const bool sees_all =
         std::ranges::all_of(tables.layers, [&](std::uint32_t mask) { return (mask & view.layers) != 0; });
     return tables.scene.features | (sees_all ? 0u : shading::FeatureLayers) |
-           (view.camera_steps > 0 ? shading::FeatureCameraMotion : 0u);
+           (view.camera_key_intervals > 0 ? shading::FeatureCameraMotion : 0u);
 }
 
-SceneTables make_tables(const scene::Scene& scene, const Lowered& lowered, const MeshCatalog& meshes,
-                        const scene::BlobStore& blobs, TexturePyramids& pyramids) {
+SceneTables make_tables(const scene::Scene& scene, const FlatScene& flat_scene, const MeshCatalog& meshes,
+                        const scene::BlobStore& blobs, MipmapCache& mipmaps) {
     SceneTables tables;
     if (const auto* root = scene.find_as<scene::Root>(scene::RootId)) {
         tables.render_origin = root->render_origin;
     }
-    const Indices textures = add_textures(tables, scene, lowered, meshes, blobs, pyramids);
+    const Indices textures = add_textures(tables, scene, flat_scene, meshes, blobs, mipmaps);
     const Indices materials = add_materials(tables, scene, textures);
-    add_instances(tables, lowered, meshes, materials);
-    mark_shadow_catchers(tables, scene, lowered, meshes);
-    add_bodies(tables, scene, lowered, meshes, textures);
-    tables.layers = masks_of(lowered);
+    add_instances(tables, flat_scene, meshes, materials);
+    mark_shadow_catchers(tables, scene, flat_scene, meshes);
+    add_media(tables, scene, flat_scene, meshes, textures);
+    tables.layers = masks_of(flat_scene);
     const double sky_luminance = add_environment(tables, scene, textures);
-    add_lights(tables, scene, lowered, meshes, sky_luminance);
+    add_lights(tables, scene, flat_scene, meshes, sky_luminance);
     return tables;
 }
 

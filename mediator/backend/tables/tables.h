@@ -6,66 +6,66 @@
 #include <vector>
 
 #include "mediator/backend/tables/meshes.h"
-#include "mediator/backend/tables/pyramids.h"
+#include "mediator/backend/tables/mipmap_cache.h"
 #include "mediator/shading/layout.h"
 
 namespace tessera::backend {
 
-// Relative to the render origin; low > high: nothing.
+// Relative to the render origin; low > high: empty.
 struct Bounds {
     glm::dvec3 low{std::numeric_limits<double>::infinity()};
     glm::dvec3 high{-std::numeric_limits<double>::infinity()};
 };
 
-// Everything that rays are shaded with, relative to the render origin and ordered by object id: a function of
-// the scene's content alone, the same for all back-ends. Vertices and texels stay in their blobs.
+// All scene data for shading, relative to the render origin and ordered by object id: a function of the scene's
+// content alone, the same for all back-ends. Vertices and texels stay in their blobs.
 struct SceneTables {
-    std::vector<shading::Texture> textures;       // that are used
-    std::vector<shading::Material> materials;     // 0 = the default grey, 1 = the placeholder's
-    std::vector<shading::MaterialExtras> extras;  // of those that have any
-    std::vector<shading::Shader> shaders;         // of the materials that are CommonSurfaceShaders
-    std::vector<shading::Mesh> meshes;            // of the geometries that are placed
-    std::vector<shading::MeshStep> mesh_steps;    // of meshes that bend, the beginning's and each after it
-    std::vector<shading::Place> places;           // of what moves, likewise
-    std::vector<shading::Motion> motions;         // of instances, then of lights
-    std::vector<shading::Body> bodies;            // of the geometries that are filled with something
-    std::vector<shading::Instance> instances;     // as in Lowered::instances
-    // In the tree: mesh lights by instance, placed lights by (id, path); distant: placed lights likewise, the
-    // sky.
+    std::vector<shading::Texture> textures;                     // those in use
+    std::vector<shading::Material> materials;                   // 0 = the default grey, 1 = the placeholder's
+    std::vector<shading::MaterialExtras> extras;                // of materials that have them
+    std::vector<shading::SurfaceShaderParams> surface_shaders;  // of the CommonSurfaceShaders
+    std::vector<shading::Mesh> meshes;                          // of the geometries that are placed
+    std::vector<shading::MeshKey> mesh_keys;                    // of deforming meshes
+    std::vector<shading::Affine3x4> transform_keys;             // of moving instances and lights
+    std::vector<shading::Motion> motions;                       // of instances, then of lights
+    std::vector<shading::Medium> media;                         // of the geometries with an interior medium
+    std::vector<shading::Instance> instances;                   // as in FlatScene::instances
+    // First those of the tree: mesh lights by instance, placed lights by (id, path). Then infinite lights: directional
+    // ones by (id, path), the environment.
     std::vector<shading::LightSource> lights;
     std::vector<shading::Emitter> emitters;       // by light
-    std::vector<shading::LightNode> light_nodes;  // of the emitters that shine
-    std::vector<float> sums;                      // cumulative; each ends at 1
-    shading::Scene scene{};                       // all of it but the addresses of the tables
+    std::vector<shading::LightNode> light_nodes;  // of the emitters with power
+    std::vector<float> cdfs;                      // each ends at 1
+    shading::Scene scene{};                       // without the addresses of the tables
     glm::dvec3 render_origin{0.0};
-    std::vector<std::uint32_t> layers;  // each mask of instances and lights once
-    Bounds bounds;                      // of all that can be hit
+    std::vector<std::uint32_t> layers;  // each layer mask of instances and lights, once
+    Bounds bounds;                      // of all instances
 
-    // What the records' addresses point into: of each texture, of the environment's map and of each mesh.
+    // The blobs that the addresses in the records point to: of each texture, the environment map and each mesh.
     std::vector<scene::BlobPtr> texels, levels;
     scene::BlobPtr environment_texels;
     struct Arrays {
         scene::BlobPtr positions, triangles, normals, tangents, colors, tex_coords, tex_coords_1;
     };
     std::vector<Arrays> arrays;
-    struct StepArrays {
+    struct KeyArrays {
         scene::BlobPtr positions, normals;
     };
-    std::vector<StepArrays> step_arrays;  // of each mesh step
+    std::vector<KeyArrays> key_arrays;  // of each of mesh_keys
 };
 
-// The light tree or one of the distant lights is chosen in proportion to its power, a tenth uniformly, so
-// that a wrong estimate costs noise, never light. Addresses are the host's.
-SceneTables make_tables(const scene::Scene& scene, const Lowered& lowered, const MeshCatalog& meshes,
-                        const scene::BlobStore& blobs, TexturePyramids& pyramids);
+// The light tree or an infinite light is chosen in proportion to power, a tenth of the time uniformly, so that a wrong
+// power estimate adds noise but no bias. Addresses are those of the host.
+SceneTables make_tables(const scene::Scene& scene, const FlatScene& flat_scene, const MeshCatalog& meshes,
+                        const scene::BlobStore& blobs, MipmapCache& mipmaps);
 
-// What update_tables has done: given moved instances their places, or made all tables anew.
-enum class TablesStep { Moved, Made };
+// Whether update_tables updated the transforms of moved instances, or rebuilt all tables.
+enum class TablesUpdate { Moved, Rebuilt };
 
-// The same as the tables made anew, from those of before the edit.
-TablesStep update_tables(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
-                         const MeshCatalog& meshes, const scene::BlobStore& blobs, TexturePyramids& pyramids,
-                         const SceneDelta& delta);
+// Updates the tables after an edit. The result equals that of make_tables.
+TablesUpdate update_tables(SceneTables& tables, const scene::Scene& scene, const FlatScene& flat_scene,
+                           const MeshCatalog& meshes, const scene::BlobStore& blobs, MipmapCache& mipmaps,
+                           const SceneDelta& delta);
 
 // The scene on the host: addresses of the tables' own memory, valid while they are neither changed nor moved.
 shading::Scene on_host(const SceneTables& tables);
@@ -76,10 +76,10 @@ std::uint32_t features_for(const SceneTables& tables, const shading::View& view)
 // 256 linear values, for Scene::srgb.
 std::span<const float> srgb_values();
 
-// For Scene::energy: what lobes reflect of light from everywhere (shading/energy.h).
+// For Scene::energy: directional albedos of the lobes (shading/energy.h).
 std::span<const float> energy_values();
 
-// Where a blob lies for whoever reads the records, on a device for instance. Never asked for null.
+// The address of a blob for the reader of the records, for instance on a device. Never called with null.
 using BlobAddress = std::function<std::uint64_t(const scene::BlobPtr& blob)>;
 void set_addresses(SceneTables& tables, const BlobAddress& address_of);
 

@@ -8,7 +8,7 @@ namespace tessera::backend {
 
 namespace {
 
-// A record holds the scene's own numbers.
+// The enumerators of the scene are used in the records unchanged.
 static_assert(shading::TexelRgba8 == std::uint32_t(scene::TexelFormat::Rgba8) &&
               shading::TexelRgba8Srgb == std::uint32_t(scene::TexelFormat::Rgba8Srgb) &&
               shading::TexelRgbFloat == std::uint32_t(scene::TexelFormat::RgbFloat));
@@ -18,7 +18,7 @@ static_assert(shading::WrapRepeat == std::uint32_t(scene::Wrap::Repeat) &&
 static_assert(shading::TextureLinear == std::uint32_t(scene::TextureFilter::Linear) &&
               shading::TextureNearest == std::uint32_t(scene::TextureFilter::Nearest));
 
-// Whether all texels are there; else validation has told of it.
+// Whether all texels are there; validation has reported it otherwise.
 bool is_whole(const scene::Texture& texture, const scene::BlobPtr& texels) {
     const std::uint64_t texel = texture.format == scene::TexelFormat::RgbFloat ? 12 : 4;
     return texels && texture.width > 0 && texture.height > 0 && texture.depth > 0 &&
@@ -27,10 +27,10 @@ bool is_whole(const scene::Texture& texture, const scene::BlobPtr& texels) {
 
 struct Used {
     std::set<ObjectId> textures;
-    std::set<ObjectId> filtered;  // those that paths of some width look up
+    std::set<ObjectId> filtered;  // those that need mip maps
 };
 
-// Of what shines and of what fills bodies only points are asked for; `ambient` is no path tracer's business.
+// Emission and media are looked up without filtering; `ambient` is not used.
 template <class T>
 void note_textures(const T& material, Used& used) {
     scene::for_each_field<T>([&](unsigned, auto member) {
@@ -46,10 +46,10 @@ void note_textures(const T& material, Used& used) {
     });
 }
 
-// By what is placed, and by the background.
-Used used_textures(const scene::Scene& scene, const Lowered& lowered, const MeshCatalog& meshes) {
+// Textures of placed geometries, and of the background.
+Used used_textures(const scene::Scene& scene, const FlatScene& flat_scene, const MeshCatalog& meshes) {
     std::set<ObjectId> materials;
-    for (const Instance& instance : lowered.instances) {
+    for (const Instance& instance : flat_scene.instances) {
         const scene::Geometry& geometry = meshes.find(instance.geometry)->source;
         materials.insert({geometry.material, geometry.medium});
     }
@@ -67,17 +67,17 @@ Used used_textures(const scene::Scene& scene, const Lowered& lowered, const Mesh
 
 }  // namespace
 
-Indices add_textures(SceneTables& tables, const scene::Scene& scene, const Lowered& lowered,
-                     const MeshCatalog& meshes, const scene::BlobStore& blobs, TexturePyramids& pyramids) {
+Indices add_textures(SceneTables& tables, const scene::Scene& scene, const FlatScene& flat_scene,
+                     const MeshCatalog& meshes, const scene::BlobStore& blobs, MipmapCache& mipmaps) {
     Indices indices;
-    const Used used = used_textures(scene, lowered, meshes);
+    const Used used = used_textures(scene, flat_scene, meshes);
     for (const ObjectId id : used.textures) {
         const auto* texture = scene.find_as<scene::Texture>(id);
         if (texture == nullptr) continue;
         scene::BlobPtr texels = blobs.find(texture->texels.hash);
         if (!is_whole(*texture, texels)) continue;
         indices[id] = static_cast<std::uint32_t>(tables.textures.size());
-        scene::BlobPtr levels = used.filtered.contains(id) ? pyramids.levels(*texture, *texels) : nullptr;
+        scene::BlobPtr levels = used.filtered.contains(id) ? mipmaps.levels(*texture, *texels) : nullptr;
         tables.textures.push_back({.texels = {texels->as<std::uint32_t>().data()},
                                    .levels = {elements<std::uint32_t>(levels).data()},
                                    .width = texture->width,
@@ -91,7 +91,7 @@ Indices add_textures(SceneTables& tables, const scene::Scene& scene, const Lower
         tables.texels.push_back(std::move(texels));
         tables.levels.push_back(std::move(levels));
     }
-    pyramids.drop_unused();
+    mipmaps.drop_unused();
     return indices;
 }
 

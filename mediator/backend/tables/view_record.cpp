@@ -1,6 +1,6 @@
 #include "mediator/backend/tables/view_record.h"
 
-#include "mediator/shading/bodies.h"
+#include "mediator/shading/containing_media.h"
 #include "mediator/shading/sample_values.h"
 
 namespace tessera::backend {
@@ -9,14 +9,14 @@ namespace {
 
 using frame::Channel;
 
-// A record holds the view's own numbers.
+// The enumerators of the view are used in the records unchanged.
 static_assert(shading::FilterBox == std::uint32_t(view::PixelFilterKind::Box) &&
               shading::FilterGaussian == std::uint32_t(view::PixelFilterKind::Gaussian) &&
               shading::FilterBlackmanHarris == std::uint32_t(view::PixelFilterKind::BlackmanHarris));
 static_assert(shading::RendererPathTracing == std::uint32_t(view::Renderer::PathTracing) &&
               shading::RendererWhitted == std::uint32_t(view::Renderer::Whitted) &&
               shading::RendererRaster == std::uint32_t(view::Renderer::Raster) &&
-              shading::RendererCoverage == std::uint32_t(view::Renderer::Coverage));
+              shading::RendererObjectId == std::uint32_t(view::Renderer::Coverage));
 static_assert(shading::ClassIndirect == std::uint32_t(view::PathClass::Indirect) &&
               shading::ClassCaustics == std::uint32_t(view::PathClass::Caustics) &&
               shading::ClassDiffuse == std::uint32_t(view::PathClass::Diffuse) &&
@@ -36,22 +36,23 @@ static_assert(is_number_of(shading::ChannelRadiance, Channel::Radiance) &&
               is_number_of(shading::ChannelDepth, Channel::Depth) &&
               is_number_of(shading::ChannelObjectIndex, Channel::ObjectIndex) &&
               is_number_of(shading::ChannelAlpha, Channel::Alpha) &&
-              is_number_of(shading::ChannelRange, Channel::Range) &&
+              is_number_of(shading::ChannelHeadlight, Channel::Headlight) &&
               is_number_of(shading::ChannelShadingFeature, Channel::ShadingFeature) &&
               is_number_of(shading::ChannelIrradiance, Channel::Irradiance) &&
-              is_number_of(shading::ChannelEvenHalf, Channel::EvenHalf) &&
+              is_number_of(shading::ChannelHalfBufferA, Channel::HalfBufferA) &&
               is_number_of(shading::ChannelColor, Channel::Color) && frame::ChannelCount == 13);
 
-std::uint32_t kept(const view::View& view) {
+std::uint32_t recorded_quantities(const view::View& view) {
     const bool feature = view.channels.contains(Channel::ShadingFeature);
-    std::uint32_t keeps = 0;
+    std::uint32_t recorded = 0;
     if (view.path_class == view::PathClass::Diffuse || view.channels.contains(Channel::Irradiance) ||
         (feature && view.feature_rule == view::FeatureRule::Demodulated)) {
-        keeps |= shading::KeepsDiffuse;
+        recorded |= shading::RecordsDiffuse;
     }
-    if (feature && view.feature_rule == view::FeatureRule::Connections) keeps |= shading::KeepsConnections;
-    if (view.channels.contains(Channel::Range)) keeps |= shading::KeepsRange;
-    return keeps;
+    if (feature && view.feature_rule == view::FeatureRule::Connections)
+        recorded |= shading::RecordsConnections;
+    if (view.channels.contains(Channel::Headlight)) recorded |= shading::RecordsHeadlight;
+    return recorded;
 }
 
 std::uint32_t camera_bits(const view::CameraPose& camera) {
@@ -63,11 +64,11 @@ std::uint32_t camera_bits(const view::CameraPose& camera) {
     return bits;
 }
 
-// A rasteriser draws what a pinhole sees at one time.
+// Raster needs a static pinhole camera; other views use Whitted.
 view::Renderer renderer_of(const view::View& view) {
-    const bool draws = view.renderer == view::Renderer::Raster;
-    return draws && (!view.camera.is_pinhole() || !view.camera.motion.empty()) ? view::Renderer::Whitted
-                                                                               : view.renderer;
+    const bool is_raster = view.renderer == view::Renderer::Raster;
+    return is_raster && (!view.camera.is_pinhole() || !view.camera.motion.empty()) ? view::Renderer::Whitted
+                                                                                   : view.renderer;
 }
 
 }  // namespace
@@ -80,36 +81,36 @@ shading::View make_view(const view::View& view, const glm::dvec3& render_origin)
             .right = glm::vec3(m[0]),
             .up = glm::vec3(m[1]),
             .forward = -glm::vec3(m[2]),
-            .middle = {static_cast<float>(0.5 * (camera.left + camera.right)),
-                       static_cast<float>(0.5 * (camera.top + camera.bottom))},
+            .image_center = {static_cast<float>(0.5 * (camera.left + camera.right)),
+                             static_cast<float>(0.5 * (camera.top + camera.bottom))},
             .step = {static_cast<float>((camera.right - camera.left) / view.width),
                      static_cast<float>((camera.bottom - camera.top) / view.height)},
             .width = view.width,
             .height = view.height,
             .pixel_filter = static_cast<std::uint32_t>(view.pixel_filter.kind),
             .filter_radius = view.pixel_filter.radius,
-            // Light scattered up to max_bounces + 1 times is counted, so 0 is direct light (as in Cycles).
-            .max_scatterings = view.max_bounces == view::UnlimitedBounces ? shading::UnlimitedScatterings
-                                                                          : view.max_bounces + 1,
+            // Paths have up to max_bounces + 1 scattering events, so 0 is direct light (as in Cycles).
+            .max_scatter_events = view.max_bounces == view::UnlimitedBounces ? shading::UnlimitedScatterEvents
+                                                                             : view.max_bounces + 1,
             .renderer = static_cast<std::uint32_t>(renderer_of(view)),
             .path_class = static_cast<std::uint32_t>(view.path_class),
             .feature_rule = static_cast<std::uint32_t>(view.feature_rule),
             .channels = view.channels.kernel_bits(),
-            .keeps = kept(view),
+            .recorded_quantities = recorded_quantities(view),
             .transparent_background = view.transparent_background ? 1u : 0u,
             .strategy = shading::StrategyBoth,
             .layers = view.layers,
             .camera = camera_bits(camera),
             .lens_radius = static_cast<float>(camera.lens_radius),
             .focus_distance = static_cast<float>(camera.focus_distance),
-            .camera_places = {},
-            .camera_steps = static_cast<std::uint32_t>(camera.motion.size()),
-            .inside = shading::nowhere(),
+            .camera_keys = {},
+            .camera_key_intervals = static_cast<std::uint32_t>(camera.motion.size()),
+            .containing_media = shading::no_media(),
             .unused = 0};
 }
 
-std::vector<shading::Place> camera_places(const view::CameraPose& camera, const glm::dvec3& render_origin) {
-    std::vector<shading::Place> places;
+std::vector<shading::Affine3x4> camera_keys(const view::CameraPose& camera, const glm::dvec3& render_origin) {
+    std::vector<shading::Affine3x4> places;
     if (camera.motion.empty()) return places;
     const auto add = [&](const glm::dmat4& world_from_camera) {
         places.push_back({.linear = glm::mat3(glm::dmat3(world_from_camera)),

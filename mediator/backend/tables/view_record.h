@@ -8,11 +8,11 @@
 
 namespace tessera::backend {
 
-// What the kernels read of a view; the camera relative to the render origin. Where the camera moves, the
-// address of its places is for the caller to fill in.
+// The view as the kernels read it; the camera is relative to the render origin. The caller sets the address of the
+// camera keys.
 shading::View make_view(const view::View& view, const glm::dvec3& render_origin);
 
-// Where a camera is at the beginning and at each step after it; none where it stands still.
-std::vector<shading::Place> camera_places(const view::CameraPose& camera, const glm::dvec3& render_origin);
+// The motion keys of a camera; empty if it does not move.
+std::vector<shading::Affine3x4> camera_keys(const view::CameraPose& camera, const glm::dvec3& render_origin);
 
 }  // namespace tessera::backend

@@ -6,25 +6,25 @@
 #include "mediator/base/clock.h"
 #include "mediator/base/parallel.h"
 #include "mediator/program/command_line.h"
-#include "tests/bench/backends/bare_rays.h"
 #include "tests/bench/backends/scene_edits.h"
+#include "tests/bench/backends/traversal_rays.h"
 
 namespace tessera::tools::bench {
 
 namespace {
 
-using tessera::bench::Question, tessera::bench::RayCaster;
+using tessera::bench::RayQueryKind, tessera::bench::RayCaster;
 
 class SceneRun {
   public:
     SceneRun(const BackendsPlan& plan, const EditedScene& scene, const BenchProgress& progress,
              const std::stop_token& stop)
-        : plan_(plan), scene_(scene), progress_(progress), stop_(stop), results_(plan.entrants.size()) {}
+        : plan_(plan), scene_(scene), progress_(progress), stop_(stop), results_(plan.targets.size()) {}
 
-    std::optional<std::vector<ContenderResult>> run() {
-        for (std::size_t i = 0; i < results_.size(); ++i) results_[i].name = plan_.entrants[i].contender.name;
+    std::optional<std::vector<TargetResult>> run() {
+        for (std::size_t i = 0; i < results_.size(); ++i) results_[i].name = plan_.targets[i].target.name;
         if (!cast_rays()) return std::nullopt;
-        // A round that does not count: the driver compiles, caches fill.
+        // Round 0 is a warm-up: the driver compiles, caches fill.
         for (std::uint32_t round = 0; round <= plan_.repeat; ++round) {
             for (std::size_t i = 0; i < results_.size(); ++i) {
                 say(results_[i].name + ", round " + std::to_string(round) + " of " +
@@ -38,8 +38,8 @@ class SceneRun {
   private:
     void say(const std::string& text) const { progress_.say(scene_.scene.name + ": " + text); }
 
-    backend::BackendSettings settings(const BackendsPlan::Entrant& entrant) const {
-        return {.threads = plan_.jobs, .device = entrant.device, .blobs = scene_.blobs};
+    backend::BackendSettings settings(const BackendsPlan::Target& target) const {
+        return {.threads = plan_.jobs, .device = target.device, .blobs = scene_.blobs};
     }
 
     double timed(const std::function<void()>& work) const {
@@ -50,21 +50,21 @@ class SceneRun {
 
     bool cast_rays() {
         std::vector<std::unique_ptr<RayCaster>> casters;
-        for (const auto& entrant : plan_.entrants) {
-            casters.push_back(entrant.contender.make_caster(settings(entrant), scene_.everything));
+        for (const auto& target : plan_.targets) {
+            casters.push_back(target.target.make_caster(settings(target), scene_.snapshot));
         }
         const RaySets sets = ray_sets(scene_.scene, scene_.blobs, plan_.rays, *casters.front());
-        return cast(casters, "primary_rays", sets.primary, Question::Closest) &&
-               cast(casters, "shadow_rays", sets.shadow, Question::Any) &&
-               cast(casters, "bounce_rays", sets.bounce, Question::Closest);
+        return cast(casters, "primary_rays", sets.primary, RayQueryKind::Closest) &&
+               cast(casters, "shadow_rays", sets.shadow, RayQueryKind::Any) &&
+               cast(casters, "bounce_rays", sets.bounce, RayQueryKind::Closest);
     }
 
     bool cast(const std::vector<std::unique_ptr<RayCaster>>& casters, std::string_view measure,
-              const std::vector<shading::AskedRay>& rays, Question question) {
+              const std::vector<shading::RayQuery>& rays, RayQueryKind kind) {
         if (rays.empty()) return true;  // the camera sees nothing
         say(std::string(measure));
         for (const auto& caster : casters) {
-            caster->take(rays, question);
+            caster->take(rays, kind);
             caster->cast();
         }
         for (std::uint32_t round = 0; round < plan_.repeat; ++round) {
@@ -77,23 +77,23 @@ class SceneRun {
         return true;
     }
 
-    // A back-end from its start: the scene, a picture, edits, a picture, paths.
+    // One round from the start of the back-end: scene, picture, edits with pictures, whole paths.
     bool whole_round(std::size_t index, bool counts) {
-        const BackendsPlan::Entrant& entrant = plan_.entrants[index];
-        const auto renderer = entrant.contender.make_backend(settings(entrant));
+        const BackendsPlan::Target& target = plan_.targets[index];
+        const auto renderer = target.target.make_backend(settings(target));
         results_[index].kind = renderer->capabilities().kind;
         Measurements ignored;
         Measurements& to = counts ? results_[index].measured : ignored;
-        const auto shown = [&](const scene::ChangeList& changes, const std::string& name,
-                               const std::string& measure) {
+        const auto applied_and_rendered = [&](const scene::ChangeList& changes, const std::string& name,
+                                              const std::string& measure) {
             const double time = edit(*renderer, changes, name, to);
-            const std::optional<Picture> made = picture(*renderer, 1);
-            if (made) to.add(measure, time + made->seconds);
-            return made.has_value();
+            const std::optional<Picture> shown_picture = picture(*renderer, 1);
+            if (shown_picture) to.add(measure, time + shown_picture->seconds);
+            return shown_picture.has_value();
         };
-        if (!shown(scene_.everything, "build", "build_to_picture") ||
-            !shown(scene_.vertices, "refit", "refit_to_picture") ||
-            !shown(scene_.place, "update", "update_to_picture")) {
+        if (!applied_and_rendered(scene_.snapshot, "build", "build_to_picture") ||
+            !applied_and_rendered(scene_.deformation, "refit", "refit_to_picture") ||
+            !applied_and_rendered(scene_.movement, "update", "update_to_picture")) {
             return false;
         }
         const std::optional<Picture> paths = picture(*renderer, plan_.spp);
@@ -121,7 +121,7 @@ class SceneRun {
     struct Picture {
         double seconds = 0.0, samples = 0.0, rays = 0.0;
     };
-    // Nothing: stopped.
+    // Empty: stopped.
     std::optional<Picture> picture(backend::Backend& renderer, std::uint64_t spp) const {
         const backend::Capabilities can = renderer.capabilities();
         const auto edge = static_cast<std::int32_t>(can.preferred_tile);
@@ -169,7 +169,7 @@ class SceneRun {
     const BenchProgress& progress_;
     const std::stop_token& stop_;
     SteadyClock clock_;
-    std::vector<ContenderResult> results_;
+    std::vector<TargetResult> results_;
 };
 
 }  // namespace
@@ -191,10 +191,10 @@ std::optional<BackendsResults> run_backends(const BackendsPlan& plan, const Benc
         auto loaded = load_scene(name, plan.assets);
         if (!loaded) throw loaded.error();
         const EditedScene scene = with_edits(std::move(*loaded));
-        auto contenders = SceneRun(plan, scene, progress, stop).run();
-        if (!contenders) return std::nullopt;
+        auto targets = SceneRun(plan, scene, progress, stop).run();
+        if (!targets) return std::nullopt;
         results.scenes.push_back(
-            {name, scene.scene.summary, scene.triangles, scene.instances, std::move(*contenders)});
+            {name, scene.scene.summary, scene.triangles, scene.instances, std::move(*targets)});
         show(results.scenes.back());
     }
     results.seconds = seconds(clock.now() - started);

@@ -10,8 +10,7 @@
 
 namespace tessera::tools::bench {
 
-// Everything that is measured of all entrants, who take turns; each scene is shown when it is done. Nothing
-// when it was stopped. Throws Error.
+// Measures all targets, which take turns; calls `show` after each scene. Empty when stopped. Throws Error.
 std::optional<BackendsResults> run_backends(const BackendsPlan& plan, const BenchProgress& progress,
                                             const std::function<void(const BackendsScene&)>& show,
                                             const std::stop_token& stop);

@@ -17,8 +17,8 @@ constexpr const char* BackendsName = "bench backends";
 
 int run(const BackendsOptions& options) {
     const Interrupts interrupts;  // before anything that starts threads
-    const auto plan = understand(options, tessera::bench::contenders());
-    if (!plan) return complain(BackendsName, cli::ExitUsage, plan.error().what());
+    const auto plan = parse_options(options, tessera::bench::bench_targets());
+    if (!plan) return report_error(BackendsName, cli::ExitUsage, plan.error().what());
     std::optional<BackendsResults> results;
     {
         ProgressLine line;
@@ -32,8 +32,8 @@ int run(const BackendsOptions& options) {
         results = run_backends(*plan, progress, show, interrupts.token());
     }
     if (!results)
-        return complain(BackendsName, ExitInterrupted,
-                        "interrupted in the middle of a scene; no file is written");
+        return report_error(BackendsName, ExitInterrupted,
+                            "interrupted before all scenes were measured; no file was written");
     if (!plan->output.empty()) {
         picture::write_atomically(plan->output.string(), plan->output.extension() == ".csv"
                                                              ? as_csv(*results)
@@ -51,23 +51,24 @@ Command backends_command(cli::CommandLine& bench) {
     cli::CommandLine& line = bench.command(
         "backends",
         "How fast each back-end is, with the ratio to the first one's in the same run: rays without shading "
-        "(the camera's, to points in sight, diffuse bounces), whole paths, building a scene, refitting its "
-        "largest mesh, moving it, the bytes that go to the device, and the time from there to a picture of "
-        "one sample per pixel. The back-ends take turns; figures are medians after a round that does not "
-        "count. 'vulkan-plain' is the Vulkan back-end on trees of two children, its baseline.");
+        "(camera, shadow and diffuse bounce rays), whole paths, building a scene, refitting its "
+        "largest mesh, moving it, the bytes uploaded to the device, and the time until a picture of "
+        "one sample per pixel. The back-ends take turns; figures are medians after a warm-up round. "
+        "'vulkan-plain' is the Vulkan back-end with a binary BVH, its baseline.");
     line.option("--backends",
-                "a,b: what to measure; the first is what others are compared with (default: all)",
+                "a,b: back-ends to measure; the others are compared with the first (default: all)",
                 options->backends);
     line.option("--device", "Vulkan device: an index or a part of its name; tessera doctor lists them",
                 options->device);
     line.option(
         "--scenes",
-        "a,b: built-in scenes, scene files, or balls:N for about N triangles (default: all but those)",
+        "a,b: built-in scenes, scene files, or balls:N for about N triangles (default: all except balls)",
         options->scenes);
-    line.option("--size", "of the pictures", options->size);
-    line.option("--spp", "samples per pixel of whole paths", options->spp);
-    line.option("--rays", "of each kind without shading; give a graphics card millions", options->rays);
-    line.option("--repeat", "measurements of which the median is taken", options->repeat);
+    line.option("--size", "picture size", options->size);
+    line.option("--spp", "samples per pixel of the path measurement", options->spp);
+    line.option("--rays", "number of rays of each kind without shading; use millions for a GPU",
+                options->rays);
+    line.option("--repeat", "number of measurements; the median is reported", options->repeat);
     line.option("--assets", "folder with the scenes and environments of tests/scenes", options->assets);
     line.option("--jobs", "threads of Embree and of software devices; 0: all cores", options->jobs);
     line.option("-o,--output", "file to write: .json with every measurement, or .csv", options->output);
@@ -80,7 +81,7 @@ Command backends_command(cli::CommandLine& bench) {
                 try {
                     return run(*options);
                 } catch (const Error& error) {
-                    return complain(BackendsName, exit_code(error.code()), error.what());
+                    return report_error(BackendsName, exit_code(error.code()), error.what());
                 }
             }};
 }

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-#include "client/tools/this_machine.h"
+#include "client/tools/host_info.h"
 #include "tests/bench/scenes/scenes.h"
 
 namespace tessera::tools::bench {
 
 namespace {
 
-// What one dispatch of 65,535 workgroups takes.
+// Limit of one dispatch of 65,535 workgroups.
 constexpr std::uint32_t MostRays = 4'000'000;
 constexpr std::uint64_t MostSamples = 1u << 16;
 
@@ -19,8 +19,8 @@ tl::unexpected<Error> wrong_option(const std::string& option, const std::string&
 
 }  // namespace
 
-Expected<BackendsPlan> understand(const BackendsOptions& options,
-                                  const std::vector<tessera::bench::Contender>& contenders) {
+Expected<BackendsPlan> parse_options(const BackendsOptions& options,
+                                     const std::vector<tessera::bench::BenchTarget>& targets) {
     BackendsPlan plan{.output = options.output,
                       .assets = options.assets,
                       .spp = options.spp,
@@ -33,18 +33,18 @@ Expected<BackendsPlan> understand(const BackendsOptions& options,
 
     std::vector<std::string> names = split_list(options.backends);
     std::string known;
-    for (const auto& contender : contenders) {
-        known += (known.empty() ? "" : ", ") + contender.name;
-        if (options.backends.empty()) names.push_back(contender.name);
+    for (const auto& target : targets) {
+        known += (known.empty() ? "" : ", ") + target.name;
+        if (options.backends.empty()) names.push_back(target.name);
     }
     for (const std::string& name : names) {
-        const auto found = std::ranges::find(contenders, name, &tessera::bench::Contender::name);
-        if (found == contenders.end()) {
-            return wrong_option("--backends", "there is no '" + name + "': choose of " + known);
+        const auto found = std::ranges::find(targets, name, &tessera::bench::BenchTarget::name);
+        if (found == targets.end()) {
+            return wrong_option("--backends", "unknown back-end '" + name + "': choose from " + known);
         }
-        plan.entrants.push_back({*found, found->chooses_device ? options.device : ""});
+        plan.targets.push_back({*found, found->chooses_device ? options.device : ""});
     }
-    if (plan.entrants.empty()) return wrong_option("--backends", "the list is empty: choose of " + known);
+    if (plan.targets.empty()) return wrong_option("--backends", "the list is empty: choose from " + known);
     const auto size = parse_size(options.size);
     if (!size) return wrong_option("--size", size.error().what());
     plan.size = *size;
@@ -57,7 +57,8 @@ Expected<BackendsPlan> understand(const BackendsOptions& options,
     if (plan.repeat == 0) return wrong_option("--repeat", "at least 1");
     const std::string extension = plan.output.extension().string();
     if (!plan.output.empty() && extension != ".json" && extension != ".csv") {
-        return wrong_option("--output", "'" + options.output + "' names no format: end it in .json or .csv");
+        return wrong_option("--output",
+                            "'" + options.output + "' has no known format: use the extension .json or .csv");
     }
     return plan;
 }

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "client/tools/values.h"
-#include "tests/bench/backends/contenders.h"
+#include "tests/bench/backends/bench_targets.h"
 
 namespace tessera::tools::bench {
 
-// What `tessera bench backends` is asked to do. As typed.
+// Options of `tessera bench backends` as typed.
 struct BackendsOptions {
     std::string output, assets = "tests/scenes";
     std::string scenes, backends;  // "" = all
@@ -24,18 +24,18 @@ struct BackendsOptions {
 struct BackendsPlan {
     std::filesystem::path output, assets;  // output: empty for none
     std::vector<std::string> scenes;
-    struct Entrant {
-        tessera::bench::Contender contender;
+    struct Target {
+        tessera::bench::BenchTarget target;
         std::string device;
     };
-    std::vector<Entrant> entrants;  // the first is what the others are compared with
+    std::vector<Target> targets;  // the others are compared with the first
     Size size;
     std::uint64_t spp = 1;
     std::uint32_t rays = 0, repeat = 1, jobs = 1;
 };
 
-// InvalidInput with the option's name and what would be right.
-Expected<BackendsPlan> understand(const BackendsOptions& options,
-                                  const std::vector<tessera::bench::Contender>& contenders);
+// InvalidInput names the option and the accepted values.
+Expected<BackendsPlan> parse_options(const BackendsOptions& options,
+                                     const std::vector<tessera::bench::BenchTarget>& targets);
 
 }  // namespace tessera::tools::bench

@@ -6,9 +6,9 @@
 
 namespace tessera::tools::bench {
 
-// Medians, and beside them the ratio to the first contender's on the same scene in the same run.
-std::string as_table(const BackendsScene& scene);     // for people; a line per measure
-std::string as_csv(const BackendsResults& results);   // a line per scene, contender and measure
+// Medians, and their ratios to those of the first target on the same scene in the same run.
+std::string as_table(const BackendsScene& scene);     // human-readable; a line per measure
+std::string as_csv(const BackendsResults& results);   // a line per scene, target and measure
 std::string as_json(const BackendsResults& results);  // with every single measurement
 
 }  // namespace tessera::tools::bench

@@ -14,8 +14,8 @@ double Measurements::median(std::string_view key) const {
     std::vector<double> sorted = all(key);
     if (sorted.empty()) return 0.0;
     std::sort(sorted.begin(), sorted.end());
-    const std::size_t middle = sorted.size() / 2;
-    return sorted.size() % 2 == 1 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
+    const std::size_t center = sorted.size() / 2;
+    return sorted.size() % 2 == 1 ? sorted[center] : 0.5 * (sorted[center - 1] + sorted[center]);
 }
 
 }  // namespace tessera::tools::bench

@@ -9,8 +9,8 @@
 
 namespace tessera::tools::bench {
 
-// What is measured of a back-end. `scale`: from the unit it is kept in (seconds, bytes, things per second) to
-// the unit it is shown in.
+// A measured quantity of a back-end. `scale`: from the stored unit (seconds, bytes, rays or samples per
+// second) to the displayed unit.
 struct Measure {
     std::string_view key, label, unit;
     double scale = 1.0;
@@ -24,7 +24,7 @@ inline constexpr std::array BackendMeasures{
     Measure{"path_rays", "paths: rays", "Mrays/s", 1e-6},
     Measure{"build", "build", "ms", 1e3},
     Measure{"refit", "refit of a mesh", "ms", 1e3},
-    Measure{"update", "update of a place", "ms", 1e3},
+    Measure{"update", "update of a transform", "ms", 1e3},
     Measure{"build_to_picture", "build to picture", "ms", 1e3},
     Measure{"refit_to_picture", "refit to picture", "ms", 1e3},
     Measure{"update_to_picture", "update to picture", "ms", 1e3},
@@ -33,18 +33,18 @@ inline constexpr std::array BackendMeasures{
     Measure{"update_bytes", "upload: update", "MB", 1e-6},
 };
 
-// The measurements of one contender on one scene, in the order in which they were made.
+// The measurements of one target on one scene, in the order of measurement.
 class Measurements {
   public:
     void add(std::string_view key, double value) { values_[std::string(key)].push_back(value); }
-    const std::vector<double>& all(std::string_view key) const;  // none: empty
-    double median(std::string_view key) const;                   // 0: none
+    const std::vector<double>& all(std::string_view key) const;  // empty if not measured
+    double median(std::string_view key) const;                   // 0 if not measured
 
   private:
     std::map<std::string, std::vector<double>> values_;
 };
 
-struct ContenderResult {
+struct TargetResult {
     std::string name, kind;  // kind: of the back-end, with its device
     Measurements measured;
 };
@@ -52,7 +52,7 @@ struct ContenderResult {
 struct BackendsScene {
     std::string name, summary;
     std::uint64_t triangles = 0, instances = 0;
-    std::vector<ContenderResult> contenders;
+    std::vector<TargetResult> targets;
 };
 
 struct BackendsResults {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "mediator/backend/lowering.h"
+#include "mediator/backend/flattening.h"
 #include "mediator/scene/fields.h"
 
 namespace tessera::tools::bench {
@@ -12,7 +12,7 @@ namespace {
 
 using scene::Geometry, scene::Root, scene::Transform;
 
-// About a thousandth of the mesh's size, or of its place.
+// About a thousandth of the mesh's size or position.
 constexpr float Stretch = 1.001f;
 constexpr double Shift = 0.001;
 
@@ -40,51 +40,51 @@ std::uint64_t triangles_of(const scene::Scene& scene, ObjectId mesh) {
     return geometry->indices.byte_size / (3 * sizeof(std::uint32_t));
 }
 
-// The transform right above the instance; where there is none, a new one between the root and the mesh.
-ObjectId place_of(scene::Scene& scene, const backend::Instance& instance) {
+// The transform directly above the instance; if there is none, a new one between the root and the mesh.
+ObjectId transform_of(scene::Scene& scene, const backend::Instance& instance) {
     if (!instance.path.empty()) return instance.path.back();
-    const ObjectId place{scene.objects().rbegin()->first.value + 1};
+    const ObjectId object_transform{scene.objects().rbegin()->first.value + 1};
     Root root = *scene.find_as<Root>(scene::RootId);
-    std::replace(root.children.begin(), root.children.end(), instance.geometry, place);
-    carry_out(scene, {scene::Create{place, Transform{.children = {instance.geometry}}},
+    std::replace(root.children.begin(), root.children.end(), instance.geometry, object_transform);
+    carry_out(scene, {scene::Create{object_transform, Transform{.children = {instance.geometry}}},
                       update<Root>(scene::RootId, &Root::children, root)});
-    return place;
+    return object_transform;
 }
 
 }  // namespace
 
-EditedScene with_edits(BenchScene made) {
-    EditedScene edited{.scene = std::move(made), .blobs = std::make_shared<scene::BlobStore>()};
+EditedScene with_edits(BenchScene scene) {
+    EditedScene edited{.scene = std::move(scene), .blobs = std::make_shared<scene::BlobStore>()};
     scene::Scene& content = edited.scene.content;
     for (const scene::BlobPtr& blob : edited.scene.blobs) edited.blobs->insert(blob);
-    const auto lowered = backend::lower(content);
-    if (!lowered) throw lowered.error();
+    const auto flat_scene = backend::flatten(content);
+    if (!flat_scene) throw flat_scene.error();
     const auto largest = std::ranges::max_element(
-        lowered->instances, {},
+        flat_scene->instances, {},
         [&](const backend::Instance& instance) { return triangles_of(content, instance.geometry); });
-    if (largest == lowered->instances.end()) {
+    if (largest == flat_scene->instances.end()) {
         throw Error(ErrorCode::InvalidInput, "scene '" + edited.scene.name + "' has no mesh to measure with");
     }
-    for (const backend::Instance& instance : lowered->instances) {
+    for (const backend::Instance& instance : flat_scene->instances) {
         edited.triangles += triangles_of(content, instance.geometry);
     }
-    edited.instances = lowered->instances.size();
+    edited.instances = flat_scene->instances.size();
 
-    const ObjectId mesh = largest->geometry, place = place_of(content, *largest);
+    const ObjectId mesh = largest->geometry, object_transform = transform_of(content, *largest);
     Geometry geometry = *content.find_as<Geometry>(mesh);
     geometry.hint = scene::MotionHint::Animated;
     carry_out(content, {update<Geometry>(mesh, &Geometry::hint, geometry)});
-    edited.everything = scene::snapshot(content);
+    edited.snapshot = scene::snapshot(content);
 
     scene::Scene after = content;
     const auto positions = edited.blobs->find(geometry.positions.hash)->as<float>();
     std::vector<float> stretched(positions.begin(), positions.end());
     for (float& value : stretched) value *= Stretch;
     geometry.positions = scene::reference(*edited.blobs->insert(std::as_bytes(std::span(stretched))));
-    edited.vertices = step(after, {update<Geometry>(mesh, &Geometry::positions, geometry)});
-    Transform transform = *after.find_as<Transform>(place);
+    edited.deformation = step(after, {update<Geometry>(mesh, &Geometry::positions, geometry)});
+    Transform transform = *after.find_as<Transform>(object_transform);
     transform.matrix = glm::translate(glm::dmat4(1.0), glm::dvec3(Shift)) * transform.matrix;
-    edited.place = step(after, {update<Transform>(place, &Transform::matrix, transform)});
+    edited.movement = step(after, {update<Transform>(object_transform, &Transform::matrix, transform)});
     return edited;
 }
 

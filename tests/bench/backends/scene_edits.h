@@ -7,12 +7,12 @@
 
 namespace tessera::tools::bench {
 
-// A bench scene and what is edited of it, one list after the other: its largest mesh, which is animated here,
-// moves in its vertices and then as a whole.
+// A bench scene and its edits, in order: the whole scene, a deformation of its largest mesh (marked as
+// animated), and a movement of that mesh.
 struct EditedScene {
     BenchScene scene;
     std::shared_ptr<scene::BlobStore> blobs;
-    scene::ChangeList everything, vertices, place;
+    scene::ChangeList snapshot, deformation, movement;
     std::uint64_t triangles = 0, instances = 0;
 };
 

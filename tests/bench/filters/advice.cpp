@@ -37,10 +37,10 @@ std::string winners(
     for (const SceneResult& scene : results.scenes) {
         const auto winner = best_of(scene, spp);
         if (!winner) continue;
-        auto place = std::find_if(by_filter.begin(), by_filter.end(),
+        auto found = std::find_if(by_filter.begin(), by_filter.end(),
                                   [&](const auto& entry) { return entry.first == winner->row->filter; });
-        if (place == by_filter.end()) place = by_filter.insert(place, {winner->row->filter, {}});
-        place->second.push_back(scene.name + " (" + scene.kind + ")");
+        if (found == by_filter.end()) found = by_filter.insert(found, {winner->row->filter, {}});
+        found->second.push_back(scene.name + " (" + scene.kind + ")");
     }
     std::stable_sort(by_filter.begin(), by_filter.end(),
                      [](const auto& a, const auto& b) { return a.second.size() > b.second.size(); });
@@ -60,26 +60,26 @@ void advise_on_convergence(const BenchResults& results, std::vector<std::string>
             continue;
         }
         std::uint64_t first = 0;
-        for (const Convergence::Passing& passing : filter.passes) {
-            if (first == 0 || passing.spp < first) first = passing.spp;
+        for (const Convergence::Exceeded& limit : filter.exceeded) {
+            if (first == 0 || limit.spp < first) first = limit.spp;
         }
         broken.push_back(
             filter.filter +
             formatted(" from %llu spp on in %s (%.3g x at worst)", static_cast<unsigned long long>(first),
-                      filter.passes.size() == 1 ? filter.passes.front().scene.c_str()
-                                                : (std::to_string(filter.passes.size()) + " of " +
-                                                   std::to_string(results.scenes.size()) + " scenes")
-                                                      .c_str(),
+                      filter.exceeded.size() == 1 ? filter.exceeded.front().scene.c_str()
+                                                  : (std::to_string(filter.exceeded.size()) + " of " +
+                                                     std::to_string(results.scenes.size()) + " scenes")
+                                                        .c_str(),
                       filter.worst) +
-            (filter.is_said_consistent ? ", although it is described as consistent" : ""));
+            (filter.is_declared_consistent ? ", although it is declared consistent" : ""));
     }
     if (!kept.empty()) {
-        sentences.push_back("Never more than 5 % worse than no filter, at any number of samples from 4 on: " +
+        sentences.push_back("Never more than 5 % worse than no filter, at 4 or more samples: " +
                             listed(kept) + ". These can stay on while a picture converges.");
     }
     if (!broken.empty()) {
-        sentences.push_back(
-            "Worse than no filter, and to be switched off for final pictures: " + listed(broken) + ".");
+        sentences.push_back("Worse than no filter, so switch them off for final pictures: " + listed(broken) +
+                            ".");
     }
 }
 
@@ -147,7 +147,7 @@ std::optional<PlacedRow> best_for_time(const SceneResult& scene, std::uint64_t s
 std::vector<Convergence> convergence(const BenchResults& results) {
     std::vector<Convergence> found;
     for (const FilterInfo& filter : results.filters) {
-        Convergence one{.filter = filter.text, .is_said_consistent = filter.is_consistent};
+        Convergence one{.filter = filter.text, .is_declared_consistent = filter.is_consistent};
         for (const SceneResult& scene : results.scenes) {
             std::uint64_t first = 0;
             for (const Row& row : scene.sizes.front().rows) {
@@ -159,7 +159,7 @@ std::vector<Convergence> convergence(const BenchResults& results) {
                 }
                 if (row.trimmed.to_unfiltered > ConsistencyLimit && first == 0) first = row.spp;
             }
-            if (first != 0) one.passes.push_back({scene.name, first});
+            if (first != 0) one.exceeded.push_back({scene.name, first});
         }
         found.push_back(std::move(one));
     }
@@ -201,14 +201,14 @@ std::vector<std::string> advice(const BenchResults& results) {
             text += "Over all scenes no filter helps.";
         } else {
             text += formatted(
-                "Over all scenes %s helps most: it is worth %.3g times the samples (geometric mean; %.3g "
+                "Over all scenes %s helps most: equivalent to %.3g times the samples (geometric mean; %.3g "
                 "times where it helps least).",
                 first.filter.c_str(), first.ratio, first.worst);
         }
         const std::string by_error = winners(results, spp, least_error);
         const std::string by_time = winners(results, spp, best_for_time);
-        text += by_time == by_error ? " Counting the filters' own time changes nothing."
-                                    : " With the filter's own time counted: " + by_time + ".";
+        text += by_time == by_error ? " Including the filters' own time changes nothing."
+                                    : " Including the filters' own time: " + by_time + ".";
         sentences.push_back(text);
     }
     advise_on_convergence(results, sentences);

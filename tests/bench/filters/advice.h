@@ -7,8 +7,7 @@
 
 #include "tests/bench/filters/results.h"
 
-// "Which filter when": what the numbers of a run say, in words. Nothing here knows a filter by name, but
-// `none`.
+// Recommendations ("Which filter when") from the results of a run. No filter except `none` is known by name.
 namespace tessera::tools::bench {
 
 // The row of the largest size that was measured at these samples.
@@ -21,23 +20,23 @@ std::vector<PlacedRow> rows_at(const SceneResult& scene, std::uint64_t spp);
 // All numbers of samples that were measured, ascending.
 std::vector<std::uint64_t> measured_spp(const BenchResults& results);
 
-// The row with the smallest error; with a time limit in mind, the one with the largest equal-time ratio.
+// The row with the smallest error; for a fixed time, the one with the largest equal-time ratio.
 std::optional<PlacedRow> least_error(const SceneResult& scene, std::uint64_t spp);
 std::optional<PlacedRow> best_for_time(const SceneResult& scene, std::uint64_t spp);
 
 // Whether a filter stays at most 5 % worse than no filter, from 4 samples on.
 struct Convergence {
     std::string filter;
-    bool is_said_consistent = false;
+    bool is_declared_consistent = false;
     double worst = 0.0;  // largest relMSE over unfiltered; measured at the small size
     std::string worst_scene;
     std::uint64_t worst_spp = 0;
-    // First number of samples from which on it is worse than 1.05 x unfiltered, where that happens at all.
-    struct Passing {
+    // First number of samples at which it is worse than 1.05 x unfiltered, for each scene where that happens.
+    struct Exceeded {
         std::string scene;
         std::uint64_t spp = 0;
     };
-    std::vector<Passing> passes;
+    std::vector<Exceeded> exceeded;
 };
 inline constexpr double ConsistencyLimit = 1.05;
 std::vector<Convergence> convergence(const BenchResults& results);
@@ -49,7 +48,7 @@ struct Standing {
 };
 std::vector<Standing> standings(const BenchResults& results, std::uint64_t spp);  // best first
 
-// Whole sentences of plain text, for the page's head.
+// Sentences of plain text for the top of the page.
 std::vector<std::string> advice(const BenchResults& results);
 
 }  // namespace tessera::tools::bench

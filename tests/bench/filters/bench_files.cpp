@@ -14,7 +14,7 @@ BenchFiles::BenchFiles(std::filesystem::path folder) : folder_(std::move(folder)
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
     if (error) {
-        throw Error(ErrorCode::Io, "cannot make the folder '" + folder_.string() + "': " + error.message());
+        throw Error(ErrorCode::Io, "cannot create the folder '" + folder_.string() + "': " + error.message());
     }
 }
 

@@ -11,9 +11,9 @@ namespace tessera::tools::bench {
 // The folder of the reports: filters.html, filters.json, crops.png and crops.md.
 class BenchFiles {
   public:
-    explicit BenchFiles(std::filesystem::path folder);  // made if needed; throws Error{Io}
+    explicit BenchFiles(std::filesystem::path folder);  // created if needed; throws Error{Io}
 
-    // Each in full or not at all. Returns the paths. Throws Error{Io}.
+    // Writes each file atomically. Returns the paths. Throws Error{Io}.
     std::vector<std::string> write(const BenchResults& results) const;
 
   private:

@@ -5,7 +5,7 @@
 
 namespace tessera::tools::bench {
 
-struct PathBed {
+struct PathBenchInput {
     const BenchScene& scene;
     const BenchPlan& plan;
     const Sampler& sampler;
@@ -17,9 +17,9 @@ struct PathBed {
 
 inline constexpr double DegreesPerView = 0.5;
 
-// How calm a picture stays while the camera goes slowly round what it looks at (DegreesPerView about the
-// upright axis through the point at the median depth): each filter sees films of few samples, one per view,
-// with new samples each, and keeps its history, if it has one. At the plan's first size. Nothing: stopped.
-std::optional<PathResult> measure_path(const PathBed& bed);
+// Temporal stability while the camera slowly orbits the scene (DegreesPerView per view about the vertical
+// axis through the point at the median depth): each filter gets one film of few new samples per view and
+// keeps its history, if it has one. At the plan's first size. Empty: stopped.
+std::optional<PathResult> measure_path(const PathBenchInput& input);
 
 }  // namespace tessera::tools::bench

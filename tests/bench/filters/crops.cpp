@@ -9,7 +9,7 @@ namespace tessera::tools::bench {
 
 namespace {
 
-// As seen, without what is left of noise.
+// The displayed picture, smoothed to remove remaining noise.
 picture::Plane smoothed(const frame::Image& reference) {
     const frame::Image shown = Display(reference).shown(reference);
     picture::Plane plane(reference.width, reference.height);
@@ -37,7 +37,7 @@ Rect most_detailed(const frame::Image& reference, std::int32_t width, std::int32
             double detail = 0.0;
             for (std::int32_t y = top; y + 2 < top + height; y += 2) {
                 for (std::int32_t x = left; x + 2 < left + width; x += 2) {
-                    // Clamped: an edge is an edge, not the brighter the better.
+                    // Clamped, so that bright edges do not dominate.
                     detail +=
                         std::min(0.1f, std::abs(at(x + 2, y) - at(x, y)) + std::abs(at(x, y + 2) - at(x, y)));
                 }

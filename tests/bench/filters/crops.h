@@ -7,8 +7,8 @@
 
 namespace tessera::tools::bench {
 
-// The place of the given size (or the whole picture, where that is smaller) with the most detail: the largest
-// sum of differences between neighbouring shown pixels.
+// The rectangle of the given size (or the whole picture, if smaller) with the most detail: the largest sum of
+// differences between neighbouring displayed pixels.
 Rect most_detailed(const frame::Image& reference, std::int32_t width, std::int32_t height);
 
 frame::Image cropped(const frame::Image& picture, const Rect& crop);

@@ -15,7 +15,7 @@ double usable(float value) {
 
 }  // namespace
 
-// The brightest hundredth may be white: one lamp in the picture must not darken the rest.
+// White is the 99th percentile: a single lamp in the picture must not darken the rest.
 Display::Display(const frame::Image& reference) {
     constexpr double Key = 0.18;
     double sum = 0.0;

@@ -7,8 +7,8 @@
 
 namespace tessera::tools::bench {
 
-// How the report shows pictures of one scene: exposure and white are the reference's, so that pictures of
-// different filters can be compared by eye. The curve of picture::tone_map.
+// Display transform for the pictures of one scene: exposure and white point are those of the reference, so
+// that pictures of different filters are comparable. The curve of picture::tone_map.
 class Display {
   public:
     explicit Display(const frame::Image& reference);

@@ -26,8 +26,8 @@ double mean_luminance(const frame::Image& image) {
     return sum / static_cast<double>(image.pixel_count());
 }
 
-// Per pixel the sums over components of w (F - R1)(F - R2), of what stands behind its deviation, and of the
-// plain squared error.
+// Per pixel the sums over components of w (F - R1)(F - R2), of the terms of its variance, and of the plain
+// squared error.
 class Sum {
   public:
     explicit Sum(std::size_t pixels) { pixels_.reserve(pixels); }
@@ -41,7 +41,7 @@ class Sum {
 
     RelativeErrors means() {
         const Estimate all = mean(pixels_);
-        const auto left_out = static_cast<std::size_t>(std::ceil(TrimmedShare * double(pixels_.size())));
+        const auto left_out = static_cast<std::size_t>(std::ceil(TrimmedFraction * double(pixels_.size())));
         const std::size_t kept = pixels_.size() - std::min(left_out, pixels_.size() - 1);
         std::nth_element(pixels_.begin(), pixels_.begin() + static_cast<std::ptrdiff_t>(kept - 1),
                          pixels_.end(), [](const Pixel& a, const Pixel& b) { return a.size < b.size; });
@@ -133,7 +133,7 @@ RelativeErrors temporal_relmse(const frame::Image& before, const frame::Image& a
     return sum.means();
 }
 
-SeenErrors seen_errors(const frame::Image& picture, const ReferencePair& references) {
+PerceptualErrors perceptual_errors(const frame::Image& picture, const ReferencePair& references) {
     const Display display(references.mean());
     return {picture::ldr_flip_mean(display.shown(picture), display.shown(references.mean())),
             picture::ssim(picture, references.mean())};

@@ -5,11 +5,11 @@
 namespace tessera::tools::bench {
 
 // Two independent pictures of one truth T, with noise a and b: R1 = T + a, R2 = T + b, E[a] = E[b] = E[a b] =
-// 0. Then for any picture F that knows neither
+// 0. Then for any picture F that is independent of both
 //     E[(F - R1)(F - R2)] = (F - T)^2:
-// the product has no share of the references' noise. With m = F - (R1 + R2)/2 and d = R1 - R2 it is
+// the product is free of the references' noise. With m = F - (R1 + R2)/2 and d = R1 - R2 it is
 //     (F - R1)(F - R2) = m^2 - d^2/4,
-// that is: the error against the mean of both, less the noise of that mean. Its variance over the references
+// that is, the error against the mean of both minus the noise of that mean. Its variance over the references
 // is 2 e^2 v + v^2 with e = F - T and v the variance of either; d^2 m^2 has this expectation for normal noise
 // (m and d are independent then) and a larger one for heavier tails, so the sum over pixels of (sum over
 // components of w d m)^2 estimates the variance of the sum. An estimate may be negative when the error is
@@ -33,36 +33,36 @@ class ReferencePair {
 
 struct Estimate {
     double value = 0.0;
-    double deviation = 0.0;  // standard error that the references' noise leaves
+    double deviation = 0.0;  // standard error due to the references' noise
 };
 
-// Over all pixels, and without the TrimmedShare of the pixels whose error is largest. relMSE weighs each
-// error by the dark around it, so that one firefly or the edge of one lamp can outweigh the whole rest; what
-// is left out is chosen by the error against the mean of both references, anew for each picture.
+// Over all pixels, and without the TrimmedFraction of the pixels with the largest errors: relMSE weighs
+// errors in dark regions more, so that one firefly or the edge of one lamp can dominate the rest. The trimmed
+// pixels are chosen for each picture by the error against the mean of both references.
 struct RelativeErrors {
     Estimate all, trimmed;
 };
-inline constexpr double TrimmedShare = 0.001;
+inline constexpr double TrimmedFraction = 0.001;
 
 // Mean over pixels and components of (F - R1)(F - R2), and the same over (mean^2 + epsilon). The mean of both
-// references stands for the truth in the weight alone.
+// references replaces the truth in the weight only.
 struct SquaredErrors {
     Estimate mse;
     RelativeErrors relmse;
 };
 SquaredErrors squared_errors(const frame::Image& picture, const ReferencePair& references);
 
-// Of the step from one picture to the next: F = second - first picture against the same of the references;
-// what does not flicker alike counts, a constant error does not. Weighted by the second references.
+// relMSE of the difference between consecutive pictures against that of the references: flicker counts, a
+// constant error does not. Weighted by the second references.
 RelativeErrors temporal_relmse(const frame::Image& before, const frame::Image& after,
                                const ReferencePair& references_before, const ReferencePair& references_after);
 
-// Those that need one reference, against the mean of both. FLIP and SSIM see the pictures as shown on the
-// page (display.h).
-struct SeenErrors {
+// Metrics with a single reference, the mean of both. FLIP and SSIM compare the pictures as displayed in the
+// report (display.h).
+struct PerceptualErrors {
     double flip = 0.0;  // mean LDR-FLIP
     double ssim = 0.0;
 };
-SeenErrors seen_errors(const frame::Image& picture, const ReferencePair& references);
+PerceptualErrors perceptual_errors(const frame::Image& picture, const ReferencePair& references);
 
 }  // namespace tessera::tools::bench

@@ -7,8 +7,8 @@
 
 namespace tessera::tools::bench {
 
-// The filters that one film serves: of one path class, with all channels that any of them reads. Films of
-// different groups have the same samples.
+// Filters that use the same film: one path class, with the union of their channels. Films of different groups
+// have the same samples.
 struct FilmGroup {
     view::PathClass path_class = view::PathClass::Indirect;
     frame::ChannelSet channels;
@@ -17,7 +17,7 @@ struct FilmGroup {
 
 std::vector<FilmGroup> film_groups(const std::vector<filter::Choice>& filters);
 
-// Seconds per sample of a view that has these channels, by a small film of its own; each kind once.
+// Seconds per sample of a view that has these channels, measured on a small film, once for each combination.
 class SamplingCost {
   public:
     SamplingCost(const Sampler& sampler, Size size) : sampler_(sampler), size_(size) {}

@@ -22,7 +22,7 @@ frame::Image colors(const filter::Planes& planes, const std::string& name) {
         for (std::size_t i = 0; i < plane.size(); ++i) {
             if (!std::isfinite(plane[i])) {
                 throw Error(ErrorCode::Internal, "filter '" + name +
-                                                     "' gave a value that is not finite at pixel " +
+                                                     "' produced a value that is not finite at pixel " +
                                                      std::to_string(i % planes.width()) + "," +
                                                      std::to_string(i / planes.width()));
             }

@@ -11,7 +11,7 @@ namespace tessera::tools::bench {
 // arena; the best of several.
 double copy_bandwidth(std::size_t bytes, tbb::task_arena& arena);
 
-// One filter with its values at one size.
+// One filter with its parameter values at one size.
 class FilterRun {
   public:
     FilterRun(const filter::Choice& choice, std::uint32_t width, std::uint32_t height,

@@ -19,9 +19,9 @@ constexpr const char* FiltersName = "bench filters";
 
 int run_filters(const BenchOptions& options) {
     const Interrupts interrupts;  // before anything that starts threads
-    const auto plan = understand(options, filter::catalog());
-    if (!plan) return complain(FiltersName, cli::ExitUsage, plan.error().what());
-    BenchFiles files(plan->output);  // a folder that cannot be written says so before the work
+    const auto plan = parse_options(options, filter::catalog());
+    if (!plan) return report_error(FiltersName, cli::ExitUsage, plan.error().what());
+    BenchFiles files(plan->output);  // reports an unwritable folder before the measurements
     std::optional<BenchResults> results;
     {
         ProgressLine line;
@@ -32,7 +32,7 @@ int run_filters(const BenchOptions& options) {
             interrupts.token());
     }
     if (!results)
-        return complain(FiltersName, ExitInterrupted, "interrupted; the references so far are kept");
+        return report_error(FiltersName, ExitInterrupted, "interrupted; finished references are kept");
     const std::vector<std::string> written = files.write(*results);
     if (options.json) {
         std::cout << as_json(*results) << "\n";
@@ -49,25 +49,24 @@ int run_filters(const BenchOptions& options) {
 Command filters_command(cli::CommandLine& bench) {
     const auto options = std::make_shared<BenchOptions>();
     cli::CommandLine& filters = bench.command("filters",
-                                              "Error and time of every reconstruction filter, on the same "
+                                              "Error and time of every denoiser, on the same "
                                               "samples, against two independent references. "
-                                              "Writes one page that can be opened anywhere (filters.html), "
+                                              "Writes a self-contained page (filters.html), "
                                               "all numbers (filters.json) and a strip of "
-                                              "pictures. References are kept: the next run is faster.");
+                                              "pictures. References are cached for the next run.");
     filters.option("-o,--output", "folder to write", options->output);
     filters.option("--scenes", "a,b: built-in scenes or scene files (default: all)", options->scenes);
-    filters.option("--filters", "a,b:key=value: filters (default: the whole table)", options->filters);
+    filters.option("--filters", "a,b:key=value: filters (default: all)", options->filters);
     filters.option("--spp", "samples per pixel to measure at", options->spp);
     filters.option("--size", "picture size at which convergence is measured", options->size);
-    filters.option("--large", "picture size of crops and times, up to 16 spp; none: leave out",
-                   options->large);
-    filters.option("--references", "folder of kept references (default: references in the output's)",
+    filters.option("--large", "picture size of crops and times, up to 16 spp; none: skip", options->large);
+    filters.option("--references", "folder of cached references (default: references in the output folder)",
                    options->references);
     filters.option("--reference-spp", "samples per pixel of each of the two references",
                    options->reference_spp);
     filters.option("--assets", "folder with the scenes and environments of tests/scenes", options->assets);
     filters.option("--jobs", "threads for rendering and filtering; 0: all cores", options->jobs);
-    filters.flag("--quick", "a first look: up to 64 spp, references of 256, no large size", options->quick);
+    filters.flag("--quick", "quick run: up to 64 spp, references of 256 spp, no large size", options->quick);
     filters.flag("--json", "print all numbers as one JSON object", options->json);
     filters.examples(
         {"tessera bench filters --quick", "tessera bench filters -o bench",
@@ -76,7 +75,7 @@ Command filters_command(cli::CommandLine& bench) {
                 try {
                     return run_filters(*options);
                 } catch (const Error& error) {
-                    return complain(FiltersName, exit_code(error.code()), error.what());
+                    return report_error(FiltersName, exit_code(error.code()), error.what());
                 }
             }};
 }

@@ -34,7 +34,7 @@ std::string image(const SceneResult& scene, const std::string& filter, const std
            base64(png) + "\"><figcaption>" + escaped(caption) + "</figcaption></figure>\n";
 }
 
-// One row of crops is open, those of other numbers of samples unfold.
+// One row of crops is open; those of other numbers of samples are collapsed.
 std::string crops(const SceneResult& scene) {
     const SizeResult& size = scene.sizes.back();
     if (size.reference_crop.empty()) return {};
@@ -120,14 +120,14 @@ std::string introduction(const BenchResults& results) {
                   results.threads, escaped(results.backend).c_str(), results.seconds);
     std::string html =
         "<h1>Reconstruction filters: error against time</h1>\n<p>" + std::string(line) +
-        " All filters see the same samples. Errors are unbiased: means of (F - R1)(F - R2) over two "
-        "independent references, so that the references' own noise is not in them; the number behind "
-        "\xC2\xB1 is what it leaves as standard error. relMSE has epsilon 0.01 times the squared mean "
-        "luminance. FLIP (mean, LDR) and SSIM look at the tone-mapped picture against the mean of both "
-        "references. A trimmed relMSE leaves out the 0.1 % of the pixels where the error is largest: one "
+        " All filters use the same samples. Errors are unbiased: means of (F - R1)(F - R2) over two "
+        "independent references, which excludes the references' own noise; the number after "
+        "\xC2\xB1 is the standard error due to that noise. relMSE has epsilon 0.01 times the squared mean "
+        "luminance. FLIP (mean, LDR) and SSIM compare the tone-mapped picture with the mean of both "
+        "references. The trimmed relMSE excludes the 0.1 % of the pixels where the error is largest: one "
         "firefly in the "
-        "dark or the edge of one lamp can outweigh the whole rest. What the page says about filters goes by "
-        "it; the "
+        "dark or the edge of one lamp can dominate the rest. The recommendations use "
+        "the trimmed relMSE; the "
         "tables have both.</p>\n";
     for (const std::string& note : results.notes) html += "<p class=\"note\">" + escaped(note) + "</p>\n";
     return html;

@@ -48,7 +48,7 @@ std::string filter_table(const BenchResults& results) {
                 "</td></tr>\n";
     }
     return heading("The filters",
-                   "Consistent: its description says that its error goes to 0 with the samples.") +
+                   "Consistent: declared to converge, so that its error goes to 0 with the samples.") +
            table(heads({"filter", "what it does", "source", "", "reads"}), body);
 }
 
@@ -66,11 +66,12 @@ std::string winner_table(const BenchResults& results) {
         body += "</tr>\n";
     }
     return heading("Least error",
-                   "The filter with the least relMSE, and its equal-error sample ratio: how many times the "
+                   "The filter with the least relMSE, and its equivalent spp: how many times the "
                    "samples the "
-                   "unfiltered picture needs for the same error. In brackets: beyond the measured curve, "
+                   "unfiltered picture needs for the same error. In brackets: extrapolated beyond the "
+                   "measured curve, "
                    "where error "
-                   "times samples is taken as constant.") +
+                   "times samples is assumed constant.") +
            table(head, body);
 }
 
@@ -134,7 +135,7 @@ std::string speed_table(const BenchResults& results) {
                formatted("At %ux%u on %u threads, in the scene and at the samples where it is slowest. A "
                          "plain copy of a working set of this size moves %.1f GB/s (read and written); the "
                          "last number is the filter's time over the time of copying as many bytes as its "
-                         "passes move: 1 is the memory's speed.",
+                         "passes move: 1 means memory bandwidth.",
                          size.width, size.height, results.threads, size.copy_bytes_per_second * 1e-9)) +
            table(heads({"filter", "ms", "ms per megapixel", "bytes per pixel", "time over copy", "passes"}),
                  body);
@@ -159,13 +160,14 @@ std::string method_tables(const SpeedResult& speed) {
     const std::string where =
         formatted(" %s, %llu spp.", escaped(speed.scene).c_str(), static_cast<unsigned long long>(SpeedSpp));
     return heading("Methods",
-                   "Each value of a parameter that chooses among methods, the others as they are." + where +
-                       formatted(" %ux%u.", speed.width, speed.height)) +
+                   "Each value of parameters that select a method; other parameters have their defaults." +
+                       where + formatted(" %ux%u.", speed.width, speed.height)) +
            table(heads({"filter", "ms", "relMSE trimmed", "relMSE"}), variants) +
-           heading("Next to the sources",
-                   "The theses' times on their graphics cards, at their sizes: quoted, not measured here." +
+           heading("Compared with published times",
+                   "Times published in the theses on their GPUs, at their sizes: quoted, not measured here." +
                        where) +
-           table(heads({"filter", "size", "ms here", "ms there", "there", "source", "there over here"}),
+           table(heads({"filter", "size", "ms here", "ms published", "published hardware", "source",
+                        "published over here"}),
                  published);
 }
 
@@ -202,14 +204,15 @@ std::string size_table(const SizeResult& size) {
         "<th colspan=\"5\">relMSE of all pixels</th><th rowspan=\"2\">FLIP</th><th rowspan=\"2\">SSIM</th>"
         "<th rowspan=\"2\">filter ms</th><th rowspan=\"2\">sampling ms</th><th rowspan=\"2\">bytes/px</th>"
         "<th rowspan=\"2\">time over copy</th></tr>\n<tr>" +
-        heads({"value", "", "/ unfiltered", "equal-error samples", "equal-time error", "value", "",
-               "/ unfiltered", "equal-error samples", "equal-time error"});
+        heads({"value", "", "/ unfiltered", "equivalent spp", "equal-time error", "value", "", "/ unfiltered",
+               "equivalent spp", "equal-time error"});
     return "<details" + std::string(size.reference_crop.empty() ? "" : " open") + "><summary>" +
            formatted("%ux%u", size.width, size.height) + "</summary><p class=\"note\">" +
            formatted(
-               "Two references of %llu spp, each with a relMSE of %.2g of its own (half the mean square of "
+               "Two references of %llu spp, each with a relMSE of %.2g from its own noise (half the mean "
+               "square of "
                "their "
-               "difference); it is not in the errors below.",
+               "difference), which is not part of the errors below.",
                static_cast<unsigned long long>(size.reference_spp), size.noise_relmse) +
            "</p>" + table(head, body) + "</details>\n";
 }

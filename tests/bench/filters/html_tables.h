@@ -8,7 +8,7 @@
 namespace tessera::tools::bench {
 
 std::string filter_table(const BenchResults& results);       // which there are
-std::string winner_table(const BenchResults& results);       // scenes x samples: the best and its worth
+std::string winner_table(const BenchResults& results);       // best filter per scene and spp
 std::string convergence_table(const BenchResults& results);  // filters x samples: worst error over unfiltered
 std::string speed_table(const BenchResults& results);        // filters: time, bytes, distance from a copy
 std::string method_tables(const SpeedResult& speed);         // other methods, and published times

@@ -13,13 +13,13 @@ Json estimate(const Estimate& value) {
     return {{"value", value.value}, {"standard_error", value.deviation}};
 }
 
-// null: the error is below what the references can resolve.
+// null: the error is below the resolution of the references.
 Json ratio_json(const Ratio& value) {
     if (value.value == 0.0) return nullptr;
     return {{"value", value.value}, {"measured", value.is_measured}};
 }
 
-Json worth(const Worth& value) {
+Json relative_json(const RelativeToUnfiltered& value) {
     return {{"relmse_over_unfiltered", value.to_unfiltered},
             {"equal_error_sample_ratio", ratio_json(value.equal_error)},
             {"equal_time_error_ratio", ratio_json(value.equal_time)}};
@@ -36,7 +36,7 @@ Json passes_json(const FilterTime& time) {
 }
 
 Json row_json(const Row& row) {
-    Json trimmed = worth(row.trimmed);
+    Json trimmed = relative_json(row.trimmed);
     trimmed["relmse"] = estimate(row.errors.relmse.trimmed);
     Json object{{"filter", row.filter},
                 {"spp", row.spp},
@@ -49,7 +49,7 @@ Json row_json(const Row& row) {
                 {"passes", passes_json(row.time)},
                 {"bytes_per_pixel", row.time.bytes_per_pixel},
                 {"time_over_plain_copy", row.time.copy_ratio}};
-    object.update(worth(row.all));
+    object.update(relative_json(row.all));
     object["trimmed"] = trimmed;
     object["notes"] = row.notes;
     return object;

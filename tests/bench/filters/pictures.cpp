@@ -36,8 +36,8 @@ struct PicturesOptions {
 };
 
 struct Request {
-    double seconds = 0.0;           // from asking to having the file
-    double prediction_error = 0.0;  // filter and encoding less what was set aside
+    double seconds = 0.0;           // from the request to the encoded file
+    double prediction_error = 0.0;  // actual minus predicted time of filter and encoding
     std::uint64_t samples_least = 0;
     std::uint32_t scale = 1;
 };
@@ -63,15 +63,15 @@ class PicturesBench {
     explicit PicturesBench(const PicturesOptions& options) : options_(options) {}
 
     int run() {
-        const auto plan = understand(options_.view);
-        if (!plan) return complain("bench", cli::ExitUsage, plan.error().what());
+        const auto plan = parse_options(options_.view);
+        if (!plan) return report_error("bench", cli::ExitUsage, plan.error().what());
         const auto budget = parse_duration(options_.budget);
         if (!budget)
-            return complain("bench", cli::ExitUsage, std::string("--budget: ") + budget.error().what());
+            return report_error("bench", cli::ExitUsage, std::string("--budget: ") + budget.error().what());
         const auto choice = filter::parse_choice(options_.filter, filter::catalog());
         if (!choice)
-            return complain("bench", cli::ExitUsage, std::string("--filter: ") + choice.error().what());
-        if (options_.requests == 0) return complain("bench", cli::ExitUsage, "--requests: at least 1");
+            return report_error("bench", cli::ExitUsage, std::string("--filter: ") + choice.error().what());
+        if (options_.requests == 0) return report_error("bench", cli::ExitUsage, "--requests: at least 1");
         if (const auto code = open(*plan)) return *code;
         request_.view = view_from(*plan, camera_);
         request_.view.channels = {frame::Channel::Radiance};
@@ -86,7 +86,7 @@ class PicturesBench {
             requests_.push_back(ask(i + 1));
         }
         if (!stopped() && options_.compared > 0) compare();
-        if (stopped()) return complain("bench", ExitInterrupted, "interrupted; nothing is reported");
+        if (stopped()) return report_error("bench", ExitInterrupted, "interrupted; no results");
         report(seconds(*budget));
         return 0;
     }
@@ -98,9 +98,9 @@ class PicturesBench {
         ViewPlan scene_plan = plan;
         scene_plan.import.first_id = ObjectId{1u << 16};
         auto scene = import_scene(scene_plan);
-        if (!scene) return complain("bench", ExitBadInput, scene.error().what());
+        if (!scene) return report_error("bench", ExitBadInput, scene.error().what());
         auto camera = choose_camera(scene->cameras, scene_plan.camera);
-        if (!camera) return complain("bench", cli::ExitUsage, camera.error().what());
+        if (!camera) return report_error("bench", cli::ExitUsage, camera.error().what());
         camera_ = *camera;
         for (const scene::BlobPtr& blob : scene->blobs) blobs_->insert(blob);
         cluster_.emplace(EmbeddedSettings{.backend = backend::catalog().front().name}, blobs_, clock_,
@@ -109,7 +109,7 @@ class PicturesBench {
         session_->join({.title = "bench", .exclusive = true}, interrupts_.token());
         session_->submit_ahead(entries(*scene, import::RootEntry::Update));
         if (!session_->settle(interrupts_.token()) || !session_->take_results().back().accepted)
-            return complain("bench", ExitInternal, "the scene was not taken");
+            return report_error("bench", ExitInternal, "the master rejected the scene");
         return std::nullopt;
     }
 
@@ -136,9 +136,9 @@ class PicturesBench {
         return done;
     }
 
-    // The same budget with and without the filter, against one long picture of another seed.
+    // The same budget with and without the filter, against a reference of another seed.
     void compare() {
-        line_.show("the reference");
+        line_.show("rendering the reference");
         session::ViewRequest reference = request_;
         reference.view.filter.clear();
         reference.view.seed = 1'000'003;
@@ -229,17 +229,16 @@ class PicturesBench {
 Command pictures_command(cli::CommandLine& bench) {
     const auto options = std::make_shared<PicturesOptions>();
     cli::CommandLine& line =
-        bench.command("pictures", "Picture requests with a time budget: how many are on time, and how good.");
+        bench.command("pictures", "Picture requests with a time budget: how many meet it, and their error.");
     options->view.size = "400x400";
     options->view.add_to(line);
     line.option("--budget", "time for each picture, filter and encoding included", options->budget);
-    line.option("--filter", "reconstruction, NAME[:key=value,...]", options->filter);
+    line.option("--filter", "denoiser, NAME[:key=value,...]", options->filter);
     line.choice("--format", "of the file", options->format, {"png", "jpg", "exr"});
-    line.option("--requests", "pictures in a row", options->requests);
+    line.option("--requests", "number of consecutive pictures", options->requests);
     line.option("--compared", "pictures whose error is measured, with and without the filter; 0 = none",
                 options->compared);
-    line.option("--reference-spp", "samples per pixel of the picture they are compared with",
-                options->reference_spp);
+    line.option("--reference-spp", "samples per pixel of the reference picture", options->reference_spp);
     line.flag("--json", "print one JSON object", options->json);
     line.examples({"tessera bench pictures room.glb --requests 100 --size 400x400 --budget 800ms",
                    "tessera bench pictures room.glb --requests 20 --size 800x800 --budget 5s --json"});
@@ -247,7 +246,7 @@ Command pictures_command(cli::CommandLine& bench) {
                 try {
                     return PicturesBench(*options).run();
                 } catch (const Error& error) {
-                    return complain("bench", exit_code(error.code()), error.what());
+                    return report_error("bench", exit_code(error.code()), error.what());
                 }
             }};
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "client/tools/this_machine.h"
+#include "client/tools/host_info.h"
 #include "tests/bench/scenes/scenes.h"
 
 namespace tessera::tools::bench {
@@ -11,7 +11,7 @@ namespace tessera::tools::bench {
 namespace {
 
 constexpr std::uint64_t MostSpp = 1u << 16;
-// At the large size filters are timed and looked at; their way to convergence is measured at the small one.
+// The large size is for times and crops; convergence is measured at the small one.
 constexpr std::uint64_t MostSppLarge = 16, LargeReferenceSpp = 32;
 constexpr std::uint64_t MostSppOnPath = 4;
 
@@ -19,7 +19,8 @@ tl::unexpected<Error> wrong(const std::string& option, const std::string& text) 
     return failure(ErrorCode::InvalidInput, option + ": " + text);
 }
 
-// "fdf:radius=4,prefilter=off,none": what has a value but no filter's name belongs to the filter before it.
+// "fdf:radius=4,prefilter=off,none": an item with a value but without a filter's name belongs to the previous
+// filter.
 std::vector<std::string> split_filters(const std::string& text) {
     std::vector<std::string> filters;
     for (const std::string& item : split_list(text)) {
@@ -40,7 +41,7 @@ Expected<std::vector<std::uint64_t>> parse_spp(const std::string& text) {
         const auto result = std::from_chars(item.data(), item.data() + item.size(), value);
         if (result.ec != std::errc() || result.ptr != item.data() + item.size() || value == 0 ||
             value > MostSpp) {
-            return wrong("--spp", "'" + item + "' is no number of samples from 1 to " +
+            return wrong("--spp", "'" + item + "' is not a number of samples from 1 to " +
                                       std::to_string(MostSpp) + ": write 1,4,16,64");
         }
         spp.push_back(value);
@@ -78,7 +79,7 @@ Expected<std::vector<filter::Choice>> choose_filters(const std::string& text,
 
 }  // namespace
 
-Expected<BenchPlan> understand(const BenchOptions& options, std::span<const filter::FilterEntry> table) {
+Expected<BenchPlan> parse_options(const BenchOptions& options, std::span<const filter::FilterEntry> table) {
     BenchPlan plan;
     plan.output = options.output;
     plan.references =

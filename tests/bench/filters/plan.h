@@ -11,7 +11,7 @@
 
 namespace tessera::tools::bench {
 
-// What `tessera bench filters` is asked to do. As typed.
+// Options of `tessera bench filters` as typed.
 struct BenchOptions {
     std::string output = "bench-filters", references, assets = "tests/scenes";
     std::string scenes, filters;  // "" = all
@@ -22,18 +22,18 @@ struct BenchOptions {
     bool quick = false, json = false;
 };
 
-// One picture size, and what is done at it.
+// One picture size and its measurements.
 struct SizePlan {
     Size size;
     std::vector<std::uint64_t> spp;  // ascending
     std::uint64_t reference_spp = 0;
 };
 
-// The same, understood.
+// The parsed options.
 struct BenchPlan {
     std::filesystem::path output, references, assets;
     std::vector<std::string> scenes;
-    std::vector<filter::Choice> filters;  // the first is `none`: what all are compared with
+    std::vector<filter::Choice> filters;  // the first is `none`, which all are compared with
     std::vector<SizePlan> sizes;          // of one scene, small first
     std::vector<std::uint64_t> path_spp;  // samples per view of the camera path; empty: no path
     std::uint32_t path_views = 16;
@@ -42,7 +42,7 @@ struct BenchPlan {
     std::uint32_t jobs = 1;
 };
 
-// InvalidInput names option and remedy.
-Expected<BenchPlan> understand(const BenchOptions& options, std::span<const filter::FilterEntry> table);
+// InvalidInput names the option and the remedy.
+Expected<BenchPlan> parse_options(const BenchOptions& options, std::span<const filter::FilterEntry> table);
 
 }  // namespace tessera::tools::bench

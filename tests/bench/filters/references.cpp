@@ -13,7 +13,7 @@ namespace {
 constexpr const char* KeyAttribute = "tessera.bench.key";
 constexpr const char* HashAttribute = "tessera.bench.film";
 
-// What the renderer makes of the scene, in few samples: another renderer gives another hash.
+// Hash of a small film of the scene: another renderer gives another hash.
 std::string fingerprint(const ReferenceRequest& request, const Sampler& sampler) {
     view::View small = request.view;
     small.width = 32;
@@ -44,7 +44,7 @@ std::string key_of(const ReferenceRequest& request, const std::string& fingerpri
     return to_hex(hash.finish());
 }
 
-// Long references by steps, so that there is something to say.
+// Renders in steps, to report progress.
 std::optional<frame::FilmTile> render(const ReferenceRequest& request, std::uint64_t seed,
                                       const Sampler& sampler, const ReferenceProgress& progress,
                                       const std::stop_token& stop) {
@@ -66,15 +66,15 @@ std::optional<frame::FilmTile> render(const ReferenceRequest& request, std::uint
 
 Expected<frame::FilmTile> ReferenceCache::load(const std::string& name, const std::string& key) const {
     const std::string file = path(name).string();
-    if (!std::filesystem::exists(file)) return failure(ErrorCode::NotFound, "there is no '" + file + "'");
+    if (!std::filesystem::exists(file)) return failure(ErrorCode::NotFound, "file '" + file + "' not found");
     try {
         picture::FilmFile read = picture::read_film_exr(file);
         if (read.attributes[KeyAttribute] != key) {
-            return failure(ErrorCode::NotFound, "'" + file + "' is a reference of something else");
+            return failure(ErrorCode::NotFound, "'" + file + "' is a reference with another key");
         }
         if (read.attributes[HashAttribute] != to_hex(frame::film_hash(read.film))) {
             return failure(ErrorCode::InvalidInput,
-                           "'" + file + "' is damaged: its pixels are not those stored");
+                           "'" + file + "' is damaged: its pixels do not match the stored hash");
         }
         return std::move(read.film);
     } catch (const Error& error) {
@@ -84,13 +84,13 @@ Expected<frame::FilmTile> ReferenceCache::load(const std::string& name, const st
 
 void ReferenceCache::store(const std::string& name, const std::string& key,
                            const frame::FilmTile& film) const {
-    std::error_code ignored;  // the writer says what is wrong with the folder
+    std::error_code ignored;  // the writer reports errors of the folder
     std::filesystem::create_directories(folder_, ignored);
     picture::FilmFile file{
         static_cast<std::uint32_t>(film.rect.width), static_cast<std::uint32_t>(film.rect.height), film, {}};
     file.attributes[KeyAttribute] = key;
     file.attributes[HashAttribute] = to_hex(frame::film_hash(film));
-    picture::write_film_exr(path(name).string(), file, {}, picture::Statistics::Saved);
+    picture::write_film_exr(path(name).string(), file, {}, picture::Statistics::Include);
 }
 
 std::optional<ReferencePair> references(const ReferenceRequest& request, const Sampler& sampler,

@@ -10,10 +10,10 @@
 
 namespace tessera::tools::bench {
 
-inline constexpr std::array<std::uint64_t, 2> ReferenceSeeds{1001, 2002};  // none is the films'
+inline constexpr std::array<std::uint64_t, 2> ReferenceSeeds{1001, 2002};  // differ from the film's seed
 
-// Reference pictures as files that are read again as long as they mean the same picture: scene, camera, size,
-// samples, seed, and bits of this renderer (a small film of the scene is part of the key).
+// Cache of reference pictures as files. The key consists of scene, camera, size, samples, seed, and the
+// renderer's bits (the hash of a small film of the scene).
 class ReferenceCache {
   public:
     explicit ReferenceCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
@@ -31,7 +31,7 @@ class ReferenceCache {
 struct ReferenceRequest {
     std::string scene;    // for file names
     std::string content;  // hash of the scene
-    view::View view;      // its seed and channels do not count
+    view::View view;      // its seed and channels are ignored
     std::uint64_t spp = 4096;
 };
 struct ReferenceProgress {
@@ -39,7 +39,7 @@ struct ReferenceProgress {
     std::function<void(const std::string&)> warn;
 };
 
-// Two independent references, read or rendered. Nothing when it was stopped; what is finished is kept.
+// Two independent references, read or rendered. Empty when stopped; finished references are kept.
 std::optional<ReferencePair> references(const ReferenceRequest& request, const Sampler& sampler,
                                         const ReferenceCache& cache, const ReferenceProgress& progress,
                                         const std::stop_token& stop);

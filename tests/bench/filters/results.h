@@ -6,7 +6,7 @@
 
 #include "tests/bench/filters/errors.h"
 
-// What `tessera bench filters` found out: plain values that the reports are made of.
+// Results of `tessera bench filters`, the input of the reports.
 namespace tessera::tools::bench {
 
 struct PassTime {
@@ -14,24 +14,24 @@ struct PassTime {
     double seconds = 0.0, bytes_per_pixel = 0.0;
 };
 
-// How long one run of a filter takes, of a few the fastest.
+// Time of one run of a filter; the fastest of a few.
 struct FilterTime {
     double seconds = 0.0;
     std::vector<PassTime> passes;
     double bytes_per_pixel = 0.0;  // of all passes
-    double copy_ratio = 0.0;       // time over that of a plain copy of as many bytes; 1 = at memory's speed
+    double copy_ratio = 0.0;       // time over that of copying as many bytes; 1 = memory bandwidth
 };
 
 // is_measured = false: read from the unfiltered curve beyond its ends, where error x samples is constant.
 struct Ratio {
-    double value = 0.0;  // 0: the error is below what the references can resolve
+    double value = 0.0;  // 0: the error is below the resolution of the references
     bool is_measured = false;
 };
 
-// What a filter's relMSE means next to the unfiltered picture's.
-struct Worth {
+// A filter's relMSE relative to the unfiltered picture's.
+struct RelativeToUnfiltered {
     double to_unfiltered = 0.0;  // relMSE over that of `none` on the same samples
-    Ratio equal_error;           // samples that unfiltered needs for this error, over spp
+    Ratio equal_error;           // equivalent spp: samples that unfiltered needs for this error, over spp
     Ratio equal_time;            // error of unfiltered after this row's time, over this row's error
 };
 
@@ -39,12 +39,12 @@ struct Row {
     std::string filter;
     std::uint64_t spp = 0;
     SquaredErrors errors;
-    SeenErrors seen;
+    PerceptualErrors seen;
     FilterTime time;
-    double sampling_seconds = 0.0;  // spp samples with this filter's channels
-    Worth all, trimmed;             // by relMSE over all pixels, and by the trimmed one
+    double sampling_seconds = 0.0;      // spp samples with this filter's channels
+    RelativeToUnfiltered all, trimmed;  // by relMSE over all pixels, and by the trimmed one
     std::vector<std::string> notes;
-    std::vector<std::uint8_t> crop;  // 8-bit sRGB as shown; empty: not kept
+    std::vector<std::uint8_t> crop;  // 8-bit sRGB as displayed; empty: not kept
 };
 
 struct SizeResult {
@@ -64,7 +64,7 @@ struct PathRow {
     std::string filter;
     std::uint64_t spp = 0;
     RelativeErrors temporal;  // relMSE of the steps from view to view
-    RelativeErrors relmse;    // mean over the second half of the path, where a history is there
+    RelativeErrors relmse;    // mean over the second half of the path, with a history
 };
 struct PathResult {
     std::uint32_t views = 0;

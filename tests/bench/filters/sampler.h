@@ -15,7 +15,7 @@ class GrowingFilm {
   public:
     const view::View& view() const { return view_; }
     std::uint64_t spp() const { return spp_; }
-    double seconds() const { return seconds_; }  // that its samples took, wall clock
+    double seconds() const { return seconds_; }  // wall-clock time of its samples
     frame::FilmTile whole() const;
 
   private:
@@ -26,7 +26,7 @@ class GrowingFilm {
     std::vector<frame::FilmTile> tiles_;
 };
 
-// What the first of the built back-ends can do.
+// Capabilities of the first back-end in the catalog.
 backend::Capabilities renderer();
 
 // That back-end in this process with one scene in it.

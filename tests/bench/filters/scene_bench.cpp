@@ -15,11 +15,11 @@ namespace {
 constexpr std::uint64_t FilmSeed = 0;
 constexpr std::uint64_t MostSppOfCrops = 16;
 constexpr std::int32_t CropWidth = 256, CropHeight = 144;
-// About what the inputs of a filter hold: 16 planes of floats.
+// About the size of a filter's inputs: 16 planes of floats.
 constexpr std::size_t WorkingSetBytesPerPixel = 64;
 
-// What the rows of one size are compared with.
-struct Bed {
+// The references of one size, and how its pictures are displayed.
+struct Comparison {
     const ReferencePair& references;
     Display display;
     Rect crop;
@@ -70,21 +70,23 @@ class SceneBench {
         result.noise_relmse = pair->noise_relmse();
         result.copy_bytes_per_second =
             copy_bandwidth(std::size_t{width} * height * WorkingSetBytesPerPixel, arena_);
-        const Bed bed{*pair, Display(pair->mean()), most_detailed(pair->mean(), CropWidth, CropHeight),
-                      keeps_crops};
-        result.crop_width = static_cast<std::uint32_t>(bed.crop.width);
-        result.crop_height = static_cast<std::uint32_t>(bed.crop.height);
-        if (keeps_crops) result.reference_crop = bed.display.pixels(cropped(pair->mean(), bed.crop));
+        const Comparison comparison{*pair, Display(pair->mean()),
+                                    most_detailed(pair->mean(), CropWidth, CropHeight), keeps_crops};
+        result.crop_width = static_cast<std::uint32_t>(comparison.crop.width);
+        result.crop_height = static_cast<std::uint32_t>(comparison.crop.height);
+        if (keeps_crops)
+            result.reference_crop = comparison.display.pixels(cropped(pair->mean(), comparison.crop));
 
         for (const FilmGroup& group : groups_) {
-            if (!measure_group(size, group, bed, result)) return std::nullopt;
+            if (!measure_group(size, group, comparison, result)) return std::nullopt;
         }
         order(result.rows);
         compare_with_unfiltered(result);
         return result;
     }
 
-    bool measure_group(const SizePlan& size, const FilmGroup& group, const Bed& bed, SizeResult& result) {
+    bool measure_group(const SizePlan& size, const FilmGroup& group, const Comparison& comparison,
+                       SizeResult& result) {
         const auto [width, height] = size.size;
         std::vector<FilterRun> runs;
         for (const std::size_t i : group.filters) runs.emplace_back(plan_.filters[i], width, height, arena_);
@@ -100,7 +102,8 @@ class SceneBench {
                 if (stop_.stop_requested()) return false;
                 const filter::Choice& choice = plan_.filters[group.filters[i]];
                 progress_.say(at + ", " + to_text(choice));
-                Row row = measure_filter(runs[i], choice, inputs, bed, spp, result.copy_bytes_per_second);
+                Row row =
+                    measure_filter(runs[i], choice, inputs, comparison, spp, result.copy_bytes_per_second);
                 row.sampling_seconds = double(spp) * double(width) * double(height) *
                                        cost_.of(choice.channels(), group.path_class, stop_);
                 result.rows.push_back(std::move(row));
@@ -110,24 +113,24 @@ class SceneBench {
     }
 
     static Row measure_filter(FilterRun& run, const filter::Choice& choice, const filter::Inputs& inputs,
-                              const Bed& bed, std::uint64_t spp, double copy_bytes_per_second) {
+                              const Comparison& comparison, std::uint64_t spp, double copy_bytes_per_second) {
         Row row{.filter = to_text(choice), .spp = spp};
         const frame::Image picture = run.picture(inputs, &row.notes);
-        row.errors = squared_errors(picture, bed.references);
-        row.seen = seen_errors(picture, bed.references);
+        row.errors = squared_errors(picture, comparison.references);
+        row.seen = perceptual_errors(picture, comparison.references);
         row.time = run.time(inputs, copy_bytes_per_second);
-        if (bed.keeps_crops && spp <= MostSppOfCrops)
-            row.crop = bed.display.pixels(cropped(picture, bed.crop));
+        if (comparison.keeps_crops && spp <= MostSppOfCrops)
+            row.crop = comparison.display.pixels(cropped(picture, comparison.crop));
         return row;
     }
 
     void order(std::vector<Row>& rows) const {
-        const auto place = [&](const Row& row) {
+        const auto index_of = [&](const Row& row) {
             return std::find_if(plan_.filters.begin(), plan_.filters.end(),
                                 [&](const filter::Choice& choice) { return to_text(choice) == row.filter; });
         };
         std::stable_sort(rows.begin(), rows.end(), [&](const Row& a, const Row& b) {
-            return a.spp != b.spp ? a.spp < b.spp : place(a) < place(b);
+            return a.spp != b.spp ? a.spp < b.spp : index_of(a) < index_of(b);
         });
     }
 
@@ -136,7 +139,8 @@ class SceneBench {
         compare_by(result, &RelativeErrors::trimmed, &Row::trimmed);
     }
 
-    static void compare_by(SizeResult& result, Estimate RelativeErrors::*kind, Worth Row::*worth_of) {
+    static void compare_by(SizeResult& result, Estimate RelativeErrors::*kind,
+                           RelativeToUnfiltered Row::*member) {
         std::vector<CurvePoint> by_spp, by_time;
         for (const Row& row : result.rows) {
             if (row.filter != "none") continue;
@@ -147,16 +151,16 @@ class SceneBench {
         const ErrorCurve over_spp(by_spp), over_time(by_time);
         for (Row& row : result.rows) {
             const Estimate error = row.errors.relmse.*kind;
-            Worth& worth = row.*worth_of;
+            RelativeToUnfiltered& relative = row.*member;
             const Row* unfiltered = result.find("none", row.spp);
             const double base = unfiltered ? (unfiltered->errors.relmse.*kind).value : 0.0;
-            if (base > 0.0) worth.to_unfiltered = error.value / base;
+            if (base > 0.0) relative.to_unfiltered = error.value / base;
             if (!(error.value > error.deviation)) continue;
             const ErrorCurve::Reading samples = over_spp.cost_of(error.value);
-            worth.equal_error = {samples.value / double(row.spp), samples.is_measured};
+            relative.equal_error = {samples.value / double(row.spp), samples.is_measured};
             const double filter_seconds = row.filter == "none" ? 0.0 : row.time.seconds;
             const ErrorCurve::Reading same_time = over_time.error_at(row.sampling_seconds + filter_seconds);
-            worth.equal_time = {same_time.value / error.value, same_time.is_measured};
+            relative.equal_time = {same_time.value / error.value, same_time.is_measured};
         }
     }
 

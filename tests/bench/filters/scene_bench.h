@@ -10,11 +10,11 @@
 namespace tessera::tools::bench {
 
 struct BenchProgress {
-    std::function<void(const std::string&)> say;   // what is going on, now
-    std::function<void(const std::string&)> warn;  // what a person should know, once
+    std::function<void(const std::string&)> say;   // current activity, on the progress line
+    std::function<void(const std::string&)> warn;  // warnings
 };
 
-// Everything that is measured on one scene. Nothing when it was stopped. Throws Error.
+// All measurements on one scene. Empty when stopped. Throws Error.
 std::optional<SceneResult> measure_scene(const BenchScene& scene, const BenchPlan& plan,
                                          tbb::task_arena& arena, const BenchProgress& progress,
                                          const std::stop_token& stop);

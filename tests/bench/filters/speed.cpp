@@ -10,7 +10,7 @@ namespace tessera::tools::bench {
 
 namespace {
 
-// Times of the theses on their machines.
+// Times published in the theses.
 struct Published {
     const char* filter;
     Size size;
@@ -43,7 +43,7 @@ class SpeedBench {
     }
 
   private:
-    // Of the film that the choice needs; the one before, where it is the same.
+    // Inputs from the film that the filter needs; reused if it is the previous one.
     const filter::Inputs* inputs(const filter::Choice& choice, Size size) {
         progress_.say("speed of " + to_text(choice) + " at " + std::to_string(size.width) + "x" +
                       std::to_string(size.height));
@@ -66,7 +66,7 @@ class SpeedBench {
                              [&](const auto& choice) { return choice.entry->description.name == name; });
             if (entry == plan_.filters.end()) continue;
             const auto choice = filter::parse_choice(text, std::span(entry->entry, 1));
-            if (!choice) continue;  // the parameter has gone
+            if (!choice) continue;  // the parameter no longer exists
             const filter::Inputs* film = inputs(*choice, published.size);
             if (!film) return false;
             FilterRun run(*choice, published.size.width, published.size.height, arena_);

@@ -8,10 +8,10 @@
 
 namespace tessera::tools::bench {
 
-// One crop per filter at 4 spp (or the nearest there is) of one scene, to be shown in a text.
+// One crop per filter at 4 spp (or the nearest there is) of one scene, for use in documentation.
 struct Strip {
-    std::vector<std::byte> png;  // side by side and below each other, in the order of the table
-    std::string table;           // Markdown: where each is, its error and time
+    std::vector<std::byte> png;  // in a grid, in the order of the table
+    std::string table;           // Markdown: position, error and time of each
 };
 
 // Of the scene where the filters help most. Without crops: empty.

@@ -19,7 +19,7 @@ bool is_drawn(const std::pair<double, double>& point) {
            point.second > 0.0;
 }
 
-// One logarithmic axis, from the values to places on the page.
+// One logarithmic axis: maps values to page coordinates.
 class Axis {
   public:
     Axis(double from, double to) : from_(from), to_(to) {}
@@ -28,12 +28,12 @@ class Axis {
         high_ = is_empty_ ? value : std::max(high_, value);
         is_empty_ = false;
     }
-    void close() {  // a little air at both ends
+    void close() {  // padding at both ends
         const double air = std::pow(std::max(high_ / low_, 1.5), 0.05);
         low_ /= air;
         high_ *= air;
     }
-    double place(double value) const {
+    double to_pixels(double value) const {
         return from_ + (to_ - from_) * std::log(value / low_) / std::log(high_ / low_);
     }
     // Powers of ten, and 2 and 5 times these when the axis is short.
@@ -77,13 +77,13 @@ std::string as_svg(const Plot& plot) {
     std::string svg = formatted("<svg viewBox=\"0 0 %g %g\" role=\"img\">", Width, Height);
     svg += formatted("<text x=\"%g\" y=\"18\" class=\"title\">", Left) + escaped(plot.title) + "</text>";
     for (const double tick : x.ticks()) {
-        const double at = x.place(tick);
+        const double at = x.to_pixels(tick);
         svg += formatted("<path class=\"grid\" d=\"M%.1f %g V%g\"/>", at, Top, Height - Bottom);
         svg += formatted("<text x=\"%.1f\" y=\"%g\" text-anchor=\"middle\">%g</text>", at,
                          Height - Bottom + 15, tick);
     }
     for (const double tick : y.ticks()) {
-        const double at = y.place(tick);
+        const double at = y.to_pixels(tick);
         svg += formatted("<path class=\"grid\" d=\"M%g %.1f H%g\"/>", Left, at, Width - Right);
         svg += formatted("<text x=\"%g\" y=\"%.1f\" text-anchor=\"end\">%g</text>", Left - 5, at + 4, tick);
     }
@@ -97,7 +97,7 @@ std::string as_svg(const Plot& plot) {
         std::string line, dots;
         for (const auto& point : series.points) {
             if (!is_drawn(point)) continue;
-            const double px = x.place(point.first), py = y.place(point.second);
+            const double px = x.to_pixels(point.first), py = y.to_pixels(point.second);
             line += formatted("%s%.1f %.1f", line.empty() ? "M" : " L", px, py);
             dots += formatted("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"2.4\"/>", px, py);
         }

@@ -7,7 +7,7 @@ namespace tessera::tools::bench {
 
 struct PlotSeries {
     std::string name, color;
-    std::vector<std::pair<double, double>> points;  // what is not positive is left out
+    std::vector<std::pair<double, double>> points;  // non-positive points are skipped
 };
 struct Plot {
     std::string title, x_label, y_label;
@@ -18,7 +18,7 @@ struct Plot {
 // mouse is over it.
 std::string as_svg(const Plot& plot);
 
-// Told apart on white, by a filter's place in the list; repeats after twelve.
+// Distinguishable on white, by the filter's index in the list; repeats after twelve.
 std::string line_color(std::size_t index);
 
 }  // namespace tessera::tools::bench

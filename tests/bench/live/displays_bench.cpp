@@ -70,7 +70,7 @@ double cpu_seconds(pid_t pid) {
     return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
 }
 
-struct Shown {
+struct DisplayedFrame {
     std::set<std::uint64_t> versions;
     std::size_t outputs = 0;
     std::int64_t first = 0, last = 0;  // ns
@@ -82,13 +82,14 @@ class Wall {
     Wall(const DisplaysOptions& options, Encryption encryption, display::Display wall)
         : cluster_(options.nodes, options.backend, encryption), wall_(std::move(wall)) {
         editor_ = cluster_.join("bench", blobs_, clock_);
-        const ObjectId camera = editor_->new_id(), place = editor_->new_id();
-        const auto made = editor_->submit(
+        const ObjectId camera = editor_->new_id(), camera_transform = editor_->new_id();
+        const auto accepted_edit = editor_->submit(
             {scene::Create{camera, scene::Camera{.name = "head"}},
-             scene::Create{place, scene::Transform{.name = "place", .children = {camera}}},
+             scene::Create{camera_transform,
+                           scene::Transform{.name = "head transform", .children = {camera}}},
              scene::Update{scene::RootId, scene::Fields<scene::Root>(&scene::Root::children).bits(),
-                           scene::Root{.children = {place}}}});
-        if (!made.accepted) throw Error(ErrorCode::Internal, made.problems.front());
+                           scene::Root{.children = {camera_transform}}}});
+        if (!accepted_edit.accepted) throw Error(ErrorCode::Internal, accepted_edit.problems.front());
         for (const display::Output& output : wall_.outputs) {
             std::vector<std::string> arguments{"--master",    cluster_.endpoint(), "--output",
                                                output.name,   "--headless",        "--log",
@@ -116,8 +117,7 @@ class Wall {
                 });
             if (all) return;
             if (clock_.now() > limit) {
-                throw Error(ErrorCode::Unavailable,
-                            "the outputs did not come up: " + processes_.front().err());
+                throw Error(ErrorCode::Unavailable, "the outputs did not start: " + processes_.front().err());
             }
             std::this_thread::sleep_for(50ms);
         }
@@ -132,7 +132,7 @@ class Wall {
         const TimePoint end =
             start + std::chrono::duration_cast<Duration>(std::chrono::duration<double>(run_seconds));
         for (std::uint64_t step = 0; clock_.now() < end && !stop.stop_requested(); ++step) {
-            // Never the same place twice, some hundred times a second: a picture of it is always due.
+            // A new head position some hundred times a second, so that a new picture is always due.
             editor_->move_head(
                 {.position = {0.3 * std::sin(0.01 * double(step)), 0.1 * std::cos(0.007 * double(step)), 0}});
             std::this_thread::sleep_for(2ms);
@@ -148,7 +148,7 @@ class Wall {
         return run;
     }
     std::uint64_t master_peak() const { return cluster_.master_peak_memory(); }
-    // ns, when the last output showed its first frame.
+    // Time in ns at which the last output showed its first frame.
     std::int64_t all_shown_at() const {
         std::int64_t last = 0;
         for (const display::Output& output : wall_.outputs) {
@@ -175,13 +175,13 @@ class Wall {
         return sum;
     }
     void read_logs(std::int64_t from, std::int64_t to, LockRun& run) const {
-        std::map<std::uint64_t, Shown> frames;
+        std::map<std::uint64_t, DisplayedFrame> frames;
         for (const display::Output& output : wall_.outputs) {
             std::ifstream file(log_of(output));
             for (std::string line; std::getline(file, line);) {
                 const auto entry = nlohmann::json::parse(line, nullptr, false);
                 if (entry.is_discarded()) continue;  // the last line may be half written
-                Shown& shown = frames[entry["frame"].get<std::uint64_t>()];
+                DisplayedFrame& shown = frames[entry["frame"].get<std::uint64_t>()];
                 const auto when = entry["shown"].get<std::int64_t>();
                 shown.versions.insert(entry["version"].get<std::uint64_t>());
                 shown.first = shown.outputs == 0 ? when : std::min(shown.first, when);
@@ -213,19 +213,19 @@ class Wall {
 }  // namespace
 
 DisplaysResults run_displays(const DisplaysOptions& options,
-                             const std::function<void(const std::string&)>& tell, std::stop_token stop) {
+                             const std::function<void(const std::string&)>& report, std::stop_token stop) {
     DisplaysResults results;
     struct Case {
         const char* name;
         Size size;
         Encryption encryption;
     };
-    // A quarter of the thesis' 1440 x 1050 projectors; and what the barrier costs by itself.
+    // A quarter of the thesis' 1440 x 1050 projectors; and the cost of the barrier alone.
     for (const Case& each : {Case{"a quarter of 1440x1050", {360, 262}, Encryption::Curve},
                              Case{"the same, not encrypted", {360, 262}, Encryption::None},
                              Case{"the barrier alone", {32, 32}, Encryption::Curve}}) {
         if (stop.stop_requested()) return results;
-        tell(std::string("frame lock: ") + each.name);
+        report(std::string("frame lock: ") + each.name);
         Wall wall(options, each.encryption, wall_of(options, each.size, display::Stereo::Mono));
         wall.open();
         wall.wait_until_all_showed(1, stop);
@@ -238,7 +238,7 @@ DisplaysResults run_displays(const DisplaysOptions& options,
         results.locks.push_back(run);
     }
     if (!options.wall || stop.stop_requested()) return results;
-    tell("a stereo wall of 1440x1050 projectors");
+    report("a stereo wall of 1440x1050 projectors");
     Wall wall(options, Encryption::Curve, wall_of(options, {1440, 1050}, display::Stereo::Separate));
     const TimePoint opened = wall.open();
     wall.wait_until_all_showed(1, stop);

@@ -33,8 +33,8 @@ void print_table(const DisplaysResults& results) {
                     1e3 * run.nodes_cpu / frames, 1e3 * run.outputs_cpu / frames);
     }
     if (results.locks.size() >= 2 && results.locks[0].cpu_per_frame() > 0.0) {
-        const double share = 1.0 - results.locks[1].cpu_per_frame() / results.locks[0].cpu_per_frame();
-        std::printf("CURVE's share of the processor time of a frame: %.0f %%\n", 100.0 * share);
+        const double fraction = 1.0 - results.locks[1].cpu_per_frame() / results.locks[0].cpu_per_frame();
+        std::printf("CURVE's part of the processor time of a frame: %.0f %%\n", 100.0 * fraction);
     }
     if (results.wall.pixels > 0) {
         std::printf("stereo wall of %.1f megapixels: one frame in %.2f s, %.0f MiB at most on the master\n",
@@ -75,15 +75,16 @@ int run(DisplaysCommandOptions options) {
     options.displays.wall = !options.no_wall;
     if (options.displays.nodes == 0 || options.displays.columns == 0 || options.displays.rows == 0 ||
         options.displays.columns * options.displays.rows > 64)
-        return complain(DisplaysName, cli::ExitUsage,
-                        "--nodes at least 1, --columns x --rows within 1 and 64");
+        return report_error(DisplaysName, cli::ExitUsage,
+                            "--nodes at least 1, --columns x --rows within 1 and 64");
     DisplaysResults results;
     {
         ProgressLine line;
         results = run_displays(
             options.displays, [&](const std::string& text) { line.show(text); }, interrupts.token());
     }
-    if (interrupts.token().stop_requested()) return complain(DisplaysName, ExitInterrupted, "interrupted");
+    if (interrupts.token().stop_requested())
+        return report_error(DisplaysName, ExitInterrupted, "interrupted");
     if (options.json) {
         std::cout << as_json(results).dump(2) << std::endl;
     } else {
@@ -98,7 +99,7 @@ Command displays_command(cli::CommandLine& bench) {
     const auto options = std::make_shared<DisplaysCommandOptions>();
     cli::CommandLine& line = bench.command(
         "displays",
-        "How often a wall of output processes shows a new frame together, what the lock costs and how much "
+        "Rate of new frames on a frame-locked wall of output processes, the cost of the lock and how much "
         "of "
         "it is encryption; and the memory of one frame of a large stereo wall. Starts a master, nodes and "
         "headless tessera-display processes on this machine.");
@@ -106,8 +107,8 @@ Command displays_command(cli::CommandLine& bench) {
     line.option("--nodes", "number of nodes, one thread each", options->displays.nodes);
     line.option("--columns", "outputs side by side", options->displays.columns);
     line.option("--rows", "outputs one above the other", options->displays.rows);
-    line.option("--seconds", "of each run", options->displays.seconds);
-    line.flag("--no-wall", "leave out the large stereo wall", options->no_wall);
+    line.option("--seconds", "duration of each run", options->displays.seconds);
+    line.flag("--no-wall", "skip the large stereo wall", options->no_wall);
     line.flag("--json", "print one JSON object instead of the table", options->json);
     line.examples(
         {"tessera bench displays", "tessera bench displays --columns 3 --rows 2 --seconds 5 --no-wall"});
@@ -115,7 +116,7 @@ Command displays_command(cli::CommandLine& bench) {
                 try {
                     return run(*options);
                 } catch (const Error& error) {
-                    return complain(DisplaysName, exit_code(error.code()), error.what());
+                    return report_error(DisplaysName, exit_code(error.code()), error.what());
                 }
             }};
 }

@@ -25,22 +25,22 @@ double since(TimePoint start, const Clock& clock) {
     return seconds(clock.now() - start);
 }
 
-// The cluster, the scene in it, and somebody who watches.
+// The cluster, its scene, and a watching client.
 class LiveBench {
   public:
-    LiveBench(const LiveOptions& options, const std::function<void(const std::string&)>& tell,
+    LiveBench(const LiveOptions& options, const std::function<void(const std::string&)>& report,
               std::stop_token stop)
-        : options_(options), tell_(tell), stop_(stop), cluster_(options.nodes, options.backend) {}
+        : options_(options), report_(report), stop_(stop), cluster_(options.nodes, options.backend) {}
 
     LiveResults run() {
-        tell_("bringing in the scene");
+        report_("importing the scene");
         watcher_ = cluster_.join("watcher", blobs_, clock_);
         load();
         open_view();
         wait_for_frame(true);
-        one_after_another();
+        measure_sequential_edits();
         drag();
-        flood();
+        measure_flood();
         const session::ClusterStatus status = cluster_.status(clock_);
         for (const session::StageTimes& stage : status.scene.stages) {
             if (stage.name != "cancel to stopped") continue;
@@ -92,7 +92,7 @@ class LiveBench {
         while (const auto frame = watcher_->next_frame(deadline, stop_)) {
             if (!full || frame->scale == 1) return;
         }
-        throw Error(ErrorCode::Unavailable, "no picture came: see the logs of the nodes");
+        throw Error(ErrorCode::Unavailable, "no picture was received: see the logs of the nodes");
     }
 
     static std::vector<scene::Entry> paint(ObjectId material, double phase) {
@@ -103,17 +103,17 @@ class LiveBench {
                               wanted}};
     }
 
-    // The time of day moves on between edits, so that they meet passes of every kind.
-    void rest(std::uint64_t i) {
+    // Waits between edits, so that they arrive during every kind of pass.
+    void wait_between_edits(std::uint64_t i) {
         const TimePoint until = clock_.now() + 60ms + 7ms * static_cast<int>(i * 37 % 60);
         while (watcher_->next_frame(until, stop_)) {
         }
     }
 
-    void one_after_another() {
+    void measure_sequential_edits() {
         for (std::uint64_t i = 0; i < options_.edits && !stop_.stop_requested(); ++i) {
-            tell_("edit " + std::to_string(i + 1) + " of " + std::to_string(options_.edits));
-            rest(i);
+            report_("edit " + std::to_string(i + 1) + " of " + std::to_string(options_.edits));
+            wait_between_edits(i);
             const TimePoint start = clock_.now();
             const auto result = watcher_->submit(paint(materials_[i % materials_.size()], 0.7 * double(i)));
             results_.edit_to_answer.seconds.push_back(since(start, clock_));
@@ -128,15 +128,15 @@ class LiveBench {
 
     void drag() {
         std::uint64_t seen = 0;
-        const glm::dvec4 place = request_.view.camera.world_from_camera[3];
+        const glm::dvec4 position = request_.view.camera.world_from_camera[3];
         for (std::uint64_t i = 0; i < options_.edits && !stop_.stop_requested(); ++i) {
-            tell_("camera " + std::to_string(i + 1) + " of " + std::to_string(options_.edits));
-            rest(i);
+            report_("camera " + std::to_string(i + 1) + " of " + std::to_string(options_.edits));
+            wait_between_edits(i);
             while (const auto frame = watcher_->next_frame(clock_.now(), stop_)) seen = frame->revision;
             const TimePoint start = clock_.now();
             request_.view.camera.world_from_camera[3] =
-                place + 0.01 * std::sin(double(i)) * request_.view.camera.world_from_camera[0];
-            watcher_->look(View, request_.view.camera);
+                position + 0.01 * std::sin(double(i)) * request_.view.camera.world_from_camera[0];
+            watcher_->set_camera(View, request_.view.camera);
             while (const auto frame = watcher_->next_frame(start + 30s, stop_)) {
                 if (frame->revision <= seen) continue;
                 seen = frame->revision;
@@ -146,21 +146,21 @@ class LiveBench {
         }
     }
 
-    // What was known when: the time at which each version's first edit was answered.
-    struct Known {
+    // The time at which the first edit of each version was answered.
+    struct AnswerTimes {
         std::mutex mutex;  // protects since
         std::map<std::uint64_t, TimePoint> since;
     };
 
-    void edit_much(std::uint32_t editor, Known& known, std::stop_token stop) {
+    void submit_edits(std::uint32_t editor, AnswerTimes& answer_times, std::stop_token stop) {
         const auto session =
             cluster_.join("editor " + std::to_string(editor), std::make_shared<scene::BlobStore>(), clock_);
         const auto take = [&] {
             const std::vector<session::EditResult> answers = session->take_results();
-            const std::scoped_lock lock(known.mutex);
+            const std::scoped_lock lock(answer_times.mutex);
             for (const session::EditResult& result : answers) {
                 flood_accepted_ += result.accepted ? 1 : 0;
-                known.since.try_emplace(result.version.number, clock_.now());
+                answer_times.since.try_emplace(result.version.number, clock_.now());
             }
         };
         const double interval = options_.editors / double(options_.rate);
@@ -180,17 +180,17 @@ class LiveBench {
         flood_edits_ += sent;
     }
 
-    void flood() {
-        Known known;
+    void measure_flood() {
+        AnswerTimes answer_times;
         const TimePoint start = clock_.now();
         {
             std::vector<std::jthread> editors;
             for (std::uint32_t editor = 0; editor < options_.editors; ++editor) {
-                editors.emplace_back([this, editor, &known](std::stop_token stop) {
+                editors.emplace_back([this, editor, &answer_times](std::stop_token stop) {
                     try {
-                        edit_much(editor, known, stop);
+                        submit_edits(editor, answer_times, stop);
                     } catch (const Error& error) {
-                        tell_(error.what());
+                        report_(error.what());
                     }
                 });
             }
@@ -206,16 +206,17 @@ class LiveBench {
                 if (!frame) continue;
                 ++results_.flood_pictures;
                 if (results_.flood_pictures % 10 == 0)
-                    tell_(std::to_string(results_.flood_pictures) + " pictures, " +
-                          std::to_string(int(since(start, clock_))) + " s of edits");
+                    report_(std::to_string(results_.flood_pictures) + " pictures, " +
+                            std::to_string(int(since(start, clock_))) + " s of edits");
                 const TimePoint now = clock_.now();
-                const std::scoped_lock lock(known.mutex);
-                const auto newer = known.since.upper_bound(frame->version.number);
+                const std::scoped_lock lock(answer_times.mutex);
+                const auto newer = answer_times.since.upper_bound(frame->version.number);
                 TimePoint first = now;
-                for (auto entry = newer; entry != known.since.end(); ++entry)
+                for (auto entry = newer; entry != answer_times.since.end(); ++entry)
                     first = std::min(first, entry->second);
                 results_.picture_age.seconds.push_back(seconds(now - first));
-                known.since.erase(known.since.begin(), known.since.lower_bound(frame->version.number));
+                answer_times.since.erase(answer_times.since.begin(),
+                                         answer_times.since.lower_bound(frame->version.number));
             }
             results_.flood_seconds = since(start, clock_);
         }
@@ -225,24 +226,24 @@ class LiveBench {
         compare_replicas();
     }
 
-    // Nodes check the hash of every version that they build, and ask for the whole scene when it differs.
+    // Nodes check the hash of every version, and request the whole scene when it differs.
     void compare_replicas() {
         watcher_->refresh();
         const auto late = cluster_.join("late", std::make_shared<scene::BlobStore>(), clock_);
-        const auto all_are_there = [&](const session::ClusterStatus& status) {
+        const auto all_up_to_date = [&](const session::ClusterStatus& status) {
             return std::all_of(status.nodes.begin(), status.nodes.end(),
                                [&](const auto& node) { return node.version == status.version; });
         };
         session::ClusterStatus status = cluster_.status(clock_);
         const TimePoint deadline = clock_.now() + 10s;
-        while (!all_are_there(status) && clock_.now() < deadline) status = cluster_.status(clock_);
-        results_.replicas_agree = all_are_there(status) && status.resyncs == 0 &&
+        while (!all_up_to_date(status) && clock_.now() < deadline) status = cluster_.status(clock_);
+        results_.replicas_agree = all_up_to_date(status) && status.resyncs == 0 &&
                                   status.version == watcher_->scene().version() &&
                                   late->scene().state_hash() == watcher_->scene().state_hash();
     }
 
     LiveOptions options_;
-    std::function<void(const std::string&)> tell_;
+    std::function<void(const std::string&)> report_;
     std::stop_token stop_;
     SteadyClock clock_;
     LiveCluster cluster_;
@@ -263,9 +264,9 @@ double Times::percentile(double part) const {
     return sorted[static_cast<std::size_t>(part * double(sorted.size() - 1) + 0.5)];
 }
 
-LiveResults run_live(const LiveOptions& options, const std::function<void(const std::string&)>& tell,
+LiveResults run_live(const LiveOptions& options, const std::function<void(const std::string&)>& report,
                      std::stop_token stop) {
-    return LiveBench(options, tell, stop).run();
+    return LiveBench(options, report, stop).run();
 }
 
 }  // namespace tessera::tools::bench

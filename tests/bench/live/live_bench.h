@@ -14,7 +14,7 @@ struct LiveOptions {
     std::string scene;  // file; its materials are edited
     std::string backend = "embree";
     std::uint32_t nodes = 2, width = 1280, height = 720;
-    std::uint64_t edits = 100;               // one after the other, for the time to a picture
+    std::uint64_t edits = 100;               // sequential, to measure the time to a picture
     std::uint32_t editors = 4, rate = 1000;  // edits per second of all together
     double flood_seconds = 60.0;
 };
@@ -25,22 +25,22 @@ struct Times {
 };
 
 struct LiveResults {
-    // One edit after the other.
+    // Sequential edits.
     Times edit_to_answer, edit_to_picture, camera_to_picture;
-    // As the master saw them during all of it.
+    // As reported by the master, over the whole run.
     double cancel_p50 = 0, cancel_p99 = 0;
     std::uint64_t cancellations = 0;
     double bytes_per_edit = 0, bytes_per_version = 0;  // to the master; to all nodes
     // Many edits from many editors.
     double flood_seconds = 0;
     std::uint64_t flood_edits = 0, flood_accepted = 0, flood_pictures = 0, versions = 0;
-    Times picture_age;  // of each picture that came: how long something newer had been known
-    std::uint64_t memory_early = 0, memory_late = 0;  // of the master, after 10 s and in the end
+    Times picture_age;  // of each received picture: how long a newer version had been known
+    std::uint64_t memory_early = 0, memory_late = 0;  // of the master, after 10 s and at the end
     bool replicas_agree = false;
 };
 
-// Runs a cluster of its own. `tell` hears what is going on.
-LiveResults run_live(const LiveOptions& options, const std::function<void(const std::string&)>& tell,
+// Starts its own cluster. `report` gets progress messages.
+LiveResults run_live(const LiveOptions& options, const std::function<void(const std::string&)>& report,
                      std::stop_token stop);
 
 }  // namespace tessera::tools::bench

@@ -12,7 +12,7 @@ namespace {
 std::filesystem::path temporary_folder() {
     std::string pattern = (std::filesystem::temp_directory_path() / "tessera-bench-XXXXXX").string();
     if (mkdtemp(pattern.data()) == nullptr)
-        throw Error(ErrorCode::Io, "cannot make a folder in " +
+        throw Error(ErrorCode::Io, "cannot create a folder in " +
                                        std::filesystem::temp_directory_path().string() + ": is it writable?");
     return pattern;
 }
@@ -24,7 +24,7 @@ LiveCluster::LiveCluster(std::uint32_t nodes, const std::string& backend, Encryp
     const std::filesystem::path bin = program_folder();
     ChildProcess keys_tool(folder_, "keys", bin / "tessera", {"keys", keys().string()});
     if (keys_tool.wait(std::chrono::seconds(30)) != 0)
-        throw Error(ErrorCode::Internal, "cannot make keys: " + keys_tool.err());
+        throw Error(ErrorCode::Internal, "cannot generate keys: " + keys_tool.err());
     const std::vector<std::string> security = encryption == Encryption::Curve
                                                   ? std::vector<std::string>{"--keys", keys().string()}
                                                   : std::vector<std::string>{"--insecure"};

@@ -13,10 +13,10 @@ namespace tessera::tools::bench {
 
 enum class Encryption { Curve, None };
 
-// A master and nodes as processes of their own, with keys made for the bench. All end with it.
+// A master and nodes as separate processes, with keys generated for the bench. The destructor ends them.
 class LiveCluster {
   public:
-    // Throws Error when a program is not there or does not come up.
+    // Throws Error when a program is missing or does not start.
     LiveCluster(std::uint32_t nodes, const std::string& backend, Encryption encryption = Encryption::Curve);
     ~LiveCluster();
 
@@ -24,7 +24,7 @@ class LiveCluster {
                                           const Clock& clock) const;
     session::ClusterStatus status(const Clock& clock) const;
     std::uint64_t master_memory() const;       // bytes in RAM
-    std::uint64_t master_peak_memory() const;  // the most so far
+    std::uint64_t master_peak_memory() const;  // peak so far
     pid_t master_pid() const { return master_->pid(); }
     std::vector<pid_t> node_pids() const;
 

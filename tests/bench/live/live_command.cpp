@@ -32,7 +32,7 @@ void print_table(const LiveResults& results) {
         std::printf("  %-34s %8.1f ms %8.1f ms   of %zu\n", what, 1e3 * times.percentile(0.5),
                     1e3 * times.percentile(0.99), times.seconds.size());
     };
-    std::printf("one edit after the other                  median        p99\n");
+    std::printf("sequential edits                          median        p99\n");
     line("edit to its answer", results.edit_to_answer);
     line("edit to the first picture of it", results.edit_to_picture);
     line("camera to the first picture of it", results.camera_to_picture);
@@ -40,13 +40,13 @@ void print_table(const LiveResults& results) {
                 1e3 * results.cancel_p99, static_cast<unsigned long long>(results.cancellations));
     std::printf("  %-34s %8.0f B to the master, %.0f B a version to the nodes\n", "an edit",
                 results.bytes_per_edit, results.bytes_per_version);
-    std::printf("edits of several editors for %.0f s\n", results.flood_seconds);
+    std::printf("concurrent edits of several editors for %.0f s\n", results.flood_seconds);
     std::printf("  %-34s %8.1f /s, %llu sent, %llu accepted\n", "edits",
                 per_second(results.flood_edits, results),
                 static_cast<unsigned long long>(results.flood_edits),
                 static_cast<unsigned long long>(results.flood_accepted));
     std::printf("  %-34s %8.1f /s\n", "pictures", per_second(results.flood_pictures, results));
-    line("something newer was known for", results.picture_age);
+    line("a newer version was known for", results.picture_age);
     std::printf("  %-34s %8.1f MiB early, %.1f MiB late\n", "memory of the master",
                 double(results.memory_early) / Mebibyte, double(results.memory_late) / Mebibyte);
     std::printf("  %-34s %s\n", "all replicas agree", results.replicas_agree ? "yes" : "NO");
@@ -82,18 +82,18 @@ nlohmann::ordered_json as_json(const LiveResults& results) {
 int run(LiveCommandOptions options) {
     const Interrupts interrupts;  // before anything that starts threads
     const auto size = parse_size(options.size);
-    if (!size) return complain(LiveName, cli::ExitUsage, std::string("--size: ") + size.error().what());
+    if (!size) return report_error(LiveName, cli::ExitUsage, std::string("--size: ") + size.error().what());
     options.live.width = size->width;
     options.live.height = size->height;
     if (options.live.nodes == 0 || options.live.editors == 0 || options.live.rate == 0)
-        return complain(LiveName, cli::ExitUsage, "--nodes, --editors and --rate must be at least 1");
+        return report_error(LiveName, cli::ExitUsage, "--nodes, --editors and --rate must be at least 1");
     LiveResults results;
     {
         ProgressLine line;
         results = run_live(
             options.live, [&](const std::string& text) { line.show(text); }, interrupts.token());
     }
-    if (interrupts.token().stop_requested()) return complain(LiveName, ExitInterrupted, "interrupted");
+    if (interrupts.token().stop_requested()) return report_error(LiveName, ExitInterrupted, "interrupted");
     if (options.json) {
         std::cout << as_json(results).dump(2) << std::endl;
     } else {
@@ -108,16 +108,16 @@ Command live_command(cli::CommandLine& bench) {
     const auto options = std::make_shared<LiveCommandOptions>();
     cli::CommandLine& line = bench.command(
         "live",
-        "How soon edits of a live scene are seen, and what many of them cost. Starts a master and nodes as "
-        "processes of their own on this machine, with encryption.");
+        "Latency of edits of a live scene, and throughput of many editors. Starts a master and nodes as "
+        "separate processes on this machine, with encryption.");
     line.option("--scene", "scene file whose materials are edited", options->live.scene);
     line.option("--backend", "back-end of the nodes", options->live.backend);
     line.option("--nodes", "number of nodes, one thread each", options->live.nodes);
-    line.option("--size", "of the view", options->size);
-    line.option("--edits", "edits, and camera moves, one after the other", options->live.edits);
+    line.option("--size", "picture size of the view", options->size);
+    line.option("--edits", "number of sequential edits and camera moves", options->live.edits);
     line.option("--editors", "clients that edit at the same time", options->live.editors);
     line.option("--rate", "edits per second of all editors together", options->live.rate);
-    line.option("--seconds", "for so long", options->live.flood_seconds);
+    line.option("--seconds", "duration of the concurrent edits", options->live.flood_seconds);
     line.flag("--json", "print one JSON object instead of the table", options->json);
     line.examples({"tessera bench live",
                    "tessera bench live --nodes 1 --size 640x360 --edits 30 --seconds 10",
@@ -126,7 +126,7 @@ Command live_command(cli::CommandLine& bench) {
                 try {
                     return run(*options);
                 } catch (const Error& error) {
-                    return complain(LiveName, exit_code(error.code()), error.what());
+                    return report_error(LiveName, exit_code(error.code()), error.what());
                 }
             }};
 }

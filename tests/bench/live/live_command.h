@@ -4,7 +4,7 @@
 
 namespace tessera::tools::bench {
 
-// `tessera bench live`: how soon edits are seen, and what many of them cost.
+// `tessera bench live`: latency of edits, and throughput of many of them.
 Command live_command(cli::CommandLine& bench);
 
 }  // namespace tessera::tools::bench

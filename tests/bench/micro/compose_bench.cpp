@@ -1,5 +1,5 @@
-// Layers of a view composed by depth and alpha at 1920x1080, next to a plain copy of the same bytes on as
-// many threads; the column CPU is that of all of them.
+// Compositing of layers by depth and alpha at 1920x1080, compared with a plain copy of the same bytes on as
+// many threads; the column CPU is the total of all threads.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -55,7 +55,7 @@ BENCHMARK(compose_layers)
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 
-// As many bytes moved: half of them read, half written.
+// Copies as many bytes: half of them read, half written.
 void plain_copy(benchmark::State& state) {
     const auto count = static_cast<std::size_t>(state.range(0));
     const std::size_t values = (count * Read + Written) * Width * Height / 2;

@@ -1,4 +1,4 @@
-// An output's way from the eyes' pictures to its device, beside a plain copy of the same bytes.
+// Warping the pictures of the eyes to an output's device, compared with a plain copy of the same bytes.
 #include <benchmark/benchmark.h>
 #include <immintrin.h>
 
@@ -28,7 +28,7 @@ EyePicture eye_picture(const std::vector<std::uint16_t>& halves) {
     return {EyePicture::Encoding::LinearHalf, Width, Height, std::as_bytes(std::span(halves))};
 }
 
-// A wall two metres away seen by a projector that hangs askew, a node a pixel.
+// A wall two metres away and a tilted projector, with a warp map node per pixel.
 Output projector(scene::BlobStore& arrays) {
     Output output{.name = "projector", .width = Width, .height = Height};
     output.plane.origin = {0, 0, -2};
@@ -57,7 +57,7 @@ void set_bytes(benchmark::State& state) {
     state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * Values * 3));
 }
 
-// As many bytes as an eye's picture in half floats and a device's picture have together.
+// Copies as many bytes as an eye's half-float picture and the device's picture have in total.
 void plain_copy(benchmark::State& state) {
     std::vector<std::byte> from(3 * Values), to(3 * Values);
     for (auto _ : state) {

@@ -1,4 +1,4 @@
-// An edit in the master's hands, in scenes of two sizes: what it costs must not depend on the scene.
+// Cost of an edit on the master, in scenes of two sizes: it must not depend on the size of the scene.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -14,7 +14,7 @@ using namespace tessera::scene;
 
 constexpr std::uint64_t GroupSize = 100;
 
-// Groups of lights below the root, each with a material beside it; `objects` in all.
+// Groups of lights below the root, each with a sibling material; `objects` in total.
 class Fixture {
   public:
     explicit Fixture(std::uint64_t objects) {
@@ -37,10 +37,12 @@ class Fixture {
         authority_.publish();
     }
 
-    void submit(std::vector<Entry> entries, std::uint64_t gesture = 0) {
-        const auto answer = authority_.submit(
-            {.session = Session, .sequence = ++sequence_, .entries = std::move(entries), .gesture = gesture},
-            {"bench", "bench", static_cast<std::int64_t>(sequence_)});
+    void submit(std::vector<Entry> entries, std::uint64_t edit_group = 0) {
+        const auto answer = authority_.submit({.session = Session,
+                                               .sequence = ++sequence_,
+                                               .entries = std::move(entries),
+                                               .edit_group = edit_group},
+                                              {"bench", "bench", static_cast<std::int64_t>(sequence_)});
         if (!answer.accepted) {
             std::cerr << answer.problems.at(0) << "\n";
             std::abort();
@@ -51,7 +53,7 @@ class Fixture {
     ObjectId group(std::uint64_t i) const { return groups_[i % groups_.size()]; }
     ObjectId material(std::uint64_t i) const { return materials_[i % materials_.size()]; }
     master::SceneAuthority& authority() { return authority_; }
-    // As the live master does: a version each 16 ms at 1,000 edits a second.
+    // As the live master does: a version every 16 ms at 1,000 edits per second.
     void publish_now_and_then() {
         if (sequence_ % 16 == 0) authority_.publish();
     }
@@ -59,7 +61,7 @@ class Fixture {
   private:
     static constexpr SessionId Session{1};
     master::SceneAuthority authority_{1, std::make_shared<BlobStore>()};
-    master::SceneAuthority::IdRange ids_ = authority_.lend_ids(Session);
+    master::SceneAuthority::IdRange ids_ = authority_.allocate_id_range(Session);
     std::uint64_t count_ = 0, sequence_ = 0;
     std::vector<ObjectId> groups_, materials_;
 };

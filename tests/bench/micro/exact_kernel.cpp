@@ -1,4 +1,5 @@
-// One of the kernels of seldom_scenes.h: SHADING_KERNEL, the build's, is the name of its scene.
+// The kernel of one of the scenes of rare_feature_scenes.h; the build defines SHADING_KERNEL as the scene's
+// name.
 #define ORDINARY_FEATURES                                                               \
     (shading::FeatureTextures | shading::FeatureSpecular | shading::FeatureMeshLights | \
      shading::FeatureLightTree | shading::FeatureEnvironment)
@@ -9,16 +10,16 @@
 #define FEATURES_rough_glass shading::FeatureRoughGlass
 #define FEATURES_film (shading::FeatureExtras | shading::FeatureIridescence)
 #define FEATURES_attenuation shading::FeatureMedia
-#define FEATURES_fog (shading::FeatureMedia | shading::FeatureOpenMedia | shading::FeatureScattering)
+#define FEATURES_fog (shading::FeatureMedia | shading::FeatureIndexMatchedMedia | shading::FeatureScattering)
 #define FEATURES_motion shading::FeatureMotion
-#define FEATURES_shader shading::FeatureShader
+#define FEATURES_shader shading::FeatureSurfaceShader
 #define FEATURES_catcher (shading::FeatureShadowCatcher | shading::FeatureAlpha)
-#define FEATURES_shaped_lights (shading::FeatureShapedLights | shading::FeaturePlacedLights)
+#define FEATURES_area_lights (shading::FeatureAreaLights | shading::FeaturePunctualLights)
 #define FEATURES_OF(scene) FEATURES_##scene
 #define FEATURES(scene) FEATURES_OF(scene)
 #define SHADING_FEATURES (ORDINARY_FEATURES | FEATURES(SHADING_KERNEL))
 #define SHADING_HAS_ALL_FEATURES
-#include "backends/embree/kernel_text.h"
+#include "backends/embree/kernel_impl.h"
 #include "tests/bench/micro/exact_kernels.h"
 
 namespace tessera::embree {

@@ -2,16 +2,16 @@
 
 #include "backends/embree/kernel.h"
 
-// Kernels that have the features of one scene and no other.
+// Kernels compiled for exactly the features of one scene.
 namespace tessera::embree {
 
-// Of tests/scenes.
+// For files of tests/scenes.
 extern const Kernel RoomKernel, StillKernel, StudioKernel;
 
-// Of seldom_scenes.h, by their names.
+// For the scenes of rare_feature_scenes.h, by name.
 namespace exact {
 extern const Kernel none, coat, sheen, anisotropy, rough_glass, film, attenuation, fog, motion, shader,
-    catcher, shaped_lights;
+    catcher, area_lights;
 }
 
 }  // namespace tessera::embree

@@ -1,5 +1,5 @@
-// The film's way: a sample into a tile, tiles merged, tiles on the wire. Each next to the memory bandwidth
-// that bounds it.
+// The path of film data: a sample into a tile, merging tiles, tiles on the wire. Each is compared with the
+// memory bandwidth that bounds it.
 #include <benchmark/benchmark.h>
 
 #include <cstring>
@@ -35,7 +35,7 @@ void set_bytes(benchmark::State& state, std::size_t per_iteration) {
     state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * per_iteration));
 }
 
-// The limit of everything below: a merge reads two tiles and writes one.
+// The upper bound of all of the following: a merge reads two tiles and writes one.
 void memory_copy(benchmark::State& state) {
     const FilmTile source = filled({0, 0}, 1);
     FilmTile target = source;

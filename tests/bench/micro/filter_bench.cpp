@@ -1,5 +1,5 @@
-// What every filter costs at 1280x720 and 4 samples, next to a plain copy of the picture. Arguments that
-// are no flags replace the catalog: `tessera_filter_bench pixel:method=brute nlm`.
+// Time of every filter at 1280x720 and 4 samples, compared with a plain copy of the picture. Arguments that
+// are not flags replace the catalog: `tessera_filter_bench pixel:method=brute nlm`.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -20,14 +20,14 @@ constexpr std::uint32_t Width = 1280, Height = 720;
 constexpr double Megapixels = Width * Height * 1e-6;
 
 const Inputs& inputs() {
-    static const Inputs Made =
+    static const Inputs Sample =
         synthetic_inputs(Width, Height, 4, [](std::uint32_t x, std::uint32_t y, std::uint64_t sample) {
             return shadowed_texture(Width, Height, x, y, sample);
         });
-    return Made;
+    return Sample;
 }
 
-// The limit of everything below: each byte of the picture read once and written once.
+// The upper bound of all of the following: each byte of the picture read once and written once.
 void plain_copy(benchmark::State& state) {
     const Planes& from = inputs().mean(frame::Channel::Radiance);
     Planes to = from;
@@ -39,8 +39,8 @@ void plain_copy(benchmark::State& state) {
     state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * 2 * from.byte_size()));
 }
 
-// All cores, warm memory; the column CPU is that of all threads. `bytes/px` is what the filter says that it
-// moves; `GB/s` follows from it.
+// All cores, warm memory; the column CPU is the total of all threads. `bytes/px` is the traffic reported by
+// the filter; `GB/s` follows from it.
 void run(benchmark::State& state, const std::string& text) {
     const auto choice = parse_choice(text, catalog());
     if (!choice) {

@@ -1,17 +1,17 @@
-// What features cost that a scene does not have: the time of the kernel that it gets over that of one which
-// was compiled for its features alone (the promise: 1.02), and of the one with all features.
+// Cost of features that a scene does not use: the time of the chosen kernel over that of one compiled for
+// exactly its features (target: 1.02), and the same for the kernel with all features.
 //   tessera_kernel_bench
-// One thread; medians over pairs of pictures that are rendered in turn. On a machine that has other work,
-// instructions tell more than time; between two runs of
+// One thread; medians over pairs of pictures that are rendered in turn. On a busy machine instruction counts
+// are more reliable than times; the difference between two runs of
 //   valgrind --tool=callgrind tessera_kernel_bench SCENE path|whitted exact|chosen|full PICTURES
-// lie those of the pictures that one has more.
+// is the count of the additional pictures.
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
 
-#include "tests/bench/micro/bench_bed.h"
 #include "tests/bench/micro/exact_kernels.h"
-#include "tests/bench/micro/seldom_scenes.h"
+#include "tests/bench/micro/rare_feature_scenes.h"
+#include "tests/bench/micro/scene_fixture.h"
 
 namespace tessera::embree {
 namespace {
@@ -30,7 +30,7 @@ void render(const PathTracer& tracer, std::uint64_t sample) {
     float sum = 0.0f;
     for (std::uint32_t i = 0; i < Size * Size; ++i)
         sum += tracer.trace(i % Size, i / Size, sample, rays).low.x;
-    if (!(sum >= 0.0f)) std::printf("the picture is no number\n");
+    if (!(sum >= 0.0f)) std::printf("the picture contains NaN\n");
 }
 
 double time_of(const PathTracer& tracer, std::uint64_t sample) {
@@ -39,7 +39,7 @@ double time_of(const PathTracer& tracer, std::uint64_t sample) {
     return bench::cpu_seconds() - start;
 }
 
-void compare(const World& world, view::View view, view::Renderer renderer, const char* what,
+void compare(const SceneAdapter& world, view::View view, view::Renderer renderer, const char* what,
              const Kernel& exact_kernel) {
     view.renderer = renderer;
     PathTracer chosen(world.tables(), world.scene(), view);
@@ -60,16 +60,16 @@ void compare(const World& world, view::View view, view::Renderer renderer, const
     std::fflush(stdout);
 }
 
-// How a scene is measured.
-using Measure = void (*)(const World& world, view::View view, const Kernel& exact, char** arguments);
+// Measures one scene.
+using Measure = void (*)(const SceneAdapter& world, view::View view, const Kernel& exact, char** arguments);
 
-void compare_both(const World& world, view::View view, const Kernel& exact, char**) {
+void compare_both(const SceneAdapter& world, view::View view, const Kernel& exact, char**) {
     compare(world, view, view::Renderer::PathTracing, "path", exact);
     compare(world, view, view::Renderer::Whitted, "whitted", exact);
 }
 
 // renderer, kernel, pictures
-void render_some(const World& world, view::View view, const Kernel& exact, char** arguments) {
+void render_some(const SceneAdapter& world, view::View view, const Kernel& exact, char** arguments) {
     const std::string_view kernel = arguments[1];
     view.renderer =
         std::string_view(arguments[0]) == "whitted" ? view::Renderer::Whitted : view::Renderer::PathTracing;
@@ -80,12 +80,12 @@ void render_some(const World& world, view::View view, const Kernel& exact, char*
     for (int i = 0; i < pictures; ++i) render(tracer, static_cast<std::uint64_t>(i));
 }
 
-void run(const char* name, const World& world, const view::View& view, const Kernel& exact, Measure measure,
-         char** arguments) {
+void run(const char* name, const SceneAdapter& world, const view::View& view, const Kernel& exact,
+         Measure measure, char** arguments) {
     const std::uint32_t features = world.tables().scene.features;
     std::printf("%s\n", name);
     if (features != exact.features) {
-        std::printf("  has features %x, not %x: its kernel in tests/bench has to follow\n", features,
+        std::printf("  has features %x, not %x: update its kernel in tests/bench/micro\n", features,
                     exact.features);
         return;
     }
@@ -96,14 +96,14 @@ void run(const char* name, const World& world, const view::View& view, const Ker
 void run_scenes(std::string_view only, Measure measure, char** arguments) {
     for (const FileScene& scene : FileScenes) {
         if (!only.empty() && only != scene.name) continue;
-        const bench::Bed bed(std::string(scene.name) + ".glb", Size);
-        run(scene.name, bed.world, bed.view, *scene.exact, measure, arguments);
+        const bench::SceneFixture fixture(std::string(scene.name) + ".glb", Size);
+        run(scene.name, fixture.world, fixture.view, *scene.exact, measure, arguments);
     }
-    for (const SeldomScene& scene : seldom_scenes()) {
+    for (const RareFeatureScene& scene : rare_feature_scenes()) {
         if (!only.empty() && only != scene.name) continue;
         Model model;
         scene.add(model);
-        run(scene.name, model.build(), seldom_view(Size), *scene.exact, measure, arguments);
+        run(scene.name, model.build(), rare_feature_view(Size), *scene.exact, measure, arguments);
     }
 }
 

@@ -1,9 +1,9 @@
-// Many lights: what the light tree gains over uniform choice, and what it costs. Light in fog: what places
-// that are chosen by the angle from a light gain over free flight alone.
+// Many lights: gain and cost of the light tree against uniform selection. Light in fog: gain of equiangular
+// sampling over free flight sampling alone.
 //   tessera_light_bench [fog|trees]
-// 10,000 glowing triangles of 0.1 m over a ground of 100 m, of all orientations, one-sided, with powers over
-// two orders of magnitude. Uniform choice is the same tree with equal expectations, so its time is not its
-// own: it is given the time of a scene in which one of the triangles glows and the others are black.
+// 10,000 emissive one-sided triangles of 0.1 m over a ground of 100 m, of all orientations, with powers over
+// two orders of magnitude. Uniform selection uses the same tree with equal importances, so its time is not
+// meaningful: instead, the time of a scene with a single emissive triangle is used.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -11,7 +11,7 @@
 
 #include "mediator/backend/tables/light_tree.h"
 #include "mediator/base/random.h"
-#include "tests/bench/micro/model_bed.h"
+#include "tests/bench/micro/model_timing.h"
 
 namespace tessera::embree {
 namespace {
@@ -24,27 +24,27 @@ using bench::time_of;
 constexpr std::uint32_t Emitters = 10000, Size = 64, Spp = 64, ReferenceSpp = 1024, Rounds = 9;
 constexpr std::uint32_t FogReferenceSpp = 256, FogRounds = 5;
 
-// The first `glowing` glow; the very first lies above what is seen and shines down.
-void add_lamps(Model& model, std::uint32_t glowing) {
+// The first `emissive` triangles emit; the very first is above the visible ground and faces down.
+void add_lamps(Model& model, std::uint32_t emissive) {
     CounterRandom random(1);
     const auto number = [&] { return static_cast<float>(2.0 * random.uniform() - 1.0); };
     model.floor(model.material(chalk(glm::vec3(0.7f))), 50.0f, 0.0f);
     std::vector<std::array<glm::vec3, 3>> bright, dark;
     for (std::uint32_t i = 0; i < Emitters; ++i) {
-        const glm::vec3 place(50.0f * number(), 50.0f * number(), 2.0f + number());
+        const glm::vec3 position(50.0f * number(), 50.0f * number(), 2.0f + number());
         const float size = 0.05f * std::pow(10.0f, number());
         std::array<glm::vec3, 3> corners;
-        for (glm::vec3& corner : corners) corner = place + size * glm::vec3(number(), number(), number());
+        for (glm::vec3& corner : corners) corner = position + size * glm::vec3(number(), number(), number());
         if (i == 0) corners = {{{0.0f, 1.0f, 2.0f}, {0.0f, 1.1f, 2.0f}, {0.1f, 1.0f, 2.0f}}};
-        (i < glowing ? bright : dark).push_back(corners);
+        (i < emissive ? bright : dark).push_back(corners);
     }
-    scene::Material glow = lamp(1000.0f);
-    glow.double_sided = false;
-    model.triangles(model.material(glow), bright);
+    scene::Material emissive_material = lamp(1000.0f);
+    emissive_material.double_sided = false;
+    model.triangles(model.material(emissive_material), bright);
     model.triangles(model.material(chalk(glm::vec3(0.0f))), dark);
 }
 
-// Of the ground alone, from below all lamps: small ones that are seen would be noise of their own.
+// Views the ground only, from below all lamps: visible small lamps would add noise.
 view::View ground() {
     const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), 0.8, {1.0, 0.0, 0.0});
     view::View view = small_view({0.0, 0.0, 0.9}, 0.9, Size, turn);
@@ -52,7 +52,7 @@ view::View ground() {
     return view;
 }
 
-// All emitters alike from everywhere.
+// Equal importance of all emitters from everywhere.
 backend::SceneTables uniform(backend::SceneTables tables) {
     std::vector<shading::LightNode>& nodes = tables.light_nodes;
     for (shading::LightNode& node : nodes) {
@@ -82,8 +82,8 @@ void run() {
     Model many, one;
     add_lamps(many, Emitters);
     add_lamps(one, 1);
-    const World& world = many.build();
-    const World& single = one.build();
+    const SceneAdapter& world = many.build();
+    const SceneAdapter& single = one.build();
     const view::View view = ground();
     const backend::SceneTables even = uniform(world.tables());
     std::vector<double> times, single_times, ratios;
@@ -115,12 +115,12 @@ struct FogScene {
     double lamp_z = 0.0;  // the fog's front is at 2 m
 };
 
-glm::dmat4 lamp_place(double z) {
+glm::dmat4 lamp_transform(double z) {
     return glm::translate(glm::dmat4(1.0), glm::dvec3(0, 1.8, z)) *
            glm::rotate(glm::dmat4(1.0), -1.3, {1, 0, 0});
 }
 
-std::vector<double> foggy_picture(const World& world, const view::View& view, Strategy strategy,
+std::vector<double> foggy_picture(const SceneAdapter& world, const view::View& view, Strategy strategy,
                                   std::uint64_t spp, double& seconds) {
     const PathTracer tracer(world.tables(), world.scene(), view, strategy);
     std::vector<double> pixels(Size * Size);
@@ -135,30 +135,31 @@ std::vector<double> foggy_picture(const World& world, const view::View& view, St
     return pixels;
 }
 
-// Errors and times of both in turn; the truth is the mean of many of both.
+// Errors and times of both strategies in turn; the reference uses both with many samples.
 void run_fog(const FogScene& fog) {
     Model model;
-    model.filled_with(
+    model.set_medium(
         {.absorption = glm::vec3(0.02f), .scattering = glm::vec3(fog.scattering), .anisotropy = 0.3f});
     model.box(ObjectId{}, {-2, -2, -2}, {2, 2, 2});
-    model.filled_with_nothing();
+    model.clear_medium();
     if (fog.with_floor) {
         model.quad(
             model.material(chalk(glm::vec3(0.5f))),
             {{{-1.9f, -1.5f, 1.9f}, {1.9f, -1.5f, 1.9f}, {1.9f, -1.5f, -1.9f}, {-1.9f, -1.5f, -1.9f}}});
     }
-    model.light(fog.light, lamp_place(fog.lamp_z));
-    const World& world = model.build();
+    model.light(fog.light, lamp_transform(fog.lamp_z));
+    const SceneAdapter& world = model.build();
     view::View view = small_view({0, 0, 6}, 0.6, Size);
     view.max_bounces = 4;
     double seconds[2] = {0, 0}, errors[2] = {0, 0}, unused = 0;
-    constexpr Strategy Ways[2] = {Strategy::FlightOnly, Strategy::Both};
+    constexpr Strategy Strategies[2] = {Strategy::FlightOnly, Strategy::Both};
     view.seed = 99;
     const std::vector<double> truth = foggy_picture(world, view, Strategy::Both, FogReferenceSpp, unused);
     for (std::uint32_t round = 0; round < FogRounds; ++round) {
         view.seed = round;
-        for (int way = 0; way < 2; ++way) {
-            errors[way] += relmse(foggy_picture(world, view, Ways[way], 16, seconds[way]), truth);
+        for (int strategy = 0; strategy < 2; ++strategy) {
+            errors[strategy] +=
+                relmse(foggy_picture(world, view, Strategies[strategy], 16, seconds[strategy]), truth);
         }
     }
     std::printf("%-22s relMSE %.4g -> %.4g, time %.2f x; at equal time %.3f x\n", fog.name,
@@ -190,17 +191,17 @@ void run_fogs() {
     }
 }
 
-// How long trees take to be made.
+// Build times of light trees.
 void run_builds() {
     for (const std::uint32_t count : {10000u, 1000000u}) {
         CounterRandom random(2);
         std::vector<backend::LightLeaf> leaves;
         for (std::uint32_t i = 0; i < count; ++i) {
-            const glm::dvec3 place(random.uniform(), random.uniform(), random.uniform());
-            leaves.push_back({.low = place,
-                              .high = place + glm::dvec3(1e-3),
-                              .axis = glm::normalize(place - glm::dvec3(0.5)),
-                              .reach = 1.57,
+            const glm::dvec3 position(random.uniform(), random.uniform(), random.uniform());
+            leaves.push_back({.low = position,
+                              .high = position + glm::dvec3(1e-3),
+                              .axis = glm::normalize(position - glm::dvec3(0.5)),
+                              .emission_angle = 1.57,
                               .power = 1.0,
                               .emitter = i});
         }

@@ -3,7 +3,7 @@
 #define SHADING_FEATURES                                                                 \
     (shading::FeatureTextures | shading::FeatureSpecular | shading::FeatureEnvironment | \
      shading::FeatureEnvironmentMap)
-#include "backends/embree/kernel_text.h"
+#include "backends/embree/kernel_impl.h"
 #include "tests/bench/micro/exact_kernels.h"
 namespace tessera::embree {
 

@@ -2,7 +2,7 @@
 #define SHADING_KERNEL studio
 #define SHADING_FEATURES \
     (shading::FeatureMeshLights | shading::FeatureCoat | shading::FeatureExtras | shading::FeatureLightTree)
-#include "backends/embree/kernel_text.h"
+#include "backends/embree/kernel_impl.h"
 #include "tests/bench/micro/exact_kernels.h"
 namespace tessera::embree {
 

@@ -1,12 +1,12 @@
-// Textures seen as wide as a path is: what that gains over points, and what it costs.
+// Texture filtering by ray cones: gain and cost against point sampling.
 //   tessera_texture_bench
-// A floor of 10 cm checks of single texels up to the horizon, unlit, 320x200. The same tables without their
-// levels are what points see. Errors are against 1024 samples of points.
+// A floor of 10 cm checks of single texels up to the horizon, unlit, 320x200. Point sampling uses the same
+// tables without mip levels. Errors are against 1024 point samples.
 #include <gtest/gtest.h>
 
 #include <cstdio>
 
-#include "tests/bench/micro/model_bed.h"
+#include "tests/bench/micro/model_timing.h"
 
 namespace tessera::embree {
 namespace {
@@ -50,7 +50,7 @@ double error(const std::vector<double>& found, const std::vector<double>& truth)
 void run() {
     Model model;
     add_floor(model);
-    const World& world = model.build();
+    const SceneAdapter& world = model.build();
     const view::View view = ahead();
     backend::SceneTables points = world.tables();
     for (shading::Texture& texture : points.textures) texture.level_count = 0;

@@ -6,7 +6,7 @@
 
 namespace tessera::bench {
 
-// Of this thread on a processor: others may be at work, too.
+// Processor time of this thread, independent of other load.
 inline double cpu_seconds() {
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

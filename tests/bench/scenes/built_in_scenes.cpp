@@ -38,7 +38,7 @@ class Builder {
                          .thickness = 1.0f});
     }
 
-    void place(const std::string& name, const Mesh& mesh, ObjectId material) {
+    void add_mesh(const std::string& name, const Mesh& mesh, ObjectId material) {
         scene::Geometry geometry{.name = name, .material = material};
         geometry.positions = blob(mesh.positions);
         if (!mesh.normals.empty()) geometry.normals = blob(mesh.normals);
@@ -55,7 +55,7 @@ class Builder {
                         .camera = {.vertical_fov = vertical_fov}};
         root_.background = add(scene::Background{.name = "dark"});
         entries_.push_back(scene::Create{scene::RootId, root_});
-        if (auto made = scene.content.apply_entries(entries_); !made) throw made.error();
+        if (auto applied = scene.content.apply_entries(entries_); !applied) throw applied.error();
         scene.content.set_version({1, 1});
         scene.blobs = std::move(blobs_);
         return scene;
@@ -79,19 +79,19 @@ class Builder {
     std::vector<scene::BlobPtr> blobs_;
 };
 
-// From (-1, 0, -1) to (1, 2, 1), open towards +z, where the camera stands.
+// From (-1, 0, -1) to (1, 2, 1), open towards +z, where the camera is.
 void add_cornell_walls(Builder& builder) {
     const ObjectId white = builder.diffuse({0.73f, 0.73f, 0.73f});
     Mesh walls = quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1});
     append(walls, quad({-1, 2, -1}, {1, 2, -1}, {1, 2, 1}, {-1, 2, 1}));
     append(walls, quad({-1, 0, -1}, {1, 0, -1}, {1, 2, -1}, {-1, 2, -1}));
-    builder.place("floor, ceiling and back", walls, white);
-    builder.place("left", quad({-1, 0, 1}, {-1, 0, -1}, {-1, 2, -1}, {-1, 2, 1}),
-                  builder.diffuse({0.65f, 0.05f, 0.05f}));
-    builder.place("right", quad({1, 0, -1}, {1, 0, 1}, {1, 2, 1}, {1, 2, -1}),
-                  builder.diffuse({0.12f, 0.45f, 0.15f}));
+    builder.add_mesh("floor, ceiling and back", walls, white);
+    builder.add_mesh("left", quad({-1, 0, 1}, {-1, 0, -1}, {-1, 2, -1}, {-1, 2, 1}),
+                     builder.diffuse({0.65f, 0.05f, 0.05f}));
+    builder.add_mesh("right", quad({1, 0, -1}, {1, 0, 1}, {1, 2, 1}, {1, 2, -1}),
+                     builder.diffuse({0.12f, 0.45f, 0.15f}));
     constexpr float Edge = 0.25f, Height = 1.99f;
-    builder.place(
+    builder.add_mesh(
         "light",
         quad({-Edge, Height, -Edge}, {Edge, Height, -Edge}, {Edge, Height, Edge}, {-Edge, Height, Edge}),
         builder.light(15.0f));
@@ -102,7 +102,7 @@ BenchScene cornell() {
     add_cornell_walls(builder);
     Mesh blocks = block({-0.33f, 0.0f, -0.30f}, {0.6f, 1.2f, 0.6f}, 0.3f);
     append(blocks, block({0.36f, 0.0f, 0.35f}, {0.6f, 0.6f, 0.6f}, -0.3f));
-    builder.place("blocks", blocks, builder.diffuse({0.73f, 0.73f, 0.73f}));
+    builder.add_mesh("blocks", blocks, builder.diffuse({0.73f, 0.73f, 0.73f}));
     return builder.finish({.name = "cornell", .kind = "diffuse surfaces", .summary = "Cornell box"},
                           {0.0, 1.0, 3.9}, {0.0, 1.0, 0.0}, 0.66);
 }
@@ -110,8 +110,8 @@ BenchScene cornell() {
 BenchScene cornell_spheres() {
     Builder builder;
     add_cornell_walls(builder);
-    builder.place("mirror", sphere({-0.42f, 0.45f, -0.30f}, 0.45f, 48), builder.mirror());
-    builder.place("glass", sphere({0.45f, 0.40f, 0.30f}, 0.40f, 48), builder.glass());
+    builder.add_mesh("mirror", sphere({-0.42f, 0.45f, -0.30f}, 0.45f, 48), builder.mirror());
+    builder.add_mesh("glass", sphere({0.45f, 0.40f, 0.30f}, 0.40f, 48), builder.glass());
     return builder.finish({.name = "cornell-spheres",
                            .kind = "mirror and glass",
                            .summary = "Cornell box with a mirror and a glass sphere"},
@@ -120,15 +120,15 @@ BenchScene cornell_spheres() {
 
 BenchScene caustics() {
     Builder builder;
-    builder.place("plane", quad({-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}),
-                  builder.diffuse({0.6f, 0.58f, 0.55f}));
-    builder.place("ball", sphere({0.0f, 0.6f, 0.0f}, 0.6f, 64), builder.glass());
+    builder.add_mesh("plane", quad({-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}),
+                     builder.diffuse({0.6f, 0.58f, 0.55f}));
+    builder.add_mesh("ball", sphere({0.0f, 0.6f, 0.0f}, 0.6f, 64), builder.glass());
     constexpr float Edge = 0.35f;
     const glm::vec3 at(0.9f, 2.6f, -0.9f);
-    builder.place("light",
-                  quad(at + glm::vec3(-Edge, 0, -Edge), at + glm::vec3(Edge, 0, -Edge),
-                       at + glm::vec3(Edge, 0, Edge), at + glm::vec3(-Edge, 0, Edge)),
-                  builder.light(20.0f));
+    builder.add_mesh("light",
+                     quad(at + glm::vec3(-Edge, 0, -Edge), at + glm::vec3(Edge, 0, -Edge),
+                          at + glm::vec3(Edge, 0, Edge), at + glm::vec3(-Edge, 0, Edge)),
+                     builder.light(20.0f));
     return builder.finish(
         {.name = "caustics", .kind = "caustics", .summary = "glass sphere on a plane under a small light"},
         {0.0, 1.9, 3.6}, {-0.1, 0.35, 0.0}, 0.66);
@@ -136,16 +136,16 @@ BenchScene caustics() {
 
 BenchScene grids() {
     Builder builder;
-    builder.place("plane", quad({-3, 0, 3}, {3, 0, 3}, {3, 0, -3}, {-3, 0, -3}),
-                  builder.diffuse({0.7f, 0.7f, 0.7f}));
+    builder.add_mesh("plane", quad({-3, 0, 3}, {3, 0, 3}, {3, 0, -3}, {-3, 0, -3}),
+                     builder.diffuse({0.7f, 0.7f, 0.7f}));
     Mesh layers = grid(0.4f, 2.4f, 8, 0.08f);
     append(layers, grid(1.5f, 2.0f, 5, 0.12f));
-    builder.place("grids", layers, builder.diffuse({0.5f, 0.25f, 0.12f}));
+    builder.add_mesh("grids", layers, builder.diffuse({0.5f, 0.25f, 0.12f}));
     constexpr float Sigma = 0.5f, Height = 4.0f;
-    builder.place("light",
-                  quad({-Sigma, Height, -Sigma}, {Sigma, Height, -Sigma}, {Sigma, Height, Sigma},
-                       {-Sigma, Height, Sigma}),
-                  builder.light(12.0f));
+    builder.add_mesh("light",
+                     quad({-Sigma, Height, -Sigma}, {Sigma, Height, -Sigma}, {Sigma, Height, Sigma},
+                          {-Sigma, Height, Sigma}),
+                     builder.light(12.0f));
     return builder.finish({.name = "grids",
                            .kind = "soft shadows",
                            .summary = "two layers of bars under a square light, direct light only",
@@ -171,7 +171,7 @@ BenchScene balls(std::uint32_t triangles) {
         const float y = between(0.2f, 1.7f), z = between(-0.8f, 0.8f);
         append(all, sphere({x, y, z}, radius, rings));
     }
-    builder.place("balls", all, builder.diffuse({0.6f, 0.6f, 0.65f}));
+    builder.add_mesh("balls", all, builder.diffuse({0.6f, 0.6f, 0.65f}));
     return builder.finish({.name = "balls:" + std::to_string(triangles),
                            .kind = "many triangles",
                            .summary = std::to_string(all.indices.size() / 3) + " triangles in a box"},

@@ -7,10 +7,10 @@
 
 namespace tessera::tools::bench {
 
-// Made in code, of a few triangles each, so that every build can measure on them.
+// Procedural scenes of a few triangles each, available in every build.
 //   cornell          closed diffuse box, 2 m, two blocks, area light in the ceiling
 //   cornell-spheres  the same box with a mirror sphere and a glass sphere
-//   caustics         a glass sphere on a plane under a small light: what of it a path finds by chance
+//   caustics         a glass sphere on a plane under a small light: light that paths only find by chance
 //   grids            two layers of bars over a plane under a square light, direct light only (GRIDS, Mehta
 //                    ch. 3, whose sizes are not printed): light of 2 sigma = 1 m at d1 = 4 m over a plane of
 //                    6 m, layers at 0.4 m and 1.5 m; penumbrae sigma (d1 / d2 - 1) of 0.06 m and 0.3 m
@@ -20,8 +20,8 @@ struct BuiltIn {
 };
 const std::vector<BuiltIn>& built_in_scenes();
 
-// "balls:N": 50 balls in a box under a light, of about N triangles (at least 1,000) in one mesh. For the
-// speed of rays; in no list.
+// "balls:N": 50 balls in a box under a light, of about N triangles (at least 1,000) in one mesh. For ray
+// benchmarks; not in the default list.
 BenchScene balls(std::uint32_t triangles);
 
 }  // namespace tessera::tools::bench

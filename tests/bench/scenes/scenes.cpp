@@ -35,7 +35,7 @@ Expected<std::uint32_t> ball_triangles(const std::string& name) {
     const char* last = name.data() + name.size();
     const auto read = std::from_chars(name.data() + Balls.size(), last, triangles);
     if (read.ec == std::errc() && read.ptr == last && triangles <= MostBallTriangles) return triangles;
-    return failure(ErrorCode::InvalidInput, "'" + name + "' names no number of triangles up to " +
+    return failure(ErrorCode::InvalidInput, "'" + name + "' has no valid number of triangles up to " +
                                                 std::to_string(MostBallTriangles) + ": write balls:1000000");
 }
 
@@ -44,9 +44,9 @@ Expected<BenchScene> import_file(const SceneFile& wanted, const fs::path& path, 
     if (!imported) return tl::unexpected(imported.error());
     BenchScene scene{.name = wanted.name, .kind = wanted.kind, .summary = wanted.summary};
     scene.camera = imported->cameras.front();
-    if (auto made = scene.content.apply_entries(import::entries(*imported, import::RootEntry::Create));
-        !made) {
-        return tl::unexpected(made.error());
+    if (auto applied = scene.content.apply_entries(import::entries(*imported, import::RootEntry::Create));
+        !applied) {
+        return tl::unexpected(applied.error());
     }
     scene.content.set_version({1, 1});
     scene.blobs = std::move(imported->blobs);
@@ -80,9 +80,9 @@ Expected<std::vector<std::string>> choose_scenes(const std::string& list, const 
 
 Expected<BenchScene> load_scene(const std::string& name, const fs::path& assets) {
     const auto& built_in = built_in_scenes();
-    const auto made = std::find_if(built_in.begin(), built_in.end(),
-                                   [&](const BuiltIn& scene) { return scene.name == name; });
-    if (made != built_in.end()) return made->make();
+    const auto built = std::find_if(built_in.begin(), built_in.end(),
+                                    [&](const BuiltIn& scene) { return scene.name == name; });
+    if (built != built_in.end()) return built->make();
     if (name.starts_with(Balls)) {
         const auto triangles = ball_triangles(name);
         if (!triangles) return tl::unexpected(triangles.error());
@@ -96,13 +96,13 @@ Expected<BenchScene> load_scene(const std::string& name, const fs::path& assets)
     }
     if (fs::exists(name)) {
         const std::string stem = fs::path(name).stem().string();
-        return import_file({stem.c_str(), "as brought", name.c_str(), "", ""}, name, {});
+        return import_file({stem.c_str(), "user file", name.c_str(), "", ""}, name, {});
     }
     const std::vector<std::string> names = scene_names(assets);
     const auto meant = nearest(name, names);
     std::string list;
     for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
-    return failure(ErrorCode::NotFound, "there is no scene '" + name + "'" +
+    return failure(ErrorCode::NotFound, "unknown scene '" + name + "'" +
                                             (meant ? "; did you mean '" + *meant + "'" : "") +
                                             ": give a file, or one of " + list);
 }

@@ -15,7 +15,7 @@ struct Mesh {
 // a, b, c, d around; faces the side from which they run counter-clockwise.
 Mesh quad(glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d);
 
-// Stands on y = base; turned by `angle` (radians) about y.
+// Its bottom is at y = base; rotated by `angle` (radians) about y.
 Mesh block(glm::vec3 base_centre, glm::vec3 size, float angle);
 
 // Smooth normals; `rings` from pole to pole, twice as many around.

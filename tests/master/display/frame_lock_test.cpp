@@ -9,7 +9,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using session::OutputState;
-using Whom = FrameLock::Whom;
+using Recipients = FrameLock::Recipients;
 
 struct Locked : testing::Test {
     TimePoint now{1h};
@@ -20,9 +20,9 @@ struct Locked : testing::Test {
         for (std::size_t i = 0; i < 3; ++i) lock.joined(i);
         (void)begin();
         for (std::size_t i = 0; i < 3; ++i)
-            last = lock.ready(i, frame, now);  // now it knows how long they take
+            last = lock.ready(i, frame, now);  // now the lock knows how long they take
     }
-    std::vector<std::size_t> begin() { return lock.begin(++frame, Whom::All, now); }
+    std::vector<std::size_t> begin() { return lock.begin(++frame, Recipients::All, now); }
     std::optional<FrameLock::Present> last;
 };
 
@@ -41,12 +41,12 @@ TEST_F(Locked, PresentsWhenTheLastOneIsReady) {
     EXPECT_TRUE(lock.free());
 }
 
-TEST_F(Locked, TheOrderComesInTimeForTheSlowestWay) {
+TEST_F(Locked, PresentTimeAllowsForTheSlowestConnection) {
     lock.clock_bound(1, 20ms);
     (void)begin();
     std::optional<FrameLock::Present> present;
     for (std::size_t i = 0; i < 3; ++i) present = lock.ready(i, frame, now);
-    EXPECT_GE(present->at - now, 40ms) << "a round trip is twice the bound";
+    EXPECT_GE(present->at - now, 40ms) << "the round trip is twice the bound";
     const TimePoint before = present->at;
     (void)begin();
     lock.clock_bound(1, 0ms);
@@ -54,7 +54,7 @@ TEST_F(Locked, TheOrderComesInTimeForTheSlowestWay) {
     EXPECT_GE(present->at - before, 10ms) << "not faster than the display's rate";
 }
 
-TEST_F(Locked, WhoIsLateIsDroppedOnceAndReturnsByItself) {
+TEST_F(Locked, LateOutputIsDroppedOnceAndRejoins) {
     (void)begin();
     (void)lock.ready(0, frame, now);
     (void)lock.ready(2, frame, now);
@@ -65,7 +65,7 @@ TEST_F(Locked, WhoIsLateIsDroppedOnceAndReturnsByItself) {
     EXPECT_EQ(present->outputs, (std::vector<std::size_t>{0, 2}));
     EXPECT_EQ(lock.outputs()[1].state, OutputState::Late);
     const std::uint64_t missed = frame;
-    EXPECT_EQ(begin(), (std::vector<std::size_t>{0, 2})) << "nobody waits for it any more";
+    EXPECT_EQ(begin(), (std::vector<std::size_t>{0, 2})) << "it is not waited for any more";
     (void)lock.ready(0, frame, now);
     EXPECT_FALSE(lock.ready(1, missed, now)) << "it is back, but not in this frame";
     EXPECT_EQ(lock.outputs()[1].state, OutputState::Joining);
@@ -74,7 +74,7 @@ TEST_F(Locked, WhoIsLateIsDroppedOnceAndReturnsByItself) {
     EXPECT_EQ(lock.outputs()[1].late, 1u);
 }
 
-TEST_F(Locked, LargePicturesTakeTheirTime) {
+TEST_F(Locked, PatienceAdaptsToLargePictures) {
     (void)begin();
     for (std::size_t i = 0; i < 3; ++i) {
         now += 400ms;
@@ -87,8 +87,8 @@ TEST_F(Locked, LargePicturesTakeTheirTime) {
     EXPECT_TRUE(lock.tick(now + 800ms));
 }
 
-// Whoever needs longer than the patience is not dropped for ever.
-TEST_F(Locked, AnOutputThatIsAlwaysSlowIsWaitedForInTheEnd) {
+// An output that needs longer than the patience is not dropped for ever.
+TEST_F(Locked, ConstantlySlowOutputIsEventuallyWaitedFor) {
     std::uint64_t dropped = 0;
     for (int i = 0; i < 20; ++i) {
         (void)begin();
@@ -106,7 +106,7 @@ TEST_F(Locked, AnOutputThatIsAlwaysSlowIsWaitedForInTheEnd) {
     EXPECT_EQ(lock.outputs()[1].state, OutputState::Locked);
 }
 
-TEST_F(Locked, AnOutputThatWasStoppedForLongDoesNotMakeTheOthersWaitAsLong) {
+TEST_F(Locked, LongPauseOfOneOutputDoesNotDelayOthersAsLong) {
     (void)begin();
     const std::uint64_t sent = frame;
     (void)lock.ready(0, sent, now);
@@ -120,7 +120,7 @@ TEST_F(Locked, AnOutputThatWasStoppedForLongDoesNotMakeTheOthersWaitAsLong) {
     EXPECT_TRUE(lock.tick(now + 2s));
 }
 
-TEST_F(Locked, WhoLeavesIsNotWaitedFor) {
+TEST_F(Locked, DisconnectedOutputIsNotWaitedFor) {
     (void)begin();
     (void)lock.ready(0, frame, now);
     (void)lock.ready(1, frame, now);
@@ -128,32 +128,32 @@ TEST_F(Locked, WhoLeavesIsNotWaitedFor) {
     EXPECT_EQ(lock.outputs()[2].state, OutputState::Absent);
     EXPECT_EQ(begin().size(), 2u);
     EXPECT_FALSE(lock.left(0, now));
-    EXPECT_FALSE(lock.left(1, now)) << "nobody is left to present anything";
+    EXPECT_FALSE(lock.left(1, now)) << "no output is left to present";
     EXPECT_TRUE(lock.free());
     EXPECT_TRUE(begin().empty());
-    EXPECT_TRUE(lock.free()) << "nobody looks";
+    EXPECT_TRUE(lock.free()) << "no outputs";
 }
 
-TEST_F(Locked, WhoComesLaterIsSentWhatTheOthersShow) {
+TEST_F(Locked, JoiningOutputIsSentTheCurrentFrame) {
     (void)lock.left(2, now);
     lock.joined(2);
-    EXPECT_TRUE(lock.anybody_joins());
-    EXPECT_EQ(lock.begin(frame, Whom::Joining, now), std::vector<std::size_t>{2});
+    EXPECT_TRUE(lock.has_joining());
+    EXPECT_EQ(lock.begin(frame, Recipients::Joining, now), std::vector<std::size_t>{2});
     const std::uint64_t before = lock.frames();
     const auto present = lock.ready(2, frame, now);
     ASSERT_TRUE(present);
     EXPECT_EQ(present->frame, frame);
     EXPECT_EQ(lock.frames(), before) << "no new frame";
-    EXPECT_FALSE(lock.anybody_joins());
+    EXPECT_FALSE(lock.has_joining());
 }
 
-// Whatever happens, an output has at most one frame in hand, and the lock never waits for ever.
+// In any sequence of events an output has at most one frame in flight, and the lock never waits for ever.
 TEST(FrameLockFuzz, NeverStallsAndNeverSendsTwo) {
     std::mt19937 random(7);
     for (int run = 0; run < 200; ++run) {
         TimePoint now{1h};
         FrameLock lock({}, 4, 1ms);
-        std::array<std::uint64_t, 4> in_hand{};
+        std::array<std::uint64_t, 4> in_flight{};
         std::uint64_t frame = 0, presented = 0;
         TimePoint free_since = now;
         for (int step = 0; step < 500; ++step) {
@@ -163,17 +163,17 @@ TEST(FrameLockFuzz, NeverStallsAndNeverSendsTwo) {
             switch (random() % 8) {
                 case 0:
                     lock.joined(who);
-                    in_hand[who] = 0;
+                    in_flight[who] = 0;
                     break;
                 case 1:
                     present = lock.left(who, now);
-                    in_hand[who] = 0;
+                    in_flight[who] = 0;
                     break;
                 case 2:
                 case 3:
                 case 4:
-                    present = lock.ready(who, in_hand[who], now);
-                    in_hand[who] = 0;
+                    present = lock.ready(who, in_flight[who], now);
+                    in_flight[who] = 0;
                     break;
                 default:
                     present = lock.tick(now);
@@ -181,13 +181,13 @@ TEST(FrameLockFuzz, NeverStallsAndNeverSendsTwo) {
             if (present) {
                 EXPECT_GT(present->frame, presented);
                 presented = present->frame;
-                for (const std::size_t output : present->outputs) EXPECT_EQ(in_hand[output], 0u);
+                for (const std::size_t output : present->outputs) EXPECT_EQ(in_flight[output], 0u);
             }
             if (lock.free()) {
                 free_since = now;
-                for (const std::size_t output : lock.begin(++frame, Whom::All, now)) {
-                    EXPECT_EQ(in_hand[output], 0u);
-                    in_hand[output] = frame;
+                for (const std::size_t output : lock.begin(++frame, Recipients::All, now)) {
+                    EXPECT_EQ(in_flight[output], 0u);
+                    in_flight[output] = frame;
                 }
             }
             (void)lock.tick(now);

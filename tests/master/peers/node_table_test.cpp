@@ -12,30 +12,30 @@ struct NodeTableTest : testing::Test {
     NodeRecord& node = table.add(NodeId{1}, 77, 5, "node", {.concurrent_units = 2}, TimePoint{});
 };
 
-TEST_F(NodeTableTest, CountsWorkOnItsWayAgainstTheFreePlaces) {
-    table.heartbeat(node, {.in_hand = {UnitId{1}}, .free_places = 3}, TimePoint{});
+TEST_F(NodeTableTest, CountsWorkInTransitAgainstTheFreeSlots) {
+    table.heartbeat(node, {.in_flight = {UnitId{1}}, .free_slots = 3}, TimePoint{});
     node.pending = {{UnitId{2}, 1}, {UnitId{3}, 2}};
-    EXPECT_EQ(node.capacity().free_places, 1u);
-    EXPECT_EQ(node.capacity().in_hand, 3u);
-    // The node has seen the first of the two: it is in hand now, the other still under way.
-    table.heartbeat(node, {.in_hand = {UnitId{1}, UnitId{2}}, .free_places = 2, .last_work_sequence = 1},
+    EXPECT_EQ(node.capacity().free_slots, 1u);
+    EXPECT_EQ(node.capacity().in_flight, 3u);
+    // The node has seen the first of the two: it is in its queue now, the other still in flight.
+    table.heartbeat(node, {.in_flight = {UnitId{1}, UnitId{2}}, .free_slots = 2, .last_work_sequence = 1},
                     TimePoint{});
-    EXPECT_EQ(node.capacity().free_places, 1u);
+    EXPECT_EQ(node.capacity().free_slots, 1u);
     EXPECT_EQ(node.pending.size(), 1u);
 }
 
-TEST_F(NodeTableTest, FindsUnitsThatGotLostOnlyAfterPatience) {
-    table.heartbeat(node, {.in_hand = {UnitId{1}}, .last_work_sequence = 2}, TimePoint{});
+TEST_F(NodeTableTest, FindsLostUnitsOnlyAfterPatience) {
+    table.heartbeat(node, {.in_flight = {UnitId{1}}, .last_work_sequence = 2}, TimePoint{});
     const std::vector<UnitId> held{UnitId{1}, UnitId{2}};
     EXPECT_TRUE(NodeTable::overdue(node, held, TimePoint{1s}, 5s).empty());
     EXPECT_TRUE(NodeTable::overdue(node, held, TimePoint{5s}, 5s).empty());
     EXPECT_EQ(NodeTable::overdue(node, held, TimePoint{7s}, 5s), std::vector{UnitId{2}});
-    node.state.in_hand.push_back(UnitId{2});
+    node.state.in_flight.push_back(UnitId{2});
     EXPECT_TRUE(NodeTable::overdue(node, held, TimePoint{9s}, 5s).empty())
-        << "in hand again: the clock starts anew";
+        << "in its queue again: the clock restarts";
 }
 
-TEST_F(NodeTableTest, TellsStuckFromIdle) {
+TEST_F(NodeTableTest, DistinguishesStuckFromIdle) {
     table.heartbeat(node, {.phase = session::NodePhase::Rendering, .progress = 5}, TimePoint{1s});
     table.heartbeat(node, {.phase = session::NodePhase::Rendering, .progress = 5}, TimePoint{12s});
     EXPECT_TRUE(node.stuck);
@@ -45,10 +45,10 @@ TEST_F(NodeTableTest, TellsStuckFromIdle) {
     EXPECT_FALSE(node.stuck);
 }
 
-TEST_F(NodeTableTest, AHeartbeatThatEchoesOursTellsRoundTripAndClock) {
+TEST_F(NodeTableTest, EchoedHeartbeatGivesRoundTripAndClockOffset) {
     table.heartbeat(node, {.sent_at = 5}, TimePoint{1s});
     EXPECT_FALSE(node.clock.offset(TimePoint{1s}));
-    // Ours left at 2 s, lay there for 0.5 s and came back at 2.6 s; the node's clock is an hour ahead.
+    // Ours was sent at 2 s, stayed at the node for 0.5 s and returned at 2.6 s; the node's clock is an hour ahead.
     const std::int64_t there = (TimePoint{3602550ms}).time_since_epoch().count();
     const wire::Heartbeat beat{.sent_at = there, .echo_sent_at = 2'000'000'000, .echo_delay = 500'000'000};
     table.heartbeat(node, beat, TimePoint{2600ms});
@@ -59,8 +59,8 @@ TEST_F(NodeTableTest, AHeartbeatThatEchoesOursTellsRoundTripAndClock) {
     EXPECT_DOUBLE_EQ(node.round_trip_seconds, 0.1);
 }
 
-TEST_F(NodeTableTest, SilenceIsDeath) {
-    node.liveness.heard(TimePoint{1s});
+TEST_F(NodeTableTest, SilentNodesTimeOut) {
+    node.liveness.on_message(TimePoint{1s});
     EXPECT_TRUE(table.dead(TimePoint{3s}).empty());
     EXPECT_EQ(table.dead(TimePoint{5s}), std::vector{NodeId{1}});
 }

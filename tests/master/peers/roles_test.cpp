@@ -7,7 +7,7 @@ namespace {
 
 using net::Role;
 
-TEST(Roles, AViewerOnlyLooks) {
+TEST(Roles, ViewerIsReadOnly) {
     EXPECT_TRUE(allowed(Role::Viewer, wire::ControlMessage(wire::StatusRequest{})));
     EXPECT_TRUE(allowed(Role::Viewer, wire::ControlMessage(wire::Hello{.peer = wire::PeerKind::Client})));
     EXPECT_FALSE(allowed(Role::Viewer, wire::ControlMessage(wire::Hello{.peer = wire::PeerKind::Node})));
@@ -17,7 +17,7 @@ TEST(Roles, AViewerOnlyLooks) {
     EXPECT_FALSE(allowed(Role::Viewer, wire::BulkMessage(wire::FilmPart{})));
 }
 
-TEST(Roles, ANodeRendersAndDoesNotEdit) {
+TEST(Roles, NodeRendersButDoesNotEdit) {
     EXPECT_TRUE(allowed(Role::Node, wire::ControlMessage(wire::Hello{.peer = wire::PeerKind::Node})));
     EXPECT_FALSE(allowed(Role::Node, wire::ControlMessage(wire::Hello{.peer = wire::PeerKind::Client})));
     EXPECT_TRUE(allowed(Role::Node, wire::BulkMessage(wire::FilmPart{})));
@@ -27,14 +27,14 @@ TEST(Roles, ANodeRendersAndDoesNotEdit) {
     EXPECT_FALSE(allowed(Role::Node, wire::BulkMessage(wire::BlobChunk{})));
 }
 
-TEST(Roles, AnEditorEditsAndDoesNotPretendToRender) {
+TEST(Roles, EditorEditsButDoesNotRender) {
     EXPECT_TRUE(allowed(Role::Editor, wire::ControlMessage(wire::SubmitEdit{})));
     EXPECT_TRUE(allowed(Role::Editor, wire::BulkMessage(wire::BlobChunk{})));
     EXPECT_FALSE(allowed(Role::Editor, wire::BulkMessage(wire::FilmPart{})));
     EXPECT_FALSE(allowed(Role::Editor, wire::ControlMessage(wire::VersionReport{})));
 }
 
-TEST(Roles, NobodyMayPlayTheMaster) {
+TEST(Roles, NoRoleMaySendMasterMessages) {
     for (const net::Role role : {Role::None, Role::Viewer, Role::Editor, Role::Node, Role::Operator}) {
         EXPECT_FALSE(allowed(role, wire::ControlMessage(wire::Welcome{})));
         EXPECT_FALSE(allowed(role, wire::ControlMessage(wire::Work{})));

@@ -12,7 +12,7 @@ namespace {
 
 using frame::SampleBlock;
 
-TEST(BlockSet, JoinsSiblingsAndKnowsTheGaps) {
+TEST(BlockSet, JoinsSiblingsAndFindsGaps) {
     BlockSet set;
     set.insert({4, 2});
     EXPECT_TRUE(set.covers({6, 1}));

@@ -1,4 +1,4 @@
-// What the dispatcher tells nodes, and what it makes of what they say: the same for every view.
+// The dispatcher's messages to nodes, and its handling of theirs.
 #include "master/render/dispatcher.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace tessera::master {
 namespace {
 
-// Keeps what is sent instead of sending it.
+// Records messages instead of sending them.
 class RecordingChannel final : public net::Channel {
   public:
     net::SendResult send(net::Link, net::PeerId, net::Bytes&& bytes) override {
@@ -41,13 +41,13 @@ struct DispatcherTest : testing::Test {
     Dispatcher dispatcher{std::chrono::seconds(5), clock, nodes, outbox,
                           [this](const Event& event) { events.push_back(event.text); }};
 
-    NodeRecord& add_node(std::uint64_t number, std::uint32_t places) {
+    NodeRecord& add_node(std::uint64_t number, std::uint32_t slots) {
         wire::Hello hello{.name = "node-" + std::to_string(number), .channels = {frame::Channel::Color}};
-        hello.concurrent_units = places;
+        hello.concurrent_units = slots;
         NodeRecord& node = nodes.add(NodeId{number}, number, number, "node", std::move(hello), now);
         node.bulk = 100 + number;
         node.reported = node.state.version = Scene;
-        node.state.free_places = places;
+        node.state.free_slots = slots;
         return node;
     }
     view::View view(std::uint64_t id, std::int32_t edge) const {
@@ -72,7 +72,7 @@ struct DispatcherTest : testing::Test {
     }
 };
 
-TEST_F(DispatcherTest, CancelsInPiecesThatFitAMessage) {
+TEST_F(DispatcherTest, CancellationsAreSplitIntoMessages) {
     add_node(1, 5000);
     begin(view(8, 640));  // 6,400 tiles
     deal(ViewId{8});
@@ -87,7 +87,7 @@ TEST_F(DispatcherTest, CancelsInPiecesThatFitAMessage) {
     EXPECT_EQ(cancelled, dealt);
 }
 
-TEST_F(DispatcherTest, OtherBitsForTheSameSamplesAreReportedWithTheCommandThatReplaysThem) {
+TEST_F(DispatcherTest, ContradictingFilmIsReportedWithAReplayCommand) {
     add_node(1, 1);
     add_node(2, 0);
     begin(view(8, 8));
@@ -95,24 +95,24 @@ TEST_F(DispatcherTest, OtherBitsForTheSameSamplesAreReportedWithTheCommandThatRe
     const view::WorkUnit unit = channel.all<wire::Work>().at(0).unit;
     EXPECT_EQ(dispatcher.take(report(unit, FrameAssembler::Outcome::Merged, 101), now),
               Dispatcher::Taken::New);
-    EXPECT_EQ(dispatcher.take(report(unit, FrameAssembler::Outcome::Contradiction, 102), now),
+    EXPECT_EQ(dispatcher.take(report(unit, FrameAssembler::Outcome::Conflict, 102), now),
               Dispatcher::Taken::Known);
     ASSERT_EQ(events.size(), 1u);
     EXPECT_NE(events[0].find("second: node-2"), std::string::npos) << events[0];
     EXPECT_NE(events[0].find("tessera probe SCENE --pixel 0,0 --sample 0"), std::string::npos) << events[0];
 }
 
-TEST_F(DispatcherTest, PassesShareTheNodesPlaces) {
+TEST_F(DispatcherTest, PassesShareTheNodesSlots) {
     add_node(1, 3);
     begin(view(8, 16));
     begin(view(16, 16));
     auto capacities = dispatcher.capacities();
     dispatcher.deal(ViewId{8}, capacities, now);
     dispatcher.deal(ViewId{16}, capacities, now);
-    EXPECT_EQ(channel.all<wire::Work>().size(), 3u) << "as many as the node has places";
+    EXPECT_EQ(channel.all<wire::Work>().size(), 3u) << "as many as the node has slots";
 }
 
-TEST_F(DispatcherTest, WhatANodeLeavesBehindGoesToTheNext) {
+TEST_F(DispatcherTest, UnitsOfALostNodeGoToTheNext) {
     NodeRecord& leaving = add_node(1, 1);
     begin(view(8, 8));
     deal(ViewId{8});
@@ -128,7 +128,7 @@ TEST_F(DispatcherTest, WhatANodeLeavesBehindGoesToTheNext) {
     EXPECT_NE(work[1].unit.id, sent);
 }
 
-TEST_F(DispatcherTest, AUnitThatFailedNamesItsPass) {
+TEST_F(DispatcherTest, FailedUnitNamesItsPass) {
     NodeRecord& node = add_node(1, 1);
     begin(view(8, 8));
     begin(view(16, 8));
@@ -142,7 +142,7 @@ TEST_F(DispatcherTest, AUnitThatFailedNamesItsPass) {
     EXPECT_EQ(dispatcher.counts().refused, 1u);
 }
 
-TEST_F(DispatcherTest, ReproducibleWorkIsDealtToPinnedNodesAlone) {
+TEST_F(DispatcherTest, ReproducibleWorkGoesToPinnedNodesOnly) {
     add_node(1, 1);
     add_node(2, 1).hello.reproducible = true;
     const view::View asked = view(8, 8);

@@ -1,4 +1,4 @@
-// Which edits start accumulation anew: field by field, all kinds.
+// Which edits restart accumulation: every field of every kind of object.
 #include "master/render/picture_effect.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace scene;
 
-// Root - place - (geometry, camera, attachment) and a place that holds but a camera.
+// Root - transform - (geometry, camera, attachment) and a transform with only a camera.
 Scene some_scene() {
     Scene scene;
     EXPECT_TRUE(scene.apply_entries(
@@ -29,7 +29,7 @@ ChangeList list_of(Entry entry) {
     return {.from = {1, 1}, .to = {1, 2}, .entries = {std::move(entry)}, .state_hash = {}};
 }
 
-TEST(PictureEffect, OfEveryFieldOfEveryKind) {
+TEST(PictureEffect, EveryFieldOfEveryKind) {
     const Scene scene = some_scene();
     const std::set<std::string> silent{"root.name",       "transform.name", "transform.hint",
                                        "geometry.name",   "geometry.hint",  "material.name",
@@ -40,7 +40,7 @@ TEST(PictureEffect, OfEveryFieldOfEveryKind) {
         for (unsigned field = 0; (all_fields(object) >> field) != 0; ++field) {
             const std::string name =
                 std::string(scene::name(kind(object))) + "." + std::string(field_name(kind(object), field));
-            // A view takes a camera's values by itself.
+            // A view copies the camera's values.
             const bool is_silent = silent.contains(name) || std::holds_alternative<Camera>(object);
             EXPECT_EQ(changes_pictures(list_of(Update{ObjectId{id}, field_bit(field), object}), scene),
                       !is_silent)
@@ -49,14 +49,14 @@ TEST(PictureEffect, OfEveryFieldOfEveryKind) {
     }
 }
 
-TEST(PictureEffect, APlaceThatHoldsButACameraMovesNothing) {
+TEST(PictureEffect, TransformOfACameraHasNoEffect) {
     const Scene scene = some_scene();
     const Update move{ObjectId{20}, Fields<Transform>(&Transform::matrix).bits(), Transform{}};
     EXPECT_FALSE(changes_pictures(list_of(move), scene));
 }
 
 // One by one, 2^64 placements would never end; with recursion, a long chain would end the process.
-TEST(PictureEffect, OfPlacesThatAreDeepOrDoubleAtEveryLevel) {
+TEST(PictureEffect, DeepAndSharedTransforms) {
     const auto chain = [](std::uint64_t depth, std::size_t copies) {
         std::vector<Entry> entries{Create{RootId, Root{.children = {ObjectId{1000}}}}};
         for (std::uint64_t id = 1000; id < 1000 + depth; ++id)
@@ -79,7 +79,7 @@ TEST(PictureEffect, OfPlacesThatAreDeepOrDoubleAtEveryLevel) {
     EXPECT_FALSE(changes_pictures(at(1000), chain(64, 2)));
 }
 
-TEST(PictureEffect, WhatComesAndGoesShowsInWhoRefersToIt) {
+TEST(PictureEffect, AddedAndRemovedObjectsShowAsChangesOfReferences) {
     const Scene scene = some_scene();
     EXPECT_FALSE(changes_pictures(list_of(Create{ObjectId{30}, Material{}}), scene));
     EXPECT_FALSE(changes_pictures(list_of(Remove{ObjectId{30}}), scene));

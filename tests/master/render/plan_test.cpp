@@ -12,7 +12,7 @@ namespace {
 
 using frame::SampleBlock;
 
-TEST(DoublingRounds, CoverEveryCountOnceInAscendingOrder) {
+TEST(DoublingRounds, CoverEverySampleOnceInAscendingOrder) {
     for (const std::uint64_t spp : {1u, 2u, 3u, 4u, 7u, 64u, 100u, 1000u}) {
         for (const std::uint32_t first_level : {0u, 2u, 5u}) {
             std::uint64_t next = 0;
@@ -28,7 +28,7 @@ TEST(DoublingRounds, CoverEveryCountOnceInAscendingOrder) {
     EXPECT_EQ(doubling_rounds(64, 2), (std::vector<SampleBlock>{{0, 2}, {4, 2}, {8, 3}, {16, 4}, {32, 5}}));
 }
 
-TEST(TileGrid, CutsTheWindowWithoutGapOrOverlap) {
+TEST(TileGrid, CoversTheWindowWithoutGapsOrOverlaps) {
     const Rect window{5, 3, 100, 41};
     std::map<std::pair<int, int>, int> hits;
     for (const Rect& tile : tile_grid(window, 32)) {
@@ -43,8 +43,7 @@ TEST(TileGrid, CutsTheWindowWithoutGapOrOverlap) {
 
 class PlanOf : public testing::TestWithParam<session::Policy> {};
 
-// Whatever the sizes asked for, and whatever is given back: every sample of every tile is dealt exactly once
-// net.
+// For any chunk sizes and returned chunks, every sample of every tile is dealt exactly once, net.
 TEST_P(PlanOf, DealsEverySampleOnce) {
     CounterRandom random(11);
     for (const std::uint64_t spp : {1u, 5u, 16u, 100u}) {
@@ -75,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Policies, PlanOf,
                          testing::Values(session::Policy::Tiled, session::Policy::Cooperative,
                                          session::Policy::Mixed));
 
-TEST(Plan, CooperativeSharesATileAmongAllNodes) {
+TEST(Plan, CooperativeSplitsATileAmongAllNodes) {
     Plan plan({.window = {0, 0, 64, 32},
                .tile = 32,
                .spp = 16,

@@ -1,4 +1,4 @@
-// A filter belongs to a view and remembers its pictures.
+// Each view has its own filter with its history.
 #include "master/render/reconstruction.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ frame::FilmTile noise(const view::View& view, std::uint64_t seed) {
     };
     fill(frame::Channel::Depth, 0, 2.0f);
     fill(frame::Channel::ObjectIndex, 0, 0.0f);
-    fill(frame::Channel::ObjectIndex, 1, 1.0f);  // one object everywhere: its bits are those of an id
+    fill(frame::Channel::ObjectIndex, 1, 1.0f);  // one object everywhere
     for (const auto& [plane, value] : {std::pair{0u, 0.0f}, {1u, 0.0f}, {2u, 1.0f}})
         fill(frame::Channel::Normal, plane, value);
     return film;
@@ -54,28 +54,28 @@ std::vector<std::byte> picture(Reconstructor& reconstructor, const view::View& v
     return *made.bytes;
 }
 
-TEST(Reconstructor, ATemporalFilterRemembersThePicturesOfItsView) {
+TEST(Reconstructor, TemporalFilterKeepsHistoryPerView) {
     Reconstructor fresh, used;
     const auto alone = picture(fresh, psvgf_view(8, 2), 2);
     (void)picture(used, psvgf_view(8, 1), 1);
     EXPECT_NE(picture(used, psvgf_view(8, 2), 2), alone) << "the picture before is history";
 }
 
-TEST(Reconstructor, NothingOfOneViewReachesAnother) {
+TEST(Reconstructor, ViewsAreIndependent) {
     Reconstructor fresh, used;
     const auto alone = picture(fresh, psvgf_view(16, 2), 2);
     (void)picture(used, psvgf_view(8, 1), 1);
     EXPECT_EQ(picture(used, psvgf_view(16, 2), 2), alone);
 }
 
-TEST(Reconstructor, AFilmThatGoesOnIsNoHistory) {
+TEST(Reconstructor, ContinuedFilmIsNotHistory) {
     Reconstructor fresh, used;
     const auto alone = picture(fresh, psvgf_view(8, 1), 2);
     (void)picture(used, psvgf_view(8, 1), 1);
     EXPECT_EQ(picture(used, psvgf_view(8, 1), 2), alone) << "the same revision: more samples, no more";
 }
 
-TEST(Reconstructor, ForgottenViewsBeginAnew) {
+TEST(Reconstructor, ForgottenViewsStartOver) {
     Reconstructor fresh, used;
     const auto alone = picture(fresh, psvgf_view(8, 2), 2);
     (void)picture(used, psvgf_view(8, 1), 1);
@@ -83,8 +83,8 @@ TEST(Reconstructor, ForgottenViewsBeginAnew) {
     EXPECT_EQ(picture(used, psvgf_view(8, 2), 2), alone);
 }
 
-// Else brightness would pump while a live scene is edited, and from one coarse picture to the next.
-TEST(Reconstructor, AllPicturesOfAViewHaveTheExposureOfItsFirst) {
+// Otherwise brightness would fluctuate during edits and between coarse pictures.
+TEST(Reconstructor, AllPicturesOfAViewUseTheFirstExposure) {
     Reconstructor reconstructor;
     const auto exposure = [&](ViewId of, float light, std::optional<double> asked = {}) {
         view::View view = psvgf_view(8, 1);

@@ -1,4 +1,4 @@
-// Frames that nobody can render are refused with the reason.
+// Requests that cannot be rendered are rejected with the reason.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -21,18 +21,18 @@ bool is_refused_for(const view::CameraPose& camera, const std::string& part) {
     return problem_of(request_with(camera)).find(part) != std::string::npos;
 }
 
-TEST(RequestProblem, CamerasThatCanSee) {
+TEST(RequestProblem, AcceptsValidCameras) {
     EXPECT_EQ(problem_of(request_with({})), "");
     EXPECT_EQ(problem_of(request_with({.lens_radius = 0.1, .focus_distance = 2.0})), "");
     EXPECT_EQ(problem_of(request_with({.focus_distance = 0.0})), "") << "a pinhole has no focus";
     EXPECT_EQ(problem_of(request_with({.left = -1e6, .projection = scene::Projection::Orthographic})), "");
 }
 
-TEST(RequestProblem, CamerasThatCannot) {
+TEST(RequestProblem, RejectsInvalidCameras) {
     constexpr double NaN = std::numeric_limits<double>::quiet_NaN(),
                      Infinity = std::numeric_limits<double>::infinity();
     for (const double radius : {-1.0, NaN, Infinity, 1e7})
-        EXPECT_TRUE(is_refused_for({.lens_radius = radius}, "the lens' radius")) << radius;
+        EXPECT_TRUE(is_refused_for({.lens_radius = radius}, "the lens radius")) << radius;
     for (const double focus : {-1.0, 0.0, 1e-9, NaN, Infinity})
         EXPECT_TRUE(is_refused_for({.lens_radius = 0.1, .focus_distance = focus}, "focus distance")) << focus;
     const std::vector<glm::dmat4> most(scene::MaxMotion, glm::dmat4(1.0));
@@ -43,8 +43,8 @@ TEST(RequestProblem, CamerasThatCannot) {
     EXPECT_TRUE(is_refused_for({.right = 1e16, .projection = scene::Projection::Orthographic}, "wider than"));
 }
 
-// Any client may ask: nothing that it says may cost memory without bound, or leave what numbers can hold.
-TEST(RequestProblem, WhatWouldCostTooMuchOrOverflow) {
+// Requests are untrusted: they must not cost unbounded memory or overflow.
+TEST(RequestProblem, RejectsExcessiveCostAndOverflow) {
     const auto problem = [](const auto& change) {
         session::ViewRequest request = request_with({});
         change(request);

@@ -11,12 +11,12 @@
 namespace tessera::master {
 namespace {
 
-// A cluster of pretended nodes in pretended time: each renders its queue in order at its own rate.
+// A simulated cluster in simulated time: each node renders its queue in order at its own rate.
 class Simulation {
   public:
     struct Node {
         double rate = 1e5;  // pixel samples per second
-        std::uint32_t places = 2;
+        std::uint32_t slots = 2;
         std::deque<view::WorkUnit> queue;
         double busy_until = 0;
         bool alive = true;
@@ -77,14 +77,14 @@ class Simulation {
             const Node& node = nodes_[i];
             if (!node.alive) continue;
             capacities.push_back({NodeId{i + 1}, 1,
-                                  node.places - static_cast<std::uint32_t>(node.queue.size()),
+                                  node.slots - static_cast<std::uint32_t>(node.queue.size()),
                                   static_cast<std::uint32_t>(node.queue.size())});
         }
         for (const Assignment& assignment : scheduler_.assign(capacities, balancer_, time(now))) {
             const std::size_t i = assignment.node.value - 1;
             if (nodes_[i].queue.empty()) started_[i] = now;
             nodes_[i].queue.push_back(assignment.unit);
-            EXPECT_LE(nodes_[i].queue.size(), nodes_[i].places);
+            EXPECT_LE(nodes_[i].queue.size(), nodes_[i].slots);
         }
     }
 
@@ -136,7 +136,7 @@ TEST_P(SchedulerUnder, FinishesUnequalNodesTogether) {
     for (const auto& node : simulation.nodes()) EXPECT_GT(node.samples, 0u);
 }
 
-TEST_P(SchedulerUnder, SurvivesDeathsAndCountsThem) {
+TEST_P(SchedulerUnder, SurvivesLostNodesAndCountsThem) {
     Simulation simulation({{.rate = 2e5, .dies_at = 3.0}, {.rate = 2e5}, {.rate = 2e5, .dies_at = 5.0}},
                           picture(GetParam(), 50));
     simulation.run();
@@ -178,7 +178,7 @@ TEST(Scheduler, CancelsTheOtherHolderOfADuplicate) {
     EXPECT_TRUE(scheduler.complete());
 }
 
-TEST(Scheduler, APartlyFinishedUnitComesBackAsWhatIsMissing) {
+TEST(Scheduler, PartlyFinishedUnitReturnsItsMissingSamples) {
     Scheduler scheduler({.window = {0, 0, 8, 8}, .tile = 8, .spp = 16, .first_level = 4}, ViewId{1}, 1,
                         {1, 1}, UnitId{1}, std::nullopt);
     Balancer balancer(Balancer::Settings{.first_samples = 1e9});

@@ -9,7 +9,7 @@ using namespace std::chrono_literals;
 
 constexpr TimePoint Start{100s};
 
-TEST(StopRule, SamplesAloneKnowNoClock) {
+TEST(StopRule, SampleLimitHasNoDeadline) {
     const session::StopRule rule{.spp = 32};
     EXPECT_FALSE(rule.has_clock());
     EXPECT_EQ(rule.most_samples(), 32u);
@@ -21,7 +21,7 @@ TEST(StopRule, ATimeLimitCountsFromNow) {
     const session::StopRule rule{.spp = 0, .time_limit = 3s};
     EXPECT_EQ(rule.most_samples(), session::MaxSamplesPerPixel);
     const auto deadline = rule.deadline(Start, Start + 1s, 2s);
-    EXPECT_EQ(deadline, Start + 4s) << "what comes afterwards is not its affair";
+    EXPECT_EQ(deadline, Start + 4s) << "later times have no influence";
     EXPECT_FALSE(rule.time_is_up(deadline, false, Start + 3s));
     EXPECT_TRUE(rule.time_is_up(deadline, false, Start + 4s));
 }

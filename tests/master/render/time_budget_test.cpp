@@ -1,4 +1,4 @@
-// Pictures in time: what is set aside for filter and encoding, and how large a picture can be.
+// Time budgets: the time reserved for filter and encoding, and the possible picture size.
 #include "master/render/time_budget.h"
 
 #include <gtest/gtest.h>
@@ -6,11 +6,11 @@
 namespace tessera::master {
 namespace {
 
-TEST(TimeBudget, KnowsNothingBeforeTheFirstMeasurement) {
+TEST(TimeBudget, HasNoPredictionBeforeTheFirstMeasurement) {
     TimeBudget budget;
     EXPECT_FALSE(budget.predict("fdf", 1000));
     budget.measured("fdf", 0, 1.0);
-    EXPECT_FALSE(budget.predict("fdf", 1000)) << "a picture without pixels tells nothing";
+    EXPECT_FALSE(budget.predict("fdf", 1000)) << "a picture without pixels gives no measurement";
     budget.measured("fdf", 1000, 0.5);
     EXPECT_FALSE(budget.predict("pixel", 1000));
 }
@@ -22,7 +22,7 @@ TEST(TimeBudget, ScalesWithThePixels) {
     EXPECT_DOUBLE_EQ(*budget.predict("fdf", 640'000), 0.16);
 }
 
-TEST(TimeBudget, ExpectsTheSlowestOfTheLatestFew) {
+TEST(TimeBudget, PredictsTheSlowestOfTheLatestFew) {
     TimeBudget budget;
     budget.measured("fdf", 1000, 0.9);
     for (int i = 0; i < 7; ++i) budget.measured("fdf", 1000, 0.1);
@@ -31,7 +31,7 @@ TEST(TimeBudget, ExpectsTheSlowestOfTheLatestFew) {
     EXPECT_DOUBLE_EQ(*budget.predict("fdf", 1000), 0.2) << "one slow picture is forgotten in the end";
 }
 
-TEST(TimeBudget, RemembersABoundedNumberOfWays) {
+TEST(TimeBudget, RemembersABoundedNumberOfCostKeys) {
     TimeBudget budget;
     for (int i = 0; i < 10'000; ++i) budget.measured("way " + std::to_string(i), 10, 1.0);
     int known = 0;

@@ -1,4 +1,4 @@
-// What became of a view fits into a message, however many nodes took part.
+// A view's summary fits into a message for any number of nodes.
 #include "master/render/view_summary.h"
 
 #include <gtest/gtest.h>
@@ -29,14 +29,14 @@ session::ViewSummary sent(std::uint64_t nodes) {
     return std::get<wire::ViewDone>(*message).summary;
 }
 
-TEST(ViewSummary, OfAFewNodesNamesThemInTheirOrder) {
+TEST(ViewSummary, ListsFewNodesInOrder) {
     const session::ViewSummary summary = sent(9);
     ASSERT_EQ(summary.nodes.size(), 9u);
     EXPECT_EQ(summary.nodes[0].id, NodeId{1});
     EXPECT_TRUE(summary.picture.notes.empty());
 }
 
-TEST(ViewSummary, OfTooManyNamesThoseThatDidTheMostAndSaysSo) {
+TEST(ViewSummary, ListsTheBusiestOfManyNodesWithANote) {
     const session::ViewSummary summary = sent(1024);
     ASSERT_GE(summary.nodes.size(), 128u);
     EXPECT_EQ(summary.nodes[0].id, NodeId{1024});

@@ -29,8 +29,8 @@ struct AuthorityFixture : testing::Test {
         edit.sequence = ++member.sequence;
         return authority.submit(edit, {member.name, member.name + "'s key", ++clock});
     }
-    EditAnswer edit(Member& member, std::vector<scene::Entry> entries, std::uint64_t gesture = 0) {
-        return send(member, {.entries = std::move(entries), .gesture = gesture});
+    EditAnswer edit(Member& member, std::vector<scene::Entry> entries, std::uint64_t edit_group = 0) {
+        return send(member, {.entries = std::move(entries), .edit_group = edit_group});
     }
     EditAnswer undo(Member& member, std::uint64_t number) { return send(member, {.undo = number}); }
 

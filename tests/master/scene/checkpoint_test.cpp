@@ -30,7 +30,7 @@ struct CheckpointTest : SessionFixture {
         writer.wait();
         const auto result = writer.take_result();
         EXPECT_TRUE(result);
-        EXPECT_FALSE(writer.take_result()) << "told once";
+        EXPECT_FALSE(writer.take_result()) << "reported once";
         EXPECT_EQ(result->problem, "");
         EXPECT_EQ(result->byte_size, fs::file_size(checkpoint_path(folder, number)));
         return *result;
@@ -51,10 +51,10 @@ struct CheckpointTest : SessionFixture {
     }
 };
 
-TEST_F(CheckpointTest, TheNewestAndTheJournalAfterItBringEverythingBack) {
+TEST_F(CheckpointTest, RecoversFromTheNewestAndTheJournalAfterIt) {
     const auto before = three_parts();
     const auto again = start(2);
-    EXPECT_TRUE(tells(again->recovery, "checkpoint-000003' was used"));
+    EXPECT_TRUE(mentions(again->recovery, "checkpoint-000003' was used"));
     EXPECT_LE(again->recovery.edits, 60u);
     EXPECT_EQ(again->recovery.scene.title, "the room");
     expect_same(before->authority, again->authority);
@@ -71,7 +71,7 @@ TEST_F(CheckpointTest, TheNewestAndTheJournalAfterItBringEverythingBack) {
     for (std::size_t i = 0; i < 2; ++i) EXPECT_TRUE(identical_bits(saved.blocks[i], original.blocks[i]));
 }
 
-TEST_F(CheckpointTest, FilmOfAnotherRenderRevisionIsLeftOutAndItsViewKept) {
+TEST_F(CheckpointTest, FilmOfAnotherRenderRevisionIsDroppedAndItsViewKept) {
     const auto before = three_parts();
     const fs::path newest = checkpoint_path(folder, 3);
     auto state = read_checkpoint(newest, 3);
@@ -80,14 +80,14 @@ TEST_F(CheckpointTest, FilmOfAnotherRenderRevisionIsLeftOutAndItsViewKept) {
     state->render_revision = frame::RenderRevision + 1;
     write_checkpoint(newest, 3, *state);
     const auto again = start(2);
-    EXPECT_TRUE(tells(again->recovery, "its views start anew"));
+    EXPECT_TRUE(mentions(again->recovery, "its views start again"));
     expect_same(before->authority, again->authority);
     ASSERT_EQ(again->recovery.views.size(), 1u);
     EXPECT_EQ(again->recovery.views[0].request.view.width, 64u);
     EXPECT_TRUE(again->recovery.views[0].blocks.empty());
 }
 
-TEST_F(CheckpointTest, WhatIsDoneAfterwardsComesOutTheSame) {
+TEST_F(CheckpointTest, LaterEditsGiveTheSameResult) {
     const auto before = three_parts();
     const auto again = start(2);
     again->authority.record_to(nullptr);
@@ -102,22 +102,22 @@ TEST_F(CheckpointTest, WhatIsDoneAfterwardsComesOutTheSame) {
     expect_same(before->authority, again->authority);
 }
 
-TEST_F(CheckpointTest, ATornOneIsToldAndThePreviousOneUsed) {
+TEST_F(CheckpointTest, TornCheckpointIsReportedAndThePreviousOneUsed) {
     const auto before = three_parts();
     const fs::path newest = checkpoint_path(folder, 3);
     const std::string content = read(newest);
     write(newest, content.substr(0, content.size() - 7));
     {
         const auto again = start(2);
-        EXPECT_TRUE(tells(again->recovery, "checkpoint-000003': its checksum is wrong"));
-        EXPECT_TRUE(tells(again->recovery, "checkpoint-000002' was used"));
+        EXPECT_TRUE(mentions(again->recovery, "checkpoint-000003': its checksum is wrong"));
+        EXPECT_TRUE(mentions(again->recovery, "checkpoint-000002' was used"));
         EXPECT_TRUE(fs::exists(newest.string() + ".damaged"));
         expect_same(before->authority, again->authority);
         EXPECT_EQ(again->recovery.views.at(0).number, 1u) << "the film as it was then";
     }
 }
 
-TEST_F(CheckpointTest, WithoutAGoodOneTheWholeJournalIsDoneAgain) {
+TEST_F(CheckpointTest, WithoutAValidCheckpointTheWholeJournalIsReplayed) {
     auto master = start(1);
     join_all(master->authority);
     for (std::uint64_t step = 1; step <= 60; ++step) {
@@ -130,12 +130,12 @@ TEST_F(CheckpointTest, WithoutAGoodOneTheWholeJournalIsDoneAgain) {
     master.reset();
     write(checkpoint_path(folder, 2), "no checkpoint");
     const auto again = start(2);
-    EXPECT_TRUE(tells(again->recovery, "checkpoint-000002': it ends too early"));
+    EXPECT_TRUE(mentions(again->recovery, "checkpoint-000002': it ends too early"));
     EXPECT_TRUE(again->recovery.views.empty());
     expect_same(before.authority, again->authority);
 }
 
-TEST_F(CheckpointTest, NothingIsThrownAwayWhereNothingCanBeUsed) {
+TEST_F(CheckpointTest, UnusableFilesAreKept) {
     auto master = three_parts();
     master.reset();
     fs::remove(journal_path(folder, 1));
@@ -157,7 +157,7 @@ TEST_F(CheckpointTest, KeepsTwoAndTheJournalFromTheOlderOneOn) {
     EXPECT_EQ(files.journals, (std::vector<std::uint64_t>{5, 6}));
 }
 
-TEST_F(CheckpointTest, HostileFilesAreRefusedAndNeverCrash) {
+TEST_F(CheckpointTest, MalformedFilesAreRefusedAndNeverCrash) {
     three_parts();
     const fs::path path = checkpoint_path(folder, 3);
     const std::string whole = read(path);
@@ -208,7 +208,7 @@ TEST_F(CheckpointTest, HostileFilesAreRefusedAndNeverCrash) {
     EXPECT_GT(refused, 100);
 }
 
-TEST_F(CheckpointTest, AFolderThatIsGoneIsTold) {
+TEST_F(CheckpointTest, MissingFolderIsReported) {
     auto master = start(1);
     CheckpointWriter writer(folder / "nowhere");
     writer.start({2, {}, master->authority.save(), {}});

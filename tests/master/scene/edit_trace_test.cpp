@@ -99,7 +99,7 @@ TEST_F(EditTraceTest, AVersionHoldsAllEditsUpToItAndEachIsTimedOnce) {
     EXPECT_EQ(stage("whole").count, 4u);
 }
 
-TEST_F(EditTraceTest, ANodeThatJoinsLateDelaysNobody) {
+TEST_F(EditTraceTest, LateNodeDelaysNoEdit) {
     edit(2, 0ms, 1ms);
     log.published(version(2), at(2ms));
     built(1, 2, 60s, 61s);  // its first report
@@ -115,9 +115,9 @@ TEST_F(EditTraceTest, ANodeThatJoinsLateDelaysNobody) {
     EXPECT_EQ(trace[2].nodes.size(), 0u);
 }
 
-TEST_F(EditTraceTest, WhereNobodyLooksNoPictureIsWaitedFor) {
+TEST_F(EditTraceTest, WithoutViewsNoPictureIsWaitedFor) {
     edit(2, 0ms, 1ms);
-    log.nobody_looks();
+    log.no_open_views();
     edit(3, 60s, 60s);
     log.merged(version(3), at(60050ms));
     EXPECT_EQ(log.latest(2)[0].merged, 0);
@@ -125,7 +125,7 @@ TEST_F(EditTraceTest, WhereNobodyLooksNoPictureIsWaitedFor) {
     EXPECT_EQ(stage("whole").count, 1u);
 }
 
-TEST_F(EditTraceTest, WhatIsNotKnownCountsNowhere) {
+TEST_F(EditTraceTest, UnknownEditsAreNotCounted) {
     log.submitted(
         {.transaction = 1, .submitted_at = 0, .clock = client, .received = at(0ms), .version = version(1)});
     log.submitted(
@@ -140,7 +140,7 @@ TEST_F(EditTraceTest, WhatIsNotKnownCountsNowhere) {
 TEST_F(EditTraceTest, KeepsTheLatestAndCountsAll) {
     built(1, 1, 0ms, 0ms);
     for (std::uint64_t i = 0; i < 10'000; ++i) edit(2 + i, 0ms, 1ms);
-    EXPECT_EQ(log.latest(100'000).size(), EditTraceLog::Kept);
+    EXPECT_EQ(log.latest(100'000).size(), EditTraceLog::MaxEdits);
     EXPECT_EQ(log.latest(1)[0].version.number, 10'001u);
     EXPECT_EQ(log.edit_count(), 10'000u);
     log.published(version(10'001), at(2ms));  // most of them are not kept any more
@@ -148,7 +148,7 @@ TEST_F(EditTraceTest, KeepsTheLatestAndCountsAll) {
     log.merged(version(9'999), at(5ms));
     EXPECT_EQ(log.latest(1)[0].nodes.size(), 0u);
     EXPECT_EQ(log.latest(2)[0].nodes.size(), 1u);
-    EXPECT_EQ(stage("whole").count, EditTraceLog::Kept - 2);
+    EXPECT_EQ(stage("whole").count, EditTraceLog::MaxEdits - 2);
 }
 
 TEST_F(EditTraceTest, PercentilesAreNearestRanks) {
@@ -157,7 +157,7 @@ TEST_F(EditTraceTest, PercentilesAreNearestRanks) {
     EXPECT_NEAR(stage("client to master").p99_seconds, 0.198, 1e-9);
 }
 
-TEST_F(EditTraceTest, AnEndThatSeemsEarlierIsNoNegativeTimeAndLiesOverflowNothing) {
+TEST_F(EditTraceTest, TimesAreNeverNegativeAndInvalidReportsDoNotOverflow) {
     edit(1, 2ms, 1ms);  // within the bound of the client's clock
     EXPECT_EQ(stage("client to master").p50_seconds, 0.0);
     built(1, 0, 0ms, 0ms);
@@ -169,7 +169,7 @@ TEST_F(EditTraceTest, AnEndThatSeemsEarlierIsNoNegativeTimeAndLiesOverflowNothin
     for (const session::StageTimes& stage : log.stages()) EXPECT_GE(stage.p50_seconds, 0.0);
 }
 
-TEST_F(EditTraceTest, AnotherEpochsReportsTouchNothing) {
+TEST_F(EditTraceTest, ReportsOfAnotherEpochAreIgnored) {
     edit(5, 0ms, 1ms);
     log.published({Epoch + 1, 7}, at(2ms));
     EXPECT_EQ(log.latest(1)[0].published, 0);

@@ -18,14 +18,14 @@ bool says(const EditAnswer& answer, const std::string& text) {
     return !answer.accepted && !answer.problems.empty() && answer.problems[0].find(text) != std::string::npos;
 }
 
-TEST_F(EditorsTest, ARefusalNamesObjectFieldAndReason) {
+TEST_F(EditorsTest, RejectionNamesObjectFieldAndReason) {
     EXPECT_TRUE(says(edit(anna, {roughness(anna.id(7), 0.5f)}),
                      "there is no material " + std::to_string(anna.id(7).value) + ": its roughness"));
     EXPECT_TRUE(says(edit(anna, {set<Light>(red, &Light::intensity, {})}),
                      "('red') is no light: its intensity cannot be set"));
     EXPECT_TRUE(
         says(edit(anna, {roughness(red, 1.5f)}), "('red'): roughness is 1.5: it has to be from 0 to 1"));
-    EXPECT_TRUE(says(edit(anna, {Create{ben.id(0), Light{}}}), "outside the ids lent"));
+    EXPECT_TRUE(says(edit(anna, {Create{ben.id(0), Light{}}}), "outside the id range allocated"));
     EXPECT_TRUE(says(edit(anna, {Create{red, Light{}}}), "is there already"));
     Material textured;
     textured.normal_texture.texture = ObjectId{77};
@@ -33,7 +33,7 @@ TEST_F(EditorsTest, ARefusalNamesObjectFieldAndReason) {
                      "refers to object 77 as its normal_texture, which is not there"));
 }
 
-TEST_F(EditorsTest, IsRefusedWholeAndNobodyElseNotices) {
+TEST_F(EditorsTest, RejectedEditHasNoEffect) {
     const Hash128 before = authority.scene().state_hash();
     authority.publish();
     EXPECT_FALSE(
@@ -79,7 +79,7 @@ TEST_F(EditorsTest, ALockKeepsOthersOut) {
     must(edit(ben, {roughness(red, 0.25f)}));
 }
 
-TEST_F(EditorsTest, ALockGoesWithItsObject) {
+TEST_F(EditorsTest, RemovingAnObjectRemovesItsLock) {
     EXPECT_TRUE(authority.lock(anna.session, "anna", {red}).empty());
     must(edit(anna, {Remove{red}}));
     EXPECT_TRUE(authority.locks().empty());
@@ -100,7 +100,7 @@ TEST_F(EditorsTest, TheSameKeyIsTheSameEditorWhereverItConnects) {
     EXPECT_NE(authority.join(SessionId{19}, "ben", 1001).first, anna.ids.first) << "another user";
 }
 
-TEST_F(EditorsTest, OfTwoConnectionsWithOneKeyTheLaterEdits) {
+TEST_F(EditorsTest, LaterConnectionWithTheSameKeyEdits) {
     authority.join(SessionId{17}, "anna", 1001);
     const auto answer = edit(anna, {roughness(red, 0.5f)});
     EXPECT_TRUE(says(answer, "connected elsewhere"));
@@ -110,7 +110,7 @@ TEST_F(EditorsTest, OfTwoConnectionsWithOneKeyTheLaterEdits) {
     must(edit(anna, {roughness(red, 0.5f)}));
 }
 
-TEST_F(EditorsTest, RepeatsTheLastAnswerAndRefusesWhatIsOlderOrOutOfOrder) {
+TEST_F(EditorsTest, RepeatsTheLastAnswerAndRejectsOlderOrUnorderedEdits) {
     const auto first = edit(anna, {roughness(red, 0.5f)});
     must(edit(ben, {roughness(red, 0.25f)}));
     anna.sequence -= 1;
@@ -132,14 +132,14 @@ TEST_F(EditorsTest, RepeatsTheLastAnswerAndRefusesWhatIsOlderOrOutOfOrder) {
     must(edit(anna, {roughness(red, 0.5f)}));
 }
 
-TEST_F(EditorsTest, IdsAreLentToOneEditorAtATime) {
+TEST_F(EditorsTest, IdRangesAreAllocatedToOneEditorAtATime) {
     const Scene scene;
     Editors editors;
-    std::set<std::uint64_t> lent;
+    std::set<std::uint64_t> allocated;
     for (std::uint64_t i = 1; i <= 4095; ++i) {
         const EditorRecord* editor = editors.join(SessionId{i}, "many", i, scene);
         ASSERT_NE(editor, nullptr) << i;
-        EXPECT_TRUE(lent.insert(editor->ids.first).second);
+        EXPECT_TRUE(allocated.insert(editor->ids.first).second);
     }
     EXPECT_EQ(editors.join(SessionId{5000}, "many", 5000, scene), nullptr) << "all are connected";
     editors.leave(SessionId{3});
@@ -148,7 +148,7 @@ TEST_F(EditorsTest, IdsAreLentToOneEditorAtATime) {
     EXPECT_NE(editors.join(SessionId{5000}, "many", 5000, scene), nullptr) << "one was forgotten";
 }
 
-TEST_F(EditorsTest, IdsInUseAreNotLentAgain) {
+TEST_F(EditorsTest, IdsInUseAreNotAllocatedAgain) {
     Scene scene;
     Editors editors;
     const EditorRecord* first = editors.join(SessionId{1}, "", 0, scene);
@@ -163,7 +163,7 @@ TEST_F(EditorsTest, IdsInUseAreNotLentAgain) {
 }
 
 // What cannot be recorded does not happen.
-TEST_F(EditorsTest, AnEditThatCannotBeRecordedIsTakenBack) {
+TEST_F(EditorsTest, UnrecordedEditIsReverted) {
     struct FullDisk final : EditRecorder {
         Expected<void> joined(const wire::RecordedEditor&) override {
             return failure(ErrorCode::Io, "the disk is full");

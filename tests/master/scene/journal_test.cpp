@@ -41,7 +41,7 @@ struct JournalFileTest : SessionFixture {
     }
 };
 
-TEST_F(JournalFileTest, GivesBackWhatWasAppended) {
+TEST_F(JournalFileTest, ReadsWhatWasAppended) {
     const JournalScan scan = scan_prefix();
     EXPECT_EQ(scan.records, Records);
     EXPECT_EQ(scan.end, JournalEnd::Complete);
@@ -49,7 +49,7 @@ TEST_F(JournalFileTest, GivesBackWhatWasAppended) {
     EXPECT_EQ(read_journal(file, 8, [](auto) { return Expected<void>(); }).end, JournalEnd::Damaged);
 }
 
-TEST_F(JournalFileTest, CutAnywhereItHoldsTheRecordsBefore) {
+TEST_F(JournalFileTest, TruncatedFileKeepsTheCompleteRecords) {
     const std::string whole = read(file);
     std::uint64_t last = Records;
     for (std::size_t size = whole.size(); size-- > 0;) {
@@ -64,7 +64,7 @@ TEST_F(JournalFileTest, CutAnywhereItHoldsTheRecordsBefore) {
     EXPECT_EQ(last, 0u);
 }
 
-TEST_F(JournalFileTest, NoFlippedBitGoesUnnoticed) {
+TEST_F(JournalFileTest, DetectsFlippedBits) {
     const std::string whole = read(file);
     for (std::size_t bit = 0; bit < whole.size() * 8; bit += 7) {
         std::string damaged = whole;
@@ -78,7 +78,7 @@ TEST_F(JournalFileTest, NoFlippedBitGoesUnnoticed) {
     }
 }
 
-TEST_F(JournalFileTest, RecordsCannotChangePlaces) {
+TEST_F(JournalFileTest, DetectsReorderedRecords) {
     const std::string whole = read(file);
     const JournalScan first = read_journal(file, 7, [n = 0](auto) mutable {
         return n++ == 0 ? Expected<void>() : failure(ErrorCode::InvalidInput, "enough");
@@ -103,7 +103,7 @@ struct FileLimit {
     rlimit before{};
 };
 
-TEST_F(JournalFileTest, WhatCannotBeWrittenLeavesNothingBehind) {
+TEST_F(JournalFileTest, FailedWriteLeavesNoPartialRecord) {
     const fs::path other = folder / "journal-000009";
     JournalFile journal(other, 9);
     ASSERT_TRUE(journal.append(payload(0)));
@@ -145,7 +145,7 @@ TEST_F(JournalTest, ARestartedMasterHasTheSceneTheHistoryAndTheEditors) {
     expect_same(old.authority, again->authority);
     join_all(again->authority);
     for (std::uint64_t m = 0; m < Members; ++m) {
-        // Refused edits are not recorded: whoever joins again goes on from a later number.
+        // Rejected edits are not recorded: an editor that joins again continues with a later number.
         EXPECT_LE(again->authority.last_sequence(session(m)), sequences[m]);
         EXPECT_EQ(again->authority.join(session(m), "user " + std::to_string(m), 100 + m).first,
                   old.authority.join(session(m), "user " + std::to_string(m), 100 + m).first);
@@ -183,12 +183,12 @@ TEST_F(JournalTest, AnEditResentAfterTheRestartGetsItsAnswerAgain) {
     EXPECT_EQ(again->authority.history(10).size(), 1u) << "not done twice";
 }
 
-TEST_F(JournalTest, ATornEndIsCutOffAndToldAndTheNextOneGoesOn) {
+TEST_F(JournalTest, TornEndIsTruncatedReportedAndContinued) {
     Hash128 before{};
     for (std::uint64_t round = 1; round <= 5; ++round) {
         auto master = start(round);
         if (round > 1) {
-            EXPECT_TRUE(tells(master->recovery, "is cut off"));
+            EXPECT_TRUE(mentions(master->recovery, "is cut off"));
             EXPECT_EQ(master->authority.scene().state_hash(), before);
         }
         join_all(master->authority);
@@ -200,7 +200,7 @@ TEST_F(JournalTest, ATornEndIsCutOffAndToldAndTheNextOneGoesOn) {
     EXPECT_EQ(session_files(folder).journals.size(), 5u);
 }
 
-TEST_F(JournalTest, ADamagedRecordEndsItAndKeepsWhatCannotBeUsed) {
+TEST_F(JournalTest, DamagedRecordEndsReplayAndUnusableDataIsKept) {
     auto master = start(1);
     join_all(master->authority);
     for (std::uint64_t step = 1; step <= 50; ++step) act(master->authority, step);
@@ -211,8 +211,8 @@ TEST_F(JournalTest, ADamagedRecordEndsItAndKeepsWhatCannotBeUsed) {
     content[content.size() / 2] = static_cast<char>(content[content.size() / 2] ^ 4);
     write(journal_path(folder, 1), content);
     auto again = start(2);
-    EXPECT_TRUE(tells(again->recovery, "everything from there on is lost"));
-    EXPECT_TRUE(tells(again->recovery, "journal-000001' at byte "));
+    EXPECT_TRUE(mentions(again->recovery, "everything from there on is lost"));
+    EXPECT_TRUE(mentions(again->recovery, "journal-000001' at byte "));
     EXPECT_TRUE(fs::exists(journal_path(folder, 2).string() + ".damaged"));
     EXPECT_GT(again->recovery.edits, 5u);
     EXPECT_LT(again->recovery.edits, 50u);
@@ -221,10 +221,10 @@ TEST_F(JournalTest, ADamagedRecordEndsItAndKeepsWhatCannotBeUsed) {
     again.reset();
     auto third = start(3);
     EXPECT_EQ(third->authority.scene().state_hash(), state) << "and from then on it is whole again";
-    EXPECT_FALSE(tells(third->recovery, "lost"));
+    EXPECT_FALSE(mentions(third->recovery, "lost"));
 }
 
-TEST_F(JournalTest, BlobsAreKeptBesideAndComeBack) {
+TEST_F(JournalTest, BlobsAreStoredAndRecovered) {
     const Blob indices(std::as_bytes(std::span<const char>("012345678901", 12)));
     Geometry triangle{.indices = reference(indices)};
     triangle.positions = {indices.hash(), 12};
@@ -247,10 +247,10 @@ TEST_F(JournalTest, BlobsAreKeptBesideAndComeBack) {
     EXPECT_EQ(again->recovery.notes.size(), 1u);
     again.reset();
     write(folder / "blobs" / to_hex(indices.hash()), "012345678901x");
-    EXPECT_TRUE(tells(start(3)->recovery, "missing or damaged"));
+    EXPECT_TRUE(mentions(start(3)->recovery, "missing or damaged"));
 }
 
-TEST_F(JournalTest, AFullDiskRefusesTheEditAndNothingElse) {
+TEST_F(JournalTest, FullDiskRejectsOnlyTheEdit) {
     auto master = start(1);
     join_all(master->authority);
     const ObjectId first{master->authority.join(session(0), "user 0", 100).first};
@@ -273,7 +273,7 @@ TEST_F(JournalTest, AFullDiskRefusesTheEditAndNothingElse) {
     EXPECT_EQ(start(2)->authority.scene().state_hash(), after);
 }
 
-TEST_F(JournalTest, JobsBeginAndEndInTheJournalToo) {
+TEST_F(JournalTest, JobsAreJournaled) {
     auto master = start(1);
     join_all(master->authority);
     ASSERT_TRUE(master->journal->opened({"room", wire::RecordedOwner{"ann", 7}}));
@@ -300,7 +300,7 @@ TEST_F(JournalTest, JobsBeginAndEndInTheJournalToo) {
     EXPECT_TRUE(again->recovery.views[1].request.detached);
 }
 
-TEST_F(JournalTest, AClosedSceneStaysClosedAndARenderOriginStaysPut) {
+TEST_F(JournalTest, ClosedSceneStaysClosedAndRenderOriginIsKept) {
     auto master = start(1);
     join_all(master->authority);
     for (std::uint64_t step = 1; step <= 20; ++step) act(master->authority, step);

@@ -11,7 +11,7 @@ struct ManyEditors : AuthorityFixture {
     struct RandomMember {
         Member member;
         RandomEdits edits;
-        std::uint64_t gesture = 0, left = 0;
+        std::uint64_t edit_group = 0, left = 0;
     };
 
     std::vector<RandomMember> members(std::uint64_t count, std::uint64_t seed) {
@@ -22,12 +22,12 @@ struct ManyEditors : AuthorityFixture {
         }
         return list;
     }
-    EditAnswer act(RandomMember& who, std::uint64_t gesture) {
-        return edit(who.member, who.edits.next(authority.scene()), gesture);
+    EditAnswer act(RandomMember& who, std::uint64_t edit_group) {
+        return edit(who.member, who.edits.next(authority.scene()), edit_group);
     }
 };
 
-TEST_F(ManyEditors, ReplicasThatFollowHaveTheHead) {
+TEST_F(ManyEditors, ReplicasReachTheHeadVersion) {
     CounterRandom random(7);
     auto list = members(4, 1);
     Scene follower, late;
@@ -37,7 +37,7 @@ TEST_F(ManyEditors, ReplicasThatFollowHaveTheHead) {
     for (int i = 0; i < 1500; ++i) {
         RandomMember& who = list[random.below(list.size())];
         if (who.left == 0) {
-            ++who.gesture;
+            ++who.edit_group;
             who.left = 1 + random.below(5);
         }
         --who.left;
@@ -53,7 +53,7 @@ TEST_F(ManyEditors, ReplicasThatFollowHaveTheHead) {
         } else if (dice == 3) {
             answer = edit(who.member, who.edits.impossible(authority.scene()));
         } else {
-            answer = act(who, who.gesture);
+            answer = act(who, who.edit_group);
         }
         (answer.accepted ? accepted : refused) += 1;
         EXPECT_EQ(answer.problems.empty(), answer.accepted);
@@ -105,7 +105,7 @@ TEST_F(ManyEditors, SnapshotsAndCatchingUpHoldWhatIsPublishedOnly) {
     EXPECT_EQ(authority.state_hash(), replica.state_hash());
 }
 
-TEST_F(ManyEditors, KnowsWhatItCannotTell) {
+TEST_F(ManyEditors, UnknownVersionsAreRejected) {
     EXPECT_TRUE(authority.since({42, 1}));
     EXPECT_FALSE(authority.since({42, 0}));
     EXPECT_FALSE(authority.since({42, 2})) << "not published yet";
@@ -120,8 +120,8 @@ TEST_F(ManyEditors, UndoingEverythingInReverseOrderLeadsBackToTheStart) {
         const Hash128 start = authority.scene().state_hash();
         while (authority.transactions() < 120) {
             RandomMember& who = list[random.below(list.size())];
-            ++who.gesture;
-            for (std::uint64_t drag = random.below(4); drag > 0; --drag) act(who, who.gesture);
+            ++who.edit_group;
+            for (std::uint64_t drag = random.below(4); drag > 0; --drag) act(who, who.edit_group);
             act(who, 0);
         }
         EXPECT_GT(authority.scene().objects().size(), 10u);
@@ -137,7 +137,7 @@ TEST_F(ManyEditors, UndoingEverythingInReverseOrderLeadsBackToTheStart) {
     }
 }
 
-TEST_F(ManyEditors, PublishTakesManyEditsTogether) {
+TEST_F(ManyEditors, PublishCombinesEdits) {
     Member anna = join(1, "anna");
     const ObjectId lamp = anna.id(0), red = anna.id(1);
     must(edit(anna, {Create{red, Material{}}}));

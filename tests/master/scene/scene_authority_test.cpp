@@ -13,7 +13,7 @@ struct SceneAuthorityTest : testing::Test {
     std::shared_ptr<BlobStore> blobs = std::make_shared<BlobStore>();
     SceneAuthority authority{42, blobs};
     SessionId session{1};
-    SceneAuthority::IdRange ids = authority.lend_ids(session);
+    SceneAuthority::IdRange ids = authority.allocate_id_range(session);
     std::uint64_t sequence = 0;
 
     SceneAuthority::Answer submit(std::vector<Entry> entries) {
@@ -25,7 +25,7 @@ struct SceneAuthorityTest : testing::Test {
     ObjectId id(std::uint64_t i) const { return ObjectId{ids.first + i}; }
 };
 
-TEST_F(SceneAuthorityTest, NumbersVersionsAndMakesListsThatReplicasFollow) {
+TEST_F(SceneAuthorityTest, NumbersVersionsAndMakesChangeListsForReplicas) {
     Scene replica;
     ASSERT_TRUE(replica.apply(authority.snapshot()));
     const auto created = submit({Create{id(0), Light{.name = "sun"}}});
@@ -49,9 +49,9 @@ TEST_F(SceneAuthorityTest, AResentEditIsHarmless) {
     EXPECT_EQ(authority.version().number, 2u);
 }
 
-TEST_F(SceneAuthorityTest, RefusesWhatWouldBreakTheSceneAndKeepsTheOldOne) {
+TEST_F(SceneAuthorityTest, RejectsInvalidEditsAndKeepsTheScene) {
     const Version before = authority.version();
-    EXPECT_FALSE(submit({Create{ObjectId{7}, Light{}}}).accepted) << "an id outside the lent range";
+    EXPECT_FALSE(submit({Create{ObjectId{7}, Light{}}}).accepted) << "an id outside the allocated range";
     EXPECT_FALSE(submit({Remove{RootId}}).accepted);
     EXPECT_FALSE(submit({Remove{id(3)}}).accepted) << "an object that is not there";
     Transform broken;
@@ -64,7 +64,7 @@ TEST_F(SceneAuthorityTest, RefusesWhatWouldBreakTheSceneAndKeepsTheOldOne) {
     EXPECT_EQ(authority.scene().objects().size(), 1u);
 }
 
-TEST_F(SceneAuthorityTest, ClearLeavesWhatABatchFound) {
+TEST_F(SceneAuthorityTest, ClearRestoresTheInitialState) {
     const Hash128 empty = authority.scene().state_hash();
     blobs->insert(std::as_bytes(std::span("a blob that only the scene needed")));
     Root root;
@@ -77,7 +77,7 @@ TEST_F(SceneAuthorityTest, ClearLeavesWhatABatchFound) {
     EXPECT_EQ(authority.scene().state_hash(), empty);
     EXPECT_EQ(blobs->count(), 0u);
     EXPECT_FALSE(authority.clear());
-    EXPECT_EQ(authority.lend_ids(SessionId{99}).first, ids.first)
+    EXPECT_EQ(authority.allocate_id_range(SessionId{99}).first, ids.first)
         << "the next batch gets the same ids, so the same bits";
 }
 

@@ -54,7 +54,7 @@ struct SessionFixture : testing::Test {
         const SessionId who = session(member);
         const std::uint64_t sequence = authority.last_sequence(who) + 1;
         const std::uint64_t first = authority.join(who, "user " + std::to_string(member), 100 + member).first;
-        scene::Edit edit{.session = who, .sequence = sequence, .gesture = (step / 40) % 3};
+        scene::Edit edit{.session = who, .sequence = sequence, .edit_group = (step / 40) % 3};
         const std::uint64_t dice = random.below(12);
         if (dice == 0) {
             edit.undo = scene::UndoLatest;
@@ -100,7 +100,7 @@ struct SessionFixture : testing::Test {
     static void write(const fs::path& path, const std::string& content) {
         std::ofstream(path, std::ios::binary) << content;
     }
-    static bool tells(const Recovery& recovery, const std::string& text) {
+    static bool mentions(const Recovery& recovery, const std::string& text) {
         return std::any_of(recovery.notes.begin(), recovery.notes.end(),
                            [&](const std::string& note) { return note.find(text) != std::string::npos; });
     }

@@ -9,11 +9,11 @@ namespace {
 using namespace scene;
 
 struct SessionLogTest : SessionFixture {
-    void edit(SceneAuthority& authority, std::vector<Entry> entries, std::uint64_t gesture = 0) {
+    void edit(SceneAuthority& authority, std::vector<Entry> entries, std::uint64_t edit_group = 0) {
         const auto answer = authority.submit({.session = session(0),
                                               .sequence = authority.last_sequence(session(0)) + 1,
                                               .entries = std::move(entries),
-                                              .gesture = gesture},
+                                              .edit_group = edit_group},
                                              {"anna", "anna's key", ++time});
         ASSERT_TRUE(answer.accepted);
     }
@@ -23,7 +23,7 @@ struct SessionLogTest : SessionFixture {
     std::int64_t time = 0;
 };
 
-TEST_F(SessionLogTest, TellsWhoDidWhatWhileTheMasterRuns) {
+TEST_F(SessionLogTest, ListsTransactionsWhileTheMasterRuns) {
     auto master = start(1);
     join_all(master->authority);
     const ObjectId red{master->authority.join(session(0), "user 0", 100).first};

@@ -19,7 +19,7 @@ bool names(const std::vector<std::string>& notes, const std::string& a, const st
     });
 }
 
-TEST_F(UndoTest, RestoresWhatNobodyElseWroteSince) {
+TEST_F(UndoTest, RestoresFieldsThatNoOtherEditorWroteSince) {
     const auto first = must(edit(anna, {roughness(red, 0.2f), metallic(red, 0.3f)}));
     must(edit(ben, {roughness(red, 0.7f)}));
     const auto answer = undo(anna, first);
@@ -45,15 +45,15 @@ TEST_F(UndoTest, ADragIsOneTransaction) {
     EXPECT_NE(must(edit(anna, {roughness(red, 0.5f)}, 5)), first) << "not in a row any more";
 }
 
-TEST_F(UndoTest, OtherGesturesAndOtherSessionsAreOtherTransactions) {
+TEST_F(UndoTest, OtherEditGroupsAndOtherSessionsAreOtherTransactions) {
     const auto first = must(edit(anna, {roughness(red, 0.1f)}, 5));
     EXPECT_NE(must(edit(ben, {roughness(red, 0.2f)}, 5)), first);
     EXPECT_NE(must(edit(anna, {roughness(red, 0.3f)}, 6)), first);
     const auto alone = must(edit(anna, {roughness(red, 0.4f)}));
-    EXPECT_NE(must(edit(anna, {roughness(red, 0.5f)})), alone) << "0 is no gesture";
+    EXPECT_NE(must(edit(anna, {roughness(red, 0.5f)})), alone) << "0 is no edit group";
 }
 
-TEST_F(UndoTest, ARemovedObjectComesBackUnderItsIdAtItsPlaceWithItsLinks) {
+TEST_F(UndoTest, RemovedObjectIsRestoredWithIdPositionAndReferences) {
     const ObjectId a = anna.id(1), b = anna.id(2), c = anna.id(3), wall = anna.id(4), d = ben.id(0);
     Geometry geometry{.indices = {Hash256{}, 12}, .positions = {Hash256{}, 36}};
     geometry.material = red;
@@ -73,7 +73,7 @@ TEST_F(UndoTest, ARemovedObjectComesBackUnderItsIdAtItsPlaceWithItsLinks) {
     EXPECT_EQ(authority.writers(red)[0].name, "anna");
 }
 
-TEST_F(UndoTest, AnAddedChildGoesOutOfAListThatOthersChanged) {
+TEST_F(UndoTest, AddedChildIsRemovedFromAListThatOthersChanged) {
     const ObjectId a = anna.id(1), b = ben.id(1);
     const auto added = must(edit(anna, {Create{a, Light{}}, root_children({a})}));
     must(edit(ben, {Create{b, Light{}}, root_children({b, a})}));
@@ -84,7 +84,7 @@ TEST_F(UndoTest, AnAddedChildGoesOutOfAListThatOthersChanged) {
     EXPECT_EQ(root_children(), (std::vector{b, a}));
 }
 
-TEST_F(UndoTest, OfACreateIsRefusedWhileOthersReferToIt) {
+TEST_F(UndoTest, UndoOfACreateIsRejectedWhileReferenced) {
     Geometry geometry{.indices = {Hash256{}, 12}, .positions = {Hash256{}, 36}};
     geometry.material = red;
     must(edit(ben, {Create{ben.id(0), geometry}}));
@@ -98,7 +98,7 @@ TEST_F(UndoTest, OfACreateIsRefusedWhileOthersReferToIt) {
     EXPECT_EQ(authority.scene().objects().size(), 1u);
 }
 
-TEST_F(UndoTest, GoesBackThroughOnesOwnAndForthAgain) {
+TEST_F(UndoTest, UndoesAndRedoesOwnTransactions) {
     must(edit(anna, {roughness(red, 0.1f)}));
     must(edit(anna, {roughness(red, 0.2f)}));
     must(edit(ben, {metallic(red, 0.5f)}));
@@ -117,7 +117,7 @@ TEST_F(UndoTest, GoesBackThroughOnesOwnAndForthAgain) {
     EXPECT_EQ(material(red).metallic, 0.5f) << "ben's all the time";
 }
 
-TEST_F(UndoTest, SaysWhoUndidWhatAndRefusesToDoItTwice) {
+TEST_F(UndoTest, ReportsWhoUndidWhatAndRejectsRepeatedUndo) {
     const auto first = must(edit(anna, {roughness(red, 0.1f)}));
     const auto taken_back = must(undo(ben, first));
     const auto list = authority.history(2);
@@ -131,7 +131,7 @@ TEST_F(UndoTest, SaysWhoUndidWhatAndRefusesToDoItTwice) {
     EXPECT_EQ(authority.history(3)[2].undone_by, 0u) << "in force again";
 }
 
-TEST_F(UndoTest, TellsWhatWasRemovedMeanwhile) {
+TEST_F(UndoTest, ReportsObjectsRemovedMeanwhile) {
     const auto first = must(edit(anna, {roughness(red, 0.1f)}));
     must(edit(ben, {Remove{red}}));
     const auto answer = undo(anna, first);
@@ -150,7 +150,7 @@ TEST_F(UndoTest, ReachesBack256Transactions) {
     EXPECT_FALSE(undo(anna, first - 1).accepted) << "the one before is forgotten";
 }
 
-TEST_F(UndoTest, AnObjectThatAGestureMadeAndTookAwayLeavesNothing) {
+TEST_F(UndoTest, AnObjectCreatedAndRemovedInOneEditGroupLeavesNothing) {
     const Hash128 before = authority.scene().state_hash();
     const ObjectId a = anna.id(1);
     const auto made = must(edit(anna, {Create{a, Light{}}, root_children({a})}, 9));
@@ -166,12 +166,12 @@ TEST(WithoutStep, MergesListsOfChildren) {
         for (const std::uint64_t id : list) result.push_back({id});
         return result;
     };
-    EXPECT_EQ(without_step(ids({1, 2, 3}), ids({1, 3}), ids({9, 1, 3})), ids({9, 1, 2, 3}));
-    EXPECT_EQ(without_step(ids({1, 2, 3}), ids({2, 3}), ids({3, 2})), ids({1, 3, 2})) << "at the front";
-    EXPECT_EQ(without_step(ids({1, 2, 3}), ids({}), ids({7})), ids({1, 2, 3, 7}));
-    EXPECT_EQ(without_step(ids({1}), ids({1, 1}), ids({1, 5, 1})), ids({1, 5})) << "one of two instances";
-    EXPECT_EQ(without_step(ids({1}), ids({1, 2}), ids({1})), ids({1})) << "gone already";
-    EXPECT_EQ(without_step(ids({1, 1}), ids({1}), ids({1, 4})), ids({1, 1, 4}));
+    EXPECT_EQ(without_change(ids({1, 2, 3}), ids({1, 3}), ids({9, 1, 3})), ids({9, 1, 2, 3}));
+    EXPECT_EQ(without_change(ids({1, 2, 3}), ids({2, 3}), ids({3, 2})), ids({1, 3, 2})) << "at the front";
+    EXPECT_EQ(without_change(ids({1, 2, 3}), ids({}), ids({7})), ids({1, 2, 3, 7}));
+    EXPECT_EQ(without_change(ids({1}), ids({1, 1}), ids({1, 5, 1})), ids({1, 5})) << "one of two instances";
+    EXPECT_EQ(without_change(ids({1}), ids({1, 2}), ids({1})), ids({1})) << "gone already";
+    EXPECT_EQ(without_change(ids({1, 1}), ids({1}), ids({1, 4})), ids({1, 1, 4}));
 }
 
 }  // namespace

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "client/tools/command.h"
+
+namespace tessera::tools {
+
+// tessera display audience
+Command viewer_preview_command(cli::CommandLine& display);
+
+}  // namespace tessera::tools

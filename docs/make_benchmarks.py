@@ -1,0 +1,117 @@
+#!/usr/bin/env python3
+"""Writes docs/benchmarks.md from the files that deploy/bench.sh leaves in a folder. Usage: docs/make_benchmarks.py FOLDER VERSION
+
+Every number on the page comes from those files; this script has the sentences between them.
+"""
+
+import datetime
+import json
+import pathlib
+import platform
+import re
+import sys
+
+INTRODUCTION = """\
+# Benchmarks
+
+Written by `deploy/bench.sh --docs`, which builds and runs everything here. Each figure is next to the limit that bounds it, measured in
+the same run. Compare ratios, not times: they depend on the machine and on what else it does.
+"""
+
+# Programs of Google Benchmark: file, heading, what is measured, and the benchmark that is the limit of the others.
+MICRO = [
+    ("embree", "Rays", "`room-1.glb`, one thread. Embree's own traversal of the same rays is the limit of the path tracer.",
+     "bare_bounce_rays"),
+    ("film", "Film", "Merging, encoding and decoding film, against a copy in the cache.", "memory_copy"),
+    ("filter", "Denoisers", "One picture of 1 megapixel, all cores. `plain_copy` copies as many bytes once.", "plain_copy"),
+    ("compose", "Compositing", "Layers by depth and alpha.", None),
+    ("display", "Displays: one output", "What an output does with a frame.", None),
+]
+
+# Programs that print tables for readers.
+TEXTS = [
+    ("kernel", "Cost of features", "Time of the kernel that Embree takes, and of the one with all features, relative to a kernel compiled for "
+     "exactly the features of the scene. The scenes below `studio-1` are one room with one rare feature each. Code placement alone "
+     "changes single rows by a few per cent from process to process."),
+    ("update", "Edits", "Refitting and moving, relative to a rebuild and to a bare commit of Embree."),
+    ("light", "Many lights", "Direct light of 10,000 emitters: error at equal time, relative to uniform sampling."),
+    ("fog", "Light in media", "Error at equal time of equiangular sampling combined with free flight, relative to free flight alone."),
+    ("texture", "Texture filtering", "A checkerboard up to the horizon: error relative to point samples."),
+    ("backends", "Back-ends", "All back-ends in turn, with the ratio to the first."),
+    ("live", "Live editing", "A master and two nodes as processes with CURVE, `studio-1.glb` at 1280x720."),
+    ("displays", "Display wall", "24 `tessera-display` processes, a master and two null nodes, all on the same cores; the head moves all the "
+     "time, so that every frame is new."),
+    ("join", "Joining nodes", "A node joins a scene of 100 MB over a link of 1 Gbit/s; a ratio of 1 is the time of the bytes alone."),
+]
+
+
+def processor():
+    for line in open("/proc/cpuinfo", encoding="utf-8"):
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return platform.machine()
+
+
+def machine(version):
+    cores = len(re.findall(r"^processor\s*:", open("/proc/cpuinfo", encoding="utf-8").read(), re.M))
+    kilobytes = int(re.search(r"MemTotal:\s*(\d+)", open("/proc/meminfo", encoding="utf-8").read()).group(1))
+    return (f"{version}, {datetime.date.today().isoformat()}, on {cores} cores of {processor()}, "
+            f"{kilobytes / 2**20:.0f} GiB.\n")
+
+
+def short(value):
+    return f"{value:.3g}" if value < 1000 else f"{value:,.0f}"
+
+
+def rate_of(entry):
+    """Rate and unit of a benchmark, or nothing."""
+    for key, unit in (("items_per_second", "M/s"), ("bytes_per_second", "GB/s")):
+        if key in entry:
+            return entry[key] / (1e6 if unit == "M/s" else 1e9), unit
+    return (entry["GB/s"], "GB/s") if "GB/s" in entry else None
+
+
+def micro_table(report, limit):
+    entries = {re.sub(r"/(real_time|process_time|manual_time|iterations:\d+)", "", entry["name"]): entry for entry in report["benchmarks"]}
+    bound = rate_of(entries[limit]) if limit else None
+    yield "| benchmark | time | rate | of the limit |\n|---|---|---|---|"
+    for name, entry in entries.items():
+        rate = rate_of(entry)
+        ratio = f"{100 * rate[0] / bound[0]:.0f} %" if rate and bound and rate[1] == bound[1] and name != limit else ""
+        yield (f"| `{name}` | {short(entry['real_time'])} {entry['time_unit']} | {short(rate[0]) + ' ' + rate[1] if rate else ''} | "
+               f"{'limit' if name == limit else ratio} |")
+
+
+def quality_rows(report, spp):
+    """Error, time and equivalent samples of each denoiser in each scene."""
+    yield "| scene | denoiser | relMSE | FLIP | ms | equivalent spp |\n|---|---|---|---|---|---|"
+    for scene in report["scenes"]:
+        for row in scene["sizes"][0]["rows"]:
+            if row["spp"] == spp:
+                ratio = row["trimmed"]["equal_error_sample_ratio"]
+                yield (f"| `{scene['name']}` | `{row['filter'].split(':')[0]}` | {short(row['trimmed']['relmse']['value'])} | "
+                       f"{row['flip_mean']:.3f} | {short(row['filter_milliseconds'])} | {short(ratio['value']) if ratio else ''} |")
+
+
+def page(folder, version):
+    yield INTRODUCTION
+    yield machine(version)
+    for name, heading, text, limit in MICRO:
+        yield f"## {heading}\n\n{text}\n"
+        yield "\n".join(micro_table(json.loads((folder / f"{name}.json").read_text()), limit)) + "\n"
+    quality = json.loads((folder / "filters.json").read_text())
+    size = quality["scenes"][0]["sizes"][0]
+    yield ("## Denoisers: error\n\n"
+           f"Films of 4 samples per pixel, {size['width']}x{size['height']}. relMSE leaves out the worst 0.1 % of the pixels; *equivalent spp* is how many "
+           "times the samples a picture without a denoiser needs for the same error.\n")
+    yield "\n".join(quality_rows(quality, 4)) + "\n"
+    for name, heading, text in TEXTS:
+        output = "\n".join(line.rstrip() for line in (folder / f"{name}.txt").read_text().strip().split("\n"))
+        yield f"## {heading}\n\n{text}\n\n```\n{output}\n```\n"
+
+
+def main():
+    print("\n".join(page(pathlib.Path(sys.argv[1]), sys.argv[2])), end="")
+
+
+main()

@@ -1,0 +1,49 @@
+#include "master/render/picture_worker.h"
+
+#include <algorithm>
+
+#include "mediator/frame/resolve.h"
+
+namespace tessera::master {
+
+void PictureWorker::make(PictureTask task) {
+    thread_.post(
+        [this, task = std::make_shared<PictureTask>(std::move(task))] { outputs_.put(reconstruct(*task)); });
+}
+
+void PictureWorker::make(OutputRequest request, std::vector<frame::FilmTile> films) {
+    thread_.post([this, request = std::move(request),
+                  films = std::make_shared<std::vector<frame::FilmTile>>(std::move(films))] {
+        outputs_.put(reconstruct_output(request, *films, reconstructor_));
+    });
+}
+
+void PictureWorker::calibrate(const view::View& view, session::PictureEncoding encoding) {
+    thread_.post([this, view, encoding] {
+        constexpr std::uint32_t Edge = 256;
+        const auto width = std::min(static_cast<std::uint32_t>(view.window.width), Edge);
+        const auto height = std::min(static_cast<std::uint32_t>(view.window.height), Edge);
+        const double seconds = reconstructor_.calibrate(view, encoding, width, height);
+        outputs_.put(CalibrationResult{view.id, std::uint64_t{width} * height, seconds});
+    });
+}
+
+void PictureWorker::forget(ViewId first, ViewId last) {
+    thread_.post([this, first, last] { reconstructor_.forget(first, last); });
+}
+
+Reconstructed PictureWorker::reconstruct(const PictureTask& task) {
+    const auto [least, most] = std::minmax_element(task.film.counts.begin(), task.film.counts.end());
+    Reconstructed result{.frame = task.frame, .picture = {}, .samples_least = *least, .samples_most = *most};
+    result.picture.bytes = std::make_shared<const std::vector<std::byte>>();
+    if (task.hash_film) result.film_hash = frame::film_hash(task.film);
+    if (task.format.encoding != session::PictureEncoding::None) {
+        result.picture = reconstructor_.reconstruct({.film = task.film,
+                                                     .later = task.later ? &*task.later : nullptr,
+                                                     .features = task.features.get()},
+                                                    task.view, task.version, task.format);
+    }
+    return result;
+}
+
+}  // namespace tessera::master

@@ -1,0 +1,442 @@
+#include "tests/shading/test_scene_builder.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+#include "mediator/backend/tables/light_tree.h"
+#include "mediator/backend/tables/tables.h"
+#include "mediator/shading/sampling.h"
+#include "mediator/shading/scaling.h"
+#include "tests/shading/generator.h"
+
+namespace tessera::shading {
+
+namespace {
+
+constexpr uint Vertices = 12, Triangles = 10, Instances = 8, FirstHard = 4;
+
+class Packer {
+  public:
+    explicit Packer(std::uint64_t address) : address_(address) {}
+
+    // Appends an array; returns its final address.
+    template <class Array, class Item>
+    Array add(const std::vector<Item>& items) {
+        static_assert(sizeof(Array) == sizeof(std::uint64_t));
+        bytes_.resize((bytes_.size() + 15) / 16 * 16);
+        const std::size_t offset = bytes_.size();
+        bytes_.resize(offset + items.size() * sizeof(Item));
+        std::memcpy(bytes_.data() + offset, items.data(), items.size() * sizeof(Item));
+        return std::bit_cast<Array>(address_ + offset);
+    }
+    std::vector<std::byte> take() { return std::move(bytes_); }
+
+  private:
+    std::uint64_t address_;
+    std::vector<std::byte> bytes_;
+};
+
+// Cumulative sums that end at 1; some steps are 0.
+void add_sums(std::vector<float>& sums, uint count, Generator& random) {
+    std::vector<double> steps;
+    double total = 0.0;
+    for (uint i = 0; i < count; ++i) {
+        steps.push_back(i > 0 && random.bits() % 5u == 0u ? 0.0 : double(random.between(0.1f, 1.0f)));
+        total += steps.back();
+    }
+    double sum = 0.0;
+    for (const double step : steps) sums.push_back(float((sum += step) / total));
+    sums.back() = 1.0f;
+}
+
+std::vector<Texture> make_textures(Packer& packer, Generator& random) {
+    std::vector<Texture> textures;
+    for (uint i = 0; i < TextureCount; ++i) {
+        Texture texture{.width = 1u + i % 5u * 3u,
+                        .height = 1u + i % 3u * 2u,
+                        .format = i % 3u,
+                        .wrap_s = i % 3u,
+                        .wrap_t = (i / 2u) % 3u,
+                        .texture_filter = i == 5u ? TextureNearest : TextureLinear,
+                        .depth = 1u};
+        const bool floats = texture.format == TexelRgbFloat;
+        std::vector<uint> words;
+        for (uint word = 0; word < texture.width * texture.height * (floats ? 3u : 1u); ++word) {
+            words.push_back(floats ? float_bits(random.between(0.0f, 4.0f)) : random.bits());
+        }
+        texture.texels = packer.add<UintArray>(words);
+        if (!floats && texture.texture_filter == TextureLinear) {
+            words.clear();
+            for (uint width = texture.width, height = texture.height; width > 1u || height > 1u;
+                 ++texture.level_count) {
+                width = std::max(width / 2u, 1u);
+                height = std::max(height / 2u, 1u);
+                for (uint texel = 0; texel < width * height; ++texel) words.push_back(hash_u32(texel));
+            }
+            if (!words.empty()) texture.levels = packer.add<UintArray>(words);
+        }
+        textures.push_back(texture);
+    }
+    return textures;
+}
+
+TextureUse use_of(int texture, Generator& random) {
+    const float angle = random.between(-Pi, Pi), scale = random.between(0.5f, 3.0f);
+    return {.texture = texture,
+            .set = texture >= 0 ? uint(texture) % 2u : 0u,
+            .row_u = {scale * std::cos(angle), scale * std::sin(angle)},
+            .row_v = {-scale * std::sin(angle), scale * std::cos(angle)},
+            .offset = {random.between(-1.0f, 1.0f), random.between(-1.0f, 1.0f)}};
+}
+
+// One for each instance.
+std::vector<Material> make_materials(Generator& random) {
+    std::vector<Material> materials;
+    for (uint i = 0; i < Instances; ++i) {
+        Material material{.base_color = vec4(random.color(), 0.8f),
+                          .metallic = random.between(0.1f, 0.9f),
+                          .roughness = random.between(0.4f, 1.0f),
+                          .normal_scale = 0.7f,
+                          .index_of_refraction = 1.5f,
+                          .alpha_cutoff = 0.5f,
+                          .base_color_texture = use_of(i < 6 ? int(i) : -1, random),
+                          .metallic_roughness_texture = use_of(i == 1 || i == 4 ? 6 : -1, random),
+                          .normal_texture = use_of(i < 3 ? 3 : -1, random),
+                          .emission_texture = use_of(i == 2 ? 2 : -1, random),
+                          .alpha_mode = i % 3u,
+                          .double_sided = i % 2u,
+                          .thin = i % 4u == 1u ? 1u : 0u,
+                          .extras = i % 2u == 0u ? int(i / 2u) : -1,
+                          .surface_shader = i == 1 ? 0 : -1};
+        if (i == 2 || i == 6) material.emission = vec3(1.0f, 2.0f, 3.0f);
+        materials.push_back(material);
+    }
+    materials[3].unlit = 1u;
+    materials[4].roughness = 0.01f;  // alpha = MinAlpha
+    materials[5].transmission = 0.9f;
+    materials[6] = {.base_color = vec4(0.9f), .metallic = 1.0f, .roughness = 0.0f};
+    materials[6].base_color_texture.texture = materials[6].metallic_roughness_texture.texture =
+        materials[6].normal_texture.texture = materials[6].emission_texture.texture = -1;
+    materials[6].emission = vec3(0.5f);
+    materials[6].extras = -1;
+    materials[6].surface_shader = -1;
+    materials[7].index_of_refraction = 0.0f;
+    materials[7].transmission = 1.0f;
+    materials[7].metallic = 0.0f;
+    return materials;
+}
+
+// With and without perfect lobes, normal and height maps, own tangent frames.
+std::vector<SurfaceShaderParams> make_shaders(Generator& random) {
+    std::vector<SurfaceShaderParams> shaders;
+    for (uint i = 0; i < SurfaceShaderCount; ++i) {
+        shaders.push_back({.specular = random.color(),
+                           .fresnel_blend = random.between(0.0f, 1.0f),
+                           .shininess = {random.between(0.0f, 4.0f), random.between(0.0f, 1.0f)},
+                           .reflection = i % 2u == 0u ? random.color() : vec3(0.0f),
+                           .height_scale = 0.01f,
+                           .transmission = i == 0u ? random.color() : vec3(0.0f),
+                           .normal_space = i == 2u ? NormalObject : NormalTangent,
+                           .index_of_refraction = {1.3f, 1.4f, 1.5f},
+                           .inverts_alpha = i % 2u,
+                           .environment = i == 0u ? random.color() : vec3(0.0f),
+                           .tangent_set = i == 3u ? 0 : -1,
+                           .normal_scale = vec3(2.0f),
+                           .binormal_set = i == 3u ? 1 : -1,
+                           .normal_bias = vec3(-1.0f),
+                           .textures = {use_of(i == 1u ? 1 : -1, random), use_of(i == 2u ? 2 : -1, random),
+                                        use_of(-1, random), use_of(i == 0u ? 1 : -1, random)},
+                           .alpha_texture = use_of(i < 2u ? 4 : -1, random),
+                           .height_texture = use_of(i == 1u ? 5 : -1, random),
+                           .environment_texture = use_of(i == 0u ? 3 : -1, random)});
+    }
+    return shaders;
+}
+
+// Each with different lobes.
+std::vector<MaterialExtras> make_extras(Generator& random) {
+    std::vector<MaterialExtras> all;
+    for (uint i = 0; i < Instances / 2u; ++i) {
+        const auto use = [&](uint bit) { return use_of((i >> bit) % 2u == 1u ? int(1u + bit) : -1, random); };
+        all.push_back({.specular_color = 2.0f * random.color(),
+                       .specular = random.between(0.2f, 1.0f),
+                       .sheen_color = i != 1 ? random.color() : vec3(0.0f),
+                       .sheen_roughness = random.between(0.2f, 1.0f),
+                       .coat = i != 2 ? random.between(0.2f, 1.0f) : 0.0f,
+                       .coat_roughness = i == 3 ? 0.0f : random.between(0.3f, 1.0f),
+                       .coat_normal_scale = 0.5f,
+                       .anisotropy = i != 0 ? random.between(0.2f, 1.0f) : 0.0f,
+                       .anisotropy_direction = {0.8f, -0.6f},
+                       .iridescence = i == 2 ? 0.7f : 0.0f,
+                       .film_index = 1.4f,
+                       .film_thickness = {200.0f, 600.0f},
+                       .textures = {use(0), use(1), use(0), use(1), use(0), use(1), use(0)},
+                       .coat_normal_texture = use(1),
+                       .anisotropy_texture = use(1)});
+    }
+    Generator film_random(false);  // separate, so that all other values stay the same
+    for (MaterialExtras& extras : all) {
+        extras.textures[ExtrasIridescence] = use_of(-1, film_random);
+        extras.textures[ExtrasThickness] = use_of(extras.iridescence > 0.0f ? 2 : -1, film_random);
+    }
+    return all;
+}
+
+Mesh make_mesh(uint number, Packer& packer, Generator& random) {
+    const bool hard = number % 2u == 1u;
+    std::vector<vec3> positions, normals;
+    std::vector<vec4> tangents, colors;
+    std::vector<vec2> tex_coords, tex_coords_1;
+    for (uint i = 0; i < Vertices; ++i) {
+        positions.emplace_back(random.between(-1.0f, 1.0f), random.between(-1.0f, 1.0f),
+                               random.between(-1.0f, 1.0f));
+        normals.push_back(random.anywhere());
+        tangents.emplace_back(random.anywhere(), random.either_sign(1.0f));
+        colors.emplace_back(random.color(), random.between(0.2f, 1.0f));
+        tex_coords.emplace_back(random.between(-1.0f, 2.0f), random.between(-1.0f, 2.0f));
+        tex_coords_1.emplace_back(random.between(-1.0f, 2.0f), random.between(-1.0f, 2.0f));
+    }
+    std::vector<uvec3> triangles;
+    for (uint i = 0; i < Triangles; ++i) triangles.emplace_back(i, i + 1, i + 2);
+    if (hard) {
+        positions[2] = positions[1] + vec3(1e-6f, 0.0f, 0.0f);  // a thin triangle
+        positions[5] = positions[4];                            // no area
+        positions[8] = positions[7] * 1e-20f;
+        triangles[9] = uvec3(3u, 3u, 3u);
+    }
+    Mesh mesh{.positions = packer.add<Vec3Array>(positions),
+              .triangles = packer.add<UVec3Array>(triangles),
+              .normals = packer.add<Vec3Array>(normals),
+              .tangents = packer.add<Vec4Array>(tangents),
+              .colors = packer.add<Vec4Array>(colors),
+              .tex_coords = packer.add<Vec2Array>(tex_coords),
+              .tex_coords_1 = packer.add<Vec2Array>(tex_coords_1),
+              .arrays = MeshNormals | MeshTangents | MeshColors | MeshTexCoords | MeshTexCoords1,
+              .triangle_count = Triangles};
+    if (number == 2u) mesh.arrays = MeshTexCoords;
+    if (number == 3u) mesh.arrays = 0u;
+    return mesh;
+}
+
+// Meshes 0 and 2 for the first instances, 1 and 3 for the edge cases.
+std::vector<Instance> make_instances(Generator& random) {
+    std::vector<Instance> instances;
+    for (uint i = 0; i < Instances; ++i) {
+        const float size = i == 4 ? 1e-8f : i == 5 ? 1e7f : 1.0f;
+        const mat3 turn = frame_around(random.anywhere());
+        const mat3 linear(turn[0] * (size * random.between(0.5f, 2.0f)),
+                          turn[1] * (size * random.either_sign(random.between(0.5f, 2.0f))), turn[2] * size);
+        mat3 normals(cross(linear[1], linear[2]), cross(linear[2], linear[0]), cross(linear[0], linear[1]));
+        const float scale = unit_scale(largest(max(max(abs(normals[0]), abs(normals[1])), abs(normals[2]))));
+        normals = mat3(normals[0] * scale, normals[1] * scale, normals[2] * scale);
+        instances.push_back({.mesh = i % 2u * 2u + (i < FirstHard ? 0u : 1u),
+                             .material = i,
+                             .object = 100u + i,
+                             .light = i == 2   ? 0
+                                      : i == 6 ? 1
+                                               : -1,
+                             .linear = linear,
+                             .translation = size * vec3(1.0f, -2.0f, 3.0f),
+                             .normals = normals,
+                             .alpha_tested = i % 2u,
+                             .motion = -1,
+                             .medium = i == 7u ? -1 : int(i % MediumCount)});
+    }
+    return instances;
+}
+
+// Homogeneous and textured, with and without a surface.
+std::vector<Medium> make_media(Generator& random) {
+    std::vector<Medium> media;
+    for (uint i = 0; i < MediumCount; ++i) {
+        media.push_back({.absorption = random.color(),
+                         .priority = int(i % 3u),
+                         .scattering = i != 2u ? random.color() : vec3(0.0f),
+                         .anisotropy = random.between(-0.9f, 0.9f),
+                         .emission = i != 1u ? random.color() : vec3(0.0f),
+                         .index_matched = i % 2u,
+                         .low = vec3(-1.0f),
+                         .textured = i < 2u ? 1u : 0u,
+                         .inverse_size = vec3(0.5f),
+                         .index = i == 0u   ? -1.0f
+                                  : i == 3u ? 0.0f
+                                            : random.between(1.0f, 2.0f),
+                         .textures = {use_of(i < 2u ? 1 : -1, random), use_of(i == 1u ? 4 : -1, random),
+                                      use_of(i == 0u ? 2 : -1, random)}});
+    }
+    return media;
+}
+
+constexpr uint Emitters = TriangleEmitters + 4u;
+static_assert(TriangleEmitters == 2u * Triangles);
+
+// Those in the tree, then two distant ones.
+std::vector<LightSource> make_lights(Generator& random) {
+    constexpr uint Kinds[LightCount] = {LightMesh,   LightMesh, LightPoint,       LightSpot,
+                                        LightSphere, LightQuad, LightDirectional, LightEnvironment};
+    std::vector<LightSource> lights;
+    for (uint i = 0; i < LightCount; ++i) {
+        const mat3 frame = frame_around(random.anywhere());
+        lights.push_back({.kind = Kinds[i],
+                          .probability = 1.0f / float(LightCount),
+                          .intensity = vec3(3.0f, 2.0f, 1.0f) * random.between(0.5f, 2.0f),
+                          .position = 3.0f * random.anywhere(),
+                          .direction = frame[2],
+                          .cos_inner = 0.6f,
+                          .cos_outer = -0.3f,
+                          .radius = random.between(0.3f, 3.0f),
+                          .one_minus_cos_half_angle = random.between(0.01f, 0.5f),
+                          .edge_u = frame[0],
+                          .edge_v = frame[1],
+                          .half_size = vec2(random.between(0.3f, 3.0f), 1.0f),
+                          .instance = i == 1u ? 6u : 2u,
+                          .first_emitter = i < 2u ? i * Triangles : 2u * Triangles + i - 2u});
+    }
+    return lights;
+}
+
+std::vector<Emitter> make_emitters() {
+    std::vector<Emitter> emitters;
+    for (uint i = 0; i < Emitters; ++i) {
+        const bool is_triangle = i < 2u * Triangles;
+        emitters.push_back({.light = is_triangle ? i / Triangles : 2u + i - 2u * Triangles,
+                            .triangle = is_triangle ? i % Triangles : 0u,
+                            .node = NoLightNode,
+                            .inverse_root_area = 0.6f});
+    }
+    return emitters;
+}
+
+// Nodes of all kinds, with arbitrary bounds. The point light is not in the tree.
+std::vector<LightNode> make_nodes(std::vector<Emitter>& emitters, Generator& random) {
+    std::vector<backend::LightLeaf> leaves;
+    for (uint i = 0; i < Emitters; ++i) {
+        const vec3 low = 2.0f * random.anywhere();
+        if (i == TriangleEmitters) continue;
+        leaves.push_back({.low = low,
+                          .high = low + random.color() * (i % 4u == 0u ? 0.0f : 1.0f),
+                          .axis = random.anywhere(),
+                          .spread = i % 3u == 0u ? double(Pi) : double(random.between(0.0f, 1.0f)),
+                          .emission_angle = double(random.between(0.3f, 1.6f)),
+                          .power = double(random.between(0.1f, 10.0f)),
+                          .emitter = i,
+                          .is_area = i >= TriangleEmitters,
+                          .two_sided = i % 2u == 0u});
+    }
+    std::vector<LightNode> nodes = backend::make_light_tree(leaves, emitters);
+    if (nodes.size() != LightNodes)
+        throw std::logic_error("there are " + std::to_string(nodes.size()) + " nodes");
+    return nodes;
+}
+
+std::vector<View> make_views(Generator& random) {
+    std::vector<View> views;
+    for (uint i = 0; i < ViewCount; ++i) {
+        const mat3 turn = frame_around(random.anywhere());
+        views.push_back(
+            {.seed = (std::uint64_t{random.bits()} << 32) | random.bits(),
+             .eye = random.anywhere(),
+             .right = turn[0],
+             .up = turn[1],
+             .forward = turn[2],
+             .image_center = {random.between(-0.1f, 0.1f), random.between(-0.1f, 0.1f)},
+             .step = {0.02f, -0.02f},
+             .width = 64,
+             .height = 48,
+             .pixel_filter = i % 3u,
+             .filter_radius = i % 3u == FilterBox ? 0.5f : 1.5f,
+             .max_scatter_events = i % 4u == 0u ? UnlimitedScatterEvents : i % 4u,
+             .renderer = i % 5u == 0u ? RendererWhitted : RendererPathTracing,
+             .path_class = i % 5u,
+             .feature_rule = i % 2u,
+             .channels = i == 0u ? 0xfffu : random.bits() & 0xfffu,
+             .recorded_quantities = random.bits() & (RecordsDiffuse | RecordsConnections | RecordsHeadlight),
+             .transparent_background = i % 2u,
+             .strategy = i % 6u == 4u ? StrategyLightsOnly : StrategyBoth,
+             .camera = i % 8u,
+             .lens_radius = 0.1f,
+             .focus_distance = 2.0f,
+             .containing_media = no_media()});
+    }
+    return views;
+}
+
+}  // namespace
+
+PackedTestScene make_test_scene(std::uint64_t address) {
+    Packer packer(address);
+    Generator random(false);
+    const std::vector<Texture> textures = make_textures(packer, random);
+    std::vector<float> sums;
+    Scene scene{.instance_count = Instances,
+                .light_count = LightCount,
+                .tree_light_count = TreeLightCount,
+                .tree_probability = 0.4f,
+                .features = 0xf0ffu | FeatureLightTree | FeatureAreaLights | FeatureSunDisks |
+                            FeatureShadowCatcher | FeatureSurfaceShader | FeatureIridescence,
+                .tree_scale = 0.25f};
+    scene.light_cdf = uint(sums.size());
+    add_sums(sums, LightCount - TreeLightCount + 1u, random);
+    scene.environment = {.map = textures[2],
+                         .color = vec3(0.1f, 0.2f, 0.3f),
+                         .strength = 0.8f,
+                         .rotation = 0.7f,
+                         .row_cdf = uint(sums.size()),
+                         .emits = 1u};
+    scene.environment.map.wrap_s = WrapRepeat;
+    scene.environment.map.wrap_t = WrapClamp;
+    const uint width = scene.environment.map.width, height = scene.environment.map.height;
+    add_sums(sums, height, random);
+    scene.environment.column_cdf = uint(sums.size());
+    for (uint row = 0; row < height; ++row) add_sums(sums, width, random);
+    scene.environment_light = 7;
+
+    scene.textures = packer.add<TextureArray>(textures);
+    scene.materials = packer.add<MaterialArray>(make_materials(random));
+    scene.extras = packer.add<MaterialExtrasArray>(make_extras(random));
+    Generator shader_random(false);  // separate, so that all other values stay the same
+    scene.surface_shaders = packer.add<SurfaceShaderParamsArray>(make_shaders(shader_random));
+    std::vector<Mesh> meshes;
+    for (uint i = 0; i < 4; ++i) meshes.push_back(make_mesh(i, packer, random));
+    scene.meshes = packer.add<MeshArray>(meshes);
+    std::vector<MeshKey> steps;
+    for (const Mesh& mesh : meshes) steps.push_back({mesh.positions, mesh.normals});
+    scene.mesh_keys = packer.add<MeshKeyArray>(steps);
+    const std::vector<Instance> instances = make_instances(random);
+    std::vector<Affine3x4> places;
+    for (const Instance& instance : instances) places.push_back({instance.linear, instance.translation});
+    scene.transform_keys = packer.add<Affine3x4Array>(places);
+    scene.motions = packer.add<MotionArray>(std::vector<Motion>{{.first_key = 0,
+                                                                 .key_intervals = 3,
+                                                                 .max_abs_linear = 2.0f,
+                                                                 .max_abs_translation = glm::vec3(4.0f)}});
+    scene.instances = packer.add<InstanceArray>(instances);
+    Generator media_random(false);
+    scene.media = packer.add<MediumArray>(make_media(media_random));
+    scene.lights = packer.add<LightSourceArray>(make_lights(random));
+    std::vector<Emitter> emitters = make_emitters();
+    scene.light_nodes = packer.add<LightNodeArray>(make_nodes(emitters, random));
+    scene.emitters = packer.add<EmitterArray>(emitters);
+    scene.cdfs = packer.add<FloatArray>(sums);
+    const std::span<const float> srgb = backend::srgb_values();
+    scene.srgb = packer.add<FloatArray>(std::vector<float>(srgb.begin(), srgb.end()));
+    const std::span<const float> energy = backend::energy_values();
+    scene.energy = packer.add<FloatArray>(std::vector<float>(energy.begin(), energy.end()));
+    Scene dark = scene;
+    dark.light_count = 0;
+    dark.tree_light_count = 0;
+    dark.features = 0;
+    dark.environment.visible_color = vec4(0.4f, 0.3f, 0.2f, 0.7f);
+    dark.environment.shows_color = 1u;
+    dark.environment_light = -1;
+
+    TestScene test_scene{};
+    test_scene.scenes = packer.add<SceneArray>(std::vector<Scene>{scene, dark});
+    test_scene.views = packer.add<ViewArray>(make_views(random));
+    return {packer.take(), world};
+}
+
+}  // namespace tessera::shading
