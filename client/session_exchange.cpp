@@ -149,7 +149,7 @@ bool Session::Implementation::take_for_view(wire::ControlMessage& message) {
         return true;
     }
     if (auto* end = std::get_if<wire::ViewDone>(&message)) {
-        if (awaits(end->number)) done.insert_or_assign(end->number, std::move(*end));
+        if (awaits(end->number)) ended_views.insert_or_assign(end->number, std::move(*end));
         return true;
     }
     return false;

@@ -50,7 +50,7 @@ struct Session::Implementation {
     std::optional<wire::FetchJob> fetched;             // the job being fetched
     std::set<std::uint64_t> stopping;                  // views that were asked to end
     std::map<std::uint64_t, session::ViewProgress> progress;
-    std::map<std::uint64_t, wire::ViewDone> done;
+    std::map<std::uint64_t, wire::ViewDone> ended_views;
     std::deque<std::string> refusals;
     std::vector<std::string> notices;
     std::map<std::uint64_t, Frame> frames;  // the newest of each view

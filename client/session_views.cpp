@@ -6,7 +6,7 @@ namespace tessera::client {
 void Session::Implementation::request(std::uint64_t number, wire::RequestView&& request) {
     request.number = number;
     progress.erase(number);
-    done.erase(number);
+    ended_views.erase(number);
     stopping.erase(number);
     const bool is_new = !views.contains(number);
     views.insert_or_assign(number, request);  // its first messages may arrive before the answer
@@ -22,7 +22,7 @@ void Session::Implementation::forget_view(std::uint64_t number) {
     views.erase(number);
     stopping.erase(number);
     progress.erase(number);
-    done.erase(number);
+    ended_views.erase(number);
     frames.erase(number);
 }
 
@@ -76,7 +76,7 @@ std::optional<session::ViewProgress> Session::take_progress(std::uint64_t number
 }
 
 std::optional<session::ViewSummary> Session::take_summary(std::uint64_t number) {
-    auto end = implementation_->done.extract(number);
+    auto end = implementation_->ended_views.extract(number);
     return end.empty() ? std::nullopt : std::optional(std::move(end.mapped().summary));
 }
 
@@ -87,9 +87,9 @@ ViewResult Session::wait_for_end(std::uint64_t number,
     TimePoint last_sign = self.clock.now();
     while (true) {
         if (stop.stop_requested() && !self.stopping.contains(number)) stop_view(number);
-        const auto done = self.done.find(number);
+        const auto done = self.ended_views.find(number);
         const auto frame = self.frames.find(number);
-        if (done != self.done.end() && frame != self.frames.end() &&
+        if (done != self.ended_views.end() && frame != self.frames.end() &&
             frame->second.number == done->second.frame) {
             ViewResult result{std::move(done->second.summary), std::move(frame->second)};
             close_view(number);
@@ -97,7 +97,7 @@ ViewResult Session::wait_for_end(std::uint64_t number,
         }
         // The last frame may arrive before the ViewDone message.
         const bool is_older =
-            frame != self.frames.end() && (!frame->second.complete || done != self.done.end());
+            frame != self.frames.end() && (!frame->second.complete || done != self.ended_views.end());
         if (is_older) {
             self.link.send(wire::FrameTaken{number, frame->second.number});
             self.frames.erase(frame);
@@ -108,7 +108,7 @@ ViewResult Session::wait_for_end(std::uint64_t number,
         if (const auto news = take_progress(number); news && on_progress) on_progress(*news);
         if (has_come || self.link.is_away()) last_sign = self.clock.now();
         if (self.clock.now() - last_sign < self.settings.lost_limit) continue;
-        throw Error(ErrorCode::Unavailable, self.done.contains(number)
+        throw Error(ErrorCode::Unavailable, self.ended_views.contains(number)
                                                 ? "the picture did not arrive in full: start again"
                                                 : "the master stopped reporting on the frame: start again");
     }

@@ -9,9 +9,9 @@ endpoint, keys, picture = sys.argv[1:]
 with tessera.connect(endpoint, keys=keys, name="python") as session:
     scene = session.join("studio")
     paint = scene["materials/paint"]
-    drag = session.gesture()
+    drag = session.new_edit_group()
     for step in range(40):  # one transaction, for undo
-        with session.transaction(gesture=drag) as edit:
+        with session.transaction(edit_group=drag) as edit:
             wave = 0.5 + 0.4 * math.sin(0.16 * step)
             edit.set(paint, base_color=(wave, 0.2, 1.0 - wave, 1.0))
     with session.transaction() as edit:

@@ -34,7 +34,7 @@ mkdir -p "$wall/patterns"
 echo "demo: checking the wall described by deploy/wall.toml"
 "$bin/tessera" display check deploy/wall.toml -o "$wall/plan.png"
 "$bin/tessera" display pattern deploy/wall.toml -o "$wall/patterns" >"$folder/pattern.log"
-"$bin/tessera" display audience deploy/wall.toml --pictures "$wall/patterns" -o "$wall/pattern.png" >"$folder/pattern.log"
+"$bin/tessera" display preview deploy/wall.toml --pictures "$wall/patterns" -o "$wall/pattern.png" >"$folder/pattern.log"
 
 keys=$folder/keys
 "$bin/tessera" keys "$keys" >"$folder/keys.log"
@@ -70,7 +70,7 @@ for ((waited = 0; ; ++waited)); do
     sleep 0.25
 done
 sleep 0.5 # wait for the last frame
-"$bin/tessera" display audience deploy/wall.toml --pictures "$wall" --black 0.002 -o "$wall/audience.png" >"$folder/audience.log" ||
+"$bin/tessera" display preview deploy/wall.toml --pictures "$wall" --black 0.002 -o "$wall/preview.png" >"$folder/preview.log" ||
     fail "no viewer preview"
 
 "$bin/tessera" status "${here[@]}" | sed -n "/^display/,/^node/p" | sed '/^node/d'
@@ -79,4 +79,4 @@ cat "$wall"/*.log | jq -rs '
     group_by(.frame) | map(select(length == 6)) |
     "  frames      \(length) shown by all six projectors; \(map(select([.[].version] | unique | length > 1)) | length) with mixed versions",
     "  in step     within \(map(([.[].shown] | max) - ([.[].shown] | min)) | sort | .[length / 2 | floor] / 1e6 | rounded(2)) ms (median of the frames)"'
-echo "  files       $wall/audience-left.png, -right.png: viewer preview; $wall/plan.png; $wall/OUTPUT-left.png, -right.png: what each projector shows"
+echo "  files       $wall/preview-left.png, -right.png: viewer preview; $wall/plan.png; $wall/OUTPUT-left.png, -right.png: what each projector shows"

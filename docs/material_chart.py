@@ -65,10 +65,10 @@ ROWS = [
     ("iridescence of bubbles, index of the film 1.1 to 1.6",
      [glass(iridescence={"iridescenceFactor": 1, "iridescenceIor": 1.1 + 0.5 * s, "iridescenceThicknessMaximum": 500})
       for s in STEPS]),
-    ("bodies of index 1 to 2.4 inside of glass of index 1.5",
+    ("solids of index 1 to 2.4 inside glass of index 1.5",
      [(glass(thicknessFactor=1), glass(ior=1 + 1.4 * s, thicknessFactor=1)) for s in STEPS]),
 ]
-INNER = 0.65  # radius of a body inside of another one
+INNER = 0.65  # radius of a solid inside another one
 
 
 def sphere(rings=48, sectors=96):
@@ -103,7 +103,7 @@ def checker(rows):
     return greys
 
 
-# What shines, in radii: where it stands and looks back to the middle from, its width and height, its radiance.
+# Emissive panels that face the centre, in radii: position, width, height, radiance.
 PANELS = [((-42, 38, 42), 36, 36, 8.0), ((56, 7, 35), 16, 44, 1.5)]
 FACES = [0, 1, 2, 0, 2, 3]
 
@@ -224,7 +224,7 @@ SHADER_ROWS = [
     ("media without a surface: scattering 0.3 to 30 per metre",
      [volume(scatteringFactor=tuple(k * 100 ** s for k in (0.3, 0.27, 0.2)), absorptionFactor=(0.01, 0.02, 0.05))
       for s in STEPS]),
-    ("glass filled with a medium: absorption 0.1 to 10 per metre, the last four glow",
+    ("glass filled with a medium: absorption 0.1 to 10 per metre, the last four emit light",
      [shader(diffuseFactor=BLACK, reflectionFactor=WHITE, transmissionFactor=WHITE, relativeIndexOfRefraction=1.5)
       + volume(absorptionFactor=tuple(k * 100 ** s for k in (0.1, 0.02, 0.06)),
                emissionFactor=BLACK if s < 0.5 else (0.1, 0.5, 0.2)) for s in STEPS]),

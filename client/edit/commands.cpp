@@ -2,6 +2,7 @@
 
 #include "client/edit/script_error.h"
 #include "mediator/base/nearest.h"
+#include "mediator/base/old_names.h"
 
 namespace tessera::edit {
 namespace {
@@ -17,8 +18,9 @@ std::size_t end_column(std::string_view line) {
 }  // namespace
 
 const Command* find_command(std::string_view name) {
+    const std::string_view present = present_name("edit command", name).value_or(name);
     for (const Command& command : commands()) {
-        if (command.name == name) return &command;
+        if (command.name == present) return &command;
     }
     return nullptr;
 }
@@ -55,6 +57,7 @@ void run_line(DryRun& dry_run, std::string_view line) {
     std::vector<Word> words = split(line);
     if (words.empty()) return;
     const Command& command = read_command(words[0]);
+    if (!words[0].is(command.name)) dry_run.print(old_name_hint(words[0].text(), command.name));
     const std::size_t end = end_column(line);
     words.erase(words.begin());
     std::size_t count = words.size();

@@ -6,6 +6,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "mediator/base/old_names.h"
+
 namespace tessera::tools {
 
 namespace {
@@ -82,7 +84,8 @@ std::string as_json(const Coverage& coverage, std::uint32_t samples) {
     const auto amount = [&](Json object, std::uint64_t seen) {
         object["samples"] = seen;
         object["pixels"] = pixels(seen, samples);
-        object["share"] = fraction(seen, coverage);
+        object["fraction"] = fraction(seen, coverage);
+        object[std::string(*old_name("key", "fraction"))] = object["fraction"];
         return object;
     };
     Json objects = Json::array();
@@ -97,7 +100,7 @@ std::string as_json(const Coverage& coverage, std::uint32_t samples) {
 }
 
 std::string as_text(const Coverage& coverage, std::uint32_t samples) {
-    std::string text = "   share      pixels        id  name";
+    std::string text = "fraction      pixels        id  name";
     const auto line = [&](std::uint64_t seen, const std::string& id, const std::string& name) {
         char buffer[64];
         std::snprintf(buffer, sizeof buffer, "\n%6.2f %% %11.1f %9s  ", 100.0 * fraction(seen, coverage),

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "mediator/base/old_names.h"
+
 namespace tessera::tools {
 
 namespace {
@@ -66,7 +68,8 @@ void print_json(const Diagnostics& diagnostics) {
     auto list = nlohmann::ordered_json::array();
     for (const Diagnostic& diagnostic : diagnostics) {
         nlohmann::ordered_json entry{{"subject", diagnostic.subject},
-                                     {"verdict", name(diagnostic.severity)},
+                                     {"severity", name(diagnostic.severity)},
+                                     {std::string(*old_name("key", "severity")), name(diagnostic.severity)},
                                      {"fact", diagnostic.fact},
                                      {"remedy", diagnostic.remedy}};
         for (const Fact& fact : diagnostic.facts) {

@@ -1,10 +1,12 @@
 #include "client/tools/display_transform_options.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <vector>
 
 #include "client/tools/ocio_view.h"
+#include "client/tools/pictures.h"
 
 namespace tessera::tools {
 
@@ -45,6 +47,20 @@ Expected<DisplayChoice> parse_options(const DisplayTransformOptions& options) {
     }
     transform.exposure = value;
     return choice;
+}
+
+std::optional<std::string> unused_display_options(const DisplayTransformOptions& options,
+                                                  const std::vector<std::string>& outputs) {
+    const DisplayTransformOptions defaults;
+    const char* given = options.exposure != defaults.exposure               ? "--exposure"
+                        : options.view_transform != defaults.view_transform ? "--view-transform"
+                        : !options.ocio.empty()                             ? "--ocio"
+                                                                            : nullptr;
+    const bool only_exr = !outputs.empty() && std::ranges::all_of(outputs, [](const std::string& path) {
+        return picture_format(path) == PictureFormat::Exr;
+    });
+    if (given == nullptr || !only_exr) return std::nullopt;
+    return std::string(given) + " has no effect on EXR files, which keep linear light: add -o FILE.png";
 }
 
 }  // namespace tessera::tools

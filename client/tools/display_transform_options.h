@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "mediator/base/error.h"
 #include "mediator/picture/custom_view.h"
@@ -21,6 +22,9 @@ struct DisplayChoice {
     std::optional<picture::CustomView> custom;  // of --ocio
     const picture::CustomView* custom_view() const { return custom ? &*custom : nullptr; }
 };
+// "--exposure has no effect on EXR files ...", if only those are written and an option was given; else nothing.
+std::optional<std::string> unused_display_options(const DisplayTransformOptions& options,
+                                                  const std::vector<std::string>& outputs);
 Expected<DisplayChoice> parse_options(const DisplayTransformOptions& options);
 
 }  // namespace tessera::tools

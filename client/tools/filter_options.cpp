@@ -1,5 +1,7 @@
 #include "client/tools/filter_options.h"
 
+#include <iostream>
+
 #include "master/filter/catalog.h"
 #include "mediator/filter/choice.h"
 
@@ -24,6 +26,7 @@ Expected<std::string> parse_options(const FilterOption& option) {
         return failure(ErrorCode::InvalidInput, std::string(option.denoise ? "--denoise: " : "--filter: ") +
                                                     choice.error().what() + "; see tessera filters");
     }
+    for (const std::string& hint : choice->hints) std::cerr << "tessera: " << hint << "\n";
     return filter::to_text(*choice);
 }
 

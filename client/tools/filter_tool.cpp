@@ -9,6 +9,7 @@
 #include "client/tools/view_attributes.h"
 #include "master/filter/catalog.h"
 #include "master/render/reconstruction.h"
+#include "mediator/base/old_names.h"
 
 namespace tessera::tools {
 
@@ -74,8 +75,10 @@ Json as_json(const filter::Description& filter) {
         Json entry{{"name", parameter.name}, {"unit", parameter.unit}, {"meaning", parameter.meaning}};
         if (parameter.choices.empty()) {
             entry.update({{"default", parameter.default_value},
-                          {"least", parameter.minimum},
-                          {"most", parameter.maximum}});
+                          {"minimum", parameter.minimum},
+                          {"maximum", parameter.maximum},
+                          {std::string(*old_name("key", "minimum")), parameter.minimum},
+                          {std::string(*old_name("key", "maximum")), parameter.maximum}});
         } else {
             entry.update({{"default", standard_text(parameter)}, {"choices", parameter.choices}});
         }
@@ -139,9 +142,12 @@ int run_filter(const FilterOptions& options) {
     const auto wrong = [](std::string_view text) { return report_error("filter", cli::ExitUsage, text); };
     const auto choice = filter::parse_choice(options.filter, filter::catalog());
     if (!choice) return wrong(std::string("--filter: ") + choice.error().what() + "; see tessera filters");
+    for (const std::string& hint : choice->hints) std::cerr << "tessera: " << hint << "\n";
     if (!picture_format(options.output)) return wrong("-o: the file name must end in .exr, .png or .jpg");
     const auto display = parse_options(options.display);
     if (!display) return wrong(display.error().what());
+    if (const auto unused = unused_display_options(options.display, {options.output}))
+        std::cerr << "tessera filter: " << *unused << "\n";
     picture::FilmFile file = picture::read_film_exr(options.input);
     const auto view = view_from_attributes(file.attributes);
     if (!view)

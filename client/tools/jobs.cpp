@@ -22,13 +22,13 @@ constexpr const char* FetchName = "fetch";
 
 struct JobsOptions {
     client::Address address{.endpoint = "tcp://127.0.0.1:7420"};
-    std::string cancel, of;
+    std::string cancel, owner;
     bool json = false;
 };
 
 struct FetchOptions {
     client::Address address{.endpoint = "tcp://127.0.0.1:7420"};
-    std::string name, of, output;
+    std::string name, owner, output;
     bool remove = false;
 };
 
@@ -83,7 +83,7 @@ int show_jobs(const JobsOptions& options) {
     const auto session = client::connect(options.address, std::make_shared<scene::BlobStore>(), clock,
                                          session_settings("tessera jobs"));
     if (!options.cancel.empty()) {
-        session->cancel_job({.user = options.of, .name = options.cancel});
+        session->cancel_job({.user = options.owner, .name = options.cancel});
         std::cout << "job '" << options.cancel << "' was cancelled" << std::endl;
         return 0;
     }
@@ -126,7 +126,7 @@ int fetch(const FetchOptions& options) {
     const SteadyClock clock;
     const auto session = client::connect(options.address, std::make_shared<scene::BlobStore>(), clock,
                                          session_settings("tessera fetch"));
-    const session::JobName job{.user = options.of, .name = options.name};
+    const session::JobName job{.user = options.owner, .name = options.name};
     client::ViewResult result;
     try {
         result = session->fetch_job(job);
@@ -183,7 +183,7 @@ Command jobs_command(cli::CommandLine& program) {
         program.command(JobsName, "List your jobs on a cluster; operators see the jobs of all users.");
     line.option("--cancel", "stop the job of this name, or delete its picture if it has ended",
                 options->cancel);
-    line.option("--of", "with --cancel, for operators: the user who submitted the job", options->of);
+    line.option("--owner", "with --cancel, for operators: the user who submitted the job", options->owner);
     line.flag("--json", "print one JSON array", options->json);
     add_cluster_options(line, options->address);
     line.examples({"tessera jobs --master tcp://render-1:7420 --keys ~/.tessera",
@@ -198,7 +198,7 @@ Command fetch_command(cli::CommandLine& program) {
     line.positional("NAME", "name of the job; tessera jobs lists them", options->name);
     line.option("-o,--output", "file to write (default: NAME.png, .jpg or .exr, as requested at submission)",
                 options->output);
-    line.option("--of", "for operators: the user who submitted the job", options->of);
+    line.option("--owner", "for operators: the user who submitted the job", options->owner);
     line.flag("--remove", "delete the job on the master afterwards", options->remove);
     add_cluster_options(line, options->address);
     line.examples({"tessera fetch night -o night.png --master tcp://render-1:7420 --keys ~/.tessera",

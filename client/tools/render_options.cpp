@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <iostream>
 
 #include "client/tools/frame_names.h"
 #include "client/tools/pictures.h"
@@ -330,6 +331,8 @@ Expected<RenderPlan> parse_options(const RenderOptions& options) {
     if (!display) return tl::unexpected(display.error());
     plan.job.display_transform = display->transform;
     plan.custom_view = display->custom;
+    if (const auto unused = unused_display_options(options.display, options.outputs))
+        std::cerr << "tessera render: " << *unused << "\n";
     if (plan.custom_view) {
         if (options.detach)
             return wrong("--ocio: the master encodes the picture of a job: fetch an EXR and convert that");

@@ -36,7 +36,7 @@ Command set_filter_command(cli::CommandLine& program) {
     cli::CommandLine& line = program.command(
         SetFilterName, "Change the filter, or its parameters, of a view that a cluster is rendering.");
     line.positional("FILTER", "NAME[:key=value,...]; tessera filters lists them", options->filter);
-    line.option("--view", "name of the view of a live scene; tessera edit -c people lists them",
+    line.option("--view", "name of the view of a live scene; tessera edit -c members lists them",
                 options->view);
     add_cluster_options(line, options->address);
     line.required("--master");

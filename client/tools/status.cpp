@@ -9,6 +9,7 @@
 #include "client/tools/chrome_trace.h"
 #include "client/tools/cluster_options.h"
 #include "client/tools/display_status.h"
+#include "mediator/base/old_names.h"
 #include "mediator/picture/atomic_file.h"
 
 namespace tessera::tools {
@@ -79,7 +80,8 @@ std::string as_json(const session::ClusterStatus& status) {
                          {"kind", node.summary.kind},
                          {"phase", enumerator_name(node.phase)},
                          {"version", version_value(node.version)},
-                         {"units_in_hand", node.units_in_flight},
+                         {"units_in_flight", node.units_in_flight},
+                         {std::string(*old_name("key", "units_in_flight")), node.units_in_flight},
                          {"samples_per_second", node.samples_per_second},
                          {"round_trip_seconds", node.round_trip_seconds},
                          {"stuck", node.stuck},

@@ -18,6 +18,7 @@
 #include "client/tools/terminal_picture.h"
 #include "client/tools/values.h"
 #include "mediator/picture/exposure.h"
+#include "mediator/picture/picture_encoder.h"
 #include "mediator/picture/view_transform.h"
 #include "mediator/view/placed_cameras.h"
 
@@ -80,6 +81,9 @@ class Watch {
         const auto display = parse_options(options_.display);
         if (!display) return report_error(WatchName, cli::ExitUsage, display.error().what());
         display_ = *display;
+        if (const auto unused =
+                options_.output ? unused_display_options(options_.display, {*options_.output}) : std::nullopt)
+            std::cerr << "tessera watch: " << *unused << "\n";
         std::optional<Duration> limit;
         if (options_.time) {
             const auto parsed = parse_duration(*options_.time);
@@ -221,7 +225,7 @@ Command watch_command(cli::CommandLine& program) {
     add_cluster_options(line, options->address);
     line.option("--name", "name of this client, as other members see it", options->name);
     line.option("--scene", "title of the scene, if a new one is opened", options->title);
-    line.option("--view", "watch this view of another client; tessera edit -c people lists them",
+    line.option("--view", "watch this view of another client; tessera edit -c members lists them",
                 options->view);
     line.option("--camera", "camera of the scene, by name or by number from 0", options->camera);
     line.option("--size", "picture size in pixels (default: 1280x720, or the size of the terminal)",

@@ -23,11 +23,11 @@ find_package(draco REQUIRED CONFIG)
 set_property(TARGET TinyGLTF::TinyGLTF APPEND PROPERTY INTERFACE_LINK_LIBRARIES draco::draco)
 find_package(assimp REQUIRED CONFIG)
 find_package(SDL2 REQUIRED CONFIG)
-# For --ocio, where it is installed.
+# For --ocio, where it is installed. Debian's CMake files of it are where CMake does not look.
 if(TESSERA_CI)
-  find_package(OpenColorIO REQUIRED CONFIG)
+  pkg_check_modules(OpenColorIO REQUIRED IMPORTED_TARGET OpenColorIO)
 else()
-  find_package(OpenColorIO QUIET CONFIG)
+  pkg_check_modules(OpenColorIO IMPORTED_TARGET OpenColorIO)
 endif()
 if(TESSERA_BACKEND_EMBREE OR TESSERA_BACKEND_VULKAN)  # Vulkan: builds trees
   find_package(embree 3 REQUIRED CONFIG)

@@ -201,7 +201,7 @@ FilterEntry fdf_entry() {
               {"patch", "px", "radius of the prefilter's patches", 2, 0, NlmMaxPatch, {}},
               {"k", "", "standard form: deviations that count as equal", 0.5, 0.05, 10, {}},
               {"prefilter", "", "prefilter the shading feature", 1, 0, 0, {"off", "on"}},
-              {"fade",
+              {"blend",
                "",
                "blend back to the samples where filtering would increase the error",
                1,

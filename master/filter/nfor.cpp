@@ -71,7 +71,7 @@ class Nfor final : public Filter {
         PassTimer timer(report, "convergence blend",
                         ConvergenceBlend::bytes_per_pixel(out.picture.components()));
         if (!convergence_blend_.apply(inputs, Channel::Radiance, {}, out.picture, context)) return false;
-        if (out.wants_maps) out.maps.push_back({"fade", convergence_blend_.weights()});
+        if (out.wants_maps) out.maps.push_back({"blend", convergence_blend_.weights()});
         return true;
     }
 
@@ -179,7 +179,7 @@ FilterEntry nfor_entry() {
                          0,
                          64,
                          {}},
-                        {"fade",
+                        {"blend",
                          "",
                          "blend back to the samples where filtering would increase the error",
                          1,

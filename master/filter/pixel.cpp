@@ -203,7 +203,8 @@ class PixelFilter final : public Filter {
     }
 
     BlendMaps prepare_maps(const Inputs& inputs, Output& out) const {
-        constexpr std::array Names{"range", "variance", "smoothed_variance", "blend", "width", "reduction"};
+        constexpr std::array Names{"headlight", "variance", "smoothed_variance",
+                                   "blend",     "width",    "reduction"};
         out.maps.resize(Names.size());
         for (std::size_t i = 0; i < Names.size(); ++i) {
             out.maps[i].name = Names[i];
@@ -245,82 +246,84 @@ class PixelFilter final : public Filter {
     std::uint64_t samples_ = 0;
 };
 
+std::vector<Parameter> pixel_parameters() {
+    return {{"t",
+             "",
+             "accepted perceived variance (0.01: a deviation of a tenth of the surrounding light)",
+             0.01,
+             1e-6,
+             10.0,
+             {}},
+            {"sigma_s", "px", "standard deviation of the spatial kernel", 8.0, 0.5, 32.0, {}},
+            {"sigma_c", "", "standard deviation in headlight colour", 0.02, 1e-4, 10.0, {}},
+            {"sigma_d", "m", "standard deviation in depth", 2.0, 1e-6, 1e9, {}},
+            {"sigma_n", "", "standard deviation of the difference of normals", 0.2, 1e-3, 10.0, {}},
+            {"method",
+             "",
+             "separable: fast; brute: brute force, the reference; atrous: three sparse iterations",
+             0,
+             0,
+             2,
+             {"separable", "brute", "atrous"}},
+            {"iterations", "", "of the separable method", 3, 1, 5, {}},
+            {"root",
+             "",
+             "blend factor without or with the covariance of both pictures",
+             1,
+             0,
+             1,
+             {"simple", "covariance"}},
+            {"adaptive", "", "kernel widths per pixel by variance (not atrous)", 1, 0, 1, {"off", "on"}},
+            {"adaptive_clamp", "", "widths within this factor of sigma_s / sqrt(n)", 4.0, 1.0, 64.0, {}},
+            {"spike_clamp",
+             "",
+             "unfiltered light within this factor of the filtered; 0: no clamp",
+             2.0,
+             0.0,
+             1e6,
+             {}},
+            {"aa_recovery",
+             "",
+             "reconstruct antialiased edges as a mixture of both sides (separable only)",
+             1,
+             0,
+             1,
+             {"off", "on"}},
+            {"normals", "", "use normals as an additional guide", 0, 0, 1, {"off", "on"}},
+            {"schedule",
+             "",
+             "filter only at 4, 8, 16, ... samples; only blend in between",
+             0,
+             0,
+             1,
+             {"off", "on"}},
+            {"blend",
+             "",
+             "blend back to the samples where filtering would increase the error",
+             1,
+             0,
+             1,
+             {"off", "on"}}};
+}
+
 }  // namespace
 
 FilterEntry pixel_entry() {
-    return {
-        {.name = "pixel",
-         .summary = "cross-bilateral filter of the high-variance light, blended by perceived variance",
-         .source = "Schwenk 3",
-         .parameters =
-             {{"t",
-               "",
-               "accepted perceived variance (0.01: a deviation of a tenth of the surrounding light)",
-               0.01,
-               1e-6,
-               10.0,
-               {}},
-              {"sigma_s", "px", "standard deviation of the spatial kernel", 8.0, 0.5, 32.0, {}},
-              {"sigma_c", "", "standard deviation in headlight colour", 0.02, 1e-4, 10.0, {}},
-              {"sigma_d", "m", "standard deviation in depth", 2.0, 1e-6, 1e9, {}},
-              {"sigma_n", "", "standard deviation of the difference of normals", 0.2, 1e-3, 10.0, {}},
-              {"method",
-               "",
-               "separable: fast; brute: brute force, the reference; atrous: three sparse iterations",
-               0,
-               0,
-               2,
-               {"separable", "brute", "atrous"}},
-              {"iterations", "", "of the separable method", 3, 1, 5, {}},
-              {"root",
-               "",
-               "blend factor without or with the covariance of both pictures",
-               1,
-               0,
-               1,
-               {"simple", "covariance"}},
-              {"adaptive", "", "kernel widths per pixel by variance (not atrous)", 1, 0, 1, {"off", "on"}},
-              {"adaptive_clamp", "", "widths within this factor of sigma_s / sqrt(n)", 4.0, 1.0, 64.0, {}},
-              {"spike_clamp",
-               "",
-               "unfiltered light within this factor of the filtered; 0: no clamp",
-               2.0,
-               0.0,
-               1e6,
-               {}},
-              {"aa_recovery",
-               "",
-               "reconstruct antialiased edges as a mixture of both sides (separable only)",
-               1,
-               0,
-               1,
-               {"off", "on"}},
-              {"normals", "", "use normals as an additional guide", 0, 0, 1, {"off", "on"}},
-              {"schedule",
-               "",
-               "filter only at 4, 8, 16, ... samples; only blend in between",
-               0,
-               0,
-               1,
-               {"off", "on"}},
-              {"fade",
-               "",
-               "blend back to the samples where filtering would increase the error",
-               1,
-               0,
-               1,
-               {"off", "on"}}},
-         .channels =
-             [](const Values& values) {
-                 frame::ChannelSet channels{Channel::Radiance, Channel::LowVariance, Channel::HighVariance,
-                                            Channel::Depth, Channel::Headlight};
-                 if (is_on(values, Normals)) channels.insert(Channel::Normal);
-                 return channels;
-             },
-         .consistent = true},
-        [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> {
-            return std::make_unique<PixelFilter>();
-        }};
+    return {{.name = "pixel",
+             .summary = "cross-bilateral filter of the high-variance light, blended by perceived variance",
+             .source = "Schwenk 3",
+             .parameters = pixel_parameters(),
+             .channels =
+                 [](const Values& values) {
+                     frame::ChannelSet channels{Channel::Radiance, Channel::LowVariance,
+                                                Channel::HighVariance, Channel::Depth, Channel::Headlight};
+                     if (is_on(values, Normals)) channels.insert(Channel::Normal);
+                     return channels;
+                 },
+             .consistent = true},
+            [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> {
+                return std::make_unique<PixelFilter>();
+            }};
 }
 
 }  // namespace tessera::filter

@@ -75,7 +75,7 @@ class StatMc final : public Filter {
         if (done && values[UseConvergenceBlend] > 0.0) {
             PassTimer timer(report, "convergence blend", ConvergenceBlend::bytes_per_pixel(components));
             done = convergence_blend_.apply(inputs, Channel::Radiance, self_.plane(0), out.picture, context);
-            if (done && out.wants_maps) out.maps = {{"fade", convergence_blend_.weights()}};
+            if (done && out.wants_maps) out.maps = {{"blend", convergence_blend_.weights()}};
         }
         report.stopped = !done;
         return report;
@@ -276,7 +276,7 @@ FilterEntry statmc_entry() {
                          1e-3,
                          10,
                          {}},
-                        {"fade",
+                        {"blend",
                          "",
                          "blend back to the samples where filtering would increase the error",
                          1,

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "mediator/base/old_names.h"
+
 namespace tessera::filter {
 
 namespace {
@@ -77,8 +79,16 @@ Expected<Choice> parse_choice(std::string_view text, std::span<const FilterEntry
         const std::size_t equals = item.find('=');
         const std::string_view key = item.substr(0, equals);
         const auto& parameters = filter.parameters;
-        const auto found = std::find_if(parameters.begin(), parameters.end(),
-                                        [&](const Parameter& p) { return p.name == key; });
+        const auto with_name = [&](std::string_view wanted) {
+            return std::find_if(parameters.begin(), parameters.end(),
+                                [&](const Parameter& p) { return p.name == wanted; });
+        };
+        auto found = with_name(key);
+        if (const auto present = present_name("filter parameter", key);
+            found == parameters.end() && present) {
+            found = with_name(*present);
+            if (found != parameters.end()) choice.hints.push_back(old_name_hint(key, *present));
+        }
         if (found == parameters.end()) {
             std::vector<std::string_view> names;
             for (const Parameter& p : parameters) names.push_back(p.name);

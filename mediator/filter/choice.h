@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "mediator/base/error.h"
 #include "mediator/filter/filter.h"
@@ -12,6 +13,7 @@ namespace tessera::filter {
 struct Choice {
     const FilterEntry* entry = nullptr;
     Values values;
+    std::vector<std::string> hints;  // on old names of parameters
 
     frame::ChannelSet channels() const { return entry->description.channels(values); }
 };

@@ -1,10 +1,13 @@
 #include "mediator/frame/channels.h"
 
+#include "mediator/base/old_names.h"
+
 namespace tessera::frame {
 
 std::optional<Channel> channel_by_name(std::string_view name) {
+    const std::string_view present = present_name("channel", name).value_or(name);
     for (const ChannelInfo& entry : ChannelTable) {
-        if (entry.name == name) return entry.channel;
+        if (entry.name == present) return entry.channel;
     }
     return std::nullopt;
 }

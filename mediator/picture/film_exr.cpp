@@ -9,10 +9,12 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <map>
 #include <new>
 
 #include "mediator/base/description.h"
 #include "mediator/base/error.h"
+#include "mediator/base/old_names.h"
 #include "mediator/frame/resolve.h"
 #include "mediator/picture/exr_header.h"
 
@@ -85,12 +87,18 @@ FilmFile read(const std::string& path) {
                channel->ySampling == 1;
     };
     frame::ChannelSet channels;
+    std::map<frame::Channel, std::string> layers;  // of the statistics
     for (const frame::ChannelInfo& entry : frame::channel_table()) {
-        bool all = true;
-        for (std::uint32_t plane = 0; plane < entry.plane_count(); ++plane) {
-            all = all && holds(Prefix + "." + std::string(entry.name) + "." + plane_name(plane), Imf::FLOAT);
+        for (const std::string_view name :
+             {entry.name, old_name("channel", entry.name).value_or(entry.name)}) {
+            const std::string layer = Prefix + "." + std::string(name) + ".";
+            bool all = true;
+            for (std::uint32_t plane = 0; plane < entry.plane_count(); ++plane)
+                all = all && holds(layer + plane_name(plane), Imf::FLOAT);
+            if (!all) continue;
+            channels.insert(entry.channel);
+            layers.try_emplace(entry.channel, layer);
         }
-        if (all) channels.insert(entry.channel);
     }
     const bool has_picture =
         channels.contains(frame::Channel::Radiance) || channels.contains(frame::Channel::Color);
@@ -104,7 +112,7 @@ FilmFile read(const std::string& path) {
         if (!channels.contains(entry.channel)) continue;
         const std::uint32_t first = channels.first_plane(entry.channel);
         for (std::uint32_t plane = 0; plane < entry.plane_count(); ++plane) {
-            take(target, Prefix + "." + std::string(entry.name) + "." + plane_name(plane), Imf::FLOAT,
+            take(target, layers.at(entry.channel) + plane_name(plane), Imf::FLOAT,
                  result.film.plane(first + plane).data(), window);
         }
     }

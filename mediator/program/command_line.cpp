@@ -8,6 +8,7 @@
 
 #include "mediator/base/error.h"
 #include "mediator/base/nearest.h"
+#include "mediator/base/old_names.h"
 #include "mediator/program/commit.h"
 
 namespace tessera::cli {
@@ -99,6 +100,26 @@ std::vector<std::string> with_config(const CLI::App& program, const std::vector<
         append_section(words, path);
     }
     return words;
+}
+
+// Replaces old names of commands and options by the present ones, with a hint for each.
+void replace_old_names(const CLI::App& program, std::vector<std::string>& words, std::ostream& err) {
+    const CLI::App* app = &program;
+    for (std::string& word : words) {
+        const std::size_t end = looks_like_option(word) ? word.find('=') : std::string::npos;
+        const std::string name = word.substr(0, end);
+        const std::vector<std::string> names =
+            looks_like_option(word) ? option_names(*app) : command_names(*app);
+        const auto knows = [&](std::string_view wanted) {
+            return std::ranges::find(names, wanted) != names.end();
+        };
+        const auto present = present_name(looks_like_option(word) ? "option" : "command", name);
+        if (present && !knows(name) && knows(*present)) {
+            err << program.get_name() << ": " << old_name_hint(name, *present) << '\n';
+            word.replace(0, name.size(), *present);
+        }
+        if (!looks_like_option(word) && knows(word)) app = app->get_subcommand(word);
+    }
 }
 
 CLI::Option* single(CLI::Option* option) {
@@ -217,6 +238,7 @@ std::optional<int> CommandLine::parse(int argc, const char* const* argv, std::os
         if (const std::optional<std::string> path = config_path(words)) {
             words = with_config(app, words, read_config(*path));
         }
+        replace_old_names(app, words, err);
         complete(words);
         app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes them last first
     } catch (const CLI::ParseError& error) {

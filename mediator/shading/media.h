@@ -1,7 +1,7 @@
 #ifndef TESSERA_MEDIATOR_SHADING_MEDIA_H
 #define TESSERA_MEDIATOR_SHADING_MEDIA_H
 
-#include "mediator/shading/media.h"
+#include "mediator/shading/containing_media.h"
 #include "mediator/shading/volume_textures.h"
 
 // Radiative transfer along a path segment: dL/ds = -(a + s) L + e + s x in-scattered light (Schwenk 5.B.3; e

@@ -1,8 +1,8 @@
 #ifndef TESSERA_MEDIATOR_SHADING_PATHS_H
 #define TESSERA_MEDIATOR_SHADING_PATHS_H
 
+#include "mediator/shading/containing_media.h"
 #include "mediator/shading/maths.h"
-#include "mediator/shading/media.h"
 #include "mediator/shading/path_sample.h"
 #include "mediator/shading/ray_cones.h"
 #include "mediator/shading/sobol.h"

@@ -1,7 +1,7 @@
 #ifndef TESSERA_MEDIATOR_SHADING_SURFACES_H
 #define TESSERA_MEDIATOR_SHADING_SURFACES_H
 
-#include "mediator/shading/media.h"
+#include "mediator/shading/containing_media.h"
 #include "mediator/shading/motion.h"
 #include "mediator/shading/perfect_specular.h"
 #include "mediator/shading/ray_cones.h"

@@ -70,11 +70,11 @@ TEST(Coverage, IsSortedWithTiesById) {
 
 TEST(Coverage, FractionsAndBackgroundSumToOne) {
     const auto json = nlohmann::json::parse(as_json(counted(), 2));
-    double sum = json["background"]["share"];
-    for (const auto& object : json["objects"]) sum += object["share"].get<double>();
+    double sum = json["background"]["fraction"];
+    for (const auto& object : json["objects"]) sum += object["fraction"].get<double>();
     EXPECT_NEAR(sum, 1.0, 1e-12);
     EXPECT_EQ(json["objects"][0]["pixels"], 2.5) << "of two samples each";
-    EXPECT_EQ(json["objects"][0]["share"], 0.5);
+    EXPECT_EQ(json["objects"][0]["fraction"], 0.5);
     const std::string text = as_text(counted(), 2);
     EXPECT_LT(text.find("part 21"), text.find("part 20"));
     EXPECT_NE(text.find(" 50.00 %"), std::string::npos) << text;

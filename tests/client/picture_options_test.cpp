@@ -62,10 +62,10 @@ TEST(DisplayTransformOptions, ExposureIsANumberOfStopsOrAuto) {
     const auto exposure = [](const char* text) {
         return parse_options(typed({"room.glb", "--exposure", text}).display);
     };
-    EXPECT_FALSE(exposure("auto")->exposure);
-    EXPECT_EQ(*exposure("1.5")->exposure, 1.5);
-    EXPECT_EQ(*exposure("-2")->exposure, -2.0);
-    EXPECT_EQ(*exposure("+60")->exposure, 60.0);
+    EXPECT_FALSE(exposure("auto")->transform.exposure);
+    EXPECT_EQ(*exposure("1.5")->transform.exposure, 1.5);
+    EXPECT_EQ(*exposure("-2")->transform.exposure, -2.0);
+    EXPECT_EQ(*exposure("+60")->transform.exposure, 60.0);
     for (const char* wrong : {"", "bright", "1.5x", "nan", "inf", "61", "-61", "1e999", "++1"}) {
         const auto transform = exposure(wrong);
         ASSERT_FALSE(transform) << wrong;
@@ -73,9 +73,18 @@ TEST(DisplayTransformOptions, ExposureIsANumberOfStopsOrAuto) {
     }
 }
 
+TEST(DisplayTransformOptions, OptionsWithoutEffectAreReported) {
+    const DisplayTransformOptions none, bright{.exposure = "1"}, linear{.view_transform = "linear"};
+    EXPECT_FALSE(unused_display_options(none, {"a.exr"}));
+    EXPECT_FALSE(unused_display_options(bright, {"a.exr", "a.png"}));
+    EXPECT_TRUE(unused_display_options(bright, {"a.exr"})->starts_with("--exposure has no effect"));
+    EXPECT_TRUE(unused_display_options(linear, {"a.EXR"})->starts_with("--view-transform"));
+}
+
 TEST(DisplayTransformOptions, TransformsAreNamed) {
-    EXPECT_EQ(parse_options(typed({"room.glb"}).display)->view_transform, view::ViewTransform::Neutral);
-    EXPECT_EQ(parse_options(typed({"room.glb", "--view-transform", "agx"}).display)->view_transform,
+    EXPECT_EQ(parse_options(typed({"room.glb"}).display)->transform.view_transform,
+              view::ViewTransform::Neutral);
+    EXPECT_EQ(parse_options(typed({"room.glb", "--view-transform", "agx"}).display)->transform.view_transform,
               view::ViewTransform::Agx);
     const Typed wrong = typed({"room.glb", "--view-transform", "agz"});
     EXPECT_EQ(wrong.exit.value_or(0), cli::ExitUsage);

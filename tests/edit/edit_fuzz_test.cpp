@@ -25,7 +25,7 @@ const std::vector<std::string>& pieces() {
                                                  "log",
                                                  "lock",
                                                  "unlock",
-                                                 "people",
+                                                 "members",
                                                  "begin",
                                                  "commit",
                                                  "rollback",

@@ -121,7 +121,7 @@ TEST(Scripts, LogAndMembersArePrinted) {
     ASSERT_TRUE(target.script("set lights/bulb.intensity 1\ncommit\nset lights/bulb.intensity 2"));
     ASSERT_TRUE(target.script("log 1"));
     EXPECT_EQ(target.printed(), "2  2023-11-14 22:13:20Z  anna  set lights/bulb.intensity 2\n");
-    ASSERT_TRUE(target.script("people"));
+    ASSERT_TRUE(target.script("members"));
     EXPECT_EQ(target.printed(), "anna (editor), editor: paints; holds transforms/left\nwall, viewer\n");
     for (const char* line :
          {"log 0", "log x", "undo 0", "undo -1", "wait -1", "wait x", "wait 1e9", "undo 1 2"}) {

@@ -182,7 +182,7 @@ double weight_of_two(Inputs inputs, const std::string& options = "") {
         mean(inputs, Channel::Radiance).plane(c)[0] = 0.0f;
         mean(inputs, Channel::Radiance).plane(c)[1] = 1.0f;
     }
-    const Output out = run_filter("fdf:prefilter=off,fade=off" + options, inputs);
+    const Output out = run_filter("fdf:prefilter=off,blend=off" + options, inputs);
     const double value = out.picture.plane(0)[0];
     const double n = inputs.counts.plane(0)[0], m = inputs.counts.plane(0)[1];
     return value / (1.0 - value) * n / m;
@@ -423,7 +423,7 @@ TEST(Fdf, DemodulationKeepsTextureThatTheThresholdsWouldBlur) {
         }
     }
     const auto contrast = [&](const std::string& options) {
-        const Output out = run_filter("fdf:fade=off" + options, inputs);
+        const Output out = run_filter("fdf:blend=off" + options, inputs);
         return out.picture.row(0, 20)[21] - out.picture.row(0, 20)[20];
     };
     EXPECT_LT(contrast(""), 0.005f);

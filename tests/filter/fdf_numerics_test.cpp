@@ -114,19 +114,20 @@ TEST(FdfNumerics, ThesisWeightOfEqualPixelsIsOneOverRootThree) {  // LT7
 
 TEST(FdfNumerics, TheShadingFeatureMatters) {  // LT14
     for (const std::uint32_t n : {16u, 64u, 256u}) {
-        EXPECT_GT(errors("fdf:fade=off,s_max=1000000", n).filtered, 2.0 * errors("fdf:fade=off", n).filtered);
+        EXPECT_GT(errors("fdf:blend=off,s_max=1000000", n).filtered,
+                  2.0 * errors("fdf:blend=off", n).filtered);
     }
 }
 
 TEST(FdfNumerics, ThePrefilterMatters) {  // LT15
     for (const std::uint32_t n : {64u, 256u}) {
-        EXPECT_LT(errors("fdf:fade=off", n).filtered, errors("fdf:fade=off,prefilter=off", n).filtered);
+        EXPECT_LT(errors("fdf:blend=off", n).filtered, errors("fdf:blend=off,prefilter=off", n).filtered);
     }
 }
 
 TEST(FdfNumerics, TheStandardPrefilterIsBetterThanTheThesis) {
     for (const std::uint32_t n : {4u, 16u, 64u, 256u}) {
-        EXPECT_LT(errors("fdf:fade=off", n).filtered, errors("fdf:fade=off,nlm=thesis", n).filtered) << n;
+        EXPECT_LT(errors("fdf:blend=off", n).filtered, errors("fdf:blend=off,nlm=thesis", n).filtered) << n;
     }
 }
 
@@ -134,7 +135,7 @@ TEST(FdfNumerics, AtLeastThreefoldAtFewSamplesAndLessWithMore) {  // LT17, LT18,
     for (const std::string form : {"standard", "thesis"}) {
         double gain = INFINITY, error = INFINITY;
         for (const std::uint32_t n : {16u, 64u, 256u, 1024u}) {
-            const Errors now = errors("fdf:fade=off,nlm=" + form, n);
+            const Errors now = errors("fdf:blend=off,nlm=" + form, n);
             EXPECT_LT(now.gain(), gain) << form << n;
             EXPECT_LT(now.filtered, error) << form << n;
             gain = now.gain();
@@ -172,7 +173,7 @@ TEST(FdfNumerics, NeverWorseThanUnfiltered) {  // L36
     }
     const Inputs inputs = shadows(65536);
     const double unfiltered = fdf_error(inputs.mean(Channel::Radiance), truth);
-    EXPECT_GT(fdf_error(run_filter("fdf:fade=off", inputs).picture, truth), 2.0 * unfiltered);
+    EXPECT_GT(fdf_error(run_filter("fdf:blend=off", inputs).picture, truth), 2.0 * unfiltered);
     EXPECT_LE(fdf_error(run_filter("fdf", inputs).picture, truth), 1.05 * unfiltered);
 }
 

@@ -156,9 +156,9 @@ TEST(Nfor, KeepsLightLinearInTheFeatures) {
     }
     // A mean over similar pixels has more error, since it cannot follow changes of the light.
     const double unfiltered = mean_squared_error(noisy.mean(frame::Channel::Radiance), truth);
-    const double first_order = mean_squared_error(run_filter("nfor:fade=off", noisy).picture, truth);
+    const double first_order = mean_squared_error(run_filter("nfor:blend=off", noisy).picture, truth);
     EXPECT_LT(first_order, 0.05 * unfiltered);
-    EXPECT_LT(first_order, 0.7 * mean_squared_error(run_filter("statmc:fade=off", noisy).picture, truth));
+    EXPECT_LT(first_order, 0.7 * mean_squared_error(run_filter("statmc:blend=off", noisy).picture, truth));
 }
 
 TEST(Nfor, FiltersWithoutHalfBuffersAndWarns) {

@@ -75,8 +75,8 @@ TEST(PixelFilter, HalvesTheErrorAtFourSamplesAndLowersItLater) {
 // which grows as the adaptive kernels shrink.
 TEST(PixelFilter, MeetsTheThresholdInTheMedian) {
     constexpr int Seeds = 64;
-    for (const char* choice : {"pixel:fade=off,root=simple", "pixel:fade=off"}) {
-        const double slack = std::string(choice) == "pixel:fade=off" ? 1.05 : 1.5;
+    for (const char* choice : {"pixel:blend=off,root=simple", "pixel:blend=off"}) {
+        const double slack = std::string(choice) == "pixel:blend=off" ? 1.05 : 1.5;
         for (const std::uint64_t n : {4, 16}) {
             std::vector<double> sum(Size * Size, 0.0), squares(Size * Size, 0.0);
             for (int seed = 0; seed < Seeds; ++seed) {
@@ -113,13 +113,13 @@ TEST(AdaptiveWidths, StayNearTheGuideLineAndHelpCaustics) {
     }
     for (const std::uint64_t n : {16, 64, 256}) {
         const Inputs inputs = caustics(n, 3);
-        const Output out = run_filter("pixel:fade=off", inputs, true);
+        const Output out = run_filter("pixel:blend=off", inputs, true);
         const float guide = 8.0f / std::sqrt(static_cast<float>(n));
         for (const float sigma : map_of(out, "width").values()) {
             EXPECT_GE(sigma, guide / 4.0f * 0.9999f);
             EXPECT_LE(sigma, guide * 4.0f * 1.0001f);
         }
-        const Output fixed = run_filter("pixel:fade=off,adaptive=off", inputs);
+        const Output fixed = run_filter("pixel:blend=off,adaptive=off", inputs);
         EXPECT_LT(mean_squared_error(out.picture, truth), mean_squared_error(fixed.picture, truth)) << n;
     }
 }
@@ -131,13 +131,13 @@ TEST(SpikeClamp, BoundsASpikeAndKeepsAConvergedPixel) {
             return PixelLight{.high = spike ? 100.0f : 1.0f, .variance = variance};
         });
         const Output filtered = run_filter(FilteredLight, inputs);
-        const Output out = run_filter("pixel:fade=off,adaptive=off", inputs, true);
+        const Output out = run_filter("pixel:blend=off,adaptive=off", inputs, true);
         const float s = map_of(out, "blend").row(0, 24)[24];
         const float value = out.picture.row(0, 24)[24];
         if (variance > 1e-3f) {
             EXPECT_LT(s, 1.0f);
             EXPECT_LE(value, (1.0f + s) * filtered.picture.row(0, 24)[24] * 1.0001f);
-            const Output loose = run_filter("pixel:fade=off,adaptive=off,spike_clamp=0", inputs);
+            const Output loose = run_filter("pixel:blend=off,adaptive=off,spike_clamp=0", inputs);
             EXPECT_GT(loose.picture.row(0, 24)[24], 10.0f * value);
         } else {
             EXPECT_EQ(s, 1.0f);

@@ -19,7 +19,7 @@ Inputs pixel_inputs(std::uint32_t width, std::uint32_t height,
                     const std::function<PixelLight(std::uint32_t x, std::uint32_t y)>& light);
 
 // A threshold so low that s = 0 and the picture is the filtered light alone.
-inline const std::string FilteredLight = "pixel:fade=off,t=0.000001,adaptive=off,spike_clamp=0";
+inline const std::string FilteredLight = "pixel:blend=off,t=0.000001,adaptive=off,spike_clamp=0";
 
 const Planes& map_of(const Output& out, const std::string& name);
 

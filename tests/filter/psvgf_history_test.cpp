@@ -80,7 +80,7 @@ TEST(PsvgfHistory, LeastShareIsAnExponentialMean) {  // DT3, DT4
 TEST(PsvgfHistory, MomentsAreThoseOfTheSamples) {  // DT5
     const PlanesScene scene = wall_alone();
     const auto camera = looking_at(scene, {}, Width, Height);
-    Session plain(Raw + "r0=0,mode=svgf"), fed("fade=off,taa=off,feedback=1000,r0=0,mode=svgf");
+    Session plain(Raw + "r0=0,mode=svgf"), fed("blend=off,taa=off,feedback=1000,r0=0,mode=svgf");
     for (int k = 0; k < 32; ++k) {
         const Inputs frame = photograph(scene, camera, {.seed = std::uint64_t(k)});
         plain.restart(frame);
@@ -186,7 +186,7 @@ TEST(PsvgfHistory, AStoppedRunKeepsThePreviousState) {
 TEST(PsvgfHistory, FeedbackWaitsForOneWholeSample) {  // DT24
     const PlanesScene scene = wall_alone();
     const auto camera = looking_at(scene, {}, Width, Height);
-    const std::string how = "fade=off,taa=off,r0=0,";
+    const std::string how = "blend=off,taa=off,r0=0,";
     Session fed(how + "feedback=100"), raw(how + "feedback=0");
     int first_difference = 0;
     for (int k = 1; k <= 8; ++k) {
@@ -222,7 +222,7 @@ TEST(PsvgfHistory, ChangedLightShortensTheHistory) {  // DT31
     PlanesScene moved = scene;
     moved.shadow_x = 1.5;
     const Changes light{.lights_or_materials = true};
-    Session tested("taa=off"), blind("taa=off,light_test=0,light_fade=1");
+    Session tested("taa=off"), blind("taa=off,light_test=0,light_history=1");
     for (Session* session : {&tested, &blind}) {
         session->restart(photograph(scene, camera, {.n = 64, .seed = 1}));
         for (std::uint64_t k = 0; k < 3; ++k) {

@@ -49,7 +49,7 @@ class Session {
 };
 
 // Accumulation only: no wavelet, no convergence blend, no antialiasing.
-inline const std::string Raw = "levels=0,fade=off,taa=off,feedback=0,";
+inline const std::string Raw = "levels=0,blend=off,taa=off,feedback=0,";
 
 inline constexpr std::uint32_t Width = 96, Height = 64;
 

@@ -47,7 +47,7 @@ TEST(Psvgf, IsConsistent) {
     }
     // Without the convergence blend, a filter that is too strong is not.
     const Inputs inputs = psvgf_shadows(1024);
-    EXPECT_GT(psvgf_error(run_filter("psvgf:sigma_l=100,fade=off", inputs).picture, truth),
+    EXPECT_GT(psvgf_error(run_filter("psvgf:sigma_l=100,blend=off", inputs).picture, truth),
               psvgf_error(run_filter("none", inputs).picture, truth));
 }
 
@@ -76,8 +76,8 @@ TEST(Psvgf, TheRestIsUnfilteredOrFiltered) {
         auto& low = without.means[std::size_t(frame::Channel::LowVariance)];
         std::ranges::fill(low.plane(c), 0.0f);
     }
-    const Planes all = run_filter("psvgf:fade=off", inputs).picture,
-                 diffuse = run_filter("psvgf:fade=off", without).picture;
+    const Planes all = run_filter("psvgf:blend=off", inputs).picture,
+                 diffuse = run_filter("psvgf:blend=off", without).picture;
     const Planes& rest = inputs.mean(frame::Channel::LowVariance);
     for (std::size_t i = 0; i < rest.values().size(); ++i) {
         EXPECT_NEAR(all.values()[i] - diffuse.values()[i], rest.values()[i], 2e-6);
@@ -183,8 +183,8 @@ TEST(Psvgf, HardShadowsStayHard) {  // DT15
     });
     inputs.path_class = view::PathClass::Diffuse;
     EXPECT_LT(edge_width(run_filter("psvgf", inputs).picture), 2.8);  // of a step: 0.8
-    EXPECT_LT(edge_width(run_filter("psvgf:fade=off", inputs).picture), 2.8);
-    EXPECT_GT(edge_width(run_filter("psvgf:fade=off,sigma_l=1000", inputs).picture), 20.0);
+    EXPECT_LT(edge_width(run_filter("psvgf:blend=off", inputs).picture), 2.8);
+    EXPECT_GT(edge_width(run_filter("psvgf:blend=off,sigma_l=1000", inputs).picture), 20.0);
 }
 
 TEST(Psvgf, SteepSidesAreFilteredOnceDepthIsIgnored) {  // DT27
@@ -208,7 +208,7 @@ TEST(Psvgf, SteepSidesAreFilteredOnceDepthIsIgnored) {  // DT27
         for (const float v : picture.plane(0)) sum += (v - 0.5) * (v - 0.5);
         return sum;
     };
-    EXPECT_LT(residual("psvgf:fade=off"), 0.8 * residual("psvgf:fade=off,steep=1e6"));
+    EXPECT_LT(residual("psvgf:blend=off"), 0.8 * residual("psvgf:blend=off,steep=1e6"));
 }
 
 TEST(Psvgf, HolesAreFilled) {

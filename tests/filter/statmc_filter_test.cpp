@@ -55,7 +55,7 @@ struct Joined {
 };
 Joined joined(std::uint64_t n, double mean_step, double second_deviation, const std::string& options) {
     constexpr int Trials = 3000;
-    const Choice choice = parse_choice("statmc:fade=off,radius=1,sigma=100," + options, catalog()).value();
+    const Choice choice = parse_choice("statmc:blend=off,radius=1,sigma=100," + options, catalog()).value();
     const auto filter = choice.entry->make(2, 1);
     tbb::task_arena arena(1);
     Output out;
@@ -110,8 +110,8 @@ TEST(StatMc, EqualSamplesAreNotExactSamples) {
             return grey(random.uniform() < 0.5);
         },
         Color);
-    const Output own = run_filter("statmc:fade=off,pooled=0", inputs);
-    const Output moderated = run_filter("statmc:fade=off", inputs);
+    const Output own = run_filter("statmc:blend=off,pooled=0", inputs);
+    const Output moderated = run_filter("statmc:blend=off", inputs);
     Planes truth(48, 48, 3);
     std::ranges::fill(truth.values(), 0.5f);
     const auto [least, most] = std::ranges::minmax(moderated.picture.plane(0));
@@ -169,7 +169,7 @@ TEST(StatMc, KeepsFeatureEdgesAtFewSamples) {
         s.normal = x < 20 ? std::array{0.0f, 0.0f, 1.0f} : std::array{1.0f, 0.0f, 0.0f};
         return s;
     });
-    const Output out = run_filter("statmc:fade=off", inputs);
+    const Output out = run_filter("statmc:blend=off", inputs);
     double left = 0.0, right = 0.0;
     for (std::uint32_t y = 0; y < 24; ++y) {
         left += out.picture.row(0, y)[19] / 24.0;
@@ -189,7 +189,7 @@ TEST(StatMc, ManySamplesWeighMoreThanFew) {
     };
     const Inputs inputs = synthetic_inputs(20, 20, 64, sampler, Color);
     ASSERT_EQ(inputs.counts.row(0, 0)[19], 1.0f);
-    const Output out = run_filter("statmc:fade=off", inputs);
+    const Output out = run_filter("statmc:blend=off", inputs);
     for (std::uint32_t y = 0; y < 20; ++y) {
         EXPECT_NEAR(out.picture.row(0, y)[9], 1.0f, 0.05f);   // 0.072 is one pixel's own error
         EXPECT_NEAR(out.picture.row(0, y)[10], 1.0f, 0.15f);  // 0.58 is its own

@@ -52,7 +52,7 @@ TEST_F(KeysTool, FailuresHaveTheirExitCodesAndMessages) {
     EXPECT_EQ(run({}), cli::ExitRefused) << "a master key is never overwritten";
     ASSERT_EQ(add("a"), 0);
     EXPECT_EQ(add("a"), cli::ExitRefused);
-    EXPECT_EQ(run({.action = "revoke", .name = "nobody"}), ExitBadInput);
+    EXPECT_EQ(run({.action = "revoke", .name = "unknown"}), ExitBadInput);
     EXPECT_EQ(run({.action = "revok", .name = "a"}), cli::ExitUsage);
     EXPECT_NE(errors_.find("did you mean 'revoke'"), std::string::npos) << errors_;
 }

@@ -65,7 +65,7 @@ std::string expected_hash_of_slow_frame(const RealCluster& cluster) {
 
 std::uint64_t units_in_flight(const json& status, const std::string& name) {
     for (const json& node : status["nodes"]) {
-        if (node["name"] == name) return node["units_in_hand"].get<std::uint64_t>();
+        if (node["name"] == name) return node["units_in_flight"].get<std::uint64_t>();
     }
     return 0;
 }

@@ -142,7 +142,7 @@ class Cluster:
 
     def works(self, name: str) -> bool:
         nodes = json.loads(self.tool("status", "--json"))["nodes"]
-        return any(node["name"] == name and node["units_in_hand"] > 0 for node in nodes)
+        return any(node["name"] == name and node.get("units_in_flight", node.get("units_in_hand", 0)) > 0 for node in nodes)
 
 
 def render_with_a_death(programs: pathlib.Path, case: Case, folder: pathlib.Path) -> Outcome:

@@ -91,7 +91,7 @@ class Display(unittest.TestCase):
                 joins = self.master.received.count("join_scene")
                 self.master.forget_sessions()
                 self.master.wait_for(lambda: self.master.received.count("join_scene") > joins)
-                self.session.people()  # raises when the session was lost
+                self.session.members()  # raises when the session was lost
         finally:
             stop.set()
             tracker.join()

@@ -158,7 +158,7 @@ class LiveMaster(unittest.TestCase):
             self.assertEqual(self.session.history(1)[0].name, other.name)
             other.set_presence("paints", [self.emissive])
             end = time.monotonic() + 30
-            while not any(p.text == "paints" and p.selection == (self.emissive.id,) for p in self.session.people().people):
+            while not any(p.text == "paints" and p.selection == (self.emissive.id,) for p in self.session.members().members):
                 self.assertLess(time.monotonic(), end)
                 time.sleep(0.05)
 
@@ -195,9 +195,9 @@ class LiveMaster(unittest.TestCase):
 
     def test_a_drag_is_one_undo(self):
         self.emissiveing_wall((0.0, 0.0, 0.0)).close()
-        drag = self.session.gesture()
+        drag = self.session.new_edit_group()
         for step in range(1, 20):
-            with self.session.transaction(gesture=drag) as edit:
+            with self.session.transaction(edit_group=drag) as edit:
                 edit.set("materials/emissive", emission=(step, 0, 0))
         self.session.undo()
         self.assertEqual(self.scene.get(tessera.Material, "emissive").emission, (0.0, 0.0, 0.0))
@@ -223,7 +223,7 @@ class LiveMaster(unittest.TestCase):
         with self.session.transaction() as edit:
             edit.set("materials/emissive", emission=(0, 0, 1))
         self.assertEqual(self.center(view.wait(samples=8)), (0.0, 0.0, 1.0))
-        self.assertEqual(self.session.people().locks, (tessera.records.Lock(self.emissive.id, "anna"),))
+        self.assertEqual(self.session.members().locks, (tessera.records.Lock(self.emissive.id, "anna"),))
         self.session.undo()
         self.assertEqual(self.scene.get(tessera.Material, "emissive").emission, (1.0, 0.0, 0.0))
         with self.session.transaction() as edit:

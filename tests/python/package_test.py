@@ -154,7 +154,7 @@ class Bulk(unittest.TestCase):
 
     def test_decoders_survive_arbitrary_bytes(self):
         source = random.Random(1)
-        people = control_pb2.Control(members=session_pb2.Members(request=1, content=session_pb2.MembersInScene(
+        members = control_pb2.Control(members=session_pb2.Members(request=1, content=session_pb2.MembersInScene(
             members=[session_pb2.Member(name=b"a")]))).SerializeToString()
         status = status_pb2.StatusReply(status=status_pb2.ClusterStatus(
             nodes=[status_pb2.NodeStatus(phase=1)])).SerializeToString()
@@ -162,7 +162,7 @@ class Bulk(unittest.TestCase):
                                    Mirrors.entry(6, CREATE, "material", name=b"b")]).SerializeToString()
         kinds = {"malformed": 0, "fine": 0}
         for round_ in range(20000):
-            data = bytearray(source.choice((*map(bulk.encode, self.MESSAGES), people, status, changes)))
+            data = bytearray(source.choice((*map(bulk.encode, self.MESSAGES), members, status, changes)))
             for _ in range(source.choice((1, 1, 3))):
                 data[source.randrange(len(data))] = source.randrange(256)
             data = bytes(data[:source.randrange(len(data) + 1)] if round_ % 3 == 0 else data)

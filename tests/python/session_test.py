@@ -35,7 +35,7 @@ class Greeting(unittest.TestCase):
         with ScriptedMaster() as master, connect(master) as session:
             self.assertEqual(session.status().software, "scripted")
             with self.assertRaisesRegex(tessera.InvalidInput, "join"):
-                session.people()
+                session.members()
 
     def test_closed_session_raises(self):
         with ScriptedMaster() as master:
@@ -126,9 +126,9 @@ class Editing(WithMaster):
 
     def test_edit_groups_undo_and_redo(self):
         self.create_red()
-        drag = self.session.gesture()
+        drag = self.session.new_edit_group()
         for value in (0.1, 0.2):
-            with self.session.transaction(gesture=drag) as edit:
+            with self.session.transaction(edit_group=drag) as edit:
                 edit.set("materials/red", roughness=value)
         self.assertIsNotNone(edit.committed)
         self.assertEqual([e.edit_group for e in self.master.submitted], [0, drag, drag])
@@ -142,7 +142,7 @@ class Editing(WithMaster):
         red = self.create_red()
         reads = self.master.received.count("read_scene")
         for step in range(20):
-            with self.session.transaction(gesture=1) as edit:
+            with self.session.transaction(edit_group=1) as edit:
                 edit.set(red, roughness=step / 20)
                 edit.create("material")
         self.assertEqual(self.master.received.count("read_scene"), reads)
@@ -165,12 +165,12 @@ class Editing(WithMaster):
         self.session.set_presence("paints", [red], seconds=2.0)
         self.wait_for(lambda: "set_presence" in self.master.received)
         self.assertEqual(self.master.presence.time_to_live, 2_000_000_000)
-        self.assertEqual([p.name for p in self.session.people().people], ["test"])
+        self.assertEqual([p.name for p in self.session.members().members], ["test"])
         self.assertEqual(self.session.history(5)[0].time, 1.5)
         self.assertEqual({f: w.name for f, w in self.session.writers(red).items()}, {"base_color": "anna"})
         self.session.close_scene()
         with self.assertRaises(tessera.InvalidInput):
-            self.session.people()
+            self.session.members()
 
 
 class Breaks(WithMaster):
@@ -240,7 +240,7 @@ class Breaks(WithMaster):
             session.join("room")
             master.stop(goodbye=True)
             with self.assertRaisesRegex(tessera.Unavailable, "the master left: service ends"):
-                session.people()
+                session.members()
             master.start()
 
     def test_malformed_bytes_are_ignored(self):

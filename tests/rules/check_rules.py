@@ -14,7 +14,7 @@ CORE = ["mediator/base", "mediator/scene", "mediator/view", "mediator/frame", "m
 KIT = CORE + ["mediator/backend", "mediator/shading"]
 LINK = ["mediator/net", "mediator/session", "mediator/wire"]
 
-# Folder or file -> what its sources may include, besides their own folder. The longest match counts; "" is
+# Folder or file -> what its sources may include, in addition to their own folder. The longest match counts; "" is
 # the permission to include everything.
 ARROWS = {
     "mediator/base": [],
@@ -210,7 +210,7 @@ HIDDEN_FROM_PUBLIC = ("mediator/wire/", "mediator/net/", "proto/")
 
 
 def check_public_headers(root):
-    """Follows the includes of the public headers; a hidden one is told with the way to it."""
+    """Follows the includes of the public headers; a hidden one is reported with the path to it."""
     for header in PUBLIC_HEADERS:
         ways, seen = [[header]], {header}
         while ways:

@@ -100,7 +100,7 @@ inline Scene moving_scene(IN(Case) c) {
 inline Mesh deforming_mesh(IN(Case) c, float time) {
     Mesh mesh = c.mesh;
     mesh.arrays = mesh.arrays | MeshDeforms;
-    mesh.first_step = 0u;
+    mesh.first_key = 0u;
     mesh.key_intervals = 3u;
     mesh.max_abs_position = 2.0f;
     return mesh_at(moving_scene(c), mesh, time);

@@ -364,6 +364,16 @@ std::vector<View> make_views(Generator& random) {
     return views;
 }
 
+Scene without_lights(Scene scene) {
+    scene.light_count = 0;
+    scene.tree_light_count = 0;
+    scene.features = 0;
+    scene.environment.visible_color = vec4(0.4f, 0.3f, 0.2f, 0.7f);
+    scene.environment.shows_color = 1u;
+    scene.environment_light = -1;
+    return scene;
+}
+
 }  // namespace
 
 PackedTestScene make_test_scene(std::uint64_t address) {
@@ -425,18 +435,11 @@ PackedTestScene make_test_scene(std::uint64_t address) {
     scene.srgb = packer.add<FloatArray>(std::vector<float>(srgb.begin(), srgb.end()));
     const std::span<const float> energy = backend::energy_values();
     scene.energy = packer.add<FloatArray>(std::vector<float>(energy.begin(), energy.end()));
-    Scene dark = scene;
-    dark.light_count = 0;
-    dark.tree_light_count = 0;
-    dark.features = 0;
-    dark.environment.visible_color = vec4(0.4f, 0.3f, 0.2f, 0.7f);
-    dark.environment.shows_color = 1u;
-    dark.environment_light = -1;
 
     TestScene test_scene{};
-    test_scene.scenes = packer.add<SceneArray>(std::vector<Scene>{scene, dark});
+    test_scene.scenes = packer.add<SceneArray>(std::vector<Scene>{scene, without_lights(scene)});
     test_scene.views = packer.add<ViewArray>(make_views(random));
-    return {packer.take(), world};
+    return {packer.take(), test_scene};
 }
 
 }  // namespace tessera::shading

@@ -12,9 +12,11 @@ from __future__ import annotations
 
 import os
 import secrets
+from typing import Any
 
 from . import endpoint as _endpoint
 from . import keys as _keys
+from . import old_names as _old_names
 from .camera import Pose, look_at, multiply, translation
 from .connection import Connection as _Connection
 from .errors import Error, InvalidInput, Malformed, Refused, Unavailable
@@ -23,7 +25,7 @@ from .frame import Frame
 from .link import LinkSettings as _LinkSettings
 from .objects import (Attachment, Background, Camera, Geometry, Light, Material, Medium, Root, SurfaceShader, Texture,
                       TextureSlot, Transform)
-from .records import Committed, Hit, People, Person, Progress, Status, Summary, Writer
+from .records import Committed, Hit, Member, Members, Progress, Status, Summary, Writer
 from .scene import Scene
 from .session import Session
 from .transaction import Transaction
@@ -33,9 +35,17 @@ from .view import Rendered, View
 __all__ = [
     "connect", "look_at", "multiply", "translation", "floats", "Session", "Scene", "Transaction", "View", "Frame",
     "Film", "Pose", "Object", "Root", "Transform", "Geometry", "Material", "Texture", "TextureSlot", "Light", "Camera",
-    "Background", "Attachment", "SurfaceShader", "Medium", "Blob", "ROOT_ID", "Committed", "Hit", "People", "Person", "Progress", "Rendered", "Status", "Summary", "Writer", "Error",
-    "InvalidInput", "Malformed", "Refused", "Unavailable",
+    "Background", "Attachment", "SurfaceShader", "Medium", "Blob", "ROOT_ID", "Committed", "Hit", "Member", "Members", "Progress", "Rendered",
+    "Status", "Summary", "Writer", "Error", "InvalidInput", "Malformed", "Refused", "Unavailable",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    present = _old_names.MODULE_NAMES.get(name)
+    if present is None:
+        raise AttributeError(f"module 'tessera' has no attribute '{name}'")
+    _old_names.warn(name, present)
+    return globals()[present]
 
 
 def connect(where: str = "tcp://127.0.0.1:7420", *, keys: str | os.PathLike[str] | None = None, user: str = "editor",

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from .mirror import Version
+from .old_names import MembersNames, NodeStateNames
 
 Message = Any
 
@@ -16,7 +17,7 @@ def text(data: bytes) -> str:
 
 
 @dataclass(frozen=True)
-class Person:
+class Member:
     session: int
     name: str
     user: str  # of the key
@@ -45,9 +46,9 @@ class ViewEntry:
 
 
 @dataclass(frozen=True)
-class People:
+class Members(MembersNames):
     title: str
-    people: tuple[Person, ...]
+    members: tuple[Member, ...]
     locks: tuple[Lock, ...]
     views: tuple[ViewEntry, ...]
 
@@ -90,13 +91,13 @@ class Hit:
 
 
 @dataclass(frozen=True)
-class NodeState:
+class NodeState(NodeStateNames):
     name: str
     host: str
     backend: str
     phase: str
     version: Version
-    units_in_hand: int
+    units_in_flight: int
     samples_per_second: float
     round_trip_seconds: float
     stuck: bool
@@ -150,11 +151,11 @@ _OUTCOMES = ("complete", "time_up", "stopped", "no_nodes", "failed")
 _PHASES = ("idle", "syncing", "building", "rendering", "leaving")
 
 
-def members_of(answer: Message) -> People:
+def members_of(answer: Message) -> Members:
     message = answer.content
-    return People(
+    return Members(
         text(message.title),
-        tuple(Person(p.session, text(p.name), text(p.user), text(p.text), tuple(p.selection), p.editor,
+        tuple(Member(p.session, text(p.name), text(p.user), text(p.text), tuple(p.selection), p.editor,
                      p.clock_offset_seconds, p.clock_bound_seconds) for p in message.members),
         tuple(Lock(lock.object, text(lock.name)) for lock in message.locks),
         tuple(ViewEntry(text(v.name), text(v.owner), v.width, v.height, v.samples, v.spp, v.watchers)

@@ -18,7 +18,8 @@ from .mirror import Mirror, Version
 from .objects import Camera
 from .parsing import parsed
 from .proto import control_pb2, scene_pb2
-from .records import (Committed, HistoryEntry, People, Progress, Status, Writer, history_of, members_of, status_of,
+from .old_names import SessionNames, edit_group_of
+from .records import (Committed, HistoryEntry, Members, Progress, Status, Writer, history_of, members_of, status_of,
                       text)
 from .scene import Scene
 from .transaction import Transaction
@@ -31,7 +32,7 @@ _UNDO_LATEST, _REDO_LATEST = (1 << 64) - 1, (1 << 64) - 2
 _PUBLISH_TIMEOUT = 30.0  # seconds
 
 
-class Session:
+class Session(SessionNames):
     """Created by `connect`. A background thread maintains the connection: the caller may sleep, compute or stop in a debugger.
     Calls block until the master has answered and are thread-safe; a transaction belongs to one thread. Short interruptions,
     and a master restarted with its journal, are recovered: see Connection. All methods raise Unavailable if the master does
@@ -78,10 +79,10 @@ class Session:
         joined = self.connection.joined
         return text(joined.name) if joined is not None else self.connection.name
 
-    def transaction(self, *, gesture: int = 0) -> AbstractContextManager[Transaction]:
+    def transaction(self, *, edit_group: int = 0, **old: int) -> AbstractContextManager[Transaction]:
         """with session.transaction() as edit: ... - committed atomically at the end of the block. Consecutive transactions with
-        the same edit group (see `gesture`) are undone together. Raises Refused with the master's reasons."""
-        return self._transaction(edit_group=gesture)
+        the same edit group (see `new_edit_group`) are undone together. Raises Refused with the master's reasons."""
+        return self._transaction(edit_group_of(edit_group, old))
 
     @contextmanager
     def _transaction(self, edit_group: int) -> Iterator[Transaction]:
@@ -93,7 +94,7 @@ class Session:
             if entries:
                 edit.committed = self._commit(entries, edit.blobs, edit_group=edit_group)
 
-    def gesture(self) -> int:
+    def new_edit_group(self) -> int:
         """A new edit group, e.g. for one mouse drag: its transactions are undone together."""
         with self._editing:
             self._last_edit_group += 1
@@ -230,7 +231,7 @@ class Session:
         message.set_presence.time_to_live = int(seconds * 1e9)
         self.connection.post(message)
 
-    def people(self) -> People:
+    def members(self) -> Members:
         """The members of the scene, their locks, and the views that can be watched."""
         request = control_pb2.Control()
         request.read_members.SetInParent()
@@ -318,7 +319,7 @@ class Session:
 
     def watch(self, name: str, *, picture: str = "png", film: bool = False, exposure: float | None = None,
               view_transform: str = "neutral") -> View:
-        """Watches the view with this name of another member (see `people`), with its camera."""
+        """Watches the view with this name of another member (see `members`), with its camera."""
         view = plain_view((1, 1), channels=("radiance",), renderer="path", bounces=8, seed=0, filter="",
                           layers=ALL_LAYERS)
         self.aim(view, camera.look_at((0, 0, 1), (0, 0, 0)))

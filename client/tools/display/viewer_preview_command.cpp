@@ -12,7 +12,7 @@ namespace tessera::tools {
 
 namespace {
 
-constexpr const char* ViewerPreviewName = "display audience";
+constexpr const char* ViewerPreviewName = "display preview";
 
 struct ViewerPreviewCommandOptions {
     std::string file, pictures, output;
@@ -55,7 +55,7 @@ int run(const ViewerPreviewCommandOptions& options) {
 Command viewer_preview_command(cli::CommandLine& display) {
     const auto options = std::make_shared<ViewerPreviewCommandOptions>();
     cli::CommandLine& line =
-        display.command("audience",
+        display.command("preview",
                         "Simulate what a viewer in front of the screens sees: pictures written "
                         "by output processes are projected back onto their screens, and "
                         "overlaps add up.");
@@ -69,7 +69,7 @@ Command viewer_preview_command(cli::CommandLine& display) {
     line.option("--width", "pixels of the picture; the height follows from the screen",
                 options->preview.width);
     line.option("--black", "black level of the devices, as a fraction of white", options->preview.black);
-    line.examples({"tessera display audience wall.toml --pictures out -o wall.png"});
+    line.examples({"tessera display preview wall.toml --pictures out -o wall.png"});
     return {ViewerPreviewName, [options](std::string_view) {
                 try {
                     return run(*options);

@@ -4,7 +4,7 @@
 
 namespace tessera::tools {
 
-// tessera display audience
+// tessera display preview
 Command viewer_preview_command(cli::CommandLine& display);
 
 }  // namespace tessera::tools

@@ -61,8 +61,8 @@ TEST_F(NodeTableTest, EchoedHeartbeatGivesRoundTripAndClockOffset) {
 
 TEST_F(NodeTableTest, SilentNodesTimeOut) {
     node.liveness.on_message(TimePoint{1s});
-    EXPECT_TRUE(table.dead(TimePoint{3s}).empty());
-    EXPECT_EQ(table.dead(TimePoint{5s}), std::vector{NodeId{1}});
+    EXPECT_TRUE(table.timed_out(TimePoint{3s}).empty());
+    EXPECT_EQ(table.timed_out(TimePoint{5s}), std::vector{NodeId{1}});
 }
 
 }  // namespace
