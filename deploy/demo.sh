@@ -54,11 +54,14 @@ done
 start node-1 "$bin/tessera-node" --master "$endpoint" --keys "$keys" --name node-1 --threads 1 --backend embree
 start node-2 "$bin/tessera-node" --master "$endpoint" --keys "$keys" --name node-2 --threads 1 --backend vulkan
 
-echo "demo: rendering tests/scenes/studio-1.glb with an Embree and a Vulkan node"
+echo "demo: rendering tests/scenes/interior-1.glb with an Embree and a Vulkan node"
 rm -f out/demo.exr out/demo.png out/demo.json
 # In the background, so that a signal is answered at once.
-"$bin/tessera" render tests/scenes/studio-1.glb --master "$endpoint" --keys "$keys" --wait-nodes 2:60 \
-    --env tests/scenes/env-studio.exr --size 1280x720 --spp "${TESSERA_DEMO_SPP:-64}" --denoise --policy mixed \
+# The windows are open: light that is found through panes of glass would still be noisy.
+"$bin/tessera" render tests/scenes/interior-1.glb --master "$endpoint" --keys "$keys" --wait-nodes 2:60 \
+    --env tests/scenes/env-noon.exr --camera room --hide "kitchen window panes" --hide "tall window panes" \
+    --hide "wide window panes" --hide "lamp bulb" \
+    --size "${TESSERA_DEMO_SIZE:-640x360}" --spp "${TESSERA_DEMO_SPP:-64}" --denoise=nfor:blend=off --policy mixed \
     -o out/demo.exr -o out/demo.png --json "$@" >"$folder/demo.json" &
 render=$!
 children+=("$render")

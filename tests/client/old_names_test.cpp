@@ -14,13 +14,13 @@
 namespace tessera::tools {
 namespace {
 
-struct Typed {
+struct ParsedLine {
     std::optional<int> exit;
     std::string chosen, owner, error;
 };
 
-Typed typed(std::vector<const char*> words) {
-    Typed result;
+ParsedLine parsed_line(std::vector<const char*> words) {
+    ParsedLine result;
     cli::CommandLine line("tessera", "a test");
     line.command("jobs", "a command").option("--owner", "a user", result.owner);
     line.command("display", "a group of commands").command("preview", "a command");
@@ -33,25 +33,25 @@ Typed typed(std::vector<const char*> words) {
 }
 
 TEST(OldNames, SubCommandsWork) {
-    const Typed old = typed({"display", "audience"});
+    const ParsedLine old = parsed_line({"display", "audience"});
     EXPECT_FALSE(old.exit);
     EXPECT_EQ(old.chosen, "display preview");
     EXPECT_EQ(old.error,
               "tessera: 'audience' is now 'preview'; the old name goes away with the next version\n");
-    EXPECT_EQ(typed({"display", "preview"}).error, "");
-    EXPECT_TRUE(typed({"audience"}).exit) << "it was never a command of its own";
+    EXPECT_EQ(parsed_line({"display", "preview"}).error, "");
+    EXPECT_TRUE(parsed_line({"audience"}).exit) << "it was never a command of its own";
 }
 
 TEST(OldNames, OptionsWork) {
     for (const std::vector<const char*>& words :
          {std::vector{"jobs", "--of", "anna"}, std::vector{"jobs", "--of=anna"}}) {
-        const Typed old = typed(words);
+        const ParsedLine old = parsed_line(words);
         EXPECT_FALSE(old.exit) << old.error;
         EXPECT_EQ(old.owner, "anna");
         EXPECT_NE(old.error.find("'--of' is now '--owner'"), std::string::npos) << old.error;
     }
     // A value that looks like an old name stays.
-    EXPECT_EQ(typed({"jobs", "--owner", "audience"}).owner, "audience");
+    EXPECT_EQ(parsed_line({"jobs", "--owner", "audience"}).owner, "audience");
 }
 
 TEST(OldNames, ParametersOfDenoisersWork) {

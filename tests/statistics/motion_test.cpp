@@ -345,8 +345,8 @@ TEST(Motion, EqualsTheMeanOfStillPictures) {
 TEST(Motion, IdenticalKeysAreNoMotion) {
     Model still, same;
     put_room(still, {}, {RoomShape{}});
-    const std::vector<glm::dmat4> no_media(3, glm::dmat4(1.0));
-    put_room(same, {nowhere, nowhere, nowhere}, {RoomShape{}});
+    const std::vector<glm::dmat4> identity_keys(3, glm::dmat4(1.0));
+    put_room(same, {identity_keys, identity_keys, identity_keys}, {RoomShape{}});
     const SceneAdapter& world = same.build();
     EXPECT_EQ(world.tables().scene.features & shading::FeatureMotion, 0u);
     EXPECT_EQ(differing_fraction(world, room_view(), still.build(), room_view(), 0.0f), 0.0);
