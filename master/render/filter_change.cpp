@@ -39,7 +39,7 @@ FilterChange filter_change(const view::View& now, const std::string& filter) {
         change.text = "filter " + change.view.filter + " for the whole frame";
     } else {
         change.effect = Effect::Widened;
-        change.text = "filter " + change.view.filter + "; " + names(added) + " only for later samples";
+        change.text = "filter " + change.view.filter + "; " + names(added) + " from now on";
     }
     return change;
 }

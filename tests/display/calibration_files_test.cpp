@@ -55,7 +55,7 @@ TEST(Pfm, ErrorsNameTheCause) {
     const auto refused = [](const std::vector<std::byte>& bytes) {
         return error_of(parse_pfm(bytes, "w.pfm"));
     };
-    EXPECT_NE(refused(pfm_bytes("P6\n2 1\n-1\n", {1, 2})).find("w.pfm: is no PFM"), std::string::npos);
+    EXPECT_NE(refused(pfm_bytes("P6\n2 1\n-1\n", {1, 2})).find("w.pfm: is not a PFM"), std::string::npos);
     EXPECT_NE(refused(pfm_bytes("Pf\n2 1\n0\n", {1, 2})).find("scale"), std::string::npos);
     EXPECT_NE(refused(pfm_bytes("Pf\n2 2\n-1\n", {1, 2})).find("8 bytes of values instead of 16"),
               std::string::npos);

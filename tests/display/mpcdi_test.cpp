@@ -196,9 +196,10 @@ TEST(MpcdiErrors, NameFileLineAndRemedy) {
         EXPECT_EQ(message.find("a.mpcdi"), 0u) << message;
     };
     about({{"other.xml", ""}}, "'mpcdi.xml' is not in the archive");
-    about({{"mpcdi.xml", "<MPCDI profile=\"2d\">\n<display>\n</MPCDI>"}}, "mpcdi.xml:3: the XML is broken");
-    about({{"mpcdi.xml", ""}}, "the XML is broken");
-    about({{"mpcdi.xml", "<html/>"}}, "is about 'html'");
+    about({{"mpcdi.xml", "<MPCDI profile=\"2d\">\n<display>\n</MPCDI>"}},
+          "mpcdi.xml:3: the XML is malformed");
+    about({{"mpcdi.xml", ""}}, "the XML is malformed");
+    about({{"mpcdi.xml", "<html/>"}}, "has the root element <html>, not <MPCDI>");
     about({{"mpcdi.xml", xml("4d", region("r"), "")}}, "mpcdi.xml:2: the profile '4d'");
     about({{"mpcdi.xml", xml("2d", "", "")}}, "has no regions");
     about({{"mpcdi.xml", xml("2d", "<region id=\"r\"/>\n", "")}},

@@ -26,7 +26,7 @@ TEST_F(EditorsTest, RejectionNamesObjectFieldAndReason) {
     EXPECT_TRUE(
         says(edit(anna, {roughness(red, 1.5f)}), "('red'): roughness is 1.5: it has to be from 0 to 1"));
     EXPECT_TRUE(says(edit(anna, {Create{ben.id(0), Light{}}}), "outside the id range allocated"));
-    EXPECT_TRUE(says(edit(anna, {Create{red, Light{}}}), "is there already"));
+    EXPECT_TRUE(says(edit(anna, {Create{red, Light{}}}), "exists already"));
     Material textured;
     textured.normal_texture.texture = ObjectId{77};
     EXPECT_TRUE(says(edit(anna, {set<Material>(red, &Material::normal_texture, textured)}),
