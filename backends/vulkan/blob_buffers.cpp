@@ -7,15 +7,15 @@
 namespace tessera::vulkan {
 
 std::uint64_t BlobBuffers::address_of(const scene::BlobPtr& blob) {
-    auto place = entries_.find(blob->hash());
-    if (place == entries_.end()) {
+    auto it = entries_.find(blob->hash());
+    if (it == entries_.end()) {
         const std::span<const std::byte> bytes = blob->bytes();
         Buffer buffer(device_, std::max<std::size_t>(bytes.size(), 16));
         upload_bytes(device_, buffer, bytes);
-        place = entries_.emplace(blob->hash(), Entry{std::move(buffer)}).first;
+        it = entries_.emplace(blob->hash(), Entry{std::move(buffer)}).first;
     }
-    place->second.used = true;
-    return place->second.buffer.address();
+    it->second.used = true;
+    return it->second.buffer.address();
 }
 
 void BlobBuffers::drop_unused() {

@@ -20,11 +20,11 @@ BvhPool::Work BvhPool::update(const backend::MeshCatalog& meshes, const backend:
                               const backend::SceneTables& tables) {
     Work work;
     const auto remove = [&](ObjectId id) {
-        const auto place = meshes_.find(id);
-        if (place == meshes_.end()) return;
-        release(place->second.nodes);
-        release(place->second.triangles);
-        meshes_.erase(place);
+        const auto it = meshes_.find(id);
+        if (it == meshes_.end()) return;
+        release(it->second.nodes);
+        release(it->second.triangles);
+        meshes_.erase(it);
     };
     if (changes.everything) {
         while (!meshes_.empty()) remove(meshes_.begin()->first);
@@ -33,9 +33,9 @@ BvhPool::Work BvhPool::update(const backend::MeshCatalog& meshes, const backend:
     for (const auto& [id, step] : changes.changes) {
         if (step == backend::MeshUpdate::ShadingData) continue;
         const backend::Mesh& mesh = *meshes.find(id);
-        const auto place = meshes_.find(id);
-        const bool moves = step == backend::MeshUpdate::Refit && place != meshes_.end();
-        if (moves && refit(place->second, mesh)) {
+        const auto it = meshes_.find(id);
+        const bool moves = step == backend::MeshUpdate::Refit && it != meshes_.end();
+        if (moves && refit(it->second, mesh)) {
             ++work.refitted;
             continue;
         }

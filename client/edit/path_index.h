@@ -34,8 +34,8 @@ class PathIndex {
 
     const std::map<std::string, std::set<ObjectId>>& names(scene::ObjectKind kind) const {
         static const std::map<std::string, std::set<ObjectId>> None;
-        const auto place = names_.find(kind);
-        return place == names_.end() ? None : place->second;
+        const auto it = names_.find(kind);
+        return it == names_.end() ? None : it->second;
     }
 
   private:

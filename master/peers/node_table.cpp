@@ -35,26 +35,26 @@ NodeRecord& NodeTable::add(NodeId id, std::uint64_t token, net::PeerId control, 
 }
 
 NodeRecord* NodeTable::find(NodeId id) {
-    const auto place = nodes_.find(id);
-    return place == nodes_.end() ? nullptr : &place->second;
+    const auto it = nodes_.find(id);
+    return it == nodes_.end() ? nullptr : &it->second;
 }
 
 NodeRecord* NodeTable::by_control(net::PeerId peer) {
-    const auto place =
+    const auto it =
         std::find_if(nodes_.begin(), nodes_.end(), [&](auto& entry) { return entry.second.control == peer; });
-    return place == nodes_.end() ? nullptr : &place->second;
+    return it == nodes_.end() ? nullptr : &it->second;
 }
 
 NodeRecord* NodeTable::by_bulk(net::PeerId peer) {
-    const auto place =
+    const auto it =
         std::find_if(nodes_.begin(), nodes_.end(), [&](auto& entry) { return entry.second.bulk == peer; });
-    return place == nodes_.end() ? nullptr : &place->second;
+    return it == nodes_.end() ? nullptr : &it->second;
 }
 
 NodeRecord* NodeTable::by_token(std::uint64_t token) {
-    const auto place =
+    const auto it =
         std::find_if(nodes_.begin(), nodes_.end(), [&](auto& entry) { return entry.second.token == token; });
-    return place == nodes_.end() ? nullptr : &place->second;
+    return it == nodes_.end() ? nullptr : &it->second;
 }
 
 void NodeTable::heartbeat(NodeRecord& node, const wire::Heartbeat& heartbeat, TimePoint now) {

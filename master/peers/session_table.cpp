@@ -10,8 +10,8 @@ void SessionTable::remove(SessionId id) {
 }
 
 SessionRecord* SessionTable::find(SessionId id) {
-    const auto place = sessions_.find(id);
-    return place == sessions_.end() ? nullptr : &place->second;
+    const auto it = sessions_.find(id);
+    return it == sessions_.end() ? nullptr : &it->second;
 }
 
 SessionRecord* SessionTable::by_control(net::PeerId peer) {
@@ -36,12 +36,12 @@ SessionRecord* SessionTable::by_token(std::uint64_t token) {
 }
 
 void SessionTable::enqueue(SessionId id) {
-    if (place(id) == 0) queue_.push_back(id);
+    if (it(id) == 0) queue_.push_back(id);
 }
 
-std::uint32_t SessionTable::place(SessionId id) const {
-    const auto place = std::find(queue_.begin(), queue_.end(), id);
-    return place == queue_.end() ? 0 : static_cast<std::uint32_t>(place - queue_.begin()) + 1;
+std::uint32_t SessionTable::it(SessionId id) const {
+    const auto it = std::find(queue_.begin(), queue_.end(), id);
+    return it == queue_.end() ? 0 : static_cast<std::uint32_t>(it - queue_.begin()) + 1;
 }
 
 }  // namespace tessera::master

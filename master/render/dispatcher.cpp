@@ -31,10 +31,10 @@ Scheduler& Dispatcher::begin(const view::View& view, const PlanSettings& plan,
     const UnitId first{next_unit_};
     next_unit_ += UnitsPerPass;
     by_first_unit_[first] = view.id;
-    const auto place = passes_.emplace(
+    const auto it = passes_.emplace(
         view.id, Active{view, requirements, first,
                         Scheduler(plan, view.id, view.revision, requirements.version, first, deadline)});
-    return place.first->second.scheduler;
+    return it.first->second.scheduler;
 }
 
 void Dispatcher::end(ViewId pass) {

@@ -10,12 +10,12 @@ FrameAssembler::FrameAssembler(std::vector<Rect> tiles, frame::ChannelSet channe
 }
 
 FrameAssembler::Result FrameAssembler::insert(frame::FilmTile block) {
-    const auto place = by_corner_.find({block.rect.x, block.rect.y});
-    if (place == by_corner_.end() || tiles_[place->second] != block.rect || block.channels != channels_ ||
+    const auto it = by_corner_.find({block.rect.x, block.rect.y});
+    if (it == by_corner_.end() || tiles_[it->second] != block.rect || block.channels != channels_ ||
         !block.block.is_aligned() || block.block.end() > spp_) {
         return {};
     }
-    const std::uint32_t tile = place->second;
+    const std::uint32_t tile = it->second;
     switch (forests_[tile].insert(std::move(block))) {
         case frame::BlockForest::Outcome::Merged:
         case frame::BlockForest::Outcome::Replaced:

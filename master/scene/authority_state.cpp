@@ -13,9 +13,9 @@ class WriterList {
   public:
     std::uint64_t number(const WriterPtr& writer) {
         if (!writer) return 0;
-        const auto [place, fresh] = numbers_.try_emplace(writer, list_.size() + 1);
+        const auto [it, fresh] = numbers_.try_emplace(writer, list_.size() + 1);
         if (fresh) list_.push_back({writer->transaction, writer->name, writer->user, writer->time});
-        return place->second;
+        return it->second;
     }
     std::vector<wire::RecordedFieldWriter> fields(const ObjectWriters& writers) {
         std::vector<wire::RecordedFieldWriter> list;

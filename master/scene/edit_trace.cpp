@@ -35,8 +35,8 @@ class Stage {
   private:
     double rank(double part) const {
         if (seconds_.empty()) return 0.0;
-        const auto place = static_cast<std::size_t>(std::ceil(part * static_cast<double>(seconds_.size())));
-        return seconds_[std::max<std::size_t>(place, 1) - 1];
+        const auto it = static_cast<std::size_t>(std::ceil(part * static_cast<double>(seconds_.size())));
+        return seconds_[std::max<std::size_t>(it, 1) - 1];
     }
     std::string name_;
     std::vector<double> seconds_;
@@ -72,8 +72,8 @@ void EditTraceLog::published(Version version, TimePoint now) {
 
 void EditTraceLog::node_built(NodeId node, const std::string& name, Version version, std::int64_t received_at,
                               std::int64_t built_at, const std::optional<net::ClockOffset>& clock) {
-    const auto [place, is_new] = nodes_.try_emplace(node, begin());
-    for_each_up_to(version, place->second, [&](session::EditTrace& edit) {
+    const auto [it, is_new] = nodes_.try_emplace(node, begin());
+    for_each_up_to(version, it->second, [&](session::EditTrace& edit) {
         if (is_new) return;
         edit.nodes.push_back({.name = name,
                               .received = ours(received_at, clock),

@@ -15,8 +15,8 @@ bool meet(const IdRange& a, const IdRange& b) {
 }
 
 bool in_use(const scene::Scene& scene, const IdRange& range) {
-    const auto place = scene.objects().lower_bound(ObjectId{range.first});
-    return place != scene.objects().end() && range.contains(place->first);
+    const auto it = scene.objects().lower_bound(ObjectId{range.first});
+    return it != scene.objects().end() && range.contains(it->first);
 }
 
 }  // namespace
@@ -53,13 +53,13 @@ EditorRecord* Editors::of(SessionId session) {
 }
 
 const EditorRecord* Editors::of(SessionId session) const {
-    const auto place = sessions_.find(session);
-    return place == sessions_.end() ? nullptr : &editors_.at(place->second);
+    const auto it = sessions_.find(session);
+    return it == sessions_.end() ? nullptr : &editors_.at(it->second);
 }
 
 EditorRecord* Editors::by_number(std::uint64_t number) {
-    const auto place = editors_.find(number);
-    return place == editors_.end() ? nullptr : &place->second;
+    const auto it = editors_.find(number);
+    return it == editors_.end() ? nullptr : &it->second;
 }
 
 void Editors::leave(SessionId session) {
@@ -76,11 +76,11 @@ void Editors::leave(SessionId session) {
 
 // Forgets the oldest of the disconnected editors.
 void Editors::forget_one_disconnected() {
-    const auto place = std::find_if(editors_.begin(), editors_.end(),
-                                    [](const auto& entry) { return !entry.second.session; });
-    if (place == editors_.end()) return;
-    keys_.erase({place->second.user, place->second.key});
-    editors_.erase(place);
+    const auto it = std::find_if(editors_.begin(), editors_.end(),
+                                 [](const auto& entry) { return !entry.second.session; });
+    if (it == editors_.end()) return;
+    keys_.erase({it->second.user, it->second.key});
+    editors_.erase(it);
 }
 
 void Editors::clear() {

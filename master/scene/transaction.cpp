@@ -64,26 +64,26 @@ TransactionChanges::Map& TransactionChanges::to_change() {
 
 WriterPtr WriterTable::of(ObjectId id, std::uint32_t field) const {
     const ObjectWriters& object = of(id);
-    const auto place = object.find(field);
-    return place == object.end() ? nullptr : place->second;
+    const auto it = object.find(field);
+    return it == object.end() ? nullptr : it->second;
 }
 
 const ObjectWriters& WriterTable::of(ObjectId id) const {
     static const ObjectWriters None;
-    const auto place = writers_.find(id);
-    return place == writers_.end() ? None : *place->second;
+    const auto it = writers_.find(id);
+    return it == writers_.end() ? None : *it->second;
 }
 
 void WriterTable::set(ObjectId id, std::uint32_t field, const WriterPtr& writer) {
-    const auto place = writer ? writers_.try_emplace(id).first : writers_.find(id);
-    if (place == writers_.end()) return;
-    own(place->second);
+    const auto it = writer ? writers_.try_emplace(id).first : writers_.find(id);
+    if (it == writers_.end()) return;
+    own(it->second);
     if (writer) {
-        (*place->second)[field] = writer;
+        (*it->second)[field] = writer;
         return;
     }
-    place->second->erase(field);
-    if (place->second->empty()) writers_.erase(place);
+    it->second->erase(field);
+    if (it->second->empty()) writers_.erase(it);
 }
 
 void WriterTable::set(ObjectId id, const ObjectWriters& writers) {
@@ -98,9 +98,9 @@ ObjectWriters WriterTable::take(ObjectId id) {
 bool can_extend(const Transaction& transaction, const std::vector<scene::ObjectChange>& changes,
                 const WriterTable& writers) {
     for (const scene::ObjectChange& step : changes) {
-        const auto place = transaction.changes.all().find(step.id);
-        if (place == transaction.changes.all().end()) continue;
-        const scene::ObjectChange& so_far = place->second.object;
+        const auto it = transaction.changes.all().find(step.id);
+        if (it == transaction.changes.all().end()) continue;
+        const scene::ObjectChange& so_far = it->second.object;
         if (!so_far.after || !step.before || so_far.after->index() != step.before->index()) return false;
         if (!so_far.is_update()) continue;
         bool ours = true;
@@ -116,8 +116,8 @@ bool can_extend(const Transaction& transaction, const std::vector<scene::ObjectC
 void extend(Transaction& transaction, const std::vector<scene::ObjectChange>& changes, WriterTable& writers) {
     TransactionChanges::Map& all = transaction.changes.to_change();
     for (const scene::ObjectChange& step : changes) {
-        const auto [place, fresh] = all.try_emplace(step.id);
-        TransactionChange& change = place->second;
+        const auto [it, fresh] = all.try_emplace(step.id);
+        TransactionChange& change = it->second;
         record_writers(change, step, transaction.author, writers);
         if (fresh) {
             change.object = step;
@@ -126,7 +126,7 @@ void extend(Transaction& transaction, const std::vector<scene::ObjectChange>& ch
         change.object.before = earliest(change.object, step);
         change.object.after = step.after;
         change.object.mask |= step.mask;
-        if (!change.object.before && !change.object.after) all.erase(place);
+        if (!change.object.before && !change.object.after) all.erase(it);
     }
 }
 
@@ -140,8 +140,8 @@ void record_undo(Transaction& undo, const std::vector<scene::ObjectChange>& chan
         if (!step.is_update()) change.writers_before = writers.take(step.id);
     }
     for (const auto& [id, fields] : brought_back) {
-        const auto [place, fresh] = all.try_emplace(id);
-        TransactionChange& change = place->second;
+        const auto [it, fresh] = all.try_emplace(id);
+        TransactionChange& change = it->second;
         if (fresh) {
             const auto& same = scene.objects().find(id)->second;
             change.object = {.id = id, .before = same, .after = same};

@@ -57,8 +57,8 @@ scene::ChangeList VersionLog::publish(const scene::Scene& head) {
 }
 
 const scene::Object* VersionLog::published(ObjectId id, const scene::Scene& head) const {
-    const auto place = before_.find(id);
-    return place == before_.end() ? head.find(id) : place->second.get();
+    const auto it = before_.find(id);
+    return it == before_.end() ? head.find(id) : it->second.get();
 }
 
 scene::ChangeList VersionLog::snapshot(const scene::Scene& head) const {
@@ -82,8 +82,8 @@ std::optional<scene::ChangeList> VersionLog::since(Version known, const scene::S
     for (auto version = log_.end() - static_cast<std::ptrdiff_t>(version_.number - known.number);
          version != log_.end(); ++version) {
         for (const Touched& entry : *version) {
-            const auto [place, fresh] = touched.try_emplace(entry.id, entry);
-            if (!fresh) place->second.mask |= entry.mask;
+            const auto [it, fresh] = touched.try_emplace(entry.id, entry);
+            if (!fresh) it->second.mask |= entry.mask;
         }
     }
     scene::ChangeList list{.from = known, .to = version_, .entries = {}, .state_hash = state_hash_};

@@ -19,18 +19,18 @@ PeerId PeerTable::number(const std::string& routing_id, const std::string& user_
 }
 
 const PeerTable::Peer* PeerTable::find(PeerId peer) {
-    const auto place = peers_.find(peer);
-    if (place == peers_.end()) return nullptr;
-    touch(place->second);
-    return &place->second.peer;
+    const auto it = peers_.find(peer);
+    if (it == peers_.end()) return nullptr;
+    touch(it->second);
+    return &it->second.peer;
 }
 
 void PeerTable::forget(PeerId peer) {
-    const auto place = peers_.find(peer);
-    if (place == peers_.end()) return;
-    numbers_.erase(place->second.peer.routing_id);
-    uses_.erase(place->second.use);
-    peers_.erase(place);
+    const auto it = peers_.find(peer);
+    if (it == peers_.end()) return;
+    numbers_.erase(it->second.peer.routing_id);
+    uses_.erase(it->second.use);
+    peers_.erase(it);
 }
 
 }  // namespace tessera::net

@@ -18,9 +18,9 @@ Blob::Blob(std::vector<std::byte> data, const Hash256& hash)
 
 BlobPtr BlobStore::insert(BlobPtr blob) {
     const std::scoped_lock lock(mutex_);
-    const auto [place, inserted] = blobs_.try_emplace(blob->hash(), blob);
+    const auto [it, inserted] = blobs_.try_emplace(blob->hash(), blob);
     if (inserted) byte_size_ += blob->bytes().size();
-    return place->second;
+    return it->second;
 }
 
 BlobPtr BlobStore::insert(std::span<const std::byte> data) {
@@ -29,8 +29,8 @@ BlobPtr BlobStore::insert(std::span<const std::byte> data) {
 
 BlobPtr BlobStore::find(const Hash256& hash) const {
     const std::scoped_lock lock(mutex_);
-    const auto place = blobs_.find(hash);
-    return place == blobs_.end() ? nullptr : place->second;
+    const auto it = blobs_.find(hash);
+    return it == blobs_.end() ? nullptr : it->second;
 }
 
 std::size_t BlobStore::erase_unused() {

@@ -9,8 +9,8 @@ namespace tessera::scene {
 namespace {
 
 std::shared_ptr<const Object> shared_object(const Scene& scene, ObjectId id) {
-    const auto place = scene.objects().find(id);
-    return place == scene.objects().end() ? nullptr : place->second;
+    const auto it = scene.objects().find(id);
+    return it == scene.objects().end() ? nullptr : it->second;
 }
 
 }  // namespace

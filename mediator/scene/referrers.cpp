@@ -97,17 +97,17 @@ ReferenceChange reference_change(const Object* before, const Object* after) {
 void ReferrerIndex::replace(ObjectId id, const Object* before, const Object* after) {
     const ReferenceChange change = reference_change(before, after);
     for (const Reference& reference : change.removed) {
-        const auto place = counts_.find({reference.id, id});
-        if (place != counts_.end() && --place->second == 0) counts_.erase(place);
+        const auto it = counts_.find({reference.id, id});
+        if (it != counts_.end() && --it->second == 0) counts_.erase(it);
     }
     for (const Reference& reference : change.added) ++counts_[{reference.id, id}];
 }
 
 std::vector<ObjectId> ReferrerIndex::referrers(ObjectId target) const {
     std::vector<ObjectId> found;
-    for (auto place = counts_.lower_bound({target, ObjectId{}});
-         place != counts_.end() && place->first.first == target; ++place) {
-        found.push_back(place->first.second);
+    for (auto it = counts_.lower_bound({target, ObjectId{}});
+         it != counts_.end() && it->first.first == target; ++it) {
+        found.push_back(it->first.second);
     }
     return found;
 }

@@ -61,57 +61,57 @@ class Check {
 
   private:
     template <class Row, class V>
-    void value(const Row& row, const V& value, const FieldPath& place) {
+    void value(const Row& row, const V& value, const FieldPath& path) {
         if constexpr (std::is_same_v<V, bool> || std::is_same_v<V, ObjectId>) {
             return;
         } else if constexpr (std::is_arithmetic_v<V>) {
-            number(static_cast<double>(value), note_or(row, Finite), place);
+            number(static_cast<double>(value), note_or(row, Finite), path);
         } else if constexpr (std::is_enum_v<V>) {
             if (enumerator_name(value).empty())
-                add(place.text() + " is " + std::to_string(static_cast<int>(value)) +
+                add(path.text() + " is " + std::to_string(static_cast<int>(value)) +
                     ": it has to be one of " + choices<V>());
         } else if constexpr (std::is_same_v<V, std::string>) {
-            size(value.size(), row.template note<MaxSize>(), place, " bytes");
+            size(value.size(), row.template note<MaxSize>(), path, " bytes");
         } else if constexpr (std::is_same_v<V, TextureSlot>) {
             for_each_row<V>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
-                this->value(row_of<V, I>, row_of<V, I>.of(value), {place.field, row_of<V, I>.name});
+                this->value(row_of<V, I>, row_of<V, I>.of(value), {path.field, row_of<V, I>.name});
             });
         } else if constexpr (std::is_same_v<V, glm::dmat4>) {
-            matrix(value, place);
+            matrix(value, path);
         } else if constexpr (std::is_same_v<V, BlobRef>) {
             const std::size_t element = row.template note<Array>().bytes();
             if (value.byte_size % element != 0)
-                add(place.text() + " has " + std::to_string(value.byte_size) + " bytes: an element has " +
+                add(path.text() + " has " + std::to_string(value.byte_size) + " bytes: an element has " +
                     std::to_string(element));
         } else if constexpr (requires { value.length(); }) {
-            for (glm::length_t i = 0; i < V::length(); ++i) number(value[i], note_or(row, Finite), place);
+            for (glm::length_t i = 0; i < V::length(); ++i) number(value[i], note_or(row, Finite), path);
         } else {
-            list(row, value, place);
+            list(row, value, path);
         }
     }
     template <class Row, class V>
-    void list(const Row& row, const V& values, const FieldPath& place) {
+    void list(const Row& row, const V& values, const FieldPath& path) {
         if constexpr (Row::template has<MaxSize>)
-            size(values.size(), row.template note<MaxSize>(), place, " entries");
+            size(values.size(), row.template note<MaxSize>(), path, " entries");
         if constexpr (!std::is_same_v<typename V::value_type, ObjectId>) {
-            for (std::size_t i = 0; i < values.size(); ++i) value(row, values[i], {place.field, {}, i, true});
+            for (std::size_t i = 0; i < values.size(); ++i) value(row, values[i], {path.field, {}, i, true});
         }
     }
-    void number(double value, const Range& range, const FieldPath& place) {
+    void number(double value, const Range& range, const FieldPath& path) {
         if (!is_inside(value, range))
-            add(place.text() + " is " + text_of(value) + ": it has to be " + scene::text_of(range));
+            add(path.text() + " is " + text_of(value) + ": it has to be " + scene::text_of(range));
     }
-    void size(std::size_t size, const MaxSize& longest, const FieldPath& place, const char* what) {
+    void size(std::size_t size, const MaxSize& longest, const FieldPath& path, const char* what) {
         if (size > longest.size)
-            add(place.text() + " has " + std::to_string(size) + what + ": there may be " +
+            add(path.text() + " has " + std::to_string(size) + what + ": there may be " +
                 std::to_string(longest.size));
     }
-    void matrix(const glm::dmat4& m, const FieldPath& place) {
-        for (glm::length_t i = 0; i < 16; ++i) number(m[i / 4][i % 4], Finite, place);
+    void matrix(const glm::dmat4& m, const FieldPath& path) {
+        for (glm::length_t i = 0; i < 16; ++i) number(m[i / 4][i % 4], Finite, path);
         if (m[0][3] != 0.0 || m[1][3] != 0.0 || m[2][3] != 0.0 || m[3][3] != 1.0)
-            add(place.text() + " is not affine: its last row has to be 0 0 0 1");
+            add(path.text() + " is not affine: its last row has to be 0 0 0 1");
         if (glm::any(glm::greaterThan(glm::abs(glm::dvec3(m[3])), glm::dvec3(MaxCoordinate))))
-            add("the translation of " + place.text() + " is longer than 1e15 m: move the scene");
+            add("the translation of " + path.text() + " is longer than 1e15 m: move the scene");
     }
 
     std::vector<std::string> causes_;
@@ -124,9 +124,9 @@ void check_together(const Geometry& geometry, Check& check) {
     const std::uint64_t vertices = geometry.positions.byte_size / 12;
     if (vertices > MaxElements || geometry.indices.byte_size / 12 > MaxElements)
         check.add("it has more than 2^31 vertices or triangles: split it");
-    const auto per_vertex = [&](std::uint64_t size, std::size_t element, const FieldPath& place) {
+    const auto per_vertex = [&](std::uint64_t size, std::size_t element, const FieldPath& path) {
         if (size != vertices * element)
-            check.add(place.text() + " has " + std::to_string(size) + " bytes: " + std::to_string(vertices) +
+            check.add(path.text() + " has " + std::to_string(size) + " bytes: " + std::to_string(vertices) +
                       " vertices need " + std::to_string(vertices * element));
     };
     for_each_row<Geometry>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {

@@ -58,12 +58,12 @@ std::vector<BlobRequest> BlobFetcher::due(TimePoint now) {
 }
 
 Expected<void> BlobFetcher::receive(BlobChunk&& chunk, TimePoint now) {
-    const auto place = partial_.find(chunk.hash);
-    if (place == partial_.end()) {
+    const auto it = partial_.find(chunk.hash);
+    if (it == partial_.end()) {
         if (store_->find(chunk.hash)) return {};  // a late duplicate
         return failure(ErrorCode::InvalidInput, "an unrequested blob");
     }
-    Partial& partial = place->second;
+    Partial& partial = it->second;
     if (chunk.total != partial.total || chunk.offset + chunk.data.size() > partial.total) {
         return failure(ErrorCode::InvalidInput, "a blob of another size than announced");
     }
@@ -84,13 +84,13 @@ Expected<void> BlobFetcher::receive(BlobChunk&& chunk, TimePoint now) {
                        "blob " + to_hex(chunk.hash).substr(0, 12) + " has the wrong hash");
     }
     store_->insert(std::make_shared<const scene::Blob>(std::move(partial.data), chunk.hash));
-    partial_.erase(place);
+    partial_.erase(it);
     return {};
 }
 
 void BlobFetcher::absent(const Hash256& hash) {
-    const auto place = partial_.find(hash);
-    if (place != partial_.end()) place->second.absent = true;
+    const auto it = partial_.find(hash);
+    if (it != partial_.end()) it->second.absent = true;
 }
 
 void BlobFetcher::forget_all() {

@@ -30,9 +30,9 @@ std::vector<LightLeaf> some_leaves(std::size_t count, double edge, Kind kind, st
     CounterRandom random(seed);
     std::vector<LightLeaf> leaves;
     for (std::uint32_t i = 0; i < count; ++i) {
-        const glm::dvec3 place = edge * glm::dvec3(random.uniform(), random.uniform(), random.uniform());
+        const glm::dvec3 position = edge * glm::dvec3(random.uniform(), random.uniform(), random.uniform());
         LightLeaf leaf{
-            .low = place, .high = place, .axis = direction(random), .power = random.uniform() + 0.01};
+            .low = position, .high = position, .axis = direction(random), .power = random.uniform() + 0.01};
         leaf.emitter = i;
         switch (kind == Kind::All ? Kind(i % 3) : kind) {
             case Kind::Panels:
@@ -72,8 +72,9 @@ std::vector<Receiver> receivers(double edge, std::size_t count) {
     std::vector<Receiver> found;
     for (std::size_t i = 0; i < count; ++i) {
         const double far = i % 3 == 0 ? 10.0 : 1.0;
-        const glm::vec3 place(edge * far * glm::dvec3(random.uniform(), random.uniform(), random.uniform()));
-        found.push_back({place, i % 4 == 0 ? glm::vec3(0.0f) : glm::vec3(direction(random))});
+        const glm::vec3 position(edge * far *
+                                 glm::dvec3(random.uniform(), random.uniform(), random.uniform()));
+        found.push_back({position, i % 4 == 0 ? glm::vec3(0.0f) : glm::vec3(direction(random))});
     }
     return found;
 }
@@ -210,9 +211,9 @@ TEST(LightTree, NearEmittersFacingTheReceiverAreMoreLikely) {
 TEST(LightTree, KeepsAllEmittersAtOnePositionAndOnALongLine) {
     for (const double factor : {0.0, 0.5}) {
         std::vector<LightLeaf> leaves;
-        double place = 1.0;
-        for (std::uint32_t i = 0; i < 1000; ++i, place *= factor) {
-            leaves.push_back({.low = {place, 0, 0}, .high = {place, 0, 0}, .spread = pi, .power = 1.0});
+        double position = 1.0;
+        for (std::uint32_t i = 0; i < 1000; ++i, position *= factor) {
+            leaves.push_back({.low = {position, 0, 0}, .high = {position, 0, 0}, .spread = pi, .power = 1.0});
             leaves.back().emitter = i;
         }
         const Tree tree(leaves);

@@ -92,10 +92,11 @@ TEST_F(CalibratedDisplay, EveryPixelOfADomeFromPointsIsAccurate) {
         ASSERT_EQ(std::isnan(known.x), std::isnan(point.x));
         if (std::isnan(known.x)) continue;
         ++seen;
-        const glm::dvec2 place = display::image_position(camera, point);
-        EXPECT_TRUE(place.x > -1e-9 && place.x < 1 + 1e-9 && place.y > -1e-9 && place.y < 1 + 1e-9);
+        const glm::dvec2 position = display::image_position(camera, point);
+        EXPECT_TRUE(position.x > -1e-9 && position.x < 1 + 1e-9 && position.y > -1e-9 &&
+                    position.y < 1 + 1e-9);
         const glm::dvec3 direction = known - glm::dvec3(camera.world_from_camera[3]);
-        EXPECT_LT(glm::length(glm::cross(display::direction_through(camera, place), direction)), 1e-6);
+        EXPECT_LT(glm::length(glm::cross(display::direction_through(camera, position), direction)), 1e-6);
     }
     EXPECT_GT(seen, 2000);
 }
@@ -135,9 +136,9 @@ TEST_F(CalibratedDisplay, ErrorsAreReportedAtTheirKey) {
     write("bad.pfm", "PF\n2 2\n-1\nxx");
     write("grey.pfm", "Pf\n1 1\n-1\nxxxx");
     const std::string file = (folder_ / "wall.toml").string();
-    const auto expect = [&](const std::string& text, const std::string& place, const std::string& says) {
+    const auto expect = [&](const std::string& text, const std::string& position, const std::string& says) {
         const std::string said = refusal(text);
-        EXPECT_TRUE(said.starts_with(file + place)) << said;
+        EXPECT_TRUE(said.starts_with(file + position)) << said;
         EXPECT_NE(said.find(says), std::string::npos) << said;
     };
     expect(Flat + "warp = 'no.pfm'\n", ":7:1: output 'a': ", "no.pfm");

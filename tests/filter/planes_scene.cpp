@@ -63,8 +63,9 @@ std::optional<PlanesScene::Hit> PlanesScene::trace(const view::CameraPose& camer
 
 view::CameraPose looking_at(const PlanesScene& scene, glm::dvec3 offset, std::uint32_t width,
                             std::uint32_t height, double yaw) {
-    const glm::dmat4 place = glm::translate(glm::dmat4(1.0), scene.origin + offset);
-    return view::perspective(glm::rotate(place, yaw, glm::dvec3(0.0, 1.0, 0.0)), 0.8, double(width) / height);
+    const glm::dmat4 transform = glm::translate(glm::dmat4(1.0), scene.origin + offset);
+    return view::perspective(glm::rotate(transform, yaw, glm::dvec3(0.0, 1.0, 0.0)), 0.8,
+                             double(width) / height);
 }
 
 Inputs photograph(const PlanesScene& scene, const view::CameraPose& camera, const Shot& shot) {

@@ -93,8 +93,8 @@ TEST(Deform, AgreesWithBruteForceForEightJointsPerVertex) {
                 }
                 return sum;
             };
-            const glm::dvec3 place = blend(glm::dvec4(glm::dvec3(mesh.rest.positions[vertex]), 1.0));
-            EXPECT_NEAR(glm::distance(glm::dvec3(deformed.positions[vertex]), place), 0.0, 1e-6);
+            const glm::dvec3 position = blend(glm::dvec4(glm::dvec3(mesh.rest.positions[vertex]), 1.0));
+            EXPECT_NEAR(glm::distance(glm::dvec3(deformed.positions[vertex]), position), 0.0, 1e-6);
             const glm::dvec3 x = blend({1, 0, 0, 0}), y = blend({0, 1, 0, 0}), z = blend({0, 0, 1, 0});
             const double side = glm::dot(glm::cross(x, y), z) < 0.0 ? -1.0 : 1.0;
             mirrored += side < 0.0 ? 1 : 0;

@@ -23,9 +23,10 @@ struct Seen {
         for (const double x : {box.lower.x, box.upper.x}) {
             for (const double y : {box.lower.y, box.upper.y}) {
                 for (const double z : {box.lower.z, box.upper.z}) {
-                    const glm::dvec3 place(camera_from_world * glm::dvec4(x, y, z, 1.0));
-                    const glm::dvec2 at = glm::dvec2(place.x / aspect_ratio, place.y) / (-place.z * top);
-                    nearest = std::min(nearest, -place.z);
+                    const glm::dvec3 position(camera_from_world * glm::dvec4(x, y, z, 1.0));
+                    const glm::dvec2 at =
+                        glm::dvec2(position.x / aspect_ratio, position.y) / (-position.z * top);
+                    nearest = std::min(nearest, -position.z);
                     lower = glm::min(lower, at);
                     upper = glm::max(upper, at);
                 }

@@ -62,7 +62,7 @@ class LiveMaster(unittest.TestCase):
         return tuple(round(plane[at], 3) for plane in frame.planes())
 
     def test_render(self):
-        self.emissiveing_wall(color=(0.25, 0.5, 0.75)).close()
+        self.emissive_wall(color=(0.25, 0.5, 0.75)).close()
         phases = []
         rendered = self.session.render(POSE, size=(64, 48), spp=8, picture="planes", film=True, filter="gauss",
                                        on_progress=lambda progress: phases.append(progress.phase))
@@ -79,14 +79,14 @@ class LiveMaster(unittest.TestCase):
             bob.join("another", exclusive=True, no_wait=True)
 
     def test_set_filter_of_a_named_view(self):
-        view = self.emissiveing_wall()
+        view = self.emissive_wall()
         view.wait(samples=8)
         self.assertIn("gauss", self.session.set_filter("gauss", "anna/1"))
         with self.assertRaisesRegex(tessera.Refused, "no view named 'unknown/9'"):
             self.session.set_filter("gauss", "unknown/9")
 
     def test_the_picture_follows_edits_and_undo(self):
-        view = self.emissiveing_wall()
+        view = self.emissive_wall()
         frame = view.wait(samples=8)
         self.assertEqual(self.center(frame), (1.0, 0.0, 0.0))
         self.assertTrue(frame.complete)
@@ -102,7 +102,7 @@ class LiveMaster(unittest.TestCase):
         self.assertEqual(self.center(view.wait(samples=1)), (0.0, 1.0, 0.0))
 
     def test_frames_have_the_version_they_show(self):
-        view = self.emissiveing_wall()
+        view = self.emissive_wall()
         for step in range(1, 101):
             with self.session.transaction() as edit:
                 edit.set("materials/emissive", emission=(step, 0, 0))
@@ -111,14 +111,14 @@ class LiveMaster(unittest.TestCase):
                 self.assertEqual(self.center(view.wait(samples=8))[0], step)
 
     def test_wait_after_an_invisible_edit_returns(self):
-        view = self.emissiveing_wall()
+        view = self.emissive_wall()
         view.wait(samples=8)
         with self.session.transaction() as edit:
             edit.set("materials/emissive", name="embers")
         self.assertEqual(self.center(view.wait(samples=8, timeout=30)), (1.0, 0.0, 0.0))
 
     def test_camera_and_picking(self):
-        view = self.emissiveing_wall()
+        view = self.emissive_wall()
         hit = view.pick(32, 24)
         self.assertEqual(hit.object, self.wall.id)
         self.assertAlmostEqual(hit.position[2], 0.0, 4)
@@ -128,7 +128,7 @@ class LiveMaster(unittest.TestCase):
         self.assertIsNone(view.pick(32, 24))
 
     def test_files_of_every_kind(self):
-        self.emissiveing_wall().close()
+        self.emissive_wall().close()
         with tempfile.TemporaryDirectory() as folder:
             for kind, magic in (("png", b"\x89PNG"), ("jpeg", b"\xff\xd8\xff"), ("exr", b"v/1\x01")):
                 view = self.session.open_view(POSE, size=(64, 48), spp=4, picture=kind)
@@ -138,7 +138,7 @@ class LiveMaster(unittest.TestCase):
                 view.close()
 
     def test_two_editors(self):
-        self.emissiveing_wall().close()
+        self.emissive_wall().close()
         with self.cluster.connect(name="anna") as other:
             theirs = other.join("elsewhere")
             self.assertEqual(theirs.title, "room")
@@ -163,7 +163,7 @@ class LiveMaster(unittest.TestCase):
                 time.sleep(0.05)
 
     def test_rejected_edits_change_nothing(self):
-        self.emissiveing_wall().close()
+        self.emissive_wall().close()
         before = list(self.scene)
         for change in (lambda edit: edit.remove("materials/emissive"), lambda edit: edit.set("materials/emissive", metallic=7.0),
                        lambda edit: edit.create("geometry", name="half", indices=[0, 1, 2])):
@@ -176,7 +176,7 @@ class LiveMaster(unittest.TestCase):
         self.assertEqual(list(self.scene), before)
 
     def test_viewers_cannot_edit(self):
-        self.emissiveing_wall().close()
+        self.emissive_wall().close()
         with self.cluster.connect(user="viewer", name="guest") as guest:
             scene = guest.join()
             self.assertIn("geometries/wall", scene)
@@ -194,7 +194,7 @@ class LiveMaster(unittest.TestCase):
             self.assertEqual(guest.watch("main").wait(samples=4).width, 64)
 
     def test_a_drag_is_one_undo(self):
-        self.emissiveing_wall((0.0, 0.0, 0.0)).close()
+        self.emissive_wall((0.0, 0.0, 0.0)).close()
         drag = self.session.new_edit_group()
         for step in range(1, 20):
             with self.session.transaction(edit_group=drag) as edit:
@@ -214,7 +214,7 @@ class LiveMaster(unittest.TestCase):
             self.assertEqual(scene.bytes_of(big.positions), bytes(12) * 300_000)
 
     def test_rejoin_after_a_timeout_restores_state(self):
-        view = self.emissiveing_wall()
+        view = self.emissive_wall()
         view.wait(samples=8)
         self.session.lock([self.emissive])
         self.cluster.master.send_signal(signal.SIGSTOP)
@@ -230,7 +230,7 @@ class LiveMaster(unittest.TestCase):
             self.assertNotIn(edit.create("light").id, (self.emissive.id, self.wall.id))
 
     def test_stalled_viewer_delays_no_other_and_resumes_with_the_newest(self):
-        view = self.emissiveing_wall()
+        view = self.emissive_wall()
         viewer = subprocess.Popen([sys.executable, "-c", VIEWER, self.cluster.endpoint, self.cluster.keys],
                                   stdout=subprocess.PIPE, text=True)
         try:
@@ -257,7 +257,7 @@ class LiveMaster(unittest.TestCase):
             viewer.stdout.close()
 
     def test_master_that_lost_the_scene_is_an_error(self):
-        self.emissiveing_wall()
+        self.emissive_wall()
         self.cluster.kill_master_and_start_another()
         with self.assertRaisesRegex(tessera.Unavailable, "lost edits"):
             with self.session.transaction() as edit:
@@ -266,7 +266,7 @@ class LiveMaster(unittest.TestCase):
         self.addCleanup(self.session.close)
         self.scene = self.session.join("room")
         self.addCleanup(self.close_scene)
-        self.assertEqual(self.center(self.emissiveing_wall().wait(samples=8)), (1.0, 0.0, 0.0))  # the node is back, too
+        self.assertEqual(self.center(self.emissive_wall().wait(samples=8)), (1.0, 0.0, 0.0))  # the node is back, too
 
     def test_a_display_is_adjusted_and_its_head_moved(self):
         with self.assertRaisesRegex(tessera.Refused, "no display is open"):

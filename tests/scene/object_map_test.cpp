@@ -18,14 +18,14 @@ std::shared_ptr<const Object> some_object() {
 
 void expect_same(const ObjectMap& map, const Reference& reference) {
     ASSERT_EQ(map.size(), reference.size());
-    auto place = map.begin();
+    auto it = map.begin();
     for (const auto& [id, object] : reference) {
-        ASSERT_NE(place, map.end());
-        EXPECT_EQ(place->first, id);
-        EXPECT_EQ(place->second, object);
-        ++place;
+        ASSERT_NE(it, map.end());
+        EXPECT_EQ(it->first, id);
+        EXPECT_EQ(it->second, object);
+        ++it;
     }
-    EXPECT_EQ(place, map.end());
+    EXPECT_EQ(it, map.end());
 }
 
 TEST(ObjectMap, BehavesLikeAMapWithIndependentCopies) {
@@ -44,11 +44,11 @@ TEST(ObjectMap, BehavesLikeAMapWithIndependentCopies) {
             reference[id] = object;
         }
         const ObjectId asked{1 + random.below(3000)};
-        const auto place = map.lower_bound(asked);
+        const auto it = map.lower_bound(asked);
         const auto expected = reference.lower_bound(asked);
-        ASSERT_EQ(place == map.end(), expected == reference.end());
+        ASSERT_EQ(it == map.end(), expected == reference.end());
         if (expected != reference.end()) {
-            ASSERT_EQ(place->first, expected->first);
+            ASSERT_EQ(it->first, expected->first);
         }
         ASSERT_EQ(map.find(asked) == map.end(), !reference.contains(asked));
         if (step % 2000 == 0) copies.emplace_back(map, reference);
@@ -64,7 +64,7 @@ TEST(ObjectMap, IteratesBackwards) {
     ObjectMap map;
     for (std::uint64_t id = 1; id <= 1000; ++id) map.set(ObjectId{id}, some_object());
     std::uint64_t id = 1000;
-    for (auto place = map.rbegin(); id > 0; ++place, --id) ASSERT_EQ(place->first, ObjectId{id});
+    for (auto it = map.rbegin(); id > 0; ++it, --id) ASSERT_EQ(it->first, ObjectId{id});
 }
 
 // What the editor and the readers of a scene do: under a thread sanitizer, too.

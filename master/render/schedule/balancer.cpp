@@ -8,13 +8,13 @@ void Balancer::measured(NodeId node, std::uint64_t samples, Duration busy) {
     const double time = seconds(busy);
     if (samples == 0 || time <= 0.0) return;
     const double rate = static_cast<double>(samples) / time;
-    const auto [place, fresh] = rates_.try_emplace(node, rate);
-    if (!fresh) place->second += settings_.smoothing * (rate - place->second);
+    const auto [it, fresh] = rates_.try_emplace(node, rate);
+    if (!fresh) it->second += settings_.smoothing * (rate - it->second);
 }
 
 double Balancer::rate(NodeId node) const {
-    const auto place = rates_.find(node);
-    return place == rates_.end() ? 0.0 : place->second;
+    const auto it = rates_.find(node);
+    return it == rates_.end() ? 0.0 : it->second;
 }
 
 std::uint64_t Balancer::unit_samples(NodeId node, std::uint64_t remaining, std::uint32_t workers) const {

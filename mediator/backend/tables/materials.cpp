@@ -119,10 +119,10 @@ std::uint32_t features_of(const shading::Material& material, const shading::Mate
 }  // namespace
 
 shading::TextureUse make_use(const scene::TextureSlot& slot, const Indices& textures) {
-    const auto place = textures.find(slot.texture);
+    const auto it = textures.find(slot.texture);
     const float c = std::cos(slot.rotation), s = std::sin(slot.rotation);
     // KHR_texture_transform: uv' = offset + rotation x scale x uv, with v down.
-    return {.texture = place == textures.end() ? -1 : static_cast<int>(place->second),
+    return {.texture = it == textures.end() ? -1 : static_cast<int>(it->second),
             .set = slot.set,
             .row_u = {c * slot.scale.x, s * slot.scale.y},
             .row_v = {-s * slot.scale.x, c * slot.scale.y},

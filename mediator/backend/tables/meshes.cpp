@@ -84,8 +84,8 @@ std::uint32_t MeshCatalog::Result::count(MeshUpdate step) const {
 }
 
 const Mesh* MeshCatalog::find(ObjectId id) const {
-    const auto place = meshes_.find(id);
-    return place == meshes_.end() ? nullptr : &place->second;
+    const auto it = meshes_.find(id);
+    return it == meshes_.end() ? nullptr : &it->second;
 }
 
 MeshCatalog::Result MeshCatalog::update(const scene::Scene& scene, const SceneDelta& delta) {
@@ -95,24 +95,24 @@ MeshCatalog::Result MeshCatalog::update(const scene::Scene& scene, const SceneDe
     for (const auto& change : delta.geometries) {
         const auto* geometry = scene.find_as<Geometry>(change.id);
         if (geometry == nullptr) continue;
-        const auto place = meshes_.find(change.id);
+        const auto it = meshes_.find(change.id);
         const scene::Fields<Geometry> shape{&Geometry::hint, &Geometry::indices, &Geometry::positions,
                                             &Geometry::motion_positions};
         MeshUpdate step = MeshUpdate::Rebuild;
-        if (place != meshes_.end() && !place->second.placeholder &&
+        if (it != meshes_.end() && !it->second.placeholder &&
             scene::validate_blobs(change.id, *scene.find(change.id), *blobs_).empty()) {
             if (!change.fields.intersects(shape)) {
                 step = MeshUpdate::ShadingData;
-            } else if (fits(place->second, *geometry)) {
+            } else if (fits(it->second, *geometry)) {
                 step = MeshUpdate::Refit;
             }
         }
         if (step == MeshUpdate::Rebuild) {
             meshes_[change.id] = build(change.id, *geometry, result.problems);
         } else {
-            place->second.source = *geometry;
-            resolve_blobs(place->second, *blobs_);
-            if (step == MeshUpdate::Refit) measure(place->second);
+            it->second.source = *geometry;
+            resolve_blobs(it->second, *blobs_);
+            if (step == MeshUpdate::Refit) measure(it->second);
         }
         result.changes.push_back({change.id, step});
     }

@@ -12,15 +12,17 @@ int add_motion(SceneTables& tables, const glm::dmat4& beginning, std::span<const
                            .max_abs_translation = glm::vec3(0.0f)};
     const auto add = [&](const glm::dmat4& world) {
         // Relative to the origin in double, then rounded once.
-        const shading::Affine3x4 place{.linear = glm::mat3(glm::dmat3(world)),
-                                       .translation = glm::vec3(glm::dvec3(world[3]) - tables.render_origin)};
+        const shading::Affine3x4 transform{
+            .linear = glm::mat3(glm::dmat3(world)),
+            .translation = glm::vec3(glm::dvec3(world[3]) - tables.render_origin)};
         for (int column = 0; column < 3; ++column) {
             for (int row = 0; row < 3; ++row) {
-                motion.max_abs_linear = std::max(motion.max_abs_linear, std::abs(place.linear[column][row]));
+                motion.max_abs_linear =
+                    std::max(motion.max_abs_linear, std::abs(transform.linear[column][row]));
             }
         }
-        motion.max_abs_translation = glm::max(motion.max_abs_translation, glm::abs(place.translation));
-        tables.transform_keys.push_back(place);
+        motion.max_abs_translation = glm::max(motion.max_abs_translation, glm::abs(transform.translation));
+        tables.transform_keys.push_back(transform);
     };
     add(beginning);
     for (const glm::dmat4& step : steps) add(step);

@@ -14,9 +14,9 @@ void add_box(Bounds& bounds, const Mesh& mesh, const glm::mat3& linear, const gl
         const glm::vec3 object{(corner & 1u) ? mesh.low.x : mesh.high.x,
                                (corner & 2u) ? mesh.low.y : mesh.high.y,
                                (corner & 4u) ? mesh.low.z : mesh.high.z};
-        const glm::dvec3 place = linear * object + translation;
-        bounds.low = glm::min(bounds.low, place);
-        bounds.high = glm::max(bounds.high, place);
+        const glm::dvec3 position = linear * object + translation;
+        bounds.low = glm::min(bounds.low, position);
+        bounds.high = glm::max(bounds.high, position);
     }
 }
 
