@@ -120,7 +120,7 @@ TEST_F(Jobs, InvalidJobsAreRefusedWithAReason) {
               std::string::npos);
     session->request_view(1, job_request("twice"));
     (void)ended(*session, "twice");
-    EXPECT_NE(refusal([](auto& r) { r.name = "twice"; }).find("is kept"), std::string::npos);
+    EXPECT_NE(refusal([](auto& r) { r.name = "twice"; }).find("is stored"), std::string::npos);
 }
 
 // A connected client may wait for its result.
