@@ -32,7 +32,7 @@ void SessionService::join_scene(SessionRecord& session, const wire::JoinScene& r
         return;
     }
     session.joining = request;
-    session.reported_place = 0;
+    session.reported_position = 0;
     sessions_.enqueue(session.id);
     tick(now);
 }
@@ -218,9 +218,9 @@ void SessionService::tick(TimePoint now) {
     }
     for (const SessionId id : sessions_.queue()) {
         SessionRecord& session = *sessions_.find(id);
-        const std::uint32_t place = sessions_.place(id);
-        if (place == session.reported_place) continue;
-        session.reported_place = place;
+        const std::uint32_t place = sessions_.queue_position(id);
+        if (place == session.reported_position) continue;
+        session.reported_position = place;
         outbox_.control(session.control, wire::SceneJoined{.version = {}, .queue_place = place});
     }
     for (auto& [id, session] : sessions_.all()) {

@@ -36,10 +36,10 @@ SessionRecord* SessionTable::by_token(std::uint64_t token) {
 }
 
 void SessionTable::enqueue(SessionId id) {
-    if (it(id) == 0) queue_.push_back(id);
+    if (queue_position(id) == 0) queue_.push_back(id);
 }
 
-std::uint32_t SessionTable::it(SessionId id) const {
+std::uint32_t SessionTable::queue_position(SessionId id) const {
     const auto it = std::find(queue_.begin(), queue_.end(), id);
     return it == queue_.end() ? 0 : static_cast<std::uint32_t>(it - queue_.begin()) + 1;
 }

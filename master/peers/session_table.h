@@ -35,7 +35,7 @@ struct SessionRecord {
     std::int64_t heartbeat_sent_at = 0;        // its latest, and when it came: what our next heartbeat echoes
     TimePoint heartbeat_at{};
     net::PeerClock clock;
-    std::uint32_t reported_place = 0;        // in the queue, as last sent to the client
+    std::uint32_t reported_position = 0;     // in the queue, as last sent to the client
     std::optional<wire::JoinScene> joining;  // waits in the queue
 };
 
@@ -56,7 +56,7 @@ class SessionTable {
 
     void enqueue(SessionId id);  // harmless when already queued
     void leave_queue(SessionId id) { std::erase(queue_, id); }
-    std::uint32_t place(SessionId id) const;  // 1 = next; 0 = not waiting
+    std::uint32_t queue_position(SessionId id) const;  // 1 = next; 0 = not waiting
     const std::deque<SessionId>& queue() const { return queue_; }
 
   private:
