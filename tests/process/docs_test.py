@@ -32,7 +32,7 @@ def script_of(page: pathlib.Path, port: int) -> str:
     text = "\n".join(lines).replace("build/release/bin/", "").replace("127.0.0.1:7420", f"127.0.0.1:{port}")
     text = re.sub(r"^tessera-master ", rf"tessera-master --listen tcp://127.0.0.1:{port} ", text, flags=re.M)
     # A reader takes a moment between a start and the next command, and sees what still runs.
-    stop = "trap 'for job in $(jobs -p); do kill -9 $job; done' EXIT"
+    stop = "trap 'for job in $(jobs -p); do kill -9 $job || true; done' EXIT"
     return f"set -e -o pipefail\n{stop}\nset -x\n" + re.sub(r" &$", " & sleep 1", text, flags=re.M)
 
 

@@ -51,7 +51,7 @@ class LiveMaster(unittest.TestCase):
             pass
 
     def emissive_wall(self, color=(1.0, 0.0, 0.0)):
-        """A wall in front of the camera that shines: its pixels are its colour, without noise."""
+        """An emissive wall in front of the camera: its pixels have its colour, without noise."""
         with self.session.transaction() as edit:
             self.emissive = edit.create("material", name="emissive", emission=color, base_color=(0, 0, 0, 1), double_sided=True)
             self.wall = edit.create("geometry", name="wall", material=self.emissive, **WALL)
@@ -119,6 +119,7 @@ class LiveMaster(unittest.TestCase):
 
     def test_camera_and_picking(self):
         view = self.emissive_wall()
+        view.wait(samples=1)  # what is picked is what is shown
         hit = view.pick(32, 24)
         self.assertEqual(hit.object, self.wall.id)
         self.assertAlmostEqual(hit.position[2], 0.0, 4)
