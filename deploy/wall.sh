@@ -53,7 +53,7 @@ here=(--master "$endpoint" --keys "$keys")
 start node-1 "$bin/tessera-node" "${here[@]}" --name node-1 --threads 1
 start node-2 "$bin/tessera-node" "${here[@]}" --name node-2 --threads 1
 
-"$bin/tessera" edit "${here[@]}" -c 'load tests/scenes/studio-1.glb' >"$folder/edit.log" ||
+"$bin/tessera" edit "${here[@]}" -c 'load tests/scenes/room-1.glb' >"$folder/edit.log" ||
     fail "the scene was not loaded"
 "$bin/tessera" display open deploy/wall.toml "${here[@]}" >"$folder/open.log" || fail "the display was not opened"
 mapfile -t outputs < <("$bin/tessera" status "${here[@]}" --json | jq -r '.display.outputs[].name')
