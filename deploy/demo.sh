@@ -61,7 +61,7 @@ rm -f out/demo.exr out/demo.png out/demo.json
 "$bin/tessera" render tests/scenes/interior-1.glb --master "$endpoint" --keys "$keys" --wait-nodes 2:60 \
     --env tests/scenes/env-noon.exr --camera room --hide "kitchen window panes" --hide "tall window panes" \
     --hide "wide window panes" --hide "lamp bulb" \
-    --size "${TESSERA_DEMO_SIZE:-640x360}" --spp "${TESSERA_DEMO_SPP:-64}" --denoise=nfor:blend=off --policy mixed \
+    --size "${TESSERA_DEMO_SIZE:-640x360}" --spp "${TESSERA_DEMO_SPP:-32}" --denoise=nfor:blend=off --policy mixed \
     -o out/demo.exr -o out/demo.png --json "$@" >"$folder/demo.json" &
 render=$!
 children+=("$render")

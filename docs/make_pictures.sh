@@ -22,11 +22,11 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
 progress "pictures  demo"
-TESSERA_DEMO_SIZE=960x540 quietly deploy/demo.sh
+TESSERA_DEMO_SIZE=960x540 TESSERA_DEMO_SPP=64 quietly deploy/demo.sh
 cp out/demo.png "$out/demo.png"
 
 progress "pictures  product"
-quietly "$tessera" render tests/scenes/studio-1.glb --env tests/scenes/env-studio.exr --size 960x540 --spp "$spp" --denoise \
+quietly "$tessera" render tests/scenes/studio-1.glb --env tests/scenes/env-studio.exr --size 960x540 --spp 64 --denoise \
     -o "$out/product.png"
 
 progress "pictures  wall"
