@@ -26,7 +26,8 @@ TESSERA_DEMO_SIZE=960x540 TESSERA_DEMO_SPP=64 quietly deploy/demo.sh
 cp out/demo.png "$out/demo.png"
 
 progress "pictures  product"
-quietly "$tessera" render tests/scenes/studio-1.glb --env tests/scenes/env-studio.exr --size 960x540 --spp 64 --denoise \
+quietly "$tessera" render tests/scenes/still.glb --env tests/scenes/env-studio.exr --size 960x540 --spp 128 \
+    --denoise=nfor:blend=off --exposure -1.2 \
     -o "$out/product.png"
 
 progress "pictures  wall"
