@@ -32,7 +32,8 @@ quietly "$tessera" render tests/scenes/still.glb --env tests/scenes/env-studio.e
 
 progress "pictures  wall"
 quietly deploy/demo.sh --wall
-cp out/wall/preview-left.png "$out/wall.png"
+"$tessera" display preview deploy/wall.toml --pictures out/wall --black 0.002 --width 960 -o "$folder/wall.png" >/dev/null
+cp "$folder/wall-left.png" "$out/wall.png"
 
 progress "pictures  renderers"
 for renderer in path whitted raster coverage; do
